@@ -1,0 +1,144 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/frames.h"
+#include "core/grid.h"
+#include "core/time.h"
+
+/// What the robot's parts say to each other: the same things a real robot would publish. SI units; stamps are the
+/// instant that the content is true of, not when it was sent.
+namespace patrol {
+
+/// One revolution of a 2D lidar. Ranges follow REP 117: -Inf too close, +Inf no return, NaN invalid.
+struct LaserScan {
+  Time stamp{};  ///< instant of beam 0
+  double angle_min_rad = 0.0;        ///< of beam 0, in `lidar`, about z
+  double angle_increment_rad = 0.0;  ///< from beam to beam
+  double time_increment_s = 0.0;     ///< from beam to beam
+  double scan_time_s = 0.0;          ///< from scan to scan
+  double range_min_m = 0.0;
+  double range_max_m = 0.0;
+  std::vector<float> ranges_m;     ///< [beam]
+  std::vector<float> intensities;  ///< [beam], 0 ... 255, or empty
+};
+
+struct CloudPoint {
+  float x, y, z;     ///< m, in `lidar3d`
+  float intensity;   ///< 0 ... 255
+  float time_s;      ///< after the cloud's stamp
+  std::uint16_t ring;
+};
+
+/// One revolution of a 3D lidar; only returns are kept.
+struct PointCloud {
+  Time stamp{};  ///< instant of the first firing
+  std::vector<CloudPoint> points;
+};
+
+/// Specific force and rate, in `imu` (REP 145): at rest, level, the acceleration reads +g on z.
+struct Imu {
+  Time stamp{};
+  Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
+  Eigen::Vector3d linear_acceleration_mps2 = Eigen::Vector3d::Zero();
+};
+
+/// Joint encoders in the order of RobotDescription::joint_names.
+struct JointState {
+  Time stamp{};
+  std::vector<double> position_rad;
+  std::vector<double> velocity_radps;
+  std::vector<double> effort_nm;
+};
+
+/// Force on each foot's sensor, in the order of RobotDescription::legs.
+struct FootContacts {
+  Time stamp{};
+  std::vector<double> force_n;
+};
+
+/// Open-path laser methane meter (TDLAS). The instrument measures the column along its beam.
+struct GasReading {
+  Time stamp{};
+  double column_ppm_m = 0.0;     ///< concentration integrated along the beam
+  double path_length_m = 0.0;    ///< to the surface that scattered the beam back; +Inf if none did
+  double mean_mg_m3 = 0.0;       ///< column over path length, as mass of methane at 20 degC and 1 atm
+};
+
+enum class GnssStatus : std::uint8_t { kNone, kFloat, kFix };
+
+/// Antenna position in WGS 84.
+struct GnssFix {
+  Time stamp{};
+  GnssStatus status = GnssStatus::kNone;
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  double altitude_m = 0.0;
+  Eigen::Vector3d position_std_m = Eigen::Vector3d::Zero();  ///< east, north, up
+};
+
+/// The velocity asked of the robot, in `level`.
+struct VelocityCommand {
+  Time stamp{};
+  double vx_mps = 0.0;
+  double vy_mps = 0.0;
+  double yaw_rate_radps = 0.0;
+};
+
+/// Smooth, drifting: the body in `odom`.
+struct OdometryEstimate {
+  Time stamp{};
+  Pose3 T_odom_body;
+  Twist3 twist;  ///< in body
+  Eigen::Matrix3d planar_covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in odom; m, m, rad
+};
+
+/// The level body in `map`.
+struct PoseEstimate {
+  Time stamp{};
+  Pose2 T_map_body;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in map; m, m, rad
+};
+
+struct ParticleSet {
+  Time stamp{};
+  std::vector<Pose2> T_map_body;  ///< [particle]
+  std::vector<double> weights;    ///< [particle], sum 1
+};
+
+struct MapUpdate {
+  Time stamp{};
+  OccupancyGrid map;  ///< in `map`
+};
+
+struct Path {
+  Time stamp{};
+  std::vector<Pose2> T_map_body;
+};
+
+/// Something that happened in the mission, for the log, the report and the score.
+struct Event {
+  Time stamp{};
+  std::string kind;     ///< e.g. "station_reached", "gas_measured", "alarm", "replan", "fall", "mission_completed"
+  std::string subject;  ///< what it is about, e.g. "regulator_box_2"
+  std::string text;     ///< one sentence for a person
+  double value = 0.0;   ///< the kind's own figure, e.g. ppm m
+  Pose2 T_map_body;     ///< where the robot believed it was
+};
+
+/// A 2D scan freed of the robot's motion: beams in `level` at `stamp`, ends that hit the ground removed.
+struct LevelScan {
+  struct Beam {
+    Eigen::Vector2f end_m;  ///< in level; the hit, or where the beam was last known free
+    bool is_hit;
+  };
+  Time stamp{};
+  Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();  ///< the lidar, in level
+  std::vector<Beam> beams;
+};
+
+}  // namespace patrol

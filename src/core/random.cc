@@ -1,0 +1,45 @@
+#include "core/random.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <Random123/philox.h>
+
+namespace patrol {
+namespace {
+
+/// FNV-1a, 64 bit: stable across builds and platforms, unlike std::hash.
+std::uint64_t hash_of(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char c : text) {
+    hash ^= static_cast<unsigned char>(c);
+    hash *= 0x100000001b3ULL;
+  }
+  return hash;
+}
+
+std::array<std::uint64_t, 2> bits_at(std::uint64_t seed, std::uint64_t stream, std::uint64_t tick,
+                                     std::uint64_t index) {
+  const r123::Philox4x64 philox;
+  const r123::Philox4x64::ctr_type out = philox({{tick, index, 0, 0}}, {{seed, stream}});
+  return {out[0], out[1]};
+}
+
+/// 53 random bits, moved half a step up: never 0, never 1.
+double to_unit(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5) * 0x1.0p-53; }
+
+}  // namespace
+
+RandomStream::RandomStream(std::uint64_t seed, std::string_view name) : seed_(seed), stream_(hash_of(name)) {}
+
+double RandomStream::uniform(std::uint64_t tick, std::uint64_t index) const {
+  return to_unit(bits_at(seed_, stream_, tick, index)[0]);
+}
+
+double RandomStream::normal(std::uint64_t tick, std::uint64_t index) const {
+  const auto bits = bits_at(seed_, stream_, tick, index);
+  return std::sqrt(-2.0 * std::log(to_unit(bits[0]))) * std::cos(2.0 * std::numbers::pi * to_unit(bits[1]));
+}
+
+}  // namespace patrol

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/frames.h"
+
+namespace patrol {
+
+/// One three-joint leg (abduction about x, hip about y, knee about y), every length from the URDF.
+/// Left legs have positive `abduction_offset_m`.
+struct LegGeometry {
+  std::string name;                                             ///< "FL", "FR", "RL", "RR"
+  Eigen::Vector3d hip_in_body = Eigen::Vector3d::Zero();  ///< abduction axis, m, in body
+  double abduction_offset_m = 0.0;                              ///< from abduction axis to thigh along y
+  double thigh_m = 0.0;
+  double shank_m = 0.0;
+  double foot_radius_m = 0.0;
+};
+
+struct JointLimit {
+  double lower_rad = 0.0;
+  double upper_rad = 0.0;
+  double velocity_radps = 0.0;
+  double effort_nm = 0.0;
+};
+
+/// What the robot knows of itself, read from its URDF (io/urdf.h).
+struct RobotDescription {
+  std::string name;
+  double mass_kg = 0.0;
+  std::vector<LegGeometry> legs;          ///< FL, FR, RL, RR; empty for a robot without legs
+  std::vector<std::string> joint_names;   ///< leg by leg: abduction, hip, knee
+  std::vector<JointLimit> joint_limits;   ///< [joint]
+  std::vector<Eigen::Vector2d> footprint_m;    ///< convex hull of the collision shapes in level, counter-clockwise
+  std::map<std::string, Pose3> T_body_sensor;  ///< fixed frames: "lidar", "lidar3d", "imu", "tdlas", "gnss"
+};
+
+}  // namespace patrol
