@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/frames.h"
@@ -80,6 +81,9 @@ struct GnssFix {
   double altitude_m = 0.0;
   Eigen::Vector3d position_std_m = Eigen::Vector3d::Zero();  ///< east, north, up
 };
+
+/// What the sensors say.
+using SensorMessage = std::variant<LaserScan, PointCloud, Imu, JointState, FootContacts, GasReading, GnssFix>;
 
 /// The velocity asked of the robot, in `level`.
 struct VelocityCommand {
