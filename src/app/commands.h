@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/exit_code.h"
+
+/// One function per command of the program. They print results to standard output and talk to standard error.
+namespace patrol::app {
+
+struct RunOptions {
+  std::filesystem::path scenario;
+  std::vector<std::string> overrides;  ///< "path=value"
+  std::optional<std::uint64_t> seed;
+  std::optional<std::filesystem::path> out;
+};
+ExitCode run_command(const RunOptions& options);
+
+/// What `patrol score` was given: a run directory, or two trajectories, or two maps.
+struct ScoreOptions {
+  std::filesystem::path run;
+  std::filesystem::path estimate;
+  std::filesystem::path reference;
+  std::filesystem::path map;
+  std::filesystem::path reference_map;
+};
+ExitCode score_command(const ScoreOptions& options);
+
+struct ReplayOptions {
+  std::filesystem::path run;
+  std::string camera = "chase";
+  double speed = 8.0;
+  std::string size = "1280x720";
+  std::optional<double> still_s;
+  std::optional<std::filesystem::path> out;
+};
+ExitCode replay_command(const ReplayOptions& options);
+
+/// Runs `run` again beside it and compares the logs.
+ExitCode verify_command(const std::filesystem::path& run);
+
+ExitCode list_command();
+
+}  // namespace patrol::app

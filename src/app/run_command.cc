@@ -1,0 +1,92 @@
+#include <sys/resource.h>
+
+#include <fstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/expectations.h"
+#include "app/progress_bar.h"
+#include "app/run_directory.h"
+#include "app/run_loop.h"
+#include "app/score_run.h"
+#include "io/junit.h"
+
+namespace patrol::app {
+namespace {
+
+std::filesystem::path default_directory(const RunOptions& options, const Scenario& scenario) {
+  return std::filesystem::path("out") /
+         fmt::format("{}_{}_seed{}", scenario.world, options.scenario.stem().string(), scenario.seed);
+}
+
+Scenario load_scenario(const RunOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
+  return io::load_settings<Scenario>(options.scenario, overrides);
+}
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+nlohmann::ordered_json performance_of(const RunOutcome& outcome) {
+  nlohmann::ordered_json performance;
+  performance["real_time_factor"] = to_seconds(outcome.duration) / outcome.wall_s;
+  performance["wall_s"] = outcome.wall_s;
+  performance["cpu_s"] = outcome.cpu_s;
+  performance["peak_memory_mb"] = peak_memory_mb();
+  for (const auto& [part, seconds] : outcome.seconds_by_part) performance["parts_s"][part] = seconds;
+  return performance;
+}
+
+/// The verdict of a run that came to its end.
+ExitCode exit_code_of(RunEnd end, const std::vector<CheckedExpectation>& checks) {
+  if (end == RunEnd::kTimeLimit) return ExitCode::kTimeLimit;
+  for (const CheckedExpectation& check : checks) {
+    if (!check.is_met) return ExitCode::kExpectationMissed;
+  }
+  return end == RunEnd::kFall ? ExitCode::kExpectationMissed : ExitCode::kDone;
+}
+
+}  // namespace
+
+ExitCode run_command(const RunOptions& options) {
+  const Scenario scenario = load_scenario(options);
+  const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
+  const std::string name = options.scenario.stem().string();
+
+  sim::Twin twin(twin_settings(scenario, files), files.robot, scenario.seed);  // refuses bad input before anything is written
+  const RunDirectory directory = begin_run_directory(options.out.value_or(default_directory(options, scenario)));
+  write_junit(directory, scenario, name, JunitVerdict::kNotEnded);
+  io::save_settings(directory.scenario(), scenario);
+
+  ProgressBar bar;
+  const InterruptGuard interrupt;
+  const RunOutcome outcome =
+      run_loop(scenario, files, twin, directory.log(), [&](Time now, double distance_m) {
+        bar.show(fmt::format("{}  {:6.1f} s simulated  {:6.1f} m walked", name, to_seconds(now), distance_m));
+        return !interrupt.is_interrupted();
+      });
+  if (outcome.end == RunEnd::kInterrupted) {
+    fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", directory.root.string());
+    return ExitCode::kProgramFailed;
+  }
+
+  nlohmann::ordered_json metrics = score_run(directory, scenario, files);
+  metrics["performance"] = performance_of(outcome);
+  save_metrics(directory, metrics);
+  const std::vector<CheckedExpectation> checks = check_expectations(scenario.expect, metrics);
+  const ExitCode code = exit_code_of(outcome.end, checks);
+  write_junit(directory, scenario, name, checks, outcome);
+  complete_run_directory(directory);
+
+  print_score_table(metrics, checks);
+  fmt::print("run directory: {}\n", directory.root.string());
+  return code;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace patrol::app {
+
+/// The files of a run directory (README, "The run directory").
+struct RunDirectory {
+  std::filesystem::path root;
+
+  std::filesystem::path scenario() const { return root / "scenario.yaml"; }
+  std::filesystem::path log() const { return root / "log.mcap"; }
+  std::filesystem::path metrics() const { return root / "metrics.json"; }
+  std::filesystem::path junit() const { return root / "junit.xml"; }
+  std::filesystem::path estimate() const { return root / "estimate.tum"; }
+  std::filesystem::path truth() const { return root / "truth.tum"; }
+  std::filesystem::path odometry() const { return root / "odometry.tum"; }
+  std::filesystem::path map() const { return root / "map.yaml"; }
+  std::filesystem::path truth_map() const { return root / "truth_map.yaml"; }
+  /// Stands there from the first moment until everything else is written.
+  std::filesystem::path incomplete_marker() const { return root / "INCOMPLETE"; }
+
+  bool is_complete() const;
+};
+
+/// Makes the directory and marks it incomplete. An earlier run's files in it are removed; a directory that holds
+/// anything else is refused. Throws InputError when it cannot be written.
+RunDirectory begin_run_directory(const std::filesystem::path& root);
+
+/// Takes the mark away: everything is written.
+void complete_run_directory(const RunDirectory& directory);
+
+/// An existing run's directory. Throws InputError when there is no log in it.
+RunDirectory open_run_directory(const std::filesystem::path& root);
+
+}  // namespace patrol::app

@@ -1,0 +1,65 @@
+#include "app/scenario.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/route_json.h"
+#include "io/urdf.h"
+
+namespace patrol::app {
+namespace {
+
+bool holds_data(const std::filesystem::path& root) {
+  return std::filesystem::is_directory(root / "worlds") && std::filesystem::is_directory(root / "models");
+}
+
+/// Names of the folders in `parent`, sorted, for "known: ..." in messages.
+std::string folders_in(const std::filesystem::path& parent) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(parent)) {
+    if (entry.is_directory()) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// <root>/<kind>/<name>/<name><extension>, which must exist.
+std::filesystem::path find_definition(const std::filesystem::path& root, const std::string& kind, const std::string& key,
+                                      const std::string& name, const std::string& extension) {
+  const std::filesystem::path file = root / kind / name / (name + extension);
+  if (!std::filesystem::exists(file)) {
+    throw InputError(fmt::format("{} = {}: there is no {} (known: {})", key, name, file.string(), folders_in(root / kind)));
+  }
+  return file;
+}
+
+}  // namespace
+
+std::filesystem::path find_data_root(const std::filesystem::path& scenario) {
+  std::filesystem::path folder = std::filesystem::absolute(scenario).parent_path();
+  for (; folder != folder.parent_path(); folder = folder.parent_path()) {
+    if (holds_data(folder)) return folder;
+  }
+  if (holds_data(std::filesystem::current_path())) return std::filesystem::current_path();
+  return PATROL_SOURCE_DIR;
+}
+
+ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root) {
+  ScenarioFiles files;
+  files.world_xml = find_definition(data_root, "worlds", "world", scenario.world, ".xml");
+  files.robot_urdf = find_definition(data_root, "models", "robot", scenario.robot, ".urdf");
+  files.robot = io::load_robot_description(files.robot_urdf.string());
+  const std::filesystem::path mission = files.world_xml.parent_path() / scenario.mission;
+  if (!std::filesystem::exists(mission)) {
+    throw InputError(fmt::format("mission = {}: there is no {}", scenario.mission, mission.string()));
+  }
+  const io::RouteFile route = io::load_route(mission);
+  files.route = route.route;
+  files.T_site_start = route.T_site_start;
+  return files;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/route.h"
+#include "core/settings.h"
+#include "app/robot_stack.h"
+#include "io/settings_yaml.h"
+#include "sim/twin.h"
+
+namespace patrol::app {
+
+/// How far off the surveyed start the robot is really put down: an operator's carelessness. The stack does not know.
+struct StartOffsetSettings {
+  double ahead_m = 0.0;
+  double left_m = 0.0;
+  double turn_deg = 0.0;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("ahead_m", self.ahead_m);
+    visit("left_m", self.left_m);
+    visit("turn_deg", self.turn_deg, between(-180.0, 180.0));
+  }
+};
+
+/// What is written besides the messages.
+struct LogSettings {
+  double truth_rate_hz = 100.0;
+  double state_rate_hz = 50.0;  ///< for the replay
+  double map_period_s = 5.0;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("truth_rate_hz", self.truth_rate_hz, between(1.0, 500.0));
+    visit("state_rate_hz", self.state_rate_hz, between(1.0, 500.0));
+    visit("map_period_s", self.map_period_s, at_least(0.1));
+  }
+};
+
+/// One run: a YAML file says what is special, the defaults stand here and in the settings that this struct gathers.
+struct Scenario {
+  int version = 1;
+  std::string world = "street";
+  std::string robot = "quadruped";
+  std::uint64_t seed = 1;
+  double time_limit_s = 900.0;  ///< simulated
+  std::string mission = "routes/boxes_and_well.json";  ///< below the world's folder
+  StartOffsetSettings start;
+  sim::SensorSuiteSettings sensors;
+  sim::LocomotionSettings locomotion;
+  StackSettings stack;
+  std::vector<sim::ActorSettings> actors;
+  std::vector<sim::LeakSettings> leaks;
+  sim::WindSettings wind;
+  std::vector<sim::FaultSettings> faults;
+  LogSettings log;
+  io::Expectations expect;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("version", self.version, between(1, 1));
+    visit("world", self.world);
+    visit("robot", self.robot);
+    visit("seed", self.seed);
+    visit("time_limit_s", self.time_limit_s, between(0.1, 86400.0));
+    visit("mission", self.mission);
+    visit("start", self.start);
+    visit("sensors", self.sensors);
+    visit("locomotion", self.locomotion);
+    visit("stack", self.stack);
+    visit("actors", self.actors);
+    visit("leaks", self.leaks);
+    visit("wind", self.wind);
+    visit("faults", self.faults);
+    visit("log", self.log);
+    visit("expect", self.expect);
+  }
+};
+
+/// Where worlds and models lie: the nearest folder above `scenario` that holds `worlds/` and `models/`, else the
+/// working directory, else the source tree that the program was built from.
+std::filesystem::path find_data_root(const std::filesystem::path& scenario);
+
+/// The files that a scenario names, found and read.
+struct ScenarioFiles {
+  std::filesystem::path world_xml;
+  std::filesystem::path robot_urdf;
+  RobotDescription robot;
+  Route route;          ///< in site
+  Pose2 T_site_start;   ///< surveyed
+};
+
+/// Throws InputError, naming file and key, when one is missing or wrong.
+ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root);
+
+}  // namespace patrol::app

@@ -1,0 +1,137 @@
+#include "sim/twin.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <mujoco/mujoco.h>
+
+namespace patrol::sim {
+namespace {
+
+/// A touch that is lost for less than this is still the same touch.
+constexpr Time kSameTouch = std::chrono::milliseconds(500);
+
+/// Worlds name what is for walking on (worlds/street/street.xml).
+bool is_for_walking(std::string_view geom) {
+  constexpr std::array kPrefixes = {"ground", "pavement", "kerb", "carriageway", "dropped_kerb"};
+  return std::any_of(kPrefixes.begin(), kPrefixes.end(),
+                     [&](std::string_view prefix) { return geom.substr(0, prefix.size()) == prefix; });
+}
+
+std::string geom_name(const mjModel& model, int geom) {
+  const char* name = mj_id2name(&model, mjOBJ_GEOM, geom);
+  if (name != nullptr && *name != '\0') return name;
+  const char* body = mj_id2name(&model, mjOBJ_BODY, model.geom_bodyid[geom]);
+  return fmt::format("geom {} of {}", geom, body == nullptr ? "?" : body);
+}
+
+}  // namespace
+
+Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uint64_t seed)
+    : model_(assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start)),
+      data_(make_data(*model_.physics)),
+      robot_body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)),
+      controller_(robot, settings.locomotion),
+      actors_(*model_.physics, settings.actors),
+      sensors_(settings.sensors, robot, *model_.physics, *model_.view,
+               GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed),
+      tick_(from_seconds(model_.physics->opt.timestep)) {
+  if (robot_body_ < 0) throw InputError(fmt::format("{}: no link named {}", settings.robot_urdf, frame_id::kBody));
+  actors_.advance(now_, settings.T_world_start.position(), *data_);
+  mj_forward(model_.physics.get(), data_.get());
+  sensors_.step(*data_, now_);
+}
+
+// Between steps the whole state - kinematics, forces, readings - is that of `now_`; a step integrates it and evaluates the
+// next one. The firmware's torques come from the readings of one tick ago, as on a real robot.
+void Twin::step() {
+  const mjModel* model = model_.physics.get();
+  {
+    const auto lap = clock_.lap("locomotion");
+    drive_joints();
+  }
+  {
+    const auto lap = clock_.lap("actors");
+    actors_.advance(now_ + tick_, truth().T_world_body.position.head<2>(), *data_);
+  }
+  {
+    const auto lap = clock_.lap("physics");
+    mj_Euler(model, data_.get());
+    now_ += tick_;
+    mj_forward(model, data_.get());
+    throw_if_diverged();
+    note_collisions();
+  }
+  const auto lap = clock_.lap("sensors");
+  sensors_.step(*data_, now_);
+}
+
+void Twin::drive_joints() {
+  const Eigen::VectorXd torque_nm =
+      controller_.step({.imu = sensors_.latest_imu(),
+                        .joints = sensors_.latest_joint_state(),
+                        .feet = sensors_.latest_foot_contacts()},
+                       command_);
+  for (int joint = 0; joint < torque_nm.size(); ++joint) data_->ctrl[joint] = torque_nm[joint];
+}
+
+void Twin::note_collisions() {
+  const mjModel& model = *model_.physics;
+  for (int i = 0; i < data_->ncon; ++i) {
+    int robot_geom = data_->contact[i].geom[0], other = data_->contact[i].geom[1];
+    const auto is_robot = [&](int geom) { return model.body_rootid[model.geom_bodyid[geom]] == robot_body_; };
+    if (!is_robot(robot_geom)) std::swap(robot_geom, other);
+    if (!is_robot(robot_geom) || is_robot(other)) continue;
+    const char* other_name = mj_id2name(&model, mjOBJ_GEOM, other);
+    if (other_name != nullptr && is_for_walking(other_name)) continue;
+
+    const Collision collision{.stamp = now_, .first = geom_name(model, robot_geom), .second = geom_name(model, other)};
+    const std::string& thing = collision.second;
+    const auto known = std::find_if(touching_.begin(), touching_.end(),
+                                    [&](const auto& touch) { return touch.first == thing; });
+    if (known == touching_.end()) {
+      touching_.emplace_back(thing, now_);
+      collisions_.push_back(collision);
+    } else {
+      if (now_ - known->second > kSameTouch) collisions_.push_back(collision);
+      known->second = now_;
+    }
+  }
+}
+
+void Twin::throw_if_diverged() const {
+  for (int i = 0; i < model_.physics->nq; ++i) {
+    if (!std::isfinite(data_->qpos[i])) {
+      throw std::runtime_error(fmt::format("the physics diverged at {:.3f} s", to_seconds(now_)));
+    }
+  }
+}
+
+std::vector<SensorMessage> Twin::take_messages() { return sensors_.take_due(now_); }
+
+GroundTruth Twin::truth() const {
+  const mjtNum* position = data_->xpos + 3 * robot_body_;
+  const mjtNum* rotation = data_->xquat + 4 * robot_body_;
+  mjtNum velocity[6];  // angular, linear; in the body's frame
+  mj_objectVelocity(model_.physics.get(), data_.get(), mjOBJ_XBODY, robot_body_, velocity, 1);
+  return {.stamp = now_,
+          .T_world_body = {Eigen::Vector3d(position), Eigen::Quaterniond(rotation[0], rotation[1], rotation[2], rotation[3])},
+          .twist = {.linear = Eigen::Vector3d(velocity + 3), .angular = Eigen::Vector3d(velocity)}};
+}
+
+SimState Twin::state() const {
+  SimState state{.stamp = now_, .qpos = {data_->qpos, data_->qpos + model_.physics->nq}, .mocap = {}};
+  for (int body = 0; body < model_.physics->nmocap; ++body) {
+    state.mocap.insert(state.mocap.end(), data_->mocap_pos + 3 * body, data_->mocap_pos + 3 * body + 3);
+    state.mocap.insert(state.mocap.end(), data_->mocap_quat + 4 * body, data_->mocap_quat + 4 * body + 4);
+  }
+  return state;
+}
+
+std::vector<Collision> Twin::take_collisions() { return std::exchange(collisions_, {}); }
+
+}  // namespace patrol::sim

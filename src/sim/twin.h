@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/ground_truth.h"
+#include "core/messages.h"
+#include "core/part_clock.h"
+#include "core/robot_description.h"
+#include "sim/actors.h"
+#include "sim/gas_plume.h"
+#include "sim/locomotion/quadruped_controller.h"
+#include "sim/model_assembly.h"
+#include "sim/sensors/sensor_suite.h"
+
+namespace patrol::sim {
+
+/// The physical side of a scenario: which world, which robot, and what is in the air and on the road.
+struct TwinSettings {
+  std::string world_xml;
+  std::string robot_urdf;
+  Pose2 T_world_start;  ///< where the robot is put down
+  SensorSuiteSettings sensors;
+  LocomotionSettings locomotion;
+  std::vector<ActorSettings> actors;
+  std::vector<LeakSettings> leaks;
+  WindSettings wind;
+  std::vector<FaultSettings> faults;
+};
+
+/// The digital twin: robot, world, sensors and actors, advanced tick by tick. It takes velocity commands and gives what
+/// the sensors say; the truth is for the log and the judge.
+class Twin {
+ public:
+  Twin(const TwinSettings& settings, const RobotDescription& robot, std::uint64_t seed);
+
+  /// One physics tick (2 ms).
+  void step();
+
+  /// Time since the start; of the state that `truth` describes.
+  Time now() const { return now_; }
+  void set_command(const VelocityCommand& command) { command_ = command; }
+
+  /// Sensor messages whose delivery is due, in order of delivery.
+  std::vector<SensorMessage> take_messages();
+
+  GroundTruth truth() const;
+  SimState state() const;
+  /// New touches since the last call; one entry per touch, not per tick.
+  std::vector<Collision> take_collisions();
+  /// By the firmware's own sensing.
+  bool has_fallen() const { return controller_.has_fallen(); }
+
+  const SensorSuite& sensors() const { return sensors_; }
+  const mjModel& physics() const { return *model_.physics; }
+  const PartClock& clock() const { return clock_; }
+
+ private:
+  void drive_joints();
+  void note_collisions();
+  void throw_if_diverged() const;
+
+  AssembledModel model_;
+  DataPtr data_;
+  int robot_body_;
+  QuadrupedController controller_;
+  Actors actors_;
+  SensorSuite sensors_;
+  VelocityCommand command_;
+  Time now_{};
+  Time tick_;
+  std::vector<Collision> collisions_;
+  std::vector<std::pair<std::string, Time>> touching_;  ///< pairs in contact, with the last time seen
+  PartClock clock_;
+};
+
+}  // namespace patrol::sim

@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""Every kind of bad input gets one clear line, exit code 2, and nothing half-written.
+
+usage: bad_input_test.py PATROL SOURCE_DIR
+"""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+SHORT = SOURCE / "worlds/street/scenarios/short.yaml"
+
+
+class BadInput(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.out = pathlib.Path(self.folder.name) / "run"
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def scenario(self, text):
+        file = pathlib.Path(self.folder.name) / "scenario.yaml"
+        file.write_text(text)
+        return file
+
+    def refuse(self, *arguments, says):
+        """Runs patrol, which must refuse with one line that holds every part of `says`."""
+        done = subprocess.run([PATROL, *map(str, arguments)], capture_output=True, text=True, timeout=60, cwd=SOURCE)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        for part in says:
+            self.assertIn(part, done.stderr)
+        self.assertFalse(self.out.exists(), "something was left in the run directory")
+
+    def refuse_run(self, scenario, *more, says):
+        self.refuse("run", scenario, "--out", self.out, *more, says=says)
+
+    def test_unknown_key_names_file_line_and_nearest_spelling(self):
+        file = self.scenario("world: street\nsensors:\n  lidar: {range_nois_m: 0.03}\n")
+        self.refuse_run(file, says=["scenario.yaml:3", "sensors.lidar.range_nois_m", "range_noise_m"])
+
+    def test_wrong_unit_is_an_unknown_key_that_names_the_right_unit(self):
+        file = self.scenario("sensors:\n  lidar: {range_noise_cm: 3}\n")
+        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_cm", "range_noise_m"])
+
+    def test_wrong_type(self):
+        file = self.scenario("seed: many\n")
+        self.refuse_run(file, says=["scenario.yaml:1", "seed", "many"])
+
+    def test_nan(self):
+        file = self.scenario("sensors:\n  lidar: {range_noise_m: .nan}\n")
+        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_m"])
+
+    def test_out_of_range_names_the_rule(self):
+        file = self.scenario("sensors:\n  lidar: {range_noise_m: -1}\n")
+        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_m", "at least 0"])
+
+    def test_truncated_yaml(self):
+        file = self.scenario("sensors:\n  lidar: {range_noise_m: 0.03\n")
+        self.refuse_run(file, says=["scenario.yaml"])
+
+    def test_missing_scenario(self):
+        self.refuse_run(pathlib.Path(self.folder.name) / "absent.yaml", says=["absent.yaml"])
+
+    def test_unknown_world_names_the_known_ones(self):
+        self.refuse_run(SHORT, "--set", "world=moon", says=["world", "moon", "street"])
+
+    def test_missing_mission_file(self):
+        self.refuse_run(SHORT, "--set", "mission=routes/absent.json", says=["mission", "absent.json"])
+
+    def test_unknown_override(self):
+        self.refuse_run(SHORT, "--set", "stack.slam.particels=3", says=["particels", "particles"])
+
+    def test_start_inside_a_wall(self):
+        self.refuse_run(SHORT, "--set", "start.left_m=6", says=["start"])
+
+    def test_leak_at_an_unknown_place(self):
+        self.refuse_run(SHORT, "--set", "leaks.0.at=nowhere", says=["nowhere"])
+
+    def test_unwritable_output(self):
+        self.refuse("run", SHORT, "--out", "/proc/patrol", says=["/proc/patrol"])
+
+    def test_unknown_command(self):
+        self.refuse("fly", says=["fly"])
+
+    def test_score_of_a_directory_without_a_log(self):
+        self.refuse("score", self.folder.name, says=[self.folder.name])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], "-v"])
