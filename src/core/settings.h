@@ -36,12 +36,16 @@ struct Limits {
 };
 
 inline Limits any() { return {}; }
-inline Limits at_least(double min) { return {.min = min}; }
-inline Limits between(double min, double max) { return {.min = min, .max = max}; }
-inline Limits one_of(std::initializer_list<std::string> allowed) { return {.allowed = allowed}; }
+inline Limits at_least(double min) { return {.min = min, .allowed = {}}; }
+inline Limits between(double min, double max) { return {.min = min, .max = max, .allowed = {}}; }
+inline Limits one_of(std::initializer_list<std::string> allowed) {
+  Limits limits;
+  limits.allowed = allowed;
+  return limits;
+}
 
 /// The rule as a person would say it; empty if there is none.
-std::string inline rule_of(const Limits& limits) {
+inline std::string rule_of(const Limits& limits) {
   if (!limits.allowed.empty()) return fmt::format("must be one of {}", fmt::join(limits.allowed, ", "));
   const bool has_min = std::isfinite(limits.min), has_max = std::isfinite(limits.max);
   if (has_min && has_max) return fmt::format("must lie in {} ... {}", limits.min, limits.max);
@@ -78,7 +82,8 @@ class Validator {
       if (!allows(limits, value)) fail(key, value, limits);
     } else if constexpr (requires { value.begin(); }) {
       int index = 0;
-      for (const auto& element : value) Validator(key)(fmt::format("{}", index++).c_str(), element, limits);
+      Validator elements(key);
+      for (const auto& element : value) elements(fmt::format("{}", index++).c_str(), element, limits);
     } else {
       Validator nested(key);
       Value::fields(value, nested);

@@ -1,0 +1,207 @@
+#include "io/urdf.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include "core/error.h"
+#include "core/leg_kinematics.h"
+
+namespace patrol::io {
+namespace {
+
+constexpr std::array kLegNames = {"FL", "FR", "RL", "RR"};
+
+/// A usual standing posture (abduction, hip, knee), at which the footprint is taken.
+const Eigen::Vector3d kStandingPosture(0.0, 0.8, -1.6);
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path);
+  if (!file || std::filesystem::is_directory(path)) throw InputError(path + ": cannot be read");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// Line of the first place that names `name`, 0 if none does.
+int line_of(const std::string& text, const std::string& name) {
+  const std::size_t at = text.find('"' + name + '"');
+  if (at == std::string::npos) return 0;
+  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+}
+
+/// Reads elements of one file, with errors that say where.
+class UrdfReader {
+ public:
+  explicit UrdfReader(const std::string& path) : path_(path), text_(read_file(path)) {
+    check_numbers();
+    check_links();
+    model_ = urdf::parseURDF(text_);
+    if (!model_) throw InputError(path_ + ": is not a URDF that urdfdom can read (check_urdf says more)");
+  }
+
+  RobotDescription read() const;
+
+ private:
+  [[noreturn]] void fail(const std::string& element, const std::string& what) const {
+    throw input_error(path_, line_of(text_, element), element + ": " + what);
+  }
+
+  void check_numbers() const;
+  void check_links() const;
+  urdf::JointConstSharedPtr joint(const std::string& name) const;
+  Pose3 joint_origin(const std::string& name) const;
+  LegGeometry read_leg(const std::string& name) const;
+  JointLimit read_limit(const std::string& name) const;
+  double foot_radius_m(const std::string& link) const;
+  std::vector<Eigen::Vector2d> read_footprint(const RobotDescription& robot) const;
+
+  std::string path_;
+  std::string text_;
+  urdf::ModelInterfaceSharedPtr model_;
+};
+
+Pose3 to_pose(const urdf::Pose& pose) {
+  return {{pose.position.x, pose.position.y, pose.position.z},
+          Eigen::Quaterniond(pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z)};
+}
+
+/// urdfdom reads "nan" as a number and goes on: refuse it at the text.
+void UrdfReader::check_numbers() const {
+  std::istringstream lines(text_);
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    for (const char* bad : {"\"nan", " nan", "\"NaN", " NaN", "\"inf", "\"-inf", " inf\"", "\"-nan"}) {
+      if (line.find(bad) != std::string::npos) {
+        throw input_error(path_, number, fmt::format("a number must be finite: {}", line.substr(line.find_first_not_of(' '))));
+      }
+    }
+  }
+}
+
+/// Names every joint whose parent or child link is missing; urdfdom only fails.
+void UrdfReader::check_links() const {
+  for (const std::string tag : {"parent", "child"}) {
+    const std::string opening = "<" + tag + " link=\"";
+    for (std::size_t at = text_.find(opening); at != std::string::npos; at = text_.find(opening, at + 1)) {
+      const std::size_t begin = at + opening.size();
+      const std::string link = text_.substr(begin, text_.find('"', begin) - begin);
+      if (text_.find("<link name=\"" + link + "\"") == std::string::npos) {
+        fail(link, "a joint names this link as its " + tag + ", but there is no such link");
+      }
+    }
+  }
+}
+
+urdf::JointConstSharedPtr UrdfReader::joint(const std::string& name) const {
+  const urdf::JointConstSharedPtr found = model_->getJoint(name);
+  if (!found) throw InputError(fmt::format("{}: there is no joint {}", path_, name));
+  return found;
+}
+
+Pose3 UrdfReader::joint_origin(const std::string& name) const {
+  return to_pose(joint(name)->parent_to_joint_origin_transform);
+}
+
+double UrdfReader::foot_radius_m(const std::string& link) const {
+  const urdf::LinkConstSharedPtr foot = model_->getLink(link);
+  if (!foot || !foot->collision || foot->collision->geometry->type != urdf::Geometry::SPHERE) {
+    fail(link, "a foot needs a sphere as its collision shape");
+  }
+  return std::static_pointer_cast<const urdf::Sphere>(foot->collision->geometry)->radius;
+}
+
+LegGeometry UrdfReader::read_leg(const std::string& name) const {
+  return {.name = name,
+          .hip_in_body = joint_origin(name + "_abduction_joint").position,
+          .abduction_offset_m = joint_origin(name + "_hip_joint").position.y(),
+          .thigh_m = -joint_origin(name + "_knee_joint").position.z(),
+          .shank_m = -joint_origin(name + "_foot_joint").position.z(),
+          .foot_radius_m = foot_radius_m(name + "_foot")};
+}
+
+JointLimit UrdfReader::read_limit(const std::string& name) const {
+  const urdf::JointLimitsSharedPtr limits = joint(name)->limits;
+  if (!limits) fail(name, "has no <limit>");
+  if (limits->lower >= limits->upper) fail(name, fmt::format("limit lower {} is not below upper {}", limits->lower, limits->upper));
+  if (limits->effort <= 0.0 || limits->velocity <= 0.0) fail(name, "limit effort and velocity must be positive");
+  return {.lower_rad = limits->lower, .upper_rad = limits->upper, .velocity_radps = limits->velocity, .effort_nm = limits->effort};
+}
+
+/// Convex hull, counter-clockwise (Andrew's monotone chain).
+std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
+  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  });
+  const auto turns_right = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
+    return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x() <= 0.0;
+  };
+  std::vector<Eigen::Vector2d> hull;
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::size_t start = hull.size();
+    for (const Eigen::Vector2d& point : points) {
+      while (hull.size() >= start + 2 && turns_right(hull[hull.size() - 2], hull.back(), point)) hull.pop_back();
+      hull.push_back(point);
+    }
+    hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return hull;
+}
+
+/// The trunk's box and the standing feet, seen from above.
+std::vector<Eigen::Vector2d> UrdfReader::read_footprint(const RobotDescription& robot) const {
+  std::vector<Eigen::Vector2d> points;
+  const urdf::LinkConstSharedPtr base = model_->getLink(frame_id::kBody);
+  if (base && base->collision && base->collision->geometry->type == urdf::Geometry::BOX) {
+    const urdf::Vector3& size = std::static_pointer_cast<const urdf::Box>(base->collision->geometry)->dim;
+    for (const double x : {-0.5, 0.5}) {
+      for (const double y : {-0.5, 0.5}) points.emplace_back(x * size.x, y * size.y);
+    }
+  }
+  for (const LegGeometry& leg : robot.legs) {
+    const Eigen::Vector3d foot = foot_position(leg, kStandingPosture);
+    for (int corner = 0; corner < 8; ++corner) {
+      const double angle = corner * M_PI / 4.0;
+      points.emplace_back(foot.head<2>() + leg.foot_radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    }
+  }
+  return convex_hull(std::move(points));
+}
+
+RobotDescription UrdfReader::read() const {
+  RobotDescription robot;
+  robot.name = model_->getName();
+  for (const auto& [name, link] : model_->links_) {
+    if (link->inertial) robot.mass_kg += link->inertial->mass;
+    if (link->inertial && link->inertial->mass <= 0.0) fail(name, "mass must be positive");
+    const bool moves = link->parent_joint && link->parent_joint->type != urdf::Joint::FIXED;
+    if (moves && !link->inertial) fail(name, "a link that moves needs an <inertial>");
+    if (link->parent_joint && link->parent_joint->type == urdf::Joint::FIXED && link->parent_joint->parent_link_name == frame_id::kBody) {
+      robot.T_body_sensor[name] = to_pose(link->parent_joint->parent_to_joint_origin_transform);
+    }
+  }
+  if (!model_->getLink(frame_id::kBody)) throw InputError(fmt::format("{}: there is no link {}", path_, frame_id::kBody));
+  for (const char* leg : kLegNames) {
+    robot.legs.push_back(read_leg(leg));
+    for (const char* joint_suffix : {"_abduction_joint", "_hip_joint", "_knee_joint"}) {
+      robot.joint_names.push_back(std::string(leg) + joint_suffix);
+      robot.joint_limits.push_back(read_limit(robot.joint_names.back()));
+    }
+  }
+  robot.footprint_m = read_footprint(robot);
+  return robot;
+}
+
+}  // namespace
+
+RobotDescription load_robot_description(const std::string& path) { return UrdfReader(path).read(); }
+
+}  // namespace patrol::io

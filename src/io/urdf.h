@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "core/robot_description.h"
+
+namespace patrol::io {
+
+/// Reads a robot's URDF: legs (links `<leg>_abduction`, `<leg>_thigh`, `<leg>_shank`, `<leg>_foot`), joint limits,
+/// footprint and sensor frames. Throws InputError, naming file and element, for anything missing or not finite.
+RobotDescription load_robot_description(const std::string& path);
+
+}  // namespace patrol::io

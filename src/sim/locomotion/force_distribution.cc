@@ -1,0 +1,58 @@
+#include "sim/locomotion/force_distribution.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace patrol::sim {
+namespace {
+
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return m;
+}
+
+Eigen::Vector3d inside_pyramid(Eigen::Vector3d force, const FrictionLimits& limits) {
+  force.z() = std::clamp(force.z(), limits.min_normal_n, limits.max_normal_n);
+  const double bound = limits.coefficient * force.z();
+  force.x() = std::clamp(force.x(), -bound, bound);
+  force.y() = std::clamp(force.y(), -bound, bound);
+  return force;
+}
+
+}  // namespace
+
+// f = G^T (G G^T + ridge)^-1 w: the smallest forces for the wrench w. Two feet cannot give a moment about the line between
+// them; the ridge lets that part go.
+FootVectors distribute_wrench(const Eigen::Vector3d& force, const Eigen::Vector3d& moment, const FootVectors& feet,
+                              const FootFlags& is_stance, const FrictionLimits& limits) {
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  Matrix6 gram = Matrix6::Zero();
+  FootVectors forces;
+  forces.fill(Eigen::Vector3d::Zero());
+  for (int leg = 0; leg < kNumLegs; ++leg) {
+    if (!is_stance[leg]) continue;
+    const Eigen::Matrix3d cross = cross_matrix(feet[leg]);
+    gram.topLeftCorner<3, 3>() += Eigen::Matrix3d::Identity();
+    gram.topRightCorner<3, 3>() += cross.transpose();
+    gram.bottomLeftCorner<3, 3>() += cross;
+    gram.bottomRightCorner<3, 3>() += cross * cross.transpose();
+  }
+  constexpr double kForceRidge = 1e-4, kMomentRidge = 1e-4;
+  gram.diagonal().head<3>().array() += kForceRidge;
+  gram.diagonal().tail<3>().array() += kMomentRidge;
+  Vector6 wrench;
+  wrench << force, moment;
+  const Vector6 multiplier = gram.ldlt().solve(wrench);
+  const Eigen::Vector3d pull = multiplier.head<3>(), twist = multiplier.tail<3>();
+  for (int leg = 0; leg < kNumLegs; ++leg) {
+    if (!is_stance[leg]) continue;
+    forces[leg] = inside_pyramid(pull + twist.cross(feet[leg]), limits);
+  }
+  return forces;
+}
+
+}  // namespace patrol::sim

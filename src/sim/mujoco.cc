@@ -1,0 +1,49 @@
+#include "sim/mujoco.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <stdexcept>
+
+#include "core/error.h"
+
+namespace patrol::sim {
+namespace {
+
+/// MuJoCo's messages end in new lines and hold some; ours are one line.
+std::string one_line(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+}  // namespace
+
+SpecPtr load_spec(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) throw InputError(path + ": cannot be read");
+  std::array<char, 1024> error{};
+  SpecPtr spec(mj_parseXML(path.c_str(), nullptr, error.data(), error.size()));
+  if (!spec) throw InputError(path + ": " + one_line(error.data()));
+  return spec;
+}
+
+SpecPtr parse_spec(const std::string& xml) {
+  std::array<char, 1024> error{};
+  SpecPtr spec(mj_parseXMLString(xml.c_str(), nullptr, error.data(), error.size()));
+  if (!spec) throw InputError("MJCF: " + one_line(error.data()));
+  return spec;
+}
+
+ModelPtr compile(mjSpec& spec, const std::string& name) {
+  ModelPtr model(mj_compile(&spec, nullptr));
+  if (!model) throw InputError(name + ": " + one_line(mjs_getError(&spec)));
+  return model;
+}
+
+DataPtr make_data(const mjModel& model) {
+  DataPtr data(mj_makeData(&model));
+  if (!data) throw std::runtime_error("MuJoCo has no memory for its data");
+  return data;
+}
+
+}  // namespace patrol::sim

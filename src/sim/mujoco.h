@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <mujoco/mujoco.h>
+
+namespace patrol::sim {
+
+template <auto Delete>
+struct Deleter {
+  template <typename T>
+  void operator()(T* pointer) const {
+    Delete(pointer);
+  }
+};
+
+using ModelPtr = std::unique_ptr<mjModel, Deleter<mj_deleteModel>>;
+using DataPtr = std::unique_ptr<mjData, Deleter<mj_deleteData>>;
+using SpecPtr = std::unique_ptr<mjSpec, Deleter<mj_deleteSpec>>;
+
+/// Throw InputError with MuJoCo's own words (which name the line) when the model is wrong.
+SpecPtr load_spec(const std::string& path);
+SpecPtr parse_spec(const std::string& xml);
+ModelPtr compile(mjSpec& spec, const std::string& name);
+
+DataPtr make_data(const mjModel& model);
+
+}  // namespace patrol::sim

@@ -1,0 +1,194 @@
+#include "sim/robot_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include "core/error.h"
+
+namespace patrol::sim {
+namespace {
+
+// Robot against scenery only: scenery has contype 1, conaffinity 2.
+constexpr int kRobotContype = 2;
+constexpr int kRobotConaffinity = 1;
+
+// Legs of this class reflect about this much rotor inertia through their gears, with the friction of a good bearing
+// (tuned so that the passive leg swings as the public robot description's damping says).
+constexpr double kArmature = 0.01;
+constexpr double kDamping = 0.1;
+constexpr double kFrictionLoss = 0.2;
+
+// A rubber foot on asphalt: firm (6 ms), with the friction of the foot whatever it stands on.
+constexpr double kFootFriction = 0.8;
+
+void set_pose(const urdf::Pose& pose, double position[3], double quaternion[4]) {
+  position[0] = pose.position.x;
+  position[1] = pose.position.y;
+  position[2] = pose.position.z;
+  quaternion[0] = pose.rotation.w;
+  quaternion[1] = pose.rotation.x;
+  quaternion[2] = pose.rotation.y;
+  quaternion[3] = pose.rotation.z;
+}
+
+void set_shape(const urdf::Geometry& geometry, mjsGeom& geom) {
+  switch (geometry.type) {
+    case urdf::Geometry::BOX: {
+      const urdf::Vector3& size = static_cast<const urdf::Box&>(geometry).dim;
+      geom.type = mjGEOM_BOX;
+      geom.size[0] = size.x / 2.0;
+      geom.size[1] = size.y / 2.0;
+      geom.size[2] = size.z / 2.0;
+      return;
+    }
+    case urdf::Geometry::CYLINDER: {
+      const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
+      geom.type = mjGEOM_CYLINDER;
+      geom.size[0] = cylinder.radius;
+      geom.size[1] = cylinder.length / 2.0;
+      return;
+    }
+    case urdf::Geometry::SPHERE:
+      geom.type = mjGEOM_SPHERE;
+      geom.size[0] = static_cast<const urdf::Sphere&>(geometry).radius;
+      return;
+    default:
+      throw InputError("meshes in a robot's URDF are not supported: use boxes, cylinders and spheres");
+  }
+}
+
+void set_colour(const urdf::Material* material, mjsGeom& geom) {
+  if (material == nullptr) return;
+  geom.rgba[0] = material->color.r;
+  geom.rgba[1] = material->color.g;
+  geom.rgba[2] = material->color.b;
+  geom.rgba[3] = material->color.a;
+}
+
+void add_visuals(const urdf::Link& link, mjsBody& body) {
+  for (const urdf::VisualSharedPtr& visual : link.visual_array) {
+    mjsGeom* geom = mjs_addGeom(&body, nullptr);
+    set_pose(visual->origin, geom->pos, geom->quat);
+    set_shape(*visual->geometry, *geom);
+    set_colour(visual->material.get(), *geom);
+    geom->contype = geom->conaffinity = 0;
+    geom->group = kGroupRobotVisual;
+  }
+}
+
+bool is_foot(const urdf::Link& link) { return link.name.ends_with("_foot"); }
+
+void add_collisions(const urdf::Link& link, mjsBody& body) {
+  for (const urdf::CollisionSharedPtr& collision : link.collision_array) {
+    mjsGeom* geom = mjs_addGeom(&body, nullptr);
+    set_pose(collision->origin, geom->pos, geom->quat);
+    set_shape(*collision->geometry, *geom);
+    // MuJoCo's capsules collide faster and rounder than its cylinders; the length stays that of the URDF.
+    if (geom->type == mjGEOM_CYLINDER) geom->type = mjGEOM_CAPSULE;
+    geom->contype = kRobotContype;
+    geom->conaffinity = kRobotConaffinity;
+    geom->group = kGroupRobotCollision;
+    geom->condim = 3;
+    if (is_foot(link)) {
+      mjs_setName(geom->element, link.name.c_str());
+      geom->priority = 1;
+      geom->friction[0] = kFootFriction;
+      geom->solref[0] = 0.006;
+      geom->solref[1] = 1.0;
+      geom->solimp[0] = 0.9;
+      geom->solimp[1] = 0.99;
+      geom->solimp[2] = 0.001;
+    } else {
+      mjs_setName(geom->element, (link.name + "_hull").c_str());
+    }
+  }
+}
+
+void set_inertia(const urdf::Inertial& inertial, mjsBody& body) {
+  body.explicitinertial = 1;
+  body.mass = inertial.mass;
+  double quaternion[4];
+  set_pose(inertial.origin, body.ipos, quaternion);
+  std::copy(quaternion, quaternion + 4, body.iquat);
+  body.inertia[0] = inertial.ixx;
+  body.inertia[1] = inertial.iyy;
+  body.inertia[2] = inertial.izz;
+}
+
+void add_joint(mjSpec& spec, const urdf::Joint& joint, mjsBody& body) {
+  if (joint.type != urdf::Joint::REVOLUTE) return;
+  mjsJoint* hinge = mjs_addJoint(&body, nullptr);
+  mjs_setName(hinge->element, joint.name.c_str());
+  hinge->type = mjJNT_HINGE;
+  hinge->axis[0] = joint.axis.x;
+  hinge->axis[1] = joint.axis.y;
+  hinge->axis[2] = joint.axis.z;
+  hinge->limited = mjLIMITED_TRUE;
+  const double unit = spec.compiler.degree ? 180.0 / M_PI : 1.0;  // a spec holds angles as its world's file writes them
+  hinge->range[0] = joint.limits->lower * unit;
+  hinge->range[1] = joint.limits->upper * unit;
+  hinge->armature = kArmature;
+  hinge->damping[0] = kDamping;
+  hinge->frictionloss = kFrictionLoss;
+
+  mjsActuator* motor = mjs_addActuator(&spec, nullptr);
+  mjs_setToMotor(motor);
+  mjs_setName(motor->element, joint.name.c_str());
+  motor->trntype = mjTRN_JOINT;
+  mjs_setString(motor->target, joint.name.c_str());
+  motor->ctrllimited = mjLIMITED_TRUE;
+  motor->ctrlrange[0] = -joint.limits->effort;
+  motor->ctrlrange[1] = joint.limits->effort;
+}
+
+void add_link(mjSpec& spec, const urdf::Link& link, mjsBody& body) {
+  mjs_setName(body.element, link.name.c_str());
+  if (link.inertial) set_inertia(*link.inertial, body);
+  add_visuals(link, body);
+  add_collisions(link, body);
+  for (const urdf::LinkSharedPtr& child : link.child_links) {
+    mjsBody* child_body = mjs_addBody(&body, nullptr);
+    set_pose(child->parent_joint->parent_to_joint_origin_transform, child_body->pos, child_body->quat);
+    add_joint(spec, *child->parent_joint, *child_body);
+    add_link(spec, *child, *child_body);
+    if (child->parent_joint->type == urdf::Joint::FIXED && !is_foot(*child)) {
+      mjsSite* site = mjs_addSite(child_body, nullptr);
+      mjs_setName(site->element, child->name.c_str());
+      site->group = 5;
+      site->size[0] = 0.005;
+    }
+  }
+}
+
+
+
+urdf::ModelInterfaceSharedPtr parse(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  const urdf::ModelInterfaceSharedPtr model = file ? urdf::parseURDF(text.str()) : nullptr;
+  if (!model) throw InputError(path + ": is not a URDF that can be read");
+  return model;
+}
+
+}  // namespace
+
+void add_robot(mjSpec& world, const std::string& urdf_path, const Pose3& T_world_body) {
+  const urdf::ModelInterfaceSharedPtr model = parse(urdf_path);
+  mjsBody* base = mjs_addBody(mjs_findBody(&world, "world"), nullptr);
+  std::copy_n(T_world_body.position.data(), 3, base->pos);
+  base->quat[0] = T_world_body.rotation.w();
+  base->quat[1] = T_world_body.rotation.x();
+  base->quat[2] = T_world_body.rotation.y();
+  base->quat[3] = T_world_body.rotation.z();
+  mjsJoint* freejoint = mjs_addFreeJoint(base);
+  mjs_setName(freejoint->element, "robot");
+  add_link(world, *model->getRoot(), *base);
+}
+
+}  // namespace patrol::sim
