@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/settings.h"
+#include "core/time.h"
+
+namespace patrol::sim {
+
+/// Something that goes wrong with a sensor for a time.
+struct FaultSettings {
+  std::string sensor = "lidar";
+  std::string kind = "silence";
+  double start_s = 0.0;
+  double duration_s = 1.0;
+  double magnitude = 1.0;  ///< delay: s; drift: units of the sensor per s; spikes: units of the sensor; else unused
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("sensor", self.sensor, one_of({"lidar", "lidar3d", "imu", "joint_encoders", "foot_contact", "tdlas", "gnss"}));
+    visit("kind", self.kind, one_of({"silence", "freeze", "delay", "drift", "spikes"}));
+    visit("start_s", self.start_s, at_least(0.0));
+    visit("duration_s", self.duration_s, at_least(0.0));
+    visit("magnitude", self.magnitude);
+  }
+
+  bool is_active(Time now) const {
+    const double now_s = to_seconds(now);
+    return now_s >= start_s && now_s < start_s + duration_s;
+  }
+};
+
+}  // namespace patrol::sim

@@ -1,0 +1,44 @@
+#include "sim/sensors/foot_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace patrol::sim {
+
+FootContactSensor::FootContactSensor(const FootContactSettings& settings, const mjModel& model,
+                                     const std::vector<LegGeometry>& legs, std::uint64_t seed)
+    : settings_(settings), noise_(seed, "foot_contact/noise") {
+  validate(settings, "sensors.foot_contact");
+  const RandomStream offset(seed, "foot_contact/offset");
+  for (const LegGeometry& leg : legs) {
+    const std::string name = leg.name + "_foot";
+    const int geom = mj_name2id(&model, mjOBJ_GEOM, name.c_str());
+    if (geom < 0) throw InputError("the robot's model has no foot geom " + name);
+    offset_n_.push_back(settings.offset_n * offset.normal(0, foot_geoms_.size()));
+    foot_geoms_.push_back(geom);
+  }
+}
+
+FootContacts FootContactSensor::read(const mjModel& model, const mjData& data, Time now, std::uint64_t tick) const {
+  FootContacts contacts{.stamp = now, .force_n = std::vector<double>(foot_geoms_.size(), 0.0)};
+  for (int i = 0; i < data.ncon; ++i) {
+    for (std::size_t leg = 0; leg < foot_geoms_.size(); ++leg) {
+      const mjContact& contact = data.contact[i];
+      if (contact.geom[0] != foot_geoms_[leg] && contact.geom[1] != foot_geoms_[leg]) continue;
+      mjtNum force[6];  // normal first
+      mj_contactForce(&model, &data, i, force);
+      contacts.force_n[leg] += force[0];
+    }
+  }
+  for (std::size_t leg = 0; leg < foot_geoms_.size(); ++leg) {
+    double& force = contacts.force_n[leg];
+    force += offset_n_[leg] + settings_.noise_n * noise_.normal(tick, leg);
+    if (settings_.resolution_n > 0.0) force = settings_.resolution_n * std::round(force / settings_.resolution_n);
+    force = std::clamp(force, -settings_.range_n, settings_.range_n);
+  }
+  return contacts;
+}
+
+}  // namespace patrol::sim

@@ -1,0 +1,62 @@
+#include "sim/sensors/gnss.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace patrol::sim {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kEarthRadius_m = 6378137.0;             // WGS 84 equatorial
+constexpr double kEccentricitySquared = 6.69437999014e-3;
+
+}  // namespace
+
+Gnss::Gnss(const GnssSettings& settings, std::uint64_t seed) : settings_(settings), noise_(seed, "gnss/noise") {
+  validate(settings, "sensors.gnss");
+}
+
+/// Rays to 24 places where satellites stand, 15 to 75 degrees above the horizon.
+double Gnss::open_sky(const LidarScene& scene, const Eigen::Vector3d& antenna) const {
+  constexpr int kAzimuths = 8;
+  int open = 0, all = 0;
+  for (const double elevation : {15.0 * kDegree, 45.0 * kDegree, 75.0 * kDegree}) {
+    for (int i = 0; i < kAzimuths; ++i, ++all) {
+      const double azimuth = 2.0 * std::numbers::pi * i / kAzimuths + elevation;
+      const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+      if (!scene.cast(antenna, direction, 100.0, kRayScenery)) ++open;
+    }
+  }
+  return static_cast<double>(open) / all;
+}
+
+GnssFix Gnss::read(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna, Time now, std::uint64_t tick) {
+  const double sky = open_sky(scene, p_world_antenna);
+  const bool is_open = sky >= settings_.fix_sky;
+  if (is_open && !was_open_) open_since_ = now + from_seconds(settings_.fix_delay_s);
+  was_open_ = is_open;
+
+  GnssFix fix{.stamp = now};
+  fix.status = is_open && now >= open_since_ ? GnssStatus::kFix : sky >= settings_.float_sky ? GnssStatus::kFloat : GnssStatus::kNone;
+  // A Gauss-Markov error, so that averaging does not help more than it would.
+  const double keep = std::exp(-1.0 / (settings_.rate_hz * settings_.error_time_s));
+  for (int axis = 0; axis < 3; ++axis) {
+    error_[axis] = tick == 0 ? noise_.normal(0, static_cast<std::uint64_t>(axis))
+                             : keep * error_[axis] + std::sqrt(1.0 - keep * keep) * noise_.normal(tick, static_cast<std::uint64_t>(axis));
+  }
+  if (fix.status == GnssStatus::kNone) return fix;
+  const double std_m = fix.status == GnssStatus::kFix ? settings_.fix_noise_m : settings_.float_noise_m;
+  fix.position_std_m = Eigen::Vector3d(std_m, std_m, 2.0 * std_m);
+  const Eigen::Vector3d enu = p_world_antenna + fix.position_std_m.cwiseProduct(error_);
+  // East and north to angles by the ellipsoid's radii at the datum: exact to a millimetre over a block.
+  const double sine = std::sin(settings_.datum_latitude_deg * kDegree);
+  const double w = std::sqrt(1.0 - kEccentricitySquared * sine * sine);
+  const double meridian_m = kEarthRadius_m * (1.0 - kEccentricitySquared) / (w * w * w);
+  const double parallel_m = kEarthRadius_m / w * std::cos(settings_.datum_latitude_deg * kDegree);
+  fix.latitude_deg = settings_.datum_latitude_deg + enu.y() / meridian_m / kDegree;
+  fix.longitude_deg = settings_.datum_longitude_deg + enu.x() / parallel_m / kDegree;
+  fix.altitude_m = enu.z();
+  return fix;
+}
+
+}  // namespace patrol::sim

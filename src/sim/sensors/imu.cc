@@ -1,0 +1,76 @@
+#include "sim/sensors/imu.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace patrol::sim {
+namespace {
+
+double quantised(double value, double resolution) {
+  return resolution > 0.0 ? resolution * std::round(value / resolution) : value;
+}
+
+}  // namespace
+
+ImuSensor::ImuSensor(const ImuSettings& settings, const mjModel& model, std::uint64_t seed)
+    : site_(mj_name2id(&model, mjOBJ_SITE, "imu")),
+      gyro_(make_triad(seed, "imu/gyro", settings, model.opt.timestep, settings.gyro_noise_radps_rthz, settings.gyro_bias_radps,
+                       settings.gyro_bias_walk_radps2_rthz, settings.gyro_range_radps, settings.gyro_resolution_radps)),
+      accel_(make_triad(seed, "imu/accel", settings, model.opt.timestep, settings.accel_noise_mps2_rthz,
+                        settings.accel_bias_mps2, settings.accel_bias_walk_mps3_rthz, settings.accel_range_mps2,
+                        settings.accel_resolution_mps2)) {
+  validate(settings, "sensors.imu");
+}
+
+ImuSensor::Triad ImuSensor::make_triad(std::uint64_t seed, const char* name, const ImuSettings& settings, double tick_s,
+                                       double noise, double bias, double walk, double range, double resolution) {
+  const std::string stream(name);
+  const RandomStream constant(seed, stream + "/constant");
+  Triad triad{.noise = RandomStream(seed, stream + "/noise"),
+              .walk = RandomStream(seed, stream + "/walk"),
+              .distortion = Eigen::Matrix3d::Identity(),
+              .bias = Eigen::Vector3d::Zero(),
+              .noise_std = noise / std::sqrt(tick_s),
+              .walk_std = walk * std::sqrt(tick_s),
+              .range = range,
+              .resolution = resolution};
+  const double misalignment_rad = settings.misalignment_deg * std::numbers::pi / 180.0;
+  std::uint64_t draw = 0;
+  for (int row = 0; row < 3; ++row) {
+    triad.bias[row] = bias * constant.normal(0, draw++);
+    for (int col = 0; col < 3; ++col) {
+      triad.distortion(row, col) += (row == col ? settings.scale_error : misalignment_rad) * constant.normal(0, draw++);
+    }
+  }
+  return triad;
+}
+
+Eigen::Vector3d ImuSensor::measure(Triad& triad, const Eigen::Vector3d& truth, std::uint64_t tick) {
+  Eigen::Vector3d reading = triad.distortion * truth;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto index = static_cast<std::uint64_t>(axis);
+    triad.bias[axis] += triad.walk_std * triad.walk.normal(tick, index);
+    const double value = reading[axis] + triad.bias[axis] + triad.noise_std * triad.noise.normal(tick, index);
+    reading[axis] = std::clamp(quantised(value, triad.resolution), -triad.range, triad.range);
+  }
+  return reading;
+}
+
+Imu ImuSensor::corrupt(const Eigen::Vector3d& rate_radps, const Eigen::Vector3d& force_mps2, Time now, std::uint64_t tick) {
+  return {.stamp = now,
+          .angular_velocity_radps = measure(gyro_, rate_radps, tick),
+          .linear_acceleration_mps2 = measure(accel_, force_mps2, tick)};
+}
+
+Imu ImuSensor::read(const mjModel& model, mjData& data, Time now, std::uint64_t tick) {
+  // With mj_rnePostConstraint, MuJoCo's accelerations hold gravity as an upward one: the specific force.
+  mj_rnePostConstraint(&model, &data);
+  mjtNum velocity[6], acceleration[6];  // angular, linear; in the site's frame
+  mj_objectVelocity(&model, &data, mjOBJ_SITE, site_, velocity, 1);
+  mj_objectAcceleration(&model, &data, mjOBJ_SITE, site_, acceleration, 1);
+  return corrupt(Eigen::Vector3d(velocity), Eigen::Vector3d(acceleration + 3), now, tick);
+}
+
+}  // namespace patrol::sim

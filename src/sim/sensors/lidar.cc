@@ -1,0 +1,194 @@
+#include "sim/sensors/lidar.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "core/error.h"
+
+namespace patrol::sim {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Share of light that a geom throws back, from the luminance of its colour (ITU-R BT.709).
+float reflectivity_of(const mjModel& model, int geom) {
+  const int material = model.geom_matid[geom];
+  const float* rgba = material >= 0 ? model.mat_rgba + 4 * material : model.geom_rgba + 4 * geom;
+  return 0.2126f * rgba[0] + 0.7152f * rgba[1] + 0.0722f * rgba[2];
+}
+
+bool is_glass(const mjModel& model, int geom) {
+  const int material = model.geom_matid[geom];
+  if (material < 0) return false;
+  const char* name = mj_id2name(&model, mjOBJ_MATERIAL, material);
+  return name != nullptr && std::string_view(name).find("glass") != std::string_view::npos;
+}
+
+}  // namespace
+
+LidarSettings LidarSettings::of_preset(const std::string& name) {
+  LidarSettings s;
+  s.preset = name;
+  if (name == "utm30lx") {
+    s.rate_hz = 40.0, s.beams = 1081, s.fov_deg = 270.25, s.range_min_m = 0.1, s.range_resolution_m = 0.001;
+  } else if (name == "tim571") {
+    s.rate_hz = 15.0, s.beams = 811, s.fov_deg = 270.33, s.range_max_m = 25.0, s.dark_range_m = 8.0;
+    s.range_noise_m = 0.01, s.range_resolution_m = 0.001;
+  } else if (name == "vlp16") {
+    s.rate_hz = 10.0, s.beams = 1800, s.rings = 16, s.elevation_min_deg = -15.0, s.elevation_max_deg = 15.0;
+    s.range_min_m = 0.5, s.range_max_m = 100.0, s.range_resolution_m = 0.002, s.dark_range_m = 50.0;
+  }
+  return s;
+}
+
+Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3& T_body_lidar, RayMask own_housing,
+             std::uint64_t seed, const std::string& name)
+    : settings_(settings),
+      scene_(scene),
+      T_body_lidar_(T_body_lidar),
+      mask_(kRayEverything & ~static_cast<std::uint32_t>(own_housing)),
+      range_noise_(seed, name + "/range"),
+      angle_noise_(seed, name + "/angle"),
+      dropout_(seed, name + "/dropout"),
+      rain_(seed, name + "/rain"),
+      rain_range_(seed, name + "/rain_range") {
+  validate(settings, name);
+  const double step = settings.fov_deg * kDegree / settings.beams;
+  for (int beam = 0; beam < settings.beams; ++beam) {
+    const double angle = -settings.fov_deg * kDegree / 2.0 + beam * step;
+    azimuth_.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  for (int ring = 0; ring < settings.rings; ++ring) {
+    const double share = settings.rings > 1 ? static_cast<double>(ring) / (settings.rings - 1) : 0.0;
+    const double angle = kDegree * (settings.elevation_min_deg + share * (settings.elevation_max_deg - settings.elevation_min_deg));
+    elevation_.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  for (int geom = 0; geom < scene.model().ngeom; ++geom) {
+    reflectivity_.push_back(reflectivity_of(scene.model(), geom));
+    is_glass_.push_back(is_glass(scene.model(), geom));
+  }
+  begin_revolution();
+}
+
+/// The beams of a revolution are spread over the part of it that the field of view takes; the last one ends it.
+Time Lidar::instant_of(std::int64_t beam) const {
+  const std::int64_t revolution = beam / settings_.beams, index = beam % settings_.beams;
+  const double revolution_ns = 1e9 / settings_.rate_hz;
+  const double used = settings_.fov_deg / 360.0;
+  const double in_revolution = 1.0 - used + used * static_cast<double>(index + 1) / settings_.beams;
+  return Time{std::llround((static_cast<double>(revolution) + in_revolution) * revolution_ns)};
+}
+
+void Lidar::begin_revolution() {
+  if (settings_.rings > 1) {
+    cloud_ = {.stamp = instant_of(next_beam_), .points = {}};
+    return;
+  }
+  const double step = settings_.fov_deg * kDegree / settings_.beams;
+  scan_ = {.stamp = instant_of(next_beam_),
+           .angle_min_rad = -settings_.fov_deg * kDegree / 2.0,
+           .angle_increment_rad = step,
+           .time_increment_s = settings_.fov_deg / 360.0 / settings_.rate_hz / settings_.beams,
+           .scan_time_s = 1.0 / settings_.rate_hz,
+           .range_min_m = settings_.range_min_m,
+           .range_max_m = settings_.range_max_m,
+           .ranges_m = {},
+           .intensities = {}};
+  scan_.ranges_m.reserve(static_cast<std::size_t>(settings_.beams));
+  scan_.intensities.reserve(static_cast<std::size_t>(settings_.beams));
+}
+
+void Lidar::advance(Time from, Time to, const Pose3& T_world_body_from, const Pose3& T_world_body_to) {
+  while (instant_of(next_beam_) <= to) {
+    const double fraction = to_seconds(instant_of(next_beam_) - from) / to_seconds(to - from);
+    const Pose3 T_world_lidar = interpolate(T_world_body_from, T_world_body_to, fraction) * T_body_lidar_;
+    const bool is_last = next_beam_ % settings_.beams == settings_.beams - 1;
+    if (settings_.motion_distortion) {
+      fire(next_beam_, T_world_lidar);
+    } else if (is_last) {
+      for (std::int64_t beam = next_beam_ - settings_.beams + 1; beam <= next_beam_; ++beam) fire(beam, T_world_lidar);
+    }
+    ++next_beam_;
+    if (!is_last) continue;
+    if (settings_.rings > 1) {
+      clouds_.push_back(std::move(cloud_));
+    } else {
+      if (!settings_.motion_distortion) {
+        scan_.stamp = instant_of(next_beam_ - 1);
+        scan_.time_increment_s = 0.0;
+      }
+      scans_.push_back(std::move(scan_));
+    }
+    begin_revolution();
+  }
+}
+
+void Lidar::fire(std::int64_t beam, const Pose3& T_world_lidar) {
+  const auto tick = static_cast<std::uint64_t>(beam / settings_.beams);
+  const auto column = static_cast<std::size_t>(beam % settings_.beams);
+  for (std::size_t ring = 0; ring < elevation_.size(); ++ring) {
+    const std::uint64_t index = column * elevation_.size() + ring;
+    const Eigen::Vector3d direction(elevation_[ring].x() * azimuth_[column].x(), elevation_[ring].x() * azimuth_[column].y(),
+                                    elevation_[ring].y());
+    const Return got = measure(tick, index, T_world_lidar, direction);
+    if (settings_.rings == 1) {
+      scan_.ranges_m.push_back(static_cast<float>(got.range_m));
+      scan_.intensities.push_back(static_cast<float>(got.intensity));
+    } else if (std::isfinite(got.range_m)) {
+      const Eigen::Vector3f point = (got.range_m * direction).cast<float>();
+      cloud_.points.push_back({.x = point.x(), .y = point.y(), .z = point.z(), .intensity = static_cast<float>(got.intensity),
+                               .time_s = static_cast<float>(to_seconds(instant_of(beam) - cloud_.stamp)),
+                               .ring = static_cast<std::uint16_t>(ring)});
+    }
+  }
+}
+
+/// The whole life of one beam.
+Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose3& T_world_lidar,
+                             const Eigen::Vector3d& direction) const {
+  Eigen::Vector3d aimed = direction;
+  if (settings_.angle_noise_deg > 0.0) {
+    const double turn = settings_.angle_noise_deg * kDegree * angle_noise_.normal(tick, index);
+    aimed += turn * Eigen::Vector3d(-direction.y(), direction.x(), 0.0);
+    aimed.normalize();
+  }
+  const Eigen::Vector3d ray = T_world_lidar.rotation * aimed;
+  const std::optional<RayHit> hit = scene_.cast(T_world_lidar.position, ray, settings_.range_max_m, mask_);
+  Return got = hit ? echo(*hit, ray, hit->distance_m) : Return{kInfinity, 0.0};
+
+  if (settings_.rain_rate > 0.0) {
+    const double path_m = std::min(got.range_m, settings_.range_max_m);
+    if (rain_.uniform(tick, index) < 1.0 - std::exp(-settings_.rain_rate * path_m)) {
+      got = {path_m * rain_range_.uniform(tick, index), 5.0};
+    }
+  }
+  if (settings_.dropout > 0.0 && dropout_.uniform(tick, index) < settings_.dropout) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
+  if (!std::isfinite(got.range_m)) return got;
+  if (got.range_m < settings_.range_min_m) return {-kInfinity, got.intensity};
+  got.range_m += settings_.range_noise_m * range_noise_.normal(tick, index);
+  if (settings_.range_resolution_m > 0.0) {
+    got.range_m = settings_.range_resolution_m * std::round(got.range_m / settings_.range_resolution_m);
+  }
+  if (got.range_m > settings_.range_max_m) return {kInfinity, 0.0};
+  return got;
+}
+
+/// What comes back from a surface: nothing from glass met squarely off, from grazing or from dark and far ones.
+Lidar::Return Lidar::echo(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const {
+  const double cosine = std::abs(hit.normal.dot(direction));
+  const auto geom = static_cast<std::size_t>(hit.geom);
+  constexpr double kMirrorCosine = 0.996;  // glass returns the beam only within 5 degrees of its normal
+  if (is_glass_[geom] && cosine < kMirrorCosine) return {kInfinity, 0.0};
+  if (cosine < std::cos(settings_.grazing_deg * kDegree)) return {kInfinity, 0.0};
+  // The echo falls with the square of the range; range_max is reached on white, dark_range on 10 %.
+  const double reflectivity = std::max(0.02, static_cast<double>(reflectivity_[geom]));
+  const double reach_m = std::min(settings_.range_max_m, settings_.dark_range_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1));
+  if (settings_.dark_range_m > 0.0 && range_m > reach_m) return {kInfinity, 0.0};
+  return {range_m, 255.0 * std::min(1.0, reflectivity * cosine)};
+}
+
+}  // namespace patrol::sim

@@ -1,0 +1,154 @@
+#include "sim/sensors/sensor_suite.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "core/error.h"
+
+namespace patrol::sim {
+namespace {
+
+Pose3 body_pose(const mjData& data, int body) {
+  const mjtNum* q = data.xquat + 4 * body;
+  return {Eigen::Vector3d(data.xpos + 3 * body), Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
+}
+
+std::optional<Lidar> make_lidar(const LidarSettings& settings, const LidarScene& scene, const RobotDescription& robot,
+                                const std::string& frame, RayMask housing, std::uint64_t seed) {
+  if (!settings.enabled) return std::nullopt;
+  const auto mount = robot.T_body_sensor.find(frame);
+  if (mount == robot.T_body_sensor.end()) throw InputError("the robot has no frame " + frame + " to mount the lidar on");
+  return Lidar(settings, scene, mount->second, housing, seed, frame);
+}
+
+/// Adds `offset` to the message's main reading, as drift and spikes do.
+struct OffsetBy {
+  double offset;
+  void operator()(LaserScan& scan) const {
+    for (float& range : scan.ranges_m) range += static_cast<float>(offset);
+  }
+  void operator()(PointCloud& cloud) const {
+    for (CloudPoint& point : cloud.points) point.x += static_cast<float>(offset);
+  }
+  void operator()(Imu& imu) const { imu.angular_velocity_radps.z() += offset; }
+  void operator()(JointState& joints) const { joints.position_rad.front() += offset; }
+  void operator()(FootContacts& contacts) const { contacts.force_n.front() += offset; }
+  void operator()(GasReading& gas) const { gas.column_ppm_m += offset; }
+  void operator()(GnssFix& fix) const { fix.altitude_m += offset; }
+};
+
+}  // namespace
+
+SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
+                         const mjModel& view, GasPlume plume, const std::vector<FaultSettings>& faults, std::uint64_t seed)
+    : settings_(settings),
+      robot_(robot),
+      body_(mj_name2id(&physics, mjOBJ_BODY, frame_id::kBody)),
+      scene_(view),
+      plume_(std::move(plume)),
+      imu_(settings.imu, physics, seed),
+      joint_encoders_(settings.joint_encoders, physics, robot.joint_names),
+      foot_contact_(settings.foot_contact, physics, robot.legs, seed),
+      tdlas_(settings.tdlas, seed),
+      gnss_(settings.gnss, seed),
+      lidar_(make_lidar(settings.lidar, scene_, robot, "lidar", kRayLidar2d, seed)),
+      lidar3d_(make_lidar(settings.lidar3d, scene_, robot, "lidar3d", kRayLidar3d, seed)),
+      spikes_(seed, "fault/spikes") {
+  for (const FaultSettings& fault : faults) faults_.push_back({.fault = fault});
+}
+
+bool SensorSuite::is_due(double rate_hz, std::uint64_t& count, Time now) const {
+  if (now < from_seconds(static_cast<double>(count) / rate_hz)) return false;
+  ++count;
+  return true;
+}
+
+void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
+  newest_imu_ = imu_.read(physics, data, now, tick_);
+  newest_joints_ = joint_encoders_.read(data, now);
+  newest_contacts_ = foot_contact_.read(physics, data, now, tick_);
+  ++tick_;
+  if (settings_.imu.enabled && is_due(settings_.imu.rate_hz, imu_count_, now)) {
+    deliver("imu", now, settings_.imu.latency_s, newest_imu_);
+  }
+  if (settings_.joint_encoders.enabled && is_due(settings_.joint_encoders.rate_hz, joint_count_, now)) {
+    deliver("joint_encoders", now, settings_.joint_encoders.latency_s, newest_joints_);
+  }
+  if (settings_.foot_contact.enabled && is_due(settings_.foot_contact.rate_hz, contact_count_, now)) {
+    deliver("foot_contact", now, settings_.foot_contact.latency_s, newest_contacts_);
+  }
+
+  const auto start = std::chrono::steady_clock::now();
+  const Pose3 T_world_body = body_pose(data, body_);
+  scene_.update(data);
+  if (last_body_) {
+    const auto& [last_time, last_pose] = *last_body_;
+    if (lidar_) {
+      lidar_->advance(last_time, now, last_pose, T_world_body);
+      for (LaserScan& scan : lidar_->take_scans()) deliver("lidar", now, settings_.lidar.latency_s, std::move(scan));
+    }
+    if (lidar3d_) {
+      lidar3d_->advance(last_time, now, last_pose, T_world_body);
+      for (PointCloud& cloud : lidar3d_->take_clouds()) deliver("lidar3d", now, settings_.lidar3d.latency_s, std::move(cloud));
+    }
+  }
+  last_body_ = {now, T_world_body};
+  lidar_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  if (settings_.tdlas.enabled && is_due(settings_.tdlas.rate_hz, tdlas_count_, now)) {
+    deliver("tdlas", now, settings_.tdlas.latency_s,
+            tdlas_.read(scene_, plume_, T_world_body * robot_.T_body_sensor.at("tdlas"), now, tdlas_count_ - 1));
+  }
+  if (settings_.gnss.enabled && is_due(settings_.gnss.rate_hz, gnss_count_, now)) {
+    deliver("gnss", now, settings_.gnss.latency_s,
+            gnss_.read(scene_, T_world_body * robot_.T_body_sensor.at("gnss").position, now, gnss_count_ - 1));
+  }
+}
+
+void SensorSuite::deliver(const char* sensor, Time ready, double latency_s, SensorMessage message) {
+  Time due = ready + from_seconds(latency_s);
+  if (!apply_faults(sensor, ready, due, message)) return;
+  const auto later = std::upper_bound(queue_.begin(), queue_.end(), due,
+                                      [](Time time, const Delivery& delivery) { return time < delivery.due; });
+  queue_.insert(later, Delivery{due, std::move(message)});
+}
+
+/// False when the message is lost.
+bool SensorSuite::apply_faults(const char* sensor, Time ready, Time& due, SensorMessage& message) {
+  if (faults_.empty()) return true;
+  auto good = std::find_if(last_good_.begin(), last_good_.end(), [&](const auto& entry) { return entry.first == sensor; });
+  bool is_frozen = false;
+  for (FaultReport& report : faults_) {
+    const FaultSettings& fault = report.fault;
+    if (fault.sensor != sensor || !fault.is_active(ready)) continue;
+    report.is_executed = true;
+    if (fault.kind == "silence") return false;
+    if (fault.kind == "delay") due += from_seconds(fault.magnitude);
+    if (fault.kind == "drift") std::visit(OffsetBy{fault.magnitude * (to_seconds(ready) - fault.start_s)}, message);
+    if (fault.kind == "spikes" && spikes_.uniform(spike_count_++) < 0.1) std::visit(OffsetBy{fault.magnitude}, message);
+    if (fault.kind == "freeze" && good != last_good_.end()) {
+      const Time stamp = std::visit([](const auto& content) { return content.stamp; }, message);
+      message = good->second;
+      std::visit([&](auto& content) { content.stamp = stamp; }, message);
+      is_frozen = true;
+    }
+  }
+  if (is_frozen) return true;
+  if (good == last_good_.end()) {
+    last_good_.emplace_back(sensor, message);
+  } else {
+    good->second = message;
+  }
+  return true;
+}
+
+std::vector<SensorMessage> SensorSuite::take_due(Time now) {
+  const auto first_later = std::find_if(queue_.begin(), queue_.end(), [&](const Delivery& delivery) { return delivery.due > now; });
+  std::vector<SensorMessage> due;
+  for (auto delivery = queue_.begin(); delivery != first_later; ++delivery) due.push_back(std::move(delivery->message));
+  queue_.erase(queue_.begin(), first_later);
+  return due;
+}
+
+}  // namespace patrol::sim

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <mujoco/mujoco.h>
+
+#include "core/messages.h"
+#include "core/robot_description.h"
+#include "sim/gas_plume.h"
+#include "sim/lidar_scene.h"
+#include "sim/sensors/fault.h"
+#include "sim/sensors/foot_contact.h"
+#include "sim/sensors/gnss.h"
+#include "sim/sensors/imu.h"
+#include "sim/sensors/joint_encoders.h"
+#include "sim/sensors/lidar.h"
+#include "sim/sensors/tdlas.h"
+
+namespace patrol::sim {
+
+struct SensorSuiteSettings {
+  LidarSettings lidar = LidarSettings::of_preset("rplidar_s2");
+  LidarSettings lidar3d = disabled_lidar3d();
+  ImuSettings imu;
+  JointEncoderSettings joint_encoders;
+  FootContactSettings foot_contact;
+  TdlasSettings tdlas;
+  GnssSettings gnss;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("lidar", self.lidar);
+    visit("lidar3d", self.lidar3d);
+    visit("imu", self.imu);
+    visit("joint_encoders", self.joint_encoders);
+    visit("foot_contact", self.foot_contact);
+    visit("tdlas", self.tdlas);
+    visit("gnss", self.gnss);
+  }
+
+ private:
+  static LidarSettings disabled_lidar3d() {
+    LidarSettings settings = LidarSettings::of_preset("vlp16");
+    settings.enabled = false;
+    return settings;
+  }
+};
+
+/// What became of a fault that a scenario declares.
+struct FaultReport {
+  FaultSettings fault;
+  bool is_executed = false;  ///< at least one message was touched
+};
+
+/// All sensors of the robot. Messages come out when they are delivered: latency after the instant they are true of.
+class SensorSuite {
+ public:
+  /// `view` must outlive the suite; `plume` is in world.
+  SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
+              const mjModel& view, GasPlume plume, const std::vector<FaultSettings>& faults, std::uint64_t seed);
+
+  /// Once a tick, with kinematics and accelerations of `now` in `data`.
+  void step(const mjModel& physics, mjData& data, Time now);
+
+  /// Messages due by `now`, in order of delivery.
+  std::vector<SensorMessage> take_due(Time now);
+
+  /// What the walking firmware reads directly, every tick.
+  const Imu& latest_imu() const { return newest_imu_; }
+  const JointState& latest_joint_state() const { return newest_joints_; }
+  const FootContacts& latest_foot_contacts() const { return newest_contacts_; }
+
+  const std::vector<FaultReport>& faults() const { return faults_; }
+  double lidar_seconds() const { return lidar_seconds_; }
+
+ private:
+  struct Delivery {
+    Time due;
+    SensorMessage message;
+  };
+
+  void deliver(const char* sensor, Time ready, double latency_s, SensorMessage message);
+  bool apply_faults(const char* sensor, Time ready, Time& due, SensorMessage& message);
+  bool is_due(double rate_hz, std::uint64_t& count, Time now) const;
+
+  SensorSuiteSettings settings_;
+  RobotDescription robot_;
+  int body_;
+  LidarScene scene_;
+  GasPlume plume_;
+  ImuSensor imu_;
+  JointEncoders joint_encoders_;
+  FootContactSensor foot_contact_;
+  Tdlas tdlas_;
+  Gnss gnss_;
+  std::optional<Lidar> lidar_, lidar3d_;
+  std::vector<FaultReport> faults_;
+  std::vector<std::pair<std::string, SensorMessage>> last_good_;  ///< by sensor, for a freeze
+  RandomStream spikes_;
+  std::uint64_t spike_count_ = 0;
+
+  std::uint64_t tick_ = 0;
+  std::uint64_t imu_count_ = 0, joint_count_ = 0, contact_count_ = 0, tdlas_count_ = 0, gnss_count_ = 0;
+  Imu newest_imu_;
+  JointState newest_joints_;
+  FootContacts newest_contacts_;
+  std::optional<std::pair<Time, Pose3>> last_body_;
+  std::vector<Delivery> queue_;
+  double lidar_seconds_ = 0.0;
+};
+
+}  // namespace patrol::sim
