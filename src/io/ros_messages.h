@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/ground_truth.h"
+#include "core/messages.h"
+
+/// Our messages as ROS 2 messages: the type that stands for each, and its CDR encoding (little-endian XCDR1 with its
+/// four-byte header). Every pair of `encode` and `decode` is one description of the fields, in ros_messages.cc.
+namespace patrol::io {
+
+/// A transform of /tf and /tf_static.
+struct FrameTransform {
+  Time stamp{};
+  std::string parent, child;
+  Pose3 T_parent_child;
+};
+struct TransformSet {
+  std::vector<FrameTransform> transforms;
+};
+
+template <typename Message>
+inline constexpr const char* kRosType = nullptr;
+template <> inline constexpr const char* kRosType<LaserScan> = "sensor_msgs/msg/LaserScan";
+template <> inline constexpr const char* kRosType<PointCloud> = "sensor_msgs/msg/PointCloud2";
+template <> inline constexpr const char* kRosType<Imu> = "sensor_msgs/msg/Imu";
+template <> inline constexpr const char* kRosType<JointState> = "sensor_msgs/msg/JointState";
+template <> inline constexpr const char* kRosType<FootContacts> = "patrol_msgs/msg/FootContacts";
+template <> inline constexpr const char* kRosType<GasReading> = "patrol_msgs/msg/GasReading";
+template <> inline constexpr const char* kRosType<GnssFix> = "sensor_msgs/msg/NavSatFix";
+template <> inline constexpr const char* kRosType<OdometryEstimate> = "nav_msgs/msg/Odometry";
+template <> inline constexpr const char* kRosType<PoseEstimate> = "geometry_msgs/msg/PoseWithCovarianceStamped";
+template <> inline constexpr const char* kRosType<ParticleSet> = "nav2_msgs/msg/ParticleCloud";
+template <> inline constexpr const char* kRosType<MapUpdate> = "nav_msgs/msg/OccupancyGrid";
+template <> inline constexpr const char* kRosType<Path> = "nav_msgs/msg/Path";
+template <> inline constexpr const char* kRosType<VelocityCommand> = "geometry_msgs/msg/TwistStamped";
+template <> inline constexpr const char* kRosType<Event> = "patrol_msgs/msg/Event";
+template <> inline constexpr const char* kRosType<GroundTruth> = "nav_msgs/msg/Odometry";
+template <> inline constexpr const char* kRosType<SimState> = "patrol_msgs/msg/SimState";
+template <> inline constexpr const char* kRosType<Collision> = "patrol_msgs/msg/Collision";
+template <> inline constexpr const char* kRosType<TransformSet> = "tf2_msgs/msg/TFMessage";
+
+/// Names that ROS messages carry and ours do not.
+struct RosNames {
+  std::vector<std::string> joints;
+};
+
+template <typename Message>
+std::string encode(const Message& message, const RosNames& names = {});
+
+/// Throws InputError when the bytes are not such a message.
+template <typename Message>
+Message decode(std::string_view cdr);
+
+}  // namespace patrol::io

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/ground_truth.h"
+#include "core/messages.h"
+#include "core/robot_description.h"
+#include "core/trajectory.h"
+#include "io/mcap_writer.h"
+#include "io/ros_messages.h"
+
+namespace patrol::io {
+
+/// The topic of each message.
+template <typename Message>
+inline constexpr const char* kTopic = nullptr;
+template <> inline constexpr const char* kTopic<LaserScan> = "/scan";
+template <> inline constexpr const char* kTopic<PointCloud> = "/points";
+template <> inline constexpr const char* kTopic<Imu> = "/imu/data";
+template <> inline constexpr const char* kTopic<JointState> = "/joint_states";
+template <> inline constexpr const char* kTopic<FootContacts> = "/foot_contacts";
+template <> inline constexpr const char* kTopic<GasReading> = "/gas";
+template <> inline constexpr const char* kTopic<GnssFix> = "/gnss/fix";
+template <> inline constexpr const char* kTopic<OdometryEstimate> = "/odom";
+template <> inline constexpr const char* kTopic<PoseEstimate> = "/pose";
+template <> inline constexpr const char* kTopic<ParticleSet> = "/particles";
+template <> inline constexpr const char* kTopic<MapUpdate> = "/map";
+template <> inline constexpr const char* kTopic<Path> = "/plan";
+template <> inline constexpr const char* kTopic<VelocityCommand> = "/cmd_vel";
+template <> inline constexpr const char* kTopic<Event> = "/events";
+template <> inline constexpr const char* kTopic<GroundTruth> = "/ground_truth/odom";
+template <> inline constexpr const char* kTopic<SimState> = "/sim/state";
+template <> inline constexpr const char* kTopic<Collision> = "/ground_truth/collisions";
+
+/// Writes log.mcap: every message on its topic, and the frames on /tf and /tf_static.
+class RunLogWriter {
+ public:
+  RunLogWriter(const std::filesystem::path& log_mcap, const RobotDescription& robot);
+
+  template <typename Message>
+  void write(Time log_time, const Message& message) {
+    writer_.write(channel<Message>(kTopic<Message>), log_time, encode(message, names_));
+    if constexpr (std::is_same_v<Message, OdometryEstimate>) write_frames(log_time, message);
+    if constexpr (std::is_same_v<Message, PoseEstimate>) write_frames(log_time, message);
+  }
+  void write(Time log_time, const SensorMessage& message) {
+    std::visit([&](const auto& content) { write(log_time, content); }, message);
+  }
+
+  void close() { writer_.close(); }
+
+ private:
+  template <typename Message>
+  McapWriter::ChannelId channel(const char* topic) {
+    const auto known = channels_.find(topic);
+    if (known != channels_.end()) return known->second;
+    return add_channel(topic, kRosType<Message>);
+  }
+  McapWriter::ChannelId add_channel(const std::string& topic, const char* type);
+  void write_frames(Time log_time, const OdometryEstimate& odometry);
+  void write_frames(Time log_time, const PoseEstimate& estimate);
+
+  McapWriter writer_;
+  RosNames names_;
+  std::map<std::string, McapWriter::ChannelId> channels_;
+  Trajectory odometry_;  ///< the last second, to place map over odom at a scan's stamp
+};
+
+/// What to do with each kind of message; those left empty are skipped undecoded.
+struct LogHandlers {
+  template <typename Message>
+  using Handler = std::function<void(Time log_time, const Message&)>;
+  Handler<LaserScan> scan;
+  Handler<PointCloud> points;
+  Handler<Imu> imu;
+  Handler<JointState> joints;
+  Handler<FootContacts> contacts;
+  Handler<GasReading> gas;
+  Handler<GnssFix> gnss;
+  Handler<OdometryEstimate> odometry;
+  Handler<PoseEstimate> pose;
+  Handler<ParticleSet> particles;
+  Handler<MapUpdate> map;
+  Handler<Path> path;
+  Handler<VelocityCommand> command;
+  Handler<Event> event;
+  Handler<GroundTruth> truth;
+  Handler<SimState> state;
+  Handler<Collision> collision;
+};
+
+/// Reads a log in order; returns whether it is whole. Throws InputError when it is damaged.
+bool read_run_log(const std::filesystem::path& log_mcap, const LogHandlers& handlers);
+
+}  // namespace patrol::io

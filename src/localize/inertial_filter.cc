@@ -1,0 +1,174 @@
+#include "localize/inertial_filter.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <cmath>
+
+namespace patrol::localize {
+namespace {
+
+constexpr double kGravity = 9.81;            // m/s2
+constexpr double kStartTiltStd_rad = 0.05;
+constexpr double kStartVelocityStd_mps = 0.1;
+constexpr double kGate = 16.27;              // 99.9 % of chi-square, three degrees of freedom
+// Without an IMU.
+constexpr double kCoastYawRateStd = 0.05;    // rad/sqrt(s): what the feet tell of the yaw rate, slip included
+constexpr double kCoastTiltStd = 0.15;       // rad/sqrt(s)
+constexpr double kCoastVelocityStd = 1.0;    // m/s/sqrt(s)
+
+const Eigen::Vector3d kGravityInOdom(0.0, 0.0, -kGravity);
+
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return m;
+}
+
+/// Rotation by a vector, to third order: steps here are a few milliradians.
+Eigen::Quaterniond rotation_by(const Eigen::Vector3d& angle_rad) {
+  const double squared = angle_rad.squaredNorm();
+  const Eigen::Vector3d half = (0.5 - squared / 48.0) * angle_rad;
+  return Eigen::Quaterniond(1.0 - squared / 8.0, half.x(), half.y(), half.z()).normalized();
+}
+
+/// Roll and pitch at which gravity reads `force` at rest.
+Eigen::Quaterniond tilt_of(const Eigen::Vector3d& force) {
+  return quaternion_from_rpy(std::atan2(force.y(), force.z()), std::atan2(-force.x(), std::hypot(force.y(), force.z())), 0.0);
+}
+
+}  // namespace
+
+InertialFilter::InertialFilter(const Settings& settings, const InertialSample& first) : settings_(settings), last_(first) {
+  motion_.T_odom_body.rotation = tilt_of(first.force_mps2);
+  motion_.omega_body = first.rate_radps;
+  const auto set_std = [this](int block, double std) { P_.diagonal().segment<3>(block).setConstant(std * std); };
+  set_std(kRotation, kStartTiltStd_rad);
+  P_(kRotation + 2, kRotation + 2) = 0.0;  // odom is where it started
+  set_std(kVelocity, kStartVelocityStd_mps);
+  set_std(kGyroBias, settings.gyro_bias_std_radps);
+  set_std(kAccelBias, settings.accel_bias_std_mps2);
+}
+
+void InertialFilter::predict(double dt_s, const InertialSample& sample) {
+  // Trapezoidal: the mean of the last sample and this one holds over the step.
+  const Eigen::Vector3d omega = 0.5 * (last_.rate_radps + sample.rate_radps) - gyro_bias_;
+  const Eigen::Vector3d force = 0.5 * (last_.force_mps2 + sample.force_mps2) - accel_bias_;
+  last_ = sample;
+
+  Pose3& T = motion_.T_odom_body;
+  const Eigen::Quaterniond rotation_mid = T.rotation * rotation_by(0.5 * dt_s * omega);
+  const Eigen::Matrix3d R = rotation_mid.toRotationMatrix();
+  const Eigen::Vector3d gravity = R.transpose() * kGravityInOdom;
+  const Eigen::Vector3d v_start = motion_.v_body;
+  const Eigen::Vector3d v_mid = v_start + 0.5 * dt_s * (force + gravity - omega.cross(v_start));
+  motion_.v_body = v_start + dt_s * (force + gravity - omega.cross(v_mid));
+  T.position += dt_s * (R * v_mid);
+  T.rotation = (rotation_mid * rotation_by(0.5 * dt_s * omega)).normalized();
+  motion_.omega_body = sample.rate_radps - gyro_bias_;
+
+  propagate_covariance(dt_s, R, v_mid, omega);
+  const auto add_variance = [this](int block, double variance) { P_.diagonal().segment<3>(block).array() += variance; };
+  add_variance(kRotation, dt_s * std::pow(settings_.gyro_noise_radps_per_sqrt_hz, 2));
+  add_variance(kVelocity, dt_s * std::pow(settings_.accel_noise_mps2_per_sqrt_hz, 2));
+  add_variance(kGyroBias, dt_s * std::pow(settings_.gyro_bias_walk_radps_per_sqrt_s, 2));
+  add_variance(kAccelBias, dt_s * std::pow(settings_.accel_bias_walk_mps2_per_sqrt_s, 2));
+  add_dead_reckoning_noise(dt_s);
+}
+
+void InertialFilter::coast(double dt_s, double yaw_rate_radps) {
+  Pose3& T = motion_.T_odom_body;
+  const Eigen::Matrix3d R = T.rotation.toRotationMatrix();
+  T.position += dt_s * (R * motion_.v_body);
+  T.rotation = (quaternion_from_yaw(dt_s * yaw_rate_radps) * T.rotation).normalized();
+  motion_.omega_body = R.transpose() * Eigen::Vector3d(0.0, 0.0, yaw_rate_radps);
+  last_ = {motion_.omega_body + gyro_bias_, -(R.transpose() * kGravityInOdom) + accel_bias_};
+
+  propagate_covariance(dt_s, R, motion_.v_body, motion_.omega_body);
+  P_.diagonal().segment<2>(kRotation).array() += dt_s * kCoastTiltStd * kCoastTiltStd;
+  P_(kRotation + 2, kRotation + 2) += dt_s * kCoastYawRateStd * kCoastYawRateStd;
+  P_.diagonal().segment<3>(kVelocity).array() += dt_s * kCoastVelocityStd * kCoastVelocityStd;
+  add_dead_reckoning_noise(dt_s);
+}
+
+// With R_true = exp(phi) R, omega_true = omega - dbg, force_true = force - dba, to first order:
+//   dp'   = R dv - [R v]x phi
+//   phi'  = -R dbg
+//   dv'   = R^T [g]x phi - [omega]x dv - [v]x dbg - dba
+// P = F P F^T with F = I + dt A. F acts on rows in place (each row block uses only blocks not yet overwritten), once before
+// and once after transposing the symmetric P.
+void InertialFilter::propagate_covariance(double dt_s, const Eigen::Matrix3d& R, const Eigen::Vector3d& v,
+                                          const Eigen::Vector3d& omega) {
+  const Eigen::Matrix3d R_dt = dt_s * R;
+  const Eigen::Matrix3d p_from_rotation = -dt_s * cross_matrix(R * v);
+  const Eigen::Matrix3d v_from_rotation = R_dt.transpose() * cross_matrix(kGravityInOdom);
+  const Eigen::Matrix3d v_from_v = -dt_s * cross_matrix(omega);
+  const Eigen::Matrix3d v_from_gyro_bias = -dt_s * cross_matrix(v);
+  for (int pass = 0; pass < 2; ++pass) {
+    for (int col = 0; col < 15; ++col) {
+      auto column = P_.col(col);
+      const Eigen::Vector3d rotation = column.segment<3>(kRotation), velocity = column.segment<3>(kVelocity);
+      const Eigen::Vector3d gyro_bias = column.segment<3>(kGyroBias), accel_bias = column.segment<3>(kAccelBias);
+      column.segment<3>(kPosition) += p_from_rotation * rotation + R_dt * velocity;
+      column.segment<3>(kRotation) -= R_dt * gyro_bias;
+      column.segment<3>(kVelocity) +=
+          v_from_rotation * rotation + v_from_v * velocity + v_from_gyro_bias * gyro_bias - dt_s * accel_bias;
+    }
+    P_.transposeInPlace();
+  }
+}
+
+void InertialFilter::add_dead_reckoning_noise(double dt_s) {
+  const double way_m = dt_s * motion_.v_body.norm();
+  const double turn_rad = dt_s * std::abs(motion_.omega_body.z());
+  P_.diagonal().segment<3>(kPosition).array() += way_m * std::pow(settings_.way_std_m_per_sqrt_m, 2);
+  P_(kRotation + 2, kRotation + 2) += turn_rad * std::pow(settings_.turn_std_rad_per_sqrt_rad, 2);
+}
+
+void InertialFilter::correct_velocity(const Eigen::Vector3d& innovation, const Eigen::Vector3d& p_contact, double variance) {
+  const Eigen::Matrix3d lever = cross_matrix(p_contact);
+  const Gain W = P_.middleCols<3>(kVelocity) + P_.middleCols<3>(kGyroBias) * lever.transpose();
+  const Eigen::Matrix3d expected = W.middleRows<3>(kVelocity) + lever * W.middleRows<3>(kGyroBias);
+  Eigen::Matrix3d S = expected;
+  S.diagonal().array() += variance;
+  Eigen::Matrix3d S_inverse = S.inverse();
+  const double distance = innovation.dot(S_inverse * innovation);
+  if (distance > kGate) {
+    S.diagonal().array() += variance * (distance / kGate - 1.0);
+    S_inverse = S.inverse();
+  }
+  apply(W, S_inverse, innovation);
+}
+
+void InertialFilter::correct_gyro_bias(const Eigen::Vector3d& bias_radps, const Eigen::Vector3d& variance) {
+  const Gain W = P_.middleCols<3>(kGyroBias);
+  Eigen::Matrix3d S = W.middleRows<3>(kGyroBias);
+  S.diagonal() += variance;
+  apply(W, S.inverse(), bias_radps - gyro_bias_);
+}
+
+void InertialFilter::apply(const Gain& W, const Eigen::Matrix3d& S_inverse, const Eigen::Vector3d& innovation) {
+  const Gain K = W * S_inverse;
+  const Eigen::Matrix<double, 15, 1> error = K * innovation;
+  P_.noalias() -= K * W.transpose();
+  P_ = (0.5 * (P_ + P_.transpose())).eval();
+
+  Pose3& T = motion_.T_odom_body;
+  T.position += error.segment<3>(kPosition);
+  T.rotation = (rotation_by(error.segment<3>(kRotation)) * T.rotation).normalized();
+  motion_.v_body += error.segment<3>(kVelocity);
+  gyro_bias_ += error.segment<3>(kGyroBias);
+  accel_bias_ += error.segment<3>(kAccelBias);
+  motion_.omega_body -= error.segment<3>(kGyroBias);
+}
+
+Eigen::Matrix3d InertialFilter::planar_covariance() const {
+  constexpr int kIndex[3] = {kPosition, kPosition + 1, kRotation + 2};
+  Eigen::Matrix3d planar;
+  for (int row = 0; row < 3; ++row) {
+    for (int col = 0; col < 3; ++col) planar(row, col) = P_(kIndex[row], kIndex[col]);
+  }
+  return planar;
+}
+
+}  // namespace patrol::localize

@@ -1,0 +1,84 @@
+#include "localize/leg_odometry.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/leg_kinematics.h"
+
+namespace patrol::localize {
+
+void ContactDetector::update(Time stamp, const std::array<double, kNumLegs>& force_n) {
+  for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
+    const bool was_loaded = is_loaded_[leg];
+    is_loaded_[leg] = force_n[leg] > (was_loaded ? settings_.release_n : settings_.touch_n);
+    if (is_loaded_[leg] && !was_loaded) loaded_since_[leg] = stamp;
+    is_standing_[leg] = is_loaded_[leg] && stamp - loaded_since_[leg] >= from_seconds(settings_.settle_s);
+  }
+}
+
+bool ContactDetector::all_stand() const {
+  return std::all_of(is_standing_.begin(), is_standing_.end(), [](bool standing) { return standing; });
+}
+
+StanceFoot stance_foot(const LegGeometry& leg, int index, const LegSample& sample, const Eigen::Vector3d& up_in_body) {
+  const Eigen::Vector3d angle = sample.angle_rad.col(index);
+  const Eigen::Vector3d speed = sample.speed_radps.col(index);
+  const Eigen::Vector3d centre_to_contact = -leg.foot_radius_m * up_in_body;
+  const Eigen::Vector3d pitch_axis(0.0, std::cos(angle[0]), std::sin(angle[0]));
+  const Eigen::Vector3d shank_rate = speed[0] * Eigen::Vector3d::UnitX() + (speed[1] + speed[2]) * pitch_axis;
+  return {.leg = index,
+          .p_contact = foot_position(leg, angle) + centre_to_contact,
+          .v_contact = foot_jacobian(leg, angle) * speed + shank_rate.cross(centre_to_contact)};
+}
+
+std::optional<LegVelocity> fuse_feet(const StanceFeet& feet, const Eigen::Vector3d& omega_body,
+                                     const Eigen::Vector3d& v_expected, double foot_std_mps, double slip_mps) {
+  LegVelocity fused;
+  double weight_sum = 0.0;
+  for (const StanceFoot& foot : feet) {
+    const Eigen::Vector3d v_body = -(foot.v_contact + omega_body.cross(foot.p_contact));
+    const double disagreement = (v_body - v_expected).norm() / slip_mps;
+    const double weight = foot.weight / std::max(1.0, disagreement * disagreement);
+    if (disagreement > 1.0) ++fused.num_slipping;
+    fused.v_body += weight * v_body;
+    fused.p_contact += weight * foot.p_contact;
+    weight_sum += weight;
+  }
+  if (weight_sum <= 0.0) return std::nullopt;
+  fused.v_body /= weight_sum;
+  fused.p_contact /= weight_sum;
+  fused.variance = foot_std_mps * foot_std_mps / weight_sum;
+  return fused;
+}
+
+std::optional<double> yaw_rate_by_feet(const StanceFeet& feet) {
+  if (feet.count < 2) return std::nullopt;
+  Eigen::Vector2d p_mean = Eigen::Vector2d::Zero(), v_mean = Eigen::Vector2d::Zero();
+  for (const StanceFoot& foot : feet) {
+    p_mean += foot.p_contact.head<2>() / feet.count;
+    v_mean += foot.v_contact.head<2>() / feet.count;
+  }
+  // Feet at rest on the ground: seen from the trunk they turn the other way round their mean.
+  double moment = 0.0, inertia = 0.0;
+  for (const StanceFoot& foot : feet) {
+    const Eigen::Vector2d p = foot.p_contact.head<2>() - p_mean, v = foot.v_contact.head<2>() - v_mean;
+    moment -= p.x() * v.y() - p.y() * v.x();
+    inertia += p.squaredNorm();
+  }
+  if (inertia <= 0.0) return std::nullopt;
+  return moment / inertia;
+}
+
+std::optional<double> height_by_feet(const StanceFeet& feet, const Eigen::Vector3d& up_in_body) {
+  double sum = 0.0, weight_sum = 0.0;
+  for (const StanceFoot& foot : feet) {
+    sum -= foot.weight * foot.p_contact.dot(up_in_body);
+    weight_sum += foot.weight;
+  }
+  if (weight_sum <= 0.0) return std::nullopt;
+  return sum / weight_sum;
+}
+
+}  // namespace patrol::localize

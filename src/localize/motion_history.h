@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/time.h"
+#include "localize/inertial_filter.h"
+
+namespace patrol::localize {
+
+/// The trunk's motion over the last second or so, in a ring; for beams and measurements that are true of the past.
+class MotionHistory {
+ public:
+  explicit MotionHistory(std::size_t capacity) : ring_(capacity) {}
+
+  /// Stamps must grow; the same stamp again replaces the newest entry.
+  void push(Time stamp, const TrunkMotion& motion);
+
+  bool empty() const { return size_ == 0; }
+  Time oldest() const { return at(0).stamp; }
+  Time newest() const { return at(size_ - 1).stamp; }
+  const TrunkMotion& newest_motion() const { return at(size_ - 1).motion; }
+
+  /// Interpolated; none outside of what is remembered.
+  std::optional<TrunkMotion> motion_at(Time stamp) const;
+  std::optional<Pose3> pose_at(Time stamp) const;
+
+ private:
+  struct Entry {
+    Time stamp{};
+    TrunkMotion motion;
+  };
+  /// The entries around a stamp and how far it lies from the first to the second.
+  struct Bracket {
+    const Entry& before;
+    const Entry& after;
+    double fraction;
+  };
+  std::optional<Bracket> find(Time stamp) const;
+  const Entry& at(std::size_t age_order) const { return ring_[(first_ + age_order) % ring_.size()]; }
+
+  std::vector<Entry> ring_;
+  std::size_t first_ = 0;
+  std::size_t size_ = 0;
+};
+
+}  // namespace patrol::localize
