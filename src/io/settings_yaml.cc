@@ -1,0 +1,199 @@
+#include "io/settings_yaml.h"
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <numeric>
+#include <set>
+
+namespace patrol::io {
+namespace {
+
+/// yaml-cpp marks lines from 0; nodes made by an override have no mark.
+int line_of(const YAML::Node& node) { return node.Mark().is_null() ? 0 : node.Mark().line + 1; }
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+/// Puts one "path=value" into the document, making sections on the way.
+void apply_override(YAML::Node root, const std::string& override) {
+  const std::size_t equals = override.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw InputError("--set " + override + ": must be path=value, e.g. sensors.lidar.range_noise_m=0.05");
+  }
+  YAML::Node value;
+  try {
+    value = YAML::Load(override.substr(equals + 1));
+  } catch (const YAML::Exception& error) {
+    throw InputError("--set " + override + ": " + error.msg);
+  }
+  const std::vector<std::string> path = split(override.substr(0, equals), '.');
+  YAML::Node node = root;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const bool is_last = i + 1 == path.size();
+    if (node.IsSequence()) {
+      std::size_t index = 0;
+      try {
+        index = std::stoul(path[i]);
+      } catch (const std::exception&) {
+        throw InputError("--set " + override + ": " + path[i] + " must be a number: the place in a list");
+      }
+      if (index >= node.size()) throw InputError(fmt::format("--set {}: the list has {} entries", override, node.size()));
+      if (is_last) node[index] = value;
+      else node.reset(node[index]);
+    } else {
+      if (node.IsDefined() && !node.IsNull() && !node.IsMap()) throw InputError("--set " + override + ": " + path[i] + " lies below a plain value");
+      if (is_last) node[path[i]] = value;
+      else {
+        if (!node[path[i]].IsDefined()) node[path[i]] = YAML::Node(YAML::NodeType::Map);
+        node.reset(node[path[i]]);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
+  std::string nearest;
+  std::size_t least = std::max<std::size_t>(3, word.size() / 3 + 1);
+  for (const std::string& candidate : known) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < least) {
+      least = distance;
+      nearest = candidate;
+    }
+  }
+  return nearest;
+}
+
+void SettingsReader::fail(const YAML::Node& node, const std::string& key, const std::string& what) const {
+  throw input_error(file_, line_of(node), (key.empty() ? "" : key + ": ") + what);
+}
+
+void SettingsReader::finish() const {
+  if (!node_ || !node_.IsMap()) return;
+  std::set<std::string> seen;
+  for (const auto& entry : node_) {
+    const std::string name = entry.first.Scalar();
+    if (!seen.insert(name).second) fail(entry.first, key(name), "stands there twice");
+    if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+    const std::string nearest = nearest_word(name, known_);
+    fail(entry.first, key(name),
+         fmt::format("unknown key{} (known: {})", nearest.empty() ? "" : "; did you mean " + nearest + "?", fmt::join(known_, ", ")));
+  }
+}
+
+void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key, bool& value) const {
+  if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value)) fail(node, key, "must be true or false");
+}
+
+void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key, int& value) const {
+  if (!node.IsScalar() || !YAML::convert<int>::decode(node, value)) {
+    fail(node, key, "must be a whole number" + (node.IsScalar() ? ", not " + node.Scalar() : ""));
+  }
+}
+
+void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key, std::uint64_t& value) const {
+  if (!node.IsScalar() || node.Scalar().starts_with('-') || !YAML::convert<std::uint64_t>::decode(node, value)) {
+    fail(node, key, "must be a whole number, not negative" + (node.IsScalar() ? ", not " + node.Scalar() : ""));
+  }
+}
+
+void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key, double& value) const {
+  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value)) {
+    fail(node, key, "must be a number" + (node.IsScalar() ? ", not " + node.Scalar() : ""));
+  }
+  if (!std::isfinite(value)) fail(node, key, "must be a finite number, not " + node.Scalar());
+}
+
+void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key, std::string& value) const {
+  if (!node.IsScalar()) fail(node, key, "must be a word");
+  value = node.Scalar();
+}
+
+void SettingsReader::read_expectations(const YAML::Node& node, const std::string& key, Expectations& value) const {
+  if (!node.IsMap()) fail(node, key, "must be a section of metrics");
+  for (const auto& entry : node) {
+    const std::string metric = entry.first.Scalar();
+    Expectation expectation;
+    if (bool wanted = false; entry.second.IsScalar() && YAML::convert<bool>::decode(entry.second, wanted)) {
+      expectation = {.min = wanted ? 1.0 : 0.0, .max = wanted ? 1.0 : 0.0, .is_boolean = true};
+    } else if (entry.second.IsMap()) {
+      SettingsReader band(file_, entry.second, key + "." + metric);
+      if (entry.second["min"].IsDefined()) band("min", expectation.min);
+      if (entry.second["max"].IsDefined()) band("max", expectation.max);
+      band.known_ = {"min", "max"};
+      band.finish();
+    } else {
+      read_scalar(entry.second, key + "." + metric, expectation.min);
+      expectation.max = expectation.min;
+    }
+    value[metric] = expectation;
+  }
+}
+
+void SettingsWriter::write_expectations(const Expectations& expectations) {
+  out_ << YAML::BeginMap;
+  for (const auto& [metric, expectation] : expectations) {
+    out_ << YAML::Key << metric << YAML::Value;
+    if (expectation.is_boolean) {
+      out_ << (expectation.min > 0.5);
+      continue;
+    }
+    out_ << YAML::Flow << YAML::BeginMap;
+    if (std::isfinite(expectation.min)) out_ << YAML::Key << "min" << YAML::Value << fmt::format("{}", expectation.min);
+    if (std::isfinite(expectation.max)) out_ << YAML::Key << "max" << YAML::Value << fmt::format("{}", expectation.max);
+    out_ << YAML::EndMap;
+  }
+  out_ << YAML::EndMap;
+}
+
+YAML::Node load_document(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": there is no such file");
+  YAML::Node document;
+  try {
+    document = YAML::LoadFile(file.string());
+  } catch (const YAML::Exception& error) {
+    throw input_error(file.string(), error.mark.is_null() ? 0 : error.mark.line + 1, "is not YAML: " + error.msg);
+  }
+  if (!document.IsDefined() || document.IsNull()) document = YAML::Node(YAML::NodeType::Map);
+  if (!document.IsMap()) throw InputError(file.string() + ": must be a map of keys and values");
+  for (const std::string& override : overrides) apply_override(document, override);
+  return document;
+}
+
+void save_text(const std::filesystem::path& file, const std::string& text) {
+  const std::filesystem::path temporary = file.string() + ".part";
+  std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.close();
+  if (!out) throw InputError(file.string() + ": cannot be written");
+  std::filesystem::rename(temporary, file);
+}
+
+}  // namespace patrol::io
