@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
@@ -41,9 +42,10 @@ Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uin
                GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed),
       tick_(from_seconds(model_.physics->opt.timestep)) {
   if (robot_body_ < 0) throw InputError(fmt::format("{}: no link named {}", settings.robot_urdf, frame_id::kBody));
+  std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
   actors_.advance(now_, settings.T_world_start.position(), *data_);
   mj_forward(model_.physics.get(), data_.get());
-  sensors_.step(*data_, now_);
+  sensors_.step(*model_.physics, *data_, now_);
 }
 
 // Between steps the whole state - kinematics, forces, readings - is that of `now_`; a step integrates it and evaluates the
@@ -67,16 +69,15 @@ void Twin::step() {
     note_collisions();
   }
   const auto lap = clock_.lap("sensors");
-  sensors_.step(*data_, now_);
+  sensors_.step(*model, *data_, now_);
 }
 
 void Twin::drive_joints() {
-  const Eigen::VectorXd torque_nm =
-      controller_.step({.imu = sensors_.latest_imu(),
-                        .joints = sensors_.latest_joint_state(),
-                        .feet = sensors_.latest_foot_contacts()},
-                       command_);
-  for (int joint = 0; joint < torque_nm.size(); ++joint) data_->ctrl[joint] = torque_nm[joint];
+  const JointTorques torques = controller_.step({.imu = sensors_.latest_imu(),
+                                                 .joints = sensors_.latest_joint_state(),
+                                                 .feet = sensors_.latest_foot_contacts()},
+                                                command_);
+  std::copy(torques.begin(), torques.end(), data_->ctrl);
 }
 
 void Twin::note_collisions() {

@@ -1,0 +1,181 @@
+#include "sim/actors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/frames.h"
+#include "sim/mujoco.h"
+
+namespace patrol::sim {
+namespace {
+
+constexpr double kCorner_m = 0.4;       // a corner's heading is smoothed over this much way on both sides
+constexpr double kGroundStep_m = 0.1;
+constexpr double kAcceleration_mps2 = 1.5;
+constexpr double kHipWidth_m = 0.09;    // of each hip from the middle
+constexpr double kThigh_m = 0.43, kShank_m = 0.43;
+constexpr double kStep_m = 0.65;        // length of a step; a stride is two
+
+int mocap_of(const mjModel& model, const std::string& name) {
+  const int body = mj_name2id(&model, mjOBJ_BODY, name.c_str());
+  return body < 0 ? -1 : model.body_mocapid[body];
+}
+
+std::string known_actors(const mjModel& model) {
+  std::vector<std::string> names;
+  for (int body = 0; body < model.nbody; ++body) {
+    const std::string name = mj_id2name(&model, mjOBJ_BODY, body);
+    const bool is_part = name.find("_thigh_") != std::string::npos || name.find("_shank_") != std::string::npos;
+    if (model.body_mocapid[body] >= 0 && !is_part) names.push_back(name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Height of what one stands on at a place: the highest still, touchable surface below the knee.
+double ground_at(const mjModel& model, const mjData& data, const Eigen::Vector2d& place) {
+  constexpr double kKnee_m = 0.5;
+  const mjtNum from[3] = {place.x(), place.y(), kKnee_m}, down[3] = {0.0, 0.0, -1.0};
+  const mjtByte solid_only[mjNGROUP] = {1, 0, 0, 1, 0, 0};
+  const mjtNum distance = mj_ray(&model, &data, from, down, solid_only, 1, -1, nullptr, nullptr);
+  return distance < 0.0 ? 0.0 : kKnee_m - distance;
+}
+
+void set_pose(mjData& data, int mocap, const Eigen::Vector3d& position, const Eigen::Quaterniond& rotation) {
+  if (mocap < 0) return;
+  std::copy_n(position.data(), 3, data.mocap_pos + 3 * mocap);
+  const mjtNum quaternion[4] = {rotation.w(), rotation.x(), rotation.y(), rotation.z()};
+  std::copy_n(quaternion, 4, data.mocap_quat + 4 * mocap);
+}
+
+/// Angles of thigh and knee (about y, forwards positive for the thigh) that put the ankle at (forward, down) from the hip.
+std::pair<double, double> leg_angles(double forward_m, double down_m) {
+  const double reach = std::min(std::hypot(forward_m, down_m), kThigh_m + kShank_m - 1e-3);
+  const double cos_knee = (reach * reach - kThigh_m * kThigh_m - kShank_m * kShank_m) / (2.0 * kThigh_m * kShank_m);
+  const double knee = std::acos(std::clamp(cos_knee, -1.0, 1.0));
+  const double lead = std::atan2(kShank_m * std::sin(knee), kThigh_m + kShank_m * std::cos(knee));
+  return {std::atan2(forward_m, down_m) + lead, knee};
+}
+
+}  // namespace
+
+ActorPath::ActorPath(const std::vector<WaypointSettings>& waypoints) {
+  for (const WaypointSettings& waypoint : waypoints) {
+    const Eigen::Vector2d point(waypoint.x_m, waypoint.y_m);
+    along_.push_back(points_.empty() ? 0.0 : along_.back() + (point - points_.back()).norm());
+    points_.push_back(point);
+  }
+}
+
+Eigen::Vector2d ActorPath::position(double along_m) const {
+  const auto next = std::upper_bound(along_.begin(), along_.end(), along_m);
+  if (next == along_.begin()) return points_.front();
+  if (next == along_.end()) return points_.back();
+  const auto i = static_cast<std::size_t>(next - along_.begin());
+  const double share = (along_m - along_[i - 1]) / (along_[i] - along_[i - 1]);
+  return points_[i - 1] + share * (points_[i] - points_[i - 1]);
+}
+
+double ActorPath::heading_rad(double along_m) const {
+  const double reach = std::min(kCorner_m, length_m() / 2.0);
+  const Eigen::Vector2d ahead = position(std::min(along_m + reach, length_m()));
+  const Eigen::Vector2d behind = position(std::max(along_m - reach, 0.0));
+  return std::atan2((ahead - behind).y(), (ahead - behind).x());
+}
+
+Actors::Actors(const mjModel& model, const std::vector<ActorSettings>& settings) {
+  const DataPtr data = make_data(model);
+  mj_kinematics(&model, data.get());
+  for (const ActorSettings& actor_settings : settings) {
+    validate(actor_settings, "actors." + actor_settings.name);
+    const std::string& name = actor_settings.name;
+    const int body = mj_name2id(&model, mjOBJ_BODY, name.c_str());
+    if (mocap_of(model, name) < 0) {
+      throw InputError(fmt::format("actors: name = {}: the world has no such actor (known: {})", name, known_actors(model)));
+    }
+    if (actor_settings.path.size() < 2) throw InputError(fmt::format("actors.{}.path: must have at least two points", name));
+    Actor actor{.settings = actor_settings,
+                .path = ActorPath(actor_settings.path),
+                .mocap = {mocap_of(model, name), mocap_of(model, name + "_thigh_left"), mocap_of(model, name + "_shank_left"),
+                          mocap_of(model, name + "_thigh_right"), mocap_of(model, name + "_shank_right")},
+                .base_height_m = 0.0,
+                .ground_m = {}};
+    if (actor.path.length_m() <= 0.0) throw InputError(fmt::format("actors.{}.path: has no length", name));
+    const Eigen::Vector3d placed(model.body_pos + 3 * body);
+    actor.base_height_m = placed.z() - ground_at(model, *data, placed.head<2>());
+    for (double along = 0.0; along < actor.path.length_m() + kGroundStep_m; along += kGroundStep_m) {
+      actor.ground_m.push_back(ground_at(model, *data, actor.path.position(along)));
+    }
+    actors_.push_back(std::move(actor));
+  }
+}
+
+double Actors::along_path(const Actor& actor) {
+  const double length = actor.path.length_m();
+  if (!actor.settings.loop) return std::min(actor.walked_m, length);
+  const double lap = std::fmod(actor.walked_m, 2.0 * length);
+  return lap <= length ? lap : 2.0 * length - lap;
+}
+
+bool Actors::is_returning(const Actor& actor) {
+  return actor.settings.loop && std::fmod(actor.walked_m, 2.0 * actor.path.length_m()) > actor.path.length_m();
+}
+
+void Actors::advance(Time now, const Eigen::Vector2d& p_world_robot, mjData& data) {
+  const double dt_s = to_seconds(now - last_);
+  last_ = now;
+  for (Actor& actor : actors_) {
+    const double along = along_path(actor);
+    const double heading = actor.path.heading_rad(along) + (is_returning(actor) ? std::numbers::pi : 0.0);
+    const Eigen::Vector2d ahead(std::cos(heading), std::sin(heading));
+    const Eigen::Vector2d to_robot = p_world_robot - actor.path.position(along);
+    const double half_length = actor.settings.kind == "car" ? 2.2 : 0.3, half_width = actor.settings.kind == "car" ? 1.4 : 0.8;
+    const double gap = to_robot.dot(ahead) - half_length;
+    const bool is_in_the_way = gap > -half_length && gap < actor.settings.yield_distance_m &&
+                               std::abs(to_robot.x() * ahead.y() - to_robot.y() * ahead.x()) < half_width;
+    const bool is_over = !actor.settings.loop && actor.walked_m >= actor.path.length_m();
+    const double wanted = is_in_the_way || is_over || to_seconds(now) < actor.settings.start_s ? 0.0 : actor.settings.speed_mps;
+    const double change = (is_in_the_way ? 4.0 : 1.0) * kAcceleration_mps2 * dt_s;
+    actor.speed_mps += std::clamp(wanted - actor.speed_mps, -change, change);
+    actor.walked_m += actor.speed_mps * dt_s;
+    place(actor, data);
+  }
+}
+
+void Actors::place(const Actor& actor, mjData& data) const {
+  const double along = along_path(actor);
+  const double heading = actor.path.heading_rad(along) + (is_returning(actor) ? std::numbers::pi : 0.0);
+  // People do not jump up kerbs: the hip rises over a step's length.
+  const auto ground_at_index = [&](double at) {
+    const auto i = static_cast<std::size_t>(std::clamp(at / kGroundStep_m, 0.0, static_cast<double>(actor.ground_m.size() - 1)));
+    return actor.ground_m[i];
+  };
+  const double ground = (ground_at_index(along - 0.2) + ground_at_index(along) + ground_at_index(along + 0.2)) / 3.0;
+  const Eigen::Vector2d place = actor.path.position(along);
+  const Eigen::Vector3d origin(place.x(), place.y(), ground + actor.base_height_m);
+  set_pose(data, actor.mocap[0], origin, quaternion_from_yaw(heading));
+  if (actor.mocap[1] >= 0) place_legs(actor, origin, heading, data);
+}
+
+// Each foot stands for half a stride while the hip passes over it, then swings twice as fast to the next place.
+void Actors::place_legs(const Actor& actor, const Eigen::Vector3d& hip, double heading_rad, mjData& data) const {
+  const Eigen::Quaterniond yaw = quaternion_from_yaw(heading_rad);
+  const bool moves = actor.speed_mps > 0.05;
+  for (int side = 0; side < 2; ++side) {
+    const double stride = actor.walked_m / (2.0 * kStep_m) + 0.5 * side;
+    const double phase = stride - std::floor(stride);
+    const double forward = !moves ? 0.0 : phase < 0.5 ? kStep_m * (0.5 - 2.0 * phase) : kStep_m * (-0.5 + 2.0 * (phase - 0.5));
+    const double lift = !moves || phase < 0.5 ? 0.0 : 0.10 * std::sin(2.0 * std::numbers::pi * (phase - 0.5));
+    const auto [thigh, knee] = leg_angles(forward, kThigh_m + kShank_m - 0.012 - lift);
+    const Eigen::Vector3d top = hip + yaw * Eigen::Vector3d(0.0, side == 0 ? kHipWidth_m : -kHipWidth_m, 0.0);
+    const Eigen::Quaterniond q_thigh = yaw * Eigen::AngleAxisd(-thigh, Eigen::Vector3d::UnitY());
+    const Eigen::Quaterniond q_shank = yaw * Eigen::AngleAxisd(knee - thigh, Eigen::Vector3d::UnitY());
+    set_pose(data, actor.mocap[static_cast<std::size_t>(1 + 2 * side)], top, q_thigh);
+    set_pose(data, actor.mocap[static_cast<std::size_t>(2 + 2 * side)], top + q_thigh * Eigen::Vector3d(0.0, 0.0, -kThigh_m), q_shank);
+  }
+}
+
+}  // namespace patrol::sim
