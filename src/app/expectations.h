@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "io/settings_yaml.h"
+
+namespace patrol::app {
+
+/// One line of a scenario's `expect:` held against metrics.json.
+struct CheckedExpectation {
+  std::string metric;
+  std::string wanted;  ///< "<= 0.15", "true"
+  std::string got;     ///< "0.07", or "not measured"
+  bool is_measured = false;
+  bool is_met = false;
+};
+
+/// A metric that the run did not measure is not met.
+std::vector<CheckedExpectation> check_expectations(const io::Expectations& expectations, const nlohmann::ordered_json& metrics);
+
+}  // namespace patrol::app
