@@ -8,14 +8,14 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kGravity = 9.81;            // m/s2
+constexpr double kGravity = 9.81;  // m/s2
 constexpr double kStartTiltStd_rad = 0.05;
 constexpr double kStartVelocityStd_mps = 0.1;
-constexpr double kGate = 16.27;              // 99.9 % of chi-square, three degrees of freedom
+constexpr double kGate = 16.27;  // 99.9 % of chi-square, three degrees of freedom
 // Without an IMU.
-constexpr double kCoastYawRateStd = 0.05;    // rad/sqrt(s): what the feet tell of the yaw rate, slip included
-constexpr double kCoastTiltStd = 0.15;       // rad/sqrt(s)
-constexpr double kCoastVelocityStd = 1.0;    // m/s/sqrt(s)
+constexpr double kCoastYawRateStd = 0.05;  // rad/sqrt(s): what the feet tell of the yaw rate, slip included
+constexpr double kCoastTiltStd = 0.15;     // rad/sqrt(s)
+constexpr double kCoastVelocityStd = 1.0;  // m/s/sqrt(s)
 
 const Eigen::Vector3d kGravityInOdom(0.0, 0.0, -kGravity);
 
@@ -34,15 +34,19 @@ Eigen::Quaterniond rotation_by(const Eigen::Vector3d& angle_rad) {
 
 /// Roll and pitch at which gravity reads `force` at rest.
 Eigen::Quaterniond tilt_of(const Eigen::Vector3d& force) {
-  return quaternion_from_rpy(std::atan2(force.y(), force.z()), std::atan2(-force.x(), std::hypot(force.y(), force.z())), 0.0);
+  return quaternion_from_rpy(std::atan2(force.y(), force.z()),
+                             std::atan2(-force.x(), std::hypot(force.y(), force.z())), 0.0);
 }
 
 }  // namespace
 
-InertialFilter::InertialFilter(const Settings& settings, const InertialSample& first) : settings_(settings), last_(first) {
+InertialFilter::InertialFilter(const Settings& settings, const InertialSample& first)
+    : settings_(settings), last_(first) {
   motion_.T_odom_body.rotation = tilt_of(first.force_mps2);
   motion_.omega_body = first.rate_radps;
-  const auto set_std = [this](int block, double std) { P_.diagonal().segment<3>(block).setConstant(std * std); };
+  const auto set_std = [this](int block, double std) {
+    P_.diagonal().segment<3>(block).setConstant(std * std);
+  };
   set_std(kRotation, kStartTiltStd_rad);
   P_(kRotation + 2, kRotation + 2) = 0.0;  // odom is where it started
   set_std(kVelocity, kStartVelocityStd_mps);
@@ -68,7 +72,9 @@ void InertialFilter::predict(double dt_s, const InertialSample& sample) {
   motion_.omega_body = sample.rate_radps - gyro_bias_;
 
   propagate_covariance(dt_s, R, v_mid, omega);
-  const auto add_variance = [this](int block, double variance) { P_.diagonal().segment<3>(block).array() += variance; };
+  const auto add_variance = [this](int block, double variance) {
+    P_.diagonal().segment<3>(block).array() += variance;
+  };
   add_variance(kRotation, dt_s * std::pow(settings_.gyro_noise_radps_per_sqrt_hz, 2));
   add_variance(kVelocity, dt_s * std::pow(settings_.accel_noise_mps2_per_sqrt_hz, 2));
   add_variance(kGyroBias, dt_s * std::pow(settings_.gyro_bias_walk_radps_per_sqrt_s, 2));
@@ -95,8 +101,8 @@ void InertialFilter::coast(double dt_s, double yaw_rate_radps) {
 //   dp'   = R dv - [R v]x phi
 //   phi'  = -R dbg
 //   dv'   = R^T [g]x phi - [omega]x dv - [v]x dbg - dba
-// P = F P F^T with F = I + dt A. F acts on rows in place (each row block uses only blocks not yet overwritten), once before
-// and once after transposing the symmetric P.
+// P = F P F^T with F = I + dt A. F acts on rows in place (each row block uses only blocks not yet
+// overwritten), once before and once after transposing the symmetric P.
 void InertialFilter::propagate_covariance(double dt_s, const Eigen::Matrix3d& R, const Eigen::Vector3d& v,
                                           const Eigen::Vector3d& omega) {
   const Eigen::Matrix3d R_dt = dt_s * R;
@@ -108,7 +114,8 @@ void InertialFilter::propagate_covariance(double dt_s, const Eigen::Matrix3d& R,
     for (int col = 0; col < 15; ++col) {
       auto column = P_.col(col);
       const Eigen::Vector3d rotation = column.segment<3>(kRotation), velocity = column.segment<3>(kVelocity);
-      const Eigen::Vector3d gyro_bias = column.segment<3>(kGyroBias), accel_bias = column.segment<3>(kAccelBias);
+      const Eigen::Vector3d gyro_bias = column.segment<3>(kGyroBias),
+                            accel_bias = column.segment<3>(kAccelBias);
       column.segment<3>(kPosition) += p_from_rotation * rotation + R_dt * velocity;
       column.segment<3>(kRotation) -= R_dt * gyro_bias;
       column.segment<3>(kVelocity) +=
@@ -125,7 +132,8 @@ void InertialFilter::add_dead_reckoning_noise(double dt_s) {
   P_(kRotation + 2, kRotation + 2) += turn_rad * std::pow(settings_.turn_std_rad_per_sqrt_rad, 2);
 }
 
-void InertialFilter::correct_velocity(const Eigen::Vector3d& innovation, const Eigen::Vector3d& p_contact, double variance) {
+void InertialFilter::correct_velocity(const Eigen::Vector3d& innovation, const Eigen::Vector3d& p_contact,
+                                      double variance) {
   const Eigen::Matrix3d lever = cross_matrix(p_contact);
   const Gain W = P_.middleCols<3>(kVelocity) + P_.middleCols<3>(kGyroBias) * lever.transpose();
   const Eigen::Matrix3d expected = W.middleRows<3>(kVelocity) + lever * W.middleRows<3>(kGyroBias);
@@ -147,7 +155,8 @@ void InertialFilter::correct_gyro_bias(const Eigen::Vector3d& bias_radps, const 
   apply(W, S.inverse(), bias_radps - gyro_bias_);
 }
 
-void InertialFilter::apply(const Gain& W, const Eigen::Matrix3d& S_inverse, const Eigen::Vector3d& innovation) {
+void InertialFilter::apply(const Gain& W, const Eigen::Matrix3d& S_inverse,
+                           const Eigen::Vector3d& innovation) {
   const Gain K = W * S_inverse;
   const Eigen::Matrix<double, 15, 1> error = K * innovation;
   P_.noalias() -= K * W.transpose();

@@ -9,20 +9,20 @@
 
 namespace patrol::localize {
 
-void ContactDetector::update(Time stamp, const std::array<double, kNumLegs>& force_n) {
+FootTrust ContactDetector::update(Time stamp, const std::array<double, kNumLegs>& force_n) {
+  FootTrust trust{};
   for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
     const bool was_loaded = is_loaded_[leg];
     is_loaded_[leg] = force_n[leg] > (was_loaded ? settings_.release_n : settings_.touch_n);
     if (is_loaded_[leg] && !was_loaded) loaded_since_[leg] = stamp;
-    is_standing_[leg] = is_loaded_[leg] && stamp - loaded_since_[leg] >= from_seconds(settings_.settle_s);
+    const bool has_settled = is_loaded_[leg] && to_seconds(stamp - loaded_since_[leg]) >= settings_.settle_s;
+    trust[leg] = has_settled ? std::clamp(force_n[leg] / settings_.full_n, 0.0, 1.0) : 0.0;
   }
+  return trust;
 }
 
-bool ContactDetector::all_stand() const {
-  return std::all_of(is_standing_.begin(), is_standing_.end(), [](bool standing) { return standing; });
-}
-
-StanceFoot stance_foot(const LegGeometry& leg, int index, const LegSample& sample, const Eigen::Vector3d& up_in_body) {
+StanceFoot stance_foot(const LegGeometry& leg, int index, const LegSample& sample,
+                       const Eigen::Vector3d& up_in_body) {
   const Eigen::Vector3d angle = sample.angle_rad.col(index);
   const Eigen::Vector3d speed = sample.speed_radps.col(index);
   const Eigen::Vector3d centre_to_contact = -leg.foot_radius_m * up_in_body;
@@ -34,7 +34,8 @@ StanceFoot stance_foot(const LegGeometry& leg, int index, const LegSample& sampl
 }
 
 std::optional<LegVelocity> fuse_feet(const StanceFeet& feet, const Eigen::Vector3d& omega_body,
-                                     const Eigen::Vector3d& v_expected, double foot_std_mps, double slip_mps) {
+                                     const Eigen::Vector3d& v_expected, double foot_std_mps,
+                                     double slip_mps) {
   LegVelocity fused;
   double weight_sum = 0.0;
   for (const StanceFoot& foot : feet) {

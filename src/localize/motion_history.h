@@ -9,7 +9,8 @@
 
 namespace patrol::localize {
 
-/// The trunk's motion over the last second or so, in a ring; for beams and measurements that are true of the past.
+/// The trunk's motion over the last second or so, in a ring; for beams and measurements that are true of the
+/// past.
 class MotionHistory {
  public:
   explicit MotionHistory(std::size_t capacity) : ring_(capacity) {}

@@ -8,10 +8,10 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kEndShare = 0.2;           // of the window, at each end, is averaged
-constexpr double kMaxGap_s = 0.02;          // between samples
-constexpr double kMaxSlip_m = 0.001;        // residual of the rigid fit at any foot
-constexpr double kMaxRotation_rad = 0.02;   // beyond this it does not stand
+constexpr double kEndShare = 0.2;          // of the window, at each end, is averaged
+constexpr double kMaxGap_s = 0.02;         // between samples
+constexpr double kMaxSlip_m = 0.001;       // residual of the rigid fit at any foot
+constexpr double kMaxRotation_rad = 0.02;  // beyond this it does not stand
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
@@ -26,7 +26,8 @@ struct SmallRotation {
 };
 
 // The trunk turns by theta over feet that stay: q - p = -theta x p = [p]x theta, about the feet's mean.
-SmallRotation fit_rotation(const std::array<Eigen::Vector3d, kNumLegs>& before, const std::array<Eigen::Vector3d, kNumLegs>& after) {
+SmallRotation fit_rotation(const std::array<Eigen::Vector3d, kNumLegs>& before,
+                           const std::array<Eigen::Vector3d, kNumLegs>& after) {
   Eigen::Vector3d before_mean = Eigen::Vector3d::Zero(), after_mean = Eigen::Vector3d::Zero();
   for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
     before_mean += before[leg] / kNumLegs;
@@ -66,8 +67,10 @@ void StandstillBiasMeter::End::divide() {
   time_s /= count;
 }
 
-std::optional<GyroBiasReading> StandstillBiasMeter::add(Time stamp, const StanceFeet& all_feet, const Eigen::Vector3d& gyro_radps) {
-  if (all_feet.count != kNumLegs || (is_open_ && (stamp <= last_ || to_seconds(stamp - last_) > kMaxGap_s))) reset();
+std::optional<GyroBiasReading> StandstillBiasMeter::add(Time stamp, const StanceFeet& all_feet,
+                                                        const Eigen::Vector3d& gyro_radps) {
+  if (all_feet.count != kNumLegs || (is_open_ && (stamp <= last_ || to_seconds(stamp - last_) > kMaxGap_s)))
+    reset();
   if (all_feet.count != kNumLegs) return std::nullopt;
   if (!is_open_) {
     is_open_ = true;
@@ -95,10 +98,12 @@ std::optional<GyroBiasReading> StandstillBiasMeter::close() {
   if (turned.max_residual_m > kMaxSlip_m || turned.angle_rad.norm() > kMaxRotation_rad) return std::nullopt;
 
   const double span_s = final_.time_s - first_.time_s;
-  const Eigen::Vector3d angle_var = 2.0 * settings_.foot_std_m * settings_.foot_std_m * turned.information.inverse().diagonal();
+  const Eigen::Vector3d angle_var =
+      2.0 * settings_.foot_std_m * settings_.foot_std_m * turned.information.inverse().diagonal();
   const double gyro_var = std::pow(settings_.gyro_noise_radps_per_sqrt_hz, 2) / span_s;
-  return GyroBiasReading{.bias_radps = (final_.gyro_angle_rad - first_.gyro_angle_rad - turned.angle_rad) / span_s,
-                         .variance = (angle_var / (span_s * span_s)).array() + gyro_var};
+  return GyroBiasReading{
+      .bias_radps = (final_.gyro_angle_rad - first_.gyro_angle_rad - turned.angle_rad) / span_s,
+      .variance = (angle_var / (span_s * span_s)).array() + gyro_var};
 }
 
 }  // namespace patrol::localize

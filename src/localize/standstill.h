@@ -16,20 +16,24 @@ struct GyroBiasReading {
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();    ///< (rad/s)2
 };
 
-/// Measures the gyro's bias while all feet stand. A standing trunk still sways, so its rate is not taken to be zero: how
-/// far it has turned is read from the feet (a rigid fit of their positions in body), and what the gyro has summed up
-/// beyond that is bias. Windows in which a foot slipped (the fit leaves a residual) are thrown away.
+/// Measures the gyro's bias while all feet stand. A standing trunk still sways, so its rate is not taken to
+/// be zero: how far it has turned is read from the feet (a rigid fit of their positions in body), and what
+/// the gyro has summed up beyond that is bias. Windows in which a foot slipped (the fit leaves a residual)
+/// are thrown away.
 class StandstillBiasMeter {
  public:
   struct Settings {
     double window_s;
     double gyro_noise_radps_per_sqrt_hz;
-    double foot_std_m;  ///< of a foot's mean position at one end of the window: encoder noise, averaged, and creep
+    double foot_std_m;  ///< of a foot's mean position at one end of the window: encoder noise, averaged, and
+                        ///< creep
   };
   explicit StandstillBiasMeter(const Settings& settings) : settings_(settings) {}
 
-  /// One instant: the contacts of all feet in body and the gyro as read. A reading at the end of each whole window.
-  std::optional<GyroBiasReading> add(Time stamp, const StanceFeet& all_feet, const Eigen::Vector3d& gyro_radps);
+  /// One instant: the contacts of all feet in body and the gyro as read. A reading at the end of each whole
+  /// window.
+  std::optional<GyroBiasReading> add(Time stamp, const StanceFeet& all_feet,
+                                     const Eigen::Vector3d& gyro_radps);
   /// A foot was lifted, or data is missing.
   void reset() { is_open_ = false; }
 
@@ -46,7 +50,7 @@ class StandstillBiasMeter {
     void divide();
   };
 
-  std::optional<GyroBiasReading> close() ;
+  std::optional<GyroBiasReading> close();
 
   Settings settings_;
   bool is_open_ = false;

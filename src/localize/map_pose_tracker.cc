@@ -1,0 +1,32 @@
+#include "localize/map_pose_tracker.h"
+
+#include <cmath>
+
+namespace patrol::localize {
+
+void MapPoseTracker::correct(Time stamp, const Pose2& T_odom_body, const Pose2& T_map_body,
+                             const Eigen::Matrix3d& covariance) {
+  if (stamp < corrected_) return;
+  corrected_ = stamp;
+  T_map_odom_ = T_map_body * T_odom_body.inverse();
+  T_odom_corrected_ = T_odom_body;
+  covariance_ = covariance;
+}
+
+PoseEstimate MapPoseTracker::at(Time stamp, const Pose2& T_odom_body) const {
+  const Pose2 T_map_body = T_map_odom_ * T_odom_body;
+  const Eigen::Vector2d way = T_map_body.position() - (T_map_odom_ * T_odom_corrected_).position();
+  const double turn = std::abs(wrap_angle(T_odom_body.yaw - T_odom_corrected_.yaw));
+
+  // An error of heading at the correction swings the way since round.
+  Eigen::Matrix3d swing = Eigen::Matrix3d::Identity();
+  swing(0, 2) = -way.y();
+  swing(1, 2) = way.x();
+  Eigen::Matrix3d covariance = swing * covariance_ * swing.transpose();
+  covariance.diagonal().head<2>().array() += std::pow(drift_.way_std_m_per_m * way.norm(), 2);
+  covariance(2, 2) +=
+      std::pow(drift_.turn_std_rad_per_m * way.norm() + drift_.turn_std_rad_per_rad * turn, 2);
+  return {.stamp = stamp, .T_map_body = T_map_body, .covariance = covariance};
+}
+
+}  // namespace patrol::localize
