@@ -4,11 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "io/settings_yaml.h"
+#include "io/atomic_file.h"
 
 namespace patrol::io {
 namespace {
 
+/// Text for XML 1.0, attributes included; control characters have no place in it.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -17,36 +18,78 @@ std::string escaped(const std::string& text) {
       case '<': out += "&lt;"; break;
       case '>': out += "&gt;"; break;
       case '"': out += "&quot;"; break;
-      default: out += c;
+      case '\n': out += "&#10;"; break;
+      case '\t': out += "&#9;"; break;
+      default: out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
     }
   }
   return out;
 }
 
-std::size_t count(const JunitSuite& suite, JunitCase::Verdict verdict) {
-  return static_cast<std::size_t>(
-      std::count_if(suite.cases.begin(), suite.cases.end(), [&](const JunitCase& c) { return c.verdict == verdict; }));
+auto count(const std::vector<JunitCase>& cases, JunitResult result) {
+  return std::count_if(cases.begin(), cases.end(), [&](const JunitCase& c) { return c.result == result; });
+}
+
+/// The counts that JUnit puts on a suite and on the whole.
+std::string tally(const std::vector<JunitCase>& cases, double time_s) {
+  return fmt::format(R"(tests="{}" failures="{}" errors="{}" skipped="{}" time="{:.3f}")", cases.size(),
+                     count(cases, JunitResult::kFailure), count(cases, JunitResult::kError),
+                     count(cases, JunitResult::kSkipped), time_s);
+}
+
+std::string outcome(const JunitCase& test) {
+  const char* element = test.result == JunitResult::kFailure ? "failure"
+                        : test.result == JunitResult::kError ? "error"
+                                                             : "skipped";
+  if (test.details.empty()) return fmt::format("      <{} message=\"{}\"/>\n", element, escaped(test.message));
+  return fmt::format("      <{0} message=\"{1}\">{2}</{0}>\n", element, escaped(test.message), escaped(test.details));
+}
+
+std::string to_xml(const JunitCase& test) {
+  const std::string head = fmt::format(R"(    <testcase classname="{}" name="{}" time="{:.3f}")",
+                                       escaped(test.class_name), escaped(test.name), test.time_s);
+  if (test.result == JunitResult::kPassed) return head + "/>\n";
+  return head + ">\n" + outcome(test) + "    </testcase>\n";
+}
+
+std::string to_xml(const JunitSuite& suite) {
+  std::string xml = fmt::format("  <testsuite name=\"{}\" {}>\n", escaped(suite.name), tally(suite.cases, suite.time_s));
+  if (!suite.properties.empty()) {
+    xml += "    <properties>\n";
+    for (const auto& [name, value] : suite.properties) {
+      xml += fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", escaped(name), escaped(value));
+    }
+    xml += "    </properties>\n";
+  }
+  for (const JunitCase& test : suite.cases) xml += to_xml(test);
+  return xml + "  </testsuite>\n";
 }
 
 }  // namespace
 
-void save_junit(const std::filesystem::path& file, const JunitSuite& suite) {
-  using Verdict = JunitCase::Verdict;
-  const std::string counts = fmt::format(R"(tests="{}" failures="{}" errors="{}" skipped="{}" time="{:.3f}")", suite.cases.size(),
-                                         count(suite, Verdict::kFailed), count(suite, Verdict::kError),
-                                         count(suite, Verdict::kSkipped), suite.time_s);
-  std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites " + counts + ">\n";
-  xml += fmt::format("  <testsuite name=\"{}\" {}>\n    <properties>\n", escaped(suite.name), counts);
-  for (const auto& [name, value] : suite.properties) {
-    xml += fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", escaped(name), escaped(value));
+void save_junit(const std::filesystem::path& file, const std::vector<JunitSuite>& suites) {
+  std::vector<JunitCase> all;
+  double time_s = 0.0;
+  std::string body;
+  for (const JunitSuite& suite : suites) {
+    all.insert(all.end(), suite.cases.begin(), suite.cases.end());
+    time_s += suite.time_s;
+    body += to_xml(suite);
   }
-  xml += "    </properties>\n";
-  for (const JunitCase& c : suite.cases) {
-    xml += fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"0\"", escaped(suite.name), escaped(c.name));
-    const char* element = c.verdict == Verdict::kFailed ? "failure" : c.verdict == Verdict::kError ? "error" : "skipped";
-    xml += c.verdict == Verdict::kPassed ? "/>\n" : fmt::format("><{} message=\"{}\"/></testcase>\n", element, escaped(c.message));
-  }
-  save_text(file, xml + "  </testsuite>\n</testsuites>\n");
+  save_text(file, fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"patrol\" {}>\n{}</testsuites>\n",
+                              tally(all, time_s), body));
+}
+
+JunitSuite unfinished_junit(const std::string& suite) {
+  return {.name = suite,
+          .time_s = 0.0,
+          .properties = {},
+          .cases = {{.class_name = suite,
+                     .name = "run",
+                     .time_s = 0.0,
+                     .result = JunitResult::kError,
+                     .message = "the run has not come to its end",
+                     .details = ""}}};
 }
 
 }  // namespace patrol::io

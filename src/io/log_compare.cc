@@ -1,6 +1,7 @@
 #include "io/log_compare.h"
 
 #include <algorithm>
+#include <exception>
 #include <fstream>
 #include <iterator>
 #include <vector>
@@ -8,49 +9,73 @@
 #include <fmt/format.h>
 
 #include "io/mcap_reader.h"
+#include "io/ros_fields.h"
 
 namespace patrol::io {
 namespace {
 
-struct Entry {
-  std::string topic;
-  Time log_time{};
-  std::string cdr;
-};
-
-std::vector<Entry> read_all(const std::filesystem::path& log) {
-  std::vector<Entry> entries;
-  read_mcap(log, [&](const McapMessage& message) { entries.push_back({message.topic, message.log_time, std::string(message.cdr)}); });
-  return entries;
-}
-
 bool same_bytes(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code ignored;
+  if (std::filesystem::file_size(a, ignored) != std::filesystem::file_size(b, ignored)) return false;
   std::ifstream first(a, std::ios::binary), second(b, std::ios::binary);
-  return std::equal(std::istreambuf_iterator<char>(first), {}, std::istreambuf_iterator<char>(second), {});
+  return first && second && std::equal(std::istreambuf_iterator<char>(first), {}, std::istreambuf_iterator<char>(second), {});
 }
 
-std::string difference_of(const std::string& was, const std::string& is) {
-  if (was.size() != is.size()) return fmt::format("the message has {} bytes, was {}", is.size(), was.size());
+std::string byte_difference(std::string_view was, std::string_view is) {
+  if (was.size() != is.size()) return fmt::format("the message has {} bytes, had {}", is.size(), was.size());
   const auto [a, b] = std::mismatch(was.begin(), was.end(), is.begin());
   return fmt::format("byte {} of the message is {:#04x}, was {:#04x}", a - was.begin(), static_cast<unsigned char>(*b),
                      static_cast<unsigned char>(*a));
+}
+
+/// The first field that differs, in words; the first byte where no field tells them apart (or none can be read).
+std::string content_difference(const McapMessage& was, const McapMessage& is) {
+  try {
+    const auto before = ros_fields(was.channel.type, was.channel.definition, was.cdr);
+    const auto after = ros_fields(is.channel.type, is.channel.definition, is.cdr);
+    for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i) {
+      if (before[i].path != after[i].path || before[i].value != after[i].value) {
+        return fmt::format("{} is {}, was {}", after[i].path, after[i].value, before[i].value);
+      }
+    }
+  } catch (const std::exception&) {  // no definition, or not one that we read
+  }
+  return byte_difference(was.cdr, is.cdr);
+}
+
+std::optional<LogDifference> message_difference(const McapMessage& was, const McapMessage& is) {
+  if (was.channel.topic != is.channel.topic || was.log_time != is.log_time) {
+    return LogDifference{was.channel.topic, was.log_time,
+                         fmt::format("the other log has {} at {:.9f} s here", is.channel.topic, to_seconds(is.log_time))};
+  }
+  if (was.channel.type != is.channel.type) {
+    return LogDifference{was.channel.topic, was.log_time, fmt::format("is a {}, was a {}", is.channel.type, was.channel.type)};
+  }
+  if (was.cdr == is.cdr) return std::nullopt;
+  return LogDifference{was.channel.topic, was.log_time, content_difference(was, is)};
 }
 
 }  // namespace
 
 std::optional<LogDifference> first_difference(const std::filesystem::path& log, const std::filesystem::path& again) {
   if (same_bytes(log, again)) return std::nullopt;
-  const std::vector<Entry> was = read_all(log), is = read_all(again);
-  for (std::size_t i = 0; i < std::min(was.size(), is.size()); ++i) {
-    if (was[i].topic != is[i].topic || was[i].log_time != is[i].log_time) {
-      return LogDifference{was[i].topic, was[i].log_time, "here the other log has " + is[i].topic};
-    }
-    if (was[i].cdr != is[i].cdr) return LogDifference{was[i].topic, was[i].log_time, difference_of(was[i].cdr, is[i].cdr)};
+  McapReader before(log), after(again);
+  while (true) {
+    const std::optional<McapMessage> was = before.next(), is = after.next();
+    if (!was && !is) break;
+    if (!is) return LogDifference{was->channel.topic, was->log_time, "the other log ended before this message"};
+    if (!was) return LogDifference{is->channel.topic, is->log_time, "the log ended before this message of the other"};
+    if (const auto difference = message_difference(*was, *is)) return difference;
   }
-  if (was.size() == is.size()) return LogDifference{"", {}, "the same messages in another packing"};
-  const std::vector<Entry>& longer = was.size() > is.size() ? was : is;
-  const Entry& extra = longer[std::min(was.size(), is.size())];
-  return LogDifference{extra.topic, extra.log_time, was.size() > is.size() ? "the other log ends here" : "the log ended here"};
+  if (before.is_complete() != after.is_complete()) {
+    return LogDifference{"", {}, fmt::format("the same messages, but the {} was cut off", after.is_complete() ? "log" : "other log")};
+  }
+  return LogDifference{"", {}, "the same messages in another packing"};
+}
+
+std::string describe(const LogDifference& difference) {
+  if (difference.topic.empty()) return difference.what;
+  return fmt::format("{} at {:.9f} s: {}", difference.topic, to_seconds(difference.log_time), difference.what);
 }
 
 }  // namespace patrol::io

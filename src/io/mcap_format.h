@@ -1,13 +1,21 @@
 #pragma once
 
-#include <array>
+#include <bit>
 #include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 
-/// Numbers of the MCAP format (mcap.dev/spec), for writer and reader.
+/// The MCAP format (mcap.dev/spec): what writer and reader share. A record is an opcode, the length of its content
+/// (uint64) and the content; numbers are little-endian, texts carry their length (uint32).
 namespace patrol::io::mcap {
 
+static_assert(std::endian::native == std::endian::little, "numbers are copied as they lie in memory");
+
 inline constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
+inline constexpr std::size_t kRecordHeadSize = 1 + 8;
+inline constexpr std::size_t kFooterSize = kRecordHeadSize + 8 + 8 + 4;
 
 enum Opcode : std::uint8_t {
   kHeader = 0x01,
@@ -21,6 +29,69 @@ enum Opcode : std::uint8_t {
   kStatistics = 0x0b,
   kSummaryOffset = 0x0e,
   kDataEnd = 0x0f,
+};
+
+/// Puts records together.
+class Bytes {
+ public:
+  template <typename Integer>
+  void number(Integer value) {
+    char raw[sizeof(Integer)];
+    std::memcpy(raw, &value, sizeof(Integer));
+    bytes_.append(raw, sizeof(Integer));
+  }
+  void text(std::string_view text) {
+    number(static_cast<std::uint32_t>(text.size()));
+    raw(text);
+  }
+  void raw(std::string_view bytes) { bytes_.append(bytes); }
+  void record_head(Opcode opcode, std::uint64_t content_size) {
+    number(static_cast<std::uint8_t>(opcode));
+    number(content_size);
+  }
+  void record(Opcode opcode, const Bytes& content) {
+    record_head(opcode, content.size());
+    raw(content.view());
+  }
+
+  std::string_view view() const { return bytes_; }
+  std::size_t size() const { return bytes_.size(); }
+  bool is_empty() const { return bytes_.empty(); }
+  void clear() { bytes_.clear(); }
+
+ private:
+  std::string bytes_;
+};
+
+/// The bytes are not what the format says; the reader of the file adds where.
+class Damage : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Takes a record's content apart. Throws Damage when it ends too early.
+class Fields {
+ public:
+  explicit Fields(std::string_view bytes) : bytes_(bytes) {}
+
+  template <typename Integer>
+  Integer number() {
+    Integer value;
+    std::memcpy(&value, take(sizeof(Integer)).data(), sizeof(Integer));
+    return value;
+  }
+  std::string text() { return std::string(take(number<std::uint32_t>())); }
+  std::string_view take(std::uint64_t size) {
+    if (size > bytes_.size()) throw Damage("a record ends too early");
+    const std::string_view taken = bytes_.substr(0, size);
+    bytes_.remove_prefix(size);
+    return taken;
+  }
+  std::string_view rest() { return take(bytes_.size()); }
+  bool is_empty() const { return bytes_.empty(); }
+
+ private:
+  std::string_view bytes_;
 };
 
 }  // namespace patrol::io::mcap

@@ -1,150 +1,232 @@
 #include "io/mcap_reader.h"
 
-#include <fstream>
-#include <map>
-#include <optional>
+#include <algorithm>
+#include <memory>
 
 #include <fmt/format.h>
+#include <lz4frame.h>
 #include <zlib.h>
 #include <zstd.h>
 
 #include "core/error.h"
-#include "io/mcap_format.h"
 
 namespace patrol::io {
 namespace {
 
-/// Reads little-endian fields of one record; running past its end means damage.
-class RecordReader {
- public:
-  explicit RecordReader(std::string_view bytes) : bytes_(bytes) {}
+/// Larger chunks than this are taken for damage, not for data.
+constexpr std::uint64_t kMaxChunkBytes = std::uint64_t{1} << 31;
 
-  template <typename Integer>
-  Integer number() {
-    const std::string_view raw = take(sizeof(Integer));
-    Integer value = 0;
-    for (std::size_t i = 0; i < sizeof(Integer); ++i) {
-      value = static_cast<Integer>(value | (static_cast<Integer>(static_cast<unsigned char>(raw[i])) << (8 * i)));
-    }
-    return value;
+Time to_time(std::uint64_t nanoseconds) { return Time{static_cast<std::int64_t>(nanoseconds)}; }
+
+std::string unpack_zstd(std::string_view packed, std::uint64_t size) {
+  std::string unpacked(size, '\0');
+  const std::size_t got = ZSTD_decompress(unpacked.data(), unpacked.size(), packed.data(), packed.size());
+  if (ZSTD_isError(got) != 0 || got != size) throw mcap::Damage("a chunk cannot be unpacked");
+  return unpacked;
+}
+
+std::string unpack_lz4(std::string_view packed, std::uint64_t size) {
+  LZ4F_dctx* context = nullptr;
+  LZ4F_createDecompressionContext(&context, LZ4F_VERSION);
+  const std::unique_ptr<LZ4F_dctx, LZ4F_errorCode_t (*)(LZ4F_dctx*)> owner(context, &LZ4F_freeDecompressionContext);
+  std::string unpacked(size, '\0');
+  std::size_t written = 0, done = 0, hint = 1;
+  while (hint != 0 && done < packed.size()) {
+    std::size_t room = unpacked.size() - written, taken = packed.size() - done;
+    hint = LZ4F_decompress(context, unpacked.data() + written, &room, packed.data() + done, &taken, nullptr);
+    if (LZ4F_isError(hint) != 0 || (room == 0 && taken == 0)) break;
+    written += room;
+    done += taken;
   }
-  std::string text() { return std::string(take(number<std::uint32_t>())); }
-  std::string_view take(std::size_t size) {
-    if (size > bytes_.size()) throw std::out_of_range("a record ends too early");
-    const std::string_view taken = bytes_.substr(0, size);
-    bytes_.remove_prefix(size);
-    return taken;
-  }
-  std::string_view rest() { return take(bytes_.size()); }
-  bool is_empty() const { return bytes_.empty(); }
-
- private:
-  std::string_view bytes_;
-};
-
-class McapFile {
- public:
-  McapFile(const std::filesystem::path& path, const std::function<void(const McapMessage&)>& handle)
-      : path_(path), file_(path, std::ios::binary), handle_(handle) {
-    if (!file_) throw InputError(path.string() + ": cannot be read");
-  }
-
-  bool read() {
-    std::string magic(mcap::kMagic.size(), '\0');
-    file_.read(magic.data(), static_cast<std::streamsize>(magic.size()));
-    if (!file_ || magic != mcap::kMagic) throw InputError(path_.string() + ": is not an MCAP file");
-    try {
-      while (const std::optional<std::uint8_t> opcode = next_record()) {
-        if (*opcode == mcap::kDataEnd) return true;
-        handle_record(*opcode, record_);
-      }
-    } catch (const std::out_of_range& error) {
-      throw InputError(fmt::format("{}: byte {}: {}", path_.string(), record_start_, error.what()));
-    }
-    return false;
-  }
-
- private:
-  /// The next whole record's opcode, its content in `record_`; none at the end or at the cut.
-  std::optional<std::uint8_t> next_record() {
-    record_start_ = static_cast<std::uint64_t>(file_.tellg());
-    char head[9];
-    if (!file_.read(head, sizeof head)) return std::nullopt;
-    RecordReader reader(std::string_view(head, sizeof head));
-    const auto opcode = reader.number<std::uint8_t>();
-    const auto length = reader.number<std::uint64_t>();
-    constexpr std::uint64_t kSane = 1ULL << 32;
-    if (length > kSane) throw std::out_of_range(fmt::format("a record of {} bytes is damaged", length));
-    record_.resize(length);
-    if (!file_.read(record_.data(), static_cast<std::streamsize>(length))) return std::nullopt;
-    return opcode;
-  }
-
-  void handle_record(std::uint8_t opcode, std::string_view content) {
-    RecordReader reader(content);
-    if (opcode == mcap::kSchema) {
-      const auto id = reader.number<std::uint16_t>();
-      schemas_[id] = reader.text();
-    } else if (opcode == mcap::kChannel) {
-      const auto id = reader.number<std::uint16_t>();
-      const auto schema = reader.number<std::uint16_t>();
-      channels_[id] = {reader.text(), schemas_[schema]};
-    } else if (opcode == mcap::kMessage) {
-      const auto channel = channels_.find(reader.number<std::uint16_t>());
-      if (channel == channels_.end()) throw std::out_of_range("a message of an unknown channel");
-      reader.number<std::uint32_t>();  // sequence
-      const Time log_time{static_cast<std::int64_t>(reader.number<std::uint64_t>())};
-      reader.number<std::uint64_t>();  // publish time
-      handle_({channel->second.topic, channel->second.type, log_time, reader.rest()});
-    } else if (opcode == mcap::kChunk) {
-      handle_chunk(reader);
-    }
-  }
-
-  void handle_chunk(RecordReader& reader) {
-    reader.number<std::uint64_t>();
-    reader.number<std::uint64_t>();
-    const auto size = reader.number<std::uint64_t>();
-    const auto crc = reader.number<std::uint32_t>();
-    const std::string compression = reader.text();
-    const std::string_view packed = reader.take(reader.number<std::uint64_t>());
-    const std::string unpacked = unpack(compression, packed, size);
-    const auto actual = static_cast<std::uint32_t>(
-        crc32(0, reinterpret_cast<const Bytef*>(unpacked.data()), static_cast<uInt>(unpacked.size())));
-    if (crc != 0 && actual != crc) throw std::out_of_range("a chunk's checksum is wrong");
-    RecordReader records(unpacked);
-    while (!records.is_empty()) {
-      const auto opcode = records.number<std::uint8_t>();
-      handle_record(opcode, records.take(records.number<std::uint64_t>()));
-    }
-  }
-
-  static std::string unpack(const std::string& compression, std::string_view packed, std::uint64_t size) {
-    if (compression.empty()) return std::string(packed);
-    if (compression != "zstd") throw std::out_of_range("compression " + compression + " is not supported (zstd is)");
-    std::string unpacked(size, '\0');
-    const std::size_t got = ZSTD_decompress(unpacked.data(), unpacked.size(), packed.data(), packed.size());
-    if (ZSTD_isError(got) != 0 || got != size) throw std::out_of_range("a chunk cannot be unpacked");
-    return unpacked;
-  }
-
-  struct Channel {
-    std::string topic, type;
-  };
-
-  std::filesystem::path path_;
-  std::ifstream file_;
-  const std::function<void(const McapMessage&)>& handle_;
-  std::string record_;
-  std::uint64_t record_start_ = 0;
-  std::map<std::uint16_t, std::string> schemas_;
-  std::map<std::uint16_t, Channel> channels_;
-};
+  if (hint != 0 || written != size) throw mcap::Damage("a chunk cannot be unpacked");
+  return unpacked;
+}
 
 }  // namespace
 
-bool read_mcap(const std::filesystem::path& path, const std::function<void(const McapMessage&)>& handle) {
-  return McapFile(path, handle).read();
+McapReader::McapReader(const std::filesystem::path& path, McapSelection selection)
+    : path_(path), file_(path, std::ios::binary), selection_(std::move(selection)) {
+  std::error_code error;
+  size_ = std::filesystem::file_size(path, error);
+  if (!file_ || error) throw InputError(path.string() + ": cannot be read");
+  if (size_ < mcap::kMagic.size() || read_bytes(0, mcap::kMagic.size()) != mcap::kMagic) {
+    throw InputError(path.string() + ": is not an MCAP file");
+  }
+  try {
+    find_footer();
+  } catch (const mcap::Damage& damage) {
+    fail(damage.what());
+  }
+  offset_ = mcap::kMagic.size();
+}
+
+void McapReader::fail(const std::string& what) const {
+  throw InputError(fmt::format("{}: byte {}: {}", path_.string(), record_start_, what));
+}
+
+std::string McapReader::read_bytes(std::uint64_t offset, std::uint64_t size) {
+  std::string bytes(size, '\0');
+  file_.clear();
+  file_.seekg(static_cast<std::streamoff>(offset));
+  file_.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (!file_) throw InputError(fmt::format("{}: byte {}: cannot be read", path_.string(), offset));
+  return bytes;
+}
+
+void McapReader::find_footer() {
+  const std::size_t tail_size = mcap::kFooterSize + mcap::kMagic.size();
+  if (size_ < mcap::kMagic.size() + tail_size) return;
+  const std::string tail = read_bytes(size_ - tail_size, tail_size);
+  mcap::Fields footer(tail);
+  const bool is_footer = footer.number<std::uint8_t>() == mcap::kFooter &&
+                         footer.number<std::uint64_t>() == mcap::kFooterSize - mcap::kRecordHeadSize;
+  if (!is_footer || !tail.ends_with(mcap::kMagic)) return;
+  footer_start_ = size_ - tail_size;
+  const auto summary_start = footer.number<std::uint64_t>();
+  if (summary_start > 0) read_summary(summary_start, footer_start_);
+}
+
+void McapReader::read_summary(std::uint64_t start, std::uint64_t end) {
+  record_start_ = start;
+  if (start > end) throw mcap::Damage("the summary lies outside the file");
+  const std::string bytes = read_bytes(start, end - start);
+  mcap::Fields records(bytes);
+  while (!records.is_empty()) {
+    const auto opcode = records.number<std::uint8_t>();
+    mcap::Fields content(records.take(records.number<std::uint64_t>()));
+    if (opcode == mcap::kSchema) note_schema(content);
+    if (opcode == mcap::kChannel) note_channel(content);
+    if (opcode == mcap::kChunkIndex) note_chunk(content);
+    if (opcode == mcap::kStatistics) {
+      content.take(8 + 2 + 4 + 4 + 4 + 4 + 8);  // counts and the first message's time
+      last_time_ = to_time(content.number<std::uint64_t>());
+    }
+  }
+  if (channels_.empty()) unwanted_chunks_.clear();  // they stand in the chunks: pass none over
+}
+
+void McapReader::note_chunk(mcap::Fields content) {
+  const Time start = to_time(content.number<std::uint64_t>()), end = to_time(content.number<std::uint64_t>());
+  const auto offset = content.number<std::uint64_t>();
+  content.number<std::uint64_t>();  // length
+  mcap::Fields message_indexes(content.take(content.number<std::uint32_t>()));
+  const bool is_indexed = !message_indexes.is_empty();
+  bool has_wanted_topic = !is_indexed;
+  while (!message_indexes.is_empty()) {
+    const auto channel = channels_.find(message_indexes.number<std::uint16_t>());
+    message_indexes.number<std::uint64_t>();
+    if (channel == channels_.end() || is_wanted(channel->second.topic)) has_wanted_topic = true;
+  }
+  if (!has_wanted_topic || end < selection_.from || start > selection_.to) unwanted_chunks_.insert(offset);
+}
+
+void McapReader::note_schema(mcap::Fields content) {
+  const auto id = content.number<std::uint16_t>();
+  Schema& schema = schemas_[id];
+  schema.type = content.text();
+  content.text();  // encoding
+  schema.definition = content.text();
+}
+
+void McapReader::note_channel(mcap::Fields content) {
+  const auto id = content.number<std::uint16_t>();
+  const auto schema = schemas_.find(content.number<std::uint16_t>());
+  if (schema == schemas_.end()) throw mcap::Damage("a channel of an unknown schema");
+  channels_[id] = {.topic = content.text(), .type = schema->second.type, .definition = schema->second.definition};
+}
+
+bool McapReader::is_wanted(const std::string& topic) const {
+  const std::vector<std::string>& topics = selection_.topics;
+  return topics.empty() || std::find(topics.begin(), topics.end(), topic) != topics.end();
+}
+
+std::optional<McapMessage> McapReader::next() {
+  try {
+    while (true) {
+      while (!rest_of_chunk_.empty()) {
+        mcap::Fields records(rest_of_chunk_);
+        const auto opcode = records.number<std::uint8_t>();
+        const mcap::Fields content(records.take(records.number<std::uint64_t>()));
+        rest_of_chunk_ = records.rest();
+        if (opcode == mcap::kSchema) note_schema(content);
+        if (opcode == mcap::kChannel) note_channel(content);
+        if (opcode != mcap::kMessage) continue;
+        if (const auto message = read_message(content)) return message;
+      }
+      if (!read_record()) return std::nullopt;
+    }
+  } catch (const mcap::Damage& damage) {
+    fail(damage.what());
+  }
+}
+
+/// Goes to the file's next record that can hold messages and lays it out in `rest_of_chunk_`; false at the end or cut.
+bool McapReader::read_record() {
+  while (!is_at_end_) {
+    record_start_ = offset_;
+    if (offset_ + mcap::kRecordHeadSize > size_) break;
+    const std::string head_bytes = read_bytes(offset_, mcap::kRecordHeadSize);
+    mcap::Fields head(head_bytes);
+    const auto opcode = head.number<std::uint8_t>();
+    const auto length = head.number<std::uint64_t>();
+    if (opcode == 0) throw mcap::Damage("is not a record");
+    const std::uint64_t start = offset_ + mcap::kRecordHeadSize;
+    if (length > size_ - start) {
+      if (is_complete()) throw mcap::Damage(fmt::format("a record of {} bytes does not fit in the file", length));
+      break;  // the cut
+    }
+    offset_ = start + length;
+    if (opcode == mcap::kDataEnd || opcode == mcap::kFooter) break;
+    if (opcode == mcap::kChunk && !unwanted_chunks_.contains(record_start_)) {
+      record_ = read_bytes(start, length);
+      chunk_ = unpack_chunk(mcap::Fields(record_));
+      rest_of_chunk_ = chunk_;
+      return true;
+    }
+    if (opcode == mcap::kSchema || opcode == mcap::kChannel || opcode == mcap::kMessage) {
+      chunk_ = head_bytes + read_bytes(start, length);
+      rest_of_chunk_ = chunk_;
+      return true;
+    }
+  }
+  is_at_end_ = true;
+  return false;
+}
+
+std::optional<McapMessage> McapReader::read_message(mcap::Fields content) {
+  const auto channel = channels_.find(content.number<std::uint16_t>());
+  if (channel == channels_.end()) throw mcap::Damage("a message of an unknown channel");
+  content.number<std::uint32_t>();  // sequence
+  const Time log_time = to_time(content.number<std::uint64_t>());
+  content.number<std::uint64_t>();  // publish time
+  if (!is_wanted(channel->second.topic) || log_time < selection_.from || log_time > selection_.to) return std::nullopt;
+  return McapMessage{.channel = channel->second, .log_time = log_time, .cdr = content.rest()};
+}
+
+std::string McapReader::unpack_chunk(mcap::Fields content) const {
+  content.take(8 + 8);  // the times of the first and last message
+  const auto size = content.number<std::uint64_t>();
+  const auto crc = content.number<std::uint32_t>();
+  const std::string compression = content.text();
+  const std::string_view packed = content.take(content.number<std::uint64_t>());
+  if (size > kMaxChunkBytes) throw mcap::Damage(fmt::format("a chunk of {} bytes is too large", size));
+
+  std::string unpacked;
+  if (compression.empty()) unpacked = packed;
+  else if (compression == "zstd") unpacked = unpack_zstd(packed, size);
+  else if (compression == "lz4") unpacked = unpack_lz4(packed, size);
+  else throw mcap::Damage("compression " + compression + " is not known (zstd and lz4 are)");
+
+  const auto actual = crc32(0, reinterpret_cast<const Bytef*>(unpacked.data()), static_cast<uInt>(unpacked.size()));
+  if (crc != 0 && crc != actual) throw mcap::Damage("a chunk's checksum is wrong");
+  return unpacked;
+}
+
+bool read_mcap(const std::filesystem::path& path, const std::function<void(const McapMessage&)>& handle,
+               const McapSelection& selection) {
+  McapReader reader(path, selection);
+  while (const std::optional<McapMessage> message = reader.next()) handle(*message);
+  return reader.is_complete();
 }
 
 }  // namespace patrol::io

@@ -4,36 +4,24 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/time.h"
+#include "io/mcap_format.h"
+
+struct ZSTD_CCtx_s;
 
 namespace patrol::io {
 
-/// Little-endian bytes of MCAP records (mcap.dev/spec).
-class McapBytes {
- public:
-  template <typename Integer>
-  void number(Integer value) {
-    for (std::size_t i = 0; i < sizeof(Integer); ++i) bytes_.push_back(static_cast<char>(value >> (8 * i)));
-  }
-  void text(std::string_view text);
-  void raw(std::string_view bytes) { bytes_.append(bytes); }
-  /// A record: opcode, length, content.
-  void record(std::uint8_t opcode, const McapBytes& content);
-
-  const std::string& bytes() const { return bytes_; }
-  std::size_t size() const { return bytes_.size(); }
-  void clear() { bytes_.clear(); }
-
- private:
-  std::string bytes_;
-};
-
-/// Writes an MCAP file: profile ros2, schemas ros2msg, messages cdr, chunks compressed with zstd, a summary with indexes.
-/// The same calls give the same bytes. What was written before a crash can be read up to the last whole chunk.
+/// Writes an MCAP file: profile ros2, schemas ros2msg, messages cdr, chunks compressed with zstd, a summary with indexes,
+/// checksums throughout. The same calls give the same bytes.
+///
+/// Each chunk (1 MB or one second) goes to the file as it fills, so that what was written before a crash can be read up
+/// to the last whole chunk. Without `close` the file is left without its summary: readers can tell that it is cut off.
 class McapWriter {
  public:
   using ChannelId = std::uint16_t;
@@ -54,25 +42,35 @@ class McapWriter {
 
  private:
   struct ChunkIndex;
+  struct IndexEntry {
+    std::uint64_t log_time, offset_in_chunk;
+  };
 
   void put(std::string_view bytes);
+  void begin_chunk(std::uint64_t log_time);
   void flush_chunk();
+  void write_message_indexes(ChunkIndex& chunk);
   void write_summary();
+  mcap::Bytes statistics() const;
+  mcap::Bytes chunk_indexes() const;
 
   std::filesystem::path path_;
   std::ofstream file_;
-  std::uint64_t offset_ = 0;
+  std::uint64_t offset_ = 0;  ///< where the next byte goes
+  std::uint32_t crc_ = 0;     ///< of everything written so far
   bool is_closed_ = false;
+  std::unique_ptr<ZSTD_CCtx_s, std::size_t (*)(ZSTD_CCtx_s*)> compressor_;
+  std::string packed_;
 
-  std::vector<std::string> schema_types_;
-  McapBytes schemas_, channels_;  ///< records, for the summary
-  std::vector<std::uint32_t> sequence_;        ///< [channel - 1]
-  std::vector<std::uint64_t> message_count_;   ///< [channel - 1]
+  std::vector<std::string> schema_types_;     ///< [schema - 1]
+  mcap::Bytes schemas_, channels_;            ///< records, for the summary
+  std::vector<std::uint32_t> message_count_;  ///< [channel - 1]
+  std::uint64_t total_count_ = 0;
   std::uint64_t first_time_ = 0, last_time_ = 0;
 
-  McapBytes chunk_;
+  mcap::Bytes chunk_;
   std::uint64_t chunk_start_ = 0, chunk_end_ = 0;
-  std::map<ChannelId, std::vector<std::pair<std::uint64_t, std::uint64_t>>> chunk_index_;
+  std::map<ChannelId, std::vector<IndexEntry>> chunk_index_;
   std::vector<ChunkIndex> chunks_;
 };
 

@@ -1,79 +1,88 @@
 #include "io/ros_definitions.h"
 
-#include <map>
 #include <set>
 #include <sstream>
 #include <stdexcept>
-#include <vector>
+#include <string_view>
 
 namespace patrol::io {
 namespace {
 
 /// The fields of each type, as in ROS 2's common_interfaces; comments left out. Ours carry their units.
-const std::map<std::string, std::string>& definitions() {
-  static const std::map<std::string, std::string> kDefinitions = {
-      {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
-      {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
-      {"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
-      {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
-      {"geometry_msgs/Quaternion", "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n"},
-      {"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
-      {"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
-      {"geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
-      {"geometry_msgs/PoseWithCovarianceStamped", "std_msgs/Header header\ngeometry_msgs/PoseWithCovariance pose\n"},
-      {"geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"},
-      {"geometry_msgs/TwistStamped", "std_msgs/Header header\ngeometry_msgs/Twist twist\n"},
-      {"geometry_msgs/TwistWithCovariance", "geometry_msgs/Twist twist\nfloat64[36] covariance\n"},
-      {"geometry_msgs/Transform", "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"},
-      {"geometry_msgs/TransformStamped",
-       "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"},
-      {"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
-      {"sensor_msgs/LaserScan",
-       "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
-       "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] intensities\n"},
-      {"sensor_msgs/PointField",
-       "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\nuint8 UINT32=6\nuint8 FLOAT32=7\n"
-       "uint8 FLOAT64=8\nstring name\nuint32 offset\nuint8 datatype\nuint32 count\n"},
-      {"sensor_msgs/PointCloud2",
-       "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\nbool is_bigendian\n"
-       "uint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n"},
-      {"sensor_msgs/Imu",
-       "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\n"
-       "geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n"
-       "geometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n"},
-      {"sensor_msgs/JointState",
-       "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n"},
-      {"sensor_msgs/NavSatStatus",
-       "int8 STATUS_NO_FIX=-1\nint8 STATUS_FIX=0\nint8 STATUS_SBAS_FIX=1\nint8 STATUS_GBAS_FIX=2\nint8 status\n"
-       "uint16 SERVICE_GPS=1\nuint16 SERVICE_GLONASS=2\nuint16 SERVICE_COMPASS=4\nuint16 SERVICE_GALILEO=8\nuint16 service\n"},
-      {"sensor_msgs/NavSatFix",
-       "std_msgs/Header header\nsensor_msgs/NavSatStatus status\nfloat64 latitude\nfloat64 longitude\nfloat64 altitude\n"
-       "float64[9] position_covariance\nuint8 COVARIANCE_TYPE_UNKNOWN=0\nuint8 COVARIANCE_TYPE_APPROXIMATED=1\n"
-       "uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2\nuint8 COVARIANCE_TYPE_KNOWN=3\nuint8 position_covariance_type\n"},
-      {"nav_msgs/Odometry",
-       "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
-       "geometry_msgs/TwistWithCovariance twist\n"},
-      {"nav_msgs/MapMetaData",
-       "builtin_interfaces/Time map_load_time\nfloat32 resolution\nuint32 width\nuint32 height\ngeometry_msgs/Pose origin\n"},
-      {"nav_msgs/OccupancyGrid", "std_msgs/Header header\nnav_msgs/MapMetaData info\nint8[] data\n"},
-      {"nav_msgs/Path", "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n"},
-      {"nav2_msgs/Particle", "geometry_msgs/Pose pose\nfloat64 weight\n"},
-      {"nav2_msgs/ParticleCloud", "std_msgs/Header header\nnav2_msgs/Particle[] particles\n"},
-      {"patrol_msgs/FootContacts",
-       "# Force on each foot's sensor, N, in the order FL, FR, RL, RR.\nstd_msgs/Header header\nfloat64[] force_n\n"},
-      {"patrol_msgs/GasReading",
-       "# Open-path methane meter: column along the beam, length of the beam (inf: no echo), mean as mass of methane.\n"
-       "std_msgs/Header header\nfloat64 column_ppm_m\nfloat64 path_length_m\nfloat64 mean_mg_m3\n"},
-      {"patrol_msgs/Event",
-       "# Something that happened in the mission; pose is where the robot believed it was, in map.\n"
-       "std_msgs/Header header\nstring kind\nstring subject\nstring text\nfloat64 value\ngeometry_msgs/Pose pose\n"},
-      {"patrol_msgs/SimState",
-       "# MuJoCo's qpos, and per mocap body x y z qw qx qy qz, for the replay.\n"
-       "std_msgs/Header header\nfloat64[] qpos\nfloat64[] mocap\n"},
-      {"patrol_msgs/Collision",
-       "# The robot's geom `first` touched `second`.\nstd_msgs/Header header\nstring first\nstring second\n"},
-  };
-  return kDefinitions;
+struct Definition {
+  std::string_view type, fields;
+};
+
+constexpr Definition kDefinitions[] = {
+    {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
+    {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
+    {"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
+    {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
+    {"geometry_msgs/Quaternion", "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n"},
+    {"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
+    {"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
+    {"geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
+    {"geometry_msgs/PoseWithCovarianceStamped", "std_msgs/Header header\ngeometry_msgs/PoseWithCovariance pose\n"},
+    {"geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"},
+    {"geometry_msgs/TwistStamped", "std_msgs/Header header\ngeometry_msgs/Twist twist\n"},
+    {"geometry_msgs/TwistWithCovariance", "geometry_msgs/Twist twist\nfloat64[36] covariance\n"},
+    {"geometry_msgs/Transform", "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"},
+    {"geometry_msgs/TransformStamped",
+     "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"},
+    {"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
+    {"sensor_msgs/LaserScan",
+     "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
+     "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] intensities\n"},
+    {"sensor_msgs/PointField",
+     "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\nuint8 UINT32=6\nuint8 FLOAT32=7\n"
+     "uint8 FLOAT64=8\nstring name\nuint32 offset\nuint8 datatype\nuint32 count\n"},
+    {"sensor_msgs/PointCloud2",
+     "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\nbool is_bigendian\n"
+     "uint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n"},
+    {"sensor_msgs/Imu",
+     "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\n"
+     "geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n"
+     "geometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n"},
+    {"sensor_msgs/JointState",
+     "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n"},
+    {"sensor_msgs/NavSatStatus",
+     "int8 STATUS_NO_FIX=-1\nint8 STATUS_FIX=0\nint8 STATUS_SBAS_FIX=1\nint8 STATUS_GBAS_FIX=2\nint8 status\n"
+     "uint16 SERVICE_GPS=1\nuint16 SERVICE_GLONASS=2\nuint16 SERVICE_COMPASS=4\nuint16 SERVICE_GALILEO=8\nuint16 service\n"},
+    {"sensor_msgs/NavSatFix",
+     "std_msgs/Header header\nsensor_msgs/NavSatStatus status\nfloat64 latitude\nfloat64 longitude\nfloat64 altitude\n"
+     "float64[9] position_covariance\nuint8 COVARIANCE_TYPE_UNKNOWN=0\nuint8 COVARIANCE_TYPE_APPROXIMATED=1\n"
+     "uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2\nuint8 COVARIANCE_TYPE_KNOWN=3\nuint8 position_covariance_type\n"},
+    {"nav_msgs/Odometry",
+     "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
+     "geometry_msgs/TwistWithCovariance twist\n"},
+    {"nav_msgs/MapMetaData",
+     "builtin_interfaces/Time map_load_time\nfloat32 resolution\nuint32 width\nuint32 height\ngeometry_msgs/Pose origin\n"},
+    {"nav_msgs/OccupancyGrid", "std_msgs/Header header\nnav_msgs/MapMetaData info\nint8[] data\n"},
+    {"nav_msgs/Path", "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n"},
+    {"nav2_msgs/Particle", "geometry_msgs/Pose pose\nfloat64 weight\n"},
+    {"nav2_msgs/ParticleCloud", "std_msgs/Header header\nnav2_msgs/Particle[] particles\n"},
+    {"patrol_msgs/FootContacts",
+     "# Force on each foot's sensor, N, in the order FL, FR, RL, RR.\nstd_msgs/Header header\nfloat64[] force_n\n"},
+    {"patrol_msgs/GasReading",
+     "# Open-path methane meter: column along the beam, length of the beam (inf: no echo), mean as mass of methane.\n"
+     "std_msgs/Header header\nfloat64 column_ppm_m\nfloat64 path_length_m\nfloat64 mean_mg_m3\n"},
+    {"patrol_msgs/Event",
+     "# Something that happened in the mission; pose is where the robot believed it was, target where that is; in map.\n"
+     "std_msgs/Header header\nstring kind\nstring subject\nstring text\nfloat64 value\ngeometry_msgs/Pose pose\n"
+     "geometry_msgs/Point target\n"},
+    {"patrol_msgs/SimState",
+     "# MuJoCo's qpos, and per mocap body x y z qw qx qy qz, for the replay.\n"
+     "std_msgs/Header header\nfloat64[] qpos\nfloat64[] mocap\n"},
+    {"patrol_msgs/Collision",
+     "# The robot's geom `first` touched `second`.\nstd_msgs/Header header\nstring first\nstring second\n"},
+};
+
+/// Empty if the type is not ours.
+std::string_view fields_of(std::string_view type) {
+  for (const Definition& definition : kDefinitions) {
+    if (definition.type == type) return definition.fields;
+  }
+  return {};
 }
 
 /// "sensor_msgs/Imu[]" -> "sensor_msgs/Imu"; empty for primitives.
@@ -83,12 +92,12 @@ std::string used_type(const std::string& field_type) {
 }
 
 void append_used(const std::string& type, std::set<std::string>& done, std::string& text) {
-  std::istringstream lines(definitions().at(type));
+  std::istringstream lines{std::string(fields_of(type))};
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with('#')) continue;
     const std::string used = used_type(line.substr(0, line.find(' ')));
     if (used.empty() || !done.insert(used).second) continue;
-    text += std::string(80, '=') + "\nMSG: " + used + "\n" + definitions().at(used);
+    text += std::string(80, '=') + "\nMSG: " + used + "\n" + std::string(fields_of(used));
     append_used(used, done, text);
   }
 }
@@ -99,8 +108,8 @@ std::string ros_definition(const std::string& type) {
   const std::size_t middle = type.find("/msg/");
   if (middle == std::string::npos) throw std::logic_error("not a ROS 2 type name: " + type);
   const std::string short_name = type.substr(0, middle) + type.substr(middle + 4);
-  if (!definitions().contains(short_name)) throw std::logic_error("no definition of " + type);
-  std::string text = definitions().at(short_name);
+  std::string text(fields_of(short_name));
+  if (text.empty()) throw std::logic_error("no definition of " + type);
   std::set<std::string> done;
   append_used(short_name, done, text);
   return text;

@@ -168,7 +168,7 @@ void describe(Codec& codec, PointCloud& cloud) {
   codec(data);
   codec(is_dense);
   if constexpr (!Codec::kWrites) {
-    if (step != kStep) throw InputError("a point cloud of another layout than ours");
+    if (step != kStep) throw DecodeError("a point cloud of another layout than ours");
     cloud.points.resize(data.size() / kStep);
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
       CloudPoint& point = cloud.points[i];
@@ -227,7 +227,7 @@ void describe(Codec& codec, GasReading& reading) {
 template <typename Codec>
 void describe(Codec& codec, GnssFix& fix) {
   header(codec, fix.stamp, "gnss");
-  // RTK fixed is a ground-based augmentation; float is told from it by its covariance.
+  // RTK with fixed ambiguities is a ground-based augmentation (STATUS_GBAS_FIX); float goes as a plain fix.
   std::int8_t status = fix.status == GnssStatus::kNone ? -1 : fix.status == GnssStatus::kFix ? 2 : 0;
   std::uint16_t service = 1 | 2 | 4 | 8;
   codec(status);
@@ -314,7 +314,7 @@ void describe(Codec& codec, MapUpdate& update) {
     // A float32 cannot hold 0.05: back to the tenth of a millimetre that was meant.
     geometry = {.resolution_m = std::round(geometry.resolution_m * 1e4) / 1e4, .width = static_cast<int>(width),
                 .height = static_cast<int>(height), .origin_m = origin.position.head<2>()};
-    if (cells.size() != geometry.size()) throw InputError("a map whose cells do not fit its size");
+    if (cells.size() != geometry.size()) throw DecodeError("a map whose cells do not fit its size");
     update.map = OccupancyGrid(geometry);
     update.map.values() = std::move(cells);
   }
@@ -347,6 +347,10 @@ void describe(Codec& codec, Event& event) {
   codec(event.text);
   codec(event.value);
   pose2(codec, event.T_map_body);
+  double height_m = 0.0;
+  codec(event.p_map_target.x());
+  codec(event.p_map_target.y());
+  codec(height_m);
 }
 
 template <typename Codec>
@@ -397,7 +401,7 @@ Message decode(std::string_view bytes) {
     describe(reader, message);
     return message;
   } catch (const eprosima::fastcdr::exception::Exception& error) {
-    throw InputError(std::string("not a ") + kRosType<Message> + ": " + error.what());
+    throw DecodeError(std::string("not a ") + kRosType<Message> + ": " + error.what());
   }
 }
 

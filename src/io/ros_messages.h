@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/error.h"
 #include "core/ground_truth.h"
 #include "core/messages.h"
 
@@ -50,7 +51,13 @@ struct RosNames {
 template <typename Message>
 std::string encode(const Message& message, const RosNames& names = {});
 
-/// Throws InputError when the bytes are not such a message.
+/// The bytes are not such a message.
+class DecodeError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// Throws DecodeError.
 template <typename Message>
 Message decode(std::string_view cdr);
 

@@ -69,14 +69,14 @@ class ObjectReader {
 Station read_station(const std::string& place, const Json& json) {
   const ObjectReader reader(place, json, {"number", "name", "type", "position", "orientation", "target", "accuracy"});
   Station station{.number = reader.whole("number"), .name = reader.word("name"), .type = reader.word("type"),
-                  .T_site_body = reader.pose(), .p_site_target = {}, .accuracy_m = reader.number("accuracy")};
+                  .T_route_body = reader.pose(), .p_route_target = {}, .accuracy_m = reader.number("accuracy")};
   if (station.type != "inspect" && station.type != "pass" && station.type != "home") {
     reader.fail(fmt::format("type = {}: must be one of inspect, pass, home", station.type));
   }
   if (station.accuracy_m <= 0.0) reader.fail("accuracy must be positive");
   if (reader.has("target")) {
     const std::vector<double> target = reader.numbers("target", 3);
-    station.p_site_target = {target[0], target[1], target[2]};
+    station.p_route_target = {target[0], target[1], target[2]};
   } else if (station.type == "inspect") {
     reader.fail("target is missing: what an inspection looks at");
   }

@@ -1,5 +1,8 @@
 #include "io/run_log.h"
 
+#include <fmt/format.h>
+
+#include "core/error.h"
 #include "io/mcap_reader.h"
 #include "io/ros_definitions.h"
 
@@ -9,10 +12,30 @@ namespace {
 constexpr const char* kTf = "/tf";
 constexpr const char* kTfStatic = "/tf_static";
 
-template <typename Message>
-void dispatch(const McapMessage& message, const LogHandlers::Handler<Message>& handler) {
-  if (handler && message.topic == kTopic<Message>) handler(message.log_time, decode<Message>(message.cdr));
-}
+/// How long odometry is kept for the estimates that come later than it.
+constexpr Time kOdometryMemory = std::chrono::seconds(2);
+
+/// What to do with the messages of each topic that someone asked for.
+class Dispatch {
+ public:
+  template <typename Message>
+  void add(const LogHandlers::Handler<Message>& handler) {
+    if (!handler) return;
+    by_topic_[kTopic<Message>] = [&handler](const McapMessage& message) {
+      handler(message.log_time, decode<Message>(message.cdr));
+    };
+  }
+
+  std::vector<std::string> topics() const {
+    std::vector<std::string> topics;
+    for (const auto& [topic, handle] : by_topic_) topics.push_back(topic);
+    return topics;
+  }
+  void operator()(const McapMessage& message) const { by_topic_.at(message.channel.topic)(message); }
+
+ private:
+  std::map<std::string, std::function<void(const McapMessage&)>> by_topic_;
+};
 
 }  // namespace
 
@@ -38,7 +61,9 @@ void RunLogWriter::write_frames(Time log_time, const OdometryEstimate& odometry)
   }};
   writer_.write(channel<TransformSet>(kTf), log_time, encode(frames, names_));
   if (odometry_.empty() || odometry_.back().stamp < odometry.stamp) odometry_.push_back({odometry.stamp, odometry.T_odom_body});
-  if (odometry_.size() > 64) odometry_.erase(odometry_.begin(), odometry_.begin() + 32);
+  if (odometry.stamp - odometry_.front().stamp > 2 * kOdometryMemory) {
+    std::erase_if(odometry_, [&](const StampedPose& old) { return odometry.stamp - old.stamp > kOdometryMemory; });
+  }
 }
 
 // map -> odom, so that map -> odom -> base_footprint is the estimate at its stamp.
@@ -50,26 +75,37 @@ void RunLogWriter::write_frames(Time log_time, const PoseEstimate& estimate) {
   writer_.write(channel<TransformSet>(kTf), log_time, encode(frames, names_));
 }
 
-bool read_run_log(const std::filesystem::path& log_mcap, const LogHandlers& handlers) {
-  return read_mcap(log_mcap, [&](const McapMessage& message) {
-    dispatch(message, handlers.scan);
-    dispatch(message, handlers.points);
-    dispatch(message, handlers.imu);
-    dispatch(message, handlers.joints);
-    dispatch(message, handlers.contacts);
-    dispatch(message, handlers.gas);
-    dispatch(message, handlers.gnss);
-    dispatch(message, handlers.odometry);
-    dispatch(message, handlers.pose);
-    dispatch(message, handlers.particles);
-    dispatch(message, handlers.map);
-    dispatch(message, handlers.path);
-    dispatch(message, handlers.command);
-    dispatch(message, handlers.event);
-    dispatch(message, handlers.truth);
-    dispatch(message, handlers.state);
-    dispatch(message, handlers.collision);
-  });
+bool read_run_log(const std::filesystem::path& log_mcap, const LogHandlers& handlers, Time from, Time to) {
+  Dispatch dispatch;
+  dispatch.add(handlers.scan);
+  dispatch.add(handlers.points);
+  dispatch.add(handlers.imu);
+  dispatch.add(handlers.joints);
+  dispatch.add(handlers.contacts);
+  dispatch.add(handlers.gas);
+  dispatch.add(handlers.gnss);
+  dispatch.add(handlers.odometry);
+  dispatch.add(handlers.pose);
+  dispatch.add(handlers.particles);
+  dispatch.add(handlers.map);
+  dispatch.add(handlers.path);
+  dispatch.add(handlers.command);
+  dispatch.add(handlers.event);
+  dispatch.add(handlers.truth);
+  dispatch.add(handlers.state);
+  dispatch.add(handlers.collision);
+  const std::vector<std::string> topics = dispatch.topics();
+  McapReader reader(log_mcap, {.topics = topics, .from = from, .to = to});
+  if (topics.empty()) return reader.is_complete();
+  while (const std::optional<McapMessage> message = reader.next()) {
+    try {
+      dispatch(*message);
+    } catch (const DecodeError& error) {
+      throw InputError(fmt::format("{}: {} at {:.9f} s: {}", log_mcap.string(), message->channel.topic,
+                                   to_seconds(message->log_time), error.what()));
+    }
+  }
+  return reader.is_complete();
 }
 
 }  // namespace patrol::io

@@ -66,7 +66,7 @@ class RunLogWriter {
   McapWriter writer_;
   RosNames names_;
   std::map<std::string, McapWriter::ChannelId> channels_;
-  Trajectory odometry_;  ///< the last second, to place map over odom at a scan's stamp
+  Trajectory odometry_;  ///< of late, to place map over odom at an estimate's stamp
 };
 
 /// What to do with each kind of message; those left empty are skipped undecoded.
@@ -92,7 +92,9 @@ struct LogHandlers {
   Handler<Collision> collision;
 };
 
-/// Reads a log in order; returns whether it is whole. Throws InputError when it is damaged.
-bool read_run_log(const std::filesystem::path& log_mcap, const LogHandlers& handlers);
+/// Reads a log in order, from one log time to another (both included); returns whether the log is complete: one that was
+/// cut off by a crash is read up to the cut. Throws InputError, naming file and place, when it is damaged.
+bool read_run_log(const std::filesystem::path& log_mcap, const LogHandlers& handlers, Time from = Time::min(),
+                  Time to = Time::max());
 
 }  // namespace patrol::io

@@ -187,13 +187,4 @@ YAML::Node load_document(const std::filesystem::path& file, const std::vector<st
   return document;
 }
 
-void save_text(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path temporary = file.string() + ".part";
-  std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.close();
-  if (!out) throw InputError(file.string() + ": cannot be written");
-  std::filesystem::rename(temporary, file);
-}
-
 }  // namespace patrol::io

@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "core/settings.h"
+#include "io/atomic_file.h"
 
 /// Settings structs (core/settings.h) from YAML and back. A wrong file gives one sentence: file, line, key, rule.
 namespace patrol::io {
@@ -162,8 +163,6 @@ Settings load_settings(const std::filesystem::path& file, const std::vector<std:
   SettingsReader::read_section(file.string(), load_document(file, overrides), "", settings);
   return settings;
 }
-
-void save_text(const std::filesystem::path& file, const std::string& text);
 
 template <typename Settings>
 void save_settings(const std::filesystem::path& file, const Settings& settings) {

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace patrol::io {
+
+/// One plain value inside a ROS 2 message: "header.stamp.sec" and "12", "ranges[417]" and "3.25".
+struct RosField {
+  std::string path;
+  std::string value;
+};
+
+/// Every plain value of a CDR message, in order, by its definition alone (as MCAP carries it); `type` as "pkg/msg/Type".
+/// Throws InputError when the bytes do not fit the definition.
+std::vector<RosField> ros_fields(const std::string& type, const std::string& definition, std::string_view cdr);
+
+}  // namespace patrol::io

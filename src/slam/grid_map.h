@@ -1,0 +1,158 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/grid.h"
+
+namespace patrol::slam {
+
+/// What beams have said about a cell: how many ended in it, how many went through, and where in it they ended on average
+/// (Grisetti, Stachniss, Burgard 2007 match against that mean, which is finer than the cell).
+struct GridCell {
+  float mean_x_m = 0.0F;  ///< mean of the hits, from the cell's centre
+  float mean_y_m = 0.0F;
+  std::uint16_t hits = 0;
+  std::uint16_t passes = 0;
+
+  /// At least a fifth of the beams ended here. A wall is also grazed by beams that end farther along, so half would lose
+  /// walls; a person who has moved on is let go after four times as many passes as hits, and one who comes into a cell
+  /// known to be free is believed only after a while.
+  bool is_surface() const { return hits > 0 && 4U * hits >= passes; }
+  bool is_known() const { return hits > 0 || passes > 0; }
+};
+
+/// A square of cells that particles share until one of them writes.
+struct GridTile {
+  static constexpr int kBits = 5;
+  static constexpr int kSize = 1 << kBits;
+
+  std::array<GridCell, kSize * kSize> cells{};      ///< [row][col]
+  std::array<std::uint32_t, kSize> surface_bits{};  ///< [row]: bit col is cells[row][col].is_surface()
+
+  GridCell& at(int col, int row) { return cells[static_cast<std::size_t>(row * kSize + col)]; }
+  const GridCell& at(int col, int row) const { return cells[static_cast<std::size_t>(row * kSize + col)]; }
+  void update_surface_bit(int col, int row);
+};
+
+/// A particle's map: a growing rectangle of tiles. Copying one copies pointers only; a tile is copied when it is written
+/// and another map still holds it. Cell (0, 0) has its lower-left corner at the origin of `map`; cells may be negative.
+class GridMap {
+ public:
+  /// Nothing farther than half of `max_extent_m` from the origin along either axis is kept.
+  GridMap(double resolution_m, double max_extent_m);
+
+  double resolution_m() const { return resolution_m_; }
+  Cell cell_at(const Eigen::Vector2d& p_map) const {
+    return {static_cast<int>(std::floor(p_map.x() * inverse_resolution_)),
+            static_cast<int>(std::floor(p_map.y() * inverse_resolution_))};
+  }
+  Eigen::Vector2d center_of(Cell cell) const {
+    return resolution_m_ * Eigen::Vector2d(cell.col + 0.5, cell.row + 0.5);
+  }
+
+  /// Null where nothing was ever seen near.
+  const GridCell* find(Cell cell) const;
+  bool is_surface(Cell cell) const { return is_surface_within(cell, 0); }
+  /// Whether a surface cell lies at most `radius` columns and rows away; radius < 16.
+  bool is_surface_within(Cell cell, int radius) const {
+    return visit_surface(cell, radius, [](const GridTile&, int, int, Cell) { return true; });
+  }
+  /// Calls `visit(mean, hits)` for every surface cell at most `radius` columns and rows away: the mean of its hits, in map,
+  /// and their number.
+  template <typename Visitor>
+  void for_each_surface_near(Cell cell, int radius, Visitor&& visit) const;
+
+  /// A beam ended at `p_map`.
+  void add_hit(const Eigen::Vector2d& p_map);
+  /// `weight` beams were free from `from_map` to `to_map`. A surface cell is passed only where the beam comes near to the
+  /// mean of its hits: a beam that skims along a wall within the wall's cells does not deny the wall.
+  /// `stop_at_surface`: believe the beam only until the first surface (one without echo may have met something dark).
+  void add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2d& to_map, int weight, bool stop_at_surface);
+
+  bool has_surface() const { return has_surface_; }
+  /// Calls `visit(first_cell, tile)` for every tile, from low rows to high.
+  template <typename Visitor>
+  void for_each_tile(Visitor&& visit) const;
+  /// Tiles that no other map holds: what this particle really costs.
+  std::size_t num_own_tiles() const;
+  std::size_t num_tiles() const;
+
+ private:
+  static int tile_of(int index) { return index >> GridTile::kBits; }
+  static int local(int index) { return index & (GridTile::kSize - 1); }
+
+  const GridTile* tile_at(int tile_col, int tile_row) const {
+    const int col = tile_col - first_col_, row = tile_row - first_row_;
+    if (col < 0 || row < 0 || col >= num_cols_ || row >= num_rows_) return nullptr;
+    return tiles_[static_cast<std::size_t>(row * num_cols_ + col)].get();
+  }
+  GridTile* writable_tile(int tile_col, int tile_row);
+  void grow_to_hold(int tile_col, int tile_row);
+  template <typename Visitor>
+  bool visit_surface(Cell cell, int radius, Visitor&& visit) const;
+
+  double resolution_m_;
+  double inverse_resolution_;
+  int max_tile_;  ///< tiles from -max_tile_ to max_tile_ - 1 are kept
+  int first_col_ = 0, first_row_ = 0, num_cols_ = 0, num_rows_ = 0;  ///< of the tiles
+  std::vector<std::shared_ptr<GridTile>> tiles_;                     ///< [row][col]
+  bool has_surface_ = false;
+};
+
+// Visits surface cells until the visitor says true. One word of bits holds a row of a tile, so that the mostly empty
+// neighbourhood costs a few instructions a row.
+template <typename Visitor>
+bool GridMap::visit_surface(Cell cell, int radius, Visitor&& visit) const {
+  const int col_end = cell.col + radius, row_end = cell.row + radius;
+  for (int row = cell.row - radius; row <= row_end;) {
+    const int tile_row = tile_of(row);
+    const int last_row = std::min(row_end, (tile_row + 1) * GridTile::kSize - 1);
+    for (int col = cell.col - radius; col <= col_end;) {
+      const int tile_col = tile_of(col);
+      const int last_col = std::min(col_end, (tile_col + 1) * GridTile::kSize - 1);
+      if (const GridTile* tile = tile_at(tile_col, tile_row)) {
+        const std::uint32_t window = (~0U >> (31 - (last_col - col))) << local(col);
+        for (int r = row; r <= last_row; ++r) {
+          for (std::uint32_t bits = tile->surface_bits[static_cast<std::size_t>(local(r))] & window; bits != 0; bits &= bits - 1) {
+            const int c = std::countr_zero(bits);
+            if (visit(*tile, c, local(r), Cell{tile_col * GridTile::kSize + c, r})) return true;
+          }
+        }
+      }
+      col = last_col + 1;
+    }
+    row = last_row + 1;
+  }
+  return false;
+}
+
+template <typename Visitor>
+void GridMap::for_each_surface_near(Cell cell, int radius, Visitor&& visit) const {
+  visit_surface(cell, radius, [&](const GridTile& tile, int col, int row, Cell at) {
+    const GridCell& hit_cell = tile.at(col, row);
+    const Eigen::Vector2d mean = center_of(at) + Eigen::Vector2d(hit_cell.mean_x_m, hit_cell.mean_y_m);
+    visit(mean, static_cast<int>(hit_cell.hits));
+    return false;
+  });
+}
+
+template <typename Visitor>
+void GridMap::for_each_tile(Visitor&& visit) const {
+  for (int row = 0; row < num_rows_; ++row) {
+    for (int col = 0; col < num_cols_; ++col) {
+      const auto& tile = tiles_[static_cast<std::size_t>(row * num_cols_ + col)];
+      if (tile) visit(Cell{(first_col_ + col) * GridTile::kSize, (first_row_ + row) * GridTile::kSize}, *tile);
+    }
+  }
+}
+
+}  // namespace patrol::slam

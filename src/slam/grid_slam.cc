@@ -1,0 +1,141 @@
+#include "slam/grid_slam.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "slam/map_rendering.h"
+#include "slam/resampling.h"
+
+namespace patrol::slam {
+
+GridSlam::GridSlam(const GridSlamSettings& settings, std::uint64_t seed, const Pose2& T_map_start)
+    : settings_(settings),
+      proposal_noise_(seed, "slam/proposal"),
+      resampling_noise_(seed, "slam/resampling"),
+      T_map_last_(T_map_start) {
+  validate(settings, "slam");
+  particles_.push_back({.T_map_body = T_map_start, .map = GridMap(settings.resolution_m, settings.max_extent_m)});
+}
+
+SlamUpdate GridSlam::update(const LevelScan& scan, const Pose2& T_odom_body) {
+  if (keyframes_ == 0) T_odom_last_ = T_odom_keyframe_ = T_odom_body, keyframe_stamp_ = scan.stamp;
+  const std::vector<MatchPoint> points =
+      select_match_points(scan, settings_.matching.point_spacing_m, settings_.matching.max_points);
+
+  Proposal best = track(points, T_odom_body, scan.stamp);
+  SlamUpdate update;
+  update.is_keyframe = is_keyframe_due(best.posterior.mean);
+  if (update.is_keyframe) {
+    T_map_last_ = best.posterior.mean;
+    const std::vector<Proposal> proposals = propose(points, T_odom_body, scan.stamp);
+    move_particles(proposals);
+    update.effective_sample_size = choose_best();
+    best = proposals[best_];
+    update.resampled = resample_if_needed(update.effective_sample_size);
+    integrate(scan);
+    T_odom_keyframe_ = T_odom_body, keyframe_stamp_ = scan.stamp;
+  }
+
+  T_map_last_ = update.T_map_body = best.posterior.mean;
+  T_odom_last_ = T_odom_body;
+  update.covariance = best.posterior.covariance;
+  update.match_score = best.matched_share;
+  return update;
+}
+
+PoseGaussian GridSlam::predict(const Particle& particle, const Pose2& T_odom_body, Time stamp) const {
+  return predict_motion(particle.T_map_body, T_odom_keyframe_.inverse() * T_odom_body,
+                        to_seconds(stamp - keyframe_stamp_), settings_.motion);
+}
+
+// The best particle's pose now. If the match fails, odometry may have slipped: look around.
+Proposal GridSlam::track(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp) const {
+  const Particle& particle = particles_[best_];
+  const PoseGaussian prediction = predict(particle, T_odom_body, stamp);
+  const Pose2 T_map_start = T_map_last_ * (T_odom_last_.inverse() * T_odom_body);
+  const auto match_from = [&](const Pose2& start) {
+    return propose_from_scan(particle.map, points, start, prediction, settings_.likelihood_gain, settings_.matching);
+  };
+  Proposal tracked = match_from(T_map_start);
+  if (tracked.matched_share > 0.0 || points.empty() || !particle.map.has_surface()) return tracked;
+  return match_from(search_pose(particle.map, points, T_map_start, settings_.matching));
+}
+
+bool GridSlam::is_keyframe_due(const Pose2& T_map_body) const {
+  const bool is_start = keyframes_ < static_cast<std::uint64_t>(settings_.initial_keyframes);
+  if (is_start || !particles_[best_].map.has_surface()) return true;
+  const Pose2 T_keyframe_body = particles_[best_].T_map_body.inverse() * T_map_body;
+  return T_keyframe_body.position().norm() >= settings_.keyframe_distance_m ||
+         std::abs(T_keyframe_body.yaw) >= settings_.keyframe_angle_rad;
+}
+
+// Each particle starts its match where the best one's motion since the keyframe takes it: nearer than odometry does.
+std::vector<Proposal> GridSlam::propose(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp) const {
+  const Pose2 T_keyframe_body = particles_[best_].T_map_body.inverse() * T_map_last_;
+  std::vector<Proposal> proposals;
+  for (const Particle& particle : particles_) {
+    proposals.push_back(propose_from_scan(particle.map, points, particle.T_map_body * T_keyframe_body,
+                                          predict(particle, T_odom_body, stamp), settings_.likelihood_gain,
+                                          settings_.matching));
+  }
+  return proposals;
+}
+
+void GridSlam::move_particles(const std::vector<Proposal>& proposals) {
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const auto unit = [&](std::uint64_t axis) { return proposal_noise_.normal(keyframes_, 3 * i + axis); };
+    const bool is_drawn = particles_.size() > 1;
+    particles_[i].T_map_body =
+        is_drawn ? proposals[i].sample({unit(0), unit(1), unit(2)}) : proposals[i].posterior.mean;
+    particles_[i].log_weight += proposals[i].log_weight_change;
+  }
+}
+
+// Also gives the effective sample size.
+double GridSlam::choose_best() {
+  const ParticleSet set = particles();
+  best_ = static_cast<std::size_t>(std::max_element(set.weights.begin(), set.weights.end()) - set.weights.begin());
+  return effective_sample_size(set.weights);
+}
+
+bool GridSlam::resample_if_needed(double num_effective) {
+  if (num_effective >= settings_.resample_threshold * static_cast<double>(particles_.size())) return false;
+  const std::vector<std::size_t> parents =
+      resample_systematic(particles().weights, resampling_noise_.uniform(keyframes_));
+  std::vector<Particle> children;
+  for (const std::size_t parent : parents) {
+    children.push_back(particles_[parent]);
+    children.back().log_weight = 0.0;
+  }
+  // The heaviest particle has at least one child: its share is no less than 1 / N.
+  best_ = static_cast<std::size_t>(std::find(parents.begin(), parents.end(), best_) - parents.begin());
+  particles_ = std::move(children);
+  return true;
+}
+
+// Particles part only after the start is mapped: until then they are one.
+void GridSlam::integrate(const LevelScan& scan) {
+  for (Particle& particle : particles_) integrate_scan(scan, particle.T_map_body, settings_.integration, particle.map);
+  ++keyframes_;
+  if (keyframes_ == static_cast<std::uint64_t>(settings_.initial_keyframes)) {
+    const Particle first = particles_.front();
+    particles_.assign(static_cast<std::size_t>(settings_.particles), first);
+  }
+}
+
+OccupancyGrid GridSlam::map() const { return render_map(particles_[best_].map, settings_.min_hits_occupied); }
+
+ParticleSet GridSlam::particles() const {
+  ParticleSet set;
+  set.stamp = keyframe_stamp_;
+  std::vector<double> log_weights;
+  for (const Particle& particle : particles_) {
+    set.T_map_body.push_back(particle.T_map_body);
+    log_weights.push_back(particle.log_weight);
+  }
+  set.weights = normalized_weights(log_weights);
+  return set;
+}
+
+}  // namespace patrol::slam

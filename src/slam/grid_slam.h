@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/messages.h"
+#include "core/random.h"
+#include "core/settings.h"
+#include "slam/motion_model.h"
+#include "slam/particle.h"
+#include "slam/proposal.h"
+#include "slam/scan_integration.h"
+#include "slam/scan_matcher.h"
+
+namespace patrol::slam {
+
+struct GridSlamSettings {
+  // What the map is.
+  double resolution_m = 0.05;
+  double max_extent_m = 400.0;            ///< nothing is mapped farther than half of this from the origin
+  int min_hits_occupied = 2;              ///< fewer hits in a cell are stray, for the published map only
+  // When the map is written.
+  double keyframe_distance_m = 0.5;
+  double keyframe_angle_rad = 0.12;
+  int initial_keyframes = 5;              ///< so many first scans are all written: one alone is noisy and has gaps
+  // What is believed; more particles cost time in proportion.
+  int particles = 8;
+  double likelihood_gain = 0.02;          ///< share of the points that err independently (proposal.h)
+  double resample_threshold = 0.5;        ///< resample when the effective sample size falls below this share of the particles
+  MotionModelSettings motion;
+  ScanMatcherSettings matching;
+  ScanIntegrationSettings integration;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("resolution_m", self.resolution_m, between(0.01, 1.0));
+    visit("max_extent_m", self.max_extent_m, between(1.0, 5000.0));
+    visit("min_hits_occupied", self.min_hits_occupied, between(1, 1000));
+    visit("keyframe_distance_m", self.keyframe_distance_m, between(0.0, 10.0));
+    visit("keyframe_angle_rad", self.keyframe_angle_rad, between(0.0, 3.2));
+    visit("initial_keyframes", self.initial_keyframes, between(1, 1000));
+    visit("particles", self.particles, between(1, 10000));
+    visit("likelihood_gain", self.likelihood_gain, between(0.0, 1.0));
+    visit("resample_threshold", self.resample_threshold, between(0.0, 1.0));
+    visit("motion", self.motion);
+    visit("matching", self.matching);
+    visit("integration", self.integration);
+  }
+};
+
+struct SlamUpdate {
+  Pose2 T_map_body;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in map; m, m, rad
+  bool is_keyframe = false;
+  double effective_sample_size = 0.0;  ///< at the last keyframe, before any resampling
+  double match_score = 0.0;            ///< share of the scan's points that met a surface, 0 ... 1; 0: odometry alone
+  bool resampled = false;
+};
+
+/// Grid mapping with a Rao-Blackwellised particle filter and improved proposals (Grisetti, Stachniss, Burgard 2007).
+///
+///   every scan     odometry -> match against the best particle's map -> pose
+///   a keyframe     each particle: predict, match on its own map, draw, weigh -> resample -> write the scan into each map
+///
+/// Departures from Gmapping, and why. Every scan is matched, but only keyframes are written and weighed: the pose is
+/// always fresh, and the cost of the particles is paid twice a metre. Matching is to lines through the cells' mean hits
+/// (scan_matcher.h), the proposal is Laplace's (proposal.h). No separate rejection of moving things: a cell known to be
+/// free is believed to be surface only after many hits (GridCell), so a walker never becomes something to match with.
+class GridSlam {
+ public:
+  /// Throws InputError if a setting breaks its rule. `T_map_start` is where the first scan is taken.
+  GridSlam(const GridSlamSettings& settings, std::uint64_t seed, const Pose2& T_map_start = {});
+
+  /// `T_odom_body` at the scan's stamp.
+  SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
+
+  /// Of the best particle.
+  OccupancyGrid map() const;
+  const GridMap& best_map() const { return particles_[best_].map; }
+  /// As of the last keyframe.
+  ParticleSet particles() const;
+
+ private:
+  Proposal track(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp) const;
+  bool is_keyframe_due(const Pose2& T_map_body) const;
+  std::vector<Proposal> propose(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp) const;
+  void move_particles(const std::vector<Proposal>& proposals);
+  double choose_best();
+  bool resample_if_needed(double num_effective);
+  void integrate(const LevelScan& scan);
+  PoseGaussian predict(const Particle& particle, const Pose2& T_odom_body, Time stamp) const;
+
+  GridSlamSettings settings_;
+  RandomStream proposal_noise_, resampling_noise_;
+  std::vector<Particle> particles_;  ///< one until the start is mapped, then as many as asked
+  std::size_t best_ = 0;             ///< the particle of the largest weight
+  std::uint64_t keyframes_ = 0;      ///< so far
+
+  Pose2 T_map_last_;       ///< the estimate at the newest scan
+  Pose2 T_odom_last_;      ///< odometry at the newest scan
+  Pose2 T_odom_keyframe_;  ///< odometry at the last keyframe
+  Time keyframe_stamp_{};
+};
+
+}  // namespace patrol::slam

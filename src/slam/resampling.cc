@@ -1,0 +1,37 @@
+#include "slam/resampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace patrol::slam {
+
+std::vector<double> normalized_weights(const std::vector<double>& log_weights) {
+  if (log_weights.empty()) return {};
+  const double largest = *std::max_element(log_weights.begin(), log_weights.end());
+  std::vector<double> weights(log_weights.size());
+  std::transform(log_weights.begin(), log_weights.end(), weights.begin(),
+                 [&](double log_weight) { return std::exp(log_weight - largest); });
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (double& weight : weights) weight /= sum;
+  return weights;
+}
+
+double effective_sample_size(const std::vector<double>& weights) {
+  return 1.0 / std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0);
+}
+
+std::vector<std::size_t> resample_systematic(const std::vector<double>& weights, double uniform) {
+  std::vector<std::size_t> parents(weights.size());
+  const double spacing = 1.0 / static_cast<double>(weights.size());
+  std::size_t parent = 0;
+  double cumulative = weights.front();
+  for (std::size_t child = 0; child < weights.size(); ++child) {
+    const double pointer = (static_cast<double>(child) + uniform) * spacing;
+    while (pointer > cumulative && parent + 1 < weights.size()) cumulative += weights[++parent];
+    parents[child] = parent;
+  }
+  return parents;
+}
+
+}  // namespace patrol::slam

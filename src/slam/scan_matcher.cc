@@ -1,0 +1,135 @@
+#include "slam/scan_matcher.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+
+#include "slam/local_line.h"
+
+namespace patrol::slam {
+namespace {
+
+constexpr double kStepTol_m = 2e-4;
+constexpr double kStepTol_rad = 1e-5;
+constexpr int kMinPoints = 6;  // three would do for three unknowns; noise wants some more
+
+/// The sum of squares and its derivatives at a pose; the scan's part only.
+struct NormalEquations {
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  double log_likelihood = 0.0;
+  int num_known = 0;    ///< points that fell on cells of which anything is known
+  int num_matched = 0;  ///< of these, near a surface
+};
+
+double squared(double value) { return value * value; }
+
+NormalEquations linearize(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body,
+                          const ScanMatcherSettings& settings) {
+  NormalEquations sum;
+  const Eigen::Rotation2Dd rotation(T_map_body.yaw);
+  const Eigen::Matrix2d R = rotation.toRotationMatrix();
+  const Eigen::Vector2d t = T_map_body.position();
+  const double kernel_var = squared(settings.kernel_m);
+  const double outlier_loss = std::log1p(squared(settings.surface_radius_cells * map.resolution_m()) / kernel_var);
+
+  for (const MatchPoint& point : points) {
+    const Eigen::Vector2d arm = R * point.p_body;
+    const Eigen::Vector2d p_map = t + arm;
+    const double point_var = squared(settings.point_std_m) + squared(settings.point_angle_std_rad * point.range_m);
+    const std::optional<LocalLine> line = fit_local_line(map, p_map, settings.surface_radius_cells);
+    if (!line) {
+      const GridCell* cell = map.find(map.cell_at(p_map));
+      if (!cell || !cell->is_known()) continue;
+      ++sum.num_known;
+      sum.log_likelihood -= 0.5 * kernel_var / point_var * outlier_loss;
+      continue;
+    }
+    ++sum.num_known;
+    ++sum.num_matched;
+
+    // Cauchy: loss = kernel^2 log(1 + (r/kernel)^2), weight = 1 / (1 + (r/kernel)^2).
+    const double residual = line->distance_m(p_map);
+    const double variance = point_var + line->roughness_var_m2 + squared(settings.point_std_m) / line->num_hits;
+    const double ratio = squared(residual) / kernel_var;
+    const double weight = squared(line->straightness) / (variance * (1.0 + ratio));
+    const Eigen::Vector2d& n = line->normal_map;
+    const Eigen::Vector3d J(n.x(), n.y(), n.y() * arm.x() - n.x() * arm.y());
+    sum.H += weight * J * J.transpose();
+    sum.b += weight * residual * J;
+    sum.log_likelihood -= 0.5 * kernel_var / variance * std::log1p(ratio);
+  }
+  return sum;
+}
+
+/// How many points lie on a surface cell or next to one.
+int count_on_surface(const GridMap& map, const std::vector<Eigen::Vector2d>& turned, const Eigen::Vector2d& shift) {
+  int count = 0;
+  for (const Eigen::Vector2d& point : turned) count += map.is_surface_within(map.cell_at(point + shift), 1) ? 1 : 0;
+  return count;
+}
+
+}  // namespace
+
+std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_start,
+                                      const std::optional<PoseGaussian>& prior, const ScanMatcherSettings& settings) {
+  MatchResult result{.T_map_body = T_map_start};
+  Eigen::Matrix3d prior_information = Eigen::Matrix3d::Zero();
+  if (prior) prior_information = prior->covariance.inverse();
+
+  while (!result.converged && result.iterations < settings.max_iterations) {
+    const NormalEquations sum = linearize(map, points, result.T_map_body, settings);
+    const double share = sum.num_known > 0 ? static_cast<double>(sum.num_matched) / sum.num_known : 0.0;
+    if (sum.num_matched < kMinPoints || share < settings.min_matched_share) return std::nullopt;
+
+    Eigen::Matrix3d H = sum.H + prior_information;
+    Eigen::Vector3d b = sum.b;
+    if (prior) b += prior_information * prior->offset_of(result.T_map_body);
+    H.diagonal() += Eigen::Vector3d::Constant(1e-9 * H.trace());  // without prior a direction may be free
+    const Eigen::Vector3d step = -H.ldlt().solve(b);
+    if (!step.allFinite()) return std::nullopt;
+
+    result.T_map_body = shifted(result.T_map_body, step);
+    result.information = sum.H;
+    result.log_likelihood = sum.log_likelihood;
+    result.matched_share = share;
+    result.num_matched = sum.num_matched;
+    result.converged = step.head<2>().norm() < kStepTol_m && std::abs(step.z()) < kStepTol_rad;
+    ++result.iterations;
+  }
+  return result;
+}
+
+Pose2 search_pose(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_center,
+                  const ScanMatcherSettings& settings) {
+  const std::size_t stride = std::max<std::size_t>(1, points.size() / static_cast<std::size_t>(settings.search_points));
+  double far_m = 1.0;
+  for (const MatchPoint& point : points) far_m = std::max(far_m, point.p_body.norm());
+  // A cell and its neighbours reach 1.5 cells each way: steps of two cells miss nothing, seen from the farthest point too.
+  const double step_m = 2.0 * map.resolution_m(), step_rad = 2.0 * map.resolution_m() / far_m;
+  const int steps = static_cast<int>(std::ceil(settings.search_window_m / step_m));
+  const int turns = static_cast<int>(std::ceil(settings.search_window_rad / step_rad));
+
+  Pose2 best = T_map_center;
+  double best_score = -1.0;
+  std::vector<Eigen::Vector2d> turned;
+  for (int turn = -turns; turn <= turns; ++turn) {
+    const double yaw = T_map_center.yaw + turn * step_rad;
+    const Eigen::Rotation2Dd R(yaw);
+    turned.clear();
+    for (std::size_t i = 0; i < points.size(); i += stride) turned.push_back(R * points[i].p_body);
+    for (int i = -steps; i <= steps; ++i) {
+      for (int j = -steps; j <= steps; ++j) {
+        const Eigen::Vector2d shift = T_map_center.position() + step_m * Eigen::Vector2d(i, j);
+        // Of equally good poses the nearest to the centre.
+        const double tie = 1e-3 * (std::abs(i) + std::abs(j) + std::abs(turn));
+        const double score = count_on_surface(map, turned, shift) - tie;
+        if (score > best_score) best_score = score, best = {shift.x(), shift.y(), wrap_angle(yaw)};
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace patrol::slam
