@@ -59,7 +59,7 @@ ExitCode run_command(const RunOptions& options) {
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
   const std::string name = options.scenario.stem().string();
 
-  sim::Twin twin(twin_settings(scenario, files), files.robot, scenario.seed);  // refuses bad input before anything is written
+  sim::Twin twin = make_twin(scenario, files);  // refuses bad input before anything is written
   const RunDirectory directory = begin_run_directory(options.out.value_or(default_directory(options, scenario)));
   write_junit(directory, scenario, name, JunitVerdict::kNotEnded);
   io::save_settings(directory.scenario(), scenario);

@@ -27,11 +27,6 @@ class Schedule {
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files) {
-  return files.T_site_start * Pose2{scenario.start.ahead_m, scenario.start.left_m,
-                                    scenario.start.turn_deg * std::numbers::pi / 180.0};
-}
-
 sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& files) {
   return {.world_xml = files.world_xml.string(),
           .robot_urdf = files.robot_urdf.string(),
@@ -46,12 +41,20 @@ sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& f
 
 }  // namespace
 
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, const std::filesystem::path& log_mcap,
-                    const ProgressCallback& progress) {
+Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files) {
+  return files.T_site_start * Pose2{scenario.start.ahead_m, scenario.start.left_m,
+                                    scenario.start.turn_deg * std::numbers::pi / 180.0};
+}
+
+sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files) {
+  return sim::Twin(twin_settings(scenario, files), files.robot, scenario.seed);
+}
+
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin,
+                    const std::filesystem::path& log_mcap, const ProgressCallback& progress) {
   const auto wall_start = std::chrono::steady_clock::now();
   const double cpu_start = cpu_seconds();
 
-  sim::Twin twin(twin_settings(scenario, files), files.robot, scenario.seed);
   RobotStack stack(scenario.stack, files.robot, inspect::to_map(files.route, files.T_site_start),
                    scenario.log.map_period_s, scenario.seed);
   io::RunLogWriter log(log_mcap, files.robot);
@@ -109,8 +112,10 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, const 
   log.write(twin.now(), stack.final_map());
   log.close();
   outcome.duration = twin.now();
+  outcome.faults = twin.sensors().faults();
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
   outcome.cpu_s = cpu_seconds() - cpu_start;
+  outcome.seconds_by_part["lidar"] = twin.sensors().lidar_seconds();
   for (const PartClock* part : {&twin.clock(), &stack.clock(), &clock}) {
     for (const auto& [name, seconds] : part->seconds()) outcome.seconds_by_part[name] += seconds;
   }

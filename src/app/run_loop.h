@@ -1,8 +1,10 @@
 #pragma once
 
-#include <atomic>
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "core/time.h"
 #include "app/scenario.h"
@@ -14,19 +16,24 @@ enum class RunEnd { kMissionOver, kFall, kTimeLimit, kInterrupted };
 /// How a run went, beyond what its log holds.
 struct RunOutcome {
   RunEnd end = RunEnd::kMissionOver;
-  Time duration{};                          ///< simulated
+  Time duration{};                                   ///< simulated
   double wall_s = 0.0;
   double cpu_s = 0.0;
-  std::map<std::string, double> seconds_by_part;
-  /// Faults the scenario declares and whether they happened: "lidar silence at 10 s: executed".
-  std::vector<std::pair<std::string, bool>> faults_executed;
+  std::map<std::string, double> seconds_by_part;     ///< wall
+  std::vector<sim::FaultReport> faults;
 };
 
-/// Called about ten times a second of wall time with the simulated time; true to go on, false to stop.
+/// Called twice a simulated second; true to go on, false to stop.
 using ProgressCallback = std::function<bool(Time now, double distance_m)>;
 
+/// Where the robot is put down, in world.
+Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files);
+
+/// Throws InputError when world, robot, start or actors do not go together.
+sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files);
+
 /// Runs twin and stack against each other until the mission is over, and writes everything to `log_mcap`.
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, const std::filesystem::path& log_mcap,
-                    const ProgressCallback& progress);
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin,
+                    const std::filesystem::path& log_mcap, const ProgressCallback& progress);
 
 }  // namespace patrol::app

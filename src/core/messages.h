@@ -132,6 +132,7 @@ struct Event {
   std::string text;     ///< one sentence for a person
   double value = 0.0;   ///< the kind's own figure, e.g. ppm m
   Pose2 T_map_body;     ///< where the robot believed it was
+  Eigen::Vector2d p_map_target = Eigen::Vector2d::Zero();  ///< where it is, m; the robot's own place if it is nowhere else
 };
 
 /// A 2D scan freed of the robot's motion: beams in `level` at `stamp`, ends that hit the ground removed.

@@ -9,14 +9,14 @@
 
 namespace patrol {
 
-/// A place of the inspection route. `site` is the frame of the survey; the robot's start pose in it is surveyed too, and
-/// joins it to `map`.
+/// A place of the inspection route, in the route's frame: `site`, the frame of the survey, or `map`. The robot's start pose in
+/// `site` is surveyed too, and joins the two (inspect/route_frame.h).
 struct Station {
   int number = 0;
   std::string name;  ///< e.g. "regulator_box_2"
   std::string type;  ///< "inspect": stop, aim, measure gas; "pass": walk by; "home": stop and end
-  Pose2 T_site_body;  ///< where the robot shall stand
-  Eigen::Vector3d p_site_target = Eigen::Vector3d::Zero();  ///< what the instrument looks at, m
+  Pose2 T_route_body;  ///< where the robot shall stand
+  Eigen::Vector3d p_route_target = Eigen::Vector3d::Zero();  ///< what the instrument looks at, m
   double accuracy_m = 0.2;  ///< how near the standing place counts as reached
 };
 

@@ -1,0 +1,65 @@
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/scenario.h"
+
+namespace patrol::app {
+namespace {
+
+/// Files below `folder` that `keep` accepts, as paths relative to `root`, sorted.
+template <typename Keep>
+std::vector<std::string> files_below(const std::filesystem::path& root, const std::string& folder, const Keep& keep) {
+  std::vector<std::string> found;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
+    if (entry.is_regular_file() && keep(entry.path())) found.push_back(std::filesystem::relative(entry.path(), root).string());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+void print(const char* title, const std::vector<std::string>& lines) {
+  fmt::print("{}\n", title);
+  for (const std::string& line : lines) fmt::print("  {}\n", line);
+}
+
+/// Collects what the settings allow for one field.
+struct AllowedValues {
+  std::string wanted;
+  std::vector<std::string> values;
+  template <typename Value>
+  void operator()(const char* name, Value&, const Limits& limits = {}) {
+    if (name == wanted) values = limits.allowed;
+  }
+};
+
+template <typename Settings>
+std::vector<std::string> allowed(const std::string& field) {
+  AllowedValues visitor{.wanted = field, .values = {}};
+  const Settings settings;
+  Settings::fields(settings, visitor);
+  return visitor.values;
+}
+
+}  // namespace
+
+ExitCode list_command() {
+  const std::filesystem::path root = find_data_root("");
+  print("scenarios", files_below(root, "worlds", [](const auto& file) { return file.parent_path().filename() == "scenarios"; }));
+  print("worlds", files_below(root, "worlds", [](const auto& file) {
+          return file.extension() == ".xml" && file.stem() == file.parent_path().filename();
+        }));
+  print("robots", files_below(root, "models", [](const auto& file) { return file.extension() == ".urdf"; }));
+  print("sensors", {"lidar", "lidar3d", "imu", "joint_encoders", "foot_contact", "tdlas", "gnss"});
+  print("lidar presets", allowed<sim::LidarSettings>("preset"));
+  print("sensor faults", allowed<sim::FaultSettings>("kind"));
+  print("mapping methods", {"grid particle filter with scan matching (stack.slam)"});
+  print("planners", {"A* with the dynamic window approach (stack.navigation)"});
+  return ExitCode::kDone;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,128 @@
+#include "inspect/mission.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace patrol::inspect {
+
+Mission::Mission(const MissionSettings& settings, Route route_in_map, const Pose3& T_body_gas)
+    : settings_(settings), route_(std::move(route_in_map)), T_body_gas_(T_body_gas) {
+  validate(settings, "mission");
+  if (route_.stations.empty()) throw InputError("the route has no station");
+}
+
+MissionOutput Mission::step(Time now, const PoseEstimate& pose, NavigationFeedback feedback,
+                            const std::optional<GasReading>& newest_gas) {
+  now_ = now;
+  T_map_body_ = pose.T_map_body;
+  MissionOutput output;
+  switch (phase_) {
+    case Phase::kWaiting:
+      wait(output);
+      break;
+    case Phase::kDriving:
+      drive(feedback, output);
+      break;
+    case Phase::kMeasuring:
+      measure(newest_gas, output);
+      break;
+    case Phase::kOver:
+      break;
+  }
+  // While measuring, the goal stays: the robot holds its place.
+  if (phase_ == Phase::kDriving || phase_ == Phase::kMeasuring) output.goal = goal_at(station());
+  return output;
+}
+
+Event Mission::abort(Time now, const std::string& kind, const std::string& text) {
+  now_ = now;
+  phase_ = Phase::kOver;
+  return event(kind, current_ < route_.stations.size() ? station().name : "", text);
+}
+
+void Mission::wait(MissionOutput& output) {
+  if (now_ < from_seconds(settings_.start_wait_s)) return;
+  output.events.push_back(
+      event("mission_started", "", fmt::format("The mission starts: {} stations.", route_.stations.size())));
+  phase_ = Phase::kDriving;
+  phase_start_ = now_;
+}
+
+void Mission::drive(NavigationFeedback feedback, MissionOutput& output) {
+  if (now_ == phase_start_) return;  // the feedback is about the goal before
+  if (feedback == NavigationFeedback::kFailed) {
+    ++num_failed_;
+    output.events.push_back(event("station_failed", station().name, fmt::format("No way to {}.", station().name)));
+    return next_station(output);
+  }
+  if (feedback != NavigationFeedback::kArrived) return;
+  output.events.push_back(event("station_reached", station().name, fmt::format("At {}.", station().name)));
+  if (station().type != "inspect") return next_station(output);
+  phase_ = Phase::kMeasuring;
+  phase_start_ = now_;
+  gas_ = {};
+}
+
+void Mission::measure(const std::optional<GasReading>& newest_gas, MissionOutput& output) {
+  const Time from = phase_start_ + from_seconds(settings_.settle_s);
+  if (newest_gas && newest_gas->stamp >= from) gas_.add(*newest_gas);
+  const bool is_enough = now_ >= from + from_seconds(settings_.measure_s) && gas_.count() >= settings_.min_readings;
+  if (is_enough) {
+    report_gas(output);
+    next_station(output);
+  } else if (now_ >= from + from_seconds(std::max(settings_.measure_s, settings_.max_measure_s))) {
+    ++num_failed_;
+    output.events.push_back(event("station_failed", station().name,
+                                  fmt::format("The methane meter gave {} readings at {}, {} are needed.", gas_.count(),
+                                              station().name, settings_.min_readings)));
+    next_station(output);
+  }
+}
+
+void Mission::report_gas(MissionOutput& output) {
+  const double column = gas_.mean_ppm_m();
+  output.events.push_back(event("gas_measured", station().name,
+                                fmt::format("{}: {:.0f} ppm m of methane.", station().name, column), column));
+  if (column - 2.0 * gas_.standard_error_ppm_m() <= settings_.alarm_column_ppm_m) return;
+  Event alarm = event("alarm", station().name, "", column);
+  const Eigen::Vector3d p_body_target = T_body_gas_ * Eigen::Vector3d(gas_.beam_m().value_or(0.0), 0.0, 0.0);
+  alarm.p_map_target = T_map_body_ * Eigen::Vector2d(p_body_target.head<2>());
+  alarm.text = fmt::format("Leak at {}: {:.0f} ppm m of methane, found at ({:.2f}, {:.2f}) m in the map.", station().name,
+                           column, alarm.p_map_target.x(), alarm.p_map_target.y());
+  output.events.push_back(alarm);
+}
+
+void Mission::next_station(MissionOutput& output) {
+  ++current_;
+  phase_start_ = now_;
+  if (current_ < route_.stations.size()) {
+    phase_ = Phase::kDriving;
+    return;
+  }
+  phase_ = Phase::kOver;
+  if (num_failed_ == 0) {
+    output.events.push_back(event("mission_completed", "", "Every station was inspected."));
+  } else {
+    output.events.push_back(event(
+        "mission_failed", "", fmt::format("{} of {} stations were left out.", num_failed_, route_.stations.size())));
+  }
+}
+
+NavigationGoal Mission::goal_at(const Station& station) const {
+  NavigationGoal goal{.T_map_body = station.T_route_body,
+                      .position_tol_m = std::min(settings_.position_tol_m, station.accuracy_m),
+                      .yaw_tol_rad = settings_.yaw_tol_rad};
+  if (station.type == "pass") {
+    goal.position_tol_m = station.accuracy_m;
+    goal.yaw_tol_rad = std::numbers::pi;
+  }
+  return goal;
+}
+
+Event Mission::event(const std::string& kind, const std::string& subject, const std::string& text, double value) const {
+  return {.stamp = now_, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = T_map_body_,
+          .p_map_target = T_map_body_.position()};
+}
+
+}  // namespace patrol::inspect

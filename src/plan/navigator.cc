@@ -1,0 +1,178 @@
+#include "plan/navigator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace patrol::plan {
+namespace {
+
+constexpr double kPathStep_m = 0.25;          // poses of the published path
+constexpr double kProgress_m = 0.5;           // that much nearer counts as getting on
+constexpr double kMinApproachSpeed_mps = 0.15;
+constexpr double kMinPassable_m = 0.02;       // of a turn in place
+
+Twist3 twist_of(const VelocityCommand& command) {
+  return {.linear = {command.vx_mps, command.vy_mps, 0.0}, .angular = {0.0, 0.0, command.yaw_rate_radps}};
+}
+
+bool stands_still(const VelocityCommand& command) {
+  return std::abs(command.vx_mps) < 0.03 && std::abs(command.vy_mps) < 0.03 && std::abs(command.yaw_rate_radps) < 0.05;
+}
+
+}  // namespace
+
+Navigator::Navigator(const NavigatorSettings& settings, const RobotDescription& robot,
+                     std::vector<Polyline> keep_out_lines_in_map)
+    : settings_(settings),
+      costmap_(settings.costmap, Footprint(robot.footprint_m), std::move(keep_out_lines_in_map)),
+      planner_(settings.global),
+      window_(settings.local) {
+  validate(settings, "navigation");
+}
+
+void Navigator::set_map(const OccupancyGrid& map) {
+  costmap_.set_map(map);
+  map_is_new_ = true;
+}
+
+void Navigator::set_goal(const std::optional<NavigationGoal>& goal) {
+  if (goal == goal_) return;
+  goal_ = goal;
+  has_arrived_ = false;
+  path_ = {};
+  planned_at_ = Time::min();
+  blocked_since_.reset();
+  backing_until_.reset();
+  recoveries_ = 0;
+  nearest_left_m_ = std::numeric_limits<double>::infinity();
+}
+
+NavigationStep Navigator::step(Time now, const Pose2& T_map_body) {
+  NavigationStep step;
+  if (goal_) {
+    if (has_arrived_ || is_reached(T_map_body, *goal_)) {
+      has_arrived_ = true;
+      step.status = NavigationStatus::kArrived;
+    } else if (recoveries_ > settings_.max_recoveries) {
+      step.status = NavigationStatus::kFailed;
+    } else if (backing_until_ || plan_if_needed(now, T_map_body, step)) {
+      step.status = drive(now, T_map_body, step.command);
+    } else {
+      step.status = stand_blocked(now, T_map_body, step.command);
+    }
+  }
+  last_ = step.command;
+  return step;
+}
+
+/// Whether something stands on the path within `check_ahead_m`.
+bool Navigator::is_path_blocked(double from_m) const {
+  const double to_m = std::min(path_.length_m(), from_m + settings_.check_ahead_m);
+  for (double along_m = from_m; along_m < to_m; along_m += costmap_.settings().resolution_m) {
+    if (costmap_.cost_at(path_.point_at(along_m)) == kLethalCost) return true;
+  }
+  return false;
+}
+
+/// False if there is no path.
+bool Navigator::plan_if_needed(Time now, const Pose2& T_map_body, NavigationStep& step) {
+  bool is_blocked = false;
+  if (!path_.is_empty()) {
+    const PathProjection here =
+        path_.project(T_map_body.position(), std::max(0.0, along_m_ - 0.5), along_m_ + 2.0);
+    along_m_ = here.along_m;
+    is_blocked = is_path_blocked(along_m_);
+    const bool is_old = map_is_new_ && now - planned_at_ >= from_seconds(settings_.replan_period_s);
+    if (!is_blocked && !is_old && here.distance_m <= settings_.stray_m) return true;
+  }
+  // An unsolvable search is the dearest one: not at every step.
+  if (planned_at_ != Time::min() && now - planned_at_ < from_seconds(0.5)) return !path_.is_empty();
+  planned_at_ = now;
+  map_is_new_ = false;
+  costmap_.include(T_map_body.position(), 5.0);
+  costmap_.include(goal_->T_map_body.position(), 5.0);
+  const PlanResult plan = planner_.plan(costmap_.cost(), T_map_body.position(), goal_->T_map_body.position());
+  if (plan.status != PlanStatus::kFound) {
+    if (is_blocked) path_ = {};
+    return !path_.is_empty();
+  }
+  path_ = PlannedPath(shortcut(costmap_.cost(), settings_.global.cost_weight, plan.points_m));
+  along_m_ = 0.0;
+  step.replanned = true;
+  step.is_detour = is_blocked;
+  step.path = path_.sample(kPathStep_m);
+  return true;
+}
+
+NavigationStatus Navigator::drive(Time now, const Pose2& T_map_body, VelocityCommand& command) {
+  if (backing_until_) {
+    command.vx_mps = -settings_.back_up_speed_mps;
+    if (now < *backing_until_ && is_safe(T_map_body, command, 1.0)) return NavigationStatus::kRecovering;
+    backing_until_.reset();
+    path_ = {};
+    command = {};
+    return NavigationStatus::kRecovering;
+  }
+  const double goal_distance_m = (goal_->T_map_body.position() - T_map_body.position()).norm();
+  const VelocityCommand straight = regulate_pose(settings_.approach, T_map_body, *goal_);
+  const bool is_near = goal_distance_m <= settings_.approach_m;
+  command = is_near && is_safe(T_map_body, straight, 0.5) ? straight : follow_path(T_map_body);
+  note_progress(T_map_body);
+  if (stands_still(command) && !is_near) return stand_blocked(now, T_map_body, command);
+  blocked_since_.reset();
+  return NavigationStatus::kDriving;
+}
+
+VelocityCommand Navigator::follow_path(const Pose2& T_map_body) {
+  VelocityCommand command;
+  if (turn_in_place(T_map_body, command)) return command;
+  const double left_m = std::max(0.0, path_.length_m() - along_m_);
+  const double speed_limit = std::max(kMinApproachSpeed_mps, std::sqrt(2.0 * settings_.approach_decel_mps2 * left_m));
+  return window_.choose(costmap_, path_, along_m_, T_map_body, twist_of(last_), speed_limit).value_or(VelocityCommand{});
+}
+
+/// Whether the path leads off so far to the side that the robot should turn before it walks.
+bool Navigator::turn_in_place(const Pose2& T_map_body, VelocityCommand& command) const {
+  const Eigen::Vector2d ahead = path_.point_at(along_m_ + 0.5) - T_map_body.position();
+  if (ahead.norm() < 0.1) return false;
+  const double turn = wrap_angle(std::atan2(ahead.y(), ahead.x()) - T_map_body.yaw);
+  const bool is_turning = std::abs(last_.yaw_rate_radps) > 0.3 && std::abs(last_.vx_mps) < 0.01;
+  if (std::abs(turn) < (is_turning ? 0.35 : settings_.turn_first_rad)) return false;
+  command.yaw_rate_radps = std::copysign(settings_.turn_rate_radps, turn);
+  if (is_safe(T_map_body, command, 0.6)) return true;
+  command = {};
+  return false;
+}
+
+/// Waits; backs up and forgets the path when that has lasted.
+NavigationStatus Navigator::stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command) {
+  command = {};
+  if (!blocked_since_) blocked_since_ = now;
+  if (now - *blocked_since_ < from_seconds(settings_.patience_s)) return NavigationStatus::kBlocked;
+  blocked_since_.reset();
+  ++recoveries_;
+  costmap_.forget_live(T_map_body.position(), 2.0);
+  backing_until_ = now + from_seconds(settings_.back_up_s);
+  return NavigationStatus::kRecovering;
+}
+
+/// Whether the robot can move like that for a time without touching anything, or at least without coming nearer to it.
+bool Navigator::is_safe(const Pose2& T_map_body, const VelocityCommand& command, double time_s) const {
+  const double clearance_now = costmap_.clearance_m(T_map_body);
+  for (const double part : {0.25, 0.5, 0.75, 1.0}) {
+    const Pose2 there = T_map_body * Pose2{command.vx_mps * time_s * part, command.vy_mps * time_s * part,
+                                           command.yaw_rate_radps * time_s * part};
+    if (costmap_.clearance_m(there) < std::min(kMinPassable_m, clearance_now)) return false;
+  }
+  return true;
+}
+
+void Navigator::note_progress(const Pose2& T_map_body) {
+  const double left_m = (goal_->T_map_body.position() - T_map_body.position()).norm() + path_.length_m() - along_m_;
+  if (left_m > nearest_left_m_ - kProgress_m) return;
+  nearest_left_m_ = left_m;
+  recoveries_ = 0;
+}
+
+}  // namespace patrol::plan

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/messages.h"
+#include "core/navigation_goal.h"
+#include "core/robot_description.h"
+#include "plan/astar.h"
+#include "plan/costmap.h"
+#include "plan/dwa.h"
+#include "plan/planned_path.h"
+#include "plan/pose_regulator.h"
+
+namespace patrol::plan {
+
+struct NavigatorSettings {
+  double replan_period_s = 4.0;       ///< a new path after this time, for what the map has learnt
+  double check_ahead_m = 6.0;         ///< an obstacle on the path nearer than this calls for a new one at once
+  double stray_m = 0.8;               ///< so does being farther than this from it
+  double approach_m = 0.4;            ///< from here on the goal is walked to straight, sideways too
+  double approach_decel_mps2 = 0.3;   ///< speed on the way falls so that the robot can stop at the goal
+  double turn_first_rad = 1.0;        ///< the path leads off by more than this: turn in place first
+  double turn_rate_radps = 0.7;
+  double patience_s = 6.0;            ///< standing blocked for so long calls for a recovery
+  double back_up_s = 2.0;             ///< the recovery: backwards, if there is room, and a new path
+  double back_up_speed_mps = 0.15;
+  int max_recoveries = 8;             ///< without getting nearer; then the goal is given up
+  CostmapSettings costmap;
+  AstarSettings global;
+  DwaSettings local;
+  PoseRegulatorSettings approach;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("replan_period_s", self.replan_period_s, between(0.1, 600.0));
+    visit("check_ahead_m", self.check_ahead_m, between(0.5, 100.0));
+    visit("stray_m", self.stray_m, between(0.1, 10.0));
+    visit("approach_m", self.approach_m, between(0.05, 3.0));
+    visit("approach_decel_mps2", self.approach_decel_mps2, between(0.05, 5.0));
+    visit("turn_first_rad", self.turn_first_rad, between(0.2, 3.2));
+    visit("turn_rate_radps", self.turn_rate_radps, between(0.05, 3.0));
+    visit("patience_s", self.patience_s, between(0.5, 600.0));
+    visit("back_up_s", self.back_up_s, between(0.0, 20.0));
+    visit("back_up_speed_mps", self.back_up_speed_mps, between(0.0, 1.0));
+    visit("max_recoveries", self.max_recoveries, between(0, 1000));
+    visit("costmap", self.costmap);
+    visit("global", self.global);
+    visit("local", self.local);
+    visit("approach", self.approach);
+  }
+};
+
+enum class NavigationStatus { kIdle, kDriving, kArrived, kBlocked, kRecovering, kFailed };
+
+struct NavigationStep {
+  VelocityCommand command;
+  NavigationStatus status = NavigationStatus::kIdle;
+  bool replanned = false;
+  bool is_detour = false;   ///< replanned because something stands on the path
+  std::vector<Pose2> path;  ///< in map; filled when replanned
+};
+
+/// Takes the body to a goal: costmap, A* for the way, the dynamic window for every step of it, a straight approach at
+/// its end. Blocked, it waits, then backs up and looks for another way, and says so when there is none.
+class Navigator {
+ public:
+  /// Throws InputError if a setting breaks its rule or the robot has no footprint.
+  Navigator(const NavigatorSettings& settings, const RobotDescription& robot, std::vector<Polyline> keep_out_lines_in_map);
+
+  void set_map(const OccupancyGrid& map);
+  void add_scan(const LevelScan& scan, const Pose2& T_map_body) { costmap_.add_scan(scan, T_map_body); }
+  /// The same goal again changes nothing; none stops the robot.
+  void set_goal(const std::optional<NavigationGoal>& goal);
+
+  /// Once a control period.
+  NavigationStep step(Time now, const Pose2& T_map_body);
+
+  const Costmap& costmap() const { return costmap_; }
+  const PlannedPath& path() const { return path_; }
+
+ private:
+  bool is_path_blocked(double from_m) const;
+  bool plan_if_needed(Time now, const Pose2& T_map_body, NavigationStep& step);
+  NavigationStatus drive(Time now, const Pose2& T_map_body, VelocityCommand& command);
+  VelocityCommand follow_path(const Pose2& T_map_body);
+  bool turn_in_place(const Pose2& T_map_body, VelocityCommand& command) const;
+  NavigationStatus stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command);
+  bool is_safe(const Pose2& T_map_body, const VelocityCommand& command, double time_s) const;
+  void note_progress(const Pose2& T_map_body);
+
+  NavigatorSettings settings_;
+  Costmap costmap_;
+  AstarPlanner planner_;
+  DynamicWindow window_;
+
+  std::optional<NavigationGoal> goal_;
+  bool has_arrived_ = false;
+  PlannedPath path_;
+  double along_m_ = 0.0;
+  Time planned_at_ = Time::min();
+  bool map_is_new_ = false;
+  VelocityCommand last_;              ///< the command before, in place of the noisy measured twist
+  std::optional<Time> blocked_since_;
+  std::optional<Time> backing_until_;
+  int recoveries_ = 0;
+  double nearest_left_m_ = 0.0;       ///< the shortest way left so far
+};
+
+}  // namespace patrol::plan

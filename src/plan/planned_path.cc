@@ -1,0 +1,107 @@
+#include "plan/planned_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace patrol::plan {
+
+PlannedPath::PlannedPath(std::vector<Eigen::Vector2d> points_m) {
+  for (const Eigen::Vector2d& p : points_m) {
+    const double step_m = points_m_.empty() ? 0.0 : (p - points_m_.back()).norm();
+    if (!points_m_.empty() && step_m < 1e-9) continue;
+    along_m_.push_back(length_m() + step_m);
+    points_m_.push_back(p);
+  }
+}
+
+/// The segment whose start is the last point at or before `along_m`.
+std::size_t PlannedPath::segment_at(double along_m) const {
+  const auto after = std::upper_bound(along_m_.begin(), along_m_.end(), along_m);
+  const auto index = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - along_m_.begin() - 1));
+  return std::min(index, points_m_.size() - 2);
+}
+
+Eigen::Vector2d PlannedPath::point_at(double along_m) const {
+  if (points_m_.size() == 1) return points_m_.front();
+  const std::size_t i = segment_at(along_m);
+  const double fraction = std::clamp((along_m - along_m_[i]) / (along_m_[i + 1] - along_m_[i]), 0.0, 1.0);
+  return points_m_[i] + fraction * (points_m_[i + 1] - points_m_[i]);
+}
+
+double PlannedPath::heading_at(double along_m) const {
+  if (points_m_.size() == 1) return 0.0;
+  const std::size_t i = segment_at(along_m);
+  const Eigen::Vector2d ahead = points_m_[i + 1] - points_m_[i];
+  return std::atan2(ahead.y(), ahead.x());
+}
+
+PathProjection PlannedPath::project(const Eigen::Vector2d& p_map, double from_m, double to_m) const {
+  PathProjection best{.along_m = 0.0, .distance_m = std::numeric_limits<double>::infinity()};
+  if (points_m_.size() == 1) return {.along_m = 0.0, .distance_m = (p_map - points_m_.front()).norm()};
+  for (std::size_t i = segment_at(from_m); i + 1 < points_m_.size() && along_m_[i] <= to_m; ++i) {
+    const Eigen::Vector2d segment = points_m_[i + 1] - points_m_[i];
+    const double length_m = along_m_[i + 1] - along_m_[i];
+    const double first = std::clamp(from_m - along_m_[i], 0.0, length_m);
+    const double last = std::clamp(to_m - along_m_[i], first, length_m);
+    const double along = std::clamp((p_map - points_m_[i]).dot(segment) / length_m, first, last);
+    const double distance_m = (p_map - points_m_[i] - along / length_m * segment).norm();
+    if (distance_m < best.distance_m) best = {.along_m = along_m_[i] + along, .distance_m = distance_m};
+  }
+  return best;
+}
+
+std::vector<Pose2> PlannedPath::sample(double step_m) const {
+  std::vector<Pose2> poses;
+  if (is_empty()) return poses;
+  const int steps = std::max(1, static_cast<int>(std::ceil(length_m() / step_m)));
+  for (int i = 0; i <= steps; ++i) {
+    const double along_m = length_m() * i / steps;
+    const Eigen::Vector2d p = point_at(along_m);
+    poses.push_back({p.x(), p.y(), heading_at(along_m)});
+  }
+  return poses;
+}
+
+double line_cost_m(const Grid<Cost>& costs, double cost_weight, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  const GridGeometry& grid = costs.geometry();
+  const double length_m = (to - from).norm();
+  const int steps = std::max(1, static_cast<int>(std::ceil(2.0 * length_m / grid.resolution_m)));
+  double total = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const Cell cell = grid.cell_at(from + (i + 0.5) / steps * (to - from));
+    if (!costs.contains(cell) || costs.at(cell) == kLethalCost) return std::numeric_limits<double>::infinity();
+    total += 1.0 + cost_weight * std::min<double>(costs.at(cell), kMaxPassableCost) / kMaxPassableCost;
+  }
+  return total * length_m / steps;
+}
+
+std::vector<Eigen::Vector2d> shortcut(const Grid<Cost>& costs, double cost_weight,
+                                      const std::vector<Eigen::Vector2d>& points_m) {
+  if (points_m.size() < 3) return points_m;
+  std::vector<double> cost_to{0.0};  // along the route
+  for (std::size_t i = 1; i < points_m.size(); ++i) {
+    const double step = line_cost_m(costs, cost_weight, points_m[i - 1], points_m[i]);
+    const double lethal_step = (1.0 + cost_weight) * (points_m[i] - points_m[i - 1]).norm();  // the start may be blocked
+    cost_to.push_back(cost_to.back() + (std::isfinite(step) ? step : lethal_step));
+  }
+  const auto is_no_dearer = [&](std::size_t from, std::size_t to) {
+    const double line = line_cost_m(costs, cost_weight, points_m[from], points_m[to]);
+    return line <= (cost_to[to] - cost_to[from]) * (1.0 + 1e-6);
+  };
+  std::vector<Eigen::Vector2d> result{points_m.front()};
+  for (std::size_t from = 0; from + 1 < points_m.size();) {
+    // The farthest point in a straight line: stride doubles while it works, then halves.
+    std::size_t to = from + 1;
+    for (std::size_t stride = 2; to + stride < points_m.size() && is_no_dearer(from, to + stride); stride *= 2) to += stride;
+    for (std::size_t stride = points_m.size(); stride > 0; stride /= 2) {
+      if (to + stride < points_m.size() && is_no_dearer(from, to + stride)) to += stride;
+    }
+    result.push_back(points_m[to]);
+    from = to;
+  }
+  return result;
+}
+
+}  // namespace patrol::plan

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "core/frames.h"
+#include "core/messages.h"
+#include "plan/costmap.h"
+#include "plan/planned_path.h"
+
+namespace patrol::plan {
+
+/// Where a constant command leads.
+struct Rollout {
+  double vx_mps = 0.0;
+  double yaw_rate_radps = 0.0;
+  std::vector<Pose2> T_map_body;  ///< at equal steps of time, the present pose left out
+  double min_clearance_m = 0.0;   ///< around the robot's outline, over all poses
+};
+
+/// What the costs judge a rollout by.
+struct RolloutScene {
+  const PlannedPath& path;
+  double along_m = 0.0;        ///< where on the path the robot is
+  double reach_m = 0.0;        ///< how far it could get within the horizon
+  Twist3 twist;                ///< now, in body
+  double max_speed_mps = 0.0;
+  double max_yaw_rate_radps = 0.0;
+};
+
+}  // namespace patrol::plan

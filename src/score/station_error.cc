@@ -1,0 +1,98 @@
+#include "score/station_error.h"
+
+#include <Eigen/Dense>
+
+#include <cmath>
+#include <numbers>
+
+#include "score/distance_field.h"
+#include "score/map_error.h"
+
+namespace patrol::score {
+namespace {
+
+constexpr double kMaxDistance_m = 0.5;    // a cell farther from everything was no part of the world
+constexpr double kRobust_m = 0.05;        // beyond it a cell's say falls (Cauchy)
+constexpr int kMinPoints = 30;
+constexpr int kIterations = 20;
+constexpr double kWeakShare = 0.03;       // directions with less information than this share of the best are not moved
+
+std::vector<Eigen::Vector2d> points_round(const OccupancyGrid& built, const Pose2& T_world_map, const Eigen::Vector2d& center,
+                                          double radius_m) {
+  std::vector<Eigen::Vector2d> near;
+  for (const Eigen::Vector2d& p_map : occupied_points(built)) {
+    const Eigen::Vector2d p_world = T_world_map * p_map;
+    if ((p_world - center).norm() <= radius_m) near.push_back(p_world - center);
+  }
+  return near;
+}
+
+/// One step of Gauss-Newton for a motion about `center`: x, y in m, turn in units of `radius_m` of arc.
+Eigen::Vector3d step(const DistanceField& field, const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& center,
+                     const Pose2& motion, double radius_m) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector2d& point : points) {
+    const Eigen::Vector2d moved = motion * point;
+    const double distance = field.distance_m(center + moved);
+    if (distance > kMaxDistance_m) continue;
+    const Eigen::Vector2d slope = field.gradient(center + moved);
+    const Eigen::Vector2d arm = moved - motion.position();
+    const Eigen::Vector3d row(slope.x(), slope.y(), (slope.y() * arm.x() - slope.x() * arm.y()) / radius_m);
+    const double weight = 1.0 / (1.0 + distance * distance / (kRobust_m * kRobust_m));
+    information += weight * row * row.transpose();
+    gradient += weight * distance * row;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
+  Eigen::Vector3d result = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const double value = eigen.eigenvalues()[i];
+    if (value <= kWeakShare * eigen.eigenvalues()[2]) continue;
+    result -= eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(gradient) / value);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2& T_world_map,
+                                         const ReferenceMap& reference, const Eigen::Vector2d& p_world_target,
+                                         double radius_m) {
+  const std::vector<Eigen::Vector2d> points = points_round(built, T_world_map, p_world_target, radius_m);
+  if (points.size() < kMinPoints) return std::nullopt;
+  const DistanceField field(occupied_cells(reference.cells));
+  Pose2 motion;
+  for (int i = 0; i < kIterations; ++i) {
+    const Eigen::Vector3d change = step(field, points, p_world_target, motion, radius_m);
+    motion = {motion.x + change.x(), motion.y + change.y(), motion.yaw + change.z() / radius_m};
+    if (change.norm() < 1e-5) break;
+  }
+  return motion.position().norm();
+}
+
+std::vector<StationError> station_errors(const Route& route_in_world, const std::vector<Event>& events,
+                                         const Pose2& T_world_map, const Trajectory& T_world_body,
+                                         const OccupancyGrid& built, const ReferenceMap& reference) {
+  std::vector<StationError> errors;
+  for (const Station& station : route_in_world.stations) {
+    StationError error;
+    error.name = station.name;
+    error.map_error_m =
+        map_displacement_m(built, T_world_map, reference, station.p_route_target.head<2>());
+    for (const Event& event : events) {
+      if (event.kind != "station_reached" || event.subject != station.name) continue;
+      const std::optional<Pose3> truth = pose_at(T_world_body, event.stamp);
+      if (!truth) continue;
+      const Pose2 T_world_truth = to_planar(*truth), T_world_estimate = T_world_map * event.T_map_body;
+      error.is_reached = true;
+      error.position_error_m = (T_world_estimate.position() - T_world_truth.position()).norm();
+      error.heading_error_deg =
+          std::abs(wrap_angle(T_world_estimate.yaw - T_world_truth.yaw)) * 180.0 / std::numbers::pi;
+      error.stand_error_m = (T_world_truth.position() - station.T_route_body.position()).norm();
+    }
+    errors.push_back(error);
+  }
+  return errors;
+}
+
+}  // namespace patrol::score

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+/// Small figures about a list of numbers. An empty list gives 0 throughout: there was nothing to be wrong about.
+namespace patrol::score {
+
+double mean(const std::vector<double>& values);
+/// Of the sample: n - 1 in the denominator; 0 for fewer than two values.
+double variance(const std::vector<double>& values);
+double root_mean_square(const std::vector<double>& values);
+double maximum(const std::vector<double>& values);
+
+/// The value below which `fraction` of the list lies, linear between neighbours (Hyndman & Fan 1996, type 7).
+double percentile(std::vector<double> values, double fraction);
+
+/// Half width of the 95 % confidence interval of the mean, by Student's t; 0 for fewer than two values.
+double confidence_95(const std::vector<double>& values);
+
+}  // namespace patrol::score

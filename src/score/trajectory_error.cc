@@ -1,0 +1,158 @@
+#include "score/trajectory_error.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include <Eigen/Dense>
+
+#include "core/error.h"
+#include "score/statistics.h"
+
+namespace patrol::score {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr double kStretch_m = 1.0;
+constexpr Time kMaxStampDifference = std::chrono::milliseconds(10);
+
+struct RelativeError {
+  std::vector<double> translation_m;
+  std::vector<double> rotation_rad;
+};
+
+/// Relative pose error (Kuemmerle et al. 2009; Sturm et al. 2012) of every stretch that starts at a pose and ends at the
+/// first pose at least 1 m of true way further on.
+RelativeError relative_error(const std::vector<MatchedPose>& poses) {
+  std::vector<double> way_m(poses.size(), 0.0);
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    way_m[i] = way_m[i - 1] +
+               (poses[i].T_world_truth.position() - poses[i - 1].T_world_truth.position()).norm();
+  }
+  RelativeError error;
+  for (std::size_t begin = 0, end = 0; begin < poses.size(); ++begin) {
+    while (end < poses.size() && way_m[end] - way_m[begin] < kStretch_m) ++end;
+    if (end == poses.size()) break;
+    const Pose2 truth = poses[begin].T_world_truth.inverse() * poses[end].T_world_truth;
+    const Pose2 estimate = poses[begin].T_world_estimate.inverse() * poses[end].T_world_estimate;
+    const Pose2 difference = truth.inverse() * estimate;
+    error.translation_m.push_back(difference.position().norm());
+    error.rotation_rad.push_back(difference.yaw);
+  }
+  return error;
+}
+
+/// Positions of the same instants, one column each.
+struct PointPairs {
+  Eigen::Matrix3Xd estimate;
+  Eigen::Matrix3Xd reference;
+};
+
+/// The index of the stamp nearest to `stamp`; of two equally near the earlier.
+std::size_t nearest_index(const Trajectory& trajectory, Time stamp) {
+  const auto after = std::upper_bound(trajectory.begin(), trajectory.end(), stamp,
+                                      [](Time t, const StampedPose& entry) { return t < entry.stamp; });
+  if (after == trajectory.begin()) return 0;
+  const auto before = after - 1;
+  const bool take_after = after != trajectory.end() && after->stamp - stamp < stamp - before->stamp;
+  return static_cast<std::size_t>((take_after ? after : before) - trajectory.begin());
+}
+
+PointPairs pair_by_stamp(const Trajectory& estimate, const Trajectory& reference) {
+  const bool estimate_is_shorter = estimate.size() < reference.size();
+  const Trajectory& shorter = estimate_is_shorter ? estimate : reference;
+  const Trajectory& longer = estimate_is_shorter ? reference : estimate;
+  std::vector<std::pair<std::size_t, std::size_t>> indices;
+  for (std::size_t i = 0; i < shorter.size() && !longer.empty(); ++i) {
+    const std::size_t nearest = nearest_index(longer, shorter[i].stamp);
+    if (std::chrono::abs(longer[nearest].stamp - shorter[i].stamp) <= kMaxStampDifference) {
+      indices.emplace_back(i, nearest);
+    }
+  }
+  const auto count = static_cast<Eigen::Index>(indices.size());
+  PointPairs pairs{Eigen::Matrix3Xd(3, count), Eigen::Matrix3Xd(3, count)};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto [of_shorter, of_longer] = indices[static_cast<std::size_t>(i)];
+    (estimate_is_shorter ? pairs.estimate : pairs.reference).col(i) = shorter[of_shorter].pose.position;
+    (estimate_is_shorter ? pairs.reference : pairs.estimate).col(i) = longer[of_longer].pose.position;
+  }
+  return pairs;
+}
+
+/// Umeyama (1991), equations 34 to 43 with the scale held at 1.
+Pose3 fit_rigid_motion(const PointPairs& pairs) {
+  const Eigen::Vector3d estimate_mean = pairs.estimate.rowwise().mean();
+  const Eigen::Vector3d reference_mean = pairs.reference.rowwise().mean();
+  const Eigen::Matrix3d covariance = (pairs.reference.colwise() - reference_mean) *
+                                     (pairs.estimate.colwise() - estimate_mean).transpose() /
+                                     static_cast<double>(pairs.estimate.cols());
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  if (svd.singularValues()[1] <= std::numeric_limits<double>::epsilon()) {
+    throw InputError("the trajectories lie on a line or a point: no rigid motion can be fitted");
+  }
+  Eigen::Vector3d sign = Eigen::Vector3d::Ones();
+  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) sign.z() = -1.0;
+  const Eigen::Matrix3d R = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+  return {reference_mean - R * estimate_mean, Eigen::Quaterniond(R)};
+}
+
+}  // namespace
+
+Pose2 join_at_start(const Trajectory& T_map_body, const Trajectory& T_world_body) {
+  for (const StampedPose& entry : T_map_body) {
+    if (const auto truth = pose_at(T_world_body, entry.stamp)) {
+      return to_planar(*truth) * to_planar(entry.pose).inverse();
+    }
+  }
+  throw InputError("the estimate and the reference have no instant in common");
+}
+
+std::vector<MatchedPose> match_poses(const Trajectory& T_map_body, const Pose2& T_world_map,
+                                     const Trajectory& T_world_body) {
+  std::vector<MatchedPose> matches;
+  matches.reserve(T_map_body.size());
+  for (const StampedPose& entry : T_map_body) {
+    if (const auto truth = pose_at(T_world_body, entry.stamp)) {
+      matches.push_back({entry.stamp, T_world_map * to_planar(entry.pose), to_planar(*truth)});
+    }
+  }
+  return matches;
+}
+
+TrajectoryError trajectory_error(const Trajectory& T_map_body, const Pose2& T_world_map,
+                                 const Trajectory& T_world_body) {
+  const std::vector<MatchedPose> poses = match_poses(T_map_body, T_world_map, T_world_body);
+  if (poses.empty()) throw InputError("the estimate and the reference have no instant in common");
+  std::vector<double> position_m, heading_rad;
+  for (const MatchedPose& pose : poses) {
+    position_m.push_back(pose.position_error_m());
+    heading_rad.push_back(pose.heading_error_rad());
+  }
+  const RelativeError relative = relative_error(poses);
+  return {.num_poses = poses.size(),
+          .ate_rmse_m = root_mean_square(position_m),
+          .ate_mean_m = mean(position_m),
+          .ate_max_m = maximum(position_m),
+          .heading_rmse_deg = kDegPerRad * root_mean_square(heading_rad),
+          .rpe_trans_1m_m = root_mean_square(relative.translation_m),
+          .rpe_rot_1m_deg = kDegPerRad * root_mean_square(relative.rotation_rad)};
+}
+
+AlignedError aligned_error(const Trajectory& estimate, const Trajectory& reference) {
+  const PointPairs pairs = pair_by_stamp(estimate, reference);
+  if (pairs.estimate.cols() < 3) {
+    throw InputError("the estimate and the reference have fewer than three stamps within 10 ms of each other");
+  }
+  AlignedError error{.num_pairs = static_cast<std::size_t>(pairs.estimate.cols()),
+                     .T_reference_estimate = fit_rigid_motion(pairs)};
+  std::vector<double> distance_m;
+  for (Eigen::Index i = 0; i < pairs.estimate.cols(); ++i) {
+    const Eigen::Vector3d p_estimate = pairs.estimate.col(i), p_reference = pairs.reference.col(i);
+    distance_m.push_back((error.T_reference_estimate * p_estimate - p_reference).norm());
+  }
+  error.rmse_m = root_mean_square(distance_m);
+  error.mean_m = mean(distance_m);
+  error.max_m = maximum(distance_m);
+  return error;
+}
+
+}  // namespace patrol::score

@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "io/urdf.h"
+#include "localize/body_estimator.h"
+#include "sim/twin.h"
+#include "tests/support/temporary_file.h"
+
+/// The stack's odometry against MuJoCo's truth on the real trot, with the sensors at their defaults.
+namespace patrol {
+namespace {
+
+const std::string kRobotUrdf = PATROL_SOURCE_DIR "/models/quadruped/quadruped.urdf";
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+const char* const kFlatWorld = R"(<mujoco><option timestep="0.002" cone="elliptic" impratio="10"/>
+  <default><geom contype="1" conaffinity="2"/></default>
+  <worldbody><geom name="ground" type="plane" size="500 500 1"/></worldbody></mujoco>)";
+
+/// A part of a walk.
+struct Leg {
+  double duration_s;
+  VelocityCommand command;
+};
+
+Leg go(double duration_s, double vx_mps, double yaw_rate_radps = 0.0) {
+  return {duration_s, {.stamp = {}, .vx_mps = vx_mps, .vy_mps = 0.0, .yaw_rate_radps = yaw_rate_radps}};
+}
+
+struct OdometryReport {
+  double way_m = 0.0;           ///< true
+  double scale = 0.0;           ///< estimated way over true way
+  double end_error_m = 0.0;
+  double yaw_error_rad = 0.0;   ///< at the end
+  double max_yaw_error_rad = 0.0;
+  double tilt_rms_rad = 0.0;
+  double height_rms_m = 0.0;    ///< of the height above ground
+  double velocity_rms_mps = 0.0;
+  double z_error_m = 0.0;
+  double nees = 0.0;            ///< of x, y, yaw at the end
+  Eigen::Vector3d gyro_bias_radps = Eigen::Vector3d::Zero();
+  std::uint64_t slips = 0;
+};
+
+OdometryReport walk(const std::vector<Leg>& legs, std::uint64_t seed, const localize::BodyEstimatorSettings& settings = {}) {
+  const test::TemporaryFile world("flat.xml", kFlatWorld);
+  const RobotDescription robot = io::load_robot_description(kRobotUrdf);
+  sim::TwinSettings twin_settings;
+  twin_settings.world_xml = world.path();
+  twin_settings.robot_urdf = kRobotUrdf;
+  twin_settings.sensors.lidar.enabled = false;
+  sim::Twin twin(twin_settings, robot, seed);
+  localize::BodyEstimator estimator(robot, settings);
+
+  OdometryReport report;
+  const Pose3 start = to_spatial(to_planar(twin.truth().T_world_body), twin.truth().T_world_body.position.z());
+  Pose3 truth_before = start, estimate_before;
+  double estimated_way = 0.0;
+  int samples = 0;
+  for (const Leg& leg : legs) {
+    twin.set_command(leg.command);
+    const Time end = twin.now() + from_seconds(leg.duration_s);
+    while (twin.now() < end) {
+      twin.step();
+      for (const SensorMessage& message : twin.take_messages()) {
+        std::visit(
+            [&](const auto& m) {
+              if constexpr (requires { estimator.add(m); }) estimator.add(m);
+            },
+            message);
+      }
+      const auto estimate = estimator.estimate();
+      if (!estimate || estimate->stamp != twin.now()) continue;
+      const GroundTruth truth = twin.truth();
+      const Pose3 T_odom_body = start.inverse() * truth.T_world_body;
+      const double yaw_error = wrap_angle(yaw_of(estimate->T_odom_body.rotation) - yaw_of(T_odom_body.rotation));
+      report.max_yaw_error_rad = std::max(report.max_yaw_error_rad, std::abs(yaw_error));
+      const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+      const double cos_tilt = (T_odom_body.rotation.conjugate() * up).dot(estimate->T_odom_body.rotation.conjugate() * up);
+      report.tilt_rms_rad += std::pow(std::acos(std::min(1.0, cos_tilt)), 2);
+      report.height_rms_m += std::pow(estimator.height_above_ground_m() - truth.T_world_body.position.z(), 2);
+      report.velocity_rms_mps += (estimate->twist.linear - truth.twist.linear).squaredNorm();
+      ++samples;
+      if (samples % 90 == 0) {  // a gait period
+        report.way_m += (truth.T_world_body.position - truth_before.position).head<2>().norm();
+        estimated_way += (estimate->T_odom_body.position - estimate_before.position).head<2>().norm();
+        truth_before = truth.T_world_body;
+        estimate_before = estimate->T_odom_body;
+      }
+      const Eigen::Vector3d error = estimate->T_odom_body.position - T_odom_body.position;
+      report.end_error_m = error.head<2>().norm();
+      report.z_error_m = error.z();
+      report.yaw_error_rad = yaw_error;
+      const Eigen::Vector3d planar(error.x(), error.y(), yaw_error);
+      report.nees = planar.dot(estimate->planar_covariance.inverse() * planar);
+    }
+  }
+  EXPECT_FALSE(twin.has_fallen());
+  report.scale = report.way_m > 0.0 ? estimated_way / report.way_m : 1.0;
+  report.tilt_rms_rad = std::sqrt(report.tilt_rms_rad / samples);
+  report.height_rms_m = std::sqrt(report.height_rms_m / samples);
+  report.velocity_rms_mps = std::sqrt(report.velocity_rms_mps / samples);
+  report.gyro_bias_radps = estimator.filter()->gyro_bias_radps();
+  report.slips = estimator.health().slips;
+  return report;
+}
+
+void print(const char* name, const OdometryReport& r) {
+  std::printf("%-14s way %.2f m scale %.4f end %.3f m yaw %.2f (max %.2f) deg tilt rms %.3f deg height rms %.4f m v rms %.3f m/s z %.3f m nees %.2f bias %.5f slips %lu\n",
+              name, r.way_m, r.scale, r.end_error_m, r.yaw_error_rad / kDegree, r.max_yaw_error_rad / kDegree, r.tilt_rms_rad / kDegree,
+              r.height_rms_m, r.velocity_rms_mps, r.z_error_m, r.nees, r.gyro_bias_radps.z(), static_cast<unsigned long>(r.slips));
+}
+
+TEST(LegOdometryOnMujoco, Study) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    print("stand 5", walk({go(5, 0)}, seed));
+    print("straight 0.8", walk({go(3, 0), go(60, 0.8)}, seed));
+    print("straight 0.4", walk({go(3, 0), go(60, 0.4)}, seed));
+    print("back 0.3", walk({go(3, 0), go(30, -0.3)}, seed));
+    print("curve", walk({go(3, 0), go(60, 0.6, 0.4)}, seed));
+    print("turn", walk({go(3, 0), go(30, 0.0, 0.8)}, seed));
+    print("no stand", walk({go(60, 0.8)}, seed));
+  }
+}
+
+}  // namespace
+}  // namespace patrol
