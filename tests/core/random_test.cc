@@ -1,0 +1,129 @@
+#include "core/random.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <set>
+
+namespace patrol {
+namespace {
+
+using Block = std::array<std::uint64_t, 4>;
+
+// Philox 4x64-10 as the paper's figure 2 has it: slow and obvious, to hold the library's use against.
+Block philox(Block c, std::array<std::uint64_t, 2> key) {
+  __extension__ using Wide = unsigned __int128;
+  for (int round = 0; round < 10; ++round) {
+    const Wide left = Wide{0xD2E7470EE14C6C93ULL} * c[0], right = Wide{0xCA5A826395121157ULL} * c[2];
+    c = {static_cast<std::uint64_t>(right >> 64) ^ c[1] ^ key[0], static_cast<std::uint64_t>(right),
+         static_cast<std::uint64_t>(left >> 64) ^ c[3] ^ key[1], static_cast<std::uint64_t>(left)};
+    key[0] += 0x9E3779B97F4A7C15ULL;
+    key[1] += 0xBB67AE8584CAA73BULL;
+  }
+  return c;
+}
+
+double unit(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5) / 9007199254740992.0; }
+
+// Known answers from Random123's own file of test vectors.
+TEST(Philox, GivesThePublishedAnswersForZerosAndForPi) {
+  EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}),
+            (Block{0x16554d9eca36314cULL, 0xdb20fe9d672d0fdcULL, 0xd7e772cee186176bULL, 0x7e68b68aec7ba23bULL}));
+  EXPECT_EQ(philox({0x243f6a8885a308d3ULL, 0x13198a2e03707344ULL, 0xa4093822299f31d0ULL, 0x082efa98ec4e6c89ULL},
+                   {0x452821e638d01377ULL, 0xbe5466cf34e90c6cULL}),
+            (Block{0xa528f45403e61d95ULL, 0x38c72dbd566e9788ULL, 0xa5a1610e72fd18b5ULL, 0x57bd43b5e52b7fe6ULL}));
+}
+
+// "foobar" has the FNV-1a hash 85944171f73967e8 (Noll's test vectors).
+TEST(RandomStream, IsPhiloxOfTickAndIndexKeyedBySeedAndNameHash) {
+  const RandomStream stream(42, "foobar");
+  for (const std::uint64_t tick : {0ULL, 1ULL, 987654321ULL, ~0ULL}) {
+    for (const std::uint64_t index : {0ULL, 7ULL}) {
+      const Block bits = philox({tick, index, 0, 0}, {42, 0x85944171f73967e8ULL});
+      EXPECT_DOUBLE_EQ(stream.uniform(tick, index), unit(bits[0]));
+      EXPECT_DOUBLE_EQ(stream.normal(tick, index), std::sqrt(-2.0 * std::log(unit(bits[0]))) *
+                                                       std::cos(2.0 * std::numbers::pi * unit(bits[1])));
+    }
+  }
+}
+
+TEST(RandomStream, SameAddressSameValueWhateverWasAskedBetween) {
+  const RandomStream stream(1, "lidar/front/range");
+  const double first = stream.normal(5, 3);
+  for (std::uint64_t i = 0; i < 100; ++i) stream.uniform(i);
+  EXPECT_EQ(stream.normal(5, 3), first);
+  EXPECT_EQ(RandomStream(1, "lidar/front/range").normal(5, 3), first);
+}
+
+TEST(RandomStream, SeedNameTickAndIndexEachMakeANewNumber) {
+  std::set<double> values;
+  for (const std::uint64_t seed : {1ULL, 2ULL}) {
+    for (const char* name : {"pedestrian/1", "pedestrian/2", ""}) {
+      for (const std::uint64_t tick : {0ULL, 1ULL}) {
+        for (const std::uint64_t index : {0ULL, 1ULL}) values.insert(RandomStream(seed, name).uniform(tick, index));
+      }
+    }
+  }
+  EXPECT_EQ(values.size(), 2U * 3U * 2U * 2U);
+}
+
+constexpr int kDraws = 200'000;
+
+struct Moments {
+  double mean = 0.0, variance = 0.0, fourth = 0.0;
+};
+
+template <typename Draw>
+Moments moments_of(const Draw& draw) {
+  Moments m;
+  for (std::uint64_t i = 0; i < kDraws; ++i) {
+    const double x = draw(i);
+    m.mean += x / kDraws;
+    m.variance += x * x / kDraws;
+    m.fourth += x * x * x * x / kDraws;
+  }
+  m.variance -= m.mean * m.mean;
+  return m;
+}
+
+// Bounds: four standard errors of the sample's moments.
+TEST(RandomStream, UniformHasMeanHalfAndVarianceOneTwelfth) {
+  const RandomStream stream(3, "test/uniform");
+  const Moments m = moments_of([&](std::uint64_t i) {
+    const double u = stream.uniform(i);
+    EXPECT_GT(u, 0.0);
+    EXPECT_LT(u, 1.0);
+    return u;
+  });
+  EXPECT_NEAR(m.mean, 0.5, 4.0 * std::sqrt(1.0 / 12.0 / kDraws));
+  EXPECT_NEAR(m.variance, 1.0 / 12.0, 4.0 * std::sqrt((1.0 / 80.0 - 1.0 / 144.0) / kDraws));
+}
+
+TEST(RandomStream, NormalHasTheMomentsZeroOneThree) {
+  const RandomStream stream(3, "test/normal");
+  const Moments m = moments_of([&](std::uint64_t i) { return stream.normal(i); });
+  EXPECT_NEAR(m.mean, 0.0, 4.0 / std::sqrt(kDraws));
+  EXPECT_NEAR(m.variance, 1.0, 4.0 * std::sqrt(2.0 / kDraws));
+  EXPECT_NEAR(m.fourth, 3.0, 4.0 * std::sqrt(96.0 / kDraws));  // var of x^4 is 105 - 9
+}
+
+TEST(RandomStream, NeighbouringStreamsTicksAndIndexesAreUncorrelated) {
+  const RandomStream a(3, "pedestrian/1"), b(3, "pedestrian/2");
+  double streams = 0.0, ticks = 0.0, indexes = 0.0;
+  for (std::uint64_t i = 0; i < kDraws; ++i) {
+    const double x = a.normal(i);
+    streams += x * b.normal(i) / kDraws;
+    ticks += x * a.normal(i + 1) / kDraws;
+    indexes += x * a.normal(i, 1) / kDraws;
+  }
+  const double bound = 4.0 / std::sqrt(kDraws);
+  EXPECT_NEAR(streams, 0.0, bound);
+  EXPECT_NEAR(ticks, 0.0, bound);
+  EXPECT_NEAR(indexes, 0.0, bound);
+}
+
+}  // namespace
+}  // namespace patrol
