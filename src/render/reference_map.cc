@@ -1,0 +1,263 @@
+#include "render/reference_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "render/offscreen.h"
+#include "sim/lidar_scene.h"
+#include "sim/mujoco.h"
+#include "sim/robot_model.h"
+
+namespace patrol::render {
+namespace {
+
+using Box = Eigen::AlignedBox3d;
+
+/// A shape that the slice cuts.
+struct CutGeom {
+  int geom;
+  Box bounds;  ///< in world
+};
+
+bool stands_still(const mjModel& model, int body) {
+  return model.body_weldid[body] == 0 && model.body_mocapid[model.body_rootid[body]] < 0;
+}
+
+bool lidar_can_hit(const mjModel& model, int geom) {
+  const int group = model.geom_group[geom];
+  return group == sim::kGroupLidarOnly || (group == sim::kGroupSolid && model.geom_rgba[4 * geom + 3] > 0.0f);
+}
+
+Box bounds_in_world(const mjModel& model, const mjData& data, int geom) {
+  const mjtNum* local = model.geom_aabb + 6 * geom;  // centre, half sizes
+  const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> R(data.geom_xmat + 9 * geom);
+  const Eigen::Vector3d center =
+      Eigen::Map<const Eigen::Vector3d>(data.geom_xpos + 3 * geom) + R * Eigen::Map<const Eigen::Vector3d>(local);
+  const Eigen::Vector3d half = R.cwiseAbs() * Eigen::Map<const Eigen::Vector3d>(local + 3);
+  return {center - half, center + half};
+}
+
+std::vector<CutGeom> geoms_cut_at(const mjModel& model, const mjData& data, double height_m) {
+  std::vector<CutGeom> cut;
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    if (!stands_still(model, model.geom_bodyid[geom]) || !lidar_can_hit(model, geom)) continue;
+    if (model.geom_type[geom] == mjGEOM_PLANE) continue;  // has no inside
+    const Box bounds = bounds_in_world(model, data, geom);
+    if (bounds.min().z() < height_m && bounds.max().z() > height_m) cut.push_back({geom, bounds});
+  }
+  return cut;
+}
+
+/// Cells aligned to the world's origin, so that maps of one world at two heights fit each other.
+GridGeometry geometry_around(const Box& bounds, const ReferenceMapSettings& settings) {
+  const double r = settings.resolution_m;
+  const auto first = [&](double low_m) { return std::floor((low_m - settings.margin_m) / r); };
+  const auto last = [&](double high_m) { return std::ceil((high_m + settings.margin_m) / r); };
+  const Eigen::Vector2d low(first(bounds.min().x()), first(bounds.min().y()));
+  const Eigen::Vector2d high(last(bounds.max().x()), last(bounds.max().y()));
+  return {.resolution_m = r,
+          .width = static_cast<int>(high.x() - low.x()),
+          .height = static_cast<int>(high.y() - low.y()),
+          .origin_m = low * r};
+}
+
+/// A MuJoCo scene that holds just the shapes it is given.
+class SliceScene {
+ public:
+  explicit SliceScene(std::size_t max_geoms) {
+    mjv_defaultScene(&scene_);
+    mjv_makeScene(nullptr, &scene_, static_cast<int>(max_geoms));
+    std::fill(std::begin(scene_.flags), std::end(scene_.flags), mjtByte{0});
+  }
+  ~SliceScene() { mjv_freeScene(&scene_); }
+  SliceScene(const SliceScene&) = delete;
+  SliceScene& operator=(const SliceScene&) = delete;
+
+  void clear() { scene_.ngeom = 0; }
+
+  void add(const mjModel& model, const mjData& data, int geom) {
+    constexpr float kWhite[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+    mjvGeom& added = scene_.geoms[scene_.ngeom++];
+    mjv_initGeom(&added, model.geom_type[geom], model.geom_size + 3 * geom, data.geom_xpos + 3 * geom,
+                 data.geom_xmat + 9 * geom, kWhite);
+    if (model.geom_type[geom] == mjGEOM_MESH) added.dataid = 2 * model.geom_dataid[geom];
+  }
+
+  /// Depth, rows from high y to low y, columns along the camera's right: +x looking down, -x looking up.
+  void render(Offscreen& offscreen, const Eigen::Vector3d& center_m, double width_m, double depth_m, bool looks_down,
+              bool front_faces_only, std::vector<float>& depth) {
+    constexpr float kNear_m = 1.0f;
+    const float ahead = looks_down ? -1.0f : 1.0f;
+    const auto half_height = static_cast<float>(0.5 * width_m * offscreen.height() / offscreen.width());
+    for (mjvGLCamera& camera : scene_.camera) {
+      camera = {.pos = {static_cast<float>(center_m.x()), static_cast<float>(center_m.y()),
+                        static_cast<float>(center_m.z()) - ahead * kNear_m},
+                .forward = {0.0f, 0.0f, ahead},
+                .up = {0.0f, 1.0f, 0.0f},
+                .frustum_center = 0.0f,
+                .frustum_width = static_cast<float>(0.5 * width_m),
+                .frustum_bottom = -half_height,
+                .frustum_top = half_height,
+                .frustum_near = kNear_m,
+                .frustum_far = kNear_m + static_cast<float>(depth_m),
+                .orthographic = 1};
+    }
+    scene_.flags[mjRND_CULL_FACE] = front_faces_only ? 1 : 0;
+    offscreen.render(scene_);
+    offscreen.read_depth(depth);
+  }
+
+ private:
+  mjvScene scene_;
+};
+
+/// Which cells have their centre in something solid.
+Grid<std::uint8_t> render_solid(const mjModel& model, const mjData& data, const std::vector<CutGeom>& cut,
+                                const GridGeometry& geometry, double height_m) {
+  constexpr int kTile = 1000;             // cells, one a pixel
+  constexpr float kSameDepth = 1e-5f;     // of the whole depth
+  const int tile_width = std::min(kTile, geometry.width), tile_height = std::min(kTile, geometry.height);
+  Offscreen offscreen(model, tile_width, tile_height);
+  SliceScene scene(cut.size());
+  Box all;
+  for (const CutGeom& geom : cut) all.extend(geom.bounds);
+
+  Grid<std::uint8_t> solid(geometry);
+  std::vector<float> front, nearest;
+  for (int row0 = 0; row0 < geometry.height; row0 += tile_height) {
+    for (int col0 = 0; col0 < geometry.width; col0 += tile_width) {
+      const Eigen::Vector2d low = geometry.origin_m + geometry.resolution_m * Eigen::Vector2d(col0, row0);
+      const Eigen::Vector2d size = geometry.resolution_m * Eigen::Vector2d(tile_width, tile_height);
+      const Box tile(Eigen::Vector3d(low.x(), low.y(), height_m),
+                     Eigen::Vector3d(low.x() + size.x(), low.y() + size.y(), height_m));
+      scene.clear();
+      bool is_empty = true;
+      for (const CutGeom& geom : cut) {
+        if (!tile.intersects(geom.bounds)) continue;
+        scene.add(model, data, geom.geom);
+        is_empty = false;
+      }
+      if (is_empty) continue;
+      for (const bool looks_down : {true, false}) {
+        const double depth_m = 0.1 + (looks_down ? height_m - all.min().z() : all.max().z() - height_m);
+        scene.render(offscreen, tile.center(), size.x(), depth_m, looks_down, true, front);
+        scene.render(offscreen, tile.center(), size.x(), depth_m, looks_down, false, nearest);
+        for (int row = 0; row < std::min(tile_height, geometry.height - row0); ++row) {
+          for (int col = 0; col < std::min(tile_width, geometry.width - col0); ++col) {
+            const int pixel_row = tile_height - 1 - row;
+            const int pixel_col = looks_down ? col : tile_width - 1 - col;
+            const auto pixel = static_cast<std::size_t>(pixel_row * tile_width + pixel_col);
+            if (nearest[pixel] < front[pixel] - kSameDepth) solid.at({col0 + col, row0 + row}) = 1;
+          }
+        }
+      }
+    }
+  }
+  return solid;
+}
+
+bool is_solid(const Grid<std::uint8_t>& solid, Cell cell) { return solid.contains(cell) && solid.at(cell) != 0; }
+
+OccupancyGrid surface_of(const Grid<std::uint8_t>& solid) {
+  OccupancyGrid map(solid.geometry(), kFree);
+  for (int row = 0; row < solid.geometry().height; ++row) {
+    for (int col = 0; col < solid.geometry().width; ++col) {
+      if (!is_solid(solid, {col, row})) continue;
+      const bool is_inside = is_solid(solid, {col - 1, row}) && is_solid(solid, {col + 1, row}) &&
+                             is_solid(solid, {col, row - 1}) && is_solid(solid, {col, row + 1});
+      map.at({col, row}) = is_inside ? kUnknown : kOccupied;
+    }
+  }
+  return map;
+}
+
+/// Marks the cells behind every surface that rays along the centre lines of rows and columns cross.
+Grid<std::uint8_t> cast_surfaces(const mjModel& model, const mjData& data, const GridGeometry& geometry, double height_m) {
+  constexpr double kStep_m = 1e-4;  // past a surface, to look for the next
+  sim::LidarScene lidar(model);
+  lidar.update(data);
+  Grid<std::uint8_t> hit(geometry);
+  const auto cast_line = [&](Eigen::Vector3d origin, const Eigen::Vector3d& direction, double length_m) {
+    while (length_m > 0.0) {
+      const std::optional<sim::RayHit> found = lidar.cast(origin, direction, length_m, sim::kRayScenery);
+      if (!found) return;
+      origin += (found->distance_m + kStep_m) * direction;
+      length_m -= found->distance_m + kStep_m;
+      const Cell cell = geometry.cell_at(origin.head<2>());
+      if (hit.contains(cell) && stands_still(model, model.geom_bodyid[found->geom])) hit.at(cell) = 1;
+    }
+  };
+  const Eigen::Vector2d size = geometry.resolution_m * Eigen::Vector2d(geometry.width, geometry.height);
+  for (int row = 0; row < geometry.height; ++row) {
+    const double y = geometry.center_of({0, row}).y();
+    cast_line({geometry.origin_m.x(), y, height_m}, Eigen::Vector3d::UnitX(), size.x());
+  }
+  for (int col = 0; col < geometry.width; ++col) {
+    const double x = geometry.center_of({col, 0}).x();
+    cast_line({x, geometry.origin_m.y(), height_m}, Eigen::Vector3d::UnitY(), size.y());
+  }
+  return hit;
+}
+
+/// True if `holds` of the cell or one of its eight neighbours.
+template <typename Predicate>
+bool any_near(Cell cell, Predicate holds) {
+  for (int row = cell.row - 1; row <= cell.row + 1; ++row) {
+    for (int col = cell.col - 1; col <= cell.col + 1; ++col) {
+      if (holds(Cell{col, row})) return true;
+    }
+  }
+  return false;
+}
+
+ReferenceMapCheck check_and_complete(OccupancyGrid& map, const Grid<std::uint8_t>& hit) {
+  const OccupancyGrid rendered = map;
+  const auto is_surface = [&](Cell cell) { return rendered.contains(cell) && rendered.at(cell) == kOccupied; };
+  const auto is_hit = [&](Cell cell) { return hit.contains(cell) && hit.at(cell) != 0; };
+  ReferenceMapCheck check;
+  for (int row = 0; row < map.geometry().height; ++row) {
+    for (int col = 0; col < map.geometry().width; ++col) {
+      const Cell cell{col, row};
+      // Where things overlap, rays also meet surfaces inside what is solid: no concern of the map.
+      const bool is_buried = rendered.at(cell) == kUnknown;
+      if (!is_surface(cell) && (!is_hit(cell) || is_buried)) continue;
+      ++check.cells_checked;
+      const bool is_found_by_both = is_surface(cell) ? any_near(cell, is_hit) : any_near(cell, is_surface);
+      if (is_found_by_both) ++check.cells_agreeing;
+      if (is_hit(cell) && !is_found_by_both) {
+        map.at(cell) = kOccupied;
+        ++check.cells_added;
+      }
+    }
+  }
+  return check;
+}
+
+}  // namespace
+
+ReferenceMap reference_map(const mjModel& view, const ReferenceMapSettings& settings) {
+  const sim::DataPtr data = sim::make_data(view);
+  mj_kinematics(&view, data.get());
+  const std::vector<CutGeom> cut = geoms_cut_at(view, *data, settings.height_m);
+  if (cut.empty()) {
+    throw InputError(fmt::format("the world has nothing that a lidar {:.2f} m above its ground could hit", settings.height_m));
+  }
+  Box bounds;
+  for (const CutGeom& geom : cut) bounds.extend(geom.bounds);
+  const GridGeometry geometry = geometry_around(bounds, settings);
+
+  ReferenceMap reference;
+  reference.map = surface_of(render_solid(view, *data, cut, geometry, settings.height_m));
+  reference.check = check_and_complete(reference.map, cast_surfaces(view, *data, geometry, settings.height_m));
+  return reference;
+}
+
+}  // namespace patrol::render
