@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "io/metrics_json.h"
 #include "io/settings_yaml.h"
 
 namespace patrol::app {
@@ -19,6 +18,8 @@ struct CheckedExpectation {
 };
 
 /// A metric that the run did not measure is not met.
-std::vector<CheckedExpectation> check_expectations(const io::Expectations& expectations, const nlohmann::ordered_json& metrics);
+std::vector<CheckedExpectation> check_expectations(const io::Expectations& expectations, const io::Metrics& metrics);
+
+bool all_met(const std::vector<CheckedExpectation>& checks);
 
 }  // namespace patrol::app

@@ -14,7 +14,8 @@ namespace {
 volatile std::sig_atomic_t interrupts = 0;
 
 void count_interrupt(int signal) {
-  if (++interrupts > 1) {
+  interrupts = interrupts + 1;
+  if (interrupts > 1) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }

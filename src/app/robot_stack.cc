@@ -32,7 +32,7 @@ RobotStack::RobotStack(const StackSettings& settings, const RobotDescription& ro
       leveler_(robot.T_body_sensor.at("lidar"), settings.leveling),
       slam_(settings.slam, seed),
       navigator_(settings.navigation, robot, route_in_map.keep_out_lines),
-      mission_(settings.mission, route_in_map),
+      mission_(settings.mission, route_in_map, robot.T_body_sensor.at("tdlas")),
       map_period_(from_seconds(map_period_s)) {}
 
 void RobotStack::handle(const SensorMessage& message) {
@@ -76,7 +76,9 @@ void RobotStack::handle_scan(const LaserScan& raw) {
   navigator_.add_scan(*scan, tracker_.at(scan->stamp, T_odom_body).T_map_body);
 }
 
-void RobotStack::handle_fall(Time now) { mission_.abort(now, "fall", "the robot fell"); }
+void RobotStack::handle_fall(Time now) {
+  if (!mission_.is_over()) messages_.emplace_back(mission_.abort(now, "fall", "The robot fell."));
+}
 
 void RobotStack::step(Time now) {
   const std::optional<OdometryEstimate> odometry = odometry_.estimate();
@@ -94,14 +96,24 @@ void RobotStack::step(Time now) {
 
   const auto lap = clock_.lap("planning");
   const PoseEstimate pose = tracker_.at(odometry->stamp, to_planar(odometry->T_odom_body));
-  const plan::NavigationStep drive = navigator_.step(now, pose.T_map_body, odometry->twist);
+  const plan::NavigationStep drive = navigator_.step(now, pose.T_map_body);
   if (drive.replanned) messages_.emplace_back(Path{now, drive.path});
+  if (drive.is_detour) note(now, pose, "replan", "Something stands on the path: a new one is planned.");
+  if (drive.status == plan::NavigationStatus::kRecovering && status_ != drive.status) {
+    note(now, pose, "recovery", "Blocked for too long: backing up.");
+  }
+  status_ = drive.status;
   const inspect::MissionOutput output = mission_.step(now, pose, feedback_of(drive.status), newest_gas_);
   for (const Event& event : output.events) messages_.emplace_back(event);
   navigator_.set_goal(output.goal);
   command_ = drive.command;
   command_.stamp = now;
   messages_.emplace_back(command_);
+}
+
+void RobotStack::note(Time now, const PoseEstimate& pose, const char* kind, const char* text) {
+  messages_.emplace_back(Event{.stamp = now, .kind = kind, .subject = "", .text = text, .value = 0.0,
+                               .T_map_body = pose.T_map_body, .p_map_target = pose.T_map_body.position()});
 }
 
 void RobotStack::publish_map(Time now) {

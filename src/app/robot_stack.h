@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -53,6 +54,7 @@ class RobotStack {
   void step(Time now);
 
   const VelocityCommand& command() const { return command_; }
+  MapUpdate final_map(Time now) const { return {now, slam_.map()}; }
   bool mission_is_over() const { return mission_.is_over(); }
   const inspect::Mission& mission() const { return mission_; }
   /// What was said since the last call, in order.
@@ -62,6 +64,7 @@ class RobotStack {
  private:
   void handle_scan(const LaserScan& scan);
   void publish_map(Time now);
+  void note(Time now, const PoseEstimate& pose, const char* kind, const char* text);
 
   localize::BodyEstimator odometry_;
   localize::ScanLeveler leveler_;
@@ -74,6 +77,7 @@ class RobotStack {
   VelocityCommand command_;
   Time map_period_;
   Time next_control_{};
+  plan::NavigationStatus status_ = plan::NavigationStatus::kIdle;  ///< a control period ago
   Time next_odometry_{};
   Time next_map_{};
   std::vector<StackMessage> messages_;

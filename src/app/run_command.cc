@@ -1,17 +1,15 @@
 #include <sys/resource.h>
 
-#include <fstream>
-
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/expectations.h"
 #include "app/progress_bar.h"
 #include "app/run_directory.h"
+#include "app/run_junit.h"
 #include "app/run_loop.h"
 #include "app/score_run.h"
-#include "io/junit.h"
+#include "app/score_table.h"
 
 namespace patrol::app {
 namespace {
@@ -33,8 +31,8 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-nlohmann::ordered_json performance_of(const RunOutcome& outcome) {
-  nlohmann::ordered_json performance;
+io::Metrics performance_of(const RunOutcome& outcome) {
+  io::Metrics performance;
   performance["real_time_factor"] = to_seconds(outcome.duration) / outcome.wall_s;
   performance["wall_s"] = outcome.wall_s;
   performance["cpu_s"] = outcome.cpu_s;
@@ -46,10 +44,7 @@ nlohmann::ordered_json performance_of(const RunOutcome& outcome) {
 /// The verdict of a run that came to its end.
 ExitCode exit_code_of(RunEnd end, const std::vector<CheckedExpectation>& checks) {
   if (end == RunEnd::kTimeLimit) return ExitCode::kTimeLimit;
-  for (const CheckedExpectation& check : checks) {
-    if (!check.is_met) return ExitCode::kExpectationMissed;
-  }
-  return end == RunEnd::kFall ? ExitCode::kExpectationMissed : ExitCode::kDone;
+  return end == RunEnd::kFall || !all_met(checks) ? ExitCode::kExpectationMissed : ExitCode::kDone;
 }
 
 }  // namespace
@@ -61,7 +56,7 @@ ExitCode run_command(const RunOptions& options) {
 
   sim::Twin twin = make_twin(scenario, files);  // refuses bad input before anything is written
   const RunDirectory directory = begin_run_directory(options.out.value_or(default_directory(options, scenario)));
-  write_junit(directory, scenario, name, JunitVerdict::kNotEnded);
+  write_unfinished_junit(directory, scenario, name);
   io::save_settings(directory.scenario(), scenario);
 
   ProgressBar bar;
@@ -76,15 +71,15 @@ ExitCode run_command(const RunOptions& options) {
     return ExitCode::kProgramFailed;
   }
 
-  nlohmann::ordered_json metrics = score_run(directory, scenario, files);
+  io::Metrics metrics = score_run(directory, scenario, files);
   metrics["performance"] = performance_of(outcome);
-  save_metrics(directory, metrics);
+  io::save_metrics(directory.metrics(), metrics);
   const std::vector<CheckedExpectation> checks = check_expectations(scenario.expect, metrics);
   const ExitCode code = exit_code_of(outcome.end, checks);
-  write_junit(directory, scenario, name, checks, outcome);
+  write_junit(directory, scenario, name, outcome, checks);
   complete_run_directory(directory);
 
-  print_score_table(metrics, checks);
+  fmt::print("{}\n", score_table(metrics, checks));
   fmt::print("run directory: {}\n", directory.root.string());
   return code;
 }

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <ctime>
 #include <numbers>
+#include <utility>
 
 #include "inspect/route_frame.h"
 #include "io/run_log.h"
@@ -109,14 +110,14 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
     if (running) twin.step();
   }
 
-  log.write(twin.now(), stack.final_map());
+  log.write(twin.now(), stack.final_map(twin.now()));
   log.close();
   outcome.duration = twin.now();
   outcome.faults = twin.sensors().faults();
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
   outcome.cpu_s = cpu_seconds() - cpu_start;
   outcome.seconds_by_part["lidar"] = twin.sensors().lidar_seconds();
-  for (const PartClock* part : {&twin.clock(), &stack.clock(), &clock}) {
+  for (const PartClock* part : {&twin.clock(), &stack.clock(), &std::as_const(clock)}) {
     for (const auto& [name, seconds] : part->seconds()) outcome.seconds_by_part[name] += seconds;
   }
   return outcome;

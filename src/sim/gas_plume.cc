@@ -40,22 +40,25 @@ Eigen::Vector2d downwind_of(double direction_deg) {
 
 }  // namespace
 
+Eigen::Vector3d leak_source(const mjModel& world, const LeakSettings& leak) {
+  const int site = mj_name2id(&world, mjOBJ_SITE, leak.at.c_str());
+  // Sites of leaks belong to the world body: their place is their own.
+  if (site >= 0) return Eigen::Vector3d(world.site_pos + 3 * site);
+  std::string known;
+  for (int i = 0; i < world.nsite; ++i) {
+    if (world.site_bodyid[i] != 0) continue;
+    known += (known.empty() ? "" : ", ") + std::string(mj_id2name(&world, mjOBJ_SITE, i));
+  }
+  throw InputError(fmt::format("leaks: at = {}: the world has no such site (known: {})", leak.at, known));
+}
+
 GasPlume::GasPlume(const mjModel& world, const std::vector<LeakSettings>& leaks, const WindSettings& wind)
     : speed_mps_(wind.speed_mps),
       downwind_(downwind_of(wind.direction_deg)),
       sigma_y_slope_(briggs_urban(wind.stability.at(0)).sigma_y_slope),
       sigma_z_slope_(briggs_urban(wind.stability.at(0)).sigma_z_slope) {
   for (const LeakSettings& leak : leaks) {
-    const int site = mj_name2id(&world, mjOBJ_SITE, leak.at.c_str());
-    if (site < 0) {
-      std::string known;
-      for (int i = 0; i < world.nsite; ++i) {
-        if (world.body_rootid[world.site_bodyid[i]] == 0) known += (known.empty() ? "" : ", ") + std::string(mj_id2name(&world, mjOBJ_SITE, i));
-      }
-      throw InputError(fmt::format("leaks: at = {}: the world has no such site (known: {})", leak.at, known));
-    }
-    // Sites of leaks belong to the world body: their place is their own.
-    leaks_.push_back({Eigen::Vector3d(world.site_pos + 3 * site), leak.rate_g_s / 1000.0, leak.start_s});
+    leaks_.push_back({leak_source(world, leak), leak.rate_g_s / 1000.0, leak.start_s});
   }
 }
 

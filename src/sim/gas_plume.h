@@ -38,6 +38,9 @@ struct WindSettings {
   }
 };
 
+/// Where it escapes, in world. Throws InputError when the world has no such site.
+Eigen::Vector3d leak_source(const mjModel& world, const LeakSettings& leak);
+
 /// kg/m3 of methane at 20 degC, 1 atm, per unit of volume fraction.
 inline constexpr double kMethaneDensity_kgpm3 = 0.668;
 

@@ -1,0 +1,42 @@
+#include "app/run_record.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/run_log.h"
+
+namespace patrol::app {
+namespace {
+
+/// Stamps must grow: a message that came twice, or late, is left out.
+void append(Trajectory& trajectory, Time stamp, const Pose3& pose) {
+  if (trajectory.empty() || stamp > trajectory.back().stamp) trajectory.push_back({stamp, pose});
+}
+
+}  // namespace
+
+bool RunRecord::has_event(const char* kind) const {
+  return std::any_of(events.begin(), events.end(), [&](const Event& event) { return event.kind == kind; });
+}
+
+RunRecord read_run_record(const std::filesystem::path& log_mcap) {
+  RunRecord record;
+  io::LogHandlers handlers;
+  handlers.pose = [&](Time, const PoseEstimate& pose) { append(record.T_map_body, pose.stamp, to_spatial(pose.T_map_body)); };
+  handlers.odometry = [&](Time, const OdometryEstimate& odometry) {
+    append(record.T_odom_body, odometry.stamp, odometry.T_odom_body);
+  };
+  handlers.truth = [&](Time, const GroundTruth& truth) { append(record.T_world_body, truth.stamp, truth.T_world_body); };
+  handlers.event = [&](Time, const Event& event) { record.events.push_back(event); };
+  handlers.collision = [&](Time, const Collision& collision) { record.collisions.push_back(collision); };
+  handlers.map = [&](Time, const MapUpdate& update) { record.map = update.map; };
+  record.is_complete = io::read_run_log(log_mcap, handlers);
+  if (record.T_map_body.empty() || record.T_world_body.empty() || record.map.values().empty()) {
+    throw InputError(fmt::format("{}: holds no estimate, truth or map: there is nothing to score", log_mcap.string()));
+  }
+  return record;
+}
+
+}  // namespace patrol::app

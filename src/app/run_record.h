@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/ground_truth.h"
+#include "core/messages.h"
+#include "core/trajectory.h"
+
+namespace patrol::app {
+
+/// What a run's log says that its score is made of.
+struct RunRecord {
+  Trajectory T_map_body;    ///< the stack's estimate
+  Trajectory T_odom_body;
+  Trajectory T_world_body;  ///< the truth
+  std::vector<Event> events;
+  std::vector<Collision> collisions;
+  OccupancyGrid map;        ///< the last one
+  bool is_complete = false; ///< the log has its end
+
+  bool has_event(const char* kind) const;
+};
+
+/// Throws InputError when the log is damaged, or cut off before there was anything to score.
+RunRecord read_run_record(const std::filesystem::path& log_mcap);
+
+}  // namespace patrol::app
