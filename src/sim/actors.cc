@@ -37,11 +37,19 @@ std::string known_actors(const mjModel& model) {
 
 /// Height of what one stands on at a place: the highest still, touchable surface below the knee.
 double ground_at(const mjModel& model, const mjData& data, const Eigen::Vector2d& place) {
-  constexpr double kKnee_m = 0.5;
-  const mjtNum from[3] = {place.x(), place.y(), kKnee_m}, down[3] = {0.0, 0.0, -1.0};
+  constexpr double kKnee_m = 0.5, kThrough_m = 1e-6;
+  const mjtNum down[3] = {0.0, 0.0, -1.0};
   const mjtByte solid_only[mjNGROUP] = {1, 0, 0, 1, 0, 0};
-  const mjtNum distance = mj_ray(&model, &data, from, down, solid_only, 1, -1, nullptr, nullptr);
-  return distance < 0.0 ? 0.0 : kKnee_m - distance;
+  for (double height = kKnee_m;;) {
+    const mjtNum from[3] = {place.x(), place.y(), height};
+    int geom = -1;
+    const mjtNum distance = mj_ray(&model, &data, from, down, solid_only, 1, -1, &geom, nullptr);
+    if (distance < 0.0) return 0.0;
+    height -= distance;
+    const bool is_actor = model.body_mocapid[model.body_rootid[model.geom_bodyid[geom]]] >= 0;
+    if (!is_actor) return height;
+    height -= kThrough_m;
+  }
 }
 
 void set_pose(mjData& data, int mocap, const Eigen::Vector3d& position, const Eigen::Quaterniond& rotation) {
@@ -49,6 +57,27 @@ void set_pose(mjData& data, int mocap, const Eigen::Vector3d& position, const Ei
   std::copy_n(position.data(), 3, data.mocap_pos + 3 * mocap);
   const mjtNum quaternion[4] = {rotation.w(), rotation.x(), rotation.y(), rotation.z()};
   std::copy_n(quaternion, 4, data.mocap_quat + 4 * mocap);
+}
+
+constexpr double kLeg_m = kThigh_m + kShank_m - 0.012;  // from hip to ankle when it stands, the knee a little bent
+
+/// Share of a full stride that one takes at a speed.
+double stride_share(double speed_mps) { return std::min(speed_mps / 0.4, 1.0); }
+
+/// Where a foot is in its stride: 0 ... 0.5 it stands, then it swings. `side` 0 is the left one.
+double stride_phase(double walked_m, int side) {
+  const double stride = walked_m / (2.0 * kStep_m) + 0.5 * side;
+  return stride - std::floor(stride);
+}
+
+/// Way of a foot ahead of the hip.
+double foot_forward_m(double phase) { return kStep_m * (phase < 0.5 ? 0.5 - 2.0 * phase : -0.5 + 2.0 * (phase - 0.5)); }
+
+/// The hip passes over the foot that stands like the end of a stiff pendulum.
+double hip_drop_m(double walked_m, double speed_mps) {
+  const double left = stride_phase(walked_m, 0);
+  const double forward = stride_share(speed_mps) * foot_forward_m(left < 0.5 ? left : stride_phase(walked_m, 1));
+  return kLeg_m - std::sqrt(kLeg_m * kLeg_m - forward * forward);
 }
 
 /// Angles of thigh and knee (about y, forwards positive for the thigh) that put the ankle at (forward, down) from the hip.
@@ -155,21 +184,22 @@ void Actors::place(const Actor& actor, mjData& data) const {
   };
   const double ground = (ground_at_index(along - 0.2) + ground_at_index(along) + ground_at_index(along + 0.2)) / 3.0;
   const Eigen::Vector2d place = actor.path.position(along);
-  const Eigen::Vector3d origin(place.x(), place.y(), ground + actor.base_height_m);
+  const bool has_legs = actor.mocap[1] >= 0;
+  const double drop = has_legs ? hip_drop_m(actor.walked_m, actor.speed_mps) : 0.0;
+  const Eigen::Vector3d origin(place.x(), place.y(), ground + actor.base_height_m - drop);
   set_pose(data, actor.mocap[0], origin, quaternion_from_yaw(heading));
-  if (actor.mocap[1] >= 0) place_legs(actor, origin, heading, data);
+  if (has_legs) place_legs(actor, origin, heading, data);
 }
 
 // Each foot stands for half a stride while the hip passes over it, then swings twice as fast to the next place.
 void Actors::place_legs(const Actor& actor, const Eigen::Vector3d& hip, double heading_rad, mjData& data) const {
   const Eigen::Quaterniond yaw = quaternion_from_yaw(heading_rad);
-  const bool moves = actor.speed_mps > 0.05;
+  const double share = stride_share(actor.speed_mps);
+  const double hip_height = kLeg_m - hip_drop_m(actor.walked_m, actor.speed_mps);
   for (int side = 0; side < 2; ++side) {
-    const double stride = actor.walked_m / (2.0 * kStep_m) + 0.5 * side;
-    const double phase = stride - std::floor(stride);
-    const double forward = !moves ? 0.0 : phase < 0.5 ? kStep_m * (0.5 - 2.0 * phase) : kStep_m * (-0.5 + 2.0 * (phase - 0.5));
-    const double lift = !moves || phase < 0.5 ? 0.0 : 0.10 * std::sin(2.0 * std::numbers::pi * (phase - 0.5));
-    const auto [thigh, knee] = leg_angles(forward, kThigh_m + kShank_m - 0.012 - lift);
+    const double phase = stride_phase(actor.walked_m, side);
+    const double lift = phase < 0.5 ? 0.0 : share * 0.10 * std::sin(2.0 * std::numbers::pi * (phase - 0.5));
+    const auto [thigh, knee] = leg_angles(share * foot_forward_m(phase), hip_height - lift);
     const Eigen::Vector3d top = hip + yaw * Eigen::Vector3d(0.0, side == 0 ? kHipWidth_m : -kHipWidth_m, 0.0);
     const Eigen::Quaterniond q_thigh = yaw * Eigen::AngleAxisd(-thigh, Eigen::Vector3d::UnitY());
     const Eigen::Quaterniond q_shank = yaw * Eigen::AngleAxisd(knee - thigh, Eigen::Vector3d::UnitY());
