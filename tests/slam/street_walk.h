@@ -74,8 +74,8 @@ inline RoomWorld make_traffic(double t_s) {
 struct WalkStep {
   Time stamp{};
   Pose2 T_world_body;
-  Pose2 T_start_body;  ///< truth, in map
-  Pose2 T_odom_body;
+  Pose2 T_start_body = {};  ///< truth, in map
+  Pose2 T_odom_body = {};
 };
 
 struct WalkOptions {

@@ -1,0 +1,148 @@
+#include "slam/scan_matcher.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <numbers>
+
+#include "slam/match_points.h"
+#include "slam/scan_integration.h"
+#include "tests/support/pose_near.h"
+#include "tests/support/room_world.h"
+
+namespace patrol::slam {
+namespace {
+
+using test::Pose2Near, test::RoomWorld;
+
+constexpr double kDeg = std::numbers::pi / 180.0;
+
+/// 8 m by 6 m with a cupboard and a pillar.
+RoomWorld make_room() {
+  RoomWorld room;
+  room.add_box(-3.0, -2.0, 5.0, 4.0).add_box(3.5, -2.0, 5.0, -1.0).add_post(-1.0, 2.5, 0.3);
+  return room;
+}
+
+RoomWorld make_corridor() {
+  RoomWorld corridor;
+  corridor.add_wall(-50.0, -1.0, 50.0, -1.0).add_wall(-50.0, 1.0, 50.0, 1.0);
+  return corridor;
+}
+
+constexpr RoomWorld::ScanOptions kNoisyLidar{.beams = 1600, .range_max_m = 30.0, .no_return_free_m = 6.0, .range_std_m = 0.01};
+
+/// A map of the room from five scans with 1 cm of noise at known poses.
+GridMap make_map(const RoomWorld& room) {
+  GridMap map(0.05, 100.0);
+  const RandomStream noise(1, "test/map");
+  for (std::uint64_t i = 0; i < 5; ++i) {
+    const Pose2 T_map_body{0.2 * static_cast<double>(i), 0.1, 0.3 * static_cast<double>(i)};
+    integrate_scan(room.scan(T_map_body, Time{}, kNoisyLidar, noise, i), T_map_body, {}, map);
+  }
+  return map;
+}
+
+std::vector<MatchPoint> look(const RoomWorld& room, const Pose2& T_map_body) {
+  const ScanMatcherSettings settings;
+  const LevelScan scan = room.scan(T_map_body, Time{}, kNoisyLidar, RandomStream(2, "test/look"), 0);
+  return select_match_points(scan, settings.point_spacing_m, settings.max_points);
+}
+
+const Pose2 kTruth{0.47, 0.33, 0.41};
+
+TEST(MatchScan, RecoversTenCentimetresAndThreeDegreesToFiveMillimetresAndATenthOfADegree) {
+  const RoomWorld room = make_room();
+  const GridMap map = make_map(room);
+  for (const double sign : {-1.0, 1.0}) {
+    const Pose2 start{kTruth.x + sign * 0.08, kTruth.y - sign * 0.06, kTruth.yaw + sign * 3.0 * kDeg};
+    const auto match = match_scan(map, look(room, kTruth), start, std::nullopt, {});
+    ASSERT_TRUE(match);
+    EXPECT_THAT(match->T_map_body, Pose2Near(kTruth, 0.005, 0.1 * kDeg));
+    EXPECT_TRUE(match->converged);
+    EXPECT_LE(match->iterations, 8);
+    EXPECT_GT(match->matched_share, 0.9);
+  }
+}
+
+// Single beams with the noise that the settings state; the map's own roughness makes the match say a little less.
+TEST(MatchScan, SaysHowSureItIsToAFactorOfTwo) {
+  const RoomWorld room = make_room();
+  const GridMap map = make_map(room);
+  const ScanMatcherSettings settings{.max_points = 400, .point_spacing_m = 0.0, .point_std_m = kNoisyLidar.range_std_m};
+  double squared = 0.0;  // Mahalanobis distance: 3 on average if the covariance is right
+  constexpr int kLooks = 40;
+  for (std::uint64_t i = 0; i < kLooks; ++i) {
+    const LevelScan scan = room.scan(kTruth, Time{}, kNoisyLidar, RandomStream(3, "test/look"), i);
+    const auto points = select_match_points(scan, settings.point_spacing_m, settings.max_points);
+    const auto match = match_scan(map, points, kTruth, std::nullopt, settings);
+    ASSERT_TRUE(match);
+    const Eigen::Vector3d error = match->T_map_body.vector() - kTruth.vector();
+    squared += error.dot(match->information * error) / kLooks;
+  }
+  EXPECT_LT(squared, 3.0 * 4.0);
+  EXPECT_GT(squared, 3.0 / 4.0);
+}
+
+TEST(MatchScan, ACorridorTellsAcrossAndHeadingButNotAlong) {
+  const RoomWorld corridor = make_corridor();
+  const GridMap map = make_map(corridor);
+  const Pose2 truth{0.4, 0.2, 0.0};
+  const auto match = match_scan(map, look(corridor, truth), {0.4, 0.25, 1.0 * kDeg}, std::nullopt, {});
+  ASSERT_TRUE(match);
+  EXPECT_NEAR(match->T_map_body.y, 0.2, 0.005);
+  EXPECT_NEAR(match->T_map_body.yaw, 0.0, 0.1 * kDeg);
+  EXPECT_LT(match->information(0, 0), 0.01 * match->information(1, 1));
+}
+
+TEST(MatchScan, InACorridorThePriorKeepsTheLength) {
+  const RoomWorld corridor = make_corridor();
+  const GridMap map = make_map(corridor);
+  const Pose2 truth{0.4, 0.2, 0.0}, start{0.5, 0.25, 0.0};
+  const PoseGaussian prior{.mean = start, .covariance = Eigen::Vector3d(0.02 * 0.02, 0.1 * 0.1, 0.02 * 0.02).asDiagonal()};
+  const auto match = match_scan(map, look(corridor, truth), start, prior, {});
+  ASSERT_TRUE(match);
+  EXPECT_NEAR(match->T_map_body.x, 0.5, 0.01);
+  EXPECT_NEAR(match->T_map_body.y, 0.2, 0.005);
+}
+
+TEST(MatchScan, WithoutMapOrPointsThereIsNoMatch) {
+  const RoomWorld room = make_room();
+  EXPECT_FALSE(match_scan(GridMap(0.05, 100.0), look(room, kTruth), kTruth, std::nullopt, {}));
+  EXPECT_FALSE(match_scan(make_map(room), {}, kTruth, std::nullopt, {}));
+}
+
+TEST(MatchScan, FarOffThereIsNoMatchRatherThanAWrongOne) {
+  const RoomWorld room = make_room();
+  ScanMatcherSettings settings;
+  settings.min_matched_share = 0.9;
+  EXPECT_FALSE(match_scan(make_map(room), look(room, kTruth), {kTruth.x + 0.7, kTruth.y - 0.6, kTruth.yaw + 0.5}, std::nullopt, settings));
+}
+
+TEST(MatchScan, AThirdOfThePointsOnAPersonMovesItByLessThanFiveMillimetres) {
+  const RoomWorld room = make_room();
+  const GridMap map = make_map(room);
+  RoomWorld crowded = room;
+  crowded.add_wall(1.2, -0.8, 1.9, 1.6);  // not in the map
+  const auto match = match_scan(map, look(crowded, kTruth), {kTruth.x + 0.05, kTruth.y, kTruth.yaw}, std::nullopt, {});
+  ASSERT_TRUE(match);
+  EXPECT_LT(match->matched_share, 0.95);
+  EXPECT_THAT(match->T_map_body, Pose2Near(kTruth, 0.005, 0.1 * kDeg));
+}
+
+// The steps are two cells, and those two cells seen at the farthest point: a match from there must succeed.
+TEST(SearchPose, ComesWithinReachOfTheMatchFromThirtyCentimetresAndSixDegrees) {
+  const RoomWorld room = make_room();
+  const GridMap map = make_map(room);
+  const auto points = look(room, kTruth);
+  const Pose2 center{kTruth.x + 0.28, kTruth.y - 0.27, kTruth.yaw + 6.0 * kDeg};
+  const Pose2 found = search_pose(map, points, center, {});
+  EXPECT_THAT(found, Pose2Near(kTruth, 0.1, 1.5 * kDeg));
+  const auto match = match_scan(map, points, found, std::nullopt, {});
+  ASSERT_TRUE(match);
+  EXPECT_THAT(match->T_map_body, Pose2Near(kTruth, 0.005, 0.1 * kDeg));
+}
+
+}  // namespace
+}  // namespace patrol::slam
