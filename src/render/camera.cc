@@ -1,0 +1,85 @@
+#include "render/camera.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+
+namespace patrol::render {
+
+CameraKind camera_kind(const std::string& name) {
+  if (name == "chase") return CameraKind::kChase;
+  if (name == "top") return CameraKind::kTop;
+  if (name == "onboard") return CameraKind::kOnboard;
+  throw InputError("camera = " + name + ": must be one of chase, top, onboard");
+}
+
+View look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& focus) {
+  View view{.eye = eye, .forward = (focus - eye).normalized(), .focus = focus};
+  // Straight down, up is north.
+  const bool is_vertical = std::abs(view.forward.z()) > 0.999;
+  const Eigen::Vector3d hint = is_vertical ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
+  view.up = (hint - hint.dot(view.forward) * view.forward).normalized();
+  return view;
+}
+
+mjvGLCamera gl_camera(const View& view) {
+  const auto top = static_cast<float>(view.near_m * std::tan(0.5 * view.field_of_view_rad));
+  mjvGLCamera camera{};
+  for (int axis = 0; axis < 3; ++axis) {
+    camera.pos[axis] = static_cast<float>(view.eye[axis]);
+    camera.forward[axis] = static_cast<float>(view.forward[axis]);
+    camera.up[axis] = static_cast<float>(view.up[axis]);
+  }
+  camera.frustum_bottom = -top;
+  camera.frustum_top = top;
+  camera.frustum_near = static_cast<float>(view.near_m);
+  camera.frustum_far = static_cast<float>(view.far_m);
+  return camera;
+}
+
+Projector::Projector(const View& view, int width, int height)
+    : eye_m_(view.eye),
+      center_px_(0.5 * width, 0.5 * height),
+      focal_px_(0.5 * height / std::tan(0.5 * view.field_of_view_rad)),
+      near_m_(view.near_m),
+      far_m_(view.far_m) {
+  R_camera_world_ << view.forward.cross(view.up).transpose(), view.up.transpose(), view.forward.transpose();
+}
+
+std::optional<Projected> Projector::project(const Eigen::Vector3d& point_m) const {
+  const Eigen::Vector3d in_camera = to_camera(point_m);
+  if (in_camera.z() < near_m_) return std::nullopt;
+  return project_camera(in_camera);
+}
+
+View CameraRig::follow(const Pose3& T_world_body, double elapsed_s) {
+  constexpr double kFollow_s = 0.25, kTurn_s = 0.6;  // time constants
+  const double heading = yaw_of(T_world_body.rotation);
+  if (!focus_m_) {
+    focus_m_ = T_world_body.position;
+    heading_rad_ = heading;
+  }
+  *focus_m_ += (1.0 - std::exp(-elapsed_s / kFollow_s)) * (T_world_body.position - *focus_m_);
+  heading_rad_ += (1.0 - std::exp(-elapsed_s / kTurn_s)) * wrap_angle(heading - heading_rad_);
+
+  switch (kind_) {
+    case CameraKind::kTop: {
+      constexpr double kHeight_m = 16.0;
+      return look_at(*focus_m_ + kHeight_m * Eigen::Vector3d::UnitZ(), *focus_m_);
+    }
+    case CameraKind::kOnboard: {
+      const Eigen::Vector3d head(0.33, 0.0, 0.12);  // before the trunk's front, m, in body
+      const Pose3 T_world_level{T_world_body.position, quaternion_from_yaw(heading)};
+      View view = look_at(T_world_level * head, T_world_level * (head + Eigen::Vector3d(4.0, 0.0, -0.25)));
+      view.field_of_view_rad = 1.1;
+      return view;
+    }
+    case CameraKind::kChase:
+      break;
+  }
+  const Pose3 T_world_rig{*focus_m_, quaternion_from_yaw(heading_rad_)};
+  return look_at(T_world_rig * Eigen::Vector3d(-2.4, 0.0, 1.15), T_world_rig * Eigen::Vector3d(0.9, 0.0, 0.0));
+}
+
+}  // namespace patrol::render

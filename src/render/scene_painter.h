@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "core/ground_truth.h"
+#include "render/camera.h"
+#include "render/frame.h"
+#include "render/offscreen.h"
+#include "sim/mujoco.h"
+
+namespace patrol::render {
+
+/// Draws the world and everything in it, as a state of the simulation has it.
+class ScenePainter {
+ public:
+  /// `view` is a model for renders (sim/model_assembly.h) and must outlive the painter. Throws std::runtime_error without
+  /// OpenGL.
+  ScenePainter(const mjModel& view, int width, int height);
+  ~ScenePainter();
+  ScenePainter(const ScenePainter&) = delete;
+  ScenePainter& operator=(const ScenePainter&) = delete;
+
+  /// Moves robot and actors. Throws InputError when the state is not one of this model.
+  void set_state(const SimState& state);
+  /// Draws and reads back; `depth` as in Offscreen::read_depth.
+  void draw(const View& view, Frame& frame, std::vector<float>& depth);
+
+  const mjData& data() const { return *data_; }
+  Offscreen& offscreen() { return offscreen_; }
+  /// As last drawn.
+  mjvScene& scene() { return scene_; }
+
+ private:
+  void light_around(const View& view);
+  void drop_unseen(const View& view);
+
+  const mjModel& model_;
+  sim::DataPtr data_;
+  Offscreen offscreen_;
+  mjvScene scene_;
+  mjvOption options_;
+  double shadow_reach_m_;  ///< half the side of the square that the shadow map covers
+};
+
+}  // namespace patrol::render
