@@ -33,6 +33,7 @@ RobotStack::RobotStack(const StackSettings& settings, const RobotDescription& ro
       slam_(settings.slam, seed),
       navigator_(settings.navigation, robot, route_in_map.keep_out_lines),
       mission_(settings.mission, route_in_map, robot.T_body_sensor.at("tdlas")),
+      settle_(from_seconds(settings.settle_s)),
       map_period_(from_seconds(map_period_s)) {}
 
 void RobotStack::handle(const SensorMessage& message) {
@@ -58,6 +59,7 @@ void RobotStack::handle(const SensorMessage& message) {
 
 // Level, match, correct the map pose, and show the planner what stands there now.
 void RobotStack::handle_scan(const LaserScan& raw) {
+  if (!first_odometry_ || raw.stamp < *first_odometry_ + settle_) return;
   std::optional<LevelScan> scan;
   {
     const auto lap = clock_.lap("odometry");
@@ -83,6 +85,7 @@ void RobotStack::handle_fall(Time now) {
 void RobotStack::step(Time now) {
   const std::optional<OdometryEstimate> odometry = odometry_.estimate();
   if (!odometry) return;
+  if (!first_odometry_) first_odometry_ = odometry->stamp;
   if (now >= next_odometry_) {
     next_odometry_ += kOdometryPeriod;
     messages_.emplace_back(*odometry);

@@ -19,6 +19,7 @@
 namespace patrol::app {
 
 struct StackSettings {
+  double settle_s = 1.0;  ///< after odometry's start, before the first scan makes the map's origin
   localize::BodyEstimatorSettings odometry;
   localize::ScanLevelerSettings leveling;
   slam::GridSlamSettings slam;
@@ -27,6 +28,7 @@ struct StackSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("settle_s", self.settle_s, between(0.0, 60.0));
     visit("odometry", self.odometry);
     visit("leveling", self.leveling);
     visit("slam", self.slam);
@@ -73,6 +75,8 @@ class RobotStack {
   plan::Navigator navigator_;
   inspect::Mission mission_;
 
+  Time settle_;
+  std::optional<Time> first_odometry_;
   std::optional<GasReading> newest_gas_;
   VelocityCommand command_;
   Time map_period_;

@@ -86,11 +86,19 @@ void Mission::report_gas(MissionOutput& output) {
                                 fmt::format("{}: {:.0f} ppm m of methane.", station().name, column), column));
   if (column - 2.0 * gas_.standard_error_ppm_m() <= settings_.alarm_column_ppm_m) return;
   Event alarm = event("alarm", station().name, "", column);
-  const Eigen::Vector3d p_body_target = T_body_gas_ * Eigen::Vector3d(gas_.beam_m().value_or(0.0), 0.0, 0.0);
-  alarm.p_map_target = T_map_body_ * Eigen::Vector2d(p_body_target.head<2>());
+  alarm.p_map_target = place_on_beam();
   alarm.text = fmt::format("Leak at {}: {:.0f} ppm m of methane, found at ({:.2f}, {:.2f}) m in the map.", station().name,
                            column, alarm.p_map_target.x(), alarm.p_map_target.y());
   output.events.push_back(alarm);
+}
+
+/// The beam does not tell where along it the gas is: the point of it that is nearest to what was inspected.
+Eigen::Vector2d Mission::place_on_beam() const {
+  const auto to_map = [this](const Eigen::Vector3d& p_body) { return T_map_body_ * Eigen::Vector2d(p_body.head<2>()); };
+  const Eigen::Vector2d from = to_map(T_body_gas_.position);
+  const Eigen::Vector2d direction = (to_map(T_body_gas_ * Eigen::Vector3d::UnitX().eval()) - from).normalized();
+  const Eigen::Vector2d to_target = station().p_route_target.head<2>() - from;
+  return from + std::clamp(to_target.dot(direction), 0.0, gas_.beam_m().value_or(to_target.norm())) * direction;
 }
 
 void Mission::next_station(MissionOutput& output) {

@@ -47,8 +47,8 @@ struct MissionOutput {
 /// Walks the route station by station: goes there, stands, measures methane, raises the alarm where the column exceeds the
 /// threshold beyond doubt (two standard errors), and goes on. A station that cannot be reached or measured is reported and left out.
 ///
-/// Events: mission_started, station_reached, gas_measured (value: column, ppm m), alarm (value: column; position: where the
-/// beam ended), station_failed, mission_completed (every station was done), mission_failed.
+/// Events: mission_started, station_reached, gas_measured (value: column, ppm m), alarm (value: column; target: the place on the beam
+/// nearest to what was inspected), station_failed, mission_completed (every station was done), mission_failed.
 class Mission {
  public:
   /// `T_body_gas`: the methane meter, looking along its x axis. Throws InputError if a setting breaks its rule.
@@ -68,6 +68,7 @@ class Mission {
   void drive(NavigationFeedback feedback, MissionOutput& output);
   void measure(const std::optional<GasReading>& newest_gas, MissionOutput& output);
   void report_gas(MissionOutput& output);
+  Eigen::Vector2d place_on_beam() const;
   void next_station(MissionOutput& output);
   NavigationGoal goal_at(const Station& station) const;
   Event event(const std::string& kind, const std::string& subject, const std::string& text, double value = 0.0) const;

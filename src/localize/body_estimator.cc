@@ -10,6 +10,8 @@
 namespace patrol::localize {
 namespace {
 
+constexpr double kGravity_mps2 = 9.81;
+constexpr double kMaxStartAcceleration_mps2 = 1.0;  // the start's tilt is read from gravity alone
 constexpr double kMaxRate_radps = 35.0;  // beyond what a MEMS gyro of 2000 deg/s reads
 constexpr double kMaxForce_mps2 = 16.0 * 9.81 * 1.8;
 constexpr int kFrozenRepeats = 10;  // equal readings in a row while the legs move
@@ -160,6 +162,7 @@ bool BodyEstimator::Repeats::is_frozen(const Eigen::Matrix<double, 3 * kNumLegs,
 
 void BodyEstimator::advance(Time stamp, const InertialSample& sample) {
   if (!filter_) {
+    if (std::abs(sample.force_mps2.norm() - kGravity_mps2) > kMaxStartAcceleration_mps2) return;
     filter_.emplace(filter_settings(settings_), sample);
   } else if (stamp - now_ > kMaxImuStep) {
     filter_->coast(to_seconds(stamp - now_), filter_->yaw_rate_radps());

@@ -93,12 +93,18 @@ void ScenePainter::light_around(const View& view) {
   for (int axis = 0; axis < 3; ++axis) sun->pos[axis] = static_cast<float>(place[axis]);
 }
 
-// Software vertex work is half of a frame: leave out what is neither in sight nor casts a shadow that could be.
+// Software vertex work is half of a frame: leave out what would be a speck, and what is neither in sight
+// nor casts a shadow that could be.
 void ScenePainter::drop_unseen(const View& view) {
   const auto sides = sides_of(view, static_cast<double>(offscreen_.width()) / offscreen_.height());
   const mjvLight* sun = find_sun(scene_);
   const auto is_in_sight = [&](const Eigen::Vector3d& center, double radius) {
     return std::ranges::all_of(sides, [&](const Eigen::Vector3d& n) { return n.dot(center - view.eye) > -radius; });
+  };
+  constexpr double kTooSmall_px = 1.2;  // radius
+  const double focal_px = 0.5 * offscreen_.height() / std::tan(0.5 * view.field_of_view_rad);
+  const auto is_speck = [&](const Eigen::Vector3d& center, double radius) {
+    return focal_px * radius < kTooSmall_px * (center - view.eye).norm();
   };
   const auto may_shade = [&](const Eigen::Vector3d& center, double radius) {
     if (sun == nullptr || scene_.flags[mjRND_SHADOW] == 0) return false;
@@ -108,6 +114,7 @@ void ScenePainter::drop_unseen(const View& view) {
   mjvGeom* const last = std::remove_if(scene_.geoms, scene_.geoms + scene_.ngeom, [&](const mjvGeom& geom) {
     if (geom.type == mjGEOM_PLANE || geom.type == mjGEOM_HFIELD || geom.modelrbound <= 0.0f) return false;
     const Eigen::Vector3d center = to_eigen(geom.pos);
+    if (is_speck(center, geom.modelrbound)) return true;
     return !is_in_sight(center, geom.modelrbound) && !may_shade(center, geom.modelrbound);
   });
   scene_.ngeom = static_cast<int>(last - scene_.geoms);

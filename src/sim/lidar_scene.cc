@@ -281,6 +281,7 @@ LidarScene::LidarScene(const mjModel& view) : impl_(std::make_unique<Impl>(view)
 LidarScene::~LidarScene() = default;
 
 const mjModel& LidarScene::model() const { return impl_->model; }
+RTCSceneTy* LidarScene::still_scene() const { return impl_->bodies.front().scene; }
 
 void LidarScene::update(const mjData& data) {
   bool has_moved = false;

@@ -10,6 +10,8 @@
 
 #include <mujoco/mujoco.h>
 
+struct RTCSceneTy;
+
 namespace patrol::sim {
 
 /// What a ray may hit.
@@ -48,6 +50,8 @@ class LidarScene {
                              std::uint32_t mask) const;
 
   const mjModel& model() const;
+  /// Embree's scene of what stands still, for those who want to measure it bare.
+  RTCSceneTy* still_scene() const;
 
  private:
   struct Impl;
