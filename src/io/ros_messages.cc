@@ -377,17 +377,27 @@ void describe(Codec& codec, TransformSet& set) {
   });
 }
 
-}  // namespace
-
+/// Returns how many bytes it has written.
 template <typename Message>
-std::string encode(const Message& message, const RosNames& names) {
-  FastBuffer buffer;
+std::size_t serialize(Message& message, const RosNames& names, FastBuffer& buffer) {
   Cdr cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR);
   cdr.serialize_encapsulation();
   Writer writer{cdr, names};
+  describe(writer, message);
+  return cdr.getSerializedDataLength();
+}
+
+}  // namespace
+
+// Twice: Fast-CDR leaves its padding as it finds it, so the bytes must be zero before, and to that end be counted.
+template <typename Message>
+std::string encode(const Message& message, const RosNames& names) {
   Message copy = message;
-  describe(writer, copy);
-  return {buffer.getBuffer(), cdr.getSerializedDataLength()};
+  FastBuffer counted;
+  std::string bytes(serialize(copy, names, counted), '\0');
+  FastBuffer buffer(bytes.data(), bytes.size());
+  serialize(copy, names, buffer);
+  return bytes;
 }
 
 template <typename Message>

@@ -1,7 +1,7 @@
 #include "io/settings_yaml.h"
 
 #include <algorithm>
-#include <fstream>
+#include <charconv>
 #include <limits>
 #include <numeric>
 #include <set>
@@ -57,9 +57,8 @@ void apply_override(YAML::Node root, const std::string& override) {
     const bool is_last = i + 1 == path.size();
     if (node.IsSequence()) {
       std::size_t index = 0;
-      try {
-        index = std::stoul(path[i]);
-      } catch (const std::exception&) {
+      const auto [end, error] = std::from_chars(path[i].data(), path[i].data() + path[i].size(), index);
+      if (error != std::errc() || end != path[i].data() + path[i].size()) {
         throw InputError("--set " + override + ": " + path[i] + " must be a number: the place in a list");
       }
       if (index >= node.size()) throw InputError(fmt::format("--set {}: the list has {} entries", override, node.size()));

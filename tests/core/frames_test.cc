@@ -60,7 +60,8 @@ TEST(Pose2, CompositionActsAsOneAfterTheOtherAndWraps) {
 
 TEST(Pose3, AgreesWithPose2InThePlane) {
   const Pose2 T_a_b{1.0, 2.0, 3.0}, T_b_c{-4.0, 0.5, 2.0};
-  EXPECT_THAT(to_planar(to_spatial(T_a_b, 0.3) * to_spatial(T_b_c)), Pose2Near(T_a_b * T_b_c, kExactTol, kExactTol));
+  EXPECT_THAT(to_planar(to_spatial(T_a_b, 0.3) * to_spatial(T_b_c)),
+              Pose2Near(T_a_b * T_b_c, kExactTol, kExactTol));
   EXPECT_THAT(to_planar(to_spatial(T_a_b).inverse()), Pose2Near(T_a_b.inverse(), kExactTol, kExactTol));
   EXPECT_DOUBLE_EQ((to_spatial(T_a_b, 0.3) * to_spatial(T_b_c)).position.z(), 0.3);
 }
@@ -68,7 +69,8 @@ TEST(Pose3, AgreesWithPose2InThePlane) {
 TEST(Pose3, InverseUndoesATiltedPose) {
   const Pose3 T{{1.0, 2.0, 3.0}, quaternion_from_rpy(0.4, -1.1, 2.5)};
   EXPECT_THAT(T * T.inverse(), Pose3Near(Pose3{}, kExactTol, 1e-7));
-  EXPECT_THAT((T.inverse() * (T * Eigen::Vector3d(5.0, 6.0, 7.0))), VectorNear(Eigen::Vector3d(5.0, 6.0, 7.0), kExactTol));
+  EXPECT_THAT((T.inverse() * (T * Eigen::Vector3d(5.0, 6.0, 7.0))),
+              VectorNear(Eigen::Vector3d(5.0, 6.0, 7.0), kExactTol));
 }
 
 TEST(QuaternionFromRpy, TurnsAboutFixedXThenYThenZ) {
@@ -91,7 +93,8 @@ TEST(Interpolate, HalfwayHalvesWayAndTurn) {
   const Pose3 a, b{{2.0, 4.0, -6.0}, quaternion_from_yaw(1.0)};
   EXPECT_THAT(interpolate(a, b, 0.0), Pose3Near(a, 0.0, 1e-7));
   EXPECT_THAT(interpolate(a, b, 1.0), Pose3Near(b, kExactTol, 1e-7));
-  EXPECT_THAT(interpolate(a, b, 0.5), Pose3Near((Pose3{{1.0, 2.0, -3.0}, quaternion_from_yaw(0.5)}), kExactTol, 1e-7));
+  EXPECT_THAT(interpolate(a, b, 0.5),
+              Pose3Near((Pose3{{1.0, 2.0, -3.0}, quaternion_from_yaw(0.5)}), kExactTol, 1e-7));
 }
 
 TEST(Interpolate, TurnsTheShortWayAcrossTheHalfTurn) {

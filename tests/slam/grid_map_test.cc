@@ -165,11 +165,15 @@ TEST(GridMap, FindsSurfaceNearbyAsASearchCellByCellDoes) {
         for (int r = row - radius; r <= row + radius; ++r) {
           for (int c = col - radius; c <= col + radius; ++c) {
             const GridCell cell = cell_of(map, {c, r});
-            if (cell.is_surface()) expected.push_back(map.center_of({c, r}) + Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m));
+            if (cell.is_surface())
+              expected.push_back(map.center_of({c, r}) + Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m));
           }
         }
-        map.for_each_surface_near({col, row}, radius, [&](const Eigen::Vector2d& mean, int) { found.push_back(mean); });
-        const auto by_place = [](const auto& a, const auto& b) { return a.y() < b.y() || (a.y() == b.y() && a.x() < b.x()); };
+        map.for_each_surface_near({col, row}, radius,
+                                  [&](const Eigen::Vector2d& mean, int) { found.push_back(mean); });
+        const auto by_place = [](const auto& a, const auto& b) {
+          return a.y() < b.y() || (a.y() == b.y() && a.x() < b.x());
+        };
         std::sort(expected.begin(), expected.end(), by_place);
         std::sort(found.begin(), found.end(), by_place);
         ASSERT_EQ(found, expected) << col << ' ' << row << " radius " << radius;

@@ -10,7 +10,8 @@
 namespace patrol::slam {
 namespace {
 
-/// Hits every centimetre along a line through `through` at `angle`, 1 m each way, scattered across by `std_m`.
+/// Hits every centimetre along a line through `through` at `angle`, 1 m each way, scattered across by
+/// `std_m`.
 GridMap make_wall(const Eigen::Vector2d& through, double angle_rad, double std_m = 0.0) {
   GridMap map(0.05, 100.0);
   const RandomStream noise(1, "test/wall");
@@ -31,7 +32,8 @@ TEST(FitLocalLine, MeasuresThreeCentimetresFromAWallAtAnyAngleToATenthOfAMillime
     const Eigen::Vector2d across(-std::sin(angle), std::cos(angle));
     const auto line = fit_local_line(map, Eigen::Vector2d(0.312, -0.457) + 0.03 * across, 3);
     ASSERT_TRUE(line) << degrees;
-    EXPECT_NEAR(std::abs(line->distance_m(Eigen::Vector2d(0.312, -0.457) + 0.03 * across)), 0.03, 1e-4) << degrees;
+    EXPECT_NEAR(std::abs(line->distance_m(Eigen::Vector2d(0.312, -0.457) + 0.03 * across)), 0.03, 1e-4)
+        << degrees;
     EXPECT_NEAR(std::abs(line->normal_map.dot(across)), 1.0, 1e-3) << degrees;
     EXPECT_GT(line->straightness, 0.99) << degrees;
     EXPECT_LT(line->roughness_var_m2, 1e-6) << degrees;

@@ -18,12 +18,18 @@ constexpr double kExactTol = 1e-12;
 constexpr double kPi = std::numbers::pi;
 
 // Whole numbers: 0.3 along and 0.1 across per metre, 0.2 per rad, 0.4 per metre and 0.5 per second of turn.
-const MotionModelSettings kSettings{.along_std_m_per_m = 0.3, .across_std_m_per_m = 0.1, .turn_std_rad_per_rad = 0.2,
-                                    .turn_std_rad_per_m = 0.4, .turn_std_rad_per_s = 0.5, .min_std_m = 0.01, .min_std_rad = 0.02};
+const MotionModelSettings kSettings{.along_std_m_per_m = 0.3,
+                                    .across_std_m_per_m = 0.1,
+                                    .turn_std_rad_per_rad = 0.2,
+                                    .turn_std_rad_per_m = 0.4,
+                                    .turn_std_rad_per_s = 0.5,
+                                    .min_std_m = 0.01,
+                                    .min_std_rad = 0.02};
 
 TEST(PredictMotion, MeanIsTheOdometrysMoveFromWhereTheBodyWas) {
   const Pose2 before{1.0, 2.0, kPi / 2.0};
-  EXPECT_THAT(predict_motion(before, {3.0, 1.0, 0.5}, 0.1, kSettings).mean, Pose2Near((Pose2{0.0, 5.0, kPi / 2.0 + 0.5}), kExactTol, kExactTol));
+  EXPECT_THAT(predict_motion(before, {3.0, 1.0, 0.5}, 0.1, kSettings).mean,
+              Pose2Near((Pose2{0.0, 5.0, kPi / 2.0 + 0.5}), kExactTol, kExactTol));
 }
 
 TEST(PredictMotion, TwoMetresNorthSpreadSixtyCentimetresNorthAndTwentyEast) {
@@ -68,7 +74,9 @@ TEST(ProposalSample, HasTheMomentsOfItsPosterior) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(mean[i], 0.0, 4.0 * std::sqrt(P(i, i) / kDraws)) << i;
     for (int j = 0; j < 3; ++j) {
-      EXPECT_NEAR(covariance(i, j), P(i, j), 4.0 * std::sqrt((P(i, i) * P(j, j) + P(i, j) * P(i, j)) / kDraws)) << i << j;
+      EXPECT_NEAR(covariance(i, j), P(i, j),
+                  4.0 * std::sqrt((P(i, i) * P(j, j) + P(i, j) * P(i, j)) / kDraws))
+          << i << j;
     }
   }
 }

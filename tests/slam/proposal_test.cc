@@ -44,7 +44,8 @@ TEST(ProposeFromScan, GoesToTheMatchAndIsSurerThanOdometry) {
   const Proposal proposal = propose(prediction, 0.02);
   EXPECT_THAT(proposal.posterior.mean, Pose2Near(kTruth, 0.005, 0.002));
   EXPECT_GT(proposal.matched_share, 0.9);
-  for (int i = 0; i < 3; ++i) EXPECT_LT(proposal.posterior.covariance(i, i), 0.1 * prediction.covariance(i, i)) << i;
+  for (int i = 0; i < 3; ++i)
+    EXPECT_LT(proposal.posterior.covariance(i, i), 0.1 * prediction.covariance(i, i)) << i;
 }
 
 // Sigma^-1 = P^-1 + g H for two gains: the difference over the gains' is H, and at g = 0 only P is left.
@@ -59,7 +60,8 @@ TEST(ProposeFromScan, InformationGrowsInProportionToTheGain) {
 
 TEST(ProposeFromScan, WithoutAMapStaysWithOdometry) {
   const PoseGaussian prediction = around({0.5, 0.0, 0.0});
-  const Proposal proposal = propose_from_scan(GridMap(0.05, 100.0), look(), prediction.mean, prediction, 0.02, {});
+  const Proposal proposal =
+      propose_from_scan(GridMap(0.05, 100.0), look(), prediction.mean, prediction, 0.02, {});
   EXPECT_THAT(proposal.posterior.mean, Pose2Near(prediction.mean, 0.0, 0.0));
   EXPECT_EQ(proposal.posterior.covariance, prediction.covariance);
   EXPECT_EQ(proposal.log_weight_change, 0.0);

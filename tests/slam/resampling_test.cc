@@ -61,8 +61,8 @@ TEST(ResampleSystematic, GivesFloorOrCeilOfNWChildren) {
   }
 }
 
-// The mean number of children over all draws is N w: here over 1000 draws evenly spread in (0, 1), each parent's count
-// changes twice at most, so the mean is right to 2/1000.
+// The mean number of children over all draws is N w: here over 1000 draws evenly spread in (0, 1), each
+// parent's count changes twice at most, so the mean is right to 2/1000.
 TEST(ResampleSystematic, IsUnbiasedToTwoInAThousand) {
   const std::vector<double> weights = random_weights(3, 8);
   std::vector<double> mean(weights.size());

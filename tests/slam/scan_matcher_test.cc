@@ -31,7 +31,8 @@ RoomWorld make_corridor() {
   return corridor;
 }
 
-constexpr RoomWorld::ScanOptions kNoisyLidar{.beams = 1600, .range_max_m = 30.0, .no_return_free_m = 6.0, .range_std_m = 0.01};
+constexpr RoomWorld::ScanOptions kNoisyLidar{
+    .beams = 1600, .range_max_m = 30.0, .no_return_free_m = 6.0, .range_std_m = 0.01};
 
 /// A map of the room from five scans with 1 cm of noise at known poses.
 GridMap make_map(const RoomWorld& room) {
@@ -66,11 +67,13 @@ TEST(MatchScan, RecoversTenCentimetresAndThreeDegreesToFiveMillimetresAndATenthO
   }
 }
 
-// Single beams with the noise that the settings state; the map's own roughness makes the match say a little less.
+// Single beams with the noise that the settings state; the map's own roughness makes the match say a little
+// less.
 TEST(MatchScan, SaysHowSureItIsToAFactorOfTwo) {
   const RoomWorld room = make_room();
   const GridMap map = make_map(room);
-  const ScanMatcherSettings settings{.max_points = 400, .point_spacing_m = 0.0, .point_std_m = kNoisyLidar.range_std_m};
+  const ScanMatcherSettings settings{
+      .max_points = 400, .point_spacing_m = 0.0, .point_std_m = kNoisyLidar.range_std_m};
   double squared = 0.0;  // Mahalanobis distance: 3 on average if the covariance is right
   constexpr int kLooks = 40;
   for (std::uint64_t i = 0; i < kLooks; ++i) {
@@ -100,7 +103,8 @@ TEST(MatchScan, InACorridorThePriorKeepsTheLength) {
   const RoomWorld corridor = make_corridor();
   const GridMap map = make_map(corridor);
   const Pose2 truth{0.4, 0.2, 0.0}, start{0.5, 0.25, 0.0};
-  const PoseGaussian prior{.mean = start, .covariance = Eigen::Vector3d(0.02 * 0.02, 0.1 * 0.1, 0.02 * 0.02).asDiagonal()};
+  const PoseGaussian prior{.mean = start,
+                           .covariance = Eigen::Vector3d(0.02 * 0.02, 0.1 * 0.1, 0.02 * 0.02).asDiagonal()};
   const auto match = match_scan(map, look(corridor, truth), start, prior, {});
   ASSERT_TRUE(match);
   EXPECT_NEAR(match->T_map_body.x, 0.5, 0.01);
@@ -117,7 +121,8 @@ TEST(MatchScan, FarOffThereIsNoMatchRatherThanAWrongOne) {
   const RoomWorld room = make_room();
   ScanMatcherSettings settings;
   settings.min_matched_share = 0.9;
-  EXPECT_FALSE(match_scan(make_map(room), look(room, kTruth), {kTruth.x + 0.7, kTruth.y - 0.6, kTruth.yaw + 0.5}, std::nullopt, settings));
+  EXPECT_FALSE(match_scan(make_map(room), look(room, kTruth),
+                          {kTruth.x + 0.7, kTruth.y - 0.6, kTruth.yaw + 0.5}, std::nullopt, settings));
 }
 
 TEST(MatchScan, AThirdOfThePointsOnAPersonMovesItByLessThanFiveMillimetres) {
@@ -125,7 +130,8 @@ TEST(MatchScan, AThirdOfThePointsOnAPersonMovesItByLessThanFiveMillimetres) {
   const GridMap map = make_map(room);
   RoomWorld crowded = room;
   crowded.add_wall(1.2, -0.8, 1.9, 1.6);  // not in the map
-  const auto match = match_scan(map, look(crowded, kTruth), {kTruth.x + 0.05, kTruth.y, kTruth.yaw}, std::nullopt, {});
+  const auto match =
+      match_scan(map, look(crowded, kTruth), {kTruth.x + 0.05, kTruth.y, kTruth.yaw}, std::nullopt, {});
   ASSERT_TRUE(match);
   EXPECT_LT(match->matched_share, 0.95);
   EXPECT_THAT(match->T_map_body, Pose2Near(kTruth, 0.005, 0.1 * kDeg));

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <limits>
+#include <tuple>
+
+#include "core/ground_truth.h"
+#include "core/messages.h"
+#include "io/ros_messages.h"
+
+namespace patrol::test {
+
+using namespace std::chrono_literals;
+
+inline const Time kSampleStamp = 12s + 345'678'901ns;
+
+/// One of each message, every field away from its default. Values are fit for float32 where ROS has float32.
+inline LaserScan sample_scan() {
+  const float infinity = std::numeric_limits<float>::infinity();
+  return {.stamp = kSampleStamp,
+          .angle_min_rad = -2.5,
+          .angle_increment_rad = 0.25,
+          .time_increment_s = 0.0625,
+          .scan_time_s = 0.125,
+          .range_min_m = 0.5,
+          .range_max_m = 30.0,
+          .ranges_m = {3.25F, -infinity, infinity, 1.5F},
+          .intensities = {1.0F, 0.0F, 255.0F, 2.0F}};
+}
+inline PointCloud sample_cloud() {
+  return {.stamp = kSampleStamp,
+          .points = {{1.0F, 2.0F, 3.0F, 4.0F, 0.5F, 15}, {-1.5F, 0.25F, 9.0F, 255.0F, 0.75F, 65535}}};
+}
+inline Imu sample_imu() {
+  return {.stamp = kSampleStamp,
+          .angular_velocity_radps = {0.1, -0.2, 0.3},
+          .linear_acceleration_mps2 = {1.0, -2.0, 9.81}};
+}
+inline JointState sample_joints() {
+  return {.stamp = kSampleStamp,
+          .position_rad = {0.1, 0.8},
+          .velocity_radps = {1.0, -2.0},
+          .effort_nm = {3.5, 4.5}};
+}
+inline FootContacts sample_contacts() { return {.stamp = kSampleStamp, .force_n = {10.0, 0.0, 20.5, 30.25}}; }
+inline GasReading sample_gas() {
+  return {.stamp = kSampleStamp,
+          .column_ppm_m = 123.5,
+          .path_length_m = std::numeric_limits<double>::infinity(),
+          .mean_mg_m3 = 7.25};
+}
+inline GnssFix sample_fix(GnssStatus status = GnssStatus::kFix) {
+  return {.stamp = kSampleStamp,
+          .status = status,
+          .latitude_deg = 52.5,
+          .longitude_deg = -13.25,
+          .altitude_m = 34.5,
+          .position_std_m = {0.5, 0.25, 2.0}};
+}
+inline Eigen::Matrix3d sample_covariance() {
+  Eigen::Matrix3d P;
+  P << 1.0, 2.0, 3.0, 2.0, 4.0, 5.0, 3.0, 5.0, 6.0;
+  return P;
+}
+inline Pose3 sample_pose() { return {{1.0, -2.0, 0.5}, Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5)}; }
+inline OdometryEstimate sample_odometry() {
+  return {.stamp = kSampleStamp,
+          .T_odom_body = sample_pose(),
+          .twist = {{0.5, 0.1, -0.1}, {0.01, 0.02, 0.03}},
+          .planar_covariance = sample_covariance()};
+}
+inline PoseEstimate sample_estimate() {
+  return {.stamp = kSampleStamp, .T_map_body = {1.0, 2.0, -3.0}, .covariance = sample_covariance()};
+}
+inline ParticleSet sample_particles() {
+  return {.stamp = kSampleStamp, .T_map_body = {{1.0, 2.0, 0.5}, {3.0, 4.0, -0.5}}, .weights = {0.25, 0.75}};
+}
+inline MapUpdate sample_map() {
+  MapUpdate update{.stamp = kSampleStamp,
+                   .map = OccupancyGrid(
+                       {.resolution_m = 0.05, .width = 3, .height = 2, .origin_m = {-1.0, 2.5}}, kUnknown)};
+  update.map.at({2, 0}) = kOccupied;
+  update.map.at({0, 1}) = kFree;
+  return update;
+}
+inline Path sample_path() {
+  return {.stamp = kSampleStamp, .T_map_body = {{1.0, 2.0, 0.5}, {3.0, 4.0, -0.5}}};
+}
+inline VelocityCommand sample_command() {
+  return {.stamp = kSampleStamp, .vx_mps = 0.5, .vy_mps = -0.25, .yaw_rate_radps = 1.0};
+}
+inline Event sample_event() {
+  return {.stamp = kSampleStamp,
+          .kind = "alarm",
+          .subject = "regulator_box_2",
+          .text = "methane at the box",
+          .value = 512.0,
+          .T_map_body = {1.0, 2.0, 0.5},
+          .p_map_target = {3.0, -4.0}};
+}
+inline GroundTruth sample_truth() {
+  return {
+      .stamp = kSampleStamp, .T_world_body = sample_pose(), .twist = {{0.5, 0.1, -0.1}, {0.01, 0.02, 0.03}}};
+}
+inline SimState sample_state() {
+  return {.stamp = kSampleStamp, .qpos = {1.0, 2.0, 3.0}, .mocap = {4.0, 5.0}};
+}
+inline Collision sample_collision() {
+  return {.stamp = kSampleStamp, .first = "FL_shank", .second = "house_7"};
+}
+inline io::TransformSet sample_transforms() {
+  return {{{.stamp = kSampleStamp, .parent = "map", .child = "odom", .T_parent_child = sample_pose()},
+           {.stamp = 1s, .parent = "odom", .child = "base_link", .T_parent_child = {}}}};
+}
+
+inline auto all_samples() {
+  return std::tuple(sample_scan(), sample_cloud(), sample_imu(), sample_joints(), sample_contacts(),
+                    sample_gas(), sample_fix(), sample_odometry(), sample_estimate(), sample_particles(),
+                    sample_map(), sample_path(), sample_command(), sample_event(), sample_truth(),
+                    sample_state(), sample_collision(), sample_transforms());
+}
+
+}  // namespace patrol::test
