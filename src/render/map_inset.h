@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+
+#include "render/canvas.h"
+#include "render/run_snapshot.h"
+
+namespace patrol::render {
+
+/// The map as it is being built, north up, in the lower right corner of a frame, with paths, particles and robot.
+class MapInset {
+ public:
+  void draw(Frame& frame, const RunSnapshot& snapshot);
+
+ private:
+  void lay_out(const Frame& frame, const RunSnapshot& snapshot);
+  void draw_map(Frame& frame) const;
+  Eigen::Vector2d pixel_of(const Eigen::Vector2d& p_world_m) const;
+
+  std::shared_ptr<const OccupancyGrid> map_;  ///< that the layout below is of
+  Frame picture_;
+  Eigen::Vector2d low_m_ = Eigen::Vector2d::Zero(), high_m_ = Eigen::Vector2d::Zero();  ///< shown, in world
+  Eigen::Vector2d corner_px_ = Eigen::Vector2d::Zero();  ///< upper left, in the frame
+  double px_per_m_ = 1.0;
+};
+
+}  // namespace patrol::render

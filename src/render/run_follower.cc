@@ -1,0 +1,110 @@
+#include "render/run_follower.h"
+
+#include <cmath>
+
+#include "core/error.h"
+#include "sim/mujoco.h"
+
+namespace patrol::render {
+namespace {
+
+constexpr double kPathStep_m = 0.05;   // between the points of a drawn path
+constexpr double kAboveGround_m = 0.01;
+
+void extend(std::vector<Eigen::Vector3d>& path, const Eigen::Vector3d& point) {
+  if (path.empty() || (point - path.back()).head<2>().norm() >= kPathStep_m) path.push_back(point);
+}
+
+/// The lidar's place on the trunk, from the site that the robot's model has for it.
+Pose3 lidar_on_body(const mjModel& model) {
+  const int site = mj_name2id(&model, mjOBJ_SITE, "lidar");
+  if (site < 0) throw InputError("the robot has no link `lidar`");
+  const sim::DataPtr data = sim::make_data(model);
+  mj_kinematics(&model, data.get());
+  const int body = mj_name2id(&model, mjOBJ_BODY, frame_id::kBody);
+  const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> R_world_lidar(data->site_xmat + 9 * site);
+  const mjtNum* q = data->xquat + 4 * body;
+  const Pose3 T_world_body{Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * body), {q[0], q[1], q[2], q[3]}};
+  const Pose3 T_world_lidar{Eigen::Map<const Eigen::Vector3d>(data->site_xpos + 3 * site),
+                            Eigen::Quaterniond(Eigen::Matrix3d(R_world_lidar))};
+  return T_world_body.inverse() * T_world_lidar;
+}
+
+}  // namespace
+
+RunFollower::RunFollower(const mjModel& view, const Pose2& T_world_map)
+    : ground_(view), T_body_lidar_(lidar_on_body(view)) {
+  snapshot_.T_world_map = T_world_map;
+}
+
+void RunFollower::add(const OdometryEstimate& odometry) {
+  constexpr Time kMemory = std::chrono::seconds(2);
+  if (!odometry_.empty() && odometry.stamp <= odometry_.back().stamp) return;
+  odometry_.push_back({odometry.stamp, odometry.T_odom_body});
+  while (odometry_.front().stamp < odometry.stamp - kMemory) odometry_.pop_front();
+}
+
+void RunFollower::add(const PoseEstimate& estimate) {
+  snapshot_.T_map_body = estimate.T_map_body;
+  const Pose2 T_world_estimate = snapshot_.T_world_map * estimate.T_map_body;
+  extend(snapshot_.estimated_path, on_ground(T_world_estimate.position()));
+  if (const std::optional<Pose3> truth = pose_at(truth_, estimate.stamp)) {
+    const Pose2 error = to_planar(*truth).inverse() * T_world_estimate;
+    snapshot_.position_error_m = error.position().norm();
+    snapshot_.heading_error_rad = error.yaw;
+  }
+  if (scan_) place_scan(estimate);
+}
+
+void RunFollower::add(const Path& plan) {
+  snapshot_.planned_path.clear();
+  for (const Pose2& T_map_body : plan.T_map_body) {
+    extend(snapshot_.planned_path, on_ground(snapshot_.T_world_map * T_map_body.position()));
+  }
+}
+
+void RunFollower::add(const GroundTruth& truth) {
+  if (!truth_.empty()) {
+    if (truth.stamp <= truth_.back().stamp) return;
+    snapshot_.walked_m += (truth.T_world_body.position - truth_.back().pose.position).head<2>().norm();
+  }
+  truth_.push_back({truth.stamp, truth.T_world_body});
+  snapshot_.T_world_body = truth.T_world_body;
+  extend(snapshot_.true_path, on_ground(truth.T_world_body.position.head<2>()));
+}
+
+Eigen::Vector3d RunFollower::on_ground(const Eigen::Vector2d& p_world_m) const {
+  constexpr double kKneeHeight_m = 0.25, kReach_m = 2.0;
+  const Eigen::Vector3d knee(p_world_m.x(), p_world_m.y(), kKneeHeight_m);
+  const auto ground = ground_.cast(knee, -Eigen::Vector3d::UnitZ(), kReach_m, sim::kRayScenery);
+  return {p_world_m.x(), p_world_m.y(), kKneeHeight_m + kAboveGround_m - (ground ? ground->distance_m : kKneeHeight_m)};
+}
+
+// Each beam from where the robot was when it was fired: the estimate says where the level body was at one instant,
+// odometry how it moved and leaned around that.
+void RunFollower::place_scan(const PoseEstimate& estimate) {
+  const Trajectory odometry(odometry_.begin(), odometry_.end());
+  const Pose3 T_world_estimate =
+      to_spatial(snapshot_.T_world_map * estimate.T_map_body, snapshot_.T_world_body.position.z());
+  const std::optional<Pose3> T_odom_estimate = pose_at(odometry, estimate.stamp);
+  Pose3 T_world_odom;  // level, with odometry's height brought to the true one
+  if (T_odom_estimate) {
+    T_world_odom = T_world_estimate *
+                   to_spatial(to_planar(*T_odom_estimate), T_odom_estimate->position.z()).inverse();
+  }
+  snapshot_.scan.clear();
+  const LaserScan& scan = *scan_;
+  for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
+    const double range = scan.ranges_m[beam];
+    if (!std::isfinite(range)) continue;
+    const auto index = static_cast<double>(beam);
+    const std::optional<Pose3> T_odom_body =
+        T_odom_estimate ? pose_at(odometry, scan.stamp + from_seconds(index * scan.time_increment_s)) : std::nullopt;
+    const Pose3 T_world_body = T_odom_body ? T_world_odom * *T_odom_body : T_world_estimate;
+    const double angle = scan.angle_min_rad + index * scan.angle_increment_rad;
+    snapshot_.scan.push_back(T_world_body *
+                             (T_body_lidar_ * Eigen::Vector3d(range * std::cos(angle), range * std::sin(angle), 0.0)));
+  }
+}
+
+}  // namespace patrol::render

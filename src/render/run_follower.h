@@ -1,0 +1,45 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include <mujoco/mujoco.h>
+
+#include "core/trajectory.h"
+#include "io/run_log.h"
+#include "render/run_snapshot.h"
+#include "sim/lidar_scene.h"
+
+namespace patrol::render {
+
+/// Listens to a log as it is read, and always has the picture of it up to there.
+class RunFollower {
+ public:
+  /// `view` must outlive the follower.
+  RunFollower(const mjModel& view, const Pose2& T_world_map);
+
+  void add(const LaserScan& scan) { scan_ = scan; }
+  void add(const OdometryEstimate& odometry);
+  void add(const PoseEstimate& estimate);
+  void add(const ParticleSet& particles) { snapshot_.particles = particles.T_map_body; }
+  void add(const MapUpdate& update) { snapshot_.map = std::make_shared<const OccupancyGrid>(update.map); }
+  void add(const Path& plan);
+  void add(const Event& event) { snapshot_.event = event.text; }
+  void add(const GroundTruth& truth);
+  void add(const SimState& state) { snapshot_.state = state; }
+
+  const RunSnapshot& snapshot() const { return snapshot_; }
+
+ private:
+  Eigen::Vector3d on_ground(const Eigen::Vector2d& p_world_m) const;
+  void place_scan(const PoseEstimate& estimate);
+
+  sim::LidarScene ground_;
+  Pose3 T_body_lidar_;
+  Trajectory truth_;
+  std::deque<StampedPose> odometry_;  ///< of late, body in odom
+  std::optional<LaserScan> scan_;
+  RunSnapshot snapshot_;
+};
+
+}  // namespace patrol::render
