@@ -1,0 +1,190 @@
+#include "render/video.h"
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/opt.h>
+#include <libswscale/swscale.h>
+}
+
+#include "core/error.h"
+
+namespace patrol::render {
+namespace {
+
+std::string libav_words(int code) {
+  char text[AV_ERROR_MAX_STRING_SIZE] = {};
+  av_strerror(code, text, sizeof text);
+  return text;
+}
+
+int checked(int code, const char* doing) {
+  if (code < 0) throw std::runtime_error(fmt::format("video: {}: {}", doing, libav_words(code)));
+  return code;
+}
+
+template <typename Pointer>
+Pointer* made(Pointer* pointer, const char* what) {
+  if (pointer == nullptr) throw std::runtime_error(fmt::format("video: libav gives no {}", what));
+  return pointer;
+}
+
+}  // namespace
+
+struct VideoWriter::Encoder {
+  explicit Encoder(std::filesystem::path target) : file(std::move(target)), temporary(file.string() + ".part") {}
+  ~Encoder() {
+    av_packet_free(&packet);
+    av_frame_free(&picture);
+    sws_freeContext(scaler);
+    avcodec_free_context(&codec);
+    if (container != nullptr) {
+      avio_closep(&container->pb);
+      avformat_free_context(container);
+    }
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+  }
+  Encoder(const Encoder&) = delete;
+  Encoder& operator=(const Encoder&) = delete;
+
+  void open(int width, int height, double frames_per_second);
+  void encode(const AVFrame* frame);
+
+  std::filesystem::path file;
+  std::filesystem::path temporary;
+  AVFormatContext* container = nullptr;
+  AVCodecContext* codec = nullptr;
+  AVStream* stream = nullptr;
+  SwsContext* scaler = nullptr;
+  AVFrame* picture = nullptr;
+  AVPacket* packet = nullptr;
+  std::int64_t num_frames = 0;
+};
+
+void VideoWriter::Encoder::open(int width, int height, double frames_per_second) {
+  checked(avformat_alloc_output_context2(&container, nullptr, "mp4", temporary.c_str()), "no MP4 writer");
+  container->flags |= AVFMT_FLAG_BITEXACT;
+  const AVCodec* kind = avcodec_find_encoder_by_name("libx264");
+  const bool is_h264 = kind != nullptr;
+  if (!is_h264) kind = made(avcodec_find_encoder(AV_CODEC_ID_MPEG4), "encoder");
+  codec = made(avcodec_alloc_context3(kind), "encoder");
+  codec->width = width;
+  codec->height = height;
+  codec->framerate = av_d2q(frames_per_second, 100000);
+  codec->time_base = av_inv_q(codec->framerate);
+  codec->pix_fmt = AV_PIX_FMT_YUV420P;
+  codec->gop_size = 60;
+  codec->thread_count = 1;  // rate control of several threads depends on how many there are
+  codec->flags |= AV_CODEC_FLAG_BITEXACT;
+  if ((container->oformat->flags & AVFMT_GLOBALHEADER) != 0) codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+  if (is_h264) {
+    av_opt_set(codec->priv_data, "preset", "veryfast", 0);
+    av_opt_set(codec->priv_data, "crf", "23", 0);
+  } else {
+    codec->flags |= AV_CODEC_FLAG_QSCALE;
+    codec->global_quality = 4 * FF_QP2LAMBDA;
+  }
+  checked(avcodec_open2(codec, kind, nullptr), "the encoder does not start");
+
+  stream = made(avformat_new_stream(container, nullptr), "stream");
+  stream->time_base = codec->time_base;
+  stream->avg_frame_rate = codec->framerate;
+  checked(avcodec_parameters_from_context(stream->codecpar, codec), "stream parameters");
+  if (avio_open(&container->pb, temporary.c_str(), AVIO_FLAG_WRITE) < 0) {
+    throw InputError(file.string() + ": cannot be written");
+  }
+  AVDictionary* options = nullptr;
+  av_dict_set(&options, "movflags", "+faststart", 0);
+  const int code = avformat_write_header(container, &options);
+  av_dict_free(&options);
+  checked(code, "the file's head");
+
+  scaler = made(sws_getContext(width, height, AV_PIX_FMT_RGB24, width, height, AV_PIX_FMT_YUV420P,
+                               SWS_POINT | SWS_ACCURATE_RND | SWS_BITEXACT, nullptr, nullptr, nullptr),
+                "colour conversion");
+  picture = made(av_frame_alloc(), "picture");
+  picture->format = AV_PIX_FMT_YUV420P;
+  picture->width = width;
+  picture->height = height;
+  checked(av_frame_get_buffer(picture, 0), "no memory for a picture");
+  packet = made(av_packet_alloc(), "packet");
+}
+
+void VideoWriter::Encoder::encode(const AVFrame* frame) {
+  checked(avcodec_send_frame(codec, frame), "a frame is refused");
+  for (;;) {
+    const int code = avcodec_receive_packet(codec, packet);
+    if (code == AVERROR(EAGAIN) || code == AVERROR_EOF) return;
+    checked(code, "a frame cannot be encoded");
+    packet->duration = 1;
+    av_packet_rescale_ts(packet, codec->time_base, stream->time_base);
+    packet->stream_index = stream->index;
+    checked(av_interleaved_write_frame(container, packet), "a frame cannot be written");
+  }
+}
+
+VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int height, double frames_per_second)
+    : encoder_(std::make_unique<Encoder>(file)) {
+  if (width < 2 || height < 2 || width % 2 != 0 || height % 2 != 0) {
+    throw InputError(fmt::format("size = {}x{}: a video's width and height must be even", width, height));
+  }
+  encoder_->open(width, height, frames_per_second);
+}
+
+VideoWriter::~VideoWriter() = default;
+
+void VideoWriter::add(const Frame& frame) {
+  Encoder& encoder = *encoder_;
+  if (frame.width() != encoder.codec->width || frame.height() != encoder.codec->height) {
+    throw std::runtime_error("video: a frame is not of the video's size");
+  }
+  checked(av_frame_make_writable(encoder.picture), "no memory for a picture");
+  const std::uint8_t* rows[1] = {frame.bytes()};
+  const int stride[1] = {3 * frame.width()};
+  sws_scale(encoder.scaler, rows, stride, 0, frame.height(), encoder.picture->data, encoder.picture->linesize);
+  encoder.picture->pts = encoder.num_frames++;
+  encoder.encode(encoder.picture);
+}
+
+void VideoWriter::finish() {
+  Encoder& encoder = *encoder_;
+  encoder.encode(nullptr);
+  checked(av_write_trailer(encoder.container), "the file's end");
+  checked(avio_closep(&encoder.container->pb), "the file cannot be closed");
+  std::error_code error;
+  std::filesystem::rename(encoder.temporary, encoder.file, error);
+  if (error) throw InputError(encoder.file.string() + ": cannot be written: " + error.message());
+}
+
+VideoInfo inspect_video(const std::filesystem::path& file) {
+  AVFormatContext* opened = nullptr;
+  if (avformat_open_input(&opened, file.c_str(), nullptr, nullptr) < 0) {
+    throw InputError(file.string() + ": cannot be read as a video");
+  }
+  const auto close = [](AVFormatContext* context) { avformat_close_input(&context); };
+  const std::unique_ptr<AVFormatContext, decltype(close)> container(opened, close);
+  checked(avformat_find_stream_info(opened, nullptr), "no stream");
+  const int index = checked(av_find_best_stream(opened, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0), "no picture");
+  const AVStream* stream = opened->streams[index];
+  VideoInfo info{.width = stream->codecpar->width,
+                 .height = stream->codecpar->height,
+                 .duration_s = static_cast<double>(opened->duration) / AV_TIME_BASE};
+  const auto free_packet = [](AVPacket* packet) { av_packet_free(&packet); };
+  const std::unique_ptr<AVPacket, decltype(free_packet)> packet(made(av_packet_alloc(), "packet"), free_packet);
+  while (av_read_frame(opened, packet.get()) >= 0) {
+    if (packet->stream_index == index) ++info.num_frames;
+    av_packet_unref(packet.get());
+  }
+  return info;
+}
+
+}  // namespace patrol::render
