@@ -1,12 +1,14 @@
 #include "io/route_json.h"
 
+#include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "io/atomic_file.h"
 #include "io/settings_yaml.h"
 
 namespace patrol::io {
@@ -83,6 +85,19 @@ Station read_station(const std::string& place, const Json& json) {
   return station;
 }
 
+/// Events and scores name stations: each name and number stands for one.
+void check_unique(const std::string& file, const std::vector<Station>& stations) {
+  std::set<std::string> names;
+  std::set<int> numbers;
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const auto refuse = [&](const std::string& what) {
+      throw InputError(fmt::format("{}: stations[{}]: {} stands there twice", file, i, what));
+    };
+    if (!names.insert(stations[i].name).second) refuse("name " + stations[i].name);
+    if (!numbers.insert(stations[i].number).second) refuse(fmt::format("number {}", stations[i].number));
+  }
+}
+
 std::vector<Eigen::Vector2d> read_line(const std::string& place, const Json& json) {
   const ObjectReader reader(place, json, {"name", "line"});
   std::vector<Eigen::Vector2d> line;
@@ -96,10 +111,9 @@ std::vector<Eigen::Vector2d> read_line(const std::string& place, const Json& jso
 }
 
 Json parse(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in) throw InputError(file.string() + ": cannot be read");
+  const std::string text = load_text(file);
   try {
-    return Json::parse(in);
+    return Json::parse(text);
   } catch (const Json::parse_error& error) {
     throw InputError(fmt::format("{}: is not JSON at byte {}", file.string(), error.byte));
   }
@@ -119,7 +133,9 @@ RouteFile load_route(const std::filesystem::path& file) {
   for (std::size_t i = 0; i < stations.size(); ++i) {
     route.route.stations.push_back(read_station(fmt::format("{}: stations[{}]", name, i), stations[i]));
   }
+  check_unique(name, route.route.stations);
   if (root.has("keep_out")) {
+    if (!root.member("keep_out").is_array()) root.fail("keep_out must be a list");
     for (std::size_t i = 0; i < root.member("keep_out").size(); ++i) {
       route.route.keep_out_lines.push_back(read_line(fmt::format("{}: keep_out[{}]", name, i), root.member("keep_out")[i]));
     }

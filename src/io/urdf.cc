@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+#include <map>
+#include <regex>
 #include <sstream>
 
+#include <Eigen/Eigenvalues>
+#include <console_bridge/console.h>
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include "core/error.h"
 #include "core/leg_kinematics.h"
+#include "io/atomic_file.h"
 
 namespace patrol::io {
 namespace {
@@ -20,14 +24,6 @@ constexpr std::array kLegNames = {"FL", "FR", "RL", "RR"};
 
 /// A usual standing posture (abduction, hip, knee), at which the footprint is taken.
 const Eigen::Vector3d kStandingPosture(0.0, 0.8, -1.6);
-
-std::string read_file(const std::string& path) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path)) throw InputError(path + ": cannot be read");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 /// Line of the first place that names `name`, 0 if none does.
 int line_of(const std::string& text, const std::string& name) {
@@ -39,11 +35,12 @@ int line_of(const std::string& text, const std::string& name) {
 /// Reads elements of one file, with errors that say where.
 class UrdfReader {
  public:
-  explicit UrdfReader(const std::string& path) : path_(path), text_(read_file(path)) {
+  explicit UrdfReader(const std::string& path) : path_(path), text_(load_text(path)) {
     check_numbers();
     check_links();
-    model_ = urdf::parseURDF(text_);
-    if (!model_) throw InputError(path_ + ": is not a URDF that urdfdom can read (check_urdf says more)");
+    parse();
+    check_tree();
+    check_inertias();
   }
 
   RobotDescription read() const;
@@ -55,6 +52,9 @@ class UrdfReader {
 
   void check_numbers() const;
   void check_links() const;
+  void parse();
+  void check_tree() const;
+  void check_inertias() const;
   urdf::JointConstSharedPtr joint(const std::string& name) const;
   Pose3 joint_origin(const std::string& name) const;
   LegGeometry read_leg(const std::string& name) const;
@@ -72,17 +72,27 @@ Pose3 to_pose(const urdf::Pose& pose) {
           Eigen::Quaterniond(pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z)};
 }
 
-/// urdfdom reads "nan" as a number and goes on: refuse it at the text.
+/// Whether every word is a finite number.
+bool are_numbers(const std::string& words_text) {
+  std::istringstream words(words_text);
+  for (std::string word; words >> word;) {
+    const char* begin = word.data() + (word.starts_with('+') ? 1 : 0);
+    const char* const end = word.data() + word.size();
+    double value = 0.0;
+    const auto [stop, error] = std::from_chars(begin, end, value);
+    if (error != std::errc() || stop != end || !std::isfinite(value)) return false;
+  }
+  return true;
+}
+
+/// urdfdom takes "nan" for a number, and of "inf" it does not say where: refuse them at the text.
 void UrdfReader::check_numbers() const {
-  std::istringstream lines(text_);
-  int number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    for (const char* bad : {"\"nan", " nan", "\"NaN", " NaN", "\"inf", "\"-inf", " inf\"", "\"-nan"}) {
-      if (line.find(bad) != std::string::npos) {
-        throw input_error(path_, number, fmt::format("a number must be finite: {}", line.substr(line.find_first_not_of(' '))));
-      }
-    }
+  const std::regex numbers(
+      R"rx((xyz|rpy|size|scale|radius|length|value|i[xyz][xyz]|lower|upper|effort|velocity)\s*=\s*"([^"]*)")rx");
+  for (std::sregex_iterator at(text_.begin(), text_.end(), numbers), end; at != end; ++at) {
+    if (are_numbers((*at)[2])) continue;
+    const auto line = 1 + std::count(text_.begin(), text_.begin() + at->position(), '\n');
+    throw input_error(path_, static_cast<int>(line), fmt::format("{}: must be made of finite numbers", at->str()));
   }
 }
 
@@ -97,6 +107,58 @@ void UrdfReader::check_links() const {
         fail(link, "a joint names this link as its " + tag + ", but there is no such link");
       }
     }
+  }
+}
+
+/// Keeps what urdfdom would print, for as long as it lives.
+class ParserErrors : public console_bridge::OutputHandler {
+ public:
+  ParserErrors() { console_bridge::useOutputHandler(this); }
+  ~ParserErrors() override { console_bridge::restorePreviousOutputHandler(); }
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_.empty()) first_ = text;
+  }
+  const std::string& first() const { return first_; }
+
+ private:
+  std::string first_;
+};
+
+void UrdfReader::parse() {
+  ParserErrors errors;
+  model_ = urdf::parseURDF(text_);
+  if (!errors.first().empty()) throw InputError(fmt::format("{}: is not a URDF: {}", path_, errors.first()));
+  if (!model_) throw InputError(path_ + ": is not a URDF that urdfdom can read (check_urdf says more)");
+}
+
+/// urdfdom lets a link have two parents, and joints go round in a circle beside the tree.
+void UrdfReader::check_tree() const {
+  std::map<std::string, std::string> parent_of;  // link -> link
+  for (const auto& [name, joint] : model_->joints_) {
+    if (!parent_of.emplace(joint->child_link_name, joint->parent_link_name).second) {
+      fail(joint->child_link_name, "two joints name this link as their child");
+    }
+  }
+  for (const auto& [name, link] : model_->links_) {
+    std::size_t steps = 0;
+    for (auto at = parent_of.find(name); at != parent_of.end(); at = parent_of.find(at->second)) {
+      if (++steps > parent_of.size()) fail(name, "the joints go round in a circle here");
+    }
+  }
+}
+
+/// Principal moments of a body are positive, and none is more than the two others together.
+void UrdfReader::check_inertias() const {
+  for (const auto& [name, link] : model_->links_) {
+    if (!link->inertial) continue;
+    const urdf::Inertial& i = *link->inertial;
+    Eigen::Matrix3d inertia;
+    inertia << i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz;
+    const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+    constexpr double kRounding = 1e-4;  // files carry few digits
+    if (moments[0] > 0.0 && moments[2] <= (moments[0] + moments[1]) * (1.0 + kRounding)) continue;
+    fail(name, fmt::format("the inertia is of no body: its principal moments are {:.3g}, {:.3g} and {:.3g} kg m2", moments[0],
+                           moments[1], moments[2]));
   }
 }
 

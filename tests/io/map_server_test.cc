@@ -1,0 +1,131 @@
+#include "io/map_server.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::io {
+namespace {
+
+using test::read_bytes, test::TemporaryFolder, test::write_bytes;
+using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr;
+
+constexpr std::int8_t F = kFree, X = kOccupied, U = kUnknown;
+
+OccupancyGrid make_map() {
+  OccupancyGrid map({.resolution_m = 0.05, .width = 3, .height = 2, .origin_m = {-1.25, 10.0}});
+  map.values() = {F, X, U,   // low y
+                  X, X, F};  // high y
+  return map;
+}
+
+class MapServer : public ::testing::Test {
+ protected:
+  /// A map in YAML and PGM as other programs may write them.
+  OccupancyGrid load(const std::string& yaml, const std::string& pgm) {
+    write_bytes(folder / "m.yaml", yaml);
+    write_bytes(folder / "m.pgm", pgm);
+    return load_map(folder / "m.yaml");
+  }
+  std::string complaint_about(const std::string& yaml, const std::string& pgm) {
+    try {
+      load(yaml, pgm);
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      return what.substr(std::min(what.size(), folder.path().string().size() + 1));
+    }
+    return "";
+  }
+
+  TemporaryFolder folder;
+  const std::string good_yaml =
+      "image: m.pgm\nresolution: 0.1\norigin: [1.0, 2.0, 0.0]\nnegate: 0\noccupied_thresh: "
+      "0.65\nfree_thresh: 0.196\n";
+};
+
+TEST_F(MapServer, ThereAndBackKeepsCellsAndFrame) {
+  save_map(folder / "map.yaml", make_map());
+  const OccupancyGrid map = load_map(folder / "map.yaml");
+  EXPECT_EQ(map.values(), make_map().values());
+  EXPECT_EQ(map.geometry().resolution_m, 0.05);
+  EXPECT_EQ(map.geometry().origin_m, Eigen::Vector2d(-1.25, 10.0));
+}
+
+TEST_F(MapServer, TheImageBeginsWithTheHighestRow) {
+  save_map(folder / "map.yaml", make_map());
+  EXPECT_EQ(read_bytes(folder / "map.pgm"),
+            std::string("P5\n3 2\n255\n") + std::string("\x00\x00\xfe\xfe\x00\xcd", 6))
+      << "occupied 0, free 254, unknown 205";
+}
+
+TEST_F(MapServer, TheYamlIsMapServers) {
+  save_map(folder / "map.yaml", make_map());
+  EXPECT_EQ(read_bytes(folder / "map.yaml"),
+            "image: map.pgm\nmode: trinary\nresolution: 0.05\norigin: [-1.25, 10, 0.0]\nnegate: "
+            "0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+}
+
+TEST_F(MapServer, PercentagesBecomeTrinaryAtSixtyFiveAndNineteen) {
+  OccupancyGrid map({.resolution_m = 0.05, .width = 5, .height = 1});
+  map.values() = {64, 65, 19, 20, 99};
+  save_map(folder / "map.yaml", map);
+  EXPECT_THAT(load_map(folder / "map.yaml").values(), ElementsAre(U, X, F, U, X));
+}
+
+TEST_F(MapServer, ReadsPicturesInFiguresWithComments) {
+  const OccupancyGrid map = load(good_yaml, "P2 # by hand\n# two rows\n2 2\n255\n0 254\n# middle\n205 0\n");
+  EXPECT_THAT(map.values(), ElementsAre(U, X, X, F));
+  EXPECT_EQ(map.geometry().resolution_m, 0.1);
+}
+
+TEST_F(MapServer, ReadsBinaryPicturesWithComments) {
+  EXPECT_THAT(load(good_yaml, std::string("P5\n# CREATOR: GIMP\n2 1\n# x\n255\n") + '\n' + '\xfe').values(),
+              ElementsAre(X, F))
+      << "a pixel may look like a line's end";
+}
+
+TEST_F(MapServer, NegatedPicturesSwapBlackAndWhite) {
+  std::string negated = good_yaml;
+  negated.replace(negated.find("negate: 0"), 9, "negate: 1");
+  EXPECT_THAT(load(negated, "P2\n2 1\n255\n0 254\n").values(), ElementsAre(F, X));
+}
+
+TEST_F(MapServer, ThresholdsAreTheFiles) {
+  // Grey 100: occupied with probability 155/255 = 0.61.
+  EXPECT_THAT(load(good_yaml, "P2\n1 1\n255\n100\n").values(), ElementsAre(U));
+  std::string lower = good_yaml;
+  lower.replace(lower.find("0.65"), 4, "0.60");
+  EXPECT_THAT(load(lower, "P2\n1 1\n255\n100\n").values(), ElementsAre(X));
+}
+
+TEST_F(MapServer, BrokenPicturesAreNamed) {
+  EXPECT_EQ(complaint_about(good_yaml, std::string("P5\n3 2\n255\n") + "abcde"), "m.pgm: ends too early");
+  EXPECT_EQ(complaint_about(good_yaml, "P2\n3 2\n255\n0 0 0 0 0\n"), "m.pgm: ends too early");
+  EXPECT_EQ(complaint_about(good_yaml, "P5\n100000 100000\n255\n"), "m.pgm: ends too early");
+  EXPECT_EQ(complaint_about(good_yaml, "P2\n1 1\n255\n300\n"), "m.pgm: a pixel of 300 is brighter than 255");
+  EXPECT_EQ(complaint_about(good_yaml, "P5\n0 2\n255\n"), "m.pgm: is not an 8-bit PGM");
+  EXPECT_EQ(complaint_about(good_yaml, "P6\n1 1\n255\nabc"), "m.pgm: is not an 8-bit PGM");
+  EXPECT_EQ(complaint_about(good_yaml, ""), "m.pgm: is not an 8-bit PGM");
+}
+
+TEST_F(MapServer, WrongKeysAreNamed) {
+  const std::string pgm = "P2\n1 1\n255\n0\n";
+  EXPECT_EQ(complaint_about("image: m.pgm\norigin: [0, 0, 0]\n", pgm),
+            "m.yaml: resolution: must be a number");
+  EXPECT_EQ(complaint_about("image: m.pgm\nresolution: .nan\norigin: [0, 0, 0]\n", pgm),
+            "m.yaml: resolution: must be a number");
+  EXPECT_EQ(complaint_about("image: m.pgm\nresolution: -1\norigin: [0, 0, 0]\n", pgm),
+            "m.yaml: resolution: must be positive");
+  EXPECT_EQ(complaint_about("image: m.pgm\nresolution: 1\norigin: 0\n", pgm),
+            "m.yaml: origin: must be a list x, y, yaw");
+  EXPECT_EQ(complaint_about("image: m.pgm\nresolution: 1\norigin: [0, 0, 0.5]\n", pgm),
+            "m.yaml: origin: a turned map (yaw other than 0) is not read");
+  EXPECT_EQ(complaint_about("resolution: 1\norigin: [0, 0, 0]\n", pgm), "m.yaml: image: is missing");
+  EXPECT_EQ(complaint_about("image: n.pgm\nresolution: 1\norigin: [0, 0, 0]\n", pgm),
+            "n.pgm: there is no such file");
+}
+
+}  // namespace
+}  // namespace patrol::io

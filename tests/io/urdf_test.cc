@@ -1,0 +1,173 @@
+#include "io/urdf.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <vector>
+
+#include "core/error.h"
+#include "core/leg_kinematics.h"
+#include "tests/support/pose_near.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::io {
+namespace {
+
+using test::TemporaryFile, test::VectorNear;
+using ::testing::HasSubstr, ::testing::MatchesRegex, ::testing::StartsWith;
+
+const std::string kQuadruped = PATROL_SOURCE_DIR "/models/quadruped/quadruped.urdf";
+
+/// The quadruped's file with the first `old` behind `after` replaced.
+std::string changed(const std::string& old, const std::string& by, const std::string& after = "") {
+  std::string text = test::read_bytes(kQuadruped);
+  const std::size_t from = text.find(after);
+  const std::size_t at = text.find(old, from);
+  if (from == std::string::npos || at == std::string::npos)
+    ADD_FAILURE() << "the URDF no longer holds " << old;
+  else
+    text.replace(at, old.size(), by);
+  return text;
+}
+
+std::string complaint_about(const std::string& text) {
+  const TemporaryFile file("q.urdf", text);
+  try {
+    load_robot_description(file.path());
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    EXPECT_EQ(what.find('\n'), std::string::npos) << "one line";
+    return what.substr(std::min(what.size(), what.find("q.urdf")));
+  }
+  return "";
+}
+
+// The figures that the file's head cites.
+TEST(Quadruped, WeighsThirteenPointFiveSixKilograms) {
+  EXPECT_NEAR(load_robot_description(kQuadruped).mass_kg, 13.56, 0.005);
+}
+
+TEST(Quadruped, HasFourLegsOfThreeJointsInOrder) {
+  const RobotDescription robot = load_robot_description(kQuadruped);
+  ASSERT_EQ(robot.legs.size(), 4U);
+  ASSERT_EQ(robot.joint_names.size(), 12U);
+  ASSERT_EQ(robot.joint_limits.size(), 12U);
+  const std::vector<std::string> names = {"FL", "FR", "RL", "RR"};
+  for (std::size_t leg = 0; leg < 4; ++leg) {
+    const LegGeometry& geometry = robot.legs[leg];
+    const double front = leg < 2 ? 1.0 : -1.0, left = leg % 2 == 0 ? 1.0 : -1.0;
+    EXPECT_EQ(geometry.name, names[leg]);
+    EXPECT_THAT(geometry.hip_in_body,
+                VectorNear(Eigen::Vector3d(front * 0.376 / 2, left * 0.0935 / 2, 0.0), 1e-3));
+    EXPECT_NEAR(geometry.abduction_offset_m, left * 0.08, 1e-9);
+    EXPECT_NEAR(geometry.thigh_m, 0.213, 1e-9);
+    EXPECT_NEAR(geometry.shank_m, 0.213, 1e-9);
+    EXPECT_EQ(robot.joint_names[3 * leg], names[leg] + "_abduction_joint");
+    EXPECT_EQ(robot.joint_names[3 * leg + 1], names[leg] + "_hip_joint");
+    EXPECT_EQ(robot.joint_names[3 * leg + 2], names[leg] + "_knee_joint");
+    EXPECT_NEAR(robot.joint_limits[3 * leg].effort_nm, 23.7, 1e-9);
+    EXPECT_NEAR(robot.joint_limits[3 * leg + 2].effort_nm, 35.55, 1e-9);
+    EXPECT_NEAR(robot.joint_limits[3 * leg + 2].velocity_radps, 20.06, 1e-9);
+  }
+}
+
+TEST(Quadruped, StandsOnFeetWithinItsFootprint) {
+  const RobotDescription robot = load_robot_description(kQuadruped);
+  const auto& hull = robot.footprint_m;
+  ASSERT_GE(hull.size(), 4U);
+  const auto is_inside = [&](const Eigen::Vector2d& p) {
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+      const Eigen::Vector2d side = hull[(i + 1) % hull.size()] - hull[i], to = p - hull[i];
+      if (side.x() * to.y() - side.y() * to.x() < 0.0) return false;
+    }
+    return true;
+  };
+  for (const LegGeometry& leg : robot.legs)
+    EXPECT_TRUE(is_inside(foot_position(leg, {0.0, 0.8, -1.6}).head<2>())) << leg.name;
+  EXPECT_FALSE(is_inside({0.5, 0.0}));
+}
+
+TEST(Quadruped, CarriesItsSensors) {
+  const auto sensors = load_robot_description(kQuadruped).T_body_sensor;
+  for (const char* name : {"lidar", "lidar3d", "imu", "tdlas", "gnss"})
+    EXPECT_TRUE(sensors.contains(name)) << name;
+  EXPECT_THAT(sensors.at("lidar3d").position, VectorNear(Eigen::Vector3d(0.1, 0.0, 0.098), 1e-12));
+}
+
+TEST(Urdf, AMissingLinkIsNamedWithItsLine) {
+  EXPECT_THAT(
+      complaint_about(changed("<child link=\"imu\"/>", "<child link=\"gyro\"/>")),
+      MatchesRegex("q.urdf:[0-9]+: gyro: a joint names this link as its child, but there is no such link"));
+  EXPECT_THAT(
+      complaint_about(changed("<parent link=\"base_link\"/>", "<parent link=\"trunk\"/>")),
+      MatchesRegex("q.urdf:[0-9]+: trunk: a joint names this link as its parent, but there is no such link"));
+}
+
+TEST(Urdf, NotANumberAndInfinityAreNamedWithTheirLine) {
+  for (const char* bad : {"nan", "NaN", "inf", "-inf", "Infinity"}) {
+    EXPECT_THAT(
+        complaint_about(changed("<mass value=\"5.2\"/>", std::string("<mass value=\"") + bad + "\"/>")),
+        MatchesRegex("q.urdf:[0-9]+: .*: must be made of finite numbers"))
+        << bad;
+    EXPECT_THAT(complaint_about(changed("xyz=\"0.1 0 0.098\"", std::string("xyz=\"0.1 ") + bad + " 0.098\"")),
+                MatchesRegex("q.urdf:[0-9]+: .*: must be made of finite numbers"))
+        << bad;
+  }
+}
+
+TEST(Urdf, WordsThatOnlyBeginLikeNanOrInfAreNoNumbers) {
+  EXPECT_EQ(complaint_about(changed("<robot name=\"quadruped\">", "<robot name=\"nancy in information\">")),
+            "");
+}
+
+TEST(Urdf, MassesMustBePositive) {
+  EXPECT_THAT(complaint_about(changed("<mass value=\"5.2\"/>", "<mass value=\"-5.2\"/>")),
+              MatchesRegex("q.urdf:[0-9]+: base_link: mass must be positive"));
+  EXPECT_THAT(complaint_about(changed("<mass value=\"5.2\"/>", "<mass value=\"0\"/>")),
+              HasSubstr("base_link: mass must be positive"));
+}
+
+TEST(Urdf, InertiasMustBeThoseOfABody) {
+  EXPECT_THAT(complaint_about(changed("ixx=\"0.0116567\"", "ixx=\"-0.0116567\"")),
+              HasSubstr("base_link: the inertia is of no body"));
+  EXPECT_THAT(complaint_about(changed("ixx=\"0.0116567\"", "ixx=\"0.2\"")),
+              HasSubstr("base_link: the inertia is of no body"))
+      << "more than the two others";
+}
+
+TEST(Urdf, JointsThatGoRoundInACircleAreRefused) {
+  EXPECT_THAT(complaint_about(changed("<parent link=\"base_link\"/>", "<parent link=\"FL_shank\"/>",
+                                      "name=\"FL_abduction_joint\"")),
+              MatchesRegex("q.urdf:[0-9]+: FL_[a-z]+: the joints go round in a circle here"));
+}
+
+TEST(Urdf, ALinkWithTwoParentsIsRefused) {
+  const std::string second =
+      "<joint name=\"loop\" type=\"fixed\"><parent link=\"RR_foot\"/><child "
+      "link=\"FL_foot\"/></joint></robot>";
+  EXPECT_THAT(complaint_about(changed("</robot>", second)),
+              MatchesRegex("q.urdf:[0-9]+: FL_foot: two joints name this link as their child"));
+}
+
+TEST(Urdf, LimitsMustLeaveRoom) {
+  std::string text = test::read_bytes(kQuadruped);
+  const std::size_t joint = text.find("name=\"FL_knee_joint\""), at = text.find("lower=\"", joint);
+  ASSERT_NE(at, std::string::npos);
+  text.insert(at + 7, "9");
+  text.erase(at + 8, text[at + 8] == '-' ? 1 : 0);
+  EXPECT_THAT(complaint_about(text),
+              MatchesRegex("q.urdf:[0-9]+: FL_knee_joint: limit lower .* is not below upper .*"));
+}
+
+TEST(Urdf, AFileCutShortOrNotThereIsRefused) {
+  const std::string whole = test::read_bytes(kQuadruped);
+  EXPECT_THAT(complaint_about(whole.substr(0, whole.size() / 2)), StartsWith("q.urdf:"));
+  EXPECT_THAT(complaint_about("no XML at all"), StartsWith("q.urdf:"));
+  EXPECT_THAT(complaint_about(""), StartsWith("q.urdf:"));
+  EXPECT_THROW(load_robot_description("/nowhere/q.urdf"), InputError);
+  EXPECT_THROW(load_robot_description("/tmp"), InputError);
+}
+
+}  // namespace
+}  // namespace patrol::io
