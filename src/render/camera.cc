@@ -65,7 +65,7 @@ View CameraRig::follow(const Pose3& T_world_body, double elapsed_s) {
 
   switch (kind_) {
     case CameraKind::kTop: {
-      constexpr double kHeight_m = 16.0;
+      constexpr double kHeight_m = 14.0;
       return look_at(*focus_m_ + kHeight_m * Eigen::Vector3d::UnitZ(), *focus_m_);
     }
     case CameraKind::kOnboard: {

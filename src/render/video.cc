@@ -84,6 +84,7 @@ void VideoWriter::Encoder::open(int width, int height, double frames_per_second)
   codec->pix_fmt = AV_PIX_FMT_YUV420P;
   codec->gop_size = 60;
   codec->thread_count = 1;  // rate control of several threads depends on how many there are
+  av_log_set_level(AV_LOG_ERROR);
   codec->flags |= AV_CODEC_FLAG_BITEXACT;
   if ((container->oformat->flags & AVFMT_GLOBALHEADER) != 0) codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   if (is_h264) {
