@@ -52,7 +52,9 @@ class LineTransform {
 }  // namespace
 
 DistanceField::DistanceField(const Grid<std::uint8_t>& occupied)
-    : geometry_(occupied.geometry()), distance_m_(geometry_.size()) {
+    : geometry_(occupied.geometry()),
+      distance_m_(geometry_.size()),
+      is_empty_(std::all_of(occupied.values().begin(), occupied.values().end(), [](auto value) { return value == 0; })) {
   const auto width = static_cast<std::size_t>(geometry_.width), height = static_cast<std::size_t>(geometry_.height);
   std::transform(occupied.values().begin(), occupied.values().end(), distance_m_.begin(),
                  [](std::uint8_t is_occupied) { return is_occupied != 0 ? 0.0f : kFar; });
@@ -69,15 +71,12 @@ DistanceField::DistanceField(const Grid<std::uint8_t>& occupied)
     const auto begin = distance_m_.begin() + static_cast<std::ptrdiff_t>(row * width);
     std::copy_n(begin, width, line.begin());
     row_transform.apply(line);
-    std::transform(line.begin(), line.end(), begin, [resolution_m](float squared_cells) {
-      return squared_cells < kFar / 2 ? resolution_m * std::sqrt(squared_cells)
-                                      : std::numeric_limits<float>::infinity();
-    });
+    std::transform(line.begin(), line.end(), begin,
+                   [resolution_m](float squared_cells) { return resolution_m * std::sqrt(squared_cells); });
   }
 }
 
-double DistanceField::distance_m(const Eigen::Vector2d& p_m) const {
-  if (distance_m_.empty()) return std::numeric_limits<double>::infinity();
+DistanceField::Place DistanceField::place_of(const Eigen::Vector2d& p_m) const {
   const Eigen::Vector2d last(geometry_.width - 1, geometry_.height - 1);
   const Eigen::Vector2d q = (p_m - geometry_.origin_m) / geometry_.resolution_m - Eigen::Vector2d(0.5, 0.5);
   const Eigen::Vector2d inside = q.cwiseMax(0.0).cwiseMin(last);
@@ -86,17 +85,28 @@ double DistanceField::distance_m(const Eigen::Vector2d& p_m) const {
   const auto width = static_cast<std::size_t>(geometry_.width);
   const std::size_t right = geometry_.width > 1 ? 1 : 0, up = geometry_.height > 1 ? width : 0;
   const std::size_t at = row * width + col;
-  const double fx = inside.x() - static_cast<double>(col), fy = inside.y() - static_cast<double>(row);
-  const double low = (1.0 - fx) * distance_m_[at] + fx * distance_m_[at + right];
-  const double high = (1.0 - fx) * distance_m_[at + up] + fx * distance_m_[at + up + right];
-  return (1.0 - fy) * low + fy * high + geometry_.resolution_m * (q - inside).norm();
+  return {.corners = {distance_m_[at], distance_m_[at + right], distance_m_[at + up], distance_m_[at + up + right]},
+          .fraction = inside - Eigen::Vector2d(static_cast<double>(col), static_cast<double>(row)),
+          .way_to_grid = q - inside};
 }
 
+double DistanceField::distance_m(const Eigen::Vector2d& p_m) const {
+  if (is_empty_) return std::numeric_limits<double>::infinity();
+  const auto [corners, f, way_to_grid] = place_of(p_m);
+  const double low = (1.0 - f.x()) * corners[0] + f.x() * corners[1];
+  const double high = (1.0 - f.x()) * corners[2] + f.x() * corners[3];
+  return (1.0 - f.y()) * low + f.y() * high + geometry_.resolution_m * way_to_grid.norm();
+}
+
+// Of the bilinear piece itself. Differences over a step would be too flat within that step of an occupied cell, where
+// the distance has its fold.
 Eigen::Vector2d DistanceField::gradient(const Eigen::Vector2d& p_m) const {
-  const double h = 0.5 * geometry_.resolution_m;
-  const Eigen::Vector2d dx(h, 0.0), dy(0.0, h);
-  return Eigen::Vector2d(distance_m(p_m + dx) - distance_m(p_m - dx), distance_m(p_m + dy) - distance_m(p_m - dy)) /
-         (2.0 * h);
+  if (is_empty_) return Eigen::Vector2d::Zero();
+  const auto [corners, f, way_to_grid] = place_of(p_m);
+  const Eigen::Vector2d rise((1.0 - f.y()) * (corners[1] - corners[0]) + f.y() * (corners[3] - corners[2]),
+                             (1.0 - f.x()) * (corners[2] - corners[0]) + f.x() * (corners[3] - corners[1]));
+  const Eigen::Vector2d is_inside = (way_to_grid.array() == 0.0).cast<double>();
+  return rise.cwiseProduct(is_inside) / geometry_.resolution_m + way_to_grid.stableNormalized();
 }
 
 Grid<std::uint8_t> occupied_cells(const OccupancyGrid& map) {

@@ -1,0 +1,64 @@
+#include "score/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace patrol::score {
+namespace {
+
+constexpr double kExactTol = 1e-12;
+
+TEST(Statistics, OfOneToFiveAreThreeTwoAndAHalfAndRootEleven) {
+  const std::vector<double> values = {5.0, 1.0, 4.0, 2.0, 3.0};
+  EXPECT_NEAR(mean(values), 3.0, kExactTol);
+  EXPECT_NEAR(variance(values), 2.5, kExactTol);                      // (4 + 1 + 0 + 1 + 4) / 4
+  EXPECT_NEAR(root_mean_square(values), std::sqrt(11.0), kExactTol);  // 55 / 5
+  EXPECT_NEAR(maximum(values), 5.0, kExactTol);
+}
+
+TEST(Statistics, OfNothingAreZero) {
+  EXPECT_EQ(mean({}), 0.0);
+  EXPECT_EQ(variance({}), 0.0);
+  EXPECT_EQ(variance({7.0}), 0.0);
+  EXPECT_EQ(root_mean_square({}), 0.0);
+  EXPECT_EQ(maximum({}), 0.0);
+  EXPECT_EQ(percentile({}, 0.5), 0.0);
+  EXPECT_EQ(confidence_95({7.0}), 0.0);
+}
+
+// Hyndman and Fan's type 7, as R's default.
+TEST(Percentile, IsLinearBetweenNeighbours) {
+  const std::vector<double> values = {4.0, 1.0, 3.0, 2.0};
+  EXPECT_NEAR(percentile(values, 0.25), 1.75, kExactTol);
+  EXPECT_NEAR(percentile(values, 0.5), 2.5, kExactTol);
+  EXPECT_NEAR(percentile(values, 0.95), 3.85, kExactTol);
+  EXPECT_EQ(percentile(values, 0.0), 1.0);
+  EXPECT_EQ(percentile(values, 1.0), 4.0);
+  EXPECT_EQ(percentile({9.0}, 0.95), 9.0);
+}
+
+/// Half width over the standard error: the quantile of Student's t itself.
+double quantile_used(int count) {
+  std::vector<double> values(static_cast<std::size_t>(count));
+  std::iota(values.begin(), values.end(), 0.0);
+  return confidence_95(values) / std::sqrt(variance(values) / count);
+}
+
+TEST(Confidence95, OfOneToFiveIsOnePointNineSix) {
+  EXPECT_NEAR(confidence_95({1.0, 2.0, 3.0, 4.0, 5.0}), 2.7764 * std::sqrt(2.5 / 5.0), 1e-4);  // 1.9632
+}
+
+// Quantiles as tables of the distribution give them.
+TEST(Confidence95, UsesStudentsQuantiles) {
+  EXPECT_NEAR(quantile_used(2), 12.7062, 1e-4);
+  EXPECT_NEAR(quantile_used(10), 2.2622, 1e-4);
+  EXPECT_NEAR(quantile_used(31), 2.0423, 1e-4);
+  EXPECT_NEAR(quantile_used(41), 2.0211, 2e-3);
+  EXPECT_NEAR(quantile_used(61), 2.0003, 1e-3);
+  EXPECT_NEAR(quantile_used(100'001), 1.9600, 1e-4);
+}
+
+}  // namespace
+}  // namespace patrol::score

@@ -1,0 +1,211 @@
+#include "score/trajectory_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "core/error.h"
+#include "tests/support/pose_near.h"
+
+namespace patrol::score {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Pose2Near, test::Pose3Near;
+
+constexpr double kExactTol = 1e-9;
+constexpr double kDeg = std::numbers::pi / 180.0;
+
+/// Steps of a quarter of a metre, ten a second, each pose changed by `change(i, pose)`.
+Trajectory make_trajectory(const std::vector<Pose2>& poses,
+                           const std::function<Pose2(int, const Pose2&)>& change) {
+  Trajectory trajectory;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const int index = static_cast<int>(i);
+    trajectory.push_back({index * 100ms, to_spatial(change(index, poses[i]), 0.3)});
+  }
+  return trajectory;
+}
+Trajectory make_trajectory(const std::vector<Pose2>& poses) {
+  return make_trajectory(poses, [](int, const Pose2& pose) { return pose; });
+}
+
+/// `steps` steps of 0.25 m along x from (2, 3).
+std::vector<Pose2> straight(int steps) {
+  std::vector<Pose2> poses;
+  for (int i = 0; i <= steps; ++i) poses.push_back({2.0 + 0.25 * i, 3.0, 0.0});
+  return poses;
+}
+
+/// 10 m east, then 10 m north.
+std::vector<Pose2> corner() {
+  std::vector<Pose2> poses = straight(40);
+  for (int i = 0; i <= 40; ++i) poses.push_back({12.0, 3.0 + 0.25 * i, std::numbers::pi / 2.0});
+  return poses;
+}
+
+TEST(TrajectoryError, OfThreeByFourCentimetresBesideIsFiveEverywhereAndNoneFromMetreToMetre) {
+  const Trajectory truth = make_trajectory(corner());
+  const Trajectory estimate = make_trajectory(corner(), [](int, const Pose2& p) {
+    return Pose2{p.x + 0.03, p.y - 0.04, p.yaw};
+  });
+  const TrajectoryError error = trajectory_error(estimate, {}, truth);
+  EXPECT_EQ(error.num_poses, 82U);
+  EXPECT_NEAR(error.ate_rmse_m, 0.05, kExactTol);
+  EXPECT_NEAR(error.ate_mean_m, 0.05, kExactTol);
+  EXPECT_NEAR(error.ate_max_m, 0.05, kExactTol);
+  EXPECT_NEAR(error.heading_rmse_deg, 0.0, kExactTol);
+  EXPECT_NEAR(error.rpe_trans_1m_m, 0.0, kExactTol);
+  EXPECT_NEAR(error.rpe_rot_1m_deg, 0.0, kExactTol);
+}
+
+// A chord of the turn: 2 s sin(alpha / 2) after s metres. For s = 0, 0.25 ... 10 the mean square of s is
+// 0.25^2 n (2 n + 1) / 6 with n = 40.
+TEST(TrajectoryError, OfOneDegreeAtTheStartGrowsInProportionToTheWay) {
+  const Pose2 T_world_map{2.0, 3.0, 1.0 * kDeg};
+  const Trajectory truth = make_trajectory(straight(40));
+  const Trajectory estimate = make_trajectory(straight(40), [](int, const Pose2& p) {
+    return Pose2{p.x - 2.0, p.y - 3.0, p.yaw};
+  });
+  const TrajectoryError error = trajectory_error(estimate, T_world_map, truth);
+  const double chord = 2.0 * std::sin(0.5 * kDeg), mean_square = 0.0625 * 40.0 * 81.0 / 6.0;
+  EXPECT_NEAR(error.ate_max_m, 10.0 * chord, kExactTol);
+  EXPECT_NEAR(error.ate_rmse_m, chord * std::sqrt(mean_square), kExactTol);
+  EXPECT_NEAR(error.heading_rmse_deg, 1.0, kExactTol);
+  EXPECT_NEAR(error.rpe_trans_1m_m, 0.0, kExactTol) << "each metre is right in itself";
+}
+
+TEST(TrajectoryError, OfTwoPercentOfScaleIsTwoCentimetresPerMetre) {
+  const Trajectory truth = make_trajectory(straight(40));
+  const Trajectory estimate = make_trajectory(straight(40), [](int, const Pose2& p) {
+    return Pose2{2.0 + 1.02 * (p.x - 2.0), p.y, p.yaw};
+  });
+  const TrajectoryError error = trajectory_error(estimate, {}, truth);
+  EXPECT_NEAR(error.rpe_trans_1m_m, 0.02, kExactTol);
+  EXPECT_NEAR(error.ate_max_m, 0.2, kExactTol);
+}
+
+TEST(TrajectoryError, OfHeadingThatDriftsAThirdOfADegreePerStepIsFourThirdsPerMetre) {
+  const Trajectory truth = make_trajectory(straight(40));
+  const Trajectory estimate = make_trajectory(straight(40), [](int i, const Pose2& p) {
+    return Pose2{p.x, p.y, i * kDeg / 3.0};
+  });
+  EXPECT_NEAR(trajectory_error(estimate, {}, truth).rpe_rot_1m_deg, 4.0 / 3.0, kExactTol);
+}
+
+TEST(TrajectoryError, HeadingsOnBothSidesOfTheHalfTurnAreTwoDegreesApart) {
+  const auto turned = [](double yaw) {
+    return make_trajectory(straight(4), [yaw](int, const Pose2& p) { return Pose2{p.x, p.y, yaw}; });
+  };
+  EXPECT_NEAR(trajectory_error(turned(179.0 * kDeg), {}, turned(-179.0 * kDeg)).heading_rmse_deg, 2.0,
+              kExactTol);
+}
+
+TEST(TrajectoryError, AWalkOfLessThanAMetreHasNoRelativeError) {
+  const Trajectory walk = make_trajectory(straight(3));
+  EXPECT_EQ(trajectory_error(walk, {}, walk).rpe_trans_1m_m, 0.0);
+}
+
+TEST(MatchPoses, InterpolatesTheTruthAndLeavesOutWhatLiesOutside) {
+  const Trajectory truth = make_trajectory(straight(10));
+  const Trajectory estimate = {
+      {Time(-1ms), {}}, {Time(150ms), to_spatial({1.0, 0.0, 0.0})}, {Time(1001ms), {}}};
+  const auto matches = match_poses(estimate, {0.0, 0.0, std::numbers::pi / 2.0}, truth);
+  ASSERT_EQ(matches.size(), 1U);
+  EXPECT_THAT(matches[0].T_world_truth, Pose2Near((Pose2{2.375, 3.0, 0.0}), kExactTol, kExactTol));
+  EXPECT_THAT(matches[0].T_world_estimate,
+              Pose2Near((Pose2{0.0, 1.0, std::numbers::pi / 2.0}), kExactTol, kExactTol));
+}
+
+TEST(JoinAtStart, MakesTheFirstCommonInstantExactAndFitsNothingAfterwards) {
+  const Trajectory truth = make_trajectory(corner());
+  const Pose2 T_map_world{4.0, -1.0, 0.8};
+  // The estimate begins a second later and drifts sideways by a millimetre a step.
+  Trajectory estimate = make_trajectory(corner(), [&](int i, const Pose2& p) {
+    return T_map_world * Pose2{p.x, p.y + 0.001 * (i - 10), p.yaw};
+  });
+  estimate.erase(estimate.begin(), estimate.begin() + 10);
+  const Pose2 T_world_map = join_at_start(estimate, truth);
+  EXPECT_THAT(T_world_map, Pose2Near(T_map_world.inverse(), kExactTol, kExactTol));
+  EXPECT_NEAR(trajectory_error(estimate, T_world_map, truth).ate_max_m, 0.071, kExactTol);
+}
+
+TEST(TrajectoryError, WithoutACommonInstantIsRefused) {
+  const Trajectory walk = make_trajectory(straight(4));
+  const Trajectory later = {{Time(10s), {}}, {Time(11s), {}}};
+  EXPECT_THROW(trajectory_error(later, {}, walk), InputError);
+  EXPECT_THROW(join_at_start(later, walk), InputError);
+  EXPECT_THROW(trajectory_error({}, {}, walk), InputError);
+}
+
+/// Moves every pose by a rigid motion in space.
+Trajectory moved(const Trajectory& trajectory, const Pose3& T) {
+  Trajectory result;
+  for (const StampedPose& entry : trajectory) result.push_back({entry.stamp, T * entry.pose});
+  return result;
+}
+
+TEST(AlignedError, OfARigidMotionIsZeroAndTheMotionIsFound) {
+  const Trajectory truth = make_trajectory(corner());
+  const Pose3 T_estimate_reference{{5.0, -3.0, 1.0}, quaternion_from_rpy(0.2, -0.3, 2.5)};
+  const AlignedError error = aligned_error(moved(truth, T_estimate_reference), truth);
+  EXPECT_EQ(error.num_pairs, 82U);
+  EXPECT_NEAR(error.rmse_m, 0.0, kExactTol);
+  EXPECT_NEAR(error.max_m, 0.0, kExactTol);
+  EXPECT_THAT(error.T_reference_estimate, Pose3Near(T_estimate_reference.inverse(), 1e-9, 1e-7));
+}
+
+// Corners of a square pushed outwards by 1 cm: the centre and the heading stay, every corner errs by 1 cm. A
+// fit of the scale would hide it.
+TEST(AlignedError, DoesNotFitTheScale) {
+  Trajectory square, larger;
+  int i = 0;
+  for (const Eigen::Vector2d& corner :
+       {Eigen::Vector2d(1, 1), Eigen::Vector2d(-1, 1), Eigen::Vector2d(-1, -1), Eigen::Vector2d(1, -1)}) {
+    const Time stamp = i++ * 1s;
+    square.push_back({stamp, to_spatial({corner.x(), corner.y(), 0.0})});
+    const Eigen::Vector2d out = corner * (1.0 + 0.01 / std::sqrt(2.0));
+    larger.push_back({stamp, to_spatial({out.x(), out.y(), 0.0})});
+  }
+  const AlignedError error = aligned_error(larger, square);
+  EXPECT_NEAR(error.rmse_m, 0.01, kExactTol);
+  EXPECT_NEAR(error.mean_m, 0.01, kExactTol);
+  EXPECT_NEAR(error.max_m, 0.01, kExactTol);
+  EXPECT_THAT(error.T_reference_estimate, Pose3Near(Pose3{}, kExactTol, 1e-7));
+}
+
+TEST(AlignedError, NeverTurnsAMirrorImageOver) {
+  // A mirrored tetrahedron could be laid on the other only by a reflection.
+  Trajectory truth, mirrored;
+  int i = 0;
+  for (const Eigen::Vector3d& p : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0),
+                                   Eigen::Vector3d(0, 2, 0), Eigen::Vector3d(0, 0, 3)}) {
+    const Time stamp = i++ * 1s;
+    truth.push_back({stamp, {p, {1, 0, 0, 0}}});
+    mirrored.push_back({stamp, {{-p.x(), p.y(), p.z()}, {1, 0, 0, 0}}});
+  }
+  const AlignedError error = aligned_error(mirrored, truth);
+  EXPECT_GT(error.rmse_m, 0.1);
+  EXPECT_NEAR(error.T_reference_estimate.rotation.toRotationMatrix().determinant(), 1.0, kExactTol);
+}
+
+TEST(AlignedError, PairsTheNearestStampWithinTenMilliseconds) {
+  const Trajectory truth = make_trajectory(corner());
+  Trajectory estimate;
+  for (const StampedPose& entry : truth) estimate.push_back({entry.stamp + 10ms, entry.pose});
+  EXPECT_EQ(aligned_error(estimate, truth).num_pairs, 82U);
+  for (StampedPose& entry : estimate) entry.stamp += 1ms;
+  EXPECT_THROW(aligned_error(estimate, truth), InputError);
+}
+
+TEST(AlignedError, OnALineOrOfTwoPosesIsRefused) {
+  const Trajectory line = make_trajectory(straight(20)), two = make_trajectory(straight(1));
+  EXPECT_THROW(aligned_error(line, line), InputError);
+  EXPECT_THROW(aligned_error(two, two), InputError);
+  EXPECT_THROW(aligned_error({}, line), InputError);
+}
+
+}  // namespace
+}  // namespace patrol::score
