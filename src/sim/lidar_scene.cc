@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
 #include <string_view>
 
+#include <Eigen/Geometry>
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
@@ -20,29 +20,14 @@ namespace {
 
 using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-/// A geom of round shape in the frame of its Embree scene.
-struct RoundGeom {
+/// A geom placed in a frame: that of the world, or that of the body which it moves with.
+struct PlacedGeom {
   int geom;
   int type;
   mjtNum position[3];
   mjtNum rotation[9];
   mjtNum size[3];
 };
-
-/// Everything that rides on one body (or, for body 0, stands still).
-struct BodyScene {
-  int body;
-  std::uint32_t mask;
-  RTCScene scene = nullptr;
-  RTCGeometry instance = nullptr;
-  std::vector<int> geoms;                  ///< [geometry in the scene]
-  std::vector<std::unique_ptr<RoundGeom>> rounds;
-  std::array<mjtNum, 7> pose{};            ///< last given to Embree
-};
-
-bool is_still(const mjModel& model, int body) {
-  return model.body_weldid[body] == 0 && model.body_mocapid[model.body_rootid[body]] < 0;
-}
 
 bool is_seen(const mjModel& model, int geom) {
   const int group = model.geom_group[geom];
@@ -58,24 +43,35 @@ std::uint32_t mask_of(const mjModel& model, int body) {
   return name == "lidar3d" ? kRayLidar3d : kRayRobot;
 }
 
+/// Half of the box, along the axes of its frame, that holds a geom of round shape.
+Eigen::Vector3d half_extent(const PlacedGeom& geom) {
+  const Eigen::Map<const Matrix3> R(geom.rotation);
+  const Eigen::Map<const Eigen::Vector3d> size(geom.size);
+  const Eigen::Vector3d axis = R.col(2).cwiseAbs();
+  switch (geom.type) {
+    case mjGEOM_SPHERE:
+      return Eigen::Vector3d::Constant(size[0]);
+    case mjGEOM_CAPSULE:
+      return axis * size[1] + Eigen::Vector3d::Constant(size[0]);
+    case mjGEOM_CYLINDER:
+      return axis * size[1] + size[0] * (1.0 - axis.array().square()).max(0.0).sqrt().matrix();
+    default:
+      return (R * size.asDiagonal()).rowwise().norm();
+  }
+}
+
 void round_bounds(const RTCBoundsFunctionArguments* arguments) {
-  const auto& geom = *static_cast<const RoundGeom*>(arguments->geometryUserPtr);
-  const double reach = geom.type == mjGEOM_SPHERE    ? geom.size[0]
-                       : geom.type == mjGEOM_CAPSULE ? geom.size[0] + geom.size[1]
-                       : geom.type == mjGEOM_CYLINDER ? std::hypot(geom.size[0], geom.size[1])
-                                                      : std::max({geom.size[0], geom.size[1], geom.size[2]});
-  RTCBounds& bounds = *arguments->bounds_o;
-  bounds.lower_x = static_cast<float>(geom.position[0] - reach);
-  bounds.lower_y = static_cast<float>(geom.position[1] - reach);
-  bounds.lower_z = static_cast<float>(geom.position[2] - reach);
-  bounds.upper_x = static_cast<float>(geom.position[0] + reach);
-  bounds.upper_y = static_cast<float>(geom.position[1] + reach);
-  bounds.upper_z = static_cast<float>(geom.position[2] + reach);
+  const auto& geom = *static_cast<const PlacedGeom*>(arguments->geometryUserPtr);
+  const Eigen::Map<const Eigen::Vector3d> centre(geom.position);
+  const Eigen::Vector3d half = half_extent(geom).array() + 1e-4;  // more than a float loses over a world of a kilometre
+  const Eigen::Vector3f lower = (centre - half).cast<float>(), upper = (centre + half).cast<float>();
+  *arguments->bounds_o = {.lower_x = lower.x(), .lower_y = lower.y(), .lower_z = lower.z(), .align0 = 0.0f,
+                          .upper_x = upper.x(), .upper_y = upper.y(), .upper_z = upper.z(), .align1 = 0.0f};
 }
 
 void intersect_round(const RTCIntersectFunctionNArguments* arguments) {
   if (arguments->valid[0] == 0) return;
-  const auto& geom = *static_cast<const RoundGeom*>(arguments->geometryUserPtr);
+  const auto& geom = *static_cast<const PlacedGeom*>(arguments->geometryUserPtr);
   auto& ray_hit = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
   RTCRay& ray = ray_hit.ray;
   const mjtNum origin[3] = {ray.org_x, ray.org_y, ray.org_z};
@@ -90,7 +86,6 @@ void intersect_round(const RTCIntersectFunctionNArguments* arguments) {
   hit.Ng_z = static_cast<float>(normal[2]);
   hit.geomID = arguments->geomID;
   hit.primID = 0;
-  hit.instID[0] = arguments->context->instID[0];
 }
 
 /// Corners and faces of one geom, in the frame of its Embree scene.
@@ -134,173 +129,7 @@ bool is_round(int type) {
   return type == mjGEOM_SPHERE || type == mjGEOM_CAPSULE || type == mjGEOM_CYLINDER || type == mjGEOM_ELLIPSOID;
 }
 
-}  // namespace
-
-struct LidarScene::Impl {
-  explicit Impl(const mjModel& view) : model(view), device(rtcNewDevice("threads=1")) {
-    if (device == nullptr) throw std::runtime_error("Embree cannot start");
-    place_still_bodies();
-    for (int body = 0; body < model.nbody; ++body) {
-      if (body == 0 || !is_still(model, body)) add_body(body);
-    }
-    top = rtcNewScene(device);
-    rtcSetSceneFlags(top, RTC_SCENE_FLAG_DYNAMIC | RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(top, RTC_BUILD_QUALITY_LOW);
-    for (BodyScene& body : bodies) attach(body);
-    rtcCommitScene(top);
-  }
-
-  ~Impl() {
-    for (BodyScene& body : bodies) {
-      rtcReleaseGeometry(body.instance);
-      rtcReleaseScene(body.scene);
-    }
-    rtcReleaseScene(top);
-    rtcReleaseDevice(device);
-  }
-
-  /// Poses in world of everything at the reference configuration, for what stands still.
-  void place_still_bodies() {
-    const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(&model), mj_deleteData);
-    mj_kinematics(&model, data.get());
-    still_position.assign(data->geom_xpos, data->geom_xpos + 3 * model.ngeom);
-    still_rotation.assign(data->geom_xmat, data->geom_xmat + 9 * model.ngeom);
-  }
-
-  void geom_pose(int geom, mjtNum position[3], mjtNum rotation[9]) const {
-    if (is_still(model, model.geom_bodyid[geom])) {
-      std::copy_n(still_position.data() + 3 * geom, 3, position);
-      std::copy_n(still_rotation.data() + 9 * geom, 9, rotation);
-    } else {
-      std::copy_n(model.geom_pos + 3 * geom, 3, position);
-      mju_quat2Mat(rotation, model.geom_quat + 4 * geom);
-    }
-  }
-
-  void add_body(int body) {
-    BodyScene part{.body = body, .mask = mask_of(model, body), .geoms = {}, .rounds = {}};
-    for (int geom = 0; geom < model.ngeom; ++geom) {
-      const int owner = model.geom_bodyid[geom];
-      const bool belongs = body == 0 ? is_still(model, owner) : owner == body;
-      if (!belongs || !is_seen(model, geom)) continue;
-      if (part.scene == nullptr) {
-        part.scene = rtcNewScene(device);
-        rtcSetSceneFlags(part.scene, RTC_SCENE_FLAG_ROBUST);
-      }
-      add_geom(part, geom);
-    }
-    if (part.scene == nullptr) return;
-    rtcCommitScene(part.scene);
-    bodies.push_back(std::move(part));
-  }
-
-  void add_geom(BodyScene& part, int geom) {
-    const int type = model.geom_type[geom];
-    RTCGeometry geometry = nullptr;
-    if (is_round(type)) {
-      auto round = std::make_unique<RoundGeom>(RoundGeom{.geom = geom, .type = type, .position = {}, .rotation = {}, .size = {}});
-      geom_pose(geom, round->position, round->rotation);
-      std::copy_n(model.geom_size + 3 * geom, 3, round->size);
-      geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-      rtcSetGeometryUserPrimitiveCount(geometry, 1);
-      rtcSetGeometryUserData(geometry, round.get());
-      rtcSetGeometryBoundsFunction(geometry, round_bounds, nullptr);
-      rtcSetGeometryIntersectFunction(geometry, intersect_round);
-      part.rounds.push_back(std::move(round));
-    } else {
-      geometry = make_triangles(geom);
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(part.scene, geometry);
-    rtcReleaseGeometry(geometry);
-    part.geoms.push_back(geom);
-  }
-
-  RTCGeometry make_triangles(int geom) const {
-    Triangles triangles;
-    switch (model.geom_type[geom]) {
-      case mjGEOM_BOX:
-        triangles = box_triangles(model.geom_size + 3 * geom);
-        break;
-      case mjGEOM_PLANE:
-        triangles = plane_triangles(model.geom_size + 3 * geom);
-        break;
-      case mjGEOM_MESH:
-        triangles = mesh_triangles(model, model.geom_dataid[geom]);
-        break;
-      default:
-        throw InputError(fmt::format("geom {}: the lidar cannot see shapes of this type", geom));
-    }
-    mjtNum position[3], rotation[9];
-    geom_pose(geom, position, rotation);
-    const Eigen::Vector3f p = Eigen::Map<const Eigen::Vector3d>(position).cast<float>();
-    const Eigen::Matrix3f R = Eigen::Map<const Matrix3>(rotation).cast<float>();
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* coordinates = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                3 * sizeof(float), triangles.corners.size()));
-    for (const Eigen::Vector3f& corner : triangles.corners) {
-      Eigen::Map<Eigen::Vector3f> placed(coordinates);
-      placed = p + R * corner;
-      coordinates += 3;
-    }
-    void* faces = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
-                                          triangles.faces.size());
-    std::memcpy(faces, triangles.faces.data(), triangles.faces.size() * sizeof(triangles.faces[0]));
-    return geometry;
-  }
-
-  void attach(BodyScene& part) {
-    part.instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(part.instance, part.scene);
-    rtcSetGeometryMask(part.instance, part.mask);
-    set_transform(part, std::array<mjtNum, 7>{0, 0, 0, 1, 0, 0, 0});
-    rtcAttachGeometry(top, part.instance);
-  }
-
-  static void set_transform(BodyScene& part, const std::array<mjtNum, 7>& pose) {
-    part.pose = pose;
-    mjtNum rotation[9];
-    mju_quat2Mat(rotation, pose.data() + 3);
-    const std::array<float, 12> columns = {
-        static_cast<float>(rotation[0]), static_cast<float>(rotation[3]), static_cast<float>(rotation[6]),
-        static_cast<float>(rotation[1]), static_cast<float>(rotation[4]), static_cast<float>(rotation[7]),
-        static_cast<float>(rotation[2]), static_cast<float>(rotation[5]), static_cast<float>(rotation[8]),
-        static_cast<float>(pose[0]),     static_cast<float>(pose[1]),     static_cast<float>(pose[2])};
-    rtcSetGeometryTransform(part.instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
-    rtcCommitGeometry(part.instance);
-  }
-
-  const mjModel& model;
-  RTCDevice device;
-  RTCScene top = nullptr;
-  std::vector<BodyScene> bodies;  ///< [instance]
-  std::vector<mjtNum> still_position, still_rotation;
-};
-
-LidarScene::LidarScene(const mjModel& view) : impl_(std::make_unique<Impl>(view)) {}
-LidarScene::~LidarScene() = default;
-
-const mjModel& LidarScene::model() const { return impl_->model; }
-RTCSceneTy* LidarScene::still_scene() const { return impl_->bodies.front().scene; }
-
-void LidarScene::update(const mjData& data) {
-  bool has_moved = false;
-  for (BodyScene& part : impl_->bodies) {
-    if (part.body == 0) continue;
-    std::array<mjtNum, 7> pose;
-    std::copy_n(data.xpos + 3 * part.body, 3, pose.begin());
-    std::copy_n(data.xquat + 4 * part.body, 4, pose.begin() + 3);
-    if (pose == part.pose) continue;
-    Impl::set_transform(part, pose);
-    has_moved = true;
-  }
-  if (has_moved) rtcCommitScene(impl_->top);
-}
-
-std::optional<RayHit> LidarScene::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m,
-                                       std::uint32_t mask) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+RTCRayHit make_query(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m) {
   RTCRayHit query{};
   query.ray.org_x = static_cast<float>(origin.x());
   query.ray.org_y = static_cast<float>(origin.y());
@@ -309,18 +138,279 @@ std::optional<RayHit> LidarScene::cast(const Eigen::Vector3d& origin, const Eige
   query.ray.dir_y = static_cast<float>(direction.y());
   query.ray.dir_z = static_cast<float>(direction.z());
   query.ray.tfar = static_cast<float>(max_range_m);
-  query.ray.mask = mask;
+  query.ray.mask = ~0u;
   query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(impl_->top, &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  return query;
+}
 
-  const BodyScene& part = impl_->bodies[query.hit.instID[0]];
-  mjtNum rotation[9];
-  mju_quat2Mat(rotation, part.pose.data() + 3);
-  Eigen::Vector3d normal =
-      Eigen::Map<const Matrix3>(rotation) * Eigen::Vector3d(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z).normalized();
-  if (normal.dot(direction) > 0.0) normal = -normal;
-  return RayHit{.distance_m = query.ray.tfar, .geom = part.geoms[query.hit.geomID], .normal = normal};
+/// Geoms that keep their places to each other, in Embree: triangles, and MuJoCo's own ray test for round shapes.
+class EmbreeScene {
+ public:
+  EmbreeScene(RTCDevice device, RTCBuildQuality quality) : device_(device), scene_(rtcNewScene(device)) {
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene_, quality);
+  }
+  ~EmbreeScene() { rtcReleaseScene(scene_); }
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  void add(const mjModel& model, const PlacedGeom& placed) {
+    RTCGeometry geometry = nullptr;
+    if (is_round(placed.type)) {
+      rounds_.push_back(std::make_unique<PlacedGeom>(placed));
+      geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+      rtcSetGeometryUserPrimitiveCount(geometry, 1);
+      rtcSetGeometryUserData(geometry, rounds_.back().get());
+      rtcSetGeometryBoundsFunction(geometry, round_bounds, nullptr);
+      rtcSetGeometryIntersectFunction(geometry, intersect_round);
+    } else {
+      geometry = make_triangles(model, placed);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    geoms_.push_back(placed.geom);
+  }
+  void build() { rtcCommitScene(scene_); }
+
+  /// First hit nearer than `max_range_m`; the normal is not yet turned towards the origin.
+  std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit query = make_query(origin, direction, max_range_m);
+    rtcIntersect1(scene_, &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    return RayHit{.distance_m = query.ray.tfar,
+                  .geom = geoms_[query.hit.geomID],
+                  .normal = Eigen::Vector3f(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z).normalized().cast<double>()};
+  }
+
+  RTCScene handle() const { return scene_; }
+
+ private:
+  RTCGeometry make_triangles(const mjModel& model, const PlacedGeom& placed) const {
+    const Triangles triangles = placed.type == mjGEOM_BOX     ? box_triangles(placed.size)
+                                : placed.type == mjGEOM_PLANE ? plane_triangles(placed.size)
+                                                              : mesh_triangles(model, model.geom_dataid[placed.geom]);
+    const Eigen::Map<const Eigen::Vector3d> p(placed.position);
+    const Eigen::Map<const Matrix3> R(placed.rotation);
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* coordinates = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                3 * sizeof(float), triangles.corners.size()));
+    for (const Eigen::Vector3f& corner : triangles.corners) {
+      Eigen::Map<Eigen::Vector3f> in_scene(coordinates);
+      in_scene = (p + R * corner.cast<double>()).cast<float>();
+      coordinates += 3;
+    }
+    void* faces = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
+                                          triangles.faces.size());
+    std::memcpy(faces, triangles.faces.data(), triangles.faces.size() * sizeof(triangles.faces[0]));
+    return geometry;
+  }
+
+  RTCDevice device_;
+  RTCScene scene_;
+  std::vector<int> geoms_;  ///< [geometry of the scene]
+  std::vector<std::unique_ptr<PlacedGeom>> rounds_;
+};
+
+/// What moves as one: the geoms of a body and of everything welded to it.
+struct MovingPart {
+  int body;
+  std::uint32_t mask;
+  std::vector<PlacedGeom> geoms;               ///< in the body's frame
+  std::unique_ptr<EmbreeScene> meshes;         ///< of `geoms`; null where there are none
+  Eigen::AlignedBox3d box;                     ///< about all of them, in the body's frame
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the body, in world
+  Matrix3 rotation = Matrix3::Identity();
+};
+
+/// True when the ray meets the box before `reach_m`, or begins in it.
+bool meets(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double reach_m) {
+  const Eigen::Array3d inverse = direction.array().inverse();
+  const Eigen::Array3d to_lower = (box.min() - origin).array() * inverse, to_upper = (box.max() - origin).array() * inverse;
+  const double enter = to_lower.min(to_upper).maxCoeff(), leave = to_lower.max(to_upper).minCoeff();
+  return !(enter > leave || leave < 0.0 || enter > reach_m);
+}
+
+/// The boxes about the moving parts, along the axes of the world, laid out for the compiler to test four at a time.
+class Boxes {
+ public:
+  void resize(std::size_t count) {
+    for (auto* side : {&lower_, &upper_}) {
+      for (std::vector<float>& axis : *side) axis.resize(count);
+    }
+  }
+
+  void set(std::size_t i, const Eigen::Vector3d& centre, const Eigen::Vector3d& half) {
+    constexpr double kFloatLoss_m = 1e-3;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto row = static_cast<Eigen::Index>(axis);
+      lower_[axis][i] = static_cast<float>(centre[row] - half[row] - kFloatLoss_m);
+      upper_[axis][i] = static_cast<float>(centre[row] + half[row] + kFloatLoss_m);
+    }
+  }
+
+  /// Calls `visit` with the index of every box that the ray may meet before `reach_m`, or begins in.
+  template <typename Visit>
+  void visit_met(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float reach_m, Visit visit) const {
+    // A component of nothing is made very small: its inverse is finite, and no product below is 0 x infinity.
+    const Eigen::Array3f inverse = (direction.array().abs() < 1e-12f).select(1e-12f, direction.array()).inverse();
+    constexpr std::size_t kChunk = 64;
+    std::array<float, kChunk> stay;  // length of the ray in the box; negative where it passes by
+    for (std::size_t begin = 0; begin < lower_[0].size(); begin += kChunk) {
+      const std::size_t count = std::min(kChunk, lower_[0].size() - begin);
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t i = begin + k;
+        const float x0 = (lower_[0][i] - origin.x()) * inverse.x(), x1 = (upper_[0][i] - origin.x()) * inverse.x();
+        const float y0 = (lower_[1][i] - origin.y()) * inverse.y(), y1 = (upper_[1][i] - origin.y()) * inverse.y();
+        const float z0 = (lower_[2][i] - origin.z()) * inverse.z(), z1 = (upper_[2][i] - origin.z()) * inverse.z();
+        const float enter = std::max(std::max(std::min(x0, x1), std::min(y0, y1)), std::max(std::min(z0, z1), 0.0f));
+        const float leave = std::min(std::min(std::max(x0, x1), std::max(y0, y1)), std::min(std::max(z0, z1), reach_m));
+        stay[k] = leave - enter;
+      }
+      for (std::size_t k = 0; k < count; ++k) {
+        if (stay[k] >= 0.0f) visit(begin + k);
+      }
+    }
+  }
+
+ private:
+  std::array<std::vector<float>, 3> lower_, upper_;  ///< [axis][part]
+};
+
+}  // namespace
+
+struct LidarScene::Impl {
+  explicit Impl(const mjModel& view) : model(view), device(rtcNewDevice("threads=1")) {
+    if (device == nullptr) throw std::runtime_error("Embree cannot start");
+    still = std::make_unique<EmbreeScene>(device, RTC_BUILD_QUALITY_HIGH);
+    const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(&model), mj_deleteData);
+    mj_kinematics(&model, data.get());
+    for (int geom = 0; geom < model.ngeom; ++geom) {
+      if (is_seen(model, geom)) add_geom(*data, geom);
+    }
+    still->build();
+    for (MovingPart& part : parts) {
+      if (part.meshes) part.meshes->build();
+      enclose(part);
+    }
+    boxes.resize(parts.size());
+    place(*data);
+  }
+
+  ~Impl() {
+    still.reset();
+    parts.clear();
+    rtcReleaseDevice(device);
+  }
+
+  void add_geom(const mjData& data, int geom) {
+    const int type = model.geom_type[geom];
+    if (!is_round(type) && type != mjGEOM_BOX && type != mjGEOM_PLANE && type != mjGEOM_MESH) {
+      throw InputError(fmt::format("geom {}: the lidar cannot see shapes of this type", geom));
+    }
+    const int body = model.body_weldid[model.geom_bodyid[geom]];
+    PlacedGeom placed{.geom = geom, .type = type, .position = {}, .rotation = {}, .size = {}};
+    std::copy_n(model.geom_size + 3 * geom, 3, placed.size);
+    const Eigen::Map<const Matrix3> R_world_body(data.xmat + 9 * body), R_world_geom(data.geom_xmat + 9 * geom);
+    const Eigen::Map<const Eigen::Vector3d> p_body(data.xpos + 3 * body), p_geom(data.geom_xpos + 3 * geom);
+    Eigen::Map<Eigen::Vector3d>(placed.position) = R_world_body.transpose() * (p_geom - p_body);
+    Eigen::Map<Matrix3>(placed.rotation) = R_world_body.transpose() * R_world_geom;
+    if (body == 0) {
+      still->add(model, placed);
+      return;
+    }
+    MovingPart& part = part_of(body, mask_of(model, model.geom_bodyid[geom]));
+    part.geoms.push_back(placed);
+    if (type != mjGEOM_MESH) return;
+    if (!part.meshes) part.meshes = std::make_unique<EmbreeScene>(device, RTC_BUILD_QUALITY_MEDIUM);
+    part.meshes->add(model, placed);
+  }
+
+  MovingPart& part_of(int body, std::uint32_t mask) {
+    for (MovingPart& part : parts) {
+      if (part.body == body && part.mask == mask) return part;
+    }
+    return parts.emplace_back(MovingPart{.body = body, .mask = mask, .geoms = {}, .meshes = nullptr, .box = {}});
+  }
+
+  /// Puts a box about everything on a part.
+  void enclose(MovingPart& part) const {
+    for (const PlacedGeom& placed : part.geoms) {
+      const Eigen::Map<const Eigen::Vector3d> position(placed.position), middle(model.geom_aabb + 6 * placed.geom);
+      const Eigen::Map<const Matrix3> rotation(placed.rotation);
+      const Eigen::Vector3d half = rotation.cwiseAbs() * Eigen::Map<const Eigen::Vector3d>(model.geom_aabb + 6 * placed.geom + 3);
+      const Eigen::Vector3d centre = position + rotation * middle;
+      part.box.extend(Eigen::AlignedBox3d(centre - half, centre + half));
+    }
+  }
+
+  void place(const mjData& data) {
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      MovingPart& part = parts[i];
+      part.position = Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * part.body);
+      part.rotation = Eigen::Map<const Matrix3>(data.xmat + 9 * part.body);
+      boxes.set(i, part.position + part.rotation * part.box.center(), part.rotation.cwiseAbs() * part.box.sizes() / 2.0);
+    }
+  }
+
+  /// Takes the hit on a part for `best` if it is nearer than `reach_m`, and shortens that.
+  static void cast_at(const MovingPart& part, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double& reach_m,
+                      std::optional<RayHit>& best) {
+    const Eigen::Vector3d from = part.rotation.transpose() * (origin - part.position);
+    const Eigen::Vector3d along = part.rotation.transpose() * direction;
+    if (!meets(part.box, from, along, reach_m)) return;
+    bool is_nearer = false;
+    if (part.meshes) {
+      if (const auto hit = part.meshes->cast(from, along, reach_m)) {
+        best = hit;
+        reach_m = hit->distance_m;
+        is_nearer = true;
+      }
+    }
+    for (const PlacedGeom& geom : part.geoms) {
+      if (geom.type == mjGEOM_MESH) continue;
+      Eigen::Vector3d normal;
+      const double distance_m =
+          mju_rayGeom(geom.position, geom.rotation, geom.size, from.data(), along.data(), geom.type, normal.data());
+      if (distance_m < 0.0 || distance_m >= reach_m) continue;
+      best = RayHit{.distance_m = distance_m, .geom = geom.geom, .normal = normal};
+      reach_m = distance_m;
+      is_nearer = true;
+    }
+    if (is_nearer) best->normal = part.rotation * best->normal;
+  }
+
+  std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m,
+                             std::uint32_t mask) const {
+    std::optional<RayHit> best;
+    if (mask & kRayScenery) best = still->cast(origin, direction, max_range_m);
+    double reach_m = best ? best->distance_m : max_range_m;
+    boxes.visit_met(origin.cast<float>(), direction.cast<float>(), static_cast<float>(reach_m), [&](std::size_t i) {
+      if (parts[i].mask & mask) cast_at(parts[i], origin, direction, reach_m, best);
+    });
+    if (best && best->normal.dot(direction) > 0.0) best->normal = -best->normal;
+    return best;
+  }
+
+  const mjModel& model;
+  RTCDevice device;
+  std::unique_ptr<EmbreeScene> still;
+  std::vector<MovingPart> parts;
+  Boxes boxes;  ///< [part]
+};
+
+LidarScene::LidarScene(const mjModel& view) : impl_(std::make_unique<Impl>(view)) {}
+LidarScene::~LidarScene() = default;
+
+const mjModel& LidarScene::model() const { return impl_->model; }
+RTCSceneTy* LidarScene::still_scene() const { return impl_->still->handle(); }
+void LidarScene::update(const mjData& data) { impl_->place(data); }
+
+std::optional<RayHit> LidarScene::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m,
+                                       std::uint32_t mask) const {
+  return impl_->cast(origin, direction, max_range_m, mask);
 }
 
 }  // namespace patrol::sim

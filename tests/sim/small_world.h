@@ -1,13 +1,12 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 
 #include <mujoco/mujoco.h>
 
 #include "sim/lidar_scene.h"
 #include "sim/mujoco.h"
+#include "tests/sim/moments.h"
 
 namespace patrol::sim {
 
@@ -27,24 +26,6 @@ struct SmallWorld {
   ModelPtr model;
   DataPtr data;
   LidarScene scene;
-};
-
-/// The free-standing statistics that the sensor tests compare with data sheets.
-struct Moments {
-  double sum = 0.0, squares = 0.0;
-  double smallest = 1e300, largest = -1e300;
-  int count = 0;
-
-  void add(double value) {
-    sum += value;
-    squares += value * value;
-    smallest = value < smallest ? value : smallest;
-    largest = value > largest ? value : largest;
-    ++count;
-  }
-  double mean() const { return count == 0 ? 0.0 : sum / count; }
-  double rms() const { return count == 0 ? 0.0 : std::sqrt(squares / count); }
-  double std() const { return std::sqrt(std::max(0.0, rms() * rms() - mean() * mean())); }
 };
 
 }  // namespace patrol::sim

@@ -2,40 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "io/urdf.h"
+#include "tests/sim/moments.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::sim {
 namespace {
 
-const std::string kRobotUrdf = PATROL_SOURCE_DIR "/models/quadruped/quadruped.urdf";
-
 AssembledModel assemble(const std::string& world, const Pose2& T_world_start) {
   const test::TemporaryFile file("world.xml", world);
   return assemble_model(file.path(), kRobotUrdf, T_world_start);
 }
-
-/// The encoders of the tests are coarser than the default: 1 mrad.
-JointEncoderSettings coarse_encoders() {
-  JointEncoderSettings settings;
-  settings.counts_per_turn = 6283;
-  return settings;
-}
-
-/// Mean and mean square of a stream of numbers.
-struct Moments {
-  double sum = 0.0, squares = 0.0;
-  int count = 0;
-  void add(double value) {
-    sum += value;
-    squares += value * value;
-    ++count;
-  }
-  double mean() const { return count == 0 ? 0.0 : sum / count; }
-  double rms() const { return count == 0 ? 0.0 : std::sqrt(squares / count); }
-  double std() const { return std::sqrt(std::max(0.0, rms() * rms() - mean() * mean())); }
-};
 
 }  // namespace
 
@@ -51,11 +30,14 @@ std::string make_flat_world(const std::string& geoms) {
 
 WalkingRobot::WalkingRobot(const std::string& world, const Pose2& T_world_start, std::uint64_t seed,
                            const LocomotionSettings& settings)
+    : WalkingRobot(assemble(world, T_world_start), seed, settings) {}
+
+WalkingRobot::WalkingRobot(AssembledModel model, std::uint64_t seed, const LocomotionSettings& settings)
     : robot_(io::load_robot_description(kRobotUrdf)),
-      model_(assemble(world, T_world_start)),
+      model_(std::move(model)),
       data_(make_data(*model_.physics)),
       imu_sensor_({}, *model_.physics, seed),
-      encoders_(coarse_encoders(), *model_.physics, robot_.joint_names),
+      encoders_({}, *model_.physics, robot_.joint_names),
       foot_sensor_({}, *model_.physics, robot_.legs, seed),
       controller_(robot_, settings, model_.physics->opt.timestep),
       body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)) {
@@ -66,7 +48,7 @@ WalkingRobot::WalkingRobot(const std::string& world, const Pose2& T_world_start,
   mj_forward(model_.physics.get(), data_.get());
 }
 
-void WalkingRobot::step(const VelocityCommand& command) {
+void WalkingRobot::drive(const VelocityCommand& command) {
   const mjModel& model = *model_.physics;
   const Time now = from_seconds(data_->time);
   imu_ = imu_sensor_.read(model, *data_, now, tick_);
@@ -74,8 +56,11 @@ void WalkingRobot::step(const VelocityCommand& command) {
   contacts_ = foot_sensor_.read(model, *data_, now, tick_);
   const JointTorques torques = controller_.step({.imu = imu_, .joints = joints_, .feet = contacts_}, command);
   std::copy(torques.begin(), torques.end(), data_->ctrl);
-  mj_Euler(&model, data_.get());
-  mj_forward(&model, data_.get());
+}
+
+void WalkingRobot::advance() {
+  mj_Euler(model_.physics.get(), data_.get());
+  mj_forward(model_.physics.get(), data_.get());
   ++tick_;
 }
 

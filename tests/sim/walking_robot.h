@@ -16,6 +16,10 @@
 
 namespace patrol::sim {
 
+inline const std::string kRobotUrdf = PATROL_SOURCE_DIR "/models/quadruped/quadruped.urdf";
+inline const std::string kStreetXml = PATROL_SOURCE_DIR "/worlds/street/street.xml";
+inline constexpr Pose2 kStreetStart{11.0, 8.0, 1.5707963267948966};
+
 /// A world with the contact options of the street and what is given of scenery.
 std::string make_world(const std::string& geoms);
 /// The same with flat ground under everything.
@@ -41,19 +45,28 @@ struct WalkReport {
 /// The quadruped with noisy sensors and its controller, in a world of its own: what the twin does, without the rest.
 class WalkingRobot {
  public:
+  /// `world` is MJCF.
   explicit WalkingRobot(const std::string& world, const Pose2& T_world_start = {}, std::uint64_t seed = 1,
                         const LocomotionSettings& settings = {});
+  explicit WalkingRobot(AssembledModel model, std::uint64_t seed = 1, const LocomotionSettings& settings = {});
 
   WalkReport walk(double vx_mps, double vy_mps, double yaw_rate_radps, double duration_s);
   WalkReport stand(double duration_s) { return walk(0.0, 0.0, 0.0, duration_s); }
 
   Pose3 T_world_body() const;
+  const mjModel& view() const { return *model_.view; }
   /// Truth, in level.
   Eigen::Vector3d velocity_mps() const;
   const QuadrupedController& controller() const { return controller_; }
   const mjModel& model() const { return *model_.physics; }
   mjData& data() { return *data_; }
-  void step(const VelocityCommand& command);
+  /// One tick: the firmware, then the physics.
+  void step(const VelocityCommand& command) {
+    drive(command);
+    advance();
+  }
+  void drive(const VelocityCommand& command);
+  void advance();
 
  private:
   double loaded_slip_mps(int leg) const;
