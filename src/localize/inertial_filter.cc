@@ -152,16 +152,25 @@ void InertialFilter::correct_gyro_bias(const Eigen::Vector3d& bias_radps, const 
   const Gain W = P_.middleCols<3>(kGyroBias);
   Eigen::Matrix3d S = W.middleRows<3>(kGyroBias);
   S.diagonal() += variance;
-  apply(W, S.inverse(), bias_radps - gyro_bias_);
+  // What the bias has done to place and heading so far stays: odom must not jump. With rows of the gain left out the
+  // covariance follows Joseph's form (Schmidt's consider update).
+  Gain K = W * S.inverse();
+  K.middleRows<3>(kPosition).setZero();
+  K.row(kRotation + 2).setZero();
+  shift(K * (bias_radps - gyro_bias_));
+  P_ += K * S * K.transpose() - K * W.transpose() - W * K.transpose();
+  P_ = (0.5 * (P_ + P_.transpose())).eval();
 }
 
 void InertialFilter::apply(const Gain& W, const Eigen::Matrix3d& S_inverse,
                            const Eigen::Vector3d& innovation) {
   const Gain K = W * S_inverse;
-  const Eigen::Matrix<double, 15, 1> error = K * innovation;
+  shift(K * innovation);
   P_.noalias() -= K * W.transpose();
   P_ = (0.5 * (P_ + P_.transpose())).eval();
+}
 
+void InertialFilter::shift(const Eigen::Matrix<double, 15, 1>& error) {
   Pose3& T = motion_.T_odom_body;
   T.position += error.segment<3>(kPosition);
   T.rotation = (rotation_by(error.segment<3>(kRotation)) * T.rotation).normalized();

@@ -80,6 +80,7 @@ class InertialFilter {
                             const Eigen::Vector3d& omega);
   void add_dead_reckoning_noise(double dt_s);
   /// P -= W S^-1 W^T and the state with it, where W = P H^T.
+  void shift(const Eigen::Matrix<double, 15, 1>& error);
   void apply(const Gain& W, const Eigen::Matrix3d& S_inverse, const Eigen::Vector3d& innovation);
 
   Settings settings_;

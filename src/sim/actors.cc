@@ -158,10 +158,10 @@ void Actors::advance(Time now, const Eigen::Vector2d& p_world_robot, mjData& dat
   last_ = now;
   for (Actor& actor : actors_) {
     const double along = along_path(actor);
-    const double heading = actor.path.heading_rad(along) + (is_returning(actor) ? std::numbers::pi : 0.0);
-    const Eigen::Vector2d ahead(std::cos(heading), std::sin(heading));
+    const double course = actor.path.heading_rad(along) + (is_returning(actor) ? std::numbers::pi : 0.0);
+    const Eigen::Vector2d ahead(std::cos(course), std::sin(course));
     const Eigen::Vector2d to_robot = p_world_robot - actor.path.position(along);
-    const double half_length = actor.settings.kind == "car" ? 2.2 : 0.3, half_width = actor.settings.kind == "car" ? 1.4 : 0.8;
+    const double half_length = actor.settings.kind == "car" ? 2.2 : 0.3, half_width = actor.settings.kind == "car" ? 2.0 : 0.8;
     const double gap = to_robot.dot(ahead) - half_length;
     const bool is_in_the_way = gap > -half_length && gap < actor.settings.yield_distance_m &&
                                std::abs(to_robot.x() * ahead.y() - to_robot.y() * ahead.x()) < half_width;
@@ -176,7 +176,8 @@ void Actors::advance(Time now, const Eigen::Vector2d& p_world_robot, mjData& dat
 
 void Actors::place(const Actor& actor, mjData& data) const {
   const double along = along_path(actor);
-  const double heading = actor.path.heading_rad(along) + (is_returning(actor) ? std::numbers::pi : 0.0);
+  const bool is_turned = is_returning(actor) && actor.settings.kind != "car";  // a car reverses
+  const double heading = actor.path.heading_rad(along) + (is_turned ? std::numbers::pi : 0.0);
   // People do not jump up kerbs: the hip rises over a step's length.
   const auto ground_at_index = [&](double at) {
     const auto i = static_cast<std::size_t>(std::clamp(at / kGroundStep_m, 0.0, static_cast<double>(actor.ground_m.size() - 1)));

@@ -32,7 +32,7 @@ struct ActorSettings {
   std::vector<WaypointSettings> path;
   double speed_mps = 1.2;
   double start_s = 0.0;
-  bool loop = true;                     ///< there and back again; otherwise it stops at the end
+  bool loop = true;                     ///< there and back again (a car reverses); otherwise it stops at the end
   double yield_distance_m = 1.5;        ///< stops while the robot is this near ahead of it
 
   template <typename Self, typename Visitor>

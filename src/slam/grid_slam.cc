@@ -124,7 +124,7 @@ void GridSlam::integrate(const LevelScan& scan) {
   }
 }
 
-OccupancyGrid GridSlam::map() const { return render_map(particles_[best_].map, settings_.min_hits_occupied); }
+OccupancyGrid GridSlam::map() const { return render_map(particles_[best_].map, settings_.min_hits_occupied, settings_.min_hit_share_occupied); }
 
 ParticleSet GridSlam::particles() const {
   ParticleSet set;

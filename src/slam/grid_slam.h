@@ -19,13 +19,14 @@ struct GridSlamSettings {
   double resolution_m = 0.05;
   double max_extent_m = 400.0;            ///< nothing is mapped farther than half of this from the origin
   int min_hits_occupied = 2;              ///< fewer hits in a cell are stray, for the published map only
+  double min_hit_share_occupied = 0.5;    ///< a smaller share of the beams that came by is something that moved on, likewise
   // When the map is written.
   double keyframe_distance_m = 0.5;
   double keyframe_angle_rad = 0.12;
   int initial_keyframes = 5;              ///< so many first scans are all written: one alone is noisy and has gaps
   // What is believed; more particles cost time in proportion.
   int particles = 8;
-  double likelihood_gain = 0.02;          ///< share of the points that err independently (proposal.h)
+  double likelihood_gain = 0.05;          ///< share of the points that err independently (proposal.h)
   double resample_threshold = 0.5;        ///< resample when the effective sample size falls below this share of the particles
   MotionModelSettings motion;
   ScanMatcherSettings matching;
@@ -36,6 +37,7 @@ struct GridSlamSettings {
     visit("resolution_m", self.resolution_m, between(0.01, 1.0));
     visit("max_extent_m", self.max_extent_m, between(1.0, 5000.0));
     visit("min_hits_occupied", self.min_hits_occupied, between(1, 1000));
+    visit("min_hit_share_occupied", self.min_hit_share_occupied, between(0.0, 1.0));
     visit("keyframe_distance_m", self.keyframe_distance_m, between(0.0, 10.0));
     visit("keyframe_angle_rad", self.keyframe_angle_rad, between(0.0, 3.2));
     visit("initial_keyframes", self.initial_keyframes, between(1, 1000));

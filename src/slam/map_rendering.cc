@@ -41,7 +41,7 @@ GridGeometry known_extent(const GridMap& map) {
 
 }  // namespace
 
-OccupancyGrid render_map(const GridMap& map, int min_hits) {
+OccupancyGrid render_map(const GridMap& map, int min_hits, double min_hit_share) {
   OccupancyGrid grid(known_extent(map), kUnknown);
   const Cell corner = map.cell_at(grid.geometry().origin_m + Eigen::Vector2d::Constant(0.5 * map.resolution_m()));
   const auto to_grid = [&](Cell cell) { return Cell{cell.col - corner.col, cell.row - corner.row}; };
@@ -58,7 +58,7 @@ OccupancyGrid render_map(const GridMap& map, int min_hits) {
       for (std::uint32_t bits = tile.surface_bits[static_cast<std::size_t>(row)]; bits != 0; bits &= bits - 1) {
         const int col = std::countr_zero(bits);
         const GridCell& cell = tile.at(col, row);
-        if (cell.hits < min_hits) continue;
+        if (cell.hits < min_hits || cell.hits < min_hit_share * (cell.hits + cell.passes)) continue;
         const Eigen::Vector2d mean = map.center_of({first.col + col, first.row + row}) +
                                      Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m);
         const Cell at = to_grid(map.cell_at(surface_point(map, mean)));

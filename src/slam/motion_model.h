@@ -6,12 +6,12 @@
 namespace patrol::slam {
 
 struct MotionModelSettings {
-  double along_std_m_per_m = 0.05;         ///< error along the way; leg odometry: scale
-  double across_std_m_per_m = 0.04;        ///< and across it: sideways slip
+  double along_std_m_per_m = 0.01;         ///< error along the way; leg odometry: scale
+  double across_std_m_per_m = 0.01;        ///< and across it: sideways slip
   double turn_std_rad_per_rad = 0.04;      ///< of the turn
-  double turn_std_rad_per_m = 0.01;        ///< gained by walking
+  double turn_std_rad_per_m = 0.003;       ///< gained by walking
   double turn_std_rad_per_s = 0.0015;      ///< gained by standing about: the gyro's bias
-  double min_std_m = 0.005;                ///< sway of the trunk, however short the way
+  double min_std_m = 0.003;                ///< sway of the trunk, however short the way
   double min_std_rad = 0.002;
 
   template <typename Self, typename Visitor>
