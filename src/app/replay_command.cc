@@ -1,5 +1,78 @@
+#include <charconv>
+
+#include <fmt/format.h>
+
 #include "app/commands.h"
-#include <stdexcept>
+#include "app/progress_bar.h"
+#include "app/run_directory.h"
+#include "app/run_loop.h"
+#include "app/run_record.h"
+#include "core/error.h"
+#include "render/replay.h"
+#include "score/trajectory_error.h"
+
 namespace patrol::app {
-ExitCode replay_command(const ReplayOptions&) { throw std::runtime_error("replay: not built yet"); }
+namespace {
+
+constexpr int kMinSize = 64, kMaxSize = 3840;
+
+/// "1280x720". The encoder takes even sizes only.
+std::pair<int, int> parse_size(const std::string& text) {
+  int width = 0, height = 0;
+  const char* end = text.data() + text.size();
+  const auto [cross, bad_width] = std::from_chars(text.data(), end, width);
+  const bool has_cross = bad_width == std::errc{} && cross != end && *cross == 'x';
+  const auto [rest, bad_height] = has_cross ? std::from_chars(cross + 1, end, height) : std::from_chars_result{cross, bad_width};
+  const auto is_fine = [](int value) { return value >= kMinSize && value <= kMaxSize && value % 2 == 0; };
+  if (!has_cross || bad_height != std::errc{} || rest != end || !is_fine(width) || !is_fine(height)) {
+    throw InputError(fmt::format("--size {}: must be WIDTHxHEIGHT, even numbers of pixels in {} ... {}", text, kMinSize, kMaxSize));
+  }
+  return {width, height};
 }
+
+render::ReplaySettings replay_settings(const ReplayOptions& options) {
+  render::ReplaySettings settings;
+  settings.camera = render::camera_kind(options.camera);
+  settings.speed = options.speed;
+  std::tie(settings.width, settings.height) = parse_size(options.size);
+  if (!(options.speed > 0.0 && options.speed <= 1000.0)) {
+    throw InputError(fmt::format("--speed {}: must lie in 0 ... 1000", options.speed));
+  }
+  return settings;
+}
+
+}  // namespace
+
+ExitCode replay_command(const ReplayOptions& options) {
+  const render::ReplaySettings settings = replay_settings(options);
+  const RunDirectory directory = open_run_directory(options.run);
+  const Scenario scenario = io::load_settings<Scenario>(directory.scenario(), {});
+  const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
+  const RunRecord record = read_run_record(directory.log());
+  const Pose2 T_world_map = score::join_at_start(record.T_map_body, record.T_world_body);
+  sim::AssembledModel model =
+      sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), start_in_world(scenario, files));
+
+  if (options.still_s) {
+    const Time at = from_seconds(*options.still_s);
+    if (at < Time::zero() || at > record.T_world_body.back().stamp) {
+      throw InputError(fmt::format("--still {}: the run lasted from 0 to {:.1f} s", *options.still_s,
+                                   to_seconds(record.T_world_body.back().stamp)));
+    }
+    const std::filesystem::path out =
+        options.out.value_or(directory.root / fmt::format("still_{}_{:g}s.png", options.camera, *options.still_s));
+    render::still(directory.log(), std::move(model), T_world_map, settings, at, out);
+    fmt::print("{}\n", out.string());
+    return ExitCode::kDone;
+  }
+  const std::filesystem::path out = options.out.value_or(directory.root / "replay.mp4");
+  ProgressBar bar;
+  const render::ReplaySummary summary =
+      render::replay(directory.log(), std::move(model), T_world_map, settings, out,
+                     [&](double done) { bar.show(fmt::format("replay  {:3.0f} %", 100.0 * done)); });
+  fmt::print("{}: {} frames, {:.1f} s of the run{}\n", out.string(), summary.num_frames, to_seconds(summary.end),
+             summary.log_is_complete ? "" : ", whose log was cut off");
+  return ExitCode::kDone;
+}
+
+}  // namespace patrol::app
