@@ -37,6 +37,9 @@ Offscreen::Offscreen(const mjModel& model, int width, int height)
   mjr_defaultContext(&context_);
   mjr_makeContext(&model, &context_, mjFONTSCALE_100);
   mjr_setBuffer(mjFB_OFFSCREEN, &context_);
+  // Made anew without multisampling, whose depth is that of a sample off the pixel's centre, and which costs most of a frame.
+  context_.offSamples = 0;
+  mjr_resizeOffscreen(width + 1, height + 1, &context_);
   mjr_resizeOffscreen(width, height, &context_);
   const mjrRect largest = mjr_maxViewport(&context_);
   if (context_.currentBuffer != mjFB_OFFSCREEN || largest.width < width || largest.height < height) {

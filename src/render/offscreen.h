@@ -14,7 +14,7 @@ namespace patrol::render {
 class Offscreen {
  public:
   /// Uploads the model's textures and meshes; `model` is not needed afterwards. Throws std::runtime_error when there is no
-  /// usable OpenGL, or when the size is more than it can do.
+  /// usable OpenGL, or when the size is more than it can do. One sample a pixel, at its centre, whatever the model asks for.
   Offscreen(const mjModel& model, int width, int height);
   ~Offscreen();
   Offscreen(const Offscreen&) = delete;

@@ -26,7 +26,6 @@ void set_render_quality(mjModel& view) {
   view.vis.quality.numslices = 16;
   view.vis.quality.numstacks = 10;
   view.vis.quality.shadowsize = 2048;
-  view.vis.quality.offsamples = 0;
   constexpr double kShadowReach_m = 12.5;
   view.vis.map.shadowclip = static_cast<float>(kShadowReach_m / view.stat.extent);
 }

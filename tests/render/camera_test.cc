@@ -1,0 +1,105 @@
+#include "render/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "render/scene_painter.h"
+#include "tests/render/small_scene.h"
+
+namespace patrol::render {
+namespace {
+
+TEST(Projector, PutsWhatIsStraightAheadInTheMiddle) {
+  const Projector projector(look_at({1.0, 2.0, 3.0}, {5.0, 2.0, 1.0}), 640, 360);
+  const auto projected = projector.project({5.0, 2.0, 1.0});
+  ASSERT_TRUE(projected);
+  EXPECT_NEAR(projected->pixel.x(), 320.0, 1e-9);
+  EXPECT_NEAR(projected->pixel.y(), 180.0, 1e-9);
+  EXPECT_NEAR(projected->distance_m, std::sqrt(20.0), 1e-9);
+}
+
+TEST(Projector, PutsTheEdgeOfTheFieldOfViewOnTheEdgeOfThePicture) {
+  View view = look_at({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0});
+  view.field_of_view_rad = std::numbers::pi / 2.0;  // as high at 1 m as 2 m
+  const Projector projector(view, 640, 360);
+  EXPECT_NEAR(projector.project({1.0, 0.0, 1.0})->pixel.y(), 0.0, 1e-9);
+  EXPECT_NEAR(projector.project({1.0, -0.5, 0.0})->pixel.x(), 320.0 + 0.5 * 180.0, 1e-9);  // y is to the left
+}
+
+TEST(Projector, SeesNothingBehind) {
+  EXPECT_FALSE(Projector(look_at({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}), 640, 360).project({-1.0, 0.0, 0.0}));
+}
+
+TEST(Projector, AgreesWithMuJoCoWithinAPixelAndOnDepthWithinAMillimetre) {
+  const sim::ModelPtr model = small_scene(R"(<geom type="sphere" size="0.05" pos="4 0.7 1.1" rgba="1 0 0 1"/>)");
+  const View view = look_at({0.0, -0.5, 1.6}, {4.0, 0.0, 0.9});
+  ScenePainter painter(*model, 640, 360);
+  Frame frame;
+  std::vector<float> depth;
+  painter.draw(view, frame, depth);
+  double sum_x = 0.0, sum_y = 0.0, nearest = 1e9;
+  int count = 0;
+  const Projector projector(view, 640, 360);
+  for (int y = 0; y < 360; ++y) {
+    for (int x = 0; x < 640; ++x) {
+      if (frame.at(x, y).r < 2 * frame.at(x, y).b) continue;  // sky is blue
+      sum_x += x + 0.5;
+      sum_y += y + 0.5;
+      nearest = std::min(nearest, projector.distance_m(depth[static_cast<std::size_t>(y * 640 + x)]));
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 20);
+  const auto expected = projector.project({4.0, 0.7, 1.1});
+  EXPECT_NEAR(sum_x / count, expected->pixel.x(), 1.0);
+  EXPECT_NEAR(sum_y / count, expected->pixel.y(), 1.0);
+  EXPECT_NEAR(nearest, expected->distance_m - 0.05, 0.002);
+}
+
+TEST(CameraRigTest, ChasesFromBehindAndAbove) {
+  CameraRig rig(CameraKind::kChase);
+  const View view = rig.follow({{10.0, 5.0, 0.3}, quaternion_from_yaw(std::numbers::pi / 2.0)}, 0.05);
+  EXPECT_NEAR(view.eye.x(), 10.0, 1e-9);
+  EXPECT_LT(view.eye.y(), 5.0);
+  EXPECT_GT(view.eye.z(), 0.3);
+  EXPECT_GT(view.forward.y(), 0.8);
+}
+
+TEST(CameraRigTest, TurnsWithTheRobotButNotAtOnce) {
+  CameraRig rig(CameraKind::kChase);
+  const Pose3 east{Eigen::Vector3d::Zero(), quaternion_from_yaw(0.0)};
+  const Pose3 north{Eigen::Vector3d::Zero(), quaternion_from_yaw(std::numbers::pi / 2.0)};
+  rig.follow(east, 0.05);
+  EXPECT_GT(rig.follow(north, 0.05).forward.x(), 0.8);
+  View view;
+  for (int i = 0; i < 100; ++i) view = rig.follow(north, 0.05);
+  EXPECT_NEAR(view.forward.x(), 0.0, 1e-3);
+}
+
+TEST(CameraRigTest, FromTheTopNorthIsUp) {
+  const View view = CameraRig(CameraKind::kTop).follow({{3.0, 4.0, 0.3}, quaternion_from_yaw(1.0)}, 0.05);
+  EXPECT_NEAR(view.forward.z(), -1.0, 1e-12);
+  EXPECT_NEAR(view.up.y(), 1.0, 1e-12);
+  EXPECT_NEAR(view.eye.x(), 3.0, 1e-12);
+}
+
+TEST(CameraRigTest, OnBoardLooksWhereTheRobotHeads) {
+  const View view = CameraRig(CameraKind::kOnboard).follow({{3.0, 4.0, 0.3}, quaternion_from_yaw(1.0)}, 0.05);
+  EXPECT_NEAR(std::atan2(view.forward.y(), view.forward.x()), 1.0, 1e-9);
+}
+
+TEST(CameraKindTest, AnUnknownNameIsRefusedWithTheOnesThatAre) {
+  EXPECT_EQ(camera_kind("top"), CameraKind::kTop);
+  try {
+    camera_kind("drone");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "camera = drone: must be one of chase, top, onboard");
+  }
+}
+
+}  // namespace
+}  // namespace patrol::render

@@ -1,0 +1,123 @@
+#include "render/replay.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "io/run_log.h"
+#include "render/palette.h"
+#include "render/video.h"
+#include "tests/render/small_scene.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::render {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Two seconds of a robot that walks along x at 0.5 m/s, its state logged at 50 Hz: 0 s ... 1.98 s.
+void write_log(const std::filesystem::path& file, std::size_t num_qpos = 7) {
+  RobotDescription robot;
+  robot.T_body_sensor["lidar"] = {{0.0, 0.0, 0.1}, Eigen::Quaterniond::Identity()};
+  io::RunLogWriter log(file, robot);
+  for (int tick = 0; tick < 100; ++tick) {
+    const Time now = tick * 20ms;
+    const double x = 0.5 * to_seconds(now);
+    log.write(now, GroundTruth{now, {{x, 0.0, 0.3}, Eigen::Quaterniond::Identity()}, {}});
+    log.write(now, PoseEstimate{now, {x, 0.05, 0.0}, Eigen::Matrix3d::Zero()});
+    SimState state{.stamp = now, .qpos = {x, 0.0, 0.3, 1.0, 0.0, 0.0, 0.0}, .mocap = {}};
+    state.qpos.resize(num_qpos);
+    log.write(now, state);
+  }
+  log.close();
+}
+
+sim::AssembledModel model() { return {.physics = nullptr, .view = small_scene(kRobotBeforeWall), .start_qpos = {}}; }
+
+class Replay : public ::testing::Test {
+ protected:
+  void SetUp() override { write_log(log); }
+
+  test::TemporaryFolder folder;
+  const std::filesystem::path log = folder / "log.mcap";
+  const std::filesystem::path film = folder / "replay.mp4";
+  ReplaySettings settings{.speed = 1.0, .width = 160, .height = 90, .frames_per_second = 10.0};
+};
+
+TEST_F(Replay, FilmsTheRunAtTheRateThatWasAsked) {
+  const ReplaySummary summary = replay(log, model(), {}, settings, film);
+  EXPECT_EQ(summary.num_frames, 20);
+  EXPECT_EQ(summary.end, 1980ms);
+  EXPECT_TRUE(summary.log_is_complete);
+  const VideoInfo info = inspect_video(film);
+  EXPECT_EQ(info.num_frames, 20);
+  EXPECT_EQ(info.width, 160);
+  EXPECT_NEAR(info.duration_s, 2.0, 0.05);
+}
+
+TEST_F(Replay, FourTimesTheSpeedIsAQuarterOfTheFrames) {
+  settings.speed = 4.0;
+  EXPECT_EQ(replay(log, model(), {}, settings, film).num_frames, 5);
+}
+
+TEST_F(Replay, IsTheSameFilmHoweverManyThreadsDraw) {
+  settings.speed = 2.0;
+  settings.num_threads = 1;
+  replay(log, model(), {}, settings, folder / "one.mp4");
+  settings.num_threads = 3;
+  replay(log, model(), {}, settings, folder / "three.mp4");
+  EXPECT_EQ(test::read_bytes(folder / "one.mp4"), test::read_bytes(folder / "three.mp4"));
+}
+
+TEST_F(Replay, TellsHowFarItIs) {
+  double last = -1.0;
+  replay(log, model(), {}, settings, film, [&](double done) {
+    EXPECT_GE(done, last);
+    last = done;
+  });
+  EXPECT_DOUBLE_EQ(last, 1.0);
+}
+
+TEST_F(Replay, AStillShowsTheWorldAndTheOverlay) {
+  settings.width = 640;
+  settings.height = 360;
+  still(log, model(), {}, settings, 1s, folder / "still.png");
+  const Frame frame = load_png(folder / "still.png");
+  ASSERT_EQ(frame.width(), 640);
+  int green = 0, orange = 0, red = 0;
+  for (int y = 60; y < 260; ++y) {  // between figures and legend
+    for (int x = 0; x < 640; ++x) {
+      const Color& c = frame.at(x, y);
+      const auto is_like = [&](Color other) {
+        return std::abs(c.r - other.r) < 30 && std::abs(c.g - other.g) < 30 && std::abs(c.b - other.b) < 30;
+      };
+      green += is_like(kTruthColor);
+      orange += is_like(kEstimateColor);
+      red += c.r > 60 && c.r > 3 * c.g;
+    }
+  }
+  EXPECT_GT(red, 500) << "the robot";
+  EXPECT_GT(green, 20) << "the true path";
+  EXPECT_GT(orange, 20) << "the estimated path";
+}
+
+TEST_F(Replay, RefusesALogOfAnotherRobot) {
+  write_log(log, 19);
+  EXPECT_THROW(replay(log, model(), {}, settings, film), InputError);
+  EXPECT_FALSE(std::filesystem::exists(film));
+}
+
+TEST_F(Replay, RefusesALogWithoutStates) {
+  io::RunLogWriter empty(log, RobotDescription{});
+  empty.write(0s, GroundTruth{});
+  empty.close();
+  EXPECT_THROW(replay(log, model(), {}, settings, film), InputError);
+  EXPECT_THROW(still(log, model(), {}, settings, 1s, folder / "still.png"), InputError);
+}
+
+TEST_F(Replay, RefusesASpeedOfNothing) {
+  settings.speed = 0.0;
+  EXPECT_THROW(replay(log, model(), {}, settings, film), InputError);
+}
+
+}  // namespace
+}  // namespace patrol::render

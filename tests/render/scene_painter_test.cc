@@ -1,0 +1,123 @@
+#include "render/scene_painter.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/render/small_scene.h"
+
+namespace patrol::render {
+namespace {
+
+constexpr int kWidth = 320, kHeight = 180;
+
+constexpr const char* kYard = R"(
+  <light directional="true" dir="0.4 0.5 -0.76" diffuse="0.8 0.8 0.8" castshadow="true"/>
+  <geom type="plane" size="50 50 1" rgba="0.3 0.6 0.3 1"/>
+  <body name="robot" pos="0 0 0.3"><freejoint/><geom type="box" size="0.3 0.15 0.1" rgba="0.9 0.1 0.1 1" group="4"/></body>
+  <body name="actor" pos="3 0 0.5" mocap="true"><geom type="box" size="0.2 0.2 0.5" rgba="0.9 0.8 0.1 1"/></body>
+  <geom type="box" size="0.5 5 1" pos="8 3 1" rgba="0.5 0.4 0.3 1"/>
+  <geom type="box" size="0.5 5 1" pos="-8 3 1" rgba="0.5 0.4 0.3 1"/>
+  <geom type="box" size="0.5 0.5 1" pos="-60 3 1" rgba="0.5 0.4 0.3 1"/>
+  <geom type="box" size="0.2 0.2 1" pos="1 1 1" rgba="0.2 0.2 0.9 1" group="3"/>)";
+
+const View kFromBehind = look_at({-2.5, 0.0, 1.2}, {0.0, 0.0, 0.3});
+
+class ScenePainterTest : public ::testing::Test {
+ protected:
+  Frame draw(const View& view) {
+    Frame frame;
+    painter.draw(view, frame, depth);
+    return frame;
+  }
+
+  sim::ModelPtr model = small_scene(kYard);
+  ScenePainter painter{*model, kWidth, kHeight};
+  std::vector<float> depth;
+};
+
+TEST_F(ScenePainterTest, HasSkyAboveGroundBelowAndTheRobotInTheMiddle) {
+  painter.set_state(reference_state(*model));
+  const Frame frame = draw(kFromBehind);
+  const Color sky = frame.at(20, 3), ground = frame.at(20, kHeight - 3), robot = frame.at(kWidth / 2, kHeight / 2);
+  EXPECT_GT(sky.b, sky.r);
+  EXPECT_GT(ground.g, ground.b);
+  EXPECT_GT(robot.r, 2 * robot.g);
+}
+
+TEST_F(ScenePainterTest, ThrowsAShadowAwayFromTheSun) {
+  painter.set_state(reference_state(*model));
+  const View above = look_at({0.0, 0.0, 5.0}, {0.0, 0.0, 0.0});
+  const Frame frame = draw(above);
+  const Projector projector(above, kWidth, kHeight);
+  const auto green_at = [&](double x, double y) {
+    const Eigen::Vector2d pixel = projector.project({x, y, 0.0})->pixel;
+    return static_cast<int>(frame.at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y())).g);
+  };
+  EXPECT_LT(green_at(0.30, 0.30), green_at(-0.45, -0.45) - 20);  // the sun is in the south-west
+}
+
+TEST_F(ScenePainterTest, PutsRobotAndActorsWhereTheStateHasThem) {
+  SimState state = reference_state(*model);
+  state.qpos[1] = 2.0;
+  state.mocap[1] = -2.0;
+  painter.set_state(state);
+  const View above = look_at({0.0, 0.0, 9.0}, {0.0, 0.0, 0.0});
+  const Frame frame = draw(above);
+  const Projector projector(above, kWidth, kHeight);
+  const auto color_at = [&](const Eigen::Vector3d& p) {
+    const Eigen::Vector2d pixel = projector.project(p)->pixel;
+    return frame.at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
+  };
+  const Color robot = color_at({0.0, 2.0, 0.4}), actor = color_at({3.0, -2.0, 1.0});
+  EXPECT_GT(robot.r, 2 * robot.g);
+  EXPECT_GT(actor.r, 2 * actor.b);
+  EXPECT_GT(2 * actor.g, actor.r);
+}
+
+TEST_F(ScenePainterTest, WhatItLeavesOutWouldNotHaveBeenSeen) {
+  painter.set_state(reference_state(*model));
+  Frame frame;
+  painter.draw(kFromBehind, frame, depth);
+  const int num_drawn = painter.scene().ngeom;
+  // The same scene once more, whole: MuJoCo's list without the painter's choice.
+  mjvScene& scene = painter.scene();
+  mjvOption options;
+  mjv_defaultOption(&options);
+  for (const int group : {2, 3, 5}) options.geomgroup[group] = 0;
+  options.geomgroup[4] = 1;
+  float sun_place[mjMAXLIGHT][3];
+  for (int i = 0; i < scene.nlight; ++i) std::copy(scene.lights[i].pos, scene.lights[i].pos + 3, sun_place[i]);
+  auto data = sim::make_data(*model);
+  mj_forward(model.get(), data.get());
+  mjv_updateScene(model.get(), data.get(), &options, nullptr, nullptr, mjCAT_ALL, &scene);
+  for (int i = 0; i < scene.nlight; ++i) std::copy(sun_place[i], sun_place[i] + 3, scene.lights[i].pos);
+  EXPECT_GT(scene.ngeom, num_drawn) << "nothing was left out";
+  Frame whole;
+  painter.offscreen().render(scene);
+  painter.offscreen().read(whole);
+  EXPECT_EQ(frame, whole);
+}
+
+TEST_F(ScenePainterTest, GivesTheSamePixelsForTheSameState) {
+  painter.set_state(reference_state(*model));
+  const Frame first = draw(kFromBehind);
+  draw(look_at({5.0, 5.0, 2.0}, {0.0, 0.0, 0.0}));
+  EXPECT_EQ(draw(kFromBehind), first);
+}
+
+TEST_F(ScenePainterTest, RefusesAStateOfAnotherModel) {
+  SimState state = reference_state(*model);
+  state.qpos.push_back(0.0);
+  EXPECT_THROW(painter.set_state(state), InputError);
+  state = reference_state(*model);
+  state.mocap.clear();
+  EXPECT_THROW(painter.set_state(state), InputError);
+}
+
+TEST(OffscreenTest, RefusesASizeWithoutPixels) {
+  const auto model = small_scene(R"(<geom size="1"/>)");
+  EXPECT_THROW(Offscreen(*model, 0, 100), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace patrol::render

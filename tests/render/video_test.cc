@@ -1,0 +1,70 @@
+#include "render/video.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "core/error.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::render {
+namespace {
+
+void write_film(const std::filesystem::path& file, int num_frames) {
+  VideoWriter video(file, 160, 90, 25.0);
+  for (int i = 0; i < num_frames; ++i) {
+    Frame frame(160, 90, {20, 40, 60});
+    for (int y = 30; y < 60; ++y) {
+      for (int x = 0; x < 20; ++x) frame.at(x + 4 * i % 140, y) = {220, 180, 20};
+    }
+    video.add(frame);
+  }
+  video.finish();
+}
+
+TEST(Video, HoldsEveryFrameAtItsSizeAndRate) {
+  const test::TemporaryFolder folder;
+  write_film(folder / "film.mp4", 30);
+  const VideoInfo info = inspect_video(folder / "film.mp4");
+  EXPECT_EQ(info.width, 160);
+  EXPECT_EQ(info.height, 90);
+  EXPECT_EQ(info.num_frames, 30);
+  EXPECT_NEAR(info.duration_s, 30 / 25.0, 0.05);
+}
+
+TEST(Video, SameFramesGiveTheSameBytes) {
+  const test::TemporaryFolder folder;
+  write_film(folder / "a.mp4", 12);
+  write_film(folder / "b.mp4", 12);
+  EXPECT_EQ(test::read_bytes(folder / "a.mp4"), test::read_bytes(folder / "b.mp4"));
+}
+
+TEST(Video, CanBePlayedBeforeAllOfItHasCome) {
+  const test::TemporaryFolder folder;
+  write_film(folder / "film.mp4", 12);
+  const std::string bytes = test::read_bytes(folder / "film.mp4");
+  EXPECT_LT(bytes.find("moov"), bytes.find("mdat"));
+}
+
+TEST(Video, LeavesNothingBehindWhenItIsNotFinished) {
+  const test::TemporaryFolder folder;
+  {
+    VideoWriter video(folder / "film.mp4", 160, 90, 25.0);
+    video.add(Frame(160, 90));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(Video, RefusesAnOddSize) {
+  const test::TemporaryFolder folder;
+  EXPECT_THROW(VideoWriter(folder / "film.mp4", 161, 90, 25.0), InputError);
+}
+
+TEST(Video, NamesThePlaceThatCannotBeWritten) {
+  EXPECT_THROW(VideoWriter("/nowhere/at/all/film.mp4", 160, 90, 25.0), InputError);
+  EXPECT_THROW(inspect_video("/nowhere/at/all/film.mp4"), InputError);
+}
+
+}  // namespace
+}  // namespace patrol::render
