@@ -1,7 +1,11 @@
 #include "app/command_line.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <functional>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -47,6 +51,15 @@ void add_commands(CLI::App& app, std::function<ExitCode()>& chosen, RunOptions& 
   command->callback([&] { chosen = [] { return list_command(); }; });
 }
 
+/// CLI11 would only say that a command is required.
+void refuse_unknown_command(const CLI::App& app, int argc, const char* const* argv) {
+  const std::string word = argc > 1 ? argv[1] : "-";
+  std::vector<std::string> known;
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  if (word.starts_with('-') || std::find(known.begin(), known.end(), word) != known.end()) return;
+  throw InputError(fmt::format("there is no command '{}' (known: {})", word, fmt::join(known, ", ")));
+}
+
 int report(const char* what, ExitCode code) {
   fmt::print(stderr, "patrol: {}\n", what);
   return static_cast<int>(code);
@@ -67,6 +80,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_commands(app, chosen, run, score, replay, verify_run);
 
   try {
+    refuse_unknown_command(app, argc, argv);
     app.parse(argc, argv);
     return static_cast<int>(chosen());
   } catch (const CLI::ParseError& error) {

@@ -75,7 +75,7 @@ class BadInput(unittest.TestCase):
         self.refuse_run(SHORT, "--set", "stack.slam.particels=3", says=["particels", "particles"])
 
     def test_start_inside_a_wall(self):
-        self.refuse_run(SHORT, "--set", "start.left_m=6", says=["start"])
+        self.refuse_run(SHORT, "--set", "start.left_m=10", says=["start"])
 
     def test_leak_at_an_unknown_place(self):
         self.refuse_run(SHORT, "--set", "leaks.0.at=nowhere", says=["nowhere"])
