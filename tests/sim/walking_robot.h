@@ -60,6 +60,7 @@ class WalkingRobot {
   const QuadrupedController& controller() const { return controller_; }
   const mjModel& model() const { return *model_.physics; }
   mjData& data() { return *data_; }
+  const mjData& state() const { return *data_; }
   /// One tick: the firmware, then the physics.
   void step(const VelocityCommand& command) {
     drive(command);

@@ -1,5 +1,6 @@
 #include "sim/sensors/lidar.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -28,6 +29,18 @@ bool is_glass(const mjModel& model, int geom) {
   return name != nullptr && std::string_view(name).find("glass") != std::string_view::npos;
 }
 
+// Two echoes further apart than a pulse of 10 ns is long are told apart; nearer than this they are one surface.
+constexpr double kPulse_m = 1.5;
+constexpr double kLeastJump_m = 0.1;
+
+/// As `interpolate`; between poses as near as those of two ticks, by the chord instead of the arc (less than 1e-7 rad beside).
+Pose3 move_between(const Pose3& a, const Pose3& b, double fraction) {
+  const double cosine = a.rotation.dot(b.rotation);
+  if (cosine < 0.9999) return interpolate(a, b, fraction);
+  const Eigen::Vector4d chord = (1.0 - fraction) * a.rotation.coeffs() + fraction * b.rotation.coeffs();
+  return {a.position + fraction * (b.position - a.position), Eigen::Quaterniond(chord.normalized())};
+}
+
 }  // namespace
 
 LidarSettings LidarSettings::of_preset(const std::string& name) {
@@ -35,12 +48,14 @@ LidarSettings LidarSettings::of_preset(const std::string& name) {
   s.preset = name;
   if (name == "utm30lx") {
     s.rate_hz = 40.0, s.beams = 1081, s.fov_deg = 270.25, s.range_min_m = 0.1, s.range_resolution_m = 0.001;
+    s.beam_width_deg = 0.25;
   } else if (name == "tim571") {
     s.rate_hz = 15.0, s.beams = 811, s.fov_deg = 270.33, s.range_max_m = 25.0, s.dark_range_m = 8.0;
-    s.range_noise_m = 0.01, s.range_resolution_m = 0.001;
+    s.range_noise_m = 0.01, s.range_resolution_m = 0.001, s.beam_width_deg = 0.33;
   } else if (name == "vlp16") {
     s.rate_hz = 10.0, s.beams = 1800, s.rings = 16, s.elevation_min_deg = -15.0, s.elevation_max_deg = 15.0;
     s.range_min_m = 0.5, s.range_max_m = 100.0, s.range_resolution_m = 0.002, s.dark_range_m = 50.0;
+    s.beam_width_deg = 0.17;
   }
   return s;
 }
@@ -84,6 +99,7 @@ Time Lidar::instant_of(std::int64_t beam) const {
 }
 
 void Lidar::begin_revolution() {
+  last_range_m_.assign(elevation_.size(), kInfinity);
   if (settings_.rings > 1) {
     cloud_ = {.stamp = instant_of(next_beam_), .points = {}};
     return;
@@ -103,9 +119,9 @@ void Lidar::begin_revolution() {
 }
 
 void Lidar::advance(Time from, Time to, const Pose3& T_world_body_from, const Pose3& T_world_body_to) {
-  while (instant_of(next_beam_) <= to) {
-    const double fraction = to_seconds(instant_of(next_beam_) - from) / to_seconds(to - from);
-    const Pose3 T_world_lidar = interpolate(T_world_body_from, T_world_body_to, fraction) * T_body_lidar_;
+  for (Time instant = instant_of(next_beam_); instant <= to; instant = instant_of(next_beam_)) {
+    const double fraction = to_seconds(instant - from) / to_seconds(to - from);
+    const Pose3 T_world_lidar = move_between(T_world_body_from, T_world_body_to, fraction) * T_body_lidar_;
     const bool is_last = next_beam_ % settings_.beams == settings_.beams - 1;
     if (settings_.motion_distortion) {
       fire(next_beam_, T_world_lidar);
@@ -134,7 +150,7 @@ void Lidar::fire(std::int64_t beam, const Pose3& T_world_lidar) {
     const std::uint64_t index = column * elevation_.size() + ring;
     const Eigen::Vector3d direction(elevation_[ring].x() * azimuth_[column].x(), elevation_[ring].x() * azimuth_[column].y(),
                                     elevation_[ring].y());
-    const Return got = measure(tick, index, T_world_lidar, direction);
+    const Return got = measure(tick, index, T_world_lidar, direction, last_range_m_[ring]);
     if (settings_.rings == 1) {
       scan_.ranges_m.push_back(static_cast<float>(got.range_m));
       scan_.intensities.push_back(static_cast<float>(got.intensity));
@@ -149,17 +165,18 @@ void Lidar::fire(std::int64_t beam, const Pose3& T_world_lidar) {
 
 /// The whole life of one beam.
 Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose3& T_world_lidar,
-                             const Eigen::Vector3d& direction) const {
+                             const Eigen::Vector3d& direction, double& last_range_m) const {
   Eigen::Vector3d aimed = direction;
   if (settings_.angle_noise_deg > 0.0) {
     const double turn = settings_.angle_noise_deg * kDegree * angle_noise_.normal(tick, index);
     aimed += turn * Eigen::Vector3d(-direction.y(), direction.x(), 0.0);
     aimed.normalize();
   }
-  const Eigen::Vector3d ray = T_world_lidar.rotation * aimed;
-  const std::optional<RayHit> hit = scene_.cast(T_world_lidar.position, ray, settings_.range_max_m, mask_);
-  Return got = hit ? echo(*hit, ray, hit->distance_m) : Return{kInfinity, 0.0};
-
+  Return got = look(T_world_lidar, aimed);
+  const double jump_m = std::abs(got.range_m - std::exchange(last_range_m, got.range_m));
+  if (jump_m > kLeastJump_m && jump_m < kPulse_m && settings_.beam_width_deg > 0.0) {
+    got = mix_over_width(T_world_lidar, aimed, got);
+  }
   if (settings_.rain_rate > 0.0) {
     const double path_m = std::min(got.range_m, settings_.range_max_m);
     if (rain_.uniform(tick, index) < 1.0 - std::exp(-settings_.rain_rate * path_m)) {
@@ -175,6 +192,30 @@ Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose
   }
   if (got.range_m > settings_.range_max_m) return {kInfinity, 0.0};
   return got;
+}
+
+/// A ray without width, and its echo.
+Lidar::Return Lidar::look(const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const {
+  const Eigen::Vector3d ray = T_world_lidar.rotation * direction;
+  const std::optional<RayHit> hit = scene_.cast(T_world_lidar.position, ray, settings_.range_max_m, mask_);
+  return hit ? echo(*hit, ray, hit->distance_m) : Return{kInfinity, 0.0};
+}
+
+/// The mean over the beam's width, weighted by the light that comes back; of the surfaces within a pulse's length only.
+Lidar::Return Lidar::mix_over_width(const Pose3& T_world_lidar, const Eigen::Vector3d& direction, const Return& middle) const {
+  constexpr int kRays = 4;
+  const Eigen::Vector3d sideways = settings_.beam_width_deg * kDegree * Eigen::Vector3d(-direction.y(), direction.x(), 0.0);
+  double light = 0.0, light_range = 0.0, light_intensity = 0.0;
+  for (int i = 0; i < kRays; ++i) {
+    const double share = (i + 0.5) / kRays - 0.5;
+    const Return part = look(T_world_lidar, (direction + share * sideways).normalized());
+    if (!(std::abs(part.range_m - middle.range_m) < kPulse_m)) continue;
+    const double returned = part.intensity / (part.range_m * part.range_m);
+    light += returned;
+    light_range += returned * part.range_m;
+    light_intensity += returned * part.intensity;
+  }
+  return light > 0.0 ? Return{light_range / light, light_intensity / light} : middle;
 }
 
 /// What comes back from a surface: nothing from glass met squarely off, from grazing or from dark and far ones.

@@ -27,6 +27,7 @@ struct LidarSettings {
   double range_noise_m = 0.015;       ///< standard deviation
   double range_resolution_m = 0.013;  ///< quantisation
   double angle_noise_deg = 0.01;      ///< standard deviation of a beam's direction
+  double beam_width_deg = 0.12;       ///< over it a beam's light is spread (across the ring): mixed pixels at edges
   double dropout = 0.002;             ///< share of beams that are lost for no reason
   double grazing_deg = 85.0;          ///< beams that meet a surface flatter than this are lost
   double dark_range_m = 10.0;         ///< range on a surface of 10 % reflectivity
@@ -37,7 +38,8 @@ struct LidarSettings {
   /// From public data sheets: "rplidar_s2" (Slamtec RPLIDAR S2: 10 Hz, 32,000 samples/s, 0.05-30 m, 10 m on 10 %,
   /// +-30 mm, 13 mm steps), "utm30lx" (Hokuyo UTM-30LX: 40 Hz, 0.25 deg over 270 deg, 0.1-30 m, +-30 mm, 1 mm steps),
   /// "tim571" (SICK TiM571: 15 Hz, 0.33 deg over 270 deg, 0.05-25 m, 8 m on 10 %, 20 mm), "vlp16" (Velodyne VLP-16: 10 Hz, 16
-  /// rings over +-15 deg, 1,800 firings, 100 m, +-30 mm, 2 mm steps). A stated "+-" is read as two standard deviations.
+  /// rings over +-15 deg, 1,800 firings, 100 m, +-30 mm, 2 mm steps, 3 mrad wide). A stated "+-" is read as two standard
+  /// deviations. The widths of the others' beams are not in their sheets: about the angle from beam to beam is assumed.
   static LidarSettings of_preset(const std::string& name);
 
   template <typename Self, typename Visitor>
@@ -55,6 +57,7 @@ struct LidarSettings {
     visit("range_noise_m", self.range_noise_m, at_least(0.0));
     visit("range_resolution_m", self.range_resolution_m, at_least(0.0));
     visit("angle_noise_deg", self.angle_noise_deg, between(0.0, 10.0));
+    visit("beam_width_deg", self.beam_width_deg, between(0.0, 5.0));
     visit("dropout", self.dropout, between(0.0, 1.0));
     visit("grazing_deg", self.grazing_deg, between(0.0, 90.0));
     visit("dark_range_m", self.dark_range_m, at_least(0.0));
@@ -67,7 +70,9 @@ struct LidarSettings {
 /// Fires each beam at its own instant, from where the robot is then. Every imperfection draws from its own random stream,
 /// addressed by revolution and beam, so that one can be made ideal without changing the others.
 ///
-/// Not modelled: the beam's divergence (but for mixed pixels at edges), multiple echoes, sunlight.
+/// Where the range jumps by 0.1 to 1.5 m from one beam to the next, the light of the second is spread over both surfaces and
+/// returns a range in between (a mixed pixel); over a larger jump the receiver tells the two echoes apart and keeps that of
+/// the beam's axis. Not modelled: the beam's width anywhere else, multiple echoes, sunlight.
 class Lidar {
  public:
   /// One ring gives scans, several give clouds. `name` names the random streams; `own_housing` is what the beams start in.
@@ -89,7 +94,10 @@ class Lidar {
 
   Time instant_of(std::int64_t beam) const;
   void fire(std::int64_t beam, const Pose3& T_world_lidar);
-  Return measure(std::uint64_t tick, std::uint64_t index, const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const;
+  Return measure(std::uint64_t tick, std::uint64_t index, const Pose3& T_world_lidar, const Eigen::Vector3d& direction,
+                 double& last_range_m) const;
+  Return look(const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const;
+  Return mix_over_width(const Pose3& T_world_lidar, const Eigen::Vector3d& direction, const Return& middle) const;
   Return echo(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const;
   void begin_revolution();
 
@@ -101,6 +109,7 @@ class Lidar {
   std::int64_t next_beam_ = 0;  ///< since the start
   std::vector<Eigen::Vector2d> azimuth_;    ///< [beam]: cosine and sine
   std::vector<Eigen::Vector2d> elevation_;  ///< [ring]: cosine and sine
+  std::vector<double> last_range_m_;        ///< [ring]: without noise
   std::vector<float> reflectivity_;         ///< [geom] of the view model
   std::vector<bool> is_glass_;              ///< [geom]
   LaserScan scan_;

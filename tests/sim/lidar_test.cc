@@ -1,0 +1,370 @@
+#include "sim/sensors/lidar.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/error.h"
+#include "tests/sim/small_world.h"
+
+namespace patrol::sim {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kDegree = kPi / 180.0;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr Time kTick = std::chrono::milliseconds(2);
+
+const std::string kWhite = R"( rgba="1 1 1 1" )";
+
+std::string box(const std::string& position, const std::string& size, const std::string& more = kWhite) {
+  return R"(<geom type="box" pos=")" + position + R"(" size=")" + size + R"(" )" + more + "/>";
+}
+/// Walls at +-4 m in x and +-3 m in y.
+const std::string kSquareRoom = box("4.5 0 0", "0.5 4 3") + box("-4.5 0 0", "0.5 4 3") + box("0 3.5 0", "5 0.5 3") + box("0 -3.5 0", "5 0.5 3");
+
+/// True range in that room from its middle, along an angle.
+double room_range(double angle_rad) {
+  return std::min(4.0 / std::abs(std::cos(angle_rad)), 3.0 / std::abs(std::sin(angle_rad)));
+}
+
+/// Everything perfect: no noise, no steps, no losses, no width.
+LidarSettings ideal() {
+  LidarSettings settings;
+  settings.beams = 720;
+  settings.range_noise_m = settings.range_resolution_m = settings.angle_noise_deg = settings.dropout = 0.0;
+  settings.grazing_deg = 90.0;
+  settings.dark_range_m = 0.0;
+  settings.beam_width_deg = 0.0;
+  return settings;
+}
+
+/// The scans of `seconds` from a lidar that is carried by `pose(now)`.
+template <typename PoseAt>
+std::vector<LaserScan> scans_along(const SmallWorld& world, const LidarSettings& settings, double seconds, PoseAt pose,
+                                   std::uint64_t seed = 1) {
+  Lidar lidar(settings, world.scene, {}, kRayLidar2d, seed, "lidar");
+  std::vector<LaserScan> scans;
+  for (Time now{}; now < from_seconds(seconds); now += kTick) {
+    lidar.advance(now, now + kTick, pose(to_seconds(now)), pose(to_seconds(now + kTick)));
+    for (LaserScan& scan : lidar.take_scans()) scans.push_back(std::move(scan));
+  }
+  return scans;
+}
+
+std::vector<LaserScan> scans_at_rest(const SmallWorld& world, const LidarSettings& settings, double seconds, std::uint64_t seed = 1) {
+  return scans_along(world, settings, seconds, [](double) { return Pose3{}; }, seed);
+}
+
+double angle_of(const LaserScan& scan, std::size_t beam) {
+  return scan.angle_min_rad + static_cast<double>(beam) * scan.angle_increment_rad;
+}
+
+TEST(Lidar, WithoutImperfectionsEveryBeamIsTheRoomsRangeWithin1Millimetre) {
+  const SmallWorld world(kSquareRoom);
+  const LaserScan scan = scans_at_rest(world, ideal(), 0.11).front();
+  ASSERT_EQ(scan.ranges_m.size(), 720u);
+  EXPECT_DOUBLE_EQ(scan.angle_min_rad, -kPi);
+  for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
+    EXPECT_NEAR(scan.ranges_m[beam], room_range(angle_of(scan, beam)), 1e-3) << beam;
+  }
+}
+
+TEST(Lidar, TenTimesASecondAScanWhoseBeamsFollowOneAnotherEvenlyAndWhoseLastEndsTheRevolution) {
+  const SmallWorld world(kSquareRoom);
+  const std::vector<LaserScan> scans = scans_at_rest(world, ideal(), 1.001);
+  ASSERT_EQ(scans.size(), 10u);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    EXPECT_NEAR(scans[i].scan_time_s, 0.1, 1e-12);
+    EXPECT_NEAR(scans[i].time_increment_s, 0.1 / 720.0, 1e-12);
+    EXPECT_NEAR(to_seconds(scans[i].stamp) + 719.0 * scans[i].time_increment_s, 0.1 * static_cast<double>(i + 1), 1e-8);
+  }
+}
+
+TEST(Lidar, A270DegreeScannerAt40HertzSpreadsItsBeamsOverThreeQuartersOfTheRevolution) {
+  const SmallWorld world(kSquareRoom);
+  const LidarSettings settings = LidarSettings::of_preset("utm30lx");
+  const LaserScan scan = scans_at_rest(world, settings, 0.03).front();
+  EXPECT_EQ(scan.ranges_m.size(), 1081u);
+  EXPECT_NEAR(scan.angle_increment_rad, 0.25 * kDegree, 1e-6);
+  EXPECT_NEAR(scan.time_increment_s, 0.025 * 270.25 / 360.0 / 1081.0, 1e-12);
+  EXPECT_NEAR(to_seconds(scan.stamp) + 1080.0 * scan.time_increment_s, 0.025, 1e-8);
+}
+
+/// A wall square ahead, seen by beams close to its normal.
+const std::string kWallAt2m = box("2.5 0 0", "0.5 20 5");
+
+LidarSettings narrow() {
+  LidarSettings settings = ideal();
+  settings.fov_deg = 2.0;
+  settings.beams = 400;
+  settings.rate_hz = 50.0;
+  return settings;
+}
+
+Moments range_errors(const SmallWorld& world, const LidarSettings& settings, double seconds, double distance_m, std::uint64_t seed = 1) {
+  Moments errors;
+  for (const LaserScan& scan : scans_at_rest(world, settings, seconds, seed)) {
+    for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
+      if (std::isfinite(scan.ranges_m[beam])) errors.add(scan.ranges_m[beam] - distance_m / std::cos(angle_of(scan, beam)));
+    }
+  }
+  return errors;
+}
+
+TEST(Lidar, RangeNoiseIs15MillimetresAndWithoutBias) {
+  const SmallWorld world(kWallAt2m);
+  LidarSettings settings = narrow();
+  settings.range_noise_m = 0.015;
+  const Moments errors = range_errors(world, settings, 1.01, 2.0);
+  EXPECT_GE(errors.count, 19000);
+  EXPECT_NEAR(errors.std(), 0.015, 0.0003);
+  EXPECT_NEAR(errors.mean(), 0.0, 0.0005);
+}
+
+TEST(Lidar, RangesAreWholeStepsOf13MillimetresAndTheErrorIsThatOfAnEvenSpread) {
+  const SmallWorld world(box("2.5 0 0", "0.5 20 5", kWhite + R"(euler="0 0 20")"));
+  LidarSettings settings = narrow();
+  settings.fov_deg = 20.0;
+  settings.range_resolution_m = 0.013;
+  const LaserScan coarse = scans_at_rest(world, settings, 0.03).front();
+  settings.range_resolution_m = 0.0;
+  const LaserScan exact = scans_at_rest(world, settings, 0.03).front();
+  Moments errors;
+  for (std::size_t beam = 0; beam < coarse.ranges_m.size(); ++beam) {
+    EXPECT_NEAR(std::remainder(static_cast<double>(coarse.ranges_m[beam]), 0.013), 0.0, 1e-6);
+    errors.add(coarse.ranges_m[beam] - exact.ranges_m[beam]);
+  }
+  EXPECT_NEAR(errors.std(), 0.013 / std::sqrt(12.0), 0.0003);
+  EXPECT_LE(errors.largest, 0.0066);
+}
+
+TEST(Lidar, Rep117TooCloseIsMinusInfinityNothingPlusInfinityLostNotANumber) {
+  const SmallWorld near(box("0.53 0 0", "0.5 20 5"));
+  EXPECT_EQ(scans_at_rest(near, narrow(), 0.03).front().ranges_m.at(200), -kInfinity);
+  LidarSettings settings = narrow();
+  settings.range_max_m = 30.0;
+  const SmallWorld far(box("30.6 0 0", "0.5 20 5"));
+  EXPECT_EQ(scans_at_rest(far, settings, 0.03).front().ranges_m.at(200), kInfinity);
+  const SmallWorld just(box("30.4 0 0", "0.5 20 5"));
+  EXPECT_NEAR(scans_at_rest(just, settings, 0.03).front().ranges_m.at(200), 29.9, 1e-3);
+  settings.dropout = 1.0;
+  EXPECT_TRUE(std::isnan(scans_at_rest(just, settings, 0.03).front().ranges_m.at(200)));
+}
+
+TEST(Lidar, DropsTwoOfAThousandBeams) {
+  const SmallWorld world(kWallAt2m);
+  LidarSettings settings = narrow();
+  settings.dropout = 0.002;
+  int lost = 0, all = 0;
+  for (const LaserScan& scan : scans_at_rest(world, settings, 5.01)) {
+    for (const float range : scan.ranges_m) lost += std::isnan(range), ++all;
+  }
+  EXPECT_GE(all, 99000);
+  EXPECT_NEAR(static_cast<double>(lost) / all, 0.002, 4.0 * std::sqrt(0.002 / all));
+}
+
+TEST(Lidar, AngularJitterOfATenthOfADegreeIsReadOffAWallMetAt60Degrees) {
+  // At 60 degrees to the normal of a wall 2 m away the range changes by r tan(60 deg) = 6.93 m per radian.
+  const SmallWorld world(box("2.5 0 0", "0.5 20 5"));
+  LidarSettings settings = narrow();
+  settings.angle_noise_deg = 0.1;
+  Lidar lidar(settings, world.scene, {Eigen::Vector3d::Zero(), quaternion_from_yaw(60.0 * kDegree)}, kRayLidar2d, 1, "lidar");
+  Moments errors;
+  for (Time now{}; now < from_seconds(0.5); now += kTick) {
+    lidar.advance(now, now + kTick, {}, {});
+    for (const LaserScan& scan : lidar.take_scans()) {
+      for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
+        const double angle = angle_of(scan, beam) + 60.0 * kDegree, range = 2.0 / std::cos(angle);
+        errors.add((scan.ranges_m[beam] - range) / (range * std::tan(angle)));  // rad
+      }
+    }
+  }
+  EXPECT_NEAR(errors.std(), 0.1 * kDegree, 0.02 * 0.1 * kDegree);
+  EXPECT_NEAR(errors.mean(), 0.0, 0.03 * 0.1 * kDegree);
+}
+
+TEST(Lidar, OnARobotTurningAt1RadianPerSecondEachBeamLooksWhereItStoodAtItsInstant) {
+  const SmallWorld world(kSquareRoom);
+  const auto turning = [](double now) { return Pose3{Eigen::Vector3d::Zero(), quaternion_from_yaw(now)}; };
+  LidarSettings settings = ideal();
+  const LaserScan scan = scans_along(world, settings, 0.31, turning).back();
+  settings.motion_distortion = false;
+  const LaserScan frozen = scans_along(world, settings, 0.31, turning).back();
+  double largest = 0.0;
+  for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
+    const double instant = to_seconds(scan.stamp) + static_cast<double>(beam) * scan.time_increment_s;
+    EXPECT_NEAR(scan.ranges_m[beam], room_range(angle_of(scan, beam) + instant), 1e-3) << beam;
+    EXPECT_NEAR(frozen.ranges_m[beam], room_range(angle_of(scan, beam) + to_seconds(frozen.stamp)), 1e-3) << beam;
+    largest = std::max(largest, static_cast<double>(std::abs(scan.ranges_m[beam] - frozen.ranges_m[beam])));
+  }
+  EXPECT_GT(largest, 0.2);  // a tenth of a radian at the first beam
+  EXPECT_EQ(frozen.time_increment_s, 0.0);
+}
+
+TEST(Lidar, OnARobotWalkingAt1MetrePerSecondTheWallAheadComesNearerByOneMillimetreAMillisecond) {
+  const SmallWorld world(box("10.5 0 0", "0.5 20 5"));
+  const auto walking = [](double now) { return Pose3{Eigen::Vector3d(now, 0, 0), Eigen::Quaterniond::Identity()}; };
+  LidarSettings settings = ideal();
+  settings.fov_deg = 100.0;
+  const LaserScan scan = scans_along(world, settings, 0.21, walking).back();
+  for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
+    const double instant = to_seconds(scan.stamp) + static_cast<double>(beam) * scan.time_increment_s;
+    EXPECT_NEAR(scan.ranges_m[beam], (10.0 - instant) / std::cos(angle_of(scan, beam)), 1e-3) << beam;
+  }
+}
+
+TEST(Lidar, GrazingBeamsBeyond85DegreesAreLost) {
+  const SmallWorld world(R"(<geom type="plane" size="100 100 1" rgba="1 1 1 1"/>)");
+  LidarSettings settings = narrow();
+  settings.grazing_deg = 85.0;
+  const auto range_looking_down = [&](double degrees) {
+    const Pose3 pose{Eigen::Vector3d(0, 0, 1), Eigen::Quaterniond(Eigen::AngleAxisd(degrees * kDegree, Eigen::Vector3d::UnitY()))};
+    return scans_along(world, settings, 0.03, [&](double) { return pose; }).front().ranges_m.at(200);
+  };
+  EXPECT_NEAR(range_looking_down(5.2), 1.0 / std::sin(5.2 * kDegree), 1e-2);
+  EXPECT_EQ(range_looking_down(4.8), kInfinity);
+}
+
+TEST(Lidar, ASurfaceOf10PercentReturnsUpTo10MetresAndAWhiteOneUpTo30) {
+  LidarSettings settings = narrow();
+  settings.dark_range_m = 10.0;
+  const auto range_at = [&](double distance_m, const std::string& grey) {
+    const SmallWorld world(box(std::to_string(distance_m + 0.5) + " 0 0", "0.5 20 5", R"(rgba=")" + grey + " " + grey + " " + grey + R"( 1")"));
+    return scans_at_rest(world, settings, 0.03).front().ranges_m.at(200);
+  };
+  EXPECT_NEAR(range_at(9.9, "0.1"), 9.9, 1e-3);
+  EXPECT_EQ(range_at(10.1, "0.1"), kInfinity);
+  EXPECT_NEAR(range_at(19.9, "0.4"), 19.9, 1e-3);  // range grows with the root of the reflectivity
+  EXPECT_EQ(range_at(20.1, "0.4"), kInfinity);
+  EXPECT_NEAR(range_at(29.5, "1"), 29.5, 1e-3);
+}
+
+TEST(Lidar, GlassReturnsTheBeamOnlyWithin5DegreesOfItsNormal) {
+  const SmallWorld world(box("2.5 0 0", "0.5 20 5", R"(material="window_glass")"), R"(<material name="window_glass" rgba="1 1 1 1"/>)");
+  LidarSettings settings = ideal();
+  settings.fov_deg = 40.0;
+  const LaserScan scan = scans_at_rest(world, settings, 0.11).front();
+  for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
+    const double degrees = std::abs(angle_of(scan, beam)) / kDegree;
+    if (std::abs(degrees - 5.1) < 0.2) continue;
+    EXPECT_EQ(std::isfinite(scan.ranges_m[beam]), degrees < 5.1) << degrees;
+  }
+}
+
+TEST(Lidar, RainOfOnePerCentAMetreShortensTheShareOfBeamsThatBeersLawSays) {
+  const SmallWorld world(box("10.5 0 0", "0.5 20 5"));
+  LidarSettings settings = narrow();
+  settings.rain_rate = 0.01;
+  Moments drops;
+  int all = 0;
+  for (const LaserScan& scan : scans_at_rest(world, settings, 1.01)) {
+    for (const float range : scan.ranges_m) {
+      ++all;
+      if (std::abs(range) < 9.9f) drops.add(range);
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(drops.count) / all, (1.0 - std::exp(-0.1)) * 0.99, 0.007);
+}
+
+/// The edge of a plate at `near_m` in front of a wall at `far_m`; the plate fills the beams left of 0.
+std::string edge(double near_m, double far_m) {
+  return box(std::to_string(near_m + 0.01) + " 2 0", "0.01 2 5") + box(std::to_string(far_m + 0.5) + " 0 0", "0.5 20 5");
+}
+
+/// Ranges of a scan across that edge with beams 0.1 degrees apart.
+std::vector<float> across_the_edge(const SmallWorld& world, double width_deg, double turn_deg) {
+  LidarSettings settings = ideal();
+  settings.fov_deg = 4.0;
+  settings.beams = 40;
+  settings.beam_width_deg = width_deg;
+  const Pose3 pose{Eigen::Vector3d::Zero(), quaternion_from_yaw(turn_deg * kDegree)};
+  return scans_along(world, settings, 0.11, [&](double) { return pose; }).front().ranges_m;
+}
+
+TEST(Lidar, AtAnEdgeABeamHalfAsWideAgainAsItsStepReturnsAMixtureOfBothRanges) {
+  const SmallWorld world(edge(3.0, 4.0));
+  // Beam 20 looks 0.02 degrees left of the edge, on the plate: of its 0.15 degrees 0.095 lie there, three rays of four.
+  const std::vector<float> ranges = across_the_edge(world, 0.15, 0.02);
+  EXPECT_NEAR(ranges.at(19), 4.0, 2e-3);
+  const double near_light = 3.0 / 9.0, far_light = 1.0 / 16.0;  // rays over range squared
+  EXPECT_NEAR(ranges.at(20), (3.0 * near_light + 4.0 * far_light) / (near_light + far_light), 2e-3);
+  EXPECT_NEAR(ranges.at(21), 3.0, 2e-3);
+  for (std::size_t beam = 0; beam < 19; ++beam) EXPECT_NEAR(ranges[beam], 4.0, 5e-3) << beam;
+  for (std::size_t beam = 22; beam < ranges.size(); ++beam) EXPECT_NEAR(ranges[beam], 3.0, 5e-3) << beam;
+}
+
+TEST(Lidar, WithoutWidthOrOverAGapOf2MetresNoPixelIsMixed) {
+  const SmallWorld near_wall(edge(3.0, 4.0)), far_wall(edge(3.0, 5.0));
+  EXPECT_NEAR(across_the_edge(near_wall, 0.0, 0.02).at(20), 3.0, 2e-3);
+  EXPECT_NEAR(across_the_edge(far_wall, 0.15, 0.02).at(20), 3.0, 2e-3);
+}
+
+TEST(Lidar, SixteenRingsGiveACloudOverPlusMinus15DegreesWithTimesAndRings) {
+  const SmallWorld world(kSquareRoom + R"(<geom type="plane" pos="0 0 -1" size="20 20 1" rgba="1 1 1 1"/>)");
+  LidarSettings settings = LidarSettings::of_preset("vlp16");
+  settings.range_noise_m = settings.range_resolution_m = settings.angle_noise_deg = settings.dropout = settings.beam_width_deg = 0.0;
+  Lidar lidar(settings, world.scene, {}, kRayLidar3d, 1, "lidar3d");
+  std::vector<PointCloud> clouds;
+  for (Time now{}; now < from_seconds(0.101); now += kTick) {
+    lidar.advance(now, now + kTick, {}, {});
+    for (PointCloud& cloud : lidar.take_clouds()) clouds.push_back(std::move(cloud));
+  }
+  ASSERT_EQ(clouds.size(), 1u);
+  EXPECT_EQ(clouds[0].points.size(), 16u * 1800u);
+  for (const CloudPoint& point : clouds[0].points) {
+    const double across = std::hypot(point.x, point.y), elevation = std::atan2(point.z, across);
+    EXPECT_NEAR(elevation, (-15.0 + 2.0 * point.ring) * kDegree, 1e-5);
+    EXPECT_LT(point.time_s, 0.1f);
+    const double wall = room_range(std::atan2(point.y, point.x));
+    const double expected = elevation < 0.0 ? std::min(wall, 1.0 / std::tan(-elevation)) : wall;
+    EXPECT_NEAR(across, expected, 2e-3);
+  }
+}
+
+TEST(Lidar, SwitchingOneImperfectionOffChangesNoOtherDraw) {
+  const SmallWorld world(kWallAt2m);
+  LidarSettings all = narrow();
+  all.range_noise_m = 0.015;
+  all.angle_noise_deg = 0.05;
+  all.dropout = 0.05;
+  all.rain_rate = 0.01;
+  LidarSettings no_jitter = all, no_dropout = all, no_noise = all;
+  no_jitter.angle_noise_deg = 0.0;
+  no_dropout.dropout = 0.0;
+  no_noise.range_noise_m = 0.0;
+  const LaserScan base = scans_at_rest(world, all, 0.03, 5).front(), a = scans_at_rest(world, no_jitter, 0.03, 5).front(),
+                  b = scans_at_rest(world, no_dropout, 0.03, 5).front(), c = scans_at_rest(world, no_noise, 0.03, 5).front();
+  for (std::size_t beam = 0; beam < base.ranges_m.size(); ++beam) {
+    EXPECT_EQ(std::isnan(base.ranges_m[beam]), std::isnan(a.ranges_m[beam])) << beam;
+    EXPECT_EQ(std::isnan(base.ranges_m[beam]), std::isnan(c.ranges_m[beam])) << beam;
+    if (std::isnan(base.ranges_m[beam])) continue;
+    EXPECT_NEAR(base.ranges_m[beam], a.ranges_m[beam], 2e-4) << beam;  // jitter barely shows at right angles
+    EXPECT_EQ(base.ranges_m[beam], b.ranges_m[beam]) << beam;
+  }
+}
+
+TEST(Lidar, TheSameSeedGivesTheSameScansAndAnotherSeedOthers) {
+  const SmallWorld world(kSquareRoom);
+  const LidarSettings settings;
+  const auto ranges = [&](std::uint64_t seed) { return scans_at_rest(world, settings, 0.11, seed).front().ranges_m; };
+  const std::vector<float> first = ranges(1), again = ranges(1), other = ranges(2);
+  int differing = 0;
+  for (std::size_t beam = 0; beam < first.size(); ++beam) {
+    EXPECT_TRUE(first[beam] == again[beam] || (std::isnan(first[beam]) && std::isnan(again[beam])));
+    differing += first[beam] != other[beam];
+  }
+  EXPECT_GT(differing, 1000);
+}
+
+TEST(Lidar, OutOfRangeSettingsAreRefused) {
+  const SmallWorld world(kSquareRoom);
+  LidarSettings settings;
+  settings.dropout = 1.5;
+  EXPECT_THROW(Lidar(settings, world.scene, {}, kRayLidar2d, 1, "lidar"), InputError);
+}
+
+}  // namespace
+}  // namespace patrol::sim
