@@ -16,8 +16,9 @@ struct Disc {
 /// answers "does it fit, and how far is the next obstacle" in a few look-ups, and never says free where the polygon is not.
 class Footprint {
  public:
-  /// `polygon_m`: convex, counter-clockwise, in level. The discs stick out over its bounding box by at most `max_excess_m`.
-  /// Throws InputError when the polygon is not one (fewer than three corners, the body's origin outside).
+  /// `polygon_m`: convex, counter-clockwise, in level. The discs stick out over the long sides of its bounding box by at
+  /// most `max_excess_m`, over its ends by less than half its width. Throws InputError when the polygon is not one (fewer
+  /// than three corners, the body's origin outside).
   explicit Footprint(std::vector<Eigen::Vector2d> polygon_m, double max_excess_m = 0.03);
 
   const std::vector<Eigen::Vector2d>& polygon_m() const { return polygon_m_; }

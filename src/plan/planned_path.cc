@@ -1,6 +1,7 @@
 #include "plan/planned_path.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -95,7 +96,7 @@ std::vector<Eigen::Vector2d> shortcut(const Grid<Cost>& costs, double cost_weigh
     // The farthest point in a straight line: stride doubles while it works, then halves.
     std::size_t to = from + 1;
     for (std::size_t stride = 2; to + stride < points_m.size() && is_no_dearer(from, to + stride); stride *= 2) to += stride;
-    for (std::size_t stride = points_m.size(); stride > 0; stride /= 2) {
+    for (std::size_t stride = std::bit_ceil(points_m.size()); stride > 0; stride /= 2) {
       if (to + stride < points_m.size() && is_no_dearer(from, to + stride)) to += stride;
     }
     result.push_back(points_m[to]);

@@ -1,1 +1,83 @@
+#include "plan/distance_field.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "core/random.h"
+
+namespace patrol::plan {
+namespace {
+
+/// About one cell in `sparsity` is an obstacle.
+std::vector<std::uint8_t> make_random(int width, int height, double sparsity, std::uint64_t seed) {
+  const RandomStream stream(seed, "test/obstacles");
+  std::vector<std::uint8_t> cells(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = stream.uniform(i) * sparsity < 1.0 ? 1 : 0;
+  return cells;
+}
+
+/// Every cell against every obstacle.
+SquaredDistances brute_force(const std::vector<std::uint8_t>& cells, int width, int height, int cap) {
+  SquaredDistances result;
+  for (int row = 0; row < height; ++row) {
+    for (int col = 0; col < width; ++col) {
+      int nearest = cap * cap + 1;
+      for (int i = 0; i < width * height; ++i) {
+        if (cells[static_cast<std::size_t>(i)] == 0) continue;
+        const int dx = i % width - col, dy = i / width - row;
+        nearest = std::min(nearest, dx * dx + dy * dy);
+      }
+      result.push_back(static_cast<std::int16_t>(nearest));
+    }
+  }
+  return result;
+}
+
+TEST(DistanceTransform, EqualsBruteForceOnRandomGrids) {
+  std::uint64_t seed = 0;
+  for (const double sparsity : {1.5, 20.0, 300.0}) {
+    for (const int cap : {1, 2, 5, 13, 100}) {
+      for (const auto& [width, height] :
+           {std::pair{37, 23}, std::pair{1, 40}, std::pair{40, 1}, std::pair{1, 1}}) {
+        const std::vector<std::uint8_t> cells = make_random(width, height, sparsity, ++seed);
+        SquaredDistances squared;
+        DistanceTransform(cap).compute(cells, width, height, squared);
+        ASSERT_EQ(squared, brute_force(cells, width, height, cap))
+            << width << 'x' << height << " cap " << cap;
+      }
+    }
+  }
+}
+
+TEST(DistanceTransform, AroundOneObstacleIsTheSumOfSquares) {
+  std::vector<std::uint8_t> cells(7 * 5, 0);
+  cells[2 * 7 + 3] = 1;  // column 3, row 2
+  SquaredDistances squared;
+  DistanceTransform(10).compute(cells, 7, 5, squared);
+  EXPECT_EQ(squared[2 * 7 + 3], 0);
+  EXPECT_EQ(squared[2 * 7 + 6], 9);      // 3 cells along the row
+  EXPECT_EQ(squared[0 * 7 + 0], 9 + 4);  // 3 along, 2 across
+}
+
+TEST(DistanceTransform, WithoutObstaclesIsBeyondTheCapEverywhere) {
+  SquaredDistances squared;
+  DistanceTransform transform(4);
+  transform.compute(std::vector<std::uint8_t>(6 * 3, 0), 6, 3, squared);
+  EXPECT_EQ(squared, SquaredDistances(18, 4 * 4 + 1));
+  EXPECT_EQ(transform.beyond(), 17);
+}
+
+TEST(DistanceTransform, TheSameObjectServesGridsOfAnySize) {
+  DistanceTransform transform(6);
+  SquaredDistances squared;
+  for (const auto& [width, height] : {std::pair{30, 20}, std::pair{5, 5}, std::pair{12, 31}}) {
+    const std::vector<std::uint8_t> cells = make_random(width, height, 15.0, 77);
+    transform.compute(cells, width, height, squared);
+    ASSERT_EQ(squared, brute_force(cells, width, height, 6));
+  }
+}
+
+}  // namespace
+}  // namespace patrol::plan
