@@ -48,6 +48,17 @@ TEST(RenderMap, ACellWithFewerHitsThanAskedForIsStray) {
   EXPECT_EQ(count_of(render_map(map, 2), kOccupied), 1);
 }
 
+// Two hits against six passes: still a surface to match with, but less than half of the beams ended there.
+TEST(RenderMap, ACellThatMoreBeamsPassedThanHitHasMovedOn) {
+  GridMap map(0.5, 100.0);
+  for (int i = 0; i < 2; ++i) map.add_hit({2.25, 0.25});
+  map.add_free_ray({0.25, 0.25}, {4.25, 0.25}, 6, false);
+  ASSERT_TRUE(map.is_surface({4, 0}));
+  EXPECT_EQ(render_map(map, 2).at({4, 0}), kOccupied);
+  EXPECT_EQ(render_map(map, 2, 0.25).at({4, 0}), kOccupied);
+  EXPECT_EQ(render_map(map, 2, 0.26).at({4, 0}), kFree);
+}
+
 // Two centimetres of noise strew the hits of a wall at y = 0.48 over three rows of 5 cm; one row is drawn.
 TEST(RenderMap, ANoisyWallIsOneCellThickAndLiesInItsCell) {
   GridMap map(0.05, 100.0);
