@@ -3,20 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace patrol::render {
 namespace {
 
-constexpr float kMinContrast = 12.0f;        // of 255: below, no eye sees stairs
-constexpr float kRelativeContrast = 0.125f;  // of the brightest neighbour
-constexpr float kReach_px = 6.0f;            // along the edge
+constexpr int kMinContrast = 16;           // of 255: below, no eye sees stairs
+constexpr int kBrightnessPerContrast = 5;  // nor where contrast is less than a fifth of the brightest neighbour
+constexpr float kReach_px = 6.0f;          // along the edge
 
 struct Tint {
   float r, g, b;
 };
-
-float luma(float r, float g, float b) { return 0.299f * r + 0.587f * g + 0.114f * b; }
 
 /// Bilinear, at pixel coordinates where integers are pixel centres.
 Tint sample(const Frame& frame, float x, float y) {
@@ -34,41 +33,63 @@ Tint sample(const Frame& frame, float x, float y) {
 
 Tint mean(const Tint& a, const Tint& b) { return {0.5f * (a.r + b.r), 0.5f * (a.g + b.g), 0.5f * (a.b + b.b)}; }
 
+/// Brightness of every pixel, 0 ... 255.
+std::vector<std::int16_t> brightness_of(const Frame& frame) {
+  std::vector<std::int16_t> light(static_cast<std::size_t>(frame.width()) * static_cast<std::size_t>(frame.height()));
+  const std::uint8_t* rgb = frame.bytes();
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    light[i] = static_cast<std::int16_t>((77 * rgb[3 * i] + 150 * rgb[3 * i + 1] + 29 * rgb[3 * i + 2]) >> 8);
+  }
+  return light;
+}
+
+/// Marks where brightness jumps in one row; `above`, `here`, `below` are the rows' brightness. Plain arithmetic, for the
+/// compiler to do many at once.
+void mark_edges(const std::int16_t* above, const std::int16_t* here, const std::int16_t* below, int width,
+                std::int16_t* is_edge) {
+  for (int x = 1; x + 1 < width; ++x) {
+    const auto darkest = std::min(std::min(std::min(above[x - 1], above[x + 1]), std::min(below[x - 1], below[x + 1])), here[x]);
+    const auto brightest = std::max(std::max(std::max(above[x - 1], above[x + 1]), std::max(below[x - 1], below[x + 1])), here[x]);
+    const int contrast = brightest - darkest;
+    is_edge[x] = static_cast<std::int16_t>((contrast >= kMinContrast) & (kBrightnessPerContrast * contrast >= brightest));
+  }
+}
+
+/// The pixel, blurred along the edge that it is on: across the gradient of brightness.
+Color blurred_along_edge(const Frame& sharp, int x, int y, const std::int16_t* above, const std::int16_t* here,
+                         const std::int16_t* below) {
+  const float nw = above[x - 1], ne = above[x + 1], sw = below[x - 1], se = below[x + 1];
+  float dx = (sw + se) - (nw + ne), dy = (nw + sw) - (ne + se);
+  const float scale = 1.0f / (std::min(std::abs(dx), std::abs(dy)) + 0.03125f * (nw + ne + sw + se) + 0.5f);
+  dx = std::clamp(dx * scale, -kReach_px, kReach_px);
+  dy = std::clamp(dy * scale, -kReach_px, kReach_px);
+  const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
+  const Tint near = mean(sample(sharp, fx - dx / 6, fy - dy / 6), sample(sharp, fx + dx / 6, fy + dy / 6));
+  const Tint far = mean(sample(sharp, fx - dx / 2, fy - dy / 2), sample(sharp, fx + dx / 2, fy + dy / 2));
+  const Tint both = mean(near, far);
+  // What is darker or brighter than all around comes from beyond the edge.
+  const float light = (77.0f * both.r + 150.0f * both.g + 29.0f * both.b) / 256.0f;
+  const float middle = here[x];
+  const bool is_beyond = light < std::min({nw, ne, sw, se, middle}) || light > std::max({nw, ne, sw, se, middle});
+  const Tint& chosen = is_beyond ? near : both;
+  const auto rounded = [](float value) { return static_cast<std::uint8_t>(value + 0.5f); };
+  return {rounded(chosen.r), rounded(chosen.g), rounded(chosen.b)};
+}
+
 }  // namespace
 
 void smooth_edges(Frame& frame) {
   const int width = frame.width(), height = frame.height();
   if (width < 3 || height < 3) return;
-  const auto row = static_cast<std::size_t>(width);
-  std::vector<float> light(row * static_cast<std::size_t>(height));
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const Color& pixel = frame.at(x, y);
-      light[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x)] = luma(pixel.r, pixel.g, pixel.b);
-    }
-  }
+  const std::vector<std::int16_t> light = brightness_of(frame);
   const Frame sharp = frame;
+  std::vector<std::int16_t> is_edge(static_cast<std::size_t>(width));
   for (int y = 1; y + 1 < height; ++y) {
+    const std::int16_t* here = light.data() + static_cast<std::ptrdiff_t>(y) * width;
+    const std::int16_t *above = here - width, *below = here + width;
+    mark_edges(above, here, below, width, is_edge.data());
     for (int x = 1; x + 1 < width; ++x) {
-      const float* here = light.data() + static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x);
-      const float nw = here[-static_cast<std::ptrdiff_t>(row) - 1], ne = here[-static_cast<std::ptrdiff_t>(row) + 1];
-      const float sw = here[row - 1], se = here[row + 1];
-      const float darkest = std::min({nw, ne, sw, se, here[0]}), brightest = std::max({nw, ne, sw, se, here[0]});
-      if (brightest - darkest < std::max(kMinContrast, kRelativeContrast * brightest)) continue;
-
-      // Along the edge: across the gradient.
-      float dx = (sw + se) - (nw + ne), dy = (nw + sw) - (ne + se);
-      const float scale = 1.0f / (std::min(std::abs(dx), std::abs(dy)) + 0.03125f * (nw + ne + sw + se) + 0.5f);
-      dx = std::clamp(dx * scale, -kReach_px, kReach_px);
-      dy = std::clamp(dy * scale, -kReach_px, kReach_px);
-      const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
-      const Tint near = mean(sample(sharp, fx - dx / 6, fy - dy / 6), sample(sharp, fx + dx / 6, fy + dy / 6));
-      const Tint far = mean(sample(sharp, fx - dx / 2, fy - dy / 2), sample(sharp, fx + dx / 2, fy + dy / 2));
-      const Tint both = mean(near, far);
-      const float both_light = luma(both.r, both.g, both.b);
-      const Tint& chosen = both_light < darkest || both_light > brightest ? near : both;
-      frame.at(x, y) = {static_cast<std::uint8_t>(chosen.r + 0.5f), static_cast<std::uint8_t>(chosen.g + 0.5f),
-                        static_cast<std::uint8_t>(chosen.b + 0.5f)};
+      if (is_edge[static_cast<std::size_t>(x)] != 0) frame.at(x, y) = blurred_along_edge(sharp, x, y, above, here, below);
     }
   }
 }

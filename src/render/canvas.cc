@@ -139,4 +139,12 @@ void draw_disc(Frame& frame, const Eigen::Vector2d& center, double radius_px, co
   draw_line(frame, center, center, 2.0 * radius_px, ink);
 }
 
+void paste(Frame& frame, int left, int top, const Frame& picture) {
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) {
+      if (frame.contains(left + x, top + y)) frame.at(left + x, top + y) = picture.at(x, y);
+    }
+  }
+}
+
 }  // namespace patrol::render

@@ -45,6 +45,8 @@ class Font {
 /// Flat drawing on a frame; what lies outside is cut off. Pixel centres are at .5.
 void fill_rectangle(Frame& frame, int left, int top, int width, int height, const Ink& ink);
 void draw_line(Frame& frame, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double width_px, const Ink& ink);
+/// `picture` with its upper left corner at (left, top).
+void paste(Frame& frame, int left, int top, const Frame& picture);
 void draw_disc(Frame& frame, const Eigen::Vector2d& center, double radius_px, const Ink& ink);
 
 }  // namespace patrol::render

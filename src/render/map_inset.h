@@ -14,13 +14,12 @@ class MapInset {
 
  private:
   void lay_out(const Frame& frame, const RunSnapshot& snapshot);
-  void draw_map(Frame& frame) const;
+  /// In the picture.
   Eigen::Vector2d pixel_of(const Eigen::Vector2d& p_world_m) const;
 
-  std::shared_ptr<const OccupancyGrid> map_;  ///< that the layout below is of
+  std::shared_ptr<const OccupancyGrid> map_;  ///< that the picture is of
   Frame picture_;
   Eigen::Vector2d low_m_ = Eigen::Vector2d::Zero(), high_m_ = Eigen::Vector2d::Zero();  ///< shown, in world
-  Eigen::Vector2d corner_px_ = Eigen::Vector2d::Zero();  ///< upper left, in the frame
   double px_per_m_ = 1.0;
 };
 

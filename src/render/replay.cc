@@ -15,20 +15,11 @@
 #include "io/run_log.h"
 #include "render/paint_thread.h"
 #include "render/run_follower.h"
+#include "render/scene_painter.h"
 #include "render/video.h"
 
 namespace patrol::render {
 namespace {
-
-/// Vertex work is half of a software-rendered frame: round shapes get as many sides as the eye asks for. Shadows reach as far
-/// as one looks for them, at 12 mm a texel.
-void set_render_quality(mjModel& view) {
-  view.vis.quality.numslices = 16;
-  view.vis.quality.numstacks = 10;
-  view.vis.quality.shadowsize = 2048;
-  constexpr double kShadowReach_m = 12.5;
-  view.vis.map.shadowclip = static_cast<float>(kShadowReach_m / view.stat.extent);
-}
 
 /// Handlers that feed the follower, and call `on_state` after each state.
 io::LogHandlers handlers_for(RunFollower& follower, std::function<void(Time)> on_state) {
@@ -109,7 +100,7 @@ ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel 
     throw InputError(fmt::format("speed = {}: must be greater than 0", settings.speed));
   }
   const std::optional<Time> end = io::McapReader(log_mcap).last_time();
-  set_render_quality(*model.view);
+  set_replay_quality(*model.view);
   RunFollower follower(*model.view, T_world_map);
   Film film(*model.view, settings, out_mp4);
   ReplaySummary summary;
@@ -126,7 +117,7 @@ ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel 
 
 void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, const Pose2& T_world_map,
            const ReplaySettings& settings, Time at, const std::filesystem::path& out_png) {
-  set_render_quality(*model.view);
+  set_replay_quality(*model.view);
   RunFollower follower(*model.view, T_world_map);
   CameraRig rig(settings.camera);
   std::optional<View> view;

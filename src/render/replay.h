@@ -15,7 +15,7 @@ struct ReplaySettings {
   double speed = 8.0;              ///< seconds of the run in a second of video
   int width = 1280;
   int height = 720;
-  double frames_per_second = 20.0;
+  double frames_per_second = 30.0;
   int num_threads = 2;             ///< that draw, each a frame of its own
 };
 

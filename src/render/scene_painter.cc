@@ -37,6 +37,15 @@ std::array<Eigen::Vector3d, 4> sides_of(const View& view, double aspect) {
 
 }  // namespace
 
+void set_replay_quality(mjModel& view) {
+  constexpr double kShadowReach_m = 12.5;
+  view.vis.quality.numslices = 16;
+  view.vis.quality.numstacks = 10;
+  view.vis.quality.numquads = 1;
+  view.vis.quality.shadowsize = 2048;
+  view.vis.map.shadowclip = static_cast<float>(kShadowReach_m / view.stat.extent);
+}
+
 ScenePainter::ScenePainter(const mjModel& view, int width, int height)
     : model_(view),
       data_(sim::make_data(view)),
