@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "sim/nearby_scenery.h"
 #include "sim/robot_model.h"
 
 namespace patrol::sim {
@@ -76,6 +77,12 @@ void refuse_start_inside_something(const mjModel& model, const std::vector<doubl
   }
 }
 
+/// With sleep enabled, MuJoCo works out the poses of what stands still once and not at every step. The robot never sleeps.
+void spare_still_bodies(mjSpec& spec) {
+  spec.option.enableflags |= mjENBL_SLEEP;
+  mjs_findBody(&spec, frame_id::kBody)->sleep = mjSLEEP_NEVER;
+}
+
 SpecPtr make_spec(const std::string& world_xml, const std::string& robot_urdf, const Pose3& T_world_body) {
   SpecPtr spec = load_spec(world_xml);
   add_robot(*spec, robot_urdf, T_world_body);
@@ -90,6 +97,8 @@ AssembledModel assemble_model(const std::string& world_xml, const std::string& r
   assembled.view = compile(*make_spec(world_xml, robot_urdf, T_world_body), world_xml);
   const SpecPtr physics = make_spec(world_xml, robot_urdf, T_world_body);
   strip_untouchable(*physics);
+  gather_scenery_in_cells(*physics);
+  spare_still_bodies(*physics);
   assembled.physics = compile(*physics, world_xml);
   assembled.start_qpos = start_configuration(*assembled.physics);
   refuse_start_inside_something(*assembled.physics, assembled.start_qpos, T_world_start);

@@ -36,6 +36,7 @@ WalkingRobot::WalkingRobot(AssembledModel model, std::uint64_t seed, const Locom
     : robot_(io::load_robot_description(kRobotUrdf)),
       model_(std::move(model)),
       data_(make_data(*model_.physics)),
+      nearby_(*model_.physics),
       imu_sensor_({}, *model_.physics, seed),
       encoders_({}, *model_.physics, robot_.joint_names),
       foot_sensor_({}, *model_.physics, robot_.legs, seed),
@@ -59,6 +60,7 @@ void WalkingRobot::drive(const VelocityCommand& command) {
 }
 
 void WalkingRobot::advance() {
+  nearby_.update(*data_);
   mj_Euler(model_.physics.get(), data_.get());
   mj_forward(model_.physics.get(), data_.get());
   ++tick_;

@@ -10,6 +10,7 @@
 #include "core/robot_description.h"
 #include "sim/locomotion/quadruped_controller.h"
 #include "sim/model_assembly.h"
+#include "sim/nearby_scenery.h"
 #include "sim/sensors/foot_contact.h"
 #include "sim/sensors/imu.h"
 #include "sim/sensors/joint_encoders.h"
@@ -76,6 +77,7 @@ class WalkingRobot {
   RobotDescription robot_;
   AssembledModel model_;
   DataPtr data_;
+  NearbyScenery nearby_;
   ImuSensor imu_sensor_;
   JointEncoders encoders_;
   FootContactSensor foot_sensor_;

@@ -1,0 +1,167 @@
+#include "sim/model_assembly.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "core/error.h"
+#include "io/urdf.h"
+#include "sim/robot_model.h"
+#include "tests/sim/walking_robot.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::sim {
+namespace {
+
+using testing::HasSubstr;
+
+const AssembledModel& street() {
+  static const AssembledModel model = assemble_model(kStreetXml, kRobotUrdf, kStreetStart);
+  return model;
+}
+
+AssembledModel on_plane(const std::string& geoms, const Pose2& T_world_start = {}) {
+  const test::TemporaryFile world("world.xml", make_flat_world(geoms));
+  return assemble_model(world.path(), kRobotUrdf, T_world_start);
+}
+
+std::string read(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// What the call throws, as text.
+template <typename Call>
+std::string refusal(Call call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(ModelAssembly, EachLinksMassIsThatOfTheUrdfAndTheRobotWeighs12To17Kilograms) {
+  const std::string urdf = read(kRobotUrdf);
+  const std::regex link("<link name=\"([^\"]+)\">\\s*<inertial>[^]*?<mass value=\"([^\"]+)\"");
+  double sum = 0.0;
+  int links = 0;
+  for (std::sregex_iterator match(urdf.begin(), urdf.end(), link), end; match != end; ++match, ++links) {
+    const int body = mj_name2id(street().physics.get(), mjOBJ_BODY, (*match)[1].str().c_str());
+    ASSERT_GE(body, 0) << (*match)[1];
+    const double mass = std::stod((*match)[2]);
+    EXPECT_NEAR(street().physics->body_mass[body], mass, 1e-9) << (*match)[1];
+    EXPECT_NEAR(street().view->body_mass[body], mass, 1e-9) << (*match)[1];
+    sum += mass;
+  }
+  EXPECT_GE(links, 13);
+  const int base = mj_name2id(street().physics.get(), mjOBJ_BODY, frame_id::kBody);
+  EXPECT_NEAR(street().physics->body_subtreemass[base], sum, 1e-9);
+  EXPECT_GT(sum, 12.0);
+  EXPECT_LT(sum, 17.0);
+}
+
+TEST(ModelAssembly, PhysicsAndViewHaveTheSameBodiesJointsAndMocapBodiesInTheSameOrder) {
+  const mjModel &physics = *street().physics, &view = *street().view;
+  ASSERT_EQ(physics.nq, view.nq);
+  ASSERT_EQ(physics.nv, view.nv);
+  ASSERT_EQ(physics.nu, view.nu);
+  ASSERT_EQ(physics.njnt, view.njnt);
+  ASSERT_EQ(physics.nmocap, view.nmocap);
+  ASSERT_GE(physics.nbody, view.nbody);  // physics may have bodies of its own after those
+  for (int joint = 0; joint < view.njnt; ++joint) {
+    EXPECT_STREQ(mj_id2name(&physics, mjOBJ_JOINT, joint), mj_id2name(&view, mjOBJ_JOINT, joint));
+    EXPECT_EQ(physics.jnt_qposadr[joint], view.jnt_qposadr[joint]);
+  }
+  for (int body = 0; body < view.nbody; ++body) {
+    EXPECT_STREQ(mj_id2name(&physics, mjOBJ_BODY, body), mj_id2name(&view, mjOBJ_BODY, body));
+    EXPECT_EQ(physics.body_mocapid[body], view.body_mocapid[body]);
+    EXPECT_EQ(physics.body_weldid[body], view.body_weldid[body]);
+  }
+}
+
+TEST(ModelAssembly, PhysicsHasOnlyWhatCanTouchAndTheViewHasEverything) {
+  const mjModel& physics = *street().physics;
+  for (int geom = 0; geom < physics.ngeom; ++geom) {
+    EXPECT_TRUE(physics.geom_contype[geom] != 0 || physics.geom_conaffinity[geom] != 0) << geom;
+  }
+  EXPECT_LT(physics.ngeom, street().view->ngeom / 2);
+  int touchable_in_view = 0;
+  for (int geom = 0; geom < street().view->ngeom; ++geom) {
+    touchable_in_view += street().view->geom_contype[geom] != 0 || street().view->geom_conaffinity[geom] != 0;
+  }
+  EXPECT_EQ(physics.ngeom, touchable_in_view);
+}
+
+TEST(ModelAssembly, StripsNoMassFromActorsAndNoFrictionFromTheGround) {
+  const mjModel &physics = *street().physics, &view = *street().view;
+  for (int geom = 0; geom < physics.ngeom; ++geom) {
+    const char* name = mj_id2name(&physics, mjOBJ_GEOM, geom);
+    if (name == nullptr || *name == '\0') continue;
+    const int twin = mj_name2id(&view, mjOBJ_GEOM, name);
+    ASSERT_GE(twin, 0) << name;
+    EXPECT_EQ(physics.geom_friction[3 * geom], view.geom_friction[3 * twin]) << name;
+    EXPECT_EQ(physics.geom_type[geom], view.geom_type[twin]) << name;
+    EXPECT_EQ(physics.geom_condim[geom], view.geom_condim[twin]) << name;
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(physics.geom_size[3 * geom + i], view.geom_size[3 * twin + i]) << name;
+  }
+}
+
+TEST(ModelAssembly, TheRobotStartsWithItsFeetWithin1CentimetreOfTheGroundOnThePlaneAndOnAPavement) {
+  for (const double height : {0.0, 0.1}) {
+    const AssembledModel model = on_plane("<geom type='box' pos='0 0 " + std::to_string(height / 2.0 - 1e-4) + "' size='2 2 " +
+                                              std::to_string(height / 2.0 + 1e-4) + "'/>",
+                                          {0.2, -0.1, 0.7});
+    const DataPtr data = make_data(*model.physics);
+    std::copy(model.start_qpos.begin(), model.start_qpos.end(), data->qpos);
+    mj_kinematics(model.physics.get(), data.get());
+    EXPECT_NEAR(data->qpos[0], 0.2, 1e-9);
+    EXPECT_NEAR(data->qpos[1], -0.1, 1e-9);
+    EXPECT_NEAR(2.0 * std::atan2(data->qpos[6], data->qpos[3]), 0.7, 1e-9);
+    for (const char* foot : {"FL_foot", "FR_foot", "RL_foot", "RR_foot"}) {
+      const int geom = mj_name2id(model.physics.get(), mjOBJ_GEOM, foot);
+      EXPECT_NEAR(data->geom_xpos[3 * geom + 2] - model.physics->geom_size[3 * geom], height, 0.01) << foot;
+    }
+  }
+}
+
+TEST(ModelAssembly, EachJointHasAMotorLimitedToTheUrdfsTorque) {
+  const RobotDescription robot = io::load_robot_description(kRobotUrdf);
+  const mjModel& model = *street().physics;
+  ASSERT_EQ(model.nu, 12);
+  for (const std::string& joint : robot.joint_names) {
+    const int motor = mj_name2id(&model, mjOBJ_ACTUATOR, joint.c_str());
+    ASSERT_GE(motor, 0) << joint;
+    EXPECT_TRUE(model.actuator_ctrllimited[motor]);
+    const double limit_nm = joint.find("knee") != std::string::npos ? 35.55 : 23.7;
+    EXPECT_NEAR(model.actuator_ctrlrange[2 * motor + 1], limit_nm, 1e-9) << joint;
+    EXPECT_NEAR(model.actuator_ctrlrange[2 * motor], -limit_nm, 1e-9) << joint;
+  }
+}
+
+TEST(ModelAssembly, AStartInsideAWallIsRefusedWithTheWallsName) {
+  const std::string said = refusal([] { on_plane(R"(<geom name="garden_wall" type="box" pos="1 0 0.5" size="0.2 3 0.5"/>)", {1.0, 0.0, 0.0}); });
+  EXPECT_THAT(said, HasSubstr("start pose (1.00, 0.00)"));
+  EXPECT_THAT(said, HasSubstr("garden_wall"));
+}
+
+TEST(ModelAssembly, AStartOverNothingIsRefused) {
+  const test::TemporaryFile world("world.xml", make_world(R"(<geom type="box" pos="0 0 -0.1" size="1 1 0.1"/>)"));
+  EXPECT_THAT(refusal([&] { assemble_model(world.path(), kRobotUrdf, {20.0, 0.0, 0.0}); }), HasSubstr("no ground"));
+}
+
+TEST(ModelAssembly, AMissingOrBrokenFileIsRefusedByName) {
+  EXPECT_THAT(refusal([] { assemble_model("no/such/world.xml", kRobotUrdf, {}); }), HasSubstr("no/such/world.xml"));
+  const test::TemporaryFile broken("broken.xml", "<mujoco><worldbody><geom tipe=\"box\"/></worldbody></mujoco>");
+  EXPECT_THAT(refusal([&] { assemble_model(broken.path(), kRobotUrdf, {}); }), HasSubstr("broken.xml"));
+  const test::TemporaryFile world("world.xml", make_flat_world());
+  EXPECT_THAT(refusal([&] { assemble_model(world.path(), "no/such/robot.urdf", {}); }), HasSubstr("no/such/robot.urdf"));
+}
+
+}  // namespace
+}  // namespace patrol::sim
