@@ -1,5 +1,6 @@
 #include "render/camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -78,8 +79,23 @@ View CameraRig::follow(const Pose3& T_world_body, double elapsed_s) {
     case CameraKind::kChase:
       break;
   }
+  return chase(elapsed_s);
+}
+
+View CameraRig::chase(double elapsed_s) {
+  constexpr double kReturn_s = 0.8;     // time constant; it comes near at once
+  constexpr double kClearance_m = 0.25;
   const Pose3 T_world_rig{*focus_m_, quaternion_from_yaw(heading_rad_)};
-  return look_at(T_world_rig * Eigen::Vector3d(-2.4, 0.0, 1.15), T_world_rig * Eigen::Vector3d(0.9, 0.0, 0.0));
+  const Eigen::Vector3d over_robot = T_world_rig * Eigen::Vector3d(0.0, 0.0, 0.4);
+  const Eigen::Vector3d back = T_world_rig * Eigen::Vector3d(-2.4, 0.0, 1.15) - over_robot;
+  double reach = 1.0;
+  if (free_distance_) {
+    const double wanted_m = back.norm() + kClearance_m;
+    const double free_m = free_distance_(over_robot, back.normalized(), wanted_m);
+    reach = std::clamp((free_m - kClearance_m) / back.norm(), 0.2, 1.0);
+  }
+  reach_ = std::min(reach, reach_ + (1.0 - std::exp(-elapsed_s / kReturn_s)) * (reach - reach_));
+  return look_at(over_robot + reach_ * back, T_world_rig * Eigen::Vector3d(0.9, 0.0, 0.0));
 }
 
 }  // namespace patrol::render

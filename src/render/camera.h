@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <mujoco/mujoco.h>
@@ -69,18 +71,28 @@ class Projector {
   double far_m_;
 };
 
-/// Follows the robot. What moves with each step of the trot is smoothed away, in the time of the one who watches.
+/// How far one can go from a point along a unit vector, at most `max_m`.
+using FreeDistance =
+    std::function<double(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m)>;
+
+/// Follows the robot. What moves with each step of the trot is smoothed away, in the time of the one who watches. The chasing
+/// camera comes nearer where something would stand between it and the robot.
 class CameraRig {
  public:
-  explicit CameraRig(CameraKind kind) : kind_(kind) {}
+  explicit CameraRig(CameraKind kind, FreeDistance free_distance = {})
+      : kind_(kind), free_distance_(std::move(free_distance)) {}
 
   /// `elapsed_s` since the last frame, as it will be watched.
   View follow(const Pose3& T_world_body, double elapsed_s);
 
  private:
+  View chase(double elapsed_s);
+
   CameraKind kind_;
+  FreeDistance free_distance_;
   std::optional<Eigen::Vector3d> focus_m_;  ///< smoothed
   double heading_rad_ = 0.0;                ///< smoothed
+  double reach_ = 1.0;                      ///< smoothed; 1 where nothing is in the way
 };
 
 }  // namespace patrol::render

@@ -40,13 +40,20 @@ io::LogHandlers handlers_for(RunFollower& follower, std::function<void(Time)> on
   return handlers;
 }
 
+/// A camera that sees what the follower's world has in its way.
+CameraRig camera_on(const RunFollower& follower, CameraKind kind) {
+  return CameraRig(kind, [&follower](const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m) {
+    return follower.free_distance_m(from_m, direction, max_m);
+  });
+}
+
 /// Films what the follower sees, at even steps of the run's time.
 class Film {
  public:
-  Film(const mjModel& view, const ReplaySettings& settings, const std::filesystem::path& out_mp4)
+  Film(const mjModel& view, const ReplaySettings& settings, CameraRig rig, const std::filesystem::path& out_mp4)
       : settings_(settings),
         step_(from_seconds(settings.speed / settings.frames_per_second)),
-        rig_(settings.camera),
+        rig_(std::move(rig)),
         video_(out_mp4, settings.width, settings.height, settings.frames_per_second) {
     for (int i = 0; i < std::max(1, settings.num_threads); ++i) {
       painters_.push_back(std::make_unique<PaintThread>(view, settings.width, settings.height));
@@ -102,7 +109,7 @@ ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel 
   const std::optional<Time> end = io::McapReader(log_mcap).last_time();
   set_replay_quality(*model.view);
   RunFollower follower(*model.view, T_world_map);
-  Film film(*model.view, settings, out_mp4);
+  Film film(*model.view, settings, camera_on(follower, settings.camera), out_mp4);
   ReplaySummary summary;
   summary.log_is_complete = io::read_run_log(log_mcap, handlers_for(follower, [&](Time now) {
     film.shoot(follower.snapshot());
@@ -119,7 +126,7 @@ void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, con
            const ReplaySettings& settings, Time at, const std::filesystem::path& out_png) {
   set_replay_quality(*model.view);
   RunFollower follower(*model.view, T_world_map);
-  CameraRig rig(settings.camera);
+  CameraRig rig = camera_on(follower, settings.camera);
   std::optional<View> view;
   const auto follow = [&](Time) { view = rig.follow(follower.snapshot().T_world_body, 0.02 / settings.speed); };
   io::read_run_log(log_mcap, handlers_for(follower, follow), Time::min(), at);

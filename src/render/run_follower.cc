@@ -33,7 +33,7 @@ Pose3 lidar_on_body(const mjModel& model) {
 }  // namespace
 
 RunFollower::RunFollower(const mjModel& view, const Pose2& T_world_map)
-    : ground_(view), T_body_lidar_(lidar_on_body(view)) {
+    : scenery_(view), T_body_lidar_(lidar_on_body(view)) {
   snapshot_.T_world_map = T_world_map;
 }
 
@@ -73,10 +73,15 @@ void RunFollower::add(const GroundTruth& truth) {
   extend(snapshot_.true_path, on_ground(truth.T_world_body.position.head<2>()));
 }
 
+double RunFollower::free_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m) const {
+  const auto hit = scenery_.cast(from_m, direction, max_m, sim::kRayScenery);
+  return hit ? hit->distance_m : max_m;
+}
+
 Eigen::Vector3d RunFollower::on_ground(const Eigen::Vector2d& p_world_m) const {
   constexpr double kKneeHeight_m = 0.25, kReach_m = 2.0;
   const Eigen::Vector3d knee(p_world_m.x(), p_world_m.y(), kKneeHeight_m);
-  const auto ground = ground_.cast(knee, -Eigen::Vector3d::UnitZ(), kReach_m, sim::kRayScenery);
+  const auto ground = scenery_.cast(knee, -Eigen::Vector3d::UnitZ(), kReach_m, sim::kRayScenery);
   return {p_world_m.x(), p_world_m.y(), kKneeHeight_m + kAboveGround_m - (ground ? ground->distance_m : kKneeHeight_m)};
 }
 

@@ -29,12 +29,14 @@ class RunFollower {
   void add(const SimState& state) { snapshot_.state = state; }
 
   const RunSnapshot& snapshot() const { return snapshot_; }
+  /// To the first thing that stands still, at most `max_m`.
+  double free_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m) const;
 
  private:
   Eigen::Vector3d on_ground(const Eigen::Vector2d& p_world_m) const;
   void place_scan(const PoseEstimate& estimate);
 
-  sim::LidarScene ground_;
+  sim::LidarScene scenery_;
   Pose3 T_body_lidar_;
   Trajectory truth_;
   std::deque<StampedPose> odometry_;  ///< of late, body in odom

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -77,6 +78,19 @@ TEST(CameraRigTest, TurnsWithTheRobotButNotAtOnce) {
   View view;
   for (int i = 0; i < 100; ++i) view = rig.follow(north, 0.05);
   EXPECT_NEAR(view.forward.x(), 0.0, 1e-3);
+}
+
+TEST(CameraRigTest, ComesNearerAtOnceWhereSomethingIsInTheWayAndLeavesSlowly) {
+  double free_m = 100.0;
+  CameraRig rig(CameraKind::kChase, [&](const auto&, const auto&, double max_m) { return std::min(free_m, max_m); });
+  const Pose3 robot{{0.0, 0.0, 0.3}, Eigen::Quaterniond::Identity()};
+  const double usual_m = -rig.follow(robot, 0.05).eye.x();
+  free_m = 1.25;
+  const View near = rig.follow(robot, 0.05);
+  EXPECT_NEAR((near.eye - Eigen::Vector3d(0.0, 0.0, 0.7)).norm(), 1.0, 1e-9);  // 0.25 m before what is in the way
+  free_m = 100.0;
+  EXPECT_LT(-rig.follow(robot, 0.05).eye.x(), 0.6 * usual_m);
+  EXPECT_NEAR(-rig.follow(robot, 10.0).eye.x(), usual_m, 1e-3);
 }
 
 TEST(CameraRigTest, FromTheTopNorthIsUp) {
