@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "sim/nearby_scenery.h"
 #include "sim/robot_model.h"
 
 namespace patrol::sim {
@@ -97,7 +96,6 @@ AssembledModel assemble_model(const std::string& world_xml, const std::string& r
   assembled.view = compile(*make_spec(world_xml, robot_urdf, T_world_body), world_xml);
   const SpecPtr physics = make_spec(world_xml, robot_urdf, T_world_body);
   strip_untouchable(*physics);
-  gather_scenery_in_cells(*physics);
   spare_still_bodies(*physics);
   assembled.physics = compile(*physics, world_xml);
   assembled.start_qpos = start_configuration(*assembled.physics);
