@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <memory>
 #include <regex>
 #include <sstream>
 
@@ -18,10 +19,18 @@ namespace {
 
 using testing::HasSubstr;
 
-const AssembledModel& street() {
-  static const AssembledModel model = assemble_model(kStreetXml, kRobotUrdf, kStreetStart);
-  return model;
-}
+/// The street with its robot, assembled once for all tests that only look at it.
+class StreetAssembly : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    street_ = std::make_unique<AssembledModel>(assemble_model(kStreetXml, kRobotUrdf, kStreetStart));
+  }
+  static void TearDownTestSuite() { street_.reset(); }
+  static const AssembledModel& street() { return *street_; }
+
+ private:
+  static inline std::unique_ptr<AssembledModel> street_;
+};
 
 AssembledModel on_plane(const std::string& geoms, const Pose2& T_world_start = {}) {
   const test::TemporaryFile world("world.xml", make_flat_world(geoms));
@@ -46,7 +55,7 @@ std::string refusal(Call call) {
   return "accepted";
 }
 
-TEST(ModelAssembly, EachLinksMassIsThatOfTheUrdfAndTheRobotWeighs12To17Kilograms) {
+TEST_F(StreetAssembly, EachLinksMassIsThatOfTheUrdfAndTheRobotWeighs12To17Kilograms) {
   const std::string urdf = read(kRobotUrdf);
   const std::regex link("<link name=\"([^\"]+)\">\\s*<inertial>[^]*?<mass value=\"([^\"]+)\"");
   double sum = 0.0;
@@ -66,7 +75,7 @@ TEST(ModelAssembly, EachLinksMassIsThatOfTheUrdfAndTheRobotWeighs12To17Kilograms
   EXPECT_LT(sum, 17.0);
 }
 
-TEST(ModelAssembly, PhysicsAndViewHaveTheSameBodiesJointsAndMocapBodiesInTheSameOrder) {
+TEST_F(StreetAssembly, PhysicsAndViewHaveTheSameBodiesJointsAndMocapBodiesInTheSameOrder) {
   const mjModel &physics = *street().physics, &view = *street().view;
   ASSERT_EQ(physics.nq, view.nq);
   ASSERT_EQ(physics.nv, view.nv);
@@ -85,7 +94,7 @@ TEST(ModelAssembly, PhysicsAndViewHaveTheSameBodiesJointsAndMocapBodiesInTheSame
   }
 }
 
-TEST(ModelAssembly, PhysicsHasOnlyWhatCanTouchAndTheViewHasEverything) {
+TEST_F(StreetAssembly, PhysicsHasOnlyWhatCanTouchAndTheViewHasEverything) {
   const mjModel& physics = *street().physics;
   for (int geom = 0; geom < physics.ngeom; ++geom) {
     EXPECT_TRUE(physics.geom_contype[geom] != 0 || physics.geom_conaffinity[geom] != 0) << geom;
@@ -98,7 +107,7 @@ TEST(ModelAssembly, PhysicsHasOnlyWhatCanTouchAndTheViewHasEverything) {
   EXPECT_EQ(physics.ngeom, touchable_in_view);
 }
 
-TEST(ModelAssembly, StripsNoMassFromActorsAndNoFrictionFromTheGround) {
+TEST_F(StreetAssembly, StripsNoMassFromActorsAndNoFrictionFromTheGround) {
   const mjModel &physics = *street().physics, &view = *street().view;
   for (int geom = 0; geom < physics.ngeom; ++geom) {
     const char* name = mj_id2name(&physics, mjOBJ_GEOM, geom);
@@ -130,7 +139,7 @@ TEST(ModelAssembly, TheRobotStartsWithItsFeetWithin1CentimetreOfTheGroundOnThePl
   }
 }
 
-TEST(ModelAssembly, EachJointHasAMotorLimitedToTheUrdfsTorque) {
+TEST_F(StreetAssembly, EachJointHasAMotorLimitedToTheUrdfsTorque) {
   const RobotDescription robot = io::load_robot_description(kRobotUrdf);
   const mjModel& model = *street().physics;
   ASSERT_EQ(model.nu, 12);
