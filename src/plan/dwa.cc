@@ -7,6 +7,8 @@
 namespace patrol::plan {
 namespace {
 
+constexpr double kMinReach_mps = 0.2;  // the least that counts as being able to get on
+
 /// Evenly from `low` to `high`, both included; zero among them when it lies between.
 std::vector<double> samples(double low, double high, int count) {
   std::vector<double> values;
@@ -60,9 +62,11 @@ std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, con
   const double fastest = std::max(std::min(top_speed, speed + speed_window), std::max(0.0, speed - speed_window));
   const double slowest = std::min(std::max(0.0, speed - speed_window), fastest);
 
+  // Progress is measured by what is in reach now: to a robot at rest before a narrow place, creeping must not look as useless as
+  // standing.
   const RolloutScene scene{.path = path,
                            .along_m = along_m,
-                           .reach_m = settings_.max_speed_mps * settings_.horizon_s,
+                           .reach_m = std::max(fastest, kMinReach_mps) * settings_.horizon_s,
                            .twist = twist,
                            .max_speed_mps = settings_.max_speed_mps,
                            .max_yaw_rate_radps = settings_.max_yaw_rate_radps};

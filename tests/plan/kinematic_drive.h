@@ -1,0 +1,125 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "plan/navigator.h"
+#include "tests/support/room_world.h"
+
+namespace patrol::plan {
+
+/// A robot that does at once what it is told, 0.7 by 0.36 m.
+inline RobotDescription make_robot() {
+  RobotDescription robot;
+  robot.name = "box";
+  robot.footprint_m = {{-0.35, -0.18}, {0.35, -0.18}, {0.35, 0.18}, {-0.35, 0.18}};
+  return robot;
+}
+
+/// Between the robot's outline and the nearest wall; 0 if they cross.
+inline double gap_m(const test::RoomWorld& world, const RobotDescription& robot, const Pose2& T_map_body) {
+  const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a.x() * b.y() - a.y() * b.x();
+  };
+  const auto to_segment = [](const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    const double along = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+    return (p - a - along * (b - a)).norm();
+  };
+  double gap = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < robot.footprint_m.size(); ++i) {
+    const Eigen::Vector2d p = T_map_body * robot.footprint_m[i];
+    const Eigen::Vector2d q = T_map_body * robot.footprint_m[(i + 1) % robot.footprint_m.size()];
+    for (const test::Segment& wall : world.walls()) {
+      const bool is_apart_of_wall =
+          cross(wall.b - wall.a, p - wall.a) * cross(wall.b - wall.a, q - wall.a) > 0.0;
+      const bool is_apart_of_edge = cross(q - p, wall.a - p) * cross(q - p, wall.b - p) > 0.0;
+      if (!is_apart_of_wall && !is_apart_of_edge) return 0.0;
+      gap = std::min({gap, to_segment(p, wall.a, wall.b), to_segment(q, wall.a, wall.b),
+                      to_segment(wall.a, p, q), to_segment(wall.b, p, q)});
+    }
+  }
+  return gap;
+}
+
+/// The occupancy grid of an empty rectangle with walls: known free inside, occupied where a wall passes
+/// through a cell.
+inline OccupancyGrid draw_map(const test::RoomWorld& world, double x_min, double y_min, double x_max,
+                              double y_max) {
+  constexpr double kResolution_m = 0.05;
+  OccupancyGrid map({.resolution_m = kResolution_m,
+                     .width = static_cast<int>(std::lround((x_max - x_min) / kResolution_m)),
+                     .height = static_cast<int>(std::lround((y_max - y_min) / kResolution_m)),
+                     .origin_m = {x_min, y_min}},
+                    kFree);
+  for (const test::Segment& wall : world.walls()) {
+    const int steps = static_cast<int>(std::ceil((wall.b - wall.a).norm() / (kResolution_m / 4.0)));
+    for (int i = 0; i <= steps; ++i) {
+      const Cell cell = map.geometry().cell_at(wall.a + static_cast<double>(i) / steps * (wall.b - wall.a));
+      if (map.contains(cell)) map.at(cell) = kOccupied;
+    }
+  }
+  return map;
+}
+
+/// How a drive went.
+struct DriveRecord {
+  NavigationStatus end = NavigationStatus::kIdle;
+  double time_s = 0.0;
+  double way_m = 0.0;
+  double min_gap_m = std::numeric_limits<double>::infinity();
+  int num_plans = 0;
+  int num_detours = 0;
+  int num_recoveries = 0;
+  Pose2 T_map_body;
+};
+
+/// What stands where at a time.
+using WorldAt = std::function<test::RoomWorld(double time_s)>;
+
+/// Closed loop: the navigator steps at 20 Hz and sees an ideal scan at 10 Hz, until it arrives, gives up or
+/// the time is over. The world is map's frame. The robot follows every command exactly.
+inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_map_body,
+                         const NavigationGoal& goal, double time_limit_s, bool use_lidar = true) {
+  constexpr double kPeriod_s = 0.05;
+  const RobotDescription robot = make_robot();
+  DriveRecord record;
+  NavigationStatus before = NavigationStatus::kIdle;
+  navigator.set_goal(goal);
+  const int ticks = static_cast<int>(std::lround(time_limit_s / kPeriod_s));
+  for (int tick = 0; tick < ticks; ++tick) {
+    const double time_s = kPeriod_s * tick;
+    const Time now = from_seconds(time_s);
+    const test::RoomWorld world = world_at(time_s);
+    if (use_lidar && tick % 2 == 0) {
+      LevelScan scan = world.scan(T_map_body, {.beams = 720});
+      scan.stamp = now;
+      navigator.add_scan(scan, T_map_body);
+    }
+    const NavigationStep step = navigator.step(now, T_map_body);
+    record.num_plans += step.replanned;
+    record.num_detours += step.is_detour;
+    record.num_recoveries +=
+        step.status == NavigationStatus::kRecovering && before != NavigationStatus::kRecovering;
+    record.end = before = step.status;
+    record.time_s = time_s;
+    record.min_gap_m = std::min(record.min_gap_m, gap_m(world, robot, T_map_body));
+    record.T_map_body = T_map_body;
+    if (step.status == NavigationStatus::kArrived || step.status == NavigationStatus::kFailed) break;
+    const Pose2 next = follow_arc(T_map_body, step.command.vx_mps, step.command.yaw_rate_radps, kPeriod_s) *
+                       Pose2{0.0, kPeriod_s * step.command.vy_mps, 0.0};
+    record.way_m += (next.position() - T_map_body.position()).norm();
+    T_map_body = next;
+  }
+  return record;
+}
+
+inline DriveRecord drive(Navigator& navigator, const test::RoomWorld& world, const Pose2& T_map_body,
+                         const NavigationGoal& goal, double time_limit_s) {
+  return drive(
+      navigator, [&](double) { return world; }, T_map_body, goal, time_limit_s);
+}
+
+}  // namespace patrol::plan

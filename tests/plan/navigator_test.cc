@@ -1,0 +1,237 @@
+#include "plan/navigator.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "tests/plan/kinematic_drive.h"
+#include "tests/support/pose_near.h"
+
+namespace patrol::plan {
+namespace {
+
+using std::numbers::pi;
+using test::RoomWorld;
+
+constexpr double kRoom_m = 6.0;  ///< half the room's side
+
+RoomWorld make_room() {
+  RoomWorld room;
+  room.add_box(-kRoom_m, -kRoom_m, kRoom_m, kRoom_m);
+  return room;
+}
+
+/// A corridor 2 m wide, 16 m long, along x.
+RoomWorld make_corridor() {
+  RoomWorld corridor;
+  corridor.add_box(-2.0, -1.0, 14.0, 1.0);
+  return corridor;
+}
+
+OccupancyGrid map_of_room(const RoomWorld& room) {
+  return draw_map(room, -kRoom_m - 0.5, -kRoom_m - 0.5, kRoom_m + 0.5, kRoom_m + 0.5);
+}
+OccupancyGrid map_of_corridor(const RoomWorld& corridor) { return draw_map(corridor, -2.5, -1.5, 14.5, 1.5); }
+
+NavigatorSettings with_patience(double patience_s, double back_up_s, int max_recoveries) {
+  NavigatorSettings settings;
+  settings.patience_s = patience_s;
+  settings.back_up_s = back_up_s;
+  settings.max_recoveries = max_recoveries;
+  return settings;
+}
+
+Navigator make_navigator(const OccupancyGrid& map, const NavigatorSettings& settings = {},
+                         const std::vector<Polyline>& keep_out_lines = {}) {
+  Navigator navigator(settings, make_robot(), keep_out_lines);
+  navigator.set_map(map);
+  return navigator;
+}
+
+NavigationGoal make_goal(const Pose2& T_map_body) {
+  return {.T_map_body = T_map_body, .position_tol_m = 0.05, .yaw_tol_rad = 0.05};
+}
+
+// 8 m at up to 0.8 m/s: 10 s, and a few to turn, to slow down and to aim.
+TEST(Navigator, ArrivesAcrossAnEmptyRoomWithinItsTolerances) {
+  const RoomWorld room = make_room();
+  Navigator navigator = make_navigator(map_of_room(room));
+  const DriveRecord record = drive(navigator, room, {-4.0, 0.0, 0.0}, make_goal({4.0, 0.0, pi / 2.0}), 60.0);
+  ASSERT_EQ(record.end, NavigationStatus::kArrived);
+  EXPECT_THAT(record.T_map_body, test::Pose2Near(Pose2{4.0, 0.0, pi / 2.0}, 0.05, 0.05));
+  EXPECT_LT(record.time_s, 25.0);
+  EXPECT_LT(record.way_m, 8.0 * 1.05);
+  EXPECT_EQ(record.num_recoveries, 0);
+}
+
+TEST(Navigator, DrivesToTwentyRandomGoalsAmongPostsAndNeverTouches) {
+  int num_arrived = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const RandomStream stream(seed, "test/room");
+    RoomWorld room = make_room();
+    const Pose2 start{-4.5, 8.0 * stream.uniform(0) - 4.0, 6.28 * stream.uniform(1)};
+    const Pose2 goal{4.5, 8.0 * stream.uniform(2) - 4.0, 6.28 * stream.uniform(3)};
+    for (std::uint64_t post = 0; post < 6; ++post) {
+      room.add_post(5.0 * stream.uniform(4, post) - 2.5, 10.0 * stream.uniform(5, post) - 5.0, 0.15);
+    }
+    Navigator navigator = make_navigator(map_of_room(room));
+    const DriveRecord record = drive(navigator, room, start, make_goal(goal), 90.0);
+    EXPECT_EQ(record.end, NavigationStatus::kArrived)
+        << "seed " << seed << " at " << record.T_map_body.vector().transpose();
+    EXPECT_GT(record.min_gap_m, 0.0) << "seed " << seed;
+    num_arrived += record.end == NavigationStatus::kArrived;
+  }
+  EXPECT_EQ(num_arrived, 20);
+}
+
+TEST(Navigator, WithoutAMapFindsItsWayByWhatItSees) {
+  RoomWorld room = make_room();
+  room.add_box(-0.5, -2.0, 0.5, 2.0);  // in the straight way
+  Navigator navigator({}, make_robot(), {});
+  const DriveRecord record = drive(navigator, room, {-3.0, 0.0, 0.0}, make_goal({3.0, 0.0, 0.0}), 90.0);
+  EXPECT_EQ(record.end, NavigationStatus::kArrived);
+  EXPECT_GT(record.min_gap_m, 0.0);
+}
+
+// The map knows an empty corridor; a box stands in its right half. Left are 1.1 m for a robot 0.36 m wide.
+TEST(Navigator, PassesABoxInACorridorThatTheMapDoesNotKnow) {
+  RoomWorld corridor = make_corridor();
+  const OccupancyGrid map = map_of_corridor(corridor);
+  corridor.add_box(5.0, -0.9, 5.6, -0.1);
+  Navigator navigator = make_navigator(map);
+  const DriveRecord record = drive(navigator, corridor, {0.0, 0.0, 0.0}, make_goal({12.0, 0.0, 0.0}), 90.0);
+  EXPECT_EQ(record.end, NavigationStatus::kArrived);
+  EXPECT_GT(record.min_gap_m, 0.0);
+  EXPECT_EQ(record.num_recoveries, 0);
+}
+
+// A box appears 3 m before the robot when it is already on its way, and leaves a gap of 0.9 m.
+TEST(Navigator, PlansANewPathWhenSomethingIsPutInItsWay) {
+  RoomWorld empty = make_corridor(), blocked = make_corridor();
+  blocked.add_box(6.0, -0.6, 6.5, 0.1);
+  NavigatorSettings settings;
+  settings.replan_period_s = 600.0;  // so that nothing but the obstacle asks for a new path
+  Navigator navigator = make_navigator(map_of_corridor(empty), settings);
+  const DriveRecord record = drive(
+      navigator, [&](double time_s) { return time_s < 4.0 ? empty : blocked; }, {0.0, 0.0, 0.0},
+      make_goal({12.0, 0.0, 0.0}), 90.0);
+  EXPECT_EQ(record.end, NavigationStatus::kArrived);
+  EXPECT_GT(record.min_gap_m, 0.0);
+  EXPECT_GE(record.num_detours, 1);
+  EXPECT_EQ(record.num_recoveries, 0);
+}
+
+// Somebody stands across the whole corridor for 20 s and goes away.
+TEST(Navigator, WaitsForABlockedCorridorToClear) {
+  RoomWorld empty = make_corridor(), blocked = make_corridor();
+  blocked.add_box(6.0, -0.99, 6.3, 0.99);
+  Navigator navigator = make_navigator(map_of_corridor(empty));
+  const DriveRecord record = drive(
+      navigator, [&](double time_s) { return time_s < 20.0 ? blocked : empty; }, {0.0, 0.0, 0.0},
+      make_goal({12.0, 0.0, 0.0}), 90.0);
+  EXPECT_EQ(record.end, NavigationStatus::kArrived);
+  EXPECT_GT(record.time_s, 20.0);
+  EXPECT_GT(record.min_gap_m, 0.0);
+}
+
+// A wall across the room: four times 1 s of patience and 0.5 s of backing up, the fourth being one too many.
+TEST(Navigator, WalledInSaysThatItFailed) {
+  RoomWorld room = make_room();
+  room.add_box(-0.1, -kRoom_m, 0.1, kRoom_m);
+  Navigator navigator = make_navigator(map_of_room(room), with_patience(1.0, 0.5, 3));
+  const DriveRecord record = drive(navigator, room, {-3.0, 0.0, 0.0}, make_goal({3.0, 0.0, 0.0}), 60.0);
+  EXPECT_EQ(record.end, NavigationStatus::kFailed);
+  EXPECT_LT(record.time_s, 20.0);
+  EXPECT_GT(record.min_gap_m, 0.0);
+}
+
+TEST(Navigator, KeepsToItsSideOfAKeepOutLine) {
+  const RoomWorld room = make_room();
+  const Polyline line{{0.0, -kRoom_m}, {0.0, 3.0}};  // leaves a way round its end
+  Navigator navigator = make_navigator(map_of_room(room), {}, {line});
+  RoomWorld kerb;
+  kerb.add_polyline(line);
+  const Pose2 start{-3.0, 0.0, 0.0};
+  navigator.set_goal(make_goal({3.0, 0.0, 0.0}));
+  Pose2 T_map_body = start;
+  double min_gap = 10.0, north = 0.0;
+  NavigationStep step;
+  for (int tick = 0; tick < 1200 && step.status != NavigationStatus::kArrived; ++tick) {
+    step = navigator.step(from_seconds(0.05 * tick), T_map_body);
+    T_map_body = T_map_body * Pose2{0.05 * step.command.vx_mps, 0.05 * step.command.vy_mps,
+                                    0.05 * step.command.yaw_rate_radps};
+    min_gap = std::min(min_gap, kerb.distance_m(T_map_body.position()));
+    north = std::max(north, T_map_body.y);
+  }
+  EXPECT_EQ(step.status, NavigationStatus::kArrived);
+  EXPECT_GT(north, 3.0);
+  EXPECT_GT(min_gap, 0.15);  // of the body's axis; keep_out_margin_m is 0.2
+}
+
+TEST(Navigator, WithoutAGoalStandsIdle) {
+  Navigator navigator({}, make_robot(), {});
+  const NavigationStep step = navigator.step(Time{}, {});
+  EXPECT_EQ(step.status, NavigationStatus::kIdle);
+  EXPECT_EQ(step.command.vx_mps, 0.0);
+  EXPECT_EQ(step.command.yaw_rate_radps, 0.0);
+}
+
+TEST(Navigator, AtItsGoalHasArrivedAtOnceAndStands) {
+  Navigator navigator({}, make_robot(), {});
+  navigator.set_goal(make_goal({1.0, 1.0, 1.0}));
+  const NavigationStep step = navigator.step(Time{}, {1.01, 1.0, 1.0});
+  EXPECT_EQ(step.status, NavigationStatus::kArrived);
+  EXPECT_EQ(step.command.vx_mps, 0.0);
+}
+
+TEST(Navigator, HavingArrivedItDoesNotChaseItsOwnDrift) {
+  Navigator navigator({}, make_robot(), {});
+  navigator.set_goal(make_goal({0.0, 0.0, 0.0}));
+  navigator.step(Time{}, {});
+  EXPECT_EQ(navigator.step(from_seconds(0.1), {0.2, 0.0, 0.0}).status, NavigationStatus::kArrived);
+  navigator.set_goal(make_goal({2.0, 0.0, 0.0}));  // another goal: off again
+  EXPECT_EQ(navigator.step(from_seconds(0.2), {0.2, 0.0, 0.0}).status, NavigationStatus::kDriving);
+}
+
+TEST(Navigator, PublishesThePathItPlans) {
+  const RoomWorld room = make_room();
+  Navigator navigator = make_navigator(map_of_room(room));
+  navigator.set_goal(make_goal({3.0, 2.0, 0.0}));
+  const NavigationStep first = navigator.step(Time{}, {-3.0, -2.0, 0.0});
+  ASSERT_TRUE(first.replanned);
+  EXPECT_FALSE(first.is_detour);
+  EXPECT_NEAR(first.path.front().x, -3.0, 1e-9);
+  EXPECT_NEAR(first.path.back().x, 3.0, 1e-9);
+  EXPECT_NEAR(first.path.back().y, 2.0, 1e-9);
+  const NavigationStep second = navigator.step(from_seconds(0.05), {-3.0, -2.0, 0.0});
+  EXPECT_FALSE(second.replanned);
+  EXPECT_TRUE(second.path.empty());
+}
+
+TEST(Navigator, GivesTheSameCommandsAgain) {
+  RoomWorld room = make_room();
+  room.add_post(0.3, 0.2, 0.4);
+  const auto run = [&] {
+    Navigator navigator = make_navigator(map_of_room(room));
+    return drive(navigator, room, {-4.0, 0.0, 1.0}, make_goal({4.0, 1.0, 0.0}), 60.0);
+  };
+  const DriveRecord a = run(), b = run();
+  EXPECT_EQ(a.T_map_body.vector(), b.T_map_body.vector());
+  EXPECT_EQ(a.time_s, b.time_s);
+  EXPECT_EQ(a.way_m, b.way_m);
+}
+
+TEST(Navigator, RefusesARobotWithoutAnOutlineAndSettingsThatBreakTheirRule) {
+  EXPECT_THROW(Navigator({}, RobotDescription{}, {}), InputError);
+  NavigatorSettings settings;
+  settings.approach_m = -1.0;
+  EXPECT_THAT([&] { Navigator(settings, make_robot(), {}); },
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("navigation.approach_m = -1")));
+}
+
+}  // namespace
+}  // namespace patrol::plan
