@@ -1,6 +1,7 @@
 #include <sys/resource.h>
 
 #include <fmt/format.h>
+#include <mujoco/mujoco.h>
 
 #include "app/commands.h"
 #include "app/expectations.h"
@@ -23,6 +24,11 @@ Scenario load_scenario(const RunOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
   return io::load_settings<Scenario>(options.scenario, overrides);
+}
+
+/// What a resolved scenario says about its making.
+std::string made_by(const std::string& name) {
+  return fmt::format("{}, every default written out, by patrol {} with MuJoCo {}", name, PATROL_VERSION, mj_versionString());
 }
 
 double peak_memory_mb() {
@@ -57,7 +63,7 @@ ExitCode run_command(const RunOptions& options) {
   sim::Twin twin = make_twin(scenario, files);  // refuses bad input before anything is written
   const RunDirectory directory = begin_run_directory(options.out.value_or(default_directory(options, scenario)));
   write_unfinished_junit(directory, scenario, name);
-  io::save_settings(directory.scenario(), scenario);
+  io::save_settings(directory.scenario(), scenario, made_by(name));
 
   ProgressBar bar;
   const InterruptGuard interrupt;

@@ -39,7 +39,7 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
 }  // namespace
 
 std::filesystem::path find_data_root(const std::filesystem::path& scenario) {
-  std::filesystem::path folder = std::filesystem::absolute(scenario).parent_path();
+  std::filesystem::path folder = scenario.empty() ? std::filesystem::current_path() : std::filesystem::absolute(scenario).parent_path();
   for (; folder != folder.parent_path(); folder = folder.parent_path()) {
     if (holds_data(folder)) return folder;
   }

@@ -113,7 +113,7 @@ class SettingsReader {
   std::vector<std::string> known_;
 };
 
-/// Writes every field, defaults included.
+/// Writes every field, defaults included, below a line of comment if there is one.
 class SettingsWriter {
  public:
   explicit SettingsWriter(YAML::Emitter& out) : out_(out) {}
@@ -165,8 +165,9 @@ Settings load_settings(const std::filesystem::path& file, const std::vector<std:
 }
 
 template <typename Settings>
-void save_settings(const std::filesystem::path& file, const Settings& settings) {
+void save_settings(const std::filesystem::path& file, const Settings& settings, const std::string& comment = "") {
   YAML::Emitter out;
+  if (!comment.empty()) out << YAML::Comment(comment) << YAML::Newline;
   SettingsWriter::write_section(out, settings);
   save_text(file, std::string(out.c_str()) + "\n");
 }
