@@ -1,0 +1,354 @@
+#include "inspect/mission.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "tests/support/pose_near.h"
+
+namespace patrol::inspect {
+namespace {
+
+using std::numbers::pi;
+using test::VectorNear;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr double kPeriod_s = 0.1;
+
+Station make_station(const std::string& name, const Pose2& T_route_body,
+                     const std::string& type = "inspect") {
+  Station station;
+  station.name = name;
+  station.type = type;
+  station.T_route_body = T_route_body;
+  const Eigen::Vector2d target = T_route_body * Eigen::Vector2d(2.0, 0.0);  // straight ahead
+  station.p_route_target = {target.x(), target.y(), 1.0};
+  return station;
+}
+
+Route make_route() {
+  Route route;
+  route.stations = {make_station("first", {3.0, 0.0, 0.0}), make_station("second", {3.0, 4.0, pi / 2.0}),
+                    make_station("home", {0.0, 0.0, 0.0}, "home")};
+  return route;
+}
+
+/// A second of waiting, half of settling, one of readings at 10 Hz.
+MissionSettings make_settings() {
+  MissionSettings settings;
+  settings.start_wait_s = 1.0;
+  settings.settle_s = 0.5;
+  settings.measure_s = 1.0;
+  settings.max_measure_s = 3.0;
+  settings.min_readings = 5;
+  settings.alarm_column_ppm_m = 200.0;
+  return settings;
+}
+
+/// What the mission did.
+struct MissionRecord {
+  std::vector<Event> events;
+  std::vector<std::string> kinds() const {
+    std::vector<std::string> kinds;
+    for (const Event& event : events) kinds.push_back(event.kind);
+    return kinds;
+  }
+  const Event& find(const std::string& kind, const std::string& subject = "") const {
+    for (const Event& event : events) {
+      if (event.kind == kind && (subject.empty() || event.subject == subject)) return event;
+    }
+    throw std::logic_error("no event " + kind);
+  }
+  int count(const std::string& kind) const {
+    return static_cast<int>(
+        std::count_if(events.begin(), events.end(), [&](const Event& e) { return e.kind == kind; }));
+  }
+};
+
+/// The column that the instrument reads at a tick while the robot stands somewhere; NaN: no reading.
+using Gas = std::function<double(int tick, const Pose2& T_map_body)>;
+
+constexpr double kBeam_m = 2.5;
+
+/// Runs a mission with a navigation that needs two seconds to every goal, or cannot reach it.
+MissionRecord run(Mission& mission, const Gas& gas,
+                  const std::function<bool(const NavigationGoal&)>& is_reachable = nullptr,
+                  double time_limit_s = 120.0) {
+  MissionRecord record;
+  PoseEstimate pose;
+  std::optional<NavigationGoal> goal;
+  double goal_since_s = 0.0;
+  std::optional<GasReading> newest_gas;
+  for (int tick = 0; kPeriod_s * tick < time_limit_s && !mission.is_over(); ++tick) {
+    const double time_s = kPeriod_s * tick;
+    pose.stamp = from_seconds(time_s);
+    NavigationFeedback feedback = NavigationFeedback::kDriving;
+    if (goal && time_s >= goal_since_s + 2.0) {
+      const bool is_there = !is_reachable || is_reachable(*goal);
+      feedback = is_there ? NavigationFeedback::kArrived : NavigationFeedback::kFailed;
+      if (is_there) pose.T_map_body = goal->T_map_body;
+    }
+    const double column = gas(tick, pose.T_map_body);
+    if (!std::isnan(column)) {
+      newest_gas = GasReading{
+          .stamp = pose.stamp, .column_ppm_m = column, .path_length_m = kBeam_m, .mean_mg_m3 = 0.0};
+    }
+    const MissionOutput output = mission.step(pose.stamp, pose, feedback, newest_gas);
+    record.events.insert(record.events.end(), output.events.begin(), output.events.end());
+    if (output.goal != goal) goal_since_s = time_s;
+    goal = output.goal;
+  }
+  return record;
+}
+
+double clean_air(int, const Pose2&) { return 20.0; }
+
+TEST(Mission, WalksMeasuresAndCompletesInOrder) {
+  Mission mission(make_settings(), make_route(), {});
+  const MissionRecord record = run(mission, clean_air);
+  EXPECT_THAT(record.kinds(),
+              ElementsAre("mission_started", "station_reached", "gas_measured", "station_reached",
+                          "gas_measured", "station_reached", "mission_completed"));
+  EXPECT_EQ(record.events[1].subject, "first");
+  EXPECT_EQ(record.events[3].subject, "second");
+  EXPECT_EQ(record.events[5].subject, "home");  // nothing is measured there
+  EXPECT_TRUE(mission.is_over());
+}
+
+TEST(Mission, StandsForItsStartWait) {
+  Mission mission(make_settings(), make_route(), {});
+  for (int tick = 0; tick < 10; ++tick) {
+    const MissionOutput output =
+        mission.step(from_seconds(kPeriod_s * tick), {}, NavigationFeedback::kDriving, std::nullopt);
+    EXPECT_FALSE(output.goal) << tick;
+    EXPECT_TRUE(output.events.empty()) << tick;
+  }
+  const MissionOutput output =
+      mission.step(from_seconds(1.0), {}, NavigationFeedback::kDriving, std::nullopt);
+  ASSERT_TRUE(output.goal);
+  EXPECT_EQ(output.events.at(0).kind, "mission_started");
+  EXPECT_EQ(output.events.at(0).stamp, from_seconds(1.0));
+}
+
+// Reached at t, readings from t + 0.5 s on, for 1 s: measured at t + 1.5 s.
+TEST(Mission, MeasuresForItsTimeAfterSettling) {
+  Mission mission(make_settings(), make_route(), {});
+  const MissionRecord record = run(mission, clean_air);
+  const Time reached = record.find("station_reached", "first").stamp;
+  EXPECT_EQ(record.find("gas_measured", "first").stamp - reached, from_seconds(1.5));
+}
+
+// Gas that blew past while the robot was still settling does not count.
+TEST(Mission, ReadingsBeforeItHasSettledDoNotCount) {
+  int standing_ticks = 0;
+  const Gas gas = [&](int, const Pose2& T_map_body) {
+    if (T_map_body.x != 3.0 || T_map_body.y != 0.0) return 20.0;
+    return ++standing_ticks <= 5 ? 10000.0 : 20.0;  // ticks 0 ... 4: the first 0.5 s
+  };
+  Mission mission(make_settings(), make_route(), {});
+  const MissionRecord record = run(mission, gas);
+  EXPECT_NEAR(record.find("gas_measured", "first").value, 20.0, 1e-9);
+  EXPECT_EQ(record.count("alarm"), 0);
+}
+
+TEST(Mission, HoldsItsPlaceWhileItMeasures) {
+  Mission mission(make_settings(), make_route(), {});
+  PoseEstimate pose;
+  mission.step(from_seconds(1.0), pose, NavigationFeedback::kDriving, std::nullopt);
+  const MissionOutput arrived =
+      mission.step(from_seconds(2.0), pose, NavigationFeedback::kArrived, std::nullopt);
+  EXPECT_EQ(arrived.events.at(0).kind, "station_reached");
+  const MissionOutput measuring =
+      mission.step(from_seconds(2.1), pose, NavigationFeedback::kArrived, std::nullopt);
+  ASSERT_TRUE(measuring.goal);
+  EXPECT_EQ(measuring.goal->T_map_body.vector(), Pose2(3.0, 0.0, 0.0).vector());
+}
+
+// 150 and 250 in turn: mean 200 + m, the standard error of 11 readings is about 100 / 2 / sqrt(11) = 16: an
+// alarm needs a mean of 232.
+TEST(Mission, AlarmsOnlyTwoStandardErrorsBeyondTheThreshold) {
+  const auto with_mean = [](double mean) {
+    return [mean](int tick, const Pose2&) { return mean + (tick % 2 == 0 ? 50.0 : -50.0); };
+  };
+  for (const double mean : {150.0, 200.0, 215.0, 225.0}) {
+    Mission mission(make_settings(), make_route(), {});
+    EXPECT_EQ(run(mission, with_mean(mean)).count("alarm"), 0) << mean;
+  }
+  for (const double mean : {245.0, 300.0, 5000.0}) {
+    Mission mission(make_settings(), make_route(), {});
+    const MissionRecord record = run(mission, with_mean(mean));
+    EXPECT_EQ(record.count("alarm"), 2) << mean;  // at each station that measures
+    EXPECT_NEAR(record.find("alarm").value, mean, 5.0);
+  }
+}
+
+// Clean air must not alarm: over 500 stations at 80 ppm m below the threshold with a reading's deviation of
+// 60 ppm m, none may.
+TEST(Mission, NeverAlarmsInFiveHundredStationsOfCleanAir) {
+  Route route;
+  for (int i = 0; i < 500; ++i)
+    route.stations.push_back(make_station(fmt::format("s{}", i), {1.0 * i, 0.0, 0.0}));
+  const RandomStream stream(11, "test/air");
+  Mission mission(make_settings(), route, {});
+  const MissionRecord record = run(
+      mission,
+      [&](int tick, const Pose2&) { return 120.0 + 60.0 * stream.normal(static_cast<std::uint64_t>(tick)); },
+      nullptr, 1e5);
+  EXPECT_EQ(record.count("gas_measured"), 500);
+  EXPECT_EQ(record.count("alarm"), 0);
+}
+
+TEST(Mission, AlarmNamesTheStationWithTheLeak) {
+  const Gas gas = [](int, const Pose2& T_map_body) { return T_map_body.y > 1.0 ? 900.0 : 20.0; };
+  Mission mission(make_settings(), make_route(), {});
+  const MissionRecord record = run(mission, gas);
+  ASSERT_EQ(record.count("alarm"), 1);
+  EXPECT_EQ(record.find("alarm").subject, "second");
+  EXPECT_THAT(record.find("alarm").text, HasSubstr("900 ppm m"));
+}
+
+// The meter sits 0.3 m before the body's origin at (3, 4) and looks north with the robot; the target lies at
+// (3, 6), on the beam.
+TEST(Mission, PlacesTheLeakOnTheBeamAtTheTarget) {
+  const Gas gas = [](int, const Pose2& T_map_body) { return T_map_body.y > 1.0 ? 900.0 : 20.0; };
+  Mission mission(make_settings(), make_route(), {.position = {0.3, 0.0, 0.2}});
+  const MissionRecord record = run(mission, gas);
+  EXPECT_THAT(record.find("alarm").p_map_target, VectorNear(Eigen::Vector2d(3.0, 6.0), 1e-9));
+}
+
+// The same with the target moved: 1 m aside, its foot on the beam; 9 m away, the beam's end 2.5 m from the
+// meter; behind, the meter.
+TEST(Mission, PlacesTheLeakOnTheBeamWhereItIsNearestToTheTarget) {
+  const struct {
+    Eigen::Vector2d target, expected;
+  } cases[] = {{{1.0, 1.0}, {1.0, 0.0}}, {{9.0, 1.0}, {0.3 + kBeam_m, 0.0}}, {{-4.0, 1.0}, {0.3, 0.0}}};
+  for (const auto& [target, expected] : cases) {
+    Route route;
+    route.stations = {make_station("only", {0.0, 0.0, 0.0})};
+    route.stations[0].p_route_target = {target.x(), target.y(), 0.0};
+    Mission mission(make_settings(), route, {.position = {0.3, 0.0, 0.2}});
+    const MissionRecord record = run(mission, [](int, const Pose2&) { return 900.0; });
+    EXPECT_THAT(record.find("alarm").p_map_target, VectorNear(expected, 1e-9)) << target.transpose();
+  }
+}
+
+TEST(Mission, ABeamTurnedToTheLeftPlacesTheLeakOnTheLeft) {
+  Route route;
+  route.stations = {make_station("only", {0.0, 0.0, 0.0})};
+  route.stations[0].p_route_target = {0.0, 2.0, 0.0};
+  Mission mission(make_settings(), route, {.rotation = quaternion_from_yaw(pi / 2.0)});
+  const MissionRecord record = run(mission, [](int, const Pose2&) { return 900.0; });
+  EXPECT_THAT(record.find("alarm").p_map_target, VectorNear(Eigen::Vector2d(0.0, 2.0), 1e-9));
+}
+
+TEST(Mission, AStationOutOfReachIsLeftOutAndTheMissionFails) {
+  Mission mission(make_settings(), make_route(), {});
+  const MissionRecord record = run(mission, clean_air, [](const NavigationGoal& goal) {
+    return goal.T_map_body.y < 1.0;
+  });  // not "second"
+  EXPECT_THAT(record.kinds(), ElementsAre("mission_started", "station_reached", "gas_measured",
+                                          "station_failed", "station_reached", "mission_failed"));
+  EXPECT_EQ(record.find("station_failed").subject, "second");
+  EXPECT_THAT(record.find("mission_failed").text, HasSubstr("1 of 3 stations"));
+}
+
+// Settled after 0.5 s, given up 3 s later.
+TEST(Mission, AStationWithoutReadingsIsGivenUpAfterItsLimit) {
+  Mission mission(make_settings(), make_route(), {});
+  const MissionRecord record = run(mission, [](int, const Pose2&) { return std::nan(""); });
+  EXPECT_EQ(record.count("station_failed"), 2);
+  EXPECT_EQ(record.count("gas_measured"), 0);
+  EXPECT_EQ(record.find("station_failed").stamp - record.find("station_reached").stamp, from_seconds(3.5));
+  EXPECT_EQ(record.events.back().kind, "mission_failed");
+}
+
+TEST(Mission, WaitsLongerForASlowInstrument) {
+  // A reading every 0.5 s: five of them take 2 s.
+  Mission mission(make_settings(), make_route(), {});
+  const MissionRecord record =
+      run(mission, [](int tick, const Pose2&) { return tick % 5 == 0 ? 30.0 : std::nan(""); });
+  EXPECT_EQ(record.count("gas_measured"), 2);
+  const Time taken = record.find("gas_measured").stamp - record.find("station_reached").stamp;
+  EXPECT_GT(taken, from_seconds(2.0));
+  EXPECT_LE(taken, from_seconds(3.0));
+}
+
+TEST(Mission, AskedPrecisionIsTheFinerOfSettingAndSurvey) {
+  Route route = make_route();
+  route.stations[0].accuracy_m = 0.02;
+  route.stations[1].accuracy_m = 0.5;
+  MissionSettings settings = make_settings();
+  settings.position_tol_m = 0.08;
+  settings.yaw_tol_rad = 0.06;
+  std::vector<NavigationGoal> goals;
+  Mission mission(settings, route, {});
+  run(mission, clean_air, [&](const NavigationGoal& goal) {
+    if (goals.empty() || !(goals.back() == goal)) goals.push_back(goal);
+    return true;
+  });
+  ASSERT_EQ(goals.size(), 3u);
+  EXPECT_EQ(goals[0].position_tol_m, 0.02);
+  EXPECT_EQ(goals[1].position_tol_m, 0.08);
+  EXPECT_EQ(goals[1].yaw_tol_rad, 0.06);
+}
+
+TEST(Mission, APlaceToPassAsksForNoHeading) {
+  Route route;
+  route.stations = {make_station("gate", {1.0, 0.0, 0.0}, "pass")};
+  route.stations[0].accuracy_m = 0.6;
+  Mission mission(make_settings(), route, {});
+  const MissionOutput output =
+      mission.step(from_seconds(1.0), {}, NavigationFeedback::kDriving, std::nullopt);
+  ASSERT_TRUE(output.goal);
+  EXPECT_EQ(output.goal->position_tol_m, 0.6);
+  EXPECT_EQ(output.goal->yaw_tol_rad, pi);
+}
+
+// In the step in which the goal changes, navigation still speaks of the one before.
+TEST(Mission, FeedbackAboutTheGoalBeforeDoesNotCount) {
+  Mission mission(make_settings(), make_route(), {});
+  const MissionOutput first = mission.step(from_seconds(1.0), {}, NavigationFeedback::kArrived, std::nullopt);
+  EXPECT_EQ(first.events.size(), 1u);
+  const MissionOutput same_instant =
+      mission.step(from_seconds(1.0), {}, NavigationFeedback::kArrived, std::nullopt);
+  EXPECT_TRUE(same_instant.events.empty());
+}
+
+TEST(Mission, AbortEndsItWithItsEvent) {
+  Mission mission(make_settings(), make_route(), {});
+  mission.step(from_seconds(1.0), {}, NavigationFeedback::kDriving, std::nullopt);
+  const Event fall = mission.abort(from_seconds(1.5), "fall", "The robot fell.");
+  EXPECT_EQ(fall.kind, "fall");
+  EXPECT_EQ(fall.subject, "first");
+  EXPECT_EQ(fall.stamp, from_seconds(1.5));
+  EXPECT_TRUE(mission.is_over());
+  const MissionOutput after = mission.step(from_seconds(2.0), {}, NavigationFeedback::kArrived, std::nullopt);
+  EXPECT_FALSE(after.goal);
+  EXPECT_TRUE(after.events.empty());
+}
+
+TEST(Mission, EventsSayWhereTheRobotWas) {
+  Mission mission(make_settings(), make_route(), {});
+  const MissionRecord record = run(mission, clean_air);
+  EXPECT_EQ(record.find("gas_measured", "second").T_map_body.vector(), Pose2(3.0, 4.0, pi / 2.0).vector());
+}
+
+TEST(Mission, RefusesAnEmptyRouteAndSettingsThatBreakTheirRule) {
+  EXPECT_THAT([] { Mission(make_settings(), {}, {}); },
+              ::testing::ThrowsMessage<InputError>(HasSubstr("no station")));
+  MissionSettings settings = make_settings();
+  settings.min_readings = 0;
+  EXPECT_THAT([&] { Mission(settings, make_route(), {}); },
+              ::testing::ThrowsMessage<InputError>(HasSubstr("mission.min_readings = 0")));
+}
+
+}  // namespace
+}  // namespace patrol::inspect
