@@ -54,6 +54,9 @@ class OtherWriters(unittest.TestCase):
     def test_without_chunks(self):
         self.check(use_chunking=False)
 
+    def test_channels_and_schemas_only_within_the_chunks(self):
+        self.check(repeat_channels=False, repeat_schemas=False)
+
     def test_without_indexes_and_summary(self):
         self.check(index_types=IndexType.NONE, repeat_channels=False, repeat_schemas=False, use_statistics=False, use_summary_offsets=False)
 

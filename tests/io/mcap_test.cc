@@ -115,6 +115,15 @@ TEST_F(Mcap, SelectsByTopicAndByTimeBothEndsIncluded) {
   EXPECT_EQ(second.back().log_time, Time(4s));
 }
 
+TEST_F(Mcap, EveryInstantIsFoundByItself) {
+  write_log(file, entries);
+  for (int i = 0; i < 100; ++i) {
+    const Time instant = i * 100ms;
+    ASSERT_EQ(read_log(file, {.topics = {}, .from = instant, .to = instant}).size(), i % 10 == 0 ? 2U : 1U)
+        << i;
+  }
+}
+
 TEST_F(Mcap, AWriterThatNeverClosedLeavesAllItsMessages) {
   write_log(file, entries, false);
   EXPECT_EQ(read_log(file), entries);

@@ -37,6 +37,11 @@ TEST(MetricAt, WhatIsNoFigureIsNone) {
   }
 }
 
+TEST(MetricAt, NotANumberIsNoFigure) {
+  EXPECT_FALSE(metric_at({{"x", std::numeric_limits<double>::quiet_NaN()}}, "x"));
+  EXPECT_FALSE(metric_at({{"x", std::numeric_limits<double>::infinity()}}, "x"));
+}
+
 TEST(SaveMetrics, ThereAndBackKeepsOrderAndEveryDigit) {
   const test::TemporaryFolder folder;
   Metrics metrics;

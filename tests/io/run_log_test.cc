@@ -230,6 +230,24 @@ TEST_F(RunLog, ACutOffLogIsNotEqualThoughItsMessagesAre) {
             "the same messages, but the other log was cut off");
 }
 
+TEST_F(RunLog, TheSameMessageAtAnotherTimeOrOnAnotherTopicIsADifference) {
+  const auto write = [&](const char* name, Time log_time, bool is_scan) {
+    RunLogWriter writer(folder / name, make_robot());
+    if (is_scan)
+      writer.write(log_time, test::sample_scan());
+    else
+      writer.write(log_time, test::sample_imu());
+    writer.close();
+    return folder / name;
+  };
+  const auto log = write("log.mcap", 1s, true), late = write("late.mcap", 1s + 1ns, true),
+             imu = write("imu.mcap", 1s, false);
+  EXPECT_EQ(describe(*first_difference(log, late)),
+            "/scan at 1.000000000 s: the other log has /scan at 1.000000001 s here");
+  EXPECT_EQ(describe(*first_difference(log, imu)),
+            "/scan at 1.000000000 s: the other log has /imu/data at 1.000000000 s here");
+}
+
 TEST_F(RunLog, AMissingLogIsRefusedByName) {
   write_walk(file, kNoChange);
   EXPECT_THROW(first_difference(file, folder / "missing.mcap"), InputError);

@@ -136,6 +136,14 @@ TEST(Urdf, InertiasMustBeThoseOfABody) {
       << "more than the two others";
 }
 
+TEST(Urdf, AThinRodsZeroMomentIsRefusedToo) {
+  std::string text = changed("ixx=\"0.0116567\"", "ixx=\"0\"");
+  const std::string iyy = "iyy=\"0.0656615\"", izz_value = "0.0686515";
+  ASSERT_NE(text.find(iyy), std::string::npos);
+  text.replace(text.find(iyy), iyy.size(), "iyy=\"" + izz_value + "\"");
+  EXPECT_THAT(complaint_about(text), HasSubstr("base_link: the inertia is of no body"));
+}
+
 TEST(Urdf, JointsThatGoRoundInACircleAreRefused) {
   EXPECT_THAT(complaint_about(changed("<parent link=\"base_link\"/>", "<parent link=\"FL_shank\"/>",
                                       "name=\"FL_abduction_joint\"")),

@@ -45,6 +45,7 @@ TEST(InspectionScore, TwoAlarmsAboutOneLeakFindOne) {
 
 TEST(InspectionScore, TheNearestOfTwoLeaksIsMeant) {
   EXPECT_EQ(inspection_score({alarm_at(15.4, 0.0)}, {}, kLeaks, 6.0).findings[0].leak, "leak_b");
+  EXPECT_EQ(inspection_score({alarm_at(14.6, 0.0)}, {}, kLeaks, 6.0).findings[0].leak, "leak_a");
 }
 
 TEST(InspectionScore, PlacesAreTakenFromMapToWorld) {

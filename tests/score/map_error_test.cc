@@ -103,6 +103,14 @@ TEST(MapError, HalfAWallIsHalfTheCoverageButNoLessPrecise) {
   EXPECT_NEAR(error.iou, 0.5, kFloatTol);
 }
 
+TEST(MapError, WhatLiesOutsideTheBuiltMapIsMissed) {
+  OccupancyGrid wall({.resolution_m = 0.05, .width = 200, .height = 10}, kFree),
+      part({.resolution_m = 0.05, .width = 50, .height = 10}, kFree);
+  for (int col = 0; col < 200; ++col) wall.at({col, 5}) = kOccupied;
+  for (int col = 0; col < 50; ++col) part.at({col, 5}) = kOccupied;
+  EXPECT_NEAR(map_error(part, {}, all_seeable(wall)).iou, 0.25, kFloatTol);
+}
+
 TEST(MapError, WhatCouldNotBeSeenIsNotMissed) {
   OccupancyGrid wall({.resolution_m = 0.05, .width = 200, .height = 10}, kFree), half = wall;
   for (int col = 0; col < 200; ++col) wall.at({col, 5}) = kOccupied;

@@ -60,6 +60,15 @@ TEST(MapDisplacement, AlongASingleWallNothingIsSaid) {
   EXPECT_NEAR(*displacement, 0.05, 0.002) << "across only";
 }
 
+// Two cells of a post against 120 of the wall: what they say along the wall may be a person.
+TEST(MapDisplacement, ALonePostDoesNotTellTheLengthOfAWall) {
+  OccupancyGrid wall = make_walls(false);
+  wall.at({100, 180}) = wall.at({100, 181}) = kOccupied;
+  const auto displacement = map_displacement_m(wall, {0.03, 0.05, 0.0}, all_seeable(wall), {2.5, 4.8}, 1.5);
+  ASSERT_TRUE(displacement);
+  EXPECT_NEAR(*displacement, 0.05, 0.002);
+}
+
 TEST(MapDisplacement, WithFewerThanThirtyCellsThereIsNone) {
   OccupancyGrid map({.resolution_m = 0.025, .width = 400, .height = 400}, kFree);
   for (int i = 0; i < 29; ++i) map.at({180 + i, 200}) = kOccupied;
