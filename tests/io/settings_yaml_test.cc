@@ -248,6 +248,13 @@ TEST(SaveSettings, WritesEveryDefaultAndReadsBackTheSame) {
   EXPECT_EQ(read_bytes(folder / "a.yaml"), read_bytes(folder / "b.yaml"));
 }
 
+TEST(SaveSettings, ACommentStandsAtTheHeadAndIsNotRead) {
+  const TemporaryFolder folder;
+  save_settings(folder / "a.yaml", load(""), "made by hand: [odd]\nseed: 7");
+  EXPECT_THAT(read_bytes(folder / "a.yaml"), StartsWith("# made by hand: [odd]\n# seed: 7\n"));
+  EXPECT_EQ(load_settings<Scenario>(folder / "a.yaml", {}).seed, 1U);
+}
+
 TEST(NearestWord, IsNearOrEmpty) {
   EXPECT_EQ(nearest_word("partcles", {"particles", "paths"}), "particles");
   EXPECT_EQ(nearest_word("xyz", {"particles", "paths"}), "");
