@@ -83,7 +83,7 @@ View CameraRig::follow(const Pose3& T_world_body, double elapsed_s) {
 }
 
 View CameraRig::chase(double elapsed_s) {
-  constexpr double kReturn_s = 0.8;     // time constant; it comes near at once
+  constexpr double kReturn_s = 0.8;  // time constant; it comes near at once
   constexpr double kClearance_m = 0.25;
   const Pose3 T_world_rig{*focus_m_, quaternion_from_yaw(heading_rad_)};
   const Eigen::Vector3d over_robot = T_world_rig * Eigen::Vector3d(0.0, 0.0, 0.4);

@@ -23,11 +23,11 @@ CameraKind camera_kind(const std::string& name);
 
 /// Where the eye is and what it takes in.
 struct View {
-  Eigen::Vector3d eye = Eigen::Vector3d::Zero();           ///< m, in world
-  Eigen::Vector3d forward = Eigen::Vector3d::UnitX();   ///< unit
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();        ///< unit, across `forward`
-  Eigen::Vector3d focus = Eigen::Vector3d::Zero();      ///< what it is about: light and shadows go there
-  double field_of_view_rad = 0.9;                       ///< vertical
+  Eigen::Vector3d eye = Eigen::Vector3d::Zero();       ///< m, in world
+  Eigen::Vector3d forward = Eigen::Vector3d::UnitX();  ///< unit
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();       ///< unit, across `forward`
+  Eigen::Vector3d focus = Eigen::Vector3d::Zero();     ///< what it is about: light and shadows go there
+  double field_of_view_rad = 0.9;                      ///< vertical
   double near_m = 0.05;
   double far_m = 200.0;
 };
@@ -48,7 +48,9 @@ class Projector {
   Projector(const View& view, int width, int height);
 
   /// In the camera: right, up, ahead.
-  Eigen::Vector3d to_camera(const Eigen::Vector3d& point_m) const { return R_camera_world_ * (point_m - eye_m_); }
+  Eigen::Vector3d to_camera(const Eigen::Vector3d& point_m) const {
+    return R_camera_world_ * (point_m - eye_m_);
+  }
   /// Of a point ahead of the camera.
   Projected project_camera(const Eigen::Vector3d& in_camera_m) const {
     const double scale = focal_px_ / in_camera_m.z();
@@ -57,7 +59,9 @@ class Projector {
   /// None behind the near plane.
   std::optional<Projected> project(const Eigen::Vector3d& point_m) const;
   /// Distance along the axis of what the depth buffer (0 near, 1 far) holds.
-  double distance_m(float depth) const { return near_m_ * far_m_ / (far_m_ - static_cast<double>(depth) * (far_m_ - near_m_)); }
+  double distance_m(float depth) const {
+    return near_m_ * far_m_ / (far_m_ - static_cast<double>(depth) * (far_m_ - near_m_));
+  }
 
   double near_m() const { return near_m_; }
   double focal_px() const { return focal_px_; }
@@ -75,8 +79,8 @@ class Projector {
 using FreeDistance =
     std::function<double(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m)>;
 
-/// Follows the robot. What moves with each step of the trot is smoothed away, in the time of the one who watches. The chasing
-/// camera comes nearer where something would stand between it and the robot.
+/// Follows the robot. What moves with each step of the trot is smoothed away, in the time of the one who
+/// watches. The chasing camera comes nearer where something would stand between it and the robot.
 class CameraRig {
  public:
   explicit CameraRig(CameraKind kind, FreeDistance free_distance = {})

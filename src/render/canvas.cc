@@ -22,7 +22,8 @@ std::filesystem::path font_file(bool is_bold) {
     const std::filesystem::path file = std::filesystem::path(folder) / name;
     if (std::filesystem::exists(file)) return file;
   }
-  throw InputError(std::string(name) + " is not installed (package fonts-dejavu-core): a replay writes with it");
+  throw InputError(std::string(name) +
+                   " is not installed (package fonts-dejavu-core): a replay writes with it");
 }
 
 /// The next character of valid UTF-8; `at` moves behind it.
@@ -38,7 +39,8 @@ char32_t next_character(const std::string& text, std::size_t& at) {
 
 /// Calls `shade(x, y, distance)` for the pixels around a stroke.
 template <typename Shade>
-void around_segment(const Frame& frame, const Eigen::Vector2d& a, const Eigen::Vector2d& b, double reach, Shade shade) {
+void around_segment(const Frame& frame, const Eigen::Vector2d& a, const Eigen::Vector2d& b, double reach,
+                    Shade shade) {
   const Eigen::Vector2d low = a.cwiseMin(b).array() - reach, high = a.cwiseMax(b).array() + reach;
   if (!(high.x() >= 0.0 && high.y() >= 0.0 && low.x() <= frame.width() && low.y() <= frame.height())) return;
   const int left = static_cast<int>(std::max(0.0, low.x())), top = static_cast<int>(std::max(0.0, low.y()));
@@ -72,7 +74,8 @@ struct Font::Face {
 
 Font::Font(int height_px, bool is_bold) : face_(std::make_unique<Face>()), height_px_(height_px) {
   const std::filesystem::path file = font_file(is_bold);
-  if (FT_Init_FreeType(&face_->library) != 0 || FT_New_Face(face_->library, file.c_str(), 0, &face_->face) != 0 ||
+  if (FT_Init_FreeType(&face_->library) != 0 ||
+      FT_New_Face(face_->library, file.c_str(), 0, &face_->face) != 0 ||
       FT_Set_Pixel_Sizes(face_->face, 0, static_cast<FT_UInt>(height_px)) != 0) {
     throw std::runtime_error(file.string() + ": FreeType cannot use this font");
   }
@@ -127,7 +130,8 @@ void fill_rectangle(Frame& frame, int left, int top, int width, int height, cons
   }
 }
 
-void draw_line(Frame& frame, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double width_px, const Ink& ink) {
+void draw_line(Frame& frame, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double width_px,
+               const Ink& ink) {
   const double reach = 0.5 * width_px + 0.5;
   around_segment(frame, from, to, reach, [&](int x, int y, double distance) {
     const double coverage = std::clamp(reach - distance, 0.0, 1.0);

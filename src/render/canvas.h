@@ -16,14 +16,17 @@ struct Ink {
 };
 
 inline Color blend(Color below, Color above, double opacity) {
-  const auto mix = [&](std::uint8_t a, std::uint8_t b) { return static_cast<std::uint8_t>(a + opacity * (b - a) + 0.5); };
+  const auto mix = [&](std::uint8_t a, std::uint8_t b) {
+    return static_cast<std::uint8_t>(a + opacity * (b - a) + 0.5);
+  };
   return {mix(below.r, above.r), mix(below.g, above.g), mix(below.b, above.b)};
 }
 
 /// Letters of one size.
 class Font {
  public:
-  /// DejaVu Sans from where Linux distributions keep it. Throws InputError, naming the package, when it is not there.
+  /// DejaVu Sans from where Linux distributions keep it. Throws InputError, naming the package, when it is
+  /// not there.
   explicit Font(int height_px, bool is_bold = false);
   ~Font();
   Font(const Font&) = delete;
@@ -44,7 +47,8 @@ class Font {
 
 /// Flat drawing on a frame; what lies outside is cut off. Pixel centres are at .5.
 void fill_rectangle(Frame& frame, int left, int top, int width, int height, const Ink& ink);
-void draw_line(Frame& frame, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double width_px, const Ink& ink);
+void draw_line(Frame& frame, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double width_px,
+               const Ink& ink);
 /// `picture` with its upper left corner at (left, top).
 void paste(Frame& frame, int left, int top, const Frame& picture);
 void draw_disc(Frame& frame, const Eigen::Vector2d& center, double radius_px, const Ink& ink);

@@ -69,9 +69,10 @@ void MapInset::draw(Frame& frame, const RunSnapshot& snapshot) {
   draw_disc(inset, robot, 4.5, {kRobotColor, 1.0});
 
   constexpr int kMargin_px = 16, kBorder_px = 2;
-  const int left = frame.width() - inset.width() - kMargin_px, top = frame.height() - inset.height() - kMargin_px;
-  fill_rectangle(frame, left - kBorder_px, top - kBorder_px, inset.width() + 2 * kBorder_px, inset.height() + 2 * kBorder_px,
-                 {kBorderColor, 0.8});
+  const int left = frame.width() - inset.width() - kMargin_px,
+            top = frame.height() - inset.height() - kMargin_px;
+  fill_rectangle(frame, left - kBorder_px, top - kBorder_px, inset.width() + 2 * kBorder_px,
+                 inset.height() + 2 * kBorder_px, {kBorderColor, 0.8});
   paste(frame, left, top, inset);
 }
 

@@ -9,7 +9,8 @@
 
 namespace patrol::render {
 
-/// MuJoCo draws into a frame buffer object of its own; the buffer that OSMesa asks for is only there to be asked for.
+/// MuJoCo draws into a frame buffer object of its own; the buffer that OSMesa asks for is only there to be
+/// asked for.
 struct Offscreen::GlContext {
   static constexpr int kSize = 16;
 
@@ -32,12 +33,14 @@ struct Offscreen::GlContext {
 
 Offscreen::Offscreen(const mjModel& model, int width, int height)
     : gl_(std::make_unique<GlContext>()), viewport_{0, 0, width, height} {
-  if (width < 1 || height < 1) throw std::runtime_error(fmt::format("a frame of {}x{} has no pixels", width, height));
+  if (width < 1 || height < 1)
+    throw std::runtime_error(fmt::format("a frame of {}x{} has no pixels", width, height));
   gl_->make_current();
   mjr_defaultContext(&context_);
   mjr_makeContext(&model, &context_, mjFONTSCALE_100);
   mjr_setBuffer(mjFB_OFFSCREEN, &context_);
-  // Made anew without multisampling, whose depth is that of a sample off the pixel's centre, and which costs most of a frame.
+  // Made anew without multisampling, whose depth is that of a sample off the pixel's centre, and which costs
+  // most of a frame.
   context_.offSamples = 0;
   mjr_resizeOffscreen(width + 1, height + 1, &context_);
   mjr_resizeOffscreen(width, height, &context_);

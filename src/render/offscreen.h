@@ -9,12 +9,13 @@
 
 namespace patrol::render {
 
-/// MuJoCo's own renderer drawing into memory through Mesa's software rasteriser: no display, no graphics card. It belongs
-/// to the thread that made it; two of them in one thread take turns by `make_current`.
+/// MuJoCo's own renderer drawing into memory through Mesa's software rasteriser: no display, no graphics
+/// card. It belongs to the thread that made it; two of them in one thread take turns by `make_current`.
 class Offscreen {
  public:
-  /// Uploads the model's textures and meshes; `model` is not needed afterwards. Throws std::runtime_error when there is no
-  /// usable OpenGL, or when the size is more than it can do. One sample a pixel, at its centre, whatever the model asks for.
+  /// Uploads the model's textures and meshes; `model` is not needed afterwards. Throws std::runtime_error
+  /// when there is no usable OpenGL, or when the size is more than it can do. One sample a pixel, at its
+  /// centre, whatever the model asks for.
   Offscreen(const mjModel& model, int width, int height);
   ~Offscreen();
   Offscreen(const Offscreen&) = delete;

@@ -9,7 +9,8 @@
 
 namespace patrol::render {
 
-/// What a replay adds to the picture of the world: paths, scan and plan where they lie, the map in a corner, figures.
+/// What a replay adds to the picture of the world: paths, scan and plan where they lie, the map in a corner,
+/// figures.
 class Overlay {
  public:
   /// Letters fit a frame of this height. Throws InputError when there is no font.

@@ -13,8 +13,8 @@
 
 namespace patrol::render {
 
-/// A thread that paints finished replay frames: world, smoothed edges, overlay. OpenGL belongs to one thread, so each has
-/// its own context. What it paints depends on nothing but what it is given.
+/// A thread that paints finished replay frames: world, smoothed edges, overlay. OpenGL belongs to one thread,
+/// so each has its own context. What it paints depends on nothing but what it is given.
 class PaintThread {
  public:
   /// Waits until the thread has its OpenGL; throws what kept it from that. `view` must outlive the thread.

@@ -39,8 +39,8 @@ bool lidar_can_hit(const mjModel& model, int geom) {
 Box bounds_in_world(const mjModel& model, const mjData& data, int geom) {
   const mjtNum* local = model.geom_aabb + 6 * geom;  // centre, half sizes
   const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> R(data.geom_xmat + 9 * geom);
-  const Eigen::Vector3d center =
-      Eigen::Map<const Eigen::Vector3d>(data.geom_xpos + 3 * geom) + R * Eigen::Map<const Eigen::Vector3d>(local);
+  const Eigen::Vector3d center = Eigen::Map<const Eigen::Vector3d>(data.geom_xpos + 3 * geom) +
+                                 R * Eigen::Map<const Eigen::Vector3d>(local);
   const Eigen::Vector3d half = R.cwiseAbs() * Eigen::Map<const Eigen::Vector3d>(local + 3);
   return {center - half, center + half};
 }
@@ -92,8 +92,8 @@ class SliceScene {
   }
 
   /// Depth, rows from high y to low y, columns along the camera's right: +x looking down, -x looking up.
-  void render(Offscreen& offscreen, const Eigen::Vector3d& center_m, double width_m, double depth_m, bool looks_down,
-              bool front_faces_only, std::vector<float>& depth) {
+  void render(Offscreen& offscreen, const Eigen::Vector3d& center_m, double width_m, double depth_m,
+              bool looks_down, bool front_faces_only, std::vector<float>& depth) {
     constexpr float kNear_m = 1.0f;
     const float ahead = looks_down ? -1.0f : 1.0f;
     const auto half_height = static_cast<float>(0.5 * width_m * offscreen.height() / offscreen.width());
@@ -122,8 +122,8 @@ class SliceScene {
 /// Which cells have their centre in something solid.
 Grid<std::uint8_t> render_solid(const mjModel& model, const mjData& data, const std::vector<CutGeom>& cut,
                                 const GridGeometry& geometry, double height_m) {
-  constexpr int kTile = 1000;             // cells, one a pixel
-  constexpr float kSameDepth = 1e-5f;     // of the whole depth
+  constexpr int kTile = 1000;          // cells, one a pixel
+  constexpr float kSameDepth = 1e-5f;  // of the whole depth
   const int tile_width = std::min(kTile, geometry.width), tile_height = std::min(kTile, geometry.height);
   Offscreen offscreen(model, tile_width, tile_height);
   SliceScene scene(cut.size());
@@ -164,7 +164,9 @@ Grid<std::uint8_t> render_solid(const mjModel& model, const mjData& data, const 
   return solid;
 }
 
-bool is_solid(const Grid<std::uint8_t>& solid, Cell cell) { return solid.contains(cell) && solid.at(cell) != 0; }
+bool is_solid(const Grid<std::uint8_t>& solid, Cell cell) {
+  return solid.contains(cell) && solid.at(cell) != 0;
+}
 
 OccupancyGrid surface_of(const Grid<std::uint8_t>& solid) {
   OccupancyGrid map(solid.geometry(), kFree);
@@ -180,7 +182,8 @@ OccupancyGrid surface_of(const Grid<std::uint8_t>& solid) {
 }
 
 /// Marks the cells behind every surface that rays along the centre lines of rows and columns cross.
-Grid<std::uint8_t> cast_surfaces(const mjModel& model, const mjData& data, const GridGeometry& geometry, double height_m) {
+Grid<std::uint8_t> cast_surfaces(const mjModel& model, const mjData& data, const GridGeometry& geometry,
+                                 double height_m) {
   constexpr double kStep_m = 1e-4;  // past a surface, to look for the next
   sim::LidarScene lidar(model);
   lidar.update(data);
@@ -220,7 +223,9 @@ bool any_near(Cell cell, Predicate holds) {
 
 ReferenceMapCheck check_and_complete(OccupancyGrid& map, const Grid<std::uint8_t>& hit) {
   const OccupancyGrid rendered = map;
-  const auto is_surface = [&](Cell cell) { return rendered.contains(cell) && rendered.at(cell) == kOccupied; };
+  const auto is_surface = [&](Cell cell) {
+    return rendered.contains(cell) && rendered.at(cell) == kOccupied;
+  };
   const auto is_hit = [&](Cell cell) { return hit.contains(cell) && hit.at(cell) != 0; };
   ReferenceMapCheck check;
   for (int row = 0; row < map.geometry().height; ++row) {
@@ -248,7 +253,8 @@ ReferenceMap reference_map(const mjModel& view, const ReferenceMapSettings& sett
   mj_kinematics(&view, data.get());
   const std::vector<CutGeom> cut = geoms_cut_at(view, *data, settings.height_m);
   if (cut.empty()) {
-    throw InputError(fmt::format("the world has nothing that a lidar {:.2f} m above its ground could hit", settings.height_m));
+    throw InputError(fmt::format("the world has nothing that a lidar {:.2f} m above its ground could hit",
+                                 settings.height_m));
   }
   Box bounds;
   for (const CutGeom& geom : cut) bounds.extend(geom.bounds);
@@ -256,7 +262,8 @@ ReferenceMap reference_map(const mjModel& view, const ReferenceMapSettings& sett
 
   ReferenceMap reference;
   reference.map = surface_of(render_solid(view, *data, cut, geometry, settings.height_m));
-  reference.check = check_and_complete(reference.map, cast_surfaces(view, *data, geometry, settings.height_m));
+  reference.check =
+      check_and_complete(reference.map, cast_surfaces(view, *data, geometry, settings.height_m));
   return reference;
 }
 

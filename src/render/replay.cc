@@ -42,17 +42,19 @@ io::LogHandlers handlers_for(RunFollower& follower, std::function<void(Time)> on
 
 /// A camera that sees what the follower's world has in its way.
 CameraRig camera_on(const RunFollower& follower, CameraKind kind) {
-  return CameraRig(kind, [&follower](const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m) {
-    return follower.free_distance_m(from_m, direction, max_m);
-  });
+  return CameraRig(
+      kind, [&follower](const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m) {
+        return follower.free_distance_m(from_m, direction, max_m);
+      });
 }
 
 /// Films what the follower sees, at even steps of the run's time.
 class Film {
  public:
-  Film(const mjModel& view, const ReplaySettings& settings, CameraRig rig, const std::filesystem::path& out_mp4)
+  Film(const mjModel& view, const ReplaySettings& settings, CameraRig rig,
+       const std::filesystem::path& out_mp4)
       : settings_(settings),
-        step_(from_seconds(settings.speed / settings.frames_per_second)),
+        step_(std::max(Time{1}, from_seconds(settings.speed / settings.frames_per_second))),
         rig_(std::move(rig)),
         video_(out_mp4, settings.width, settings.height, settings.frames_per_second) {
     for (int i = 0; i < std::max(1, settings.num_threads); ++i) {
@@ -95,14 +97,15 @@ class Film {
 };
 
 InputError no_states(const std::filesystem::path& log_mcap) {
-  return InputError(log_mcap.string() + ": the log has no states to replay (topic " + io::kTopic<SimState> + ")");
+  return InputError(log_mcap.string() + ": the log has no states to replay (topic " + io::kTopic<SimState> +
+                    ")");
 }
 
 }  // namespace
 
-ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel model, const Pose2& T_world_map,
-                     const ReplaySettings& settings, const std::filesystem::path& out_mp4,
-                     const ReplayProgress& progress) {
+ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel model,
+                     const Pose2& T_world_map, const ReplaySettings& settings,
+                     const std::filesystem::path& out_mp4, const ReplayProgress& progress) {
   if (!(settings.speed > 0.0) || !(settings.frames_per_second > 0.0)) {
     throw InputError(fmt::format("speed = {}: must be greater than 0", settings.speed));
   }
@@ -112,10 +115,11 @@ ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel 
   Film film(*model.view, settings, camera_on(follower, settings.camera), out_mp4);
   ReplaySummary summary;
   summary.log_is_complete = io::read_run_log(log_mcap, handlers_for(follower, [&](Time now) {
-    film.shoot(follower.snapshot());
-    summary.end = now;
-    if (progress && end && end->count() > 0) progress(std::min(1.0, to_seconds(now) / to_seconds(*end)));
-  }));
+                                               film.shoot(follower.snapshot());
+                                               summary.end = now;
+                                               if (progress && end && end->count() > 0)
+                                                 progress(std::min(1.0, to_seconds(now) / to_seconds(*end)));
+                                             }));
   if (film.num_frames() == 0) throw no_states(log_mcap);
   film.finish();
   summary.num_frames = film.num_frames();
@@ -128,7 +132,9 @@ void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, con
   RunFollower follower(*model.view, T_world_map);
   CameraRig rig = camera_on(follower, settings.camera);
   std::optional<View> view;
-  const auto follow = [&](Time) { view = rig.follow(follower.snapshot().T_world_body, 0.02 / settings.speed); };
+  const auto follow = [&](Time) {
+    view = rig.follow(follower.snapshot().T_world_body, 0.02 / settings.speed);
+  };
   io::read_run_log(log_mcap, handlers_for(follower, follow), Time::min(), at);
   if (!view) throw no_states(log_mcap);
   PaintThread painter(*model.view, settings.width, settings.height);

@@ -8,7 +8,7 @@
 namespace patrol::render {
 namespace {
 
-constexpr double kPathStep_m = 0.05;   // between the points of a drawn path
+constexpr double kPathStep_m = 0.05;  // between the points of a drawn path
 constexpr double kAboveGround_m = 0.01;
 
 void extend(std::vector<Eigen::Vector3d>& path, const Eigen::Vector3d& point) {
@@ -22,9 +22,11 @@ Pose3 lidar_on_body(const mjModel& model) {
   const sim::DataPtr data = sim::make_data(model);
   mj_kinematics(&model, data.get());
   const int body = mj_name2id(&model, mjOBJ_BODY, frame_id::kBody);
-  const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> R_world_lidar(data->site_xmat + 9 * site);
+  const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> R_world_lidar(data->site_xmat +
+                                                                                     9 * site);
   const mjtNum* q = data->xquat + 4 * body;
-  const Pose3 T_world_body{Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * body), {q[0], q[1], q[2], q[3]}};
+  const Pose3 T_world_body{Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * body),
+                           {q[0], q[1], q[2], q[3]}};
   const Pose3 T_world_lidar{Eigen::Map<const Eigen::Vector3d>(data->site_xpos + 3 * site),
                             Eigen::Quaterniond(Eigen::Matrix3d(R_world_lidar))};
   return T_world_body.inverse() * T_world_lidar;
@@ -73,7 +75,8 @@ void RunFollower::add(const GroundTruth& truth) {
   extend(snapshot_.true_path, on_ground(truth.T_world_body.position.head<2>()));
 }
 
-double RunFollower::free_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m) const {
+double RunFollower::free_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction,
+                                    double max_m) const {
   const auto hit = scenery_.cast(from_m, direction, max_m, sim::kRayScenery);
   return hit ? hit->distance_m : max_m;
 }
@@ -82,11 +85,12 @@ Eigen::Vector3d RunFollower::on_ground(const Eigen::Vector2d& p_world_m) const {
   constexpr double kKneeHeight_m = 0.25, kReach_m = 2.0;
   const Eigen::Vector3d knee(p_world_m.x(), p_world_m.y(), kKneeHeight_m);
   const auto ground = scenery_.cast(knee, -Eigen::Vector3d::UnitZ(), kReach_m, sim::kRayScenery);
-  return {p_world_m.x(), p_world_m.y(), kKneeHeight_m + kAboveGround_m - (ground ? ground->distance_m : kKneeHeight_m)};
+  return {p_world_m.x(), p_world_m.y(),
+          kKneeHeight_m + kAboveGround_m - (ground ? ground->distance_m : kKneeHeight_m)};
 }
 
-// Each beam from where the robot was when it was fired: the estimate says where the level body was at one instant,
-// odometry how it moved and leaned around that.
+// Each beam from where the robot was when it was fired: the estimate says where the level body was at one
+// instant, odometry how it moved and leaned around that.
 void RunFollower::place_scan(const PoseEstimate& estimate) {
   const Trajectory odometry(odometry_.begin(), odometry_.end());
   const Pose3 T_world_estimate =
@@ -94,8 +98,8 @@ void RunFollower::place_scan(const PoseEstimate& estimate) {
   const std::optional<Pose3> T_odom_estimate = pose_at(odometry, estimate.stamp);
   Pose3 T_world_odom;  // level, with odometry's height brought to the true one
   if (T_odom_estimate) {
-    T_world_odom = T_world_estimate *
-                   to_spatial(to_planar(*T_odom_estimate), T_odom_estimate->position.z()).inverse();
+    T_world_odom =
+        T_world_estimate * to_spatial(to_planar(*T_odom_estimate), T_odom_estimate->position.z()).inverse();
   }
   snapshot_.scan.clear();
   const LaserScan& scan = *scan_;
@@ -104,11 +108,12 @@ void RunFollower::place_scan(const PoseEstimate& estimate) {
     if (!std::isfinite(range)) continue;
     const auto index = static_cast<double>(beam);
     const std::optional<Pose3> T_odom_body =
-        T_odom_estimate ? pose_at(odometry, scan.stamp + from_seconds(index * scan.time_increment_s)) : std::nullopt;
+        T_odom_estimate ? pose_at(odometry, scan.stamp + from_seconds(index * scan.time_increment_s))
+                        : std::nullopt;
     const Pose3 T_world_body = T_odom_body ? T_world_odom * *T_odom_body : T_world_estimate;
     const double angle = scan.angle_min_rad + index * scan.angle_increment_rad;
-    snapshot_.scan.push_back(T_world_body *
-                             (T_body_lidar_ * Eigen::Vector3d(range * std::cos(angle), range * std::sin(angle), 0.0)));
+    snapshot_.scan.push_back(T_world_body * (T_body_lidar_ * Eigen::Vector3d(range * std::cos(angle),
+                                                                             range * std::sin(angle), 0.0)));
   }
 }
 

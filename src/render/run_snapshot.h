@@ -11,23 +11,23 @@
 
 namespace patrol::render {
 
-/// What a log has told by an instant, ready to be drawn. Points are m, in world; estimates are brought there as a
-/// surveyor would, with map and world joined at the start.
+/// What a log has told by an instant, ready to be drawn. Points are m, in world; estimates are brought there
+/// as a surveyor would, with map and world joined at the start.
 struct RunSnapshot {
   SimState state;
-  Pose3 T_world_body;                            ///< true
+  Pose3 T_world_body;  ///< true
   Pose2 T_world_map;
-  Pose2 T_map_body;                              ///< estimated
-  std::vector<Eigen::Vector3d> true_path;        ///< on the ground
-  std::vector<Eigen::Vector3d> estimated_path;   ///< on the ground
-  std::vector<Eigen::Vector3d> planned_path;     ///< on the ground
-  std::vector<Eigen::Vector3d> scan;             ///< hits, from where the robot believed to be
-  std::vector<Pose2> particles;                  ///< in map
-  std::shared_ptr<const OccupancyGrid> map;      ///< in map; null before the first
-  double position_error_m = 0.0;                 ///< of the newest estimate
+  Pose2 T_map_body;                             ///< estimated
+  std::vector<Eigen::Vector3d> true_path;       ///< on the ground
+  std::vector<Eigen::Vector3d> estimated_path;  ///< on the ground
+  std::vector<Eigen::Vector3d> planned_path;    ///< on the ground
+  std::vector<Eigen::Vector3d> scan;            ///< hits, from where the robot believed to be
+  std::vector<Pose2> particles;                 ///< in map
+  std::shared_ptr<const OccupancyGrid> map;     ///< in map; null before the first
+  double position_error_m = 0.0;                ///< of the newest estimate
   double heading_error_rad = 0.0;
   double walked_m = 0.0;
-  std::string event;                             ///< the newest one's text
+  std::string event;  ///< the newest one's text
 };
 
 }  // namespace patrol::render

@@ -32,7 +32,8 @@ std::array<Eigen::Vector3d, 4> sides_of(const View& view, double aspect) {
   const auto side = [&](const Eigen::Vector3d& across, double half_angle) -> Eigen::Vector3d {
     return std::sin(half_angle) * view.forward + std::cos(half_angle) * across;
   };
-  return {side(right, half_width), side(-right, half_width), side(view.up, half_height), side(-view.up, half_height)};
+  return {side(right, half_width), side(-right, half_width), side(view.up, half_height),
+          side(-view.up, half_height)};
 }
 
 }  // namespace
@@ -53,7 +54,8 @@ ScenePainter::ScenePainter(const mjModel& view, int width, int height)
       shadow_reach_m_(static_cast<double>(view.vis.map.shadowclip) * view.stat.extent) {
   mjv_defaultOption(&options_);
   std::fill(std::begin(options_.geomgroup), std::end(options_.geomgroup), mjtByte{0});
-  for (const int group : {sim::kGroupSolid, sim::kGroupEyeOnly, sim::kGroupRobotVisual}) options_.geomgroup[group] = 1;
+  for (const int group : {sim::kGroupSolid, sim::kGroupEyeOnly, sim::kGroupRobotVisual})
+    options_.geomgroup[group] = 1;
   std::fill(std::begin(options_.sitegroup), std::end(options_.sitegroup), mjtByte{0});
   mjv_defaultScene(&scene_);
   mjv_makeScene(&view, &scene_, static_cast<int>(view.ngeom) + 100);
@@ -66,11 +68,13 @@ ScenePainter::ScenePainter(const mjModel& view, int width, int height)
 ScenePainter::~ScenePainter() { mjv_freeScene(&scene_); }
 
 void ScenePainter::set_state(const SimState& state) {
-  const auto num_qpos = static_cast<std::size_t>(model_.nq), num_mocap = static_cast<std::size_t>(model_.nmocap);
+  const auto num_qpos = static_cast<std::size_t>(model_.nq),
+             num_mocap = static_cast<std::size_t>(model_.nmocap);
   if (state.qpos.size() != num_qpos || state.mocap.size() != 7 * num_mocap) {
-    throw InputError(fmt::format("a state of {} coordinates and {} poses was logged, the model has {} and {}: the log is of another "
-                                 "world or robot",
-                                 state.qpos.size(), state.mocap.size() / 7, num_qpos, num_mocap));
+    throw InputError(fmt::format(
+        "a state of {} coordinates and {} poses was logged, the model has {} and {}: the log is of another "
+        "world or robot",
+        state.qpos.size(), state.mocap.size() / 7, num_qpos, num_mocap));
   }
   std::copy(state.qpos.begin(), state.qpos.end(), data_->qpos);
   for (std::size_t body = 0; body < num_mocap; ++body) {
@@ -93,15 +97,17 @@ void ScenePainter::draw(const View& view, Frame& frame, std::vector<float>& dept
   offscreen_.read_depth(depth);
 }
 
-// The shadow map covers a square around the sun's own place: bring the sun to where one looks. Towards the sun the outer
-// quarter of that square is speckled (too small a depth offset there in MuJoCo 3.17), so it reaches farther that way.
+// The shadow map covers a square around the sun's own place: bring the sun to where one looks. Towards the
+// sun the outer quarter of that square is speckled (too small a depth offset there in MuJoCo 3.17), so it
+// reaches farther that way.
 void ScenePainter::light_around(const View& view) {
   constexpr double kSunDistance_m = 25.0, kTowardsSun = 0.15;
   mjvLight* sun = find_sun(scene_);
   if (sun == nullptr) return;
   const Eigen::Vector3d rays = to_eigen(sun->dir);
   const Eigen::Vector3d on_ground(rays.x(), rays.y(), 0.0);
-  const Eigen::Vector3d place = view.focus - kSunDistance_m * rays - kTowardsSun * shadow_reach_m_ * on_ground.normalized();
+  const Eigen::Vector3d place =
+      view.focus - kSunDistance_m * rays - kTowardsSun * shadow_reach_m_ * on_ground.normalized();
   for (int axis = 0; axis < 3; ++axis) sun->pos[axis] = static_cast<float>(place[axis]);
 }
 
@@ -111,7 +117,8 @@ void ScenePainter::drop_unseen(const View& view) {
   const auto sides = sides_of(view, static_cast<double>(offscreen_.width()) / offscreen_.height());
   const mjvLight* sun = find_sun(scene_);
   const auto is_in_sight = [&](const Eigen::Vector3d& center, double radius) {
-    return std::ranges::all_of(sides, [&](const Eigen::Vector3d& n) { return n.dot(center - view.eye) > -radius; });
+    return std::ranges::all_of(sides,
+                               [&](const Eigen::Vector3d& n) { return n.dot(center - view.eye) > -radius; });
   };
   constexpr double kTooSmall_px = 1.2;  // radius
   const double focal_px = 0.5 * offscreen_.height() / std::tan(0.5 * view.field_of_view_rad);

@@ -10,15 +10,16 @@
 
 namespace patrol::render {
 
-/// Sets what a replay can afford. Vertex work is half of a software-rendered frame: round shapes get as many sides as the eye
-/// asks for, flat ones are not divided. Shadows reach as far as one looks for them, at 12 mm a texel.
+/// Sets what a replay can afford. Vertex work is half of a software-rendered frame: round shapes get as many
+/// sides as the eye asks for, flat ones are not divided. Shadows reach as far as one looks for them, at 12 mm
+/// a texel.
 void set_replay_quality(mjModel& view);
 
 /// Draws the world and everything in it, as a state of the simulation has it.
 class ScenePainter {
  public:
-  /// `view` is a model for renders (sim/model_assembly.h) and must outlive the painter. Throws std::runtime_error without
-  /// OpenGL.
+  /// `view` is a model for renders (sim/model_assembly.h) and must outlive the painter. Throws
+  /// std::runtime_error without OpenGL.
   ScenePainter(const mjModel& view, int width, int height);
   ~ScenePainter();
   ScenePainter(const ScenePainter&) = delete;

@@ -40,7 +40,8 @@ Pointer* made(Pointer* pointer, const char* what) {
 }  // namespace
 
 struct VideoWriter::Encoder {
-  explicit Encoder(std::filesystem::path target) : file(std::move(target)), temporary(file.string() + ".part") {}
+  explicit Encoder(std::filesystem::path target)
+      : file(std::move(target)), temporary(file.string() + ".part") {}
   ~Encoder() {
     av_packet_free(&packet);
     av_frame_free(&picture);
@@ -151,7 +152,8 @@ void VideoWriter::add(const Frame& frame) {
   checked(av_frame_make_writable(encoder.picture), "no memory for a picture");
   const std::uint8_t* rows[1] = {frame.bytes()};
   const int stride[1] = {3 * frame.width()};
-  sws_scale(encoder.scaler, rows, stride, 0, frame.height(), encoder.picture->data, encoder.picture->linesize);
+  sws_scale(encoder.scaler, rows, stride, 0, frame.height(), encoder.picture->data,
+            encoder.picture->linesize);
   encoder.picture->pts = encoder.num_frames++;
   encoder.encode(encoder.picture);
 }
@@ -174,13 +176,15 @@ VideoInfo inspect_video(const std::filesystem::path& file) {
   const auto close = [](AVFormatContext* context) { avformat_close_input(&context); };
   const std::unique_ptr<AVFormatContext, decltype(close)> container(opened, close);
   checked(avformat_find_stream_info(opened, nullptr), "no stream");
-  const int index = checked(av_find_best_stream(opened, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0), "no picture");
+  const int index =
+      checked(av_find_best_stream(opened, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0), "no picture");
   const AVStream* stream = opened->streams[index];
   VideoInfo info{.width = stream->codecpar->width,
                  .height = stream->codecpar->height,
                  .duration_s = static_cast<double>(opened->duration) / AV_TIME_BASE};
   const auto free_packet = [](AVPacket* packet) { av_packet_free(&packet); };
-  const std::unique_ptr<AVPacket, decltype(free_packet)> packet(made(av_packet_alloc(), "packet"), free_packet);
+  const std::unique_ptr<AVPacket, decltype(free_packet)> packet(made(av_packet_alloc(), "packet"),
+                                                                free_packet);
   while (av_read_frame(opened, packet.get()) >= 0) {
     if (packet->stream_index == index) ++info.num_frames;
     av_packet_unref(packet.get());

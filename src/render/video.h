@@ -7,11 +7,13 @@
 
 namespace patrol::render {
 
-/// An MP4 file with H.264 in it (MPEG-4 part 2 where libx264 is missing): the same frames give the same bytes. It is
-/// written beside its place and takes its name only when it is complete; without `finish` nothing is left behind.
+/// An MP4 file with H.264 in it (MPEG-4 part 2 where libx264 is missing): the same frames give the same
+/// bytes. It is written beside its place and takes its name only when it is complete; without `finish`
+/// nothing is left behind.
 class VideoWriter {
  public:
-  /// Throws InputError when the size is odd or the file cannot be written, std::runtime_error when libav fails.
+  /// Throws InputError when the size is odd or the file cannot be written, std::runtime_error when libav
+  /// fails.
   VideoWriter(const std::filesystem::path& file, int width, int height, double frames_per_second);
   ~VideoWriter();
   VideoWriter(const VideoWriter&) = delete;

@@ -13,7 +13,7 @@ constexpr double kMinWidth_px = 1.6;
 /// A piece of line on the screen; along it, 1 / distance is linear.
 struct WorldInk::Stroke {
   Eigen::Vector2d from, to;
-  double inverse_from, inverse_to;      ///< 1/m
+  double inverse_from, inverse_to;        ///< 1/m
   double half_width_from, half_width_to;  ///< pixels
 };
 
@@ -35,7 +35,8 @@ void WorldInk::dots(std::span<const Eigen::Vector3d> points_m, double radius_m, 
   blend_in(ink);
 }
 
-void WorldInk::stroke(const Eigen::Vector3d& from_in_camera, const Eigen::Vector3d& to_in_camera, double width_m) {
+void WorldInk::stroke(const Eigen::Vector3d& from_in_camera, const Eigen::Vector3d& to_in_camera,
+                      double width_m) {
   Eigen::Vector3d a = from_in_camera, b = to_in_camera;
   const double near_m = projector_.near_m();
   if (a.z() < near_m && b.z() < near_m) return;
@@ -85,14 +86,15 @@ void WorldInk::cover(const Stroke& stroke) {
       const auto pixel = static_cast<std::size_t>(y * frame_.width() + x);
       const auto covered = static_cast<std::uint8_t>(255.0 * coverage + 0.5);
       if (covered <= coverage_[pixel]) continue;
-      if (is_hidden(pixel, 1.0 / (stroke.inverse_from + t * (stroke.inverse_to - stroke.inverse_from)))) continue;
+      if (is_hidden(pixel, 1.0 / (stroke.inverse_from + t * (stroke.inverse_to - stroke.inverse_from))))
+        continue;
       coverage_[pixel] = covered;
     }
   }
 }
 
-// A pixel's breadth away, flat ground seen from a metre above it is this much nearer or farther: the same ground, not
-// something that hides.
+// A pixel's breadth away, flat ground seen from a metre above it is this much nearer or farther: the same
+// ground, not something that hides.
 bool WorldInk::is_hidden(std::size_t pixel, double distance_m) const {
   const double tolerance_m = 0.04 + 1.5 * distance_m * distance_m / projector_.focal_px();
   return distance_m > projector_.distance_m(depth_[pixel]) + tolerance_m;

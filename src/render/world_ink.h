@@ -12,8 +12,8 @@
 
 namespace patrol::render {
 
-/// Draws lines and dots that lie in the world on a finished frame: smaller with distance, hidden behind what stands before
-/// them. Cheaper than making them part of the scene, and their edges are smooth.
+/// Draws lines and dots that lie in the world on a finished frame: smaller with distance, hidden behind what
+/// stands before them. Cheaper than making them part of the scene, and their edges are smooth.
 class WorldInk {
  public:
   /// `depth` as in Offscreen::read_depth. All three must outlive this.
@@ -32,8 +32,9 @@ class WorldInk {
   Frame& frame_;
   const std::vector<float>& depth_;
   const Projector& projector_;
-  std::vector<std::uint8_t> coverage_;  ///< of the ink being laid on: strokes of one line do not add up where they meet
-  int top_ = 0, bottom_ = -1;           ///< rows that have any
+  std::vector<std::uint8_t>
+      coverage_;  ///< of the ink being laid on: strokes of one line do not add up where they meet
+  int top_ = 0, bottom_ = -1;  ///< rows that have any
 };
 
 }  // namespace patrol::render

@@ -1,5 +1,5 @@
-// What a replay frame costs beyond the drawing itself: painter, smoothed edges and overlay against a bare loop of
-// mjr_render and mjr_readPixels, of the same size and the same scenes along the street.
+// What a replay frame costs beyond the drawing itself: painter, smoothed edges and overlay against a bare
+// loop of mjr_render and mjr_readPixels, of the same size and the same scenes along the street.
 //   tests/bench/render_bench        `ratio` is to be at most 1.15
 // Processor time of all threads: the software renderer's own are most of it.
 
@@ -43,8 +43,10 @@ RunSnapshot busy_snapshot(const mjModel& model, std::vector<double> qpos, double
   snapshot.state.qpos = std::move(qpos);
   for (int body = 0; body < model.nbody; ++body) {
     if (model.body_mocapid[body] < 0) continue;
-    snapshot.state.mocap.insert(snapshot.state.mocap.end(), model.body_pos + 3 * body, model.body_pos + 3 * body + 3);
-    snapshot.state.mocap.insert(snapshot.state.mocap.end(), model.body_quat + 4 * body, model.body_quat + 4 * body + 4);
+    snapshot.state.mocap.insert(snapshot.state.mocap.end(), model.body_pos + 3 * body,
+                                model.body_pos + 3 * body + 3);
+    snapshot.state.mocap.insert(snapshot.state.mocap.end(), model.body_quat + 4 * body,
+                                model.body_quat + 4 * body + 4);
   }
   snapshot.T_world_body = {{11.0, y_m, 0.32}, quaternion_from_yaw(std::numbers::pi / 2.0)};
   snapshot.T_world_map = {11.0, 8.0, std::numbers::pi / 2.0};
@@ -67,19 +69,22 @@ RunSnapshot busy_snapshot(const mjModel& model, std::vector<double> qpos, double
 
 void ReplayFrameAgainstBareRender(benchmark::State& state) {
   const std::string root = PATROL_SOURCE_DIR;
-  sim::AssembledModel model = sim::assemble_model(root + "/worlds/street/street.xml",
-                                                  root + "/models/quadruped/quadruped.urdf", {11.0, 8.0, std::numbers::pi / 2.0});
+  sim::AssembledModel model =
+      sim::assemble_model(root + "/worlds/street/street.xml", root + "/models/quadruped/quadruped.urdf",
+                          {11.0, 8.0, std::numbers::pi / 2.0});
   set_replay_quality(*model.view);
   ScenePainter painter(*model.view, kWidth, kHeight);
   Overlay overlay(kHeight);
   std::vector<RunSnapshot> snapshots;
   const GridGeometry block{.resolution_m = 0.05, .width = 2000, .height = 1200, .origin_m = {-10.0, -50.0}};
   const auto map = std::make_shared<const OccupancyGrid>(block, kFree);
-  for (const double y_m : kPlacesY_m) snapshots.push_back(busy_snapshot(*model.view, model.start_qpos, y_m, map));
+  for (const double y_m : kPlacesY_m)
+    snapshots.push_back(busy_snapshot(*model.view, model.start_qpos, y_m, map));
 
   Frame frame;
   std::vector<float> depth;
-  painter.draw(CameraRig(CameraKind::kChase).follow(snapshots[0].T_world_body, 0.05), frame, depth);  // compiles the shaders
+  painter.draw(CameraRig(CameraKind::kChase).follow(snapshots[0].T_world_body, 0.05), frame,
+               depth);  // compiles the shaders
   double bare_s = 0.0, replay_s = 0.0, overlay_s = 0.0;
   for (auto _ : state) {
     double this_s = 0.0;

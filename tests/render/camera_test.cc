@@ -35,7 +35,8 @@ TEST(Projector, SeesNothingBehind) {
 }
 
 TEST(Projector, AgreesWithMuJoCoWithinAPixelAndOnDepthWithinAMillimetre) {
-  const sim::ModelPtr model = small_scene(R"(<geom type="sphere" size="0.05" pos="4 0.7 1.1" rgba="1 0 0 1"/>)");
+  const sim::ModelPtr model =
+      small_scene(R"(<geom type="sphere" size="0.05" pos="4 0.7 1.1" rgba="1 0 0 1"/>)");
   const View view = look_at({0.0, -0.5, 1.6}, {4.0, 0.0, 0.9});
   ScenePainter painter(*model, 640, 360);
   Frame frame;
@@ -82,12 +83,14 @@ TEST(CameraRigTest, TurnsWithTheRobotButNotAtOnce) {
 
 TEST(CameraRigTest, ComesNearerAtOnceWhereSomethingIsInTheWayAndLeavesSlowly) {
   double free_m = 100.0;
-  CameraRig rig(CameraKind::kChase, [&](const auto&, const auto&, double max_m) { return std::min(free_m, max_m); });
+  CameraRig rig(CameraKind::kChase,
+                [&](const auto&, const auto&, double max_m) { return std::min(free_m, max_m); });
   const Pose3 robot{{0.0, 0.0, 0.3}, Eigen::Quaterniond::Identity()};
   const double usual_m = -rig.follow(robot, 0.05).eye.x();
   free_m = 1.25;
   const View near = rig.follow(robot, 0.05);
-  EXPECT_NEAR((near.eye - Eigen::Vector3d(0.0, 0.0, 0.7)).norm(), 1.0, 1e-9);  // 0.25 m before what is in the way
+  EXPECT_NEAR((near.eye - Eigen::Vector3d(0.0, 0.0, 0.7)).norm(), 1.0,
+              1e-9);  // 0.25 m before what is in the way
   free_m = 100.0;
   EXPECT_LT(-rig.follow(robot, 0.05).eye.x(), 0.6 * usual_m);
   EXPECT_NEAR(-rig.follow(robot, 10.0).eye.x(), usual_m, 1e-3);

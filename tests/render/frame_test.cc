@@ -14,7 +14,8 @@ Frame colourful(int width, int height) {
   Frame frame(width, height);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      frame.at(x, y) = {static_cast<std::uint8_t>(7 * x), static_cast<std::uint8_t>(11 * y), static_cast<std::uint8_t>(x * y)};
+      frame.at(x, y) = {static_cast<std::uint8_t>(7 * x), static_cast<std::uint8_t>(11 * y),
+                        static_cast<std::uint8_t>(x * y)};
     }
   }
   return frame;

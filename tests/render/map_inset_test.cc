@@ -11,7 +11,8 @@ namespace {
 
 /// 10 m x 10 m of free floor in map, with a wall along its +x side.
 RunSnapshot snapshot_with_map() {
-  OccupancyGrid map({.resolution_m = 0.05, .width = 400, .height = 400, .origin_m = {-10.0, -10.0}}, kUnknown);
+  OccupancyGrid map({.resolution_m = 0.05, .width = 400, .height = 400, .origin_m = {-10.0, -10.0}},
+                    kUnknown);
   for (int row = 100; row < 300; ++row) {
     for (int col = 100; col < 300; ++col) map.at({col, row}) = col == 299 ? kOccupied : kFree;
   }
@@ -30,8 +31,8 @@ Extent extent_of(const Frame& frame, Holds holds) {
   for (int y = 0; y < frame.height(); ++y) {
     for (int x = 0; x < frame.width(); ++x) {
       if (!holds(frame.at(x, y))) continue;
-      extent = {std::min(extent.left, x), std::max(extent.right, x), std::min(extent.top, y), std::max(extent.bottom, y),
-                extent.count + 1};
+      extent = {std::min(extent.left, x), std::max(extent.right, x), std::min(extent.top, y),
+                std::max(extent.bottom, y), extent.count + 1};
     }
   }
   return extent;

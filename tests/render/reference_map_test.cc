@@ -41,14 +41,17 @@ TEST(ReferenceMapTest, ABoxIsItsOutlineWithTheUnknownInside) {
   // 1 m x 0.5 m from (2.01, 1.01): 40 x 20 cells of 2.5 cm, of which 2 * 40 + 2 * 18 are the outline.
   const auto model = small_scene(R"(<geom type="box" size="0.5 0.25 0.5" pos="2.51 1.26 0.5"/>)");
   const ReferenceMap reference = reference_map(*model);
-  EXPECT_EQ(num_wrong(reference.map, [](double x, double y) { return x > 2.01 && x < 3.01 && y > 1.01 && y < 1.51; }), 0);
+  EXPECT_EQ(num_wrong(reference.map,
+                      [](double x, double y) { return x > 2.01 && x < 3.01 && y > 1.01 && y < 1.51; }),
+            0);
   EXPECT_EQ(num_occupied(reference.map), 2u * 40 + 2 * 18);
   EXPECT_EQ(reference.check.share_agreeing(), 1.0);
   EXPECT_EQ(reference.check.cells_added, 0u);
 }
 
 TEST(ReferenceMapTest, SurfaceCellsLieBehindTheSurfaceByLessThanACell) {
-  const auto model = small_scene(R"(<geom type="box" size="0.5 0.5 0.5" pos="0.013 0.004 0.5" euler="0 0 27"/>)");
+  const auto model =
+      small_scene(R"(<geom type="box" size="0.5 0.5 0.5" pos="0.013 0.004 0.5" euler="0 0 27"/>)");
   const OccupancyGrid map = reference_map(*model).map;
   const double c = std::cos(27.0 * M_PI / 180.0), s = std::sin(27.0 * M_PI / 180.0);
   for (int row = 0; row < map.geometry().height; ++row) {
@@ -82,7 +85,8 @@ TEST(ReferenceMapTest, OverlappingThingsAreOne) {
   const ReferenceMap reference = reference_map(*model);
   EXPECT_EQ(num_wrong(reference.map,
                       [](double x, double y) {
-                        return (x > 0.01 && x < 1.01 && y > 0.01 && y < 1.01) || (x > 0.51 && x < 1.51 && y > 0.31 && y < 0.71);
+                        return (x > 0.01 && x < 1.01 && y > 0.01 && y < 1.01) ||
+                               (x > 0.51 && x < 1.51 && y > 0.31 && y < 0.71);
                       }),
             0);
   EXPECT_EQ(reference.check.share_agreeing(), 1.0);
@@ -134,7 +138,9 @@ TEST(ReferenceMapTest, IsSeamlessAcrossRenderedTiles) {
   // 40 m of wall are 1600 cells: more than one tile.
   const auto model = small_scene(R"(<geom type="box" size="20 0.15 0.5" pos="20.01 0.16 0.5"/>)");
   const ReferenceMap reference = reference_map(*model);
-  EXPECT_EQ(num_wrong(reference.map, [](double x, double y) { return x > 0.01 && x < 40.01 && y > 0.01 && y < 0.31; }), 0);
+  EXPECT_EQ(num_wrong(reference.map,
+                      [](double x, double y) { return x > 0.01 && x < 40.01 && y > 0.01 && y < 0.31; }),
+            0);
 }
 
 TEST(ReferenceMapTest, RenderAndRaysAgreeOnShapesOfEveryKind) {

@@ -31,7 +31,9 @@ void write_log(const std::filesystem::path& file, std::size_t num_qpos = 7) {
   log.close();
 }
 
-sim::AssembledModel model() { return {.physics = nullptr, .view = small_scene(kRobotBeforeWall), .start_qpos = {}}; }
+sim::AssembledModel model() {
+  return {.physics = nullptr, .view = small_scene(kRobotBeforeWall), .start_qpos = {}};
+}
 
 class Replay : public ::testing::Test {
  protected:

@@ -44,7 +44,8 @@ TEST_F(RunFollowerTest, ErrorsAreThoseOfTheEstimatesOwnInstant) {
   follower.add(truth_at(0s, 10.0, 20.0, 1.6));
   follower.add(truth_at(1s, 10.0, 21.0, 1.6));
   follower.add(truth_at(2s, 10.0, 25.0, 1.6));
-  // At 1 s the truth was 1 m north; the estimate says 1.03 m north, 0.04 m west (map's y), and 0.1 rad less heading.
+  // At 1 s the truth was 1 m north; the estimate says 1.03 m north, 0.04 m west (map's y), and 0.1 rad less
+  // heading.
   follower.add(estimate_at(1s, {1.03, 0.04, 1.5 - std::numbers::pi / 2.0}));
   EXPECT_NEAR(follower.snapshot().position_error_m, 0.05, 1e-9);
   EXPECT_NEAR(follower.snapshot().heading_error_rad, -0.1, 1e-9);
@@ -88,18 +89,22 @@ TEST_F(RunFollowerTest, BeamsAreFreedOfTheRobotsTurningAndLeaning) {
   }
   follower.add(two_beams(0s, 2.0f, 3.0f));
   follower.add(estimate_at(0s, {0.0, 0.0, 0.0}));
-  // The lidar sits 0.1 m up the body's leaning z axis; the second beam is fired 50 ms later, turned by 0.05 rad.
+  // The lidar sits 0.1 m up the body's leaning z axis; the second beam is fired 50 ms later, turned by 0.05
+  // rad.
   const Eigen::Quaterniond lean_ahead = quaternion_from_rpy(0.1, 0.0, std::numbers::pi / 2.0);
   const Eigen::Quaterniond lean_left = quaternion_from_rpy(0.1, 0.0, std::numbers::pi / 2.0 + 0.05);
   const Eigen::Vector3d body(10.0, 20.0, 0.3);
   ASSERT_EQ(follower.snapshot().scan.size(), 2u);
-  EXPECT_THAT(follower.snapshot().scan[0], VectorNear(body + lean_ahead * Eigen::Vector3d(2.0, 0.0, 0.1), 1e-6));
-  EXPECT_THAT(follower.snapshot().scan[1], VectorNear(body + lean_left * Eigen::Vector3d(0.0, 3.0, 0.1), 1e-6));
+  EXPECT_THAT(follower.snapshot().scan[0],
+              VectorNear(body + lean_ahead * Eigen::Vector3d(2.0, 0.0, 0.1), 1e-6));
+  EXPECT_THAT(follower.snapshot().scan[1],
+              VectorNear(body + lean_left * Eigen::Vector3d(0.0, 3.0, 0.1), 1e-6));
 }
 
 TEST_F(RunFollowerTest, BeamsWithoutAReturnAreNotDrawn) {
   follower.add(truth_at(0s, 10.0, 20.0, 0.0));
-  follower.add(two_beams(0s, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()));
+  follower.add(
+      two_beams(0s, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()));
   follower.add(estimate_at(0s, {}));
   EXPECT_TRUE(follower.snapshot().scan.empty());
 }

@@ -38,7 +38,8 @@ class ScenePainterTest : public ::testing::Test {
 TEST_F(ScenePainterTest, HasSkyAboveGroundBelowAndTheRobotInTheMiddle) {
   painter.set_state(reference_state(*model));
   const Frame frame = draw(kFromBehind);
-  const Color sky = frame.at(20, 3), ground = frame.at(20, kHeight - 3), robot = frame.at(kWidth / 2, kHeight / 2);
+  const Color sky = frame.at(20, 3), ground = frame.at(20, kHeight - 3),
+              robot = frame.at(kWidth / 2, kHeight / 2);
   EXPECT_GT(sky.b, sky.r);
   EXPECT_GT(ground.g, ground.b);
   EXPECT_GT(robot.r, 2 * robot.g);
@@ -86,7 +87,8 @@ TEST_F(ScenePainterTest, WhatItLeavesOutWouldNotHaveBeenSeen) {
   for (const int group : {2, 3, 5}) options.geomgroup[group] = 0;
   options.geomgroup[4] = 1;
   float sun_place[mjMAXLIGHT][3];
-  for (int i = 0; i < scene.nlight; ++i) std::copy(scene.lights[i].pos, scene.lights[i].pos + 3, sun_place[i]);
+  for (int i = 0; i < scene.nlight; ++i)
+    std::copy(scene.lights[i].pos, scene.lights[i].pos + 3, sun_place[i]);
   auto data = sim::make_data(*model);
   mj_forward(model.get(), data.get());
   mjv_updateScene(model.get(), data.get(), &options, nullptr, nullptr, mjCAT_ALL, &scene);
