@@ -27,10 +27,14 @@ NearbyScenery::NearbyScenery(mjModel& physics)
   std::sort(leaves_.begin(), leaves_.end(), [](const Leaf& a, const Leaf& b) { return a.geom < b.geom; });
   for (int body = 1; body < physics.nbody; ++body) {
     if (physics.body_mocapid[body] < 0) continue;
-    Actor actor{.body = body, .contype = physics.body_contype[body], .conaffinity = physics.body_conaffinity[body], .radius_m = 0.0};
+    Actor actor{.body = body,
+                .contype = physics.body_contype[body],
+                .conaffinity = physics.body_conaffinity[body],
+                .radius_m = 0.0};
     for (int i = 0; i < physics.body_geomnum[body]; ++i) {
       const int geom = physics.body_geomadr[body] + i;
-      actor.radius_m = std::max(actor.radius_m, Eigen::Vector3d(physics.geom_pos + 3 * geom).norm() + physics.geom_rbound[geom]);
+      actor.radius_m = std::max(
+          actor.radius_m, Eigen::Vector3d(physics.geom_pos + 3 * geom).norm() + physics.geom_rbound[geom]);
     }
     actors_.push_back(actor);
   }
@@ -60,7 +64,8 @@ void NearbyScenery::plant_tree(const Eigen::Vector3d& robot) {
   physics_.body_bvhnum[0] = planted_nodes_;
 }
 
-/// Writes the tree over [begin, end) behind the nodes planted so far, parents first as MuJoCo does; returns its root.
+/// Writes the tree over [begin, end) behind the nodes planted so far, parents first as MuJoCo does; returns
+/// its root.
 int NearbyScenery::plant(std::vector<Leaf>::iterator begin, std::vector<Leaf>::iterator end, int depth) {
   const int node = planted_nodes_++;
   Eigen::Vector3d lower = begin->centre - begin->half, upper = begin->centre + begin->half;

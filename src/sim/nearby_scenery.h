@@ -8,10 +8,10 @@
 
 namespace patrol::sim {
 
-/// Spares MuJoCo the search for contacts with what is out of the robot's reach. MuJoCo looks for the world's geoms in a tree
-/// of boxes, for each body of the robot anew, and in a street that tree is deep: here it is replaced by one of the few geoms
-/// about the robot whenever that has moved on. Actors out of reach are switched off. What is left out could not have touched
-/// the robot: contacts are the same with and without.
+/// Spares MuJoCo the search for contacts with what is out of the robot's reach. MuJoCo looks for the world's
+/// geoms in a tree of boxes, for each body of the robot anew, and in a street that tree is deep: here it is
+/// replaced by one of the few geoms about the robot whenever that has moved on. Actors out of reach are
+/// switched off. What is left out could not have touched the robot: contacts are the same with and without.
 class NearbyScenery {
  public:
   /// `physics` must outlive this; its tree and its actors' contact bits are changed.
@@ -37,9 +37,9 @@ class NearbyScenery {
 
   mjModel& physics_;
   int robot_;
-  std::vector<Leaf> leaves_;       ///< all
+  std::vector<Leaf> leaves_;  ///< all
   std::vector<Actor> actors_;
-  std::vector<Leaf> near_;         ///< those in the tree now
+  std::vector<Leaf> near_;  ///< those in the tree now
   int planted_nodes_ = 0;
   Eigen::Vector3d planted_about_;
 };

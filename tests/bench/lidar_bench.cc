@@ -59,7 +59,8 @@ struct Street {
 double cast_all(const Street& street) {
   double sum = 0.0;
   for (const Eigen::Vector3d& direction : street.directions) {
-    const auto hit = street.scene.cast(street.origin, direction, kRange_m, sim::kRayEverything & ~sim::kRayLidar2d);
+    const auto hit =
+        street.scene.cast(street.origin, direction, kRange_m, sim::kRayEverything & ~sim::kRayLidar2d);
     if (hit) sum += hit->distance_m;
   }
   return sum;
@@ -76,8 +77,8 @@ void RaysAgainstMjMultiRay(benchmark::State& state) {
   Ratio ratio;
   for (auto _ : state) {
     ratio.reference([&] {
-      mj_multiRay(&view, street.data.get(), street.origin.data(), street.directions.front().data(), seen, 1, -1, geoms.data(),
-                  distances.data(), nullptr, kBeams, kRange_m);
+      mj_multiRay(&view, street.data.get(), street.origin.data(), street.directions.front().data(), seen, 1,
+                  -1, geoms.data(), distances.data(), nullptr, kBeams, kRange_m);
     });
     state.SetIterationTime(ratio.subject([&] { benchmark::DoNotOptimize(cast_all(street)); }));
   }
@@ -85,13 +86,15 @@ void RaysAgainstMjMultiRay(benchmark::State& state) {
 }
 BENCHMARK(RaysAgainstMjMultiRay)->UseManualTime()->Unit(benchmark::kMicrosecond);
 
-/// The same world with everything in one Embree scene where it is now, but for the housing in which the rays begin.
+/// The same world with everything in one Embree scene where it is now, but for the housing in which the rays
+/// begin.
 sim::ModelPtr freeze(const Street& street) {
   sim::ModelPtr frozen(mj_copyModel(nullptr, &street.robot.view()));
   std::copy_n(street.robot.state().qpos, frozen->nq, frozen->qpos0);
   for (int geom = 0; geom < frozen->ngeom; ++geom) {
     const char* body = mj_id2name(frozen.get(), mjOBJ_BODY, frozen->geom_bodyid[geom]);
-    if (body != nullptr && std::string_view(body) == "lidar") frozen->geom_group[geom] = sim::kGroupRobotCollision;
+    if (body != nullptr && std::string_view(body) == "lidar")
+      frozen->geom_group[geom] = sim::kGroupRobotCollision;
   }
   std::fill_n(frozen->body_weldid, frozen->nbody, 0);
   return frozen;
@@ -131,7 +134,8 @@ BENCHMARK(RaysAgainstBareEmbree)->UseManualTime()->Unit(benchmark::kMicrosecond)
 /// What a tick of 2 ms costs with everything: bodies moved, 64 beams fired, noise drawn.
 void LidarTick(benchmark::State& state) {
   Street street;
-  sim::Lidar lidar(sim::LidarSettings::of_preset("rplidar_s2"), street.scene, street.T_body_lidar, sim::kRayLidar2d, 1, "lidar");
+  sim::Lidar lidar(sim::LidarSettings::of_preset("rplidar_s2"), street.scene, street.T_body_lidar,
+                   sim::kRayLidar2d, 1, "lidar");
   double update_s = 0.0, all_s = 0.0;
   Time now{};
   constexpr Time kTick = std::chrono::milliseconds(2);

@@ -13,7 +13,8 @@ inline double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Times a subject against a reference, in turns within one process, so that both see the same machine in the same mood.
+/// Times a subject against a reference, in turns within one process, so that both see the same machine in the
+/// same mood.
 class Ratio {
  public:
   template <typename Work>

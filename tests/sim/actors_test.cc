@@ -33,21 +33,26 @@ struct Traffic : SmallWorld {
   Traffic() : SmallWorld(kTraffic) {}
 
   Eigen::Vector3d place_of(const char* name) const {
-    return Eigen::Vector3d(data->mocap_pos + 3 * model->body_mocapid[mj_name2id(model.get(), mjOBJ_BODY, name)]);
+    return Eigen::Vector3d(data->mocap_pos +
+                           3 * model->body_mocapid[mj_name2id(model.get(), mjOBJ_BODY, name)]);
   }
   Eigen::Quaterniond rotation_of(const char* name) const {
     const mjtNum* q = data->mocap_quat + 4 * model->body_mocapid[mj_name2id(model.get(), mjOBJ_BODY, name)];
     return {q[0], q[1], q[2], q[3]};
   }
   /// Of the shank's lower end.
-  Eigen::Vector3d foot(const char* shank) const { return place_of(shank) + rotation_of(shank) * Eigen::Vector3d(0, 0, -0.43); }
+  Eigen::Vector3d foot(const char* shank) const {
+    return place_of(shank) + rotation_of(shank) * Eigen::Vector3d(0, 0, -0.43);
+  }
 };
 
-ActorSettings walker(std::vector<WaypointSettings> path) { return {.name = "walker", .path = std::move(path)}; }
+ActorSettings walker(std::vector<WaypointSettings> path) {
+  return {.name = "walker", .path = std::move(path)};
+}
 
 /// Calls `look` at every tick of `seconds`.
-void run(Traffic& traffic, const ActorSettings& settings, double seconds, const std::function<void(double)>& look,
-         const Eigen::Vector2d& robot = kFarAway) {
+void run(Traffic& traffic, const ActorSettings& settings, double seconds,
+         const std::function<void(double)>& look, const Eigen::Vector2d& robot = kFarAway) {
   Actors actors(*traffic.model, {settings});
   for (Time now{}; now <= from_seconds(seconds); now += kTick) {
     actors.advance(now, robot, *traffic.data);
@@ -86,7 +91,8 @@ TEST(Actors, TheFootThatStandsStaysWhereItIsAndOneFootAlwaysStands) {
       const double moved = std::min((feet[0] - last[0]).norm(), (feet[1] - last[1]).norm());
       changes += moved > 1e-6;
       EXPECT_LT(moved, 0.003) << now;  // a swinging foot goes as far in a tick
-      EXPECT_NEAR(std::min(feet[0].z(), feet[1].z()), 0.012, 1e-6) << now;  // the ankle's height with the hip at 0.86 m
+      EXPECT_NEAR(std::min(feet[0].z(), feet[1].z()), 0.012, 1e-6)
+          << now;  // the ankle's height with the hip at 0.86 m
     }
     last[0] = feet[0], last[1] = feet[1];
     is_first = false;
@@ -163,8 +169,9 @@ TEST(Actors, WaitsForARobotInItsWayAndNotForOneBesideIt) {
 
 TEST(Actors, ACarKeepsTheHeightAtWhichTheWorldPutsItAndLooksAlongItsWay) {
   Traffic traffic;
-  run(traffic, {.name = "cart", .kind = "car", .path = {{.x_m = 0, .y_m = 5}, {.x_m = 0, .y_m = 9}}, .speed_mps = 2.0}, 1.5,
-      [&](double) { EXPECT_NEAR(traffic.place_of("cart").z(), 0.5, 1e-9); });
+  run(traffic,
+      {.name = "cart", .kind = "car", .path = {{.x_m = 0, .y_m = 5}, {.x_m = 0, .y_m = 9}}, .speed_mps = 2.0},
+      1.5, [&](double) { EXPECT_NEAR(traffic.place_of("cart").z(), 0.5, 1e-9); });
   EXPECT_NEAR((traffic.rotation_of("cart") * Eigen::Vector3d::UnitX()).y(), 1.0, 1e-9);
 }
 

@@ -22,27 +22,31 @@ struct Arrival {
   }
 };
 
-/// The sensors of a robot that stands still on the plane, in front of a wall; it is held there, no physics runs.
+/// The sensors of a robot that stands still on the plane, in front of a wall; it is held there, no physics
+/// runs.
 class HeldRobot {
  public:
   HeldRobot() : robot_(make_flat_world(R"(<geom type="box" pos="5 0 1" size="0.5 5 2" rgba="1 1 1 1"/>)")) {}
 
   /// Everything that arrives within `seconds`, by the message's type.
-  std::map<std::size_t, std::vector<Arrival>> run(const SensorSuiteSettings& settings, const std::vector<FaultSettings>& faults,
-                                                  double seconds, std::vector<FaultReport>* reports = nullptr) {
+  std::map<std::size_t, std::vector<Arrival>> run(const SensorSuiteSettings& settings,
+                                                  const std::vector<FaultSettings>& faults, double seconds,
+                                                  std::vector<FaultReport>* reports = nullptr) {
     SensorSuite suite(settings, io::load_robot_description(kRobotUrdf), robot_.model(), robot_.view(),
                       GasPlume(Eigen::Vector3d::Zero(), 0.0, {}), faults, 1);
     std::map<std::size_t, std::vector<Arrival>> arrivals;
     for (Time now{}; now <= from_seconds(seconds); now += std::chrono::milliseconds(2)) {
       suite.step(robot_.model(), robot_.data(), now);
-      for (SensorMessage& message : suite.take_due(now)) arrivals[message.index()].push_back({now, std::move(message)});
+      for (SensorMessage& message : suite.take_due(now))
+        arrivals[message.index()].push_back({now, std::move(message)});
     }
     if (reports != nullptr) *reports = suite.faults();
     return arrivals;
   }
 
   template <typename Message>
-  std::vector<Arrival> run_for(const SensorSuiteSettings& settings, const std::vector<FaultSettings>& faults, double seconds) {
+  std::vector<Arrival> run_for(const SensorSuiteSettings& settings, const std::vector<FaultSettings>& faults,
+                               double seconds) {
     return run(settings, faults, seconds)[SensorMessage(Message{}).index()];
   }
 
@@ -50,8 +54,13 @@ class HeldRobot {
   WalkingRobot robot_;
 };
 
-FaultSettings fault(std::string sensor, std::string kind, double start_s, double duration_s, double magnitude = 1.0) {
-  return {.sensor = std::move(sensor), .kind = std::move(kind), .start_s = start_s, .duration_s = duration_s, .magnitude = magnitude};
+FaultSettings fault(std::string sensor, std::string kind, double start_s, double duration_s,
+                    double magnitude = 1.0) {
+  return {.sensor = std::move(sensor),
+          .kind = std::move(kind),
+          .start_s = start_s,
+          .duration_s = duration_s,
+          .magnitude = magnitude};
 }
 
 TEST(SensorSuite, EverySensorSpeaksAtItsRate) {
@@ -76,11 +85,13 @@ TEST(SensorSuite, AMessageComesOutItsLatencyAfterTheInstantItIsTrueOf) {
   const auto expect_latency = [&](const SensorMessage& kind, double latency_s, double after_stamp_s) {
     ASSERT_FALSE(arrivals[kind.index()].empty());
     for (const Arrival& arrival : arrivals[kind.index()]) {
-      EXPECT_NEAR(to_seconds(arrival.at - arrival.stamp()), latency_s + after_stamp_s, 0.0021);  // up to the next tick
+      EXPECT_NEAR(to_seconds(arrival.at - arrival.stamp()), latency_s + after_stamp_s,
+                  0.0021);  // up to the next tick
     }
   };
   expect_latency(Imu{}, 0.006, 0.0);
-  expect_latency(LaserScan{}, 0.034, 0.1 * 3199.0 / 3200.0);  // stamped with its first beam, ready with its last
+  expect_latency(LaserScan{}, 0.034,
+                 0.1 * 3199.0 / 3200.0);  // stamped with its first beam, ready with its last
   expect_latency(GasReading{}, 0.1, 0.0);
   expect_latency(GnssFix{}, 0.25, 0.0);
 }
@@ -92,7 +103,8 @@ TEST(SensorSuite, LatencyAloneChangesNoReading) {
   const auto now = robot.run_for<Imu>({}, {}, 0.5), then = robot.run_for<Imu>(late, {}, 0.5);
   ASSERT_GT(then.size(), 100u);
   for (std::size_t i = 0; i < then.size(); ++i) {
-    EXPECT_EQ(std::get<Imu>(now[i].message).angular_velocity_radps, std::get<Imu>(then[i].message).angular_velocity_radps);
+    EXPECT_EQ(std::get<Imu>(now[i].message).angular_velocity_radps,
+              std::get<Imu>(then[i].message).angular_velocity_radps);
   }
 }
 
@@ -134,7 +146,8 @@ TEST(Fault, ADelayOf0_3SecondsHoldsMessagesBackAndKeepsTheirStamps) {
 
 TEST(Fault, ADriftOf0_1RadiansPerSecondSquaredOnTheYawRateGrowsFromItsStartAndEndsWithIt) {
   HeldRobot robot;
-  const auto good = robot.run_for<Imu>({}, {}, 1.5), bad = robot.run_for<Imu>({}, {fault("imu", "drift", 0.5, 0.5, 0.1)}, 1.5);
+  const auto good = robot.run_for<Imu>({}, {}, 1.5),
+             bad = robot.run_for<Imu>({}, {fault("imu", "drift", 0.5, 0.5, 0.1)}, 1.5);
   ASSERT_EQ(good.size(), bad.size());
   for (std::size_t i = 0; i < good.size(); ++i) {
     const double now = to_seconds(good[i].stamp());
@@ -151,7 +164,8 @@ TEST(Fault, SpikesOf100NewtonsTouchOneFootMessageInTen) {
   const auto bad = robot.run_for<FootContacts>({}, {fault("foot_contact", "spikes", 0.0, 10.0, 100.0)}, 8.0);
   int spikes = 0;
   for (std::size_t i = 0; i < good.size(); ++i) {
-    const double difference = std::get<FootContacts>(bad[i].message).force_n[0] - std::get<FootContacts>(good[i].message).force_n[0];
+    const double difference = std::get<FootContacts>(bad[i].message).force_n[0] -
+                              std::get<FootContacts>(good[i].message).force_n[0];
     EXPECT_TRUE(difference == 0.0 || std::abs(difference - 100.0) < 1e-9);
     spikes += difference != 0.0;
   }
@@ -160,20 +174,25 @@ TEST(Fault, SpikesOf100NewtonsTouchOneFootMessageInTen) {
 
 TEST(Fault, ALidarsDriftMovesItsRangesAndGnssLosesItsHeight) {
   HeldRobot robot;
-  const auto good = robot.run_for<LaserScan>({}, {}, 0.75), bad = robot.run_for<LaserScan>({}, {fault("lidar", "drift", 0.3, 1.0, 1.0)}, 0.75);
+  const auto good = robot.run_for<LaserScan>({}, {}, 0.75),
+             bad = robot.run_for<LaserScan>({}, {fault("lidar", "drift", 0.3, 1.0, 1.0)}, 0.75);
   const LaserScan &a = std::get<LaserScan>(good.back().message), &b = std::get<LaserScan>(bad.back().message);
   const double ready = to_seconds(a.stamp) + 0.1 * 3199.0 / 3200.0;
   for (std::size_t beam = 0; beam < a.ranges_m.size(); ++beam) {
     if (!std::isfinite(a.ranges_m[beam])) continue;
     EXPECT_NEAR(b.ranges_m[beam] - a.ranges_m[beam], ready - 0.3, 0.0021);
   }
-  const auto fixes = robot.run_for<GnssFix>({}, {}, 0.5), drifting = robot.run_for<GnssFix>({}, {fault("gnss", "drift", 0.0, 1.0, 10.0)}, 0.5);
-  EXPECT_NEAR(std::get<GnssFix>(drifting[1].message).altitude_m - std::get<GnssFix>(fixes[1].message).altitude_m, 2.0, 1e-9);
+  const auto fixes = robot.run_for<GnssFix>({}, {}, 0.5),
+             drifting = robot.run_for<GnssFix>({}, {fault("gnss", "drift", 0.0, 1.0, 10.0)}, 0.5);
+  EXPECT_NEAR(
+      std::get<GnssFix>(drifting[1].message).altitude_m - std::get<GnssFix>(fixes[1].message).altitude_m, 2.0,
+      1e-9);
 }
 
 TEST(Fault, OneThatNeverComesIsReportedAsNotExecuted) {
   std::vector<FaultReport> reports;
-  HeldRobot().run({}, {fault("imu", "silence", 100.0, 1.0), fault("lidar3d", "silence", 0.0, 1.0)}, 0.5, &reports);
+  HeldRobot().run({}, {fault("imu", "silence", 100.0, 1.0), fault("lidar3d", "silence", 0.0, 1.0)}, 0.5,
+                  &reports);
   ASSERT_EQ(reports.size(), 2u);
   EXPECT_FALSE(reports[0].is_executed);
   EXPECT_FALSE(reports[1].is_executed);  // that lidar is switched off

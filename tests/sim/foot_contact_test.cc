@@ -37,7 +37,8 @@ struct TwoFeet : SmallWorld {
 
 TEST(FootContact, AFootOf3KilogramsAtRestReadsItsWeightAndOneInTheAirNothing) {
   const TwoFeet feet;
-  const FootContacts contacts = FootContactSensor(ideal(), *feet.model, two_legs(), 1).read(*feet.model, *feet.data, Time{}, 0);
+  const FootContacts contacts =
+      FootContactSensor(ideal(), *feet.model, two_legs(), 1).read(*feet.model, *feet.data, Time{}, 0);
   EXPECT_NEAR(contacts.force_n[0], 3.0 * 9.81, 0.01);
   EXPECT_EQ(contacts.force_n[1], 0.0);
 }
@@ -85,7 +86,10 @@ TEST(FootContact, ReadsHalfNewtonsAndStopsAtItsRange) {
   }
   FootContactSettings narrow = ideal();
   narrow.range_n = 20.0;
-  EXPECT_EQ(FootContactSensor(narrow, *feet.model, two_legs(), 1).read(*feet.model, *feet.data, Time{}, 0).force_n[0], 20.0);
+  EXPECT_EQ(FootContactSensor(narrow, *feet.model, two_legs(), 1)
+                .read(*feet.model, *feet.data, Time{}, 0)
+                .force_n[0],
+            20.0);
 }
 
 TEST(FootContact, SwitchingTheOffsetOffLeavesTheNoiseAsItWas) {
@@ -96,7 +100,8 @@ TEST(FootContact, SwitchingTheOffsetOffLeavesTheNoiseAsItWas) {
   both.offset_n = 1.0;
   const FootContactSensor a(both, *feet.model, two_legs(), 9), b(noisy, *feet.model, two_legs(), 9);
   const auto difference = [&](std::uint64_t tick) {
-    return a.read(*feet.model, *feet.data, Time{}, tick).force_n[1] - b.read(*feet.model, *feet.data, Time{}, tick).force_n[1];
+    return a.read(*feet.model, *feet.data, Time{}, tick).force_n[1] -
+           b.read(*feet.model, *feet.data, Time{}, tick).force_n[1];
   };
   for (std::uint64_t tick = 1; tick < 50; ++tick) EXPECT_NEAR(difference(tick), difference(0), 1e-12);
 }

@@ -11,7 +11,9 @@ const FootVectors kFeet = {Eigen::Vector3d(0.19, 0.14, -0.30), Eigen::Vector3d(0
                            Eigen::Vector3d(-0.18, 0.14, -0.30), Eigen::Vector3d(-0.19, -0.14, -0.31)};
 constexpr FootFlags kAll = {true, true, true, true};
 
-Eigen::Vector3d total_force(const FootVectors& forces) { return forces[0] + forces[1] + forces[2] + forces[3]; }
+Eigen::Vector3d total_force(const FootVectors& forces) {
+  return forces[0] + forces[1] + forces[2] + forces[3];
+}
 
 Eigen::Vector3d total_moment(const FootVectors& forces) {
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
@@ -30,7 +32,8 @@ TEST(ForceDistribution, TheWeightOverTheMiddleOfASquareIsSharedInFour) {
   const FootVectors square = {Eigen::Vector3d(0.2, 0.15, -0.3), Eigen::Vector3d(0.2, -0.15, -0.3),
                               Eigen::Vector3d(-0.2, 0.15, -0.3), Eigen::Vector3d(-0.2, -0.15, -0.3)};
   const FootVectors forces = distribute_wrench({0, 0, 120}, {0, 0, 0}, square, kAll, {});
-  for (const Eigen::Vector3d& force : forces) EXPECT_NEAR((force - Eigen::Vector3d(0, 0, 30)).norm(), 0.0, 0.01);
+  for (const Eigen::Vector3d& force : forces)
+    EXPECT_NEAR((force - Eigen::Vector3d(0, 0, 30)).norm(), 0.0, 0.01);
 }
 
 TEST(ForceDistribution, FeetInTheAirGetNothingAndTheDiagonalPairCarriesTheWeight) {
@@ -43,7 +46,8 @@ TEST(ForceDistribution, FeetInTheAirGetNothingAndTheDiagonalPairCarriesTheWeight
 TEST(ForceDistribution, NoFootPullsPushesBeyondItsLimitOrLeavesItsFrictionPyramid) {
   const FrictionLimits limits{.coefficient = 0.6, .min_normal_n = 5.0, .max_normal_n = 220.0};
   for (const double push : {-400.0, -100.0, 0.0, 100.0, 400.0}) {
-    const FootVectors forces = distribute_wrench({push, 0.5 * push, 3.0 * push}, {0.1 * push, 0, 0}, kFeet, kAll, limits);
+    const FootVectors forces =
+        distribute_wrench({push, 0.5 * push, 3.0 * push}, {0.1 * push, 0, 0}, kFeet, kAll, limits);
     for (const Eigen::Vector3d& force : forces) {
       EXPECT_GE(force.z(), 5.0);
       EXPECT_LE(force.z(), 220.0);

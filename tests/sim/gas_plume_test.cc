@@ -39,7 +39,8 @@ TEST(GasPlume, CarriesItsWholeRateThroughEveryPlaneDownwind) {
     constexpr double kCell = 0.02;
     for (double y = -6.0 * sigma_y(x); y < 6.0 * sigma_y(x); y += kCell * sigma_y(x)) {
       for (double z = 0.5 * kCell * sigma_z(x); z < 0.8 + 6.0 * sigma_z(x); z += kCell * sigma_z(x)) {
-        flux_kgps += 2.0 * plume().concentration_kgpm3({x, y, z}, 0.0) * kCell * sigma_y(x) * kCell * sigma_z(x);
+        flux_kgps +=
+            2.0 * plume().concentration_kgpm3({x, y, z}, 0.0) * kCell * sigma_y(x) * kCell * sigma_z(x);
       }
     }
     EXPECT_NEAR(flux_kgps * 1000.0, kRate_gps, 0.002 * kRate_gps) << x;
@@ -52,7 +53,9 @@ TEST(GasPlume, AColumnAcrossTheWindIsTheClosedFormWithin1Percent) {
     const double kg_m2 = 1.5e-3 / (std::sqrt(2.0 * kPi) * 2.0 * sigma_z(x)) * (1.0 + reflected);
     const double expected_ppm_m = kg_m2 / kMethaneDensity_kgpm3 * 1e6;
     const double half = 8.0 * sigma_y(x);
-    EXPECT_NEAR(plume().column_ppm_m({x, -half, 0.8}, {0, 1, 0}, 2.0 * half, 0.0), expected_ppm_m, 0.01 * expected_ppm_m) << x;
+    EXPECT_NEAR(plume().column_ppm_m({x, -half, 0.8}, {0, 1, 0}, 2.0 * half, 0.0), expected_ppm_m,
+                0.01 * expected_ppm_m)
+        << x;
   }
 }
 
@@ -61,9 +64,11 @@ TEST(GasPlume, AColumnAlongAnyBeamIsTheIntegralBy1MillimetreStepsWithin1Percent)
   for (const Eigen::Vector3d& origin : origins) {
     const Eigen::Vector3d direction = (Eigen::Vector3d(1.0, 0.1, 0.9) - origin).normalized();
     double sum = 0.0;
-    for (int i = 0; i < 9000; ++i) sum += plume().concentration_kgpm3(origin + (i + 0.5) * 1e-3 * direction, 0.0) * 1e-3;
+    for (int i = 0; i < 9000; ++i)
+      sum += plume().concentration_kgpm3(origin + (i + 0.5) * 1e-3 * direction, 0.0) * 1e-3;
     const double expected_ppm_m = sum / kMethaneDensity_kgpm3 * 1e6;
-    EXPECT_NEAR(plume().column_ppm_m(origin, direction, 9.0, 0.0), expected_ppm_m, 0.01 * expected_ppm_m) << origin.transpose();
+    EXPECT_NEAR(plume().column_ppm_m(origin, direction, 9.0, 0.0), expected_ppm_m, 0.01 * expected_ppm_m)
+        << origin.transpose();
   }
 }
 
@@ -72,7 +77,8 @@ TEST(GasPlume, WindFrom240DegreesDrivesTheGasTo60DegreesFromNorth) {
   double strongest = 0.0, strongest_deg = 0.0;
   for (int bearing = 0; bearing < 360; ++bearing) {
     const double angle = bearing * kPi / 180.0;
-    const double here = gas.concentration_kgpm3(kSource + 5.0 * Eigen::Vector3d(std::sin(angle), std::cos(angle), 0.0), 0.0);
+    const double here =
+        gas.concentration_kgpm3(kSource + 5.0 * Eigen::Vector3d(std::sin(angle), std::cos(angle), 0.0), 0.0);
     if (here > strongest) strongest = here, strongest_deg = bearing;
   }
   EXPECT_EQ(strongest_deg, 60.0);
@@ -99,8 +105,9 @@ TEST(GasPlume, IsNeverMoreThanPureMethane) {
 
 TEST(GasPlume, TwoLeaksAddAndEachBeginsAtItsTime) {
   const SmallWorld world(R"(<site name="box" pos="0 0 0.8"/><site name="well" pos="3 1 0.2"/>)");
-  const GasPlume both(*world.model, {{.at = "box", .rate_g_s = kRate_gps}, {.at = "well", .rate_g_s = 0.5, .start_s = 10.0}},
-                      west_wind());
+  const GasPlume both(
+      *world.model, {{.at = "box", .rate_g_s = kRate_gps}, {.at = "well", .rate_g_s = 0.5, .start_s = 10.0}},
+      west_wind());
   const GasPlume well({3, 1, 0.2}, 0.5, west_wind());
   const Eigen::Vector3d point(8.0, 0.5, 0.6);
   const double box_only = plume().concentration_kgpm3(point, 0.0);

@@ -14,7 +14,8 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A court of walls 20 m high about the origin, open at the top; 2 m wide in the middle of nothing else.
-const std::string kCourt = R"(<geom type="box" pos="2 0 10" size="0.5 3 10"/><geom type="box" pos="-2 0 10" size="0.5 3 10"/>
+const std::string kCourt =
+    R"(<geom type="box" pos="2 0 10" size="0.5 3 10"/><geom type="box" pos="-2 0 10" size="0.5 3 10"/>
   <geom type="box" pos="0 2 10" size="3 0.5 10"/><geom type="box" pos="0 -2 10" size="3 0.5 10"/>)";
 /// One long house, 8 m high, 4 m to the west.
 const std::string kHouse = R"(<geom type="box" pos="-6 0 4" size="2 60 4"/>)";
@@ -35,9 +36,10 @@ Eigen::Vector3d to_world(const GnssFix& fix, const GnssSettings& settings) {
   const double lat = settings.datum_latitude_deg * kDegree, lon = settings.datum_longitude_deg * kDegree;
   const Eigen::Vector3d d = to_ecef(fix.latitude_deg, fix.longitude_deg, fix.altitude_m) -
                             to_ecef(settings.datum_latitude_deg, settings.datum_longitude_deg, 0.0);
-  return {-std::sin(lon) * d.x() + std::cos(lon) * d.y(),
-          -std::sin(lat) * std::cos(lon) * d.x() - std::sin(lat) * std::sin(lon) * d.y() + std::cos(lat) * d.z(),
-          std::cos(lat) * std::cos(lon) * d.x() + std::cos(lat) * std::sin(lon) * d.y() + std::sin(lat) * d.z()};
+  return {
+      -std::sin(lon) * d.x() + std::cos(lon) * d.y(),
+      -std::sin(lat) * std::cos(lon) * d.x() - std::sin(lat) * std::sin(lon) * d.y() + std::cos(lat) * d.z(),
+      std::cos(lat) * std::cos(lon) * d.x() + std::cos(lat) * std::sin(lon) * d.y() + std::sin(lat) * d.z()};
 }
 
 TEST(Gnss, WithoutNoiseItIsTheAntennaWithin2MillimetresOverTheBlock) {
@@ -46,7 +48,8 @@ TEST(Gnss, WithoutNoiseItIsTheAntennaWithin2MillimetresOverTheBlock) {
   settings.fix_noise_m = 0.0;
   Gnss gnss(settings, 1);
   std::uint64_t tick = 0;
-  for (const Eigen::Vector3d& place : {Eigen::Vector3d(10, 0, 1), Eigen::Vector3d(60, 100, 1), Eigen::Vector3d(0, 50, 5)}) {
+  for (const Eigen::Vector3d& place :
+       {Eigen::Vector3d(10, 0, 1), Eigen::Vector3d(60, 100, 1), Eigen::Vector3d(0, 50, 5)}) {
     const GnssFix fix = gnss.read(world.scene, place, Time{}, tick++);
     EXPECT_NEAR((to_world(fix, settings) - place).norm(), 0.0, 0.002) << place.transpose();
   }
@@ -57,7 +60,8 @@ struct Spread {
   double lag_1 = 0.0;  ///< autocorrelation of the east error, from reading to reading
 };
 
-Spread spread_at(const Eigen::Vector3d& place, const SmallWorld& world, GnssStatus status, const GnssSettings& settings) {
+Spread spread_at(const Eigen::Vector3d& place, const SmallWorld& world, GnssStatus status,
+                 const GnssSettings& settings) {
   Gnss gnss(settings, 11);
   Spread spread;
   std::vector<double> east;

@@ -34,7 +34,8 @@ Record record_at_rest(const ImuSettings& settings, int ticks, std::uint64_t seed
   ImuSensor imu(settings, *world.model, seed);
   Record record;
   for (int tick = 0; tick < ticks; ++tick) {
-    const Imu reading = imu.corrupt(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Time{}, static_cast<std::uint64_t>(tick));
+    const Imu reading = imu.corrupt(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Time{},
+                                    static_cast<std::uint64_t>(tick));
     record.gyro.push_back(reading.angular_velocity_radps.x());
     record.accel.push_back(reading.linear_acceleration_mps2.x());
   }
@@ -83,7 +84,8 @@ TEST(Imu, WithTheDefaultsNoiseRulesAt1SecondAndTheWalkCanBeSeenAt100) {
   ImuSettings settings;
   settings.gyro_bias_walk_radps2_rthz = 1.0e-4;  // ten times the default, so that ten minutes show it
   const Record record = record_at_rest(settings, 300000, 3);
-  const double quantisation = settings.gyro_resolution_radps / std::sqrt(12.0) * std::sqrt(kTick_s);  // as white noise
+  const double quantisation =
+      settings.gyro_resolution_radps / std::sqrt(12.0) * std::sqrt(kTick_s);  // as white noise
   const auto expected = [&](double tau) {
     return std::sqrt((2.3e-4 * 2.3e-4 + quantisation * quantisation) / tau + 1.0e-8 * tau / 3.0);
   };
@@ -107,8 +109,10 @@ TEST(Imu, TheConstantBiasOf2000SensorsSpreadsBy2MilliradiansAnd30MillimetresPerS
   settings.gyro_bias_radps = 0.002;
   settings.accel_bias_mps2 = 0.03;
   const auto rest = [](ImuSensor& imu) { return imu.corrupt({0, 0, 0}, {0, 0, 0}, Time{}, 0); };
-  const Moments gyro = over_seeds(settings, [&](ImuSensor& imu) { return rest(imu).angular_velocity_radps.z(); });
-  const Moments accel = over_seeds(settings, [&](ImuSensor& imu) { return rest(imu).linear_acceleration_mps2.y(); });
+  const Moments gyro =
+      over_seeds(settings, [&](ImuSensor& imu) { return rest(imu).angular_velocity_radps.z(); });
+  const Moments accel =
+      over_seeds(settings, [&](ImuSensor& imu) { return rest(imu).linear_acceleration_mps2.y(); });
   EXPECT_NEAR(gyro.std(), 0.002, 0.05 * 0.002);
   EXPECT_NEAR(gyro.mean(), 0.0, 4.0 * 0.002 / std::sqrt(2000.0));
   EXPECT_NEAR(accel.std(), 0.03, 0.05 * 0.03);
@@ -119,8 +123,10 @@ TEST(Imu, ScaleSpreadsBy1PerMilleAndMisalignmentBy0_05Degrees) {
   settings.scale_error = 0.001;
   settings.misalignment_deg = 0.05;
   const auto turned = [](ImuSensor& imu) { return imu.corrupt({1, 0, 0}, {10, 0, 0}, Time{}, 0); };
-  const Moments scale = over_seeds(settings, [&](ImuSensor& imu) { return turned(imu).angular_velocity_radps.x() - 1.0; });
-  const Moments skew = over_seeds(settings, [&](ImuSensor& imu) { return turned(imu).linear_acceleration_mps2.z() / 10.0; });
+  const Moments scale =
+      over_seeds(settings, [&](ImuSensor& imu) { return turned(imu).angular_velocity_radps.x() - 1.0; });
+  const Moments skew =
+      over_seeds(settings, [&](ImuSensor& imu) { return turned(imu).linear_acceleration_mps2.z() / 10.0; });
   EXPECT_NEAR(scale.std(), 0.001, 0.05 * 0.001);
   EXPECT_NEAR(skew.std(), 0.05 * std::numbers::pi / 180.0, 0.05 * 0.05 * std::numbers::pi / 180.0);
 }
@@ -154,13 +160,17 @@ TEST(Imu, SwitchingTheBiasOffLeavesNoiseAndWalkAsTheyWere) {
 TEST(Imu, AtRestItReadsGravityUpwardsAndFallingFreelyNothing) {
   SmallWorld falling(kBox);
   ImuSensor in_fall(ideal(), *falling.model, 1);
-  EXPECT_NEAR(in_fall.read(*falling.model, *falling.data, Time{}, 0).linear_acceleration_mps2.norm(), 0.0, 1e-9);
+  EXPECT_NEAR(in_fall.read(*falling.model, *falling.data, Time{}, 0).linear_acceleration_mps2.norm(), 0.0,
+              1e-9);
 
-  SmallWorld standing(R"(<body><joint type="slide" axis="1 0 0"/><geom size="0.1"/><site name="imu" euler="30 0 0"/></body>)");
+  SmallWorld standing(
+      R"(<body><joint type="slide" axis="1 0 0"/><geom size="0.1"/><site name="imu" euler="30 0 0"/></body>)");
   ImuSensor at_rest(ideal(), *standing.model, 1);
   const Imu reading = at_rest.read(*standing.model, *standing.data, Time{}, 0);
   const double roll = 30.0 * std::numbers::pi / 180.0;
-  EXPECT_NEAR((reading.linear_acceleration_mps2 - 9.81 * Eigen::Vector3d(0, std::sin(roll), std::cos(roll))).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(
+      (reading.linear_acceleration_mps2 - 9.81 * Eigen::Vector3d(0, std::sin(roll), std::cos(roll))).norm(),
+      0.0, 1e-9);
 }
 
 TEST(Imu, OnAnArmOfHalfAMetreAt4RadiansPerSecondItReads8MetresPerSquareSecondInwards) {

@@ -16,7 +16,8 @@ namespace {
 constexpr double kRange_m = 40.0;
 constexpr mjtByte kSeen[mjNGROUP] = {1, 0, 1, 0, 1, 0};
 
-/// Every type of geom, still and turned, on the ground; and the same on a free body, a mocap body and an arm on it.
+/// Every type of geom, still and turned, on the ground; and the same on a free body, a mocap body and an arm
+/// on it.
 const std::string kMesh = R"(<mesh name="wedge" vertex="0 0 0  1 0 0  0 1 0  0 0 0.7  1 1 0.2"/>)";
 const std::string kShapes = R"(<geom type="box" pos="3 0 0.5" size="0.3 0.5 0.6" euler="10 20 30"/>
   <geom type="sphere" pos="0 3 0.5" size="0.4"/>
@@ -25,17 +26,17 @@ const std::string kShapes = R"(<geom type="box" pos="3 0 0.5" size="0.3 0.5 0.6"
   <geom type="ellipsoid" pos="-2 -3 0.8" size="0.2 0.5 0.8" euler="30 30 0"/>
   <geom type="mesh" mesh="wedge" pos="-4 -2 0.2" euler="0 0 50"/>)";
 const std::string kEveryShape =
-    R"(<geom type="plane" size="50 50 1"/>)" + kShapes + R"(<body pos="2 6 1" euler="5 0 0"><freejoint/>)" + kShapes + "</body>" +
-    R"(<body name="actor" mocap="true" pos="-7 2 0.5" euler="0 0 100">)" + kShapes + "</body>" +
-    R"(<body pos="4 -7 0"><joint name="turn" axis="0 0 1"/>)" + kShapes +
+    R"(<geom type="plane" size="50 50 1"/>)" + kShapes + R"(<body pos="2 6 1" euler="5 0 0"><freejoint/>)" +
+    kShapes + "</body>" + R"(<body name="actor" mocap="true" pos="-7 2 0.5" euler="0 0 100">)" + kShapes +
+    "</body>" + R"(<body pos="4 -7 0"><joint name="turn" axis="0 0 1"/>)" + kShapes +
     R"(<body pos="0 0 1"><joint axis="0 1 0"/>)" + kShapes + "</body></body>";
 
 Eigen::Vector3d random_direction(const RandomStream& random, std::uint64_t ray) {
   return Eigen::Vector3d(random.normal(ray, 0), random.normal(ray, 1), random.normal(ray, 2)).normalized();
 }
 
-double mujoco_range(const mjModel& model, const mjData& data, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                    int* geom = nullptr) {
+double mujoco_range(const mjModel& model, const mjData& data, const Eigen::Vector3d& origin,
+                    const Eigen::Vector3d& direction, int* geom = nullptr) {
   int hit = -1;
   const mjtNum distance = mj_ray(&model, &data, origin.data(), direction.data(), kSeen, 1, -1, &hit, nullptr);
   if (geom != nullptr) *geom = hit;
@@ -44,13 +45,15 @@ double mujoco_range(const mjModel& model, const mjData& data, const Eigen::Vecto
 
 struct Agreement {
   int hits = 0;
-  int beyond_1_mm = 0;      ///< rays whose ranges differ by more
-  int unexplained = 0;      ///< of those, the ones that MuJoCo's ray a tenth of a millimetre beside does not give either
-  int other_geom = 0;       ///< ranges agree, but another geom is named
-  double largest_m = 0.0;   ///< among those that agree
+  int beyond_1_mm = 0;  ///< rays whose ranges differ by more
+  int unexplained =
+      0;  ///< of those, the ones that MuJoCo's ray a tenth of a millimetre beside does not give either
+  int other_geom = 0;      ///< ranges agree, but another geom is named
+  double largest_m = 0.0;  ///< among those that agree
 };
 
-/// Casts a ray with both. At an edge float and double may part; then MuJoCo's own neighbouring rays part as well.
+/// Casts a ray with both. At an edge float and double may part; then MuJoCo's own neighbouring rays part as
+/// well.
 void compare(const LidarScene& scene, const mjModel& model, const mjData& data, const Eigen::Vector3d& origin,
              const Eigen::Vector3d& direction, Agreement& agreement) {
   const std::optional<RayHit> hit = scene.cast(origin, direction, kRange_m, kRayEverything);
@@ -78,7 +81,8 @@ TEST(LidarScene, HitsEveryTypeOfGeomWithin1MillimetreOfMjRayStillOrMoving) {
   const RandomStream random(1, "rays");
   Agreement agreement;
   for (int configuration = 0; configuration < 10; ++configuration) {
-    for (int i = 0; i < 7; ++i) world.data->qpos[i] += 0.3 * random.normal(1000000, static_cast<std::uint64_t>(i + 10 * configuration));
+    for (int i = 0; i < 7; ++i)
+      world.data->qpos[i] += 0.3 * random.normal(1000000, static_cast<std::uint64_t>(i + 10 * configuration));
     mj_normalizeQuat(world.model.get(), world.data->qpos);
     world.data->qpos[7] += 0.5;
     world.data->qpos[8] += 0.3;
@@ -111,7 +115,8 @@ TEST(LidarScene, InTheStreetWithRobotAndTrafficUnderWayItIsWithin1MillimetreOfMj
       robot.data().mocap_pos[3 * i] = robot.data().qpos[0] + 3.0 * random.normal(900 + stop, 3 * i);
       robot.data().mocap_pos[3 * i + 1] = robot.data().qpos[1] + 3.0 * random.normal(900 + stop, 3 * i + 1);
     }
-    for (int tick = 0; tick < 50; ++tick) robot.step({.stamp = {}, .vx_mps = 0.5, .vy_mps = 0.0, .yaw_rate_radps = 0.5});
+    for (int tick = 0; tick < 50; ++tick)
+      robot.step({.stamp = {}, .vx_mps = 0.5, .vy_mps = 0.0, .yaw_rate_radps = 0.5});
     scene.update(robot.data());  // from the state of the physics model
     std::copy_n(robot.data().qpos, view.nq, data->qpos);
     std::copy_n(robot.data().mocap_pos, 3 * view.nmocap, data->mocap_pos);
@@ -120,11 +125,13 @@ TEST(LidarScene, InTheStreetWithRobotAndTrafficUnderWayItIsWithin1MillimetreOfMj
     const Eigen::Vector3d lidar = robot.T_world_body() * Eigen::Vector3d(-0.02, 0.0, 0.25);
     for (int beam = 0; beam < 600; ++beam) {
       const double angle = 2.0 * std::numbers::pi * beam / 600.0;
-      compare(scene, view, *data, lidar, Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.02).normalized(), agreement);
+      compare(scene, view, *data, lidar, Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.02).normalized(),
+              agreement);
     }
     for (std::uint64_t ray = 0; ray < 600; ++ray) {
       const std::uint64_t draw = ray + 600 * static_cast<std::uint64_t>(stop);
-      const Eigen::Vector3d origin(60.0 * random.uniform(draw, 10), 100.0 * random.uniform(draw, 11), 0.2 + 2.0 * random.uniform(draw, 12));
+      const Eigen::Vector3d origin(60.0 * random.uniform(draw, 10), 100.0 * random.uniform(draw, 11),
+                                   0.2 + 2.0 * random.uniform(draw, 12));
       compare(scene, view, *data, origin, random_direction(random, draw), agreement);
     }
   }
@@ -143,10 +150,12 @@ TEST(LidarScene, NormalsAreThoseOfMuJoCoAndLookTowardsTheRaysOrigin) {
     const std::optional<RayHit> hit = world.scene.cast(origin, direction, kRange_m, kRayEverything);
     mjtNum normal[3];
     int geom = -1;
-    const mjtNum distance = mj_ray(world.model.get(), world.data.get(), origin.data(), direction.data(), kSeen, 1, -1, &geom, normal);
+    const mjtNum distance = mj_ray(world.model.get(), world.data.get(), origin.data(), direction.data(),
+                                   kSeen, 1, -1, &geom, normal);
     if (!hit || distance < 0.0 || geom != hit->geom) continue;
     EXPECT_LE(hit->normal.dot(direction), 0.0);
-    if (std::abs(Eigen::Vector3d(normal).dot(direction)) < 0.05) continue;  // grazing a round shape magnifies the float's loss
+    if (std::abs(Eigen::Vector3d(normal).dot(direction)) < 0.05)
+      continue;  // grazing a round shape magnifies the float's loss
     EXPECT_GT(std::abs(Eigen::Vector3d(normal).dot(hit->normal)), 0.999) << "geom " << geom;
     ++compared;
   }
@@ -157,7 +166,9 @@ TEST(LidarScene, AMaskHidesTheRobotOrOneOfItsLidars) {
   const SmallWorld world(R"(<geom type="box" pos="5 0 0" size="0.5 1 1"/>
     <body name="base_link" pos="2 0 0"><freejoint/><geom group="4" size="0.1"/>
       <body name="lidar" pos="-1 0 0"><geom group="4" size="0.1"/></body></body>)");
-  const auto range = [&](std::uint32_t mask) { return world.scene.cast({0, 0, 0}, {1, 0, 0}, 30.0, mask)->distance_m; };
+  const auto range = [&](std::uint32_t mask) {
+    return world.scene.cast({0, 0, 0}, {1, 0, 0}, 30.0, mask)->distance_m;
+  };
   EXPECT_NEAR(range(kRayEverything), 0.9, 1e-6);
   EXPECT_NEAR(range(kRayEverything & ~kRayLidar2d), 1.9, 1e-6);
   EXPECT_NEAR(range(kRayScenery), 4.5, 1e-6);
@@ -180,9 +191,11 @@ TEST(LidarScene, NothingLiesBeyondTheRange) {
 }
 
 TEST(LidarScene, AHeightFieldIsRefused) {
-  EXPECT_THROW(SmallWorld(R"(<geom type="hfield" hfield="hills"/>)",
-                          R"(<hfield name="hills" nrow="3" ncol="3" size="1 1 1 0.1" elevation="0 0 0 0 1 0 0 0 0"/>)"),
-               InputError);
+  EXPECT_THROW(
+      SmallWorld(
+          R"(<geom type="hfield" hfield="hills"/>)",
+          R"(<hfield name="hills" nrow="3" ncol="3" size="1 1 1 0.1" elevation="0 0 0 0 1 0 0 0 0"/>)"),
+      InputError);
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ std::string box(const std::string& position, const std::string& size, const std:
   return R"(<geom type="box" pos=")" + position + R"(" size=")" + size + R"(" )" + more + "/>";
 }
 /// Walls at +-4 m in x and +-3 m in y.
-const std::string kSquareRoom = box("4.5 0 0", "0.5 4 3") + box("-4.5 0 0", "0.5 4 3") + box("0 3.5 0", "5 0.5 3") + box("0 -3.5 0", "5 0.5 3");
+const std::string kSquareRoom = box("4.5 0 0", "0.5 4 3") + box("-4.5 0 0", "0.5 4 3") +
+                                box("0 3.5 0", "5 0.5 3") + box("0 -3.5 0", "5 0.5 3");
 
 /// True range in that room from its middle, along an angle.
 double room_range(double angle_rad) {
@@ -43,8 +44,8 @@ LidarSettings ideal() {
 
 /// The scans of `seconds` from a lidar that is carried by `pose(now)`.
 template <typename PoseAt>
-std::vector<LaserScan> scans_along(const SmallWorld& world, const LidarSettings& settings, double seconds, PoseAt pose,
-                                   std::uint64_t seed = 1) {
+std::vector<LaserScan> scans_along(const SmallWorld& world, const LidarSettings& settings, double seconds,
+                                   PoseAt pose, std::uint64_t seed = 1) {
   Lidar lidar(settings, world.scene, {}, kRayLidar2d, seed, "lidar");
   std::vector<LaserScan> scans;
   for (Time now{}; now < from_seconds(seconds); now += kTick) {
@@ -54,8 +55,10 @@ std::vector<LaserScan> scans_along(const SmallWorld& world, const LidarSettings&
   return scans;
 }
 
-std::vector<LaserScan> scans_at_rest(const SmallWorld& world, const LidarSettings& settings, double seconds, std::uint64_t seed = 1) {
-  return scans_along(world, settings, seconds, [](double) { return Pose3{}; }, seed);
+std::vector<LaserScan> scans_at_rest(const SmallWorld& world, const LidarSettings& settings, double seconds,
+                                     std::uint64_t seed = 1) {
+  return scans_along(
+      world, settings, seconds, [](double) { return Pose3{}; }, seed);
 }
 
 double angle_of(const LaserScan& scan, std::size_t beam) {
@@ -79,7 +82,8 @@ TEST(Lidar, TenTimesASecondAScanWhoseBeamsFollowOneAnotherEvenlyAndWhoseLastEnds
   for (std::size_t i = 0; i < scans.size(); ++i) {
     EXPECT_NEAR(scans[i].scan_time_s, 0.1, 1e-12);
     EXPECT_NEAR(scans[i].time_increment_s, 0.1 / 720.0, 1e-12);
-    EXPECT_NEAR(to_seconds(scans[i].stamp) + 719.0 * scans[i].time_increment_s, 0.1 * static_cast<double>(i + 1), 1e-8);
+    EXPECT_NEAR(to_seconds(scans[i].stamp) + 719.0 * scans[i].time_increment_s,
+                0.1 * static_cast<double>(i + 1), 1e-8);
   }
 }
 
@@ -104,11 +108,13 @@ LidarSettings narrow() {
   return settings;
 }
 
-Moments range_errors(const SmallWorld& world, const LidarSettings& settings, double seconds, double distance_m, std::uint64_t seed = 1) {
+Moments range_errors(const SmallWorld& world, const LidarSettings& settings, double seconds,
+                     double distance_m, std::uint64_t seed = 1) {
   Moments errors;
   for (const LaserScan& scan : scans_at_rest(world, settings, seconds, seed)) {
     for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
-      if (std::isfinite(scan.ranges_m[beam])) errors.add(scan.ranges_m[beam] - distance_m / std::cos(angle_of(scan, beam)));
+      if (std::isfinite(scan.ranges_m[beam]))
+        errors.add(scan.ranges_m[beam] - distance_m / std::cos(angle_of(scan, beam)));
     }
   }
   return errors;
@@ -171,7 +177,8 @@ TEST(Lidar, AngularJitterOfATenthOfADegreeIsReadOffAWallMetAt60Degrees) {
   const SmallWorld world(box("2.5 0 0", "0.5 20 5"));
   LidarSettings settings = narrow();
   settings.angle_noise_deg = 0.1;
-  Lidar lidar(settings, world.scene, {Eigen::Vector3d::Zero(), quaternion_from_yaw(60.0 * kDegree)}, kRayLidar2d, 1, "lidar");
+  Lidar lidar(settings, world.scene, {Eigen::Vector3d::Zero(), quaternion_from_yaw(60.0 * kDegree)},
+              kRayLidar2d, 1, "lidar");
   Moments errors;
   for (Time now{}; now < from_seconds(0.5); now += kTick) {
     lidar.advance(now, now + kTick, {}, {});
@@ -197,7 +204,8 @@ TEST(Lidar, OnARobotTurningAt1RadianPerSecondEachBeamLooksWhereItStoodAtItsInsta
   for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
     const double instant = to_seconds(scan.stamp) + static_cast<double>(beam) * scan.time_increment_s;
     EXPECT_NEAR(scan.ranges_m[beam], room_range(angle_of(scan, beam) + instant), 1e-3) << beam;
-    EXPECT_NEAR(frozen.ranges_m[beam], room_range(angle_of(scan, beam) + to_seconds(frozen.stamp)), 1e-3) << beam;
+    EXPECT_NEAR(frozen.ranges_m[beam], room_range(angle_of(scan, beam) + to_seconds(frozen.stamp)), 1e-3)
+        << beam;
     largest = std::max(largest, static_cast<double>(std::abs(scan.ranges_m[beam] - frozen.ranges_m[beam])));
   }
   EXPECT_GT(largest, 0.2);  // a tenth of a radian at the first beam
@@ -206,7 +214,9 @@ TEST(Lidar, OnARobotTurningAt1RadianPerSecondEachBeamLooksWhereItStoodAtItsInsta
 
 TEST(Lidar, OnARobotWalkingAt1MetrePerSecondTheWallAheadComesNearerByOneMillimetreAMillisecond) {
   const SmallWorld world(box("10.5 0 0", "0.5 20 5"));
-  const auto walking = [](double now) { return Pose3{Eigen::Vector3d(now, 0, 0), Eigen::Quaterniond::Identity()}; };
+  const auto walking = [](double now) {
+    return Pose3{Eigen::Vector3d(now, 0, 0), Eigen::Quaterniond::Identity()};
+  };
   LidarSettings settings = ideal();
   settings.fov_deg = 100.0;
   const LaserScan scan = scans_along(world, settings, 0.21, walking).back();
@@ -221,7 +231,8 @@ TEST(Lidar, GrazingBeamsBeyond85DegreesAreLost) {
   LidarSettings settings = narrow();
   settings.grazing_deg = 85.0;
   const auto range_looking_down = [&](double degrees) {
-    const Pose3 pose{Eigen::Vector3d(0, 0, 1), Eigen::Quaterniond(Eigen::AngleAxisd(degrees * kDegree, Eigen::Vector3d::UnitY()))};
+    const Pose3 pose{Eigen::Vector3d(0, 0, 1),
+                     Eigen::Quaterniond(Eigen::AngleAxisd(degrees * kDegree, Eigen::Vector3d::UnitY()))};
     return scans_along(world, settings, 0.03, [&](double) { return pose; }).front().ranges_m.at(200);
   };
   EXPECT_NEAR(range_looking_down(5.2), 1.0 / std::sin(5.2 * kDegree), 1e-2);
@@ -232,7 +243,8 @@ TEST(Lidar, ASurfaceOf10PercentReturnsUpTo10MetresAndAWhiteOneUpTo30) {
   LidarSettings settings = narrow();
   settings.dark_range_m = 10.0;
   const auto range_at = [&](double distance_m, const std::string& grey) {
-    const SmallWorld world(box(std::to_string(distance_m + 0.5) + " 0 0", "0.5 20 5", R"(rgba=")" + grey + " " + grey + " " + grey + R"( 1")"));
+    const SmallWorld world(box(std::to_string(distance_m + 0.5) + " 0 0", "0.5 20 5",
+                               R"(rgba=")" + grey + " " + grey + " " + grey + R"( 1")"));
     return scans_at_rest(world, settings, 0.03).front().ranges_m.at(200);
   };
   EXPECT_NEAR(range_at(9.9, "0.1"), 9.9, 1e-3);
@@ -243,7 +255,8 @@ TEST(Lidar, ASurfaceOf10PercentReturnsUpTo10MetresAndAWhiteOneUpTo30) {
 }
 
 TEST(Lidar, GlassReturnsTheBeamOnlyWithin5DegreesOfItsNormal) {
-  const SmallWorld world(box("2.5 0 0", "0.5 20 5", R"(material="window_glass")"), R"(<material name="window_glass" rgba="1 1 1 1"/>)");
+  const SmallWorld world(box("2.5 0 0", "0.5 20 5", R"(material="window_glass")"),
+                         R"(<material name="window_glass" rgba="1 1 1 1"/>)");
   LidarSettings settings = ideal();
   settings.fov_deg = 40.0;
   const LaserScan scan = scans_at_rest(world, settings, 0.11).front();
@@ -271,7 +284,8 @@ TEST(Lidar, RainOfOnePerCentAMetreShortensTheShareOfBeamsThatBeersLawSays) {
 
 /// The edge of a plate at `near_m` in front of a wall at `far_m`; the plate fills the beams left of 0.
 std::string edge(double near_m, double far_m) {
-  return box(std::to_string(near_m + 0.01) + " 2 0", "0.01 2 5") + box(std::to_string(far_m + 0.5) + " 0 0", "0.5 20 5");
+  return box(std::to_string(near_m + 0.01) + " 2 0", "0.01 2 5") +
+         box(std::to_string(far_m + 0.5) + " 0 0", "0.5 20 5");
 }
 
 /// Ranges of a scan across that edge with beams 0.1 degrees apart.
@@ -286,7 +300,8 @@ std::vector<float> across_the_edge(const SmallWorld& world, double width_deg, do
 
 TEST(Lidar, AtAnEdgeABeamHalfAsWideAgainAsItsStepReturnsAMixtureOfBothRanges) {
   const SmallWorld world(edge(3.0, 4.0));
-  // Beam 20 looks 0.02 degrees left of the edge, on the plate: of its 0.15 degrees 0.095 lie there, three rays of four.
+  // Beam 20 looks 0.02 degrees left of the edge, on the plate: of its 0.15 degrees 0.095 lie there, three
+  // rays of four.
   const std::vector<float> ranges = across_the_edge(world, 0.15, 0.02);
   EXPECT_NEAR(ranges.at(19), 4.0, 2e-3);
   const double near_light = 3.0 / 9.0, far_light = 1.0 / 16.0;  // rays over range squared
@@ -305,7 +320,8 @@ TEST(Lidar, WithoutWidthOrOverAGapOf2MetresNoPixelIsMixed) {
 TEST(Lidar, SixteenRingsGiveACloudOverPlusMinus15DegreesWithTimesAndRings) {
   const SmallWorld world(kSquareRoom + R"(<geom type="plane" pos="0 0 -1" size="20 20 1" rgba="1 1 1 1"/>)");
   LidarSettings settings = LidarSettings::of_preset("vlp16");
-  settings.range_noise_m = settings.range_resolution_m = settings.angle_noise_deg = settings.dropout = settings.beam_width_deg = 0.0;
+  settings.range_noise_m = settings.range_resolution_m = settings.angle_noise_deg = settings.dropout =
+      settings.beam_width_deg = 0.0;
   Lidar lidar(settings, world.scene, {}, kRayLidar3d, 1, "lidar3d");
   std::vector<PointCloud> clouds;
   for (Time now{}; now < from_seconds(0.101); now += kTick) {
@@ -335,8 +351,10 @@ TEST(Lidar, SwitchingOneImperfectionOffChangesNoOtherDraw) {
   no_jitter.angle_noise_deg = 0.0;
   no_dropout.dropout = 0.0;
   no_noise.range_noise_m = 0.0;
-  const LaserScan base = scans_at_rest(world, all, 0.03, 5).front(), a = scans_at_rest(world, no_jitter, 0.03, 5).front(),
-                  b = scans_at_rest(world, no_dropout, 0.03, 5).front(), c = scans_at_rest(world, no_noise, 0.03, 5).front();
+  const LaserScan base = scans_at_rest(world, all, 0.03, 5).front(),
+                  a = scans_at_rest(world, no_jitter, 0.03, 5).front(),
+                  b = scans_at_rest(world, no_dropout, 0.03, 5).front(),
+                  c = scans_at_rest(world, no_noise, 0.03, 5).front();
   for (std::size_t beam = 0; beam < base.ranges_m.size(); ++beam) {
     EXPECT_EQ(std::isnan(base.ranges_m[beam]), std::isnan(a.ranges_m[beam])) << beam;
     EXPECT_EQ(std::isnan(base.ranges_m[beam]), std::isnan(c.ranges_m[beam])) << beam;
@@ -349,7 +367,9 @@ TEST(Lidar, SwitchingOneImperfectionOffChangesNoOtherDraw) {
 TEST(Lidar, TheSameSeedGivesTheSameScansAndAnotherSeedOthers) {
   const SmallWorld world(kSquareRoom);
   const LidarSettings settings;
-  const auto ranges = [&](std::uint64_t seed) { return scans_at_rest(world, settings, 0.11, seed).front().ranges_m; };
+  const auto ranges = [&](std::uint64_t seed) {
+    return scans_at_rest(world, settings, 0.11, seed).front().ranges_m;
+  };
   const std::vector<float> first = ranges(1), again = ranges(1), other = ranges(2);
   int differing = 0;
   for (std::size_t beam = 0; beam < first.size(); ++beam) {

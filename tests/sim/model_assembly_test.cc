@@ -117,14 +117,15 @@ TEST_F(StreetAssembly, StripsNoMassFromActorsAndNoFrictionFromTheGround) {
     EXPECT_EQ(physics.geom_friction[3 * geom], view.geom_friction[3 * twin]) << name;
     EXPECT_EQ(physics.geom_type[geom], view.geom_type[twin]) << name;
     EXPECT_EQ(physics.geom_condim[geom], view.geom_condim[twin]) << name;
-    for (int i = 0; i < 3; ++i) EXPECT_EQ(physics.geom_size[3 * geom + i], view.geom_size[3 * twin + i]) << name;
+    for (int i = 0; i < 3; ++i)
+      EXPECT_EQ(physics.geom_size[3 * geom + i], view.geom_size[3 * twin + i]) << name;
   }
 }
 
 TEST(ModelAssembly, TheRobotStartsWithItsFeetWithin1CentimetreOfTheGroundOnThePlaneAndOnAPavement) {
   for (const double height : {0.0, 0.1}) {
-    const AssembledModel model = on_plane("<geom type='box' pos='0 0 " + std::to_string(height / 2.0 - 1e-4) + "' size='2 2 " +
-                                              std::to_string(height / 2.0 + 1e-4) + "'/>",
+    const AssembledModel model = on_plane("<geom type='box' pos='0 0 " + std::to_string(height / 2.0 - 1e-4) +
+                                              "' size='2 2 " + std::to_string(height / 2.0 + 1e-4) + "'/>",
                                           {0.2, -0.1, 0.7});
     const DataPtr data = make_data(*model.physics);
     std::copy(model.start_qpos.begin(), model.start_qpos.end(), data->qpos);
@@ -154,22 +155,31 @@ TEST_F(StreetAssembly, EachJointHasAMotorLimitedToTheUrdfsTorque) {
 }
 
 TEST(ModelAssembly, AStartInsideAWallIsRefusedWithTheWallsName) {
-  const std::string said = refusal([] { on_plane(R"(<geom name="garden_wall" type="box" pos="1 0 0.5" size="0.2 3 0.5"/>)", {1.0, 0.0, 0.0}); });
+  const std::string said = refusal([] {
+    on_plane(R"(<geom name="garden_wall" type="box" pos="1 0 0.5" size="0.2 3 0.5"/>)", {1.0, 0.0, 0.0});
+  });
   EXPECT_THAT(said, HasSubstr("start pose (1.00, 0.00)"));
   EXPECT_THAT(said, HasSubstr("garden_wall"));
 }
 
 TEST(ModelAssembly, AStartOverNothingIsRefused) {
-  const test::TemporaryFile world("world.xml", make_world(R"(<geom type="box" pos="0 0 -0.1" size="1 1 0.1"/>)"));
-  EXPECT_THAT(refusal([&] { assemble_model(world.path(), kRobotUrdf, {20.0, 0.0, 0.0}); }), HasSubstr("no ground"));
+  const test::TemporaryFile world("world.xml",
+                                  make_world(R"(<geom type="box" pos="0 0 -0.1" size="1 1 0.1"/>)"));
+  EXPECT_THAT(refusal([&] {
+                assemble_model(world.path(), kRobotUrdf, {20.0, 0.0, 0.0});
+              }),
+              HasSubstr("no ground"));
 }
 
 TEST(ModelAssembly, AMissingOrBrokenFileIsRefusedByName) {
-  EXPECT_THAT(refusal([] { assemble_model("no/such/world.xml", kRobotUrdf, {}); }), HasSubstr("no/such/world.xml"));
-  const test::TemporaryFile broken("broken.xml", "<mujoco><worldbody><geom tipe=\"box\"/></worldbody></mujoco>");
+  EXPECT_THAT(refusal([] { assemble_model("no/such/world.xml", kRobotUrdf, {}); }),
+              HasSubstr("no/such/world.xml"));
+  const test::TemporaryFile broken("broken.xml",
+                                   "<mujoco><worldbody><geom tipe=\"box\"/></worldbody></mujoco>");
   EXPECT_THAT(refusal([&] { assemble_model(broken.path(), kRobotUrdf, {}); }), HasSubstr("broken.xml"));
   const test::TemporaryFile world("world.xml", make_flat_world());
-  EXPECT_THAT(refusal([&] { assemble_model(world.path(), "no/such/robot.urdf", {}); }), HasSubstr("no/such/robot.urdf"));
+  EXPECT_THAT(refusal([&] { assemble_model(world.path(), "no/such/robot.urdf", {}); }),
+              HasSubstr("no/such/robot.urdf"));
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ using Touch = std::tuple<int, int, double>;  ///< geoms and distance
 
 std::vector<Touch> touches(const mjData& data) {
   std::vector<Touch> all;
-  for (int i = 0; i < data.ncon; ++i) all.emplace_back(data.contact[i].geom[0], data.contact[i].geom[1], data.contact[i].dist);
+  for (int i = 0; i < data.ncon; ++i)
+    all.emplace_back(data.contact[i].geom[0], data.contact[i].geom[1], data.contact[i].dist);
   std::sort(all.begin(), all.end());
   return all;
 }

@@ -28,7 +28,8 @@ TEST(SwingTrajectory, PassesTheMiddleNineCentimetresOverTheHigherEnd) {
 TEST(SwingTrajectory, TheVelocityIsTheDerivativeOfThePosition) {
   constexpr double kStep = 1e-6;
   for (double s = 0.005; s < 1.0; s += 0.01) {
-    const Eigen::Vector3d difference = (at(s + kStep).position - at(s - kStep).position) / (2.0 * kStep * kDuration_s);
+    const Eigen::Vector3d difference =
+        (at(s + kStep).position - at(s - kStep).position) / (2.0 * kStep * kDuration_s);
     EXPECT_NEAR((at(s).velocity - difference).norm(), 0.0, 1e-5) << s;
   }
 }

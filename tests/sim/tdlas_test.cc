@@ -29,7 +29,8 @@ TEST(Tdlas, BackgroundOver10MetresReads19ppm_m) {
 }
 
 TEST(Tdlas, OnePpmOfMethaneIs0_668mgPerCubicMetreAt20DegreesAndOneAtmosphere) {
-  // Molar mass 16.043 g/mol over the molar volume R T / p = 24.055 l/mol; methane is 0.2 % denser than an ideal gas.
+  // Molar mass 16.043 g/mol over the molar volume R T / p = 24.055 l/mol; methane is 0.2 % denser than an
+  // ideal gas.
   EXPECT_NEAR(kMethaneDensity_kgpm3, 16.043e-3 / (8.314462 * 293.15 / 101325.0) * 1.002, 0.0005);
   const SmallWorld world(kWallAt10m);
   const GasReading reading = Tdlas(ideal(), 1).read(world.scene, kNoGas, eye(), Time{}, 0);

@@ -28,28 +28,30 @@ std::string make_flat_world(const std::string& geoms = "");
 
 /// How a walk went, by the simulator's truth.
 struct WalkReport {
-  Pose2 moved;                      ///< end in the start's frame; the yaw is unwrapped
-  double mean_forward_mps = 0.0;    ///< in level
+  Pose2 moved;                    ///< end in the start's frame; the yaw is unwrapped
+  double mean_forward_mps = 0.0;  ///< in level
   double mean_sideways_mps = 0.0;
   double mean_yaw_rate_radps = 0.0;
-  double roll_rms_rad = 0.0;        ///< about the mean
+  double roll_rms_rad = 0.0;  ///< about the mean
   double pitch_rms_rad = 0.0;
-  double max_tilt_rad = 0.0;        ///< of the trunk's z axis
-  double min_height_m = 0.0;        ///< of the trunk's origin, in world
-  double slip_mps = 0.0;            ///< mean speed of a loaded foot's sole along the ground
+  double max_tilt_rad = 0.0;  ///< of the trunk's z axis
+  double min_height_m = 0.0;  ///< of the trunk's origin, in world
+  double slip_mps = 0.0;      ///< mean speed of a loaded foot's sole along the ground
   double max_torque_nm = 0.0;
   double velocity_error_mps = 0.0;  ///< RMS of the controller's own velocity, in level
   int steps_taken = 0;              ///< lift-offs
   bool has_fallen = false;
 };
 
-/// The quadruped with noisy sensors and its controller, in a world of its own: what the twin does, without the rest.
+/// The quadruped with noisy sensors and its controller, in a world of its own: what the twin does, without
+/// the rest.
 class WalkingRobot {
  public:
   /// `world` is MJCF.
   explicit WalkingRobot(const std::string& world, const Pose2& T_world_start = {}, std::uint64_t seed = 1,
                         const LocomotionSettings& settings = {});
-  explicit WalkingRobot(AssembledModel model, std::uint64_t seed = 1, const LocomotionSettings& settings = {});
+  explicit WalkingRobot(AssembledModel model, std::uint64_t seed = 1,
+                        const LocomotionSettings& settings = {});
 
   WalkReport walk(double vx_mps, double vy_mps, double yaw_rate_radps, double duration_s);
   WalkReport stand(double duration_s) { return walk(0.0, 0.0, 0.0, duration_s); }

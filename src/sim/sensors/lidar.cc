@@ -29,11 +29,13 @@ bool is_glass(const mjModel& model, int geom) {
   return name != nullptr && std::string_view(name).find("glass") != std::string_view::npos;
 }
 
-// Two echoes further apart than a pulse of 10 ns is long are told apart; nearer than this they are one surface.
+// Two echoes further apart than a pulse of 10 ns is long are told apart; nearer than this they are one
+// surface.
 constexpr double kPulse_m = 1.5;
 constexpr double kLeastJump_m = 0.1;
 
-/// As `interpolate`; between poses as near as those of two ticks, by the chord instead of the arc (less than 1e-7 rad beside).
+/// As `interpolate`; between poses as near as those of two ticks, by the chord instead of the arc (less than
+/// 1e-7 rad beside).
 Pose3 move_between(const Pose3& a, const Pose3& b, double fraction) {
   const double cosine = a.rotation.dot(b.rotation);
   if (cosine < 0.9999) return interpolate(a, b, fraction);
@@ -60,8 +62,8 @@ LidarSettings LidarSettings::of_preset(const std::string& name) {
   return s;
 }
 
-Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3& T_body_lidar, RayMask own_housing,
-             std::uint64_t seed, const std::string& name)
+Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3& T_body_lidar,
+             RayMask own_housing, std::uint64_t seed, const std::string& name)
     : settings_(settings),
       scene_(scene),
       T_body_lidar_(T_body_lidar),
@@ -79,7 +81,8 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3
   }
   for (int ring = 0; ring < settings.rings; ++ring) {
     const double share = settings.rings > 1 ? static_cast<double>(ring) / (settings.rings - 1) : 0.0;
-    const double angle = kDegree * (settings.elevation_min_deg + share * (settings.elevation_max_deg - settings.elevation_min_deg));
+    const double angle = kDegree * (settings.elevation_min_deg +
+                                    share * (settings.elevation_max_deg - settings.elevation_min_deg));
     elevation_.emplace_back(std::cos(angle), std::sin(angle));
   }
   for (int geom = 0; geom < scene.model().ngeom; ++geom) {
@@ -89,7 +92,8 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3
   begin_revolution();
 }
 
-/// The beams of a revolution are spread over the part of it that the field of view takes; the last one ends it.
+/// The beams of a revolution are spread over the part of it that the field of view takes; the last one ends
+/// it.
 Time Lidar::instant_of(std::int64_t beam) const {
   const std::int64_t revolution = beam / settings_.beams, index = beam % settings_.beams;
   const double revolution_ns = 1e9 / settings_.rate_hz;
@@ -126,7 +130,8 @@ void Lidar::advance(Time from, Time to, const Pose3& T_world_body_from, const Po
     if (settings_.motion_distortion) {
       fire(next_beam_, T_world_lidar);
     } else if (is_last) {
-      for (std::int64_t beam = next_beam_ - settings_.beams + 1; beam <= next_beam_; ++beam) fire(beam, T_world_lidar);
+      for (std::int64_t beam = next_beam_ - settings_.beams + 1; beam <= next_beam_; ++beam)
+        fire(beam, T_world_lidar);
     }
     ++next_beam_;
     if (!is_last) continue;
@@ -148,15 +153,18 @@ void Lidar::fire(std::int64_t beam, const Pose3& T_world_lidar) {
   const auto column = static_cast<std::size_t>(beam % settings_.beams);
   for (std::size_t ring = 0; ring < elevation_.size(); ++ring) {
     const std::uint64_t index = column * elevation_.size() + ring;
-    const Eigen::Vector3d direction(elevation_[ring].x() * azimuth_[column].x(), elevation_[ring].x() * azimuth_[column].y(),
-                                    elevation_[ring].y());
+    const Eigen::Vector3d direction(elevation_[ring].x() * azimuth_[column].x(),
+                                    elevation_[ring].x() * azimuth_[column].y(), elevation_[ring].y());
     const Return got = measure(tick, index, T_world_lidar, direction, last_range_m_[ring]);
     if (settings_.rings == 1) {
       scan_.ranges_m.push_back(static_cast<float>(got.range_m));
       scan_.intensities.push_back(static_cast<float>(got.intensity));
     } else if (std::isfinite(got.range_m)) {
       const Eigen::Vector3f point = (got.range_m * direction).cast<float>();
-      cloud_.points.push_back({.x = point.x(), .y = point.y(), .z = point.z(), .intensity = static_cast<float>(got.intensity),
+      cloud_.points.push_back({.x = point.x(),
+                               .y = point.y(),
+                               .z = point.z(),
+                               .intensity = static_cast<float>(got.intensity),
                                .time_s = static_cast<float>(to_seconds(instant_of(beam) - cloud_.stamp)),
                                .ring = static_cast<std::uint16_t>(ring)});
     }
@@ -183,7 +191,8 @@ Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose
       got = {path_m * rain_range_.uniform(tick, index), 5.0};
     }
   }
-  if (settings_.dropout > 0.0 && dropout_.uniform(tick, index) < settings_.dropout) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
+  if (settings_.dropout > 0.0 && dropout_.uniform(tick, index) < settings_.dropout)
+    return {std::numeric_limits<double>::quiet_NaN(), 0.0};
   if (!std::isfinite(got.range_m)) return got;
   if (got.range_m < settings_.range_min_m) return {-kInfinity, got.intensity};
   got.range_m += settings_.range_noise_m * range_noise_.normal(tick, index);
@@ -201,10 +210,13 @@ Lidar::Return Lidar::look(const Pose3& T_world_lidar, const Eigen::Vector3d& dir
   return hit ? echo(*hit, ray, hit->distance_m) : Return{kInfinity, 0.0};
 }
 
-/// The mean over the beam's width, weighted by the light that comes back; of the surfaces within a pulse's length only.
-Lidar::Return Lidar::mix_over_width(const Pose3& T_world_lidar, const Eigen::Vector3d& direction, const Return& middle) const {
+/// The mean over the beam's width, weighted by the light that comes back; of the surfaces within a pulse's
+/// length only.
+Lidar::Return Lidar::mix_over_width(const Pose3& T_world_lidar, const Eigen::Vector3d& direction,
+                                    const Return& middle) const {
   constexpr int kRays = 4;
-  const Eigen::Vector3d sideways = settings_.beam_width_deg * kDegree * Eigen::Vector3d(-direction.y(), direction.x(), 0.0);
+  const Eigen::Vector3d sideways =
+      settings_.beam_width_deg * kDegree * Eigen::Vector3d(-direction.y(), direction.x(), 0.0);
   double light = 0.0, light_range = 0.0, light_intensity = 0.0;
   for (int i = 0; i < kRays; ++i) {
     const double share = (i + 0.5) / kRays - 0.5;
@@ -218,7 +230,8 @@ Lidar::Return Lidar::mix_over_width(const Pose3& T_world_lidar, const Eigen::Vec
   return light > 0.0 ? Return{light_range / light, light_intensity / light} : middle;
 }
 
-/// What comes back from a surface: nothing from glass met squarely off, from grazing or from dark and far ones.
+/// What comes back from a surface: nothing from glass met squarely off, from grazing or from dark and far
+/// ones.
 Lidar::Return Lidar::echo(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const {
   const double cosine = std::abs(hit.normal.dot(direction));
   const auto geom = static_cast<std::size_t>(hit.geom);
@@ -227,7 +240,8 @@ Lidar::Return Lidar::echo(const RayHit& hit, const Eigen::Vector3d& direction, d
   if (cosine < std::cos(settings_.grazing_deg * kDegree)) return {kInfinity, 0.0};
   // The echo falls with the square of the range; range_max is reached on white, dark_range on 10 %.
   const double reflectivity = std::max(0.02, static_cast<double>(reflectivity_[geom]));
-  const double reach_m = std::min(settings_.range_max_m, settings_.dark_range_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1));
+  const double reach_m = std::min(settings_.range_max_m,
+                                  settings_.dark_range_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1));
   if (settings_.dark_range_m > 0.0 && range_m > reach_m) return {kInfinity, 0.0};
   return {range_m, 255.0 * std::min(1.0, reflectivity * cosine)};
 }
