@@ -1,0 +1,103 @@
+#include "app/scenario.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::app {
+namespace {
+
+using test::TemporaryFolder;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+const std::filesystem::path kSource = PATROL_SOURCE_DIR;
+
+TEST(Scenario, EveryOneOfTheStreetIsReadAndFindsItsFiles) {
+  int num_scenarios = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kSource / "worlds/street/scenarios")) {
+    if (entry.path().extension() != ".yaml") continue;
+    ++num_scenarios;
+    const Scenario scenario = io::load_settings<Scenario>(entry.path(), {});
+    const ScenarioFiles files = load_scenario_files(scenario, find_data_root(entry.path()));
+    EXPECT_TRUE(std::filesystem::exists(files.world_xml)) << entry.path();
+    EXPECT_FALSE(files.route.stations.empty()) << entry.path();
+    EXPECT_FALSE(scenario.expect.empty()) << entry.path() << " expects nothing";
+  }
+  EXPECT_GE(num_scenarios, 2);
+}
+
+TEST(Scenario, FindsTheQuadrupedByItsName) {
+  const ScenarioFiles files = load_scenario_files(Scenario{}, kSource);
+  EXPECT_EQ(files.world_xml, kSource / "worlds/street/street.xml");
+  EXPECT_EQ(files.robot_urdf, kSource / "models/quadruped/quadruped.urdf");
+  EXPECT_EQ(files.robot.legs.size(), 4u);
+}
+
+TEST(Scenario, AnUnknownWorldOrRobotNamesTheKnownOnes) {
+  Scenario scenario;
+  scenario.world = "moon";
+  EXPECT_THAT(
+      [&] { load_scenario_files(scenario, kSource); },
+      ThrowsMessage<InputError>(AllOf(HasSubstr("world = moon"), HasSubstr("known: "), HasSubstr("street"))));
+  scenario.world = "street";
+  scenario.robot = "hexapod";
+  EXPECT_THAT([&] { load_scenario_files(scenario, kSource); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("robot = hexapod"), HasSubstr("quadruped"))));
+}
+
+TEST(Scenario, AMissingMissionIsNamed) {
+  Scenario scenario;
+  scenario.mission = "routes/absent.json";
+  EXPECT_THAT([&] { load_scenario_files(scenario, kSource); },
+              ThrowsMessage<InputError>(
+                  AllOf(HasSubstr("mission = routes/absent.json"), HasSubstr("worlds/street"))));
+}
+
+// <folder>/worlds and <folder>/models, the scenario two folders down.
+TEST(Scenario, DataLieInTheNearestFolderAboveItThatHasBoth) {
+  const TemporaryFolder folder;
+  for (const char* name : {"worlds/field/scenarios", "models", "worlds/field/worlds"}) {
+    std::filesystem::create_directories(folder / name);
+  }
+  EXPECT_EQ(find_data_root(folder / "worlds/field/scenarios/night.yaml"), folder.path());
+}
+
+TEST(Scenario, ElsewhereItTakesTheWorkingDirectoryOrTheSourceTree) {
+  const TemporaryFolder folder;
+  const std::filesystem::path here = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());  // nothing here
+  const std::filesystem::path from_nowhere = find_data_root(folder / "my.yaml");
+  std::filesystem::create_directories(folder / "elsewhere/worlds");
+  std::filesystem::create_directories(folder / "elsewhere/models");
+  std::filesystem::create_directories(folder / "apart");
+  std::filesystem::current_path(folder / "elsewhere");
+  const std::filesystem::path from_working_directory = find_data_root(folder / "apart/my.yaml");
+  std::filesystem::current_path(here);
+  EXPECT_EQ(from_nowhere, kSource);
+  EXPECT_EQ(from_working_directory, folder / "elsewhere");
+}
+
+// What `patrol run` writes beside its results runs again: everything that was set comes back.
+TEST(Scenario, ResolvedAndReadAgainIsTheSame) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = kSource / "worlds/street/scenarios/short.yaml";
+  const auto first = io::load_settings<Scenario>(file, {"seed=7", "sensors.lidar.range_noise_m=0.05"});
+  io::save_settings(folder / "a.yaml", first, "");
+  const auto second = io::load_settings<Scenario>(folder / "a.yaml", {});
+  io::save_settings(folder / "b.yaml", second, "");
+  EXPECT_EQ(second.seed, 7u);
+  EXPECT_EQ(second.expect.size(), first.expect.size());
+  EXPECT_EQ(test::read_bytes(folder / "a.yaml"), test::read_bytes(folder / "b.yaml"));
+}
+
+TEST(Scenario, AnOverrideOfAnUnknownKeyNamesTheNearest) {
+  EXPECT_THAT([] { io::load_settings<Scenario>(kSource / "worlds/street/scenarios/short.yaml", {"sed=3"}); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("sed"), HasSubstr("seed"))));
+}
+
+}  // namespace
+}  // namespace patrol::app
