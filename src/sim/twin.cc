@@ -35,6 +35,7 @@ std::string geom_name(const mjModel& model, int geom) {
 Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uint64_t seed)
     : model_(assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start)),
       data_(make_data(*model_.physics)),
+      nearby_(*model_.physics),
       robot_body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)),
       controller_(robot, settings.locomotion),
       actors_(*model_.physics, settings.actors),
@@ -64,6 +65,7 @@ void Twin::step() {
     const auto lap = clock_.lap("physics");
     mj_Euler(model, data_.get());
     now_ += tick_;
+    nearby_.update(*data_);
     mj_forward(model, data_.get());
     throw_if_diverged();
     note_collisions();

@@ -13,6 +13,7 @@
 #include "sim/gas_plume.h"
 #include "sim/locomotion/quadruped_controller.h"
 #include "sim/model_assembly.h"
+#include "sim/nearby_scenery.h"
 #include "sim/sensors/sensor_suite.h"
 
 namespace patrol::sim {
@@ -64,6 +65,7 @@ class Twin {
 
   AssembledModel model_;
   DataPtr data_;
+  NearbyScenery nearby_;
   int robot_body_;
   QuadrupedController controller_;
   Actors actors_;
