@@ -37,6 +37,12 @@ Pose3 lidar_on_body(const mjModel& model) {
 RunFollower::RunFollower(const mjModel& view, const Pose2& T_world_map)
     : scenery_(view), T_body_lidar_(lidar_on_body(view)) {
   snapshot_.T_world_map = T_world_map;
+  // Whoever walks or drives is no ground to draw on.
+  constexpr double kOutOfTheWay_m = -1000.0;
+  const sim::DataPtr data = sim::make_data(view);
+  for (int actor = 0; actor < view.nmocap; ++actor) data->mocap_pos[3 * actor + 2] = kOutOfTheWay_m;
+  mj_kinematics(&view, data.get());
+  scenery_.update(*data);
 }
 
 void RunFollower::add(const OdometryEstimate& odometry) {

@@ -109,6 +109,17 @@ TEST_F(RunFollowerTest, BeamsWithoutAReturnAreNotDrawn) {
   EXPECT_TRUE(follower.snapshot().scan.empty());
 }
 
+TEST(RunFollowerAmong, ActorsDrawsPathsOnTheGroundAndNotOnThem) {
+  const auto model =
+      small_scene(std::string(kRobotBeforeWall) +
+                  R"(<body pos="1 0 0.1" mocap="true"><geom type="box" size="0.3 0.3 0.1"/></body>)");
+  RunFollower follower(*model, {});
+  follower.add(truth_at(0s, 1.0, 0.0, 0.0));
+  EXPECT_THAT(follower.snapshot().true_path.back(), VectorNear(Eigen::Vector3d(1.0, 0.0, 0.01), 1e-4));
+  EXPECT_EQ(follower.free_distance_m({0.0, 0.0, 0.1}, Eigen::Vector3d::UnitX(), 2.0), 2.0);
+  EXPECT_NEAR(follower.free_distance_m({0.0, 0.0, 0.6}, Eigen::Vector3d::UnitX(), 10.0), 4.0, 1e-4);
+}
+
 TEST(RunFollowerWithout, ALidarIsRefused) {
   const auto model = small_scene(R"(<body name="base_link"><geom size="0.1"/></body>)");
   EXPECT_THROW(RunFollower(*model, {}), InputError);
