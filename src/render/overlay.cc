@@ -50,7 +50,8 @@ void Overlay::draw_figures(Frame& frame, const RunSnapshot& snapshot) {
   const int baseline = margin + figures_.height_px();
   const int width = frame.width() - 4 * margin;
   figures_.draw(frame, 2 * margin, baseline, figures_.fitted(text, width), {kTextColor, 1.0});
-  words_.draw(frame, 2 * margin, baseline + line, words_.fitted(snapshot.event, width), {kTextColor, 0.9});
+  words_.draw(frame, 2 * margin, baseline + line, words_.fitted(snapshot.event, width),
+              {snapshot.is_alarm ? kAlarmColor : kTextColor, 1.0});
 }
 
 void Overlay::draw_legend(Frame& frame) {

@@ -71,6 +71,11 @@ void RunFollower::add(const Path& plan) {
   }
 }
 
+void RunFollower::add(const Event& event) {
+  snapshot_.event = event.text;
+  snapshot_.is_alarm = event.kind == "alarm";
+}
+
 void RunFollower::add(const GroundTruth& truth) {
   if (!truth_.empty()) {
     if (truth.stamp <= truth_.back().stamp) return;

@@ -24,7 +24,7 @@ class RunFollower {
   void add(const ParticleSet& particles) { snapshot_.particles = particles.T_map_body; }
   void add(const MapUpdate& update) { snapshot_.map = std::make_shared<const OccupancyGrid>(update.map); }
   void add(const Path& plan);
-  void add(const Event& event) { snapshot_.event = event.text; }
+  void add(const Event& event);
   void add(const GroundTruth& truth);
   void add(const SimState& state) { snapshot_.state = state; }
 

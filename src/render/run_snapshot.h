@@ -27,7 +27,8 @@ struct RunSnapshot {
   double position_error_m = 0.0;                ///< of the newest estimate
   double heading_error_rad = 0.0;
   double walked_m = 0.0;
-  std::string event;  ///< the newest one's text
+  std::string event;      ///< the newest one's text
+  bool is_alarm = false;  ///< that event is one
 };
 
 }  // namespace patrol::render

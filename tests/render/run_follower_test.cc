@@ -101,6 +101,18 @@ TEST_F(RunFollowerTest, BeamsAreFreedOfTheRobotsTurningAndLeaning) {
               VectorNear(body + lean_left * Eigen::Vector3d(0.0, 3.0, 0.1), 1e-6));
 }
 
+TEST_F(RunFollowerTest, TellsTheNewestEventAndWhetherItIsAnAlarm) {
+  Event event;
+  event.kind = "alarm";
+  event.text = "Leak at regulator_box_2.";
+  follower.add(event);
+  EXPECT_EQ(follower.snapshot().event, "Leak at regulator_box_2.");
+  EXPECT_TRUE(follower.snapshot().is_alarm);
+  event.kind = "station_reached";
+  follower.add(event);
+  EXPECT_FALSE(follower.snapshot().is_alarm);
+}
+
 TEST_F(RunFollowerTest, BeamsWithoutAReturnAreNotDrawn) {
   follower.add(truth_at(0s, 10.0, 20.0, 0.0));
   follower.add(
