@@ -173,6 +173,21 @@ TEST(Costmap, WhatIsNotSeenAgainIsForgottenAfterItsMemory) {
   EXPECT_EQ(costmap.cost_at({-3.05, 0.05}), kLethalCost);
 }
 
+// Of three, the first goes; the last, seen again at 4 s, must be believed until 9 s.
+TEST(Costmap, AfterOneIsForgottenTheOthersAreStillThemselves) {
+  Costmap costmap = make_costmap(make_free_map(), {.obstacle_memory_s = 5.0});
+  costmap.add_scan(one_beam({}, {2.05, 0.05}, 0.0), {});
+  costmap.add_scan(one_beam({}, {0.05, 2.05}, 0.1), {});
+  costmap.add_scan(one_beam({}, {-2.05, 0.05}, 0.2), {});
+  costmap.add_scan(one_beam({}, {3.05, 0.0746}, 0.3, false), {});  // passes the first
+  EXPECT_EQ(costmap.num_live_obstacles(), 2u);
+  costmap.add_scan(one_beam({}, {-2.05, 0.05}, 4.0), {});
+  costmap.add_scan(one_beam({}, {0.05, -3.05}, 8.9), {});
+  EXPECT_EQ(costmap.cost_at({2.05, 0.05}), kFreeCost);
+  EXPECT_EQ(costmap.cost_at({0.05, 2.05}), kFreeCost);
+  EXPECT_EQ(costmap.cost_at({-2.05, 0.05}), kLethalCost);
+}
+
 TEST(Costmap, HitsBeyondTheObstacleRangeAreLeftToTheMap) {
   Costmap costmap = make_costmap(make_free_map(), {.obstacle_range_m = 3.0});
   costmap.add_scan(one_beam({}, {3.2, 0.05}, 0.0), {});
@@ -188,6 +203,19 @@ TEST(Costmap, WhatTheMapHasIsNoLiveObstacle) {
   costmap.add_scan(one_beam({}, {2.05, 0.05}, 0.0), {});
   EXPECT_EQ(costmap.num_live_obstacles(), 0u);
   EXPECT_EQ(costmap.cost_at({2.05, 0.05}), kLethalCost);
+}
+
+TEST(Costmap, ALiveObstacleThatTheMapLearnsIsTheMapsFromThenOn) {
+  Costmap costmap = make_costmap(make_free_map());
+  costmap.add_scan(one_beam({}, {2.05, 0.05}, 0.0), {});
+  OccupancyGrid map = make_free_map();
+  occupy(map, {2.05, 0.05});
+  costmap.set_map(map);
+  costmap.add_scan(one_beam({}, {-3.05, 0.05}, 0.1), {});
+  EXPECT_FALSE(costmap.is_live_obstacle(costmap.geometry().cell_at({2.05, 0.05})));
+  EXPECT_EQ(costmap.cost_at({2.05, 0.05}), kLethalCost);
+  costmap.set_map(make_free_map());  // and leaves with it
+  EXPECT_EQ(costmap.cost_at({2.05, 0.05}), kFreeCost);
 }
 
 TEST(Costmap, ForgettingLeavesLiveObstaclesOutsideTheCircle) {
@@ -206,13 +234,12 @@ TEST(Costmap, RefreshedPieceByPieceEqualsAFreshOne) {
   const RandomStream stream(9, "test/obstacles");
   for (std::uint64_t i = 0; i < 30; ++i)
     occupy(map, {9.8 * stream.uniform(i, 0) - 4.9, 9.8 * stream.uniform(i, 1) - 4.9});
-  Costmap piecewise = make_costmap(make_free_map());
+  Costmap piecewise = make_costmap(map);
   OccupancyGrid both = map;
   for (std::uint64_t i = 0; i < 20; ++i) {
     const Eigen::Vector2d p(6.0 * stream.uniform(i, 2) - 3.0, 6.0 * stream.uniform(i, 3) - 3.0);
     piecewise.add_scan(one_beam({}, p, 0.01 * static_cast<double>(i)), {});
   }
-  piecewise.set_map(map);
   for (int row = 0; row < both.geometry().height; ++row) {
     for (int col = 0; col < both.geometry().width; ++col) {
       const Eigen::Vector2d p = both.geometry().center_of({col, row});

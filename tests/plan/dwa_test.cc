@@ -171,14 +171,15 @@ TEST(DynamicWindow, FollowsAPathAroundABlockWithoutTouchingIt) {
   EXPECT_GT(min_clearance_m, 0.0);
 }
 
-// A gap of 0.9 m for a robot 0.3 m wide: nothing is comfortable, but standing gets nowhere.
-TEST(DynamicWindow, AtRestBeforeANarrowGapMovesOn) {
-  const Costmap costmap = Ground().add_block(1.0, -6.0, 1.5, -0.4).add_block(1.0, 0.5, 1.5, 6.0).costmap();
-  const PlannedPath path = make_path({{0.0, -0.3}, {1.0, 0.05}, {1.5, 0.05}, {4.0, 0.05}});
-  for (const double x : {-0.2, 0.0, 0.1, 0.2, 0.3}) {
-    const Pose2 start{x, -0.25 + 0.35 * x, 0.3};
+// Along a wall and past a block that leaves 0.75 m for a robot 0.3 m wide: nothing there is comfortable, but
+// standing gets nowhere.
+TEST(DynamicWindow, AtRestBeforeANarrowPlaceMovesOn) {
+  const Costmap costmap = Ground().add_block(-6.0, 0.4, 6.0, 0.6).add_block(1.0, -1.4, 1.5, -0.4).costmap();
+  const PlannedPath path = make_path({{-0.3, -0.6}, {0.95, -0.05}, {1.65, -0.05}, {3.0, -0.6}});
+  for (const double x : {0.0, 0.1, 0.2, 0.3, 0.4}) {
+    const Pose2 start{x, -0.55 + 0.4 * (x + 0.3), 0.3};
     const auto command = DynamicWindow({}).choose(
-        costmap, path, path.project(start.position(), 0.0, 1.0).along_m, start, {}, 10.0);
+        costmap, path, path.project(start.position(), 0.0, 2.0).along_m, start, {}, 10.0);
     ASSERT_TRUE(command) << x;
     EXPECT_GT(command->vx_mps, 0.1) << x;
   }

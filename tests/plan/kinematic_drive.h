@@ -11,7 +11,7 @@
 
 namespace patrol::plan {
 
-/// A robot that does at once what it is told, 0.7 by 0.36 m.
+/// 0.7 by 0.36 m.
 inline RobotDescription make_robot() {
   RobotDescription robot;
   robot.name = "box";
@@ -73,27 +73,30 @@ struct DriveRecord {
   int num_plans = 0;
   int num_detours = 0;
   int num_recoveries = 0;
-  Pose2 T_map_body;
+  Pose2 T_map_body;                  ///< at the end
+  std::vector<Eigen::Vector2d> way;  ///< [tick], in map
 };
 
 /// What stands where at a time.
 using WorldAt = std::function<test::RoomWorld(double time_s)>;
 
 /// Closed loop: the navigator steps at 20 Hz and sees an ideal scan at 10 Hz, until it arrives, gives up or
-/// the time is over. The world is map's frame. The robot follows every command exactly.
+/// the time is over. The world is map's frame. The robot's velocity follows its command with a lag of the
+/// first order; without one, at once.
 inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_map_body,
-                         const NavigationGoal& goal, double time_limit_s, bool use_lidar = true) {
+                         const NavigationGoal& goal, double time_limit_s, double lag_s = 0.0) {
   constexpr double kPeriod_s = 0.05;
   const RobotDescription robot = make_robot();
   DriveRecord record;
   NavigationStatus before = NavigationStatus::kIdle;
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // ahead, left, yaw
   navigator.set_goal(goal);
   const int ticks = static_cast<int>(std::lround(time_limit_s / kPeriod_s));
   for (int tick = 0; tick < ticks; ++tick) {
     const double time_s = kPeriod_s * tick;
     const Time now = from_seconds(time_s);
     const test::RoomWorld world = world_at(time_s);
-    if (use_lidar && tick % 2 == 0) {
+    if (tick % 2 == 0) {
       LevelScan scan = world.scan(T_map_body, {.beams = 720});
       scan.stamp = now;
       navigator.add_scan(scan, T_map_body);
@@ -107,9 +110,12 @@ inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_
     record.time_s = time_s;
     record.min_gap_m = std::min(record.min_gap_m, gap_m(world, robot, T_map_body));
     record.T_map_body = T_map_body;
+    record.way.push_back(T_map_body.position());
     if (step.status == NavigationStatus::kArrived || step.status == NavigationStatus::kFailed) break;
-    const Pose2 next = follow_arc(T_map_body, step.command.vx_mps, step.command.yaw_rate_radps, kPeriod_s) *
-                       Pose2{0.0, kPeriod_s * step.command.vy_mps, 0.0};
+    const Eigen::Vector3d asked(step.command.vx_mps, step.command.vy_mps, step.command.yaw_rate_radps);
+    velocity += (asked - velocity) * (lag_s > 0.0 ? 1.0 - std::exp(-kPeriod_s / lag_s) : 1.0);
+    const Pose2 next = follow_arc(T_map_body, velocity[0], velocity[2], kPeriod_s) *
+                       Pose2{0.0, kPeriod_s * velocity[1], 0.0};
     record.way_m += (next.position() - T_map_body.position()).norm();
     T_map_body = next;
   }
@@ -117,9 +123,9 @@ inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_
 }
 
 inline DriveRecord drive(Navigator& navigator, const test::RoomWorld& world, const Pose2& T_map_body,
-                         const NavigationGoal& goal, double time_limit_s) {
+                         const NavigationGoal& goal, double time_limit_s, double lag_s = 0.0) {
   return drive(
-      navigator, [&](double) { return world; }, T_map_body, goal, time_limit_s);
+      navigator, [&](double) { return world; }, T_map_body, goal, time_limit_s, lag_s);
 }
 
 }  // namespace patrol::plan

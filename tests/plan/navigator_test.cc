@@ -88,6 +88,17 @@ TEST(Navigator, DrivesToTwentyRandomGoalsAmongPostsAndNeverTouches) {
   EXPECT_EQ(num_arrived, 20);
 }
 
+// A legged robot takes about a fifth of a second to do what it is told.
+TEST(Navigator, ALagOfAFifthOfASecondDoesNotMakeItTouch) {
+  RoomWorld room = make_room();
+  room.add_box(-0.5, -1.0, 0.5, 5.9).add_box(2.0, -5.9, 2.5, 0.5);
+  Navigator navigator = make_navigator(map_of_room(room));
+  const DriveRecord record = drive(navigator, room, {-4.0, 1.0, 0.0}, make_goal({4.5, 0.0, pi}), 90.0, 0.2);
+  EXPECT_EQ(record.end, NavigationStatus::kArrived);
+  EXPECT_GT(record.min_gap_m, 0.05);
+  EXPECT_EQ(record.num_recoveries, 0);
+}
+
 TEST(Navigator, WithoutAMapFindsItsWayByWhatItSees) {
   RoomWorld room = make_room();
   room.add_box(-0.5, -2.0, 0.5, 2.0);  // in the straight way
@@ -149,27 +160,17 @@ TEST(Navigator, WalledInSaysThatItFailed) {
   EXPECT_GT(record.min_gap_m, 0.0);
 }
 
+// The lidar does not see the line; it leaves a way round its northern end.
 TEST(Navigator, KeepsToItsSideOfAKeepOutLine) {
   const RoomWorld room = make_room();
-  const Polyline line{{0.0, -kRoom_m}, {0.0, 3.0}};  // leaves a way round its end
-  Navigator navigator = make_navigator(map_of_room(room), {}, {line});
+  const Polyline line{{0.0, -kRoom_m}, {0.0, 3.0}};
   RoomWorld kerb;
   kerb.add_polyline(line);
-  const Pose2 start{-3.0, 0.0, 0.0};
-  navigator.set_goal(make_goal({3.0, 0.0, 0.0}));
-  Pose2 T_map_body = start;
-  double min_gap = 10.0, north = 0.0;
-  NavigationStep step;
-  for (int tick = 0; tick < 1200 && step.status != NavigationStatus::kArrived; ++tick) {
-    step = navigator.step(from_seconds(0.05 * tick), T_map_body);
-    T_map_body = T_map_body * Pose2{0.05 * step.command.vx_mps, 0.05 * step.command.vy_mps,
-                                    0.05 * step.command.yaw_rate_radps};
-    min_gap = std::min(min_gap, kerb.distance_m(T_map_body.position()));
-    north = std::max(north, T_map_body.y);
-  }
-  EXPECT_EQ(step.status, NavigationStatus::kArrived);
-  EXPECT_GT(north, 3.0);
-  EXPECT_GT(min_gap, 0.15);  // of the body's axis; keep_out_margin_m is 0.2
+  Navigator navigator = make_navigator(map_of_room(room), {}, {line});
+  const DriveRecord record = drive(navigator, room, {-3.0, 0.0, 0.0}, make_goal({3.0, 0.0, 0.0}), 60.0);
+  EXPECT_EQ(record.end, NavigationStatus::kArrived);
+  for (const Eigen::Vector2d& p : record.way)
+    ASSERT_GT(kerb.distance_m(p), 0.15) << p.transpose();  // keep_out_margin_m is 0.2
 }
 
 TEST(Navigator, WithoutAGoalStandsIdle) {
