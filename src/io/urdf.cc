@@ -142,7 +142,9 @@ void UrdfReader::check_tree() const {
   for (const auto& [name, link] : model_->links_) {
     std::size_t steps = 0;
     for (auto at = parent_of.find(name); at != parent_of.end(); at = parent_of.find(at->second)) {
-      if (++steps > parent_of.size()) fail(name, "the joints go round in a circle here");
+      if (++steps <= parent_of.size()) continue;
+      for (const auto& [ignored, held] : model_->links_) held->child_links.clear();  // else, in a circle, they hold each other for ever
+      fail(name, "the joints go round in a circle here");
     }
   }
 }
