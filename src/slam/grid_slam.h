@@ -23,10 +23,10 @@ struct GridSlamSettings {
   // When the map is written.
   double keyframe_distance_m = 0.5;
   double keyframe_angle_rad = 0.12;
-  int initial_keyframes = 5;              ///< so many first scans are all written: one alone is noisy and has gaps
+  int initial_keyframes = 25;             ///< so many first scans are all written: the heading of everything after hangs on them
   // What is believed; more particles cost time in proportion.
   int particles = 8;
-  double likelihood_gain = 0.05;          ///< share of the points that err independently (proposal.h)
+  double likelihood_gain = 0.2;           ///< share of the points that err independently (proposal.h)
   double resample_threshold = 0.5;        ///< resample when the effective sample size falls below this share of the particles
   MotionModelSettings motion;
   ScanMatcherSettings matching;

@@ -175,7 +175,9 @@ TEST(GridSlam, AWalkerWhoCrossesTheRoomIsNotInTheMap) {
 TEST(GridSlam, WeightsSumToOneOverAsManyParticlesAsAskedFor) {
   test::RoomWorld room;
   room.add_box(-3.0, -2.0, 5.0, 4.0);
-  GridSlam slam(with_particles(12), 1);
+  GridSlamSettings settings = with_particles(12);
+  settings.initial_keyframes = 5;
+  GridSlam slam(settings, 1);
   for (int i = 0; i < 12; ++i) {
     const Pose2 T_world_body{0.1 * i, 0.0, 0.0};
     slam.update(room.scan(T_world_body, {}), T_world_body);
