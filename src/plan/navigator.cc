@@ -43,6 +43,7 @@ void Navigator::set_goal(const std::optional<NavigationGoal>& goal) {
   path_ = {};
   planned_at_ = Time::min();
   blocked_since_.reset();
+  stay_.reset();
   backing_until_.reset();
   recoveries_ = 0;
   nearest_left_m_ = std::numeric_limits<double>::infinity();
@@ -56,6 +57,8 @@ NavigationStep Navigator::step(Time now, const Pose2& T_map_body) {
       step.status = NavigationStatus::kArrived;
     } else if (recoveries_ > settings_.max_recoveries) {
       step.status = NavigationStatus::kFailed;
+    } else if (!backing_until_ && is_stuck(now, T_map_body)) {
+      step.status = recover(now, T_map_body, step.command);
     } else if (backing_until_ || plan_if_needed(now, T_map_body, step)) {
       step.status = drive(now, T_map_body, step.command);
     } else {
@@ -145,12 +148,25 @@ bool Navigator::turn_in_place(const Pose2& T_map_body, VelocityCommand& command)
   return false;
 }
 
-/// Waits; backs up and forgets the path when that has lasted.
+/// Waits; recovers when that has lasted.
 NavigationStatus Navigator::stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command) {
   command = {};
   if (!blocked_since_) blocked_since_ = now;
   if (now - *blocked_since_ < from_seconds(settings_.patience_s)) return NavigationStatus::kBlocked;
+  return recover(now, T_map_body, command);
+}
+
+/// Whether the robot moves and gets nowhere, as before a goal that its outline does not quite fit.
+bool Navigator::is_stuck(Time now, const Pose2& T_map_body) {
+  if (!stay_ || (T_map_body.position() - stay_->p_map).norm() > kProgress_m) stay_ = Stay{T_map_body.position(), now};
+  return now - stay_->since > from_seconds(settings_.stuck_s);
+}
+
+/// Backs up and looks for another way.
+NavigationStatus Navigator::recover(Time now, const Pose2& T_map_body, VelocityCommand& command) {
+  command = {};
   blocked_since_.reset();
+  stay_.reset();
   ++recoveries_;
   costmap_.forget_live(T_map_body.position(), 2.0);
   backing_until_ = now + from_seconds(settings_.back_up_s);

@@ -23,6 +23,7 @@ struct NavigatorSettings {
   double turn_first_rad = 1.0;        ///< the path leads off by more than this: turn in place first
   double turn_rate_radps = 0.7;
   double patience_s = 6.0;            ///< standing blocked for so long calls for a recovery
+  double stuck_s = 15.0;              ///< so does moving for so long without getting half a metre away
   double back_up_s = 2.0;             ///< the recovery: backwards, if there is room, and a new path
   double back_up_speed_mps = 0.15;
   int max_recoveries = 8;             ///< without getting nearer; then the goal is given up
@@ -41,6 +42,7 @@ struct NavigatorSettings {
     visit("turn_first_rad", self.turn_first_rad, between(0.2, 3.2));
     visit("turn_rate_radps", self.turn_rate_radps, between(0.05, 3.0));
     visit("patience_s", self.patience_s, between(0.5, 600.0));
+    visit("stuck_s", self.stuck_s, between(1.0, 600.0));
     visit("back_up_s", self.back_up_s, between(0.0, 20.0));
     visit("back_up_speed_mps", self.back_up_speed_mps, between(0.0, 1.0));
     visit("max_recoveries", self.max_recoveries, between(0, 1000));
@@ -80,12 +82,19 @@ class Navigator {
   const PlannedPath& path() const { return path_; }
 
  private:
+  struct Stay {
+    Eigen::Vector2d p_map;
+    Time since{};
+  };
+
   bool is_path_blocked(double from_m) const;
   bool plan_if_needed(Time now, const Pose2& T_map_body, NavigationStep& step);
   NavigationStatus drive(Time now, const Pose2& T_map_body, VelocityCommand& command);
   VelocityCommand follow_path(const Pose2& T_map_body);
   bool turn_in_place(const Pose2& T_map_body, VelocityCommand& command) const;
   NavigationStatus stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command);
+  bool is_stuck(Time now, const Pose2& T_map_body);
+  NavigationStatus recover(Time now, const Pose2& T_map_body, VelocityCommand& command);
   bool is_safe(const Pose2& T_map_body, const VelocityCommand& command, double time_s) const;
   void note_progress(const Pose2& T_map_body);
 
@@ -102,6 +111,7 @@ class Navigator {
   bool map_is_new_ = false;
   VelocityCommand last_;              ///< the command before, in place of the noisy measured twist
   std::optional<Time> blocked_since_;
+  std::optional<Stay> stay_;          ///< where the robot has been about for how long
   std::optional<Time> backing_until_;
   int recoveries_ = 0;
   double nearest_left_m_ = 0.0;       ///< the shortest way left so far

@@ -88,6 +88,27 @@ TEST(Navigator, DrivesToTwentyRandomGoalsAmongPostsAndNeverTouches) {
   EXPECT_EQ(num_arrived, 20);
 }
 
+// Twelve rooms of which the map knows the outer walls only, with seven boxes that the lidar finds on the way.
+TEST(Navigator, DrivesAmongBoxesThatTheMapDoesNotKnow) {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const RandomStream stream(seed, "test/boxes");
+    RoomWorld room = make_room();
+    const OccupancyGrid map = map_of_room(room);
+    for (std::uint64_t box = 0; box < 7; ++box) {
+      const Eigen::Vector2d center(7.0 * stream.uniform(0, box) - 3.5, 10.0 * stream.uniform(1, box) - 5.0);
+      const Eigen::Vector2d half(0.15 + 0.4 * stream.uniform(2, box), 0.15 + 0.4 * stream.uniform(3, box));
+      room.add_box(center.x() - half.x(), center.y() - half.y(), center.x() + half.x(),
+                   center.y() + half.y());
+    }
+    const Pose2 start{-5.0, 8.0 * stream.uniform(4) - 4.0, 6.28 * stream.uniform(5)};
+    const Pose2 goal{5.0, 8.0 * stream.uniform(6) - 4.0, 6.28 * stream.uniform(7)};
+    Navigator navigator = make_navigator(map);
+    const DriveRecord record = drive(navigator, room, start, make_goal(goal), 120.0, 0.2);
+    EXPECT_EQ(record.end, NavigationStatus::kArrived) << "seed " << seed;
+    EXPECT_GT(record.min_gap_m, 0.0) << "seed " << seed;
+  }
+}
+
 // A legged robot takes about a fifth of a second to do what it is told.
 TEST(Navigator, ALagOfAFifthOfASecondDoesNotMakeItTouch) {
   RoomWorld room = make_room();
@@ -158,6 +179,21 @@ TEST(Navigator, WalledInSaysThatItFailed) {
   EXPECT_EQ(record.end, NavigationStatus::kFailed);
   EXPECT_LT(record.time_s, 20.0);
   EXPECT_GT(record.min_gap_m, 0.0);
+}
+
+// Nose on, 25 cm from the wall and less: nearer than discs and margins allow. It may not circle before such a
+// place for ever.
+TEST(Navigator, AGoalThatItsOutlineDoesNotFitFailsInsteadOfCircling) {
+  const RoomWorld room = make_room();
+  for (const double x : {5.4, 5.5, 5.6, 6.5}) {
+    NavigatorSettings settings = with_patience(1.0, 0.5, 2);
+    settings.stuck_s = 10.0;
+    Navigator navigator = make_navigator(map_of_room(room), settings);
+    const DriveRecord record = drive(navigator, room, {3.0, 0.0, 0.0}, make_goal({x, 0.0, 0.0}), 120.0);
+    EXPECT_EQ(record.end, NavigationStatus::kFailed) << x;
+    EXPECT_LT(record.time_s, 60.0) << x;
+    EXPECT_GT(record.min_gap_m, 0.0) << x;
+  }
 }
 
 // The lidar does not see the line; it leaves a way round its northern end.
