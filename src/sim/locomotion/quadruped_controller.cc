@@ -24,6 +24,7 @@ const Eigen::Vector3d kInertiaPerKg(0.008, 0.024, 0.028);           // m2: roll,
 constexpr double kSwingStiffness = 700.0, kSwingDamping = 16.0;  // N/m, N s/m
 constexpr double kCaptureTime_s = 0.06;  // how far a foot is put ahead per m/s too fast (Raibert)
 constexpr double kSearchSpeed_mps = 0.35, kMaxSearch_m = 0.10;
+constexpr double kWakeUp_s = 0.5;        // stands first, so that its own estimate settles
 constexpr double kGroundTime_s = 0.15;   // smoothing of the ground under the feet
 constexpr double kEarlyTouch = 0.55;     // from this part of a swing on, contact means ground
 constexpr double kStandSpeed_mps = 0.02, kStandRate_radps = 0.03;
@@ -69,6 +70,8 @@ JointTorques QuadrupedController::step(const LegSensors& sensors, const Velocity
 }
 
 void QuadrupedController::follow_command(const VelocityCommand& command) {
+  awake_s_ += tick_s_;
+  if (awake_s_ < kWakeUp_s) return;
   const double change = settings_.max_acceleration_mps2 * tick_s_;
   const double vx = std::clamp(command.vx_mps, -settings_.max_backward_mps, settings_.max_forward_mps);
   const double vy = std::clamp(command.vy_mps, -settings_.max_sideways_mps, settings_.max_sideways_mps);

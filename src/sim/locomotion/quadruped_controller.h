@@ -97,6 +97,7 @@ class QuadrupedController {
   FootFlags is_stance_;
   FootFlags is_searching_{};                 ///< its stance has begun but it has not found the ground
   std::array<double, kNumLegs> search_s_{};
+  double awake_s_ = 0.0;                     ///< since switched on
   FootVectors lift_off_m_;                   ///< in level, at lift-off
 
   // Ground under the four last footholds: z = offset + slope . (x, y), in level.
