@@ -169,7 +169,7 @@ TEST(Mission, HoldsItsPlaceWhileItMeasures) {
   const MissionOutput measuring =
       mission.step(from_seconds(2.1), pose, NavigationFeedback::kArrived, std::nullopt);
   ASSERT_TRUE(measuring.goal);
-  EXPECT_EQ(measuring.goal->T_map_body.vector(), Pose2(3.0, 0.0, 0.0).vector());
+  EXPECT_EQ(measuring.goal->T_map_body.vector(), Eigen::Vector3d(3.0, 0.0, 0.0));
 }
 
 // 150 and 250 in turn: mean 200 + m, the standard error of 11 readings is about 100 / 2 / sqrt(11) = 16: an
@@ -338,7 +338,7 @@ TEST(Mission, AbortEndsItWithItsEvent) {
 TEST(Mission, EventsSayWhereTheRobotWas) {
   Mission mission(make_settings(), make_route(), {});
   const MissionRecord record = run(mission, clean_air);
-  EXPECT_EQ(record.find("gas_measured", "second").T_map_body.vector(), Pose2(3.0, 4.0, pi / 2.0).vector());
+  EXPECT_EQ(record.find("gas_measured", "second").T_map_body.vector(), Eigen::Vector3d(3.0, 4.0, pi / 2.0));
 }
 
 TEST(Mission, RefusesAnEmptyRouteAndSettingsThatBreakTheirRule) {
