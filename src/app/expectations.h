@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "io/expectations.h"
 #include "io/metrics_json.h"
-#include "io/settings_yaml.h"
 
 namespace patrol::app {
 

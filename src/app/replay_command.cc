@@ -46,7 +46,7 @@ render::ReplaySettings replay_settings(const ReplayOptions& options) {
 ExitCode replay_command(const ReplayOptions& options) {
   const render::ReplaySettings settings = replay_settings(options);
   const RunDirectory directory = open_run_directory(options.run);
-  const Scenario scenario = io::load_settings<Scenario>(directory.scenario(), {});
+  const Scenario scenario = load_scenario(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
   const RunRecord record = read_run_record(directory.log());
   const Pose2 T_world_map = score::join_at_start(record.T_map_body, record.T_world_body);

@@ -20,10 +20,10 @@ std::filesystem::path default_directory(const RunOptions& options, const Scenari
          fmt::format("{}_{}_seed{}", scenario.world, options.scenario.stem().string(), scenario.seed);
 }
 
-Scenario load_scenario(const RunOptions& options) {
+Scenario scenario_of(const RunOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
-  return io::load_settings<Scenario>(options.scenario, overrides);
+  return load_scenario(options.scenario, overrides);
 }
 
 /// What a resolved scenario says about its making.
@@ -56,14 +56,14 @@ ExitCode exit_code_of(RunEnd end, const std::vector<CheckedExpectation>& checks)
 }  // namespace
 
 ExitCode run_command(const RunOptions& options) {
-  const Scenario scenario = load_scenario(options);
+  const Scenario scenario = scenario_of(options);
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
   const std::string name = options.scenario.stem().string();
 
   sim::Twin twin = make_twin(scenario, files);  // refuses bad input before anything is written
   const RunDirectory directory = begin_run_directory(options.out.value_or(default_directory(options, scenario)));
   write_unfinished_junit(directory, scenario, name);
-  io::save_settings(directory.scenario(), scenario, made_by(name));
+  save_scenario(directory.scenario(), scenario, made_by(name));
 
   ProgressBar bar;
   const InterruptGuard interrupt;

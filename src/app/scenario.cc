@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "io/route_json.h"
+#include "io/settings_yaml.h"
 #include "io/urdf.h"
 
 namespace patrol::app {
@@ -37,6 +38,14 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
 }
 
 }  // namespace
+
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return io::load_settings<Scenario>(file, overrides);
+}
+
+void save_scenario(const std::filesystem::path& file, const Scenario& scenario, const std::string& comment) {
+  io::save_settings(file, scenario, comment);
+}
 
 std::filesystem::path find_data_root(const std::filesystem::path& scenario) {
   std::filesystem::path folder = scenario.empty() ? std::filesystem::current_path() : std::filesystem::absolute(scenario).parent_path();

@@ -8,7 +8,7 @@
 #include "core/route.h"
 #include "core/settings.h"
 #include "app/robot_stack.h"
-#include "io/settings_yaml.h"
+#include "io/expectations.h"
 #include "sim/twin.h"
 
 namespace patrol::app {
@@ -80,6 +80,12 @@ struct Scenario {
     visit("expect", self.expect);
   }
 };
+
+/// A scenario file with "path=value" overrides. Throws InputError with file, line and key.
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// Every setting written out, under a line of comment.
+void save_scenario(const std::filesystem::path& file, const Scenario& scenario, const std::string& comment);
 
 /// Where worlds and models lie: the nearest folder above `scenario` that holds `worlds/` and `models/`, else the
 /// working directory, else the source tree that the program was built from.

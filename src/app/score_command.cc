@@ -12,7 +12,7 @@ namespace {
 
 ExitCode score_directory(const std::filesystem::path& root) {
   const RunDirectory directory = open_run_directory(root);
-  const Scenario scenario = io::load_settings<Scenario>(directory.scenario(), {});
+  const Scenario scenario = load_scenario(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
   io::Metrics metrics = score_run(directory, scenario, files);
   if (std::filesystem::exists(directory.metrics())) {

@@ -8,7 +8,6 @@
 #include "app/run_directory.h"
 #include "app/run_loop.h"
 #include "io/log_compare.h"
-#include "io/settings_yaml.h"
 
 namespace patrol::app {
 namespace {
@@ -36,7 +35,7 @@ class TemporaryFolder {
 
 ExitCode verify_command(const std::filesystem::path& run) {
   const RunDirectory directory = open_run_directory(run);
-  const Scenario scenario = io::load_settings<Scenario>(directory.scenario(), {});
+  const Scenario scenario = load_scenario(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
 
   const TemporaryFolder again;

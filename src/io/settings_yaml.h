@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <string>
 #include <type_traits>
@@ -15,18 +14,10 @@
 #include "core/error.h"
 #include "core/settings.h"
 #include "io/atomic_file.h"
+#include "io/expectations.h"
 
 /// Settings structs (core/settings.h) from YAML and back. A wrong file gives one sentence: file, line, key, rule.
 namespace patrol::io {
-
-/// What a metric must be: `true`, `false`, a number, or a band {min:, max:}.
-struct Expectation {
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool is_boolean = false;
-};
-/// By the metric's path in metrics.json, e.g. "pose.ate_rmse_m".
-using Expectations = std::map<std::string, Expectation>;
 
 /// Reads one document into a struct, field by field, and complains about whatever is left over.
 class SettingsReader {

@@ -21,7 +21,7 @@ TEST(Scenario, EveryOneOfTheStreetIsReadAndFindsItsFiles) {
   for (const auto& entry : std::filesystem::directory_iterator(kSource / "worlds/street/scenarios")) {
     if (entry.path().extension() != ".yaml") continue;
     ++num_scenarios;
-    const Scenario scenario = io::load_settings<Scenario>(entry.path(), {});
+    const Scenario scenario = load_scenario(entry.path());
     const ScenarioFiles files = load_scenario_files(scenario, find_data_root(entry.path()));
     EXPECT_TRUE(std::filesystem::exists(files.world_xml)) << entry.path();
     EXPECT_FALSE(files.route.stations.empty()) << entry.path();
@@ -85,17 +85,17 @@ TEST(Scenario, ElsewhereItTakesTheWorkingDirectoryOrTheSourceTree) {
 TEST(Scenario, ResolvedAndReadAgainIsTheSame) {
   const TemporaryFolder folder;
   const std::filesystem::path file = kSource / "worlds/street/scenarios/short.yaml";
-  const auto first = io::load_settings<Scenario>(file, {"seed=7", "sensors.lidar.range_noise_m=0.05"});
-  io::save_settings(folder / "a.yaml", first, "");
-  const auto second = io::load_settings<Scenario>(folder / "a.yaml", {});
-  io::save_settings(folder / "b.yaml", second, "");
+  const auto first = load_scenario(file, {"seed=7", "sensors.lidar.range_noise_m=0.05"});
+  save_scenario(folder / "a.yaml", first, "");
+  const auto second = load_scenario(folder / "a.yaml");
+  save_scenario(folder / "b.yaml", second, "");
   EXPECT_EQ(second.seed, 7u);
   EXPECT_EQ(second.expect.size(), first.expect.size());
   EXPECT_EQ(test::read_bytes(folder / "a.yaml"), test::read_bytes(folder / "b.yaml"));
 }
 
 TEST(Scenario, AnOverrideOfAnUnknownKeyNamesTheNearest) {
-  EXPECT_THAT([] { io::load_settings<Scenario>(kSource / "worlds/street/scenarios/short.yaml", {"sed=3"}); },
+  EXPECT_THAT([] { load_scenario(kSource / "worlds/street/scenarios/short.yaml", {"sed=3"}); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("sed"), HasSubstr("seed"))));
 }
 
