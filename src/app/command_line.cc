@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <mujoco/mujoco.h>
 
 #include "app/commands.h"
 #include "core/error.h"
@@ -68,6 +69,7 @@ int report(const char* what, ExitCode code) {
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
+  mju_user_warning = [](const char* text) { fmt::print(stderr, "mujoco: {}\n", text); };  // else a file in the working directory
   CLI::App app("Patrol: a digital twin for inspection robots");
   app.set_version_flag("--version", PATROL_VERSION);
   app.require_subcommand(1);

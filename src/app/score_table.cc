@@ -1,6 +1,7 @@
 #include "app/score_table.h"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -22,9 +23,10 @@ class Table {
     }
   }
 
-  void add_missing() {
+  /// What was expected of figures that have no line yet: not measured, or named by their place in a list.
+  void add_rest() {
     for (const CheckedExpectation& check : checks_) {
-      if (!check.is_measured) text_ += line(check.metric, "not measured", &check);
+      if (!shown_.contains(check.metric)) text_ += line(check.metric, check.got, &check);
     }
   }
 
@@ -42,6 +44,7 @@ class Table {
     const auto check = std::find_if(checks_.begin(), checks_.end(),
                                     [&](const CheckedExpectation& candidate) { return candidate.metric == path; });
     text_ += line(path, shown(value), check == checks_.end() ? nullptr : &*check);
+    shown_.insert(path);
   }
 
   static std::string shown(const io::Metrics& value) {
@@ -62,6 +65,7 @@ class Table {
   const std::vector<CheckedExpectation>& checks_;
   std::string text_;
   std::string group_;
+  std::set<std::string> shown_;  ///< paths
 };
 
 }  // namespace
@@ -69,7 +73,7 @@ class Table {
 std::string score_table(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks) {
   Table table(checks);
   table.add("", metrics);
-  table.add_missing();
+  table.add_rest();
   return table.text();
 }
 

@@ -24,7 +24,7 @@ struct Station {
 /// see but the survey knows).
 struct Route {
   std::vector<Station> stations;
-  std::vector<std::vector<Eigen::Vector2d>> keep_out_lines;  ///< polylines in site, m
+  std::vector<std::vector<Eigen::Vector2d>> keep_out_lines;  ///< polylines in the route's frame, m
 };
 
 }  // namespace patrol

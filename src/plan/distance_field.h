@@ -14,8 +14,8 @@ using SquaredDistances = std::vector<std::int16_t>;
 ///
 /// The transform is separable (Felzenszwalb and Huttenlocher, "Distance Transforms of Sampled Functions", 2012): first along
 /// rows, then the lower envelope of parabolas along columns. Only distances up to the inflation radius matter here, so
-/// the envelope is taken by brute force over the 2 cap + 1 rows in reach: on whole rows at a time that is a handful of
-/// vector instructions per eight cells, several times faster than the linear-time envelope (tests/bench/plan_bench.cc).
+/// the envelope is taken by brute force over the 2 cap + 1 rows in reach: whole rows at a time, a handful of vector
+/// instructions per eight cells.
 class DistanceTransform {
  public:
   /// `cap_cells` 1 ... 100.

@@ -100,7 +100,9 @@ TEST_F(Mcap, AnEmptyLogIsComplete) {
 }
 
 TEST_F(Mcap, AMessageOfThreeMegabytesSurvives) {
-  const std::vector<Entry> large = {{"/a", 1s, std::string(3'000'000, 'x') + "end"}, {"/b", 2s, "after"}};
+  std::string content(3'000'000, 'x');
+  content.append("end");
+  const std::vector<Entry> large = {{"/a", 1s, content}, {"/b", 2s, "after"}};
   write_log(file, large);
   EXPECT_EQ(read_log(file), large);
 }
