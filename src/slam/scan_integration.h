@@ -7,7 +7,7 @@
 namespace patrol::slam {
 
 struct ScanIntegrationSettings {
-  int free_ray_stride = 10;         ///< every so many beams one is followed through the free cells, and counts for all of them
+  int free_ray_stride = 6;          ///< every so many beams one is followed through the free cells, and counts for all of them
   double free_margin_m = 0.15;      ///< free rays end this much before their hit: they must not wear away the wall they hit
   double max_free_range_m = 30.0;   ///< nothing is learnt about free space beyond
 

@@ -81,6 +81,22 @@ TEST(InertialFilter, BiasReadingMovesBiasByTheRatioOfVariances) {
   EXPECT_NEAR(filter.gyro_bias_radps().z(), 0.0015, 1e-12);
 }
 
+// A bias found late explains half a metre of the way so far; odom is dead reckoning and stays where it is (REP 105).
+TEST(InertialFilter, BiasReadingMovesNeitherPlaceNorHeading) {
+  InertialFilter filter(quiet(), {.rate_radps = {0, 0, 0.01}, .force_mps2 = kAtRest});
+  for (int i = 0; i < 5000; ++i) {  // 20 s at 1 m/s
+    filter.predict(kDt, {.rate_radps = {0, 0, 0.01}, .force_mps2 = kAtRest});
+    filter.correct_velocity(Eigen::Vector3d(1, 0, 0) - filter.motion().v_body, {0, 0, 0}, 1e-4);
+  }
+  const Pose3 before = filter.motion().T_odom_body;
+  const Eigen::Matrix3d covariance = filter.planar_covariance();
+  filter.correct_gyro_bias({0, 0, 0.01}, Eigen::Vector3d::Constant(1e-8));
+  EXPECT_NEAR(filter.gyro_bias_radps().z(), 0.01, 1e-4);
+  EXPECT_LT((filter.motion().T_odom_body.position - before.position).norm(), 1e-12);
+  EXPECT_LT(std::abs(yaw_of(filter.motion().T_odom_body.rotation) - yaw_of(before.rotation)), 1e-6);
+  EXPECT_NEAR(filter.planar_covariance()(2, 2), covariance(2, 2), 1e-3 * covariance(2, 2)) << "nor does it grow surer of them";
+}
+
 TEST(InertialFilter, VelocityCorrectionsTellNothingAboutYaw) {
   InertialFilter filter(quiet(), {.force_mps2 = kAtRest});
   for (int i = 0; i < 500; ++i) {
