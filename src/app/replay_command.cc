@@ -49,6 +49,7 @@ ExitCode replay_command(const ReplayOptions& options) {
   const Scenario scenario = load_scenario(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
   const RunRecord record = read_run_record(directory.log());
+  if (!record.has_estimate()) throw InputError(fmt::format("{}: ended before the robot had an estimate", directory.log().string()));
   const Pose2 T_world_map = score::join_at_start(record.T_map_body, record.T_world_body);
   sim::AssembledModel model =
       sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), start_in_world(scenario, files));

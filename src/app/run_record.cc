@@ -21,6 +21,11 @@ bool RunRecord::has_event(const char* kind) const {
   return std::any_of(events.begin(), events.end(), [&](const Event& event) { return event.kind == kind; });
 }
 
+bool RunRecord::has_estimate() const {
+  constexpr std::size_t kFewestPoses = 3;  // that a trajectory can be fitted to
+  return T_map_body.size() >= kFewestPoses && !T_odom_body.empty() && !map.values().empty();
+}
+
 RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   RunRecord record;
   io::LogHandlers handlers;
@@ -33,9 +38,7 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   handlers.collision = [&](Time, const Collision& collision) { record.collisions.push_back(collision); };
   handlers.map = [&](Time, const MapUpdate& update) { record.map = update.map; };
   record.is_complete = io::read_run_log(log_mcap, handlers);
-  if (record.T_map_body.empty() || record.T_world_body.empty() || record.map.values().empty()) {
-    throw InputError(fmt::format("{}: holds no estimate, truth or map: there is nothing to score", log_mcap.string()));
-  }
+  if (record.T_world_body.empty()) throw InputError(fmt::format("{}: holds no ground truth", log_mcap.string()));
   return record;
 }
 

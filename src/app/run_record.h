@@ -20,9 +20,11 @@ struct RunRecord {
   bool is_complete = false; ///< the log has its end
 
   bool has_event(const char* kind) const;
+  /// Whether the run lasted until the stack had an estimate and a map.
+  bool has_estimate() const;
 };
 
-/// Throws InputError when the log is damaged, or cut off before there was anything to score.
+/// Throws InputError when the log is damaged, or cut off before the first truth.
 RunRecord read_run_record(const std::filesystem::path& log_mcap);
 
 }  // namespace patrol::app

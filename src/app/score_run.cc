@@ -93,15 +93,12 @@ io::Metrics mission_metrics(const RunRecord& record) {
   return metrics;
 }
 
-/// The world that the lidar saw: at its mean height on this run.
-score::ReferenceMap reference_of(const RunRecord& record, const Scenario& scenario, const ScenarioFiles& files,
-                                 const mjModel& world) {
+/// The world at the lidar's mean height on this run.
+render::ReferenceMap world_map(const RunRecord& record, const ScenarioFiles& files, const mjModel& world) {
   double height_m = 0.0;
   for (const StampedPose& entry : record.T_world_body) height_m += entry.pose.position.z();
-  height_m = height_m / static_cast<double>(record.T_world_body.size()) + files.robot.T_body_sensor.at("lidar").position.z();
-  const OccupancyGrid cells =
-      render::reference_map(world, {.height_m = height_m, .resolution_m = kReferenceResolution_m}).map;
-  return score::mark_seeable(cells, record.T_world_body, scenario.sensors.lidar.range_max_m);
+  height_m = height_m / static_cast<double>(record.T_world_body.size()) + files.robot.T_body("lidar").position.z();
+  return render::reference_map(world, {.height_m = height_m, .resolution_m = kReferenceResolution_m});
 }
 
 std::vector<score::TrueLeak> true_leaks(const Scenario& scenario, const mjModel& world) {
@@ -122,20 +119,24 @@ void save_trajectories(const RunDirectory& directory, const RunRecord& record) {
 
 io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, const ScenarioFiles& files) {
   const RunRecord record = read_run_record(directory.log());
+  io::Metrics metrics;
+  metrics["mission"] = mission_metrics(record);
+  if (!record.has_estimate()) return metrics;
   save_trajectories(directory, record);
   const sim::SpecPtr spec = sim::load_spec(files.world_xml.string());
   const sim::ModelPtr world = sim::compile(*spec, files.world_xml.string());
-  const score::ReferenceMap reference = reference_of(record, scenario, files, *world);
+  const render::ReferenceMap truth = world_map(record, files, *world);
+  const score::ReferenceMap reference =
+      score::mark_seeable(truth.map, record.T_world_body, scenario.sensors.lidar.range_max_m);
   io::save_map(directory.map(), record.map);
   io::save_map(directory.truth_map(), score::seeable_part(reference));
 
   const Pose2 T_world_map = score::join_at_start(record.T_map_body, record.T_world_body);
   const Pose2 T_world_odom = score::join_at_start(record.T_odom_body, record.T_world_body);
-  io::Metrics metrics;
-  metrics["mission"] = mission_metrics(record);
   metrics["pose"] = score_trajectories(record.T_map_body, record.T_world_body)["pose"];
   metrics["odometry"] = to_json(score::trajectory_error(record.T_odom_body, T_world_odom, record.T_world_body));
   metrics["map"] = to_json(score::map_error(record.map, T_world_map, reference));
+  metrics["map"]["reference_agreement"] = truth.check.share_agreeing();  // of its render with rays
   metrics["stations"] = to_json(score::station_errors(files.route, record.events, T_world_map, record.T_world_body, record.map,
                                                       reference));
   metrics["inspection"] = to_json(score::inspection_score(record.events, T_world_map, true_leaks(scenario, *world)));

@@ -8,8 +8,8 @@
 
 namespace patrol::app {
 
-/// Scores a run from its log alone: writes trajectories and maps into its directory, and returns the metrics (README, "The
-/// metrics") but for `performance`, which only the run itself knows. Throws InputError when there is nothing to score.
+/// Scores a run from its log alone: writes trajectories and maps into its directory, and returns the metrics (README, "A run
+/// directory") but for `performance`, which only the run itself knows. A run that ended before the stack had an estimate has no figures but the mission's.
 io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, const ScenarioFiles& files);
 
 /// Everyone's two trajectories: `pose.*` and `pose.aligned.*`.

@@ -73,10 +73,12 @@ class ExitCodes(unittest.TestCase):
         self.assert_complete()
         self.assertEqual(self.junit().get("failures"), "1")
 
-    def test_a_run_too_short_to_score_is_never_green(self):
+    def test_a_run_that_ends_before_there_is_an_estimate_is_4_with_the_mission_alone_scored(self):
         done = self.run_patrol("time_limit_s: 0.1\n")
-        self.assertNotEqual(done.returncode, 0)
-        self.assertNotEqual(self.junit().get("errors") + self.junit().get("failures"), "00")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assert_complete()
+        self.assertEqual(self.junit().get("failures"), "1")
+        self.assertNotIn("pose", json.loads((self.out / "metrics.json").read_text()))
 
     def test_interrupted_is_3_and_stays_red(self):
         file = self.scenario("")
