@@ -54,7 +54,7 @@ ExitCode list_command() {
           return file.extension() == ".xml" && file.stem() == file.parent_path().filename();
         }));
   print("robots", files_below(root, "models", [](const auto& file) { return file.extension() == ".urdf"; }));
-  print("sensors", {"lidar", "lidar3d", "imu", "joint_encoders", "foot_contact", "tdlas", "gnss"});
+  print("sensors", allowed<sim::FaultSettings>("sensor"));
   print("lidar presets", allowed<sim::LidarSettings>("preset"));
   print("sensor faults", allowed<sim::FaultSettings>("kind"));
   print("mapping methods", {"grid particle filter with scan matching (stack.slam)"});

@@ -29,12 +29,14 @@ inspect::NavigationFeedback feedback_of(plan::NavigationStatus status) {
 RobotStack::RobotStack(const StackSettings& settings, const RobotDescription& robot, const Route& route_in_map,
                        double map_period_s, std::uint64_t seed)
     : odometry_(robot, settings.odometry),
-      leveler_(robot.T_body_sensor.at("lidar"), settings.leveling),
+      leveler_(robot.T_body("lidar"), settings.leveling),
       slam_(settings.slam, seed),
       navigator_(settings.navigation, robot, route_in_map.keep_out_lines),
-      mission_(settings.mission, route_in_map, robot.T_body_sensor.at("tdlas")),
+      mission_(settings.mission, route_in_map, robot.T_body("tdlas")),
       settle_(from_seconds(settings.settle_s)),
-      map_period_(from_seconds(map_period_s)) {}
+      map_period_(from_seconds(map_period_s)) {
+  navigator_.set_map(slam_.map());  // empty yet, but its resolution must suit the costmap's
+}
 
 void RobotStack::handle(const SensorMessage& message) {
   std::visit(Overloaded{

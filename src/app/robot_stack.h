@@ -45,7 +45,8 @@ using StackMessage =
 /// nothing else; a recorded log can take the twin's place.
 class RobotStack {
  public:
-  /// `route` in map. The map's origin is the level body pose at the start.
+  /// `route` in map, whose origin is the level body pose at the start. Throws InputError when settings, robot and route do
+  /// not go together.
   RobotStack(const StackSettings& settings, const RobotDescription& robot, const Route& route_in_map, double map_period_s,
              std::uint64_t seed);
 

@@ -47,6 +47,12 @@ io::Metrics performance_of(const RunOutcome& outcome) {
   return performance;
 }
 
+void print_faults(const std::vector<sim::FaultReport>& reports) {
+  for (const sim::FaultReport& report : reports) {
+    fmt::print("fault {}: {}\n", describe(report.fault), report.is_executed ? "executed" : "NOT EXECUTED");
+  }
+}
+
 /// The verdict of a run that came to its end.
 ExitCode exit_code_of(RunEnd end, const std::vector<CheckedExpectation>& checks) {
   if (end == RunEnd::kTimeLimit) return ExitCode::kTimeLimit;
@@ -60,7 +66,8 @@ ExitCode run_command(const RunOptions& options) {
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
   const std::string name = options.scenario.stem().string();
 
-  sim::Twin twin = make_twin(scenario, files);  // refuses bad input before anything is written
+  sim::Twin twin = make_twin(scenario, files);  // these refuse bad input before anything is written
+  RobotStack stack = make_stack(scenario, files);
   const RunDirectory directory = begin_run_directory(options.out.value_or(default_directory(options, scenario)));
   write_unfinished_junit(directory, scenario, name);
   save_scenario(directory.scenario(), scenario, made_by(name));
@@ -68,7 +75,7 @@ ExitCode run_command(const RunOptions& options) {
   ProgressBar bar;
   const InterruptGuard interrupt;
   const RunOutcome outcome =
-      run_loop(scenario, files, twin, directory.log(), [&](Time now, double distance_m) {
+      run_loop(scenario, files, twin, stack, directory.log(), [&](Time now, double distance_m) {
         bar.show(fmt::format("{}  {:6.1f} s simulated  {:6.1f} m walked", name, to_seconds(now), distance_m));
         return !interrupt.is_interrupted();
       });
@@ -86,6 +93,7 @@ ExitCode run_command(const RunOptions& options) {
   complete_run_directory(directory);
 
   fmt::print("{}\n", score_table(metrics, checks));
+  print_faults(outcome.faults);
   fmt::print("run directory: {}\n", directory.root.string());
   return code;
 }

@@ -35,9 +35,8 @@ io::JunitCase expectation_case(const std::string& name, const CheckedExpectation
 }
 
 io::JunitCase fault_case(const std::string& name, const sim::FaultReport& report) {
-  const sim::FaultSettings& fault = report.fault;
   return {.class_name = name,
-          .name = fmt::format("fault {} {} at {} s", fault.sensor, fault.kind, fault.start_s),
+          .name = "fault " + describe(report.fault),
           .time_s = 0.0,
           .result = report.is_executed ? io::JunitResult::kPassed : io::JunitResult::kSkipped,
           .message = report.is_executed ? "" : "NOT EXECUTED: no message was touched",
@@ -45,6 +44,10 @@ io::JunitCase fault_case(const std::string& name, const sim::FaultReport& report
 }
 
 }  // namespace
+
+std::string describe(const sim::FaultSettings& fault) {
+  return fmt::format("{} {} at {} s", fault.sensor, fault.kind, fault.start_s);
+}
 
 void write_unfinished_junit(const RunDirectory& directory, const Scenario& scenario, const std::string& name) {
   io::JunitSuite suite = io::unfinished_junit(name);

@@ -29,11 +29,12 @@ using ProgressCallback = std::function<bool(Time now, double distance_m)>;
 /// Where the robot is put down, in world.
 Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files);
 
-/// Throws InputError when world, robot, start or actors do not go together.
+/// Throw InputError when what the scenario names does not go together.
 sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files);
+RobotStack make_stack(const Scenario& scenario, const ScenarioFiles& files);
 
 /// Runs twin and stack against each other until the mission is over, and writes everything to `log_mcap`.
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin,
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin, RobotStack& stack,
                     const std::filesystem::path& log_mcap, const ProgressCallback& progress);
 
 }  // namespace patrol::app

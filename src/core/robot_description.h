@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "core/frames.h"
 
 namespace patrol {
@@ -37,6 +38,13 @@ struct RobotDescription {
   std::vector<JointLimit> joint_limits;   ///< [joint]
   std::vector<Eigen::Vector2d> footprint_m;    ///< convex hull of the collision shapes in level, counter-clockwise
   std::map<std::string, Pose3> T_body_sensor;  ///< fixed frames: "lidar", "lidar3d", "imu", "tdlas", "gnss"
+
+  /// Throws InputError when the robot has no such frame.
+  const Pose3& T_body(const std::string& sensor) const {
+    const auto frame = T_body_sensor.find(sensor);
+    if (frame == T_body_sensor.end()) throw InputError("robot " + name + ": there is no link named " + sensor);
+    return frame->second;
+  }
 };
 
 }  // namespace patrol

@@ -4,6 +4,7 @@
 usage: bad_input_test.py PATROL SOURCE_DIR
 """
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -79,6 +80,17 @@ class BadInput(unittest.TestCase):
 
     def test_leak_at_an_unknown_place(self):
         self.refuse_run(SHORT, "--set", "leaks.0.at=nowhere", says=["nowhere"])
+
+    def test_costmap_coarser_than_the_map(self):
+        self.refuse_run(SHORT, "--set", "stack.slam.resolution_m=0.2", says=["costmap.resolution_m", "0.2"])
+
+    def test_robot_without_the_methane_meters_frame(self):
+        root = pathlib.Path(self.folder.name)
+        shutil.copytree(SOURCE / "worlds", root / "worlds")
+        shutil.copytree(SOURCE / "models", root / "models")
+        urdf = root / "models/quadruped/quadruped.urdf"
+        urdf.write_text(urdf.read_text().replace('"tdlas"', '"sniffer"'))
+        self.refuse_run(root / "worlds/street/scenarios/short.yaml", says=["quadruped", "tdlas"])
 
     def test_unwritable_output(self):
         self.refuse("run", SHORT, "--out", "/proc/patrol", says=["/proc/patrol"])

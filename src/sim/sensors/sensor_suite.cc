@@ -17,9 +17,7 @@ Pose3 body_pose(const mjData& data, int body) {
 std::optional<Lidar> make_lidar(const LidarSettings& settings, const LidarScene& scene, const RobotDescription& robot,
                                 const std::string& frame, RayMask housing, std::uint64_t seed) {
   if (!settings.enabled) return std::nullopt;
-  const auto mount = robot.T_body_sensor.find(frame);
-  if (mount == robot.T_body_sensor.end()) throw InputError("the robot has no frame " + frame + " to mount the lidar on");
-  return Lidar(settings, scene, mount->second, housing, seed, frame);
+  return Lidar(settings, scene, robot.T_body(frame), housing, seed, frame);
 }
 
 /// Adds `offset` to the message's main reading, as drift and spikes do.
@@ -98,11 +96,11 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
 
   if (settings_.tdlas.enabled && is_due(settings_.tdlas.rate_hz, tdlas_count_, now)) {
     deliver("tdlas", now, settings_.tdlas.latency_s,
-            tdlas_.read(scene_, plume_, T_world_body * robot_.T_body_sensor.at("tdlas"), now, tdlas_count_ - 1));
+            tdlas_.read(scene_, plume_, T_world_body * robot_.T_body("tdlas"), now, tdlas_count_ - 1));
   }
   if (settings_.gnss.enabled && is_due(settings_.gnss.rate_hz, gnss_count_, now)) {
     deliver("gnss", now, settings_.gnss.latency_s,
-            gnss_.read(scene_, T_world_body * robot_.T_body_sensor.at("gnss").position, now, gnss_count_ - 1));
+            gnss_.read(scene_, T_world_body * robot_.T_body("gnss").position, now, gnss_count_ - 1));
   }
 }
 
