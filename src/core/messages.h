@@ -82,8 +82,40 @@ struct GnssFix {
   Eigen::Vector3d position_std_m = Eigen::Vector3d::Zero();  ///< east, north, up
 };
 
-/// What the sensors say.
-using SensorMessage = std::variant<LaserScan, PointCloud, Imu, JointState, FootContacts, GasReading, GnssFix>;
+/// Counts of the Hall sensors on the drive motors since power-up; forwards is positive.
+struct TrackTicks {
+  Time stamp{};
+  std::int64_t left = 0;
+  std::int64_t right = 0;
+};
+
+/// A two-way ultra-wideband range from the robot's antenna (frame `uwb`) to one anchor. A range that was lost is not sent.
+struct UwbRange {
+  Time stamp{};
+  int anchor = 0;  ///< number of the anchor in the site's survey
+  double range_m = 0.0;
+};
+
+/// One ping of one transducer of the ultrasonic ring: distance to the nearest echo within its cone, along x of its frame.
+struct UltrasonicRange {
+  Time stamp{};
+  int transducer = 0;  ///< its frame is `ultrasonic_<transducer>`
+  double field_of_view_rad = 0.0;  ///< full angle of the cone
+  double range_min_m = 0.0;
+  double range_max_m = 0.0;
+  float range_m = 0.0F;  ///< REP 117: -Inf too close, +Inf no echo
+};
+
+/// One frame of the infrared depth camera. A pixel (column u, row v, from the top left) of depth d shows the point
+/// (d, -(u - cx) d / fx, -(v - cy) d / fy) in `depth_camera`, whose x axis is the optical axis.
+struct DepthImage {
+  Time stamp{};
+  int width = 0;
+  int height = 0;
+  double fx_px = 0.0, fy_px = 0.0;
+  double cx_px = 0.0, cy_px = 0.0;
+  std::vector<std::uint16_t> depth_mm;  ///< [row][column], along the optical axis; 0 invalid
+};
 
 /// The velocity asked of the robot, in `level`.
 struct VelocityCommand {
@@ -92,6 +124,18 @@ struct VelocityCommand {
   double vy_mps = 0.0;
   double yaw_rate_radps = 0.0;
 };
+
+/// What the person at the remote control does: the velocity asked for, and the button that marks a place.
+struct RemoteCommand {
+  Time stamp{};
+  double vx_mps = 0.0;
+  double yaw_rate_radps = 0.0;
+  bool mark = false;  ///< pressed now
+};
+
+/// What the sensors say, and the person at the remote control.
+using SensorMessage = std::variant<LaserScan, PointCloud, Imu, JointState, FootContacts, GasReading, GnssFix, TrackTicks,
+                                   UwbRange, UltrasonicRange, DepthImage, RemoteCommand>;
 
 /// Smooth, drifting: the body in `odom`.
 struct OdometryEstimate {
@@ -106,6 +150,15 @@ struct PoseEstimate {
   Time stamp{};
   Pose2 T_map_body;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in map; m, m, rad
+};
+
+/// How far the localisation believes itself: "am I lost?".
+struct LocalizationTrust {
+  Time stamp{};
+  double trust = 0.0;          ///< 0 lost ... 1 sure
+  double weak_std_m = 0.0;     ///< standard deviation of the position along its weakest direction
+  double weak_direction_rad = 0.0;  ///< that direction, in map, -pi/2 ... pi/2
+  bool is_lost = false;        ///< the robot does not know where it is, and says so
 };
 
 struct ParticleSet {

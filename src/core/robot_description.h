@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,15 +30,25 @@ struct JointLimit {
   double effort_nm = 0.0;
 };
 
+/// A pair of tracks, driven by a sprocket each.
+struct TrackGeometry {
+  double gauge_m = 0.0;            ///< between the middles of the two tracks
+  double width_m = 0.0;            ///< of one track
+  double contact_length_m = 0.0;   ///< between the axles of the outermost road wheels
+  double sprocket_radius_m = 0.0;  ///< of the belt's pitch line: the belt runs at this times the sprocket's rate
+};
+
 /// What the robot knows of itself, read from its URDF (io/urdf.h).
 struct RobotDescription {
   std::string name;
   double mass_kg = 0.0;
   std::vector<LegGeometry> legs;          ///< FL, FR, RL, RR; empty for a robot without legs
-  std::vector<std::string> joint_names;   ///< leg by leg: abduction, hip, knee
+  std::optional<TrackGeometry> tracks;    ///< of a tracked robot
+  std::vector<std::string> joint_names;   ///< leg by leg: abduction, hip, knee; or the sprockets: left, right
   std::vector<JointLimit> joint_limits;   ///< [joint]
   std::vector<Eigen::Vector2d> footprint_m;    ///< convex hull of the collision shapes in level, counter-clockwise
-  std::map<std::string, Pose3> T_body_sensor;  ///< fixed frames: "lidar", "lidar3d", "imu", "tdlas", "gnss"
+  /// Fixed frames: "lidar", "lidar3d", "imu", "tdlas", "gnss", "uwb", "depth_camera", "ultrasonic_0", "ultrasonic_1" ...
+  std::map<std::string, Pose3> T_body_sensor;
 
   /// Throws InputError when the robot has no such frame.
   const Pose3& T_body(const std::string& sensor) const {

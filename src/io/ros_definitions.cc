@@ -66,6 +66,25 @@ constexpr Definition kDefinitions[] = {
     {"patrol_msgs/GasReading",
      "# Open-path methane meter: column along the beam, length of the beam (inf: no echo), mean as mass of methane.\n"
      "std_msgs/Header header\nfloat64 column_ppm_m\nfloat64 path_length_m\nfloat64 mean_mg_m3\n"},
+    {"sensor_msgs/Range",
+     "std_msgs/Header header\nuint8 ULTRASOUND=0\nuint8 INFRARED=1\nuint8 radiation_type\nfloat32 field_of_view\n"
+     "float32 min_range\nfloat32 max_range\nfloat32 range\n"},
+    {"patrol_msgs/TrackTicks",
+     "# Counts of the drive motors' Hall sensors since power-up; forwards is positive.\n"
+     "std_msgs/Header header\nint64 left\nint64 right\n"},
+    {"patrol_msgs/UwbRange",
+     "# Two-way range, m, from the robot's antenna to the anchor of that number.\n"
+     "std_msgs/Header header\nint32 anchor\nfloat64 range_m\n"},
+    {"patrol_msgs/DepthImage",
+     "# The fields of a sensor_msgs/Image (16UC1: depth along the optical axis, mm, 0 invalid), and the pinhole's, pixels.\n"
+     "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\nuint8[] data\n"
+     "float64 fx_px\nfloat64 fy_px\nfloat64 cx_px\nfloat64 cy_px\n"},
+    {"patrol_msgs/RemoteCommand",
+     "# What the person at the remote control asks for; mark: the button that marks a place is pressed.\n"
+     "std_msgs/Header header\nfloat64 vx_mps\nfloat64 yaw_rate_radps\nbool mark\n"},
+    {"patrol_msgs/LocalizationTrust",
+     "# trust 0 (lost) ... 1 (sure); standard deviation along the weakest direction, and that direction in map.\n"
+     "std_msgs/Header header\nfloat64 trust\nfloat64 weak_std_m\nfloat64 weak_direction_rad\nbool is_lost\n"},
     {"patrol_msgs/Event",
      "# Something that happened in the mission; pose is where the robot believed it was, target where that is; in map.\n"
      "std_msgs/Header header\nstring kind\nstring subject\nstring text\nfloat64 value\ngeometry_msgs/Pose pose\n"

@@ -247,6 +247,88 @@ void describe(Codec& codec, GnssFix& fix) {
 }
 
 template <typename Codec>
+void describe(Codec& codec, TrackTicks& ticks) {
+  header(codec, ticks.stamp, frame_id::kBody);
+  codec(ticks.left);
+  codec(ticks.right);
+}
+
+template <typename Codec>
+void describe(Codec& codec, UwbRange& range) {
+  header(codec, range.stamp, "uwb");
+  auto anchor = static_cast<std::int32_t>(range.anchor);
+  codec(anchor);
+  range.anchor = anchor;
+  codec(range.range_m);
+}
+
+template <typename Codec>
+void describe(Codec& codec, UltrasonicRange& range) {
+  const std::string prefix = "ultrasonic_";
+  time_field(codec, range.stamp);
+  std::string frame = prefix + std::to_string(range.transducer);
+  codec(frame);
+  if constexpr (!Codec::kWrites) {
+    const std::string number = frame.starts_with(prefix) ? frame.substr(prefix.size()) : "";
+    if (number.empty() || number.size() > 4 || number.find_first_not_of("0123456789") != std::string::npos) {
+      throw DecodeError("a range of a frame that is not ultrasonic_<number>");
+    }
+    range.transducer = std::stoi(number);
+  }
+  std::uint8_t ultrasound = 0;
+  codec(ultrasound);
+  float_field(codec, range.field_of_view_rad);
+  float_field(codec, range.range_min_m);
+  float_field(codec, range.range_max_m);
+  codec(range.range_m);
+}
+
+template <typename Codec>
+void describe(Codec& codec, DepthImage& image) {
+  header(codec, image.stamp, "depth_camera");
+  auto height = static_cast<std::uint32_t>(image.height), width = static_cast<std::uint32_t>(image.width);
+  codec(height);
+  codec(width);
+  std::string encoding = "16UC1";
+  codec(encoding);
+  bool is_big_endian = false;
+  codec(is_big_endian);
+  std::uint32_t row_step = 2 * width;
+  codec(row_step);
+  std::vector<std::uint8_t> bytes(2 * image.depth_mm.size());
+  if constexpr (Codec::kWrites) std::memcpy(bytes.data(), image.depth_mm.data(), bytes.size());
+  codec(bytes);
+  if constexpr (!Codec::kWrites) {
+    if (bytes.size() != std::size_t{2} * width * height) throw DecodeError("an image whose pixels do not fit its size");
+    image.width = static_cast<int>(width);
+    image.height = static_cast<int>(height);
+    image.depth_mm.resize(bytes.size() / 2);
+    std::memcpy(image.depth_mm.data(), bytes.data(), bytes.size());
+  }
+  codec(image.fx_px);
+  codec(image.fy_px);
+  codec(image.cx_px);
+  codec(image.cy_px);
+}
+
+template <typename Codec>
+void describe(Codec& codec, RemoteCommand& command) {
+  header(codec, command.stamp, frame_id::kLevel);
+  codec(command.vx_mps);
+  codec(command.yaw_rate_radps);
+  codec(command.mark);
+}
+
+template <typename Codec>
+void describe(Codec& codec, LocalizationTrust& trust) {
+  header(codec, trust.stamp, frame_id::kMap);
+  codec(trust.trust);
+  codec(trust.weak_std_m);
+  codec(trust.weak_direction_rad);
+  codec(trust.is_lost);
+}
+
+template <typename Codec>
 void odometry_fields(Codec& codec, Time& stamp, const char* frame, Pose3& pose, Eigen::Matrix3d& covariance, Twist3& twist) {
   header(codec, stamp, frame);
   std::string child = frame_id::kBody;
@@ -425,6 +507,12 @@ PATROL_ROS_MESSAGE(JointState);
 PATROL_ROS_MESSAGE(FootContacts);
 PATROL_ROS_MESSAGE(GasReading);
 PATROL_ROS_MESSAGE(GnssFix);
+PATROL_ROS_MESSAGE(TrackTicks);
+PATROL_ROS_MESSAGE(UwbRange);
+PATROL_ROS_MESSAGE(UltrasonicRange);
+PATROL_ROS_MESSAGE(DepthImage);
+PATROL_ROS_MESSAGE(RemoteCommand);
+PATROL_ROS_MESSAGE(LocalizationTrust);
 PATROL_ROS_MESSAGE(OdometryEstimate);
 PATROL_ROS_MESSAGE(PoseEstimate);
 PATROL_ROS_MESSAGE(ParticleSet);

@@ -84,6 +84,12 @@ bool read_run_log(const std::filesystem::path& log_mcap, const LogHandlers& hand
   dispatch.add(handlers.contacts);
   dispatch.add(handlers.gas);
   dispatch.add(handlers.gnss);
+  dispatch.add(handlers.ticks);
+  dispatch.add(handlers.uwb);
+  dispatch.add(handlers.ultrasonic);
+  dispatch.add(handlers.depth);
+  dispatch.add(handlers.remote);
+  dispatch.add(handlers.trust);
   dispatch.add(handlers.odometry);
   dispatch.add(handlers.pose);
   dispatch.add(handlers.particles);

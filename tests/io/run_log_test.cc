@@ -68,6 +68,12 @@ TEST_F(RunLog, BringsEveryMessageToItsHandlerAtItsTime) {
                              .contacts = count,
                              .gas = count,
                              .gnss = count,
+                             .ticks = count,
+                             .uwb = count,
+                             .ultrasonic = count,
+                             .depth = count,
+                             .remote = count,
+                             .trust = count,
                              .odometry = count,
                              .pose = count,
                              .particles = count,
@@ -79,8 +85,8 @@ TEST_F(RunLog, BringsEveryMessageToItsHandlerAtItsTime) {
                              .state = count,
                              .collision = count};
   EXPECT_TRUE(read_run_log(file, handlers));
-  EXPECT_EQ(written, 17);
-  EXPECT_EQ(calls.size(), 17U);
+  EXPECT_EQ(written, 23);
+  EXPECT_EQ(calls.size(), 23U);
   for (const auto& [second, number] : calls) EXPECT_EQ(number, 1) << second;
 }
 

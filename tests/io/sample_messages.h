@@ -56,6 +56,32 @@ inline GnssFix sample_fix(GnssStatus status = GnssStatus::kFix) {
           .altitude_m = 34.5,
           .position_std_m = {0.5, 0.25, 2.0}};
 }
+inline TrackTicks sample_ticks() { return {.stamp = kSampleStamp, .left = -123456789012, .right = 42}; }
+inline UwbRange sample_uwb() { return {.stamp = kSampleStamp, .anchor = 7, .range_m = 12.345}; }
+inline UltrasonicRange sample_ultrasonic() {
+  return {.stamp = kSampleStamp,
+          .transducer = 11,
+          .field_of_view_rad = 0.5,
+          .range_min_m = 0.25,
+          .range_max_m = 4.0,
+          .range_m = 1.75F};
+}
+inline DepthImage sample_depth() {
+  return {.stamp = kSampleStamp,
+          .width = 3,
+          .height = 2,
+          .fx_px = 60.5,
+          .fy_px = 61.5,
+          .cx_px = 1.5,
+          .cy_px = 1.0,
+          .depth_mm = {1000, 2000, 0, 65535, 1, 256}};
+}
+inline RemoteCommand sample_remote() {
+  return {.stamp = kSampleStamp, .vx_mps = 0.5, .yaw_rate_radps = -0.25, .mark = true};
+}
+inline LocalizationTrust sample_trust() {
+  return {.stamp = kSampleStamp, .trust = 0.25, .weak_std_m = 0.75, .weak_direction_rad = 1.5, .is_lost = true};
+}
 inline Eigen::Matrix3d sample_covariance() {
   Eigen::Matrix3d P;
   P << 1.0, 2.0, 3.0, 2.0, 4.0, 5.0, 3.0, 5.0, 6.0;
@@ -114,7 +140,8 @@ inline io::TransformSet sample_transforms() {
 
 inline auto all_samples() {
   return std::tuple(sample_scan(), sample_cloud(), sample_imu(), sample_joints(), sample_contacts(),
-                    sample_gas(), sample_fix(), sample_odometry(), sample_estimate(), sample_particles(),
+                    sample_gas(), sample_fix(), sample_ticks(), sample_uwb(),
+                    sample_ultrasonic(), sample_depth(), sample_remote(), sample_trust(), sample_odometry(), sample_estimate(), sample_particles(),
                     sample_map(), sample_path(), sample_command(), sample_event(), sample_truth(),
                     sample_state(), sample_collision(), sample_transforms());
 }

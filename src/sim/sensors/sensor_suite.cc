@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "core/error.h"
@@ -34,6 +35,16 @@ struct OffsetBy {
   void operator()(FootContacts& contacts) const { contacts.force_n.front() += offset; }
   void operator()(GasReading& gas) const { gas.column_ppm_m += offset; }
   void operator()(GnssFix& fix) const { fix.altitude_m += offset; }
+  void operator()(TrackTicks& ticks) const { ticks.left += std::llround(offset); }
+  void operator()(UwbRange& range) const { range.range_m += offset; }
+  void operator()(UltrasonicRange& range) const { range.range_m += static_cast<float>(offset); }
+  void operator()(DepthImage& image) const {
+    for (std::uint16_t& depth_mm : image.depth_mm) {
+      if (depth_mm == 0) continue;
+      depth_mm = static_cast<std::uint16_t>(std::clamp(std::lround(depth_mm + 1000.0 * offset), 0L, 65535L));
+    }
+  }
+  void operator()(RemoteCommand& command) const { command.vx_mps += offset; }
 };
 
 }  // namespace
