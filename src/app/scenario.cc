@@ -40,7 +40,17 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
 }  // namespace
 
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  return io::load_settings<Scenario>(file, overrides);
+  const std::string robot = io::load_settings<Scenario>(file, overrides).robot;
+  Scenario scenario;
+  const std::filesystem::path profile_file = find_data_root(file) / "models" / robot / (robot + ".yaml");
+  if (std::filesystem::exists(profile_file)) {
+    const auto profile = io::load_settings<RobotProfile>(profile_file, {});
+    scenario.sensors = profile.sensors;
+    scenario.locomotion = profile.locomotion;
+    scenario.stack = profile.stack;
+  }
+  io::read_settings(file, overrides, scenario);
+  return scenario;
 }
 
 void save_scenario(const std::filesystem::path& file, const Scenario& scenario, const std::string& comment) {

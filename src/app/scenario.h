@@ -81,7 +81,22 @@ struct Scenario {
   }
 };
 
-/// A scenario file with "path=value" overrides. Throws InputError with file, line and key.
+/// What a robot's own file, models/<robot>/<robot>.yaml, may say: where it differs from the defaults.
+struct RobotProfile {
+  sim::SensorSuiteSettings sensors;
+  sim::LocomotionSettings locomotion;
+  StackSettings stack;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("sensors", self.sensors);
+    visit("locomotion", self.locomotion);
+    visit("stack", self.stack);
+  }
+};
+
+/// A scenario file with "path=value" overrides, over its robot's profile, over the defaults. Throws InputError with file,
+/// line and key.
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
 /// Every setting written out, under a line of comment.

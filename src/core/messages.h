@@ -125,12 +125,13 @@ struct VelocityCommand {
   double yaw_rate_radps = 0.0;
 };
 
-/// What the person at the remote control does: the velocity asked for, and the button that marks a place.
+/// What the person at the remote control does: the velocity asked for, and two buttons.
 struct RemoteCommand {
   Time stamp{};
   double vx_mps = 0.0;
   double yaw_rate_radps = 0.0;
-  bool mark = false;  ///< pressed now
+  bool mark = false;       ///< pressed now: this place is a goal
+  bool hand_over = false;  ///< pressed now: the robot goes on by itself
 };
 
 /// What the sensors say, and the person at the remote control.

@@ -2,10 +2,12 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/frames.h"
+#include "core/uwb.h"
 
 namespace patrol {
 
@@ -20,11 +22,27 @@ struct Station {
   double accuracy_m = 0.2;  ///< how near the standing place counts as reached
 };
 
+/// The post at which the robot charges: where its body is when it is docked, and the post's outline at the lidar's height.
+struct Dock {
+  Pose2 T_route_docked;
+  std::vector<Eigen::Vector2d> profile_m;  ///< polyline in the docked body's frame
+};
+
 /// The order of stations, and lines that the robot must not walk across (full-height kerbs, which its 2D lidar cannot
 /// see but the survey knows).
 struct Route {
   std::vector<Station> stations;
   std::vector<std::vector<Eigen::Vector2d>> keep_out_lines;  ///< polylines in the route's frame, m
+  std::vector<UwbAnchor> anchors;                            ///< in the route's frame
+  std::optional<Dock> dock;
+};
+
+/// A place to drive to, marked in `map` by driving there: an entry of nav.json (paper 004, table 1).
+struct MarkedGoal {
+  int number = 0;
+  Pose2 T_map_body;
+  char type = 'N';          ///< 'N' navigate: stop there; other letters are for the inspection to come
+  double accuracy_m = 0.1;  ///< how near counts as reached
 };
 
 }  // namespace patrol

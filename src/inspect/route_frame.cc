@@ -13,6 +13,11 @@ Route to_map(const Route& route_in_site, const Pose2& T_site_start) {
   for (auto& line : route.keep_out_lines) {
     for (Eigen::Vector2d& point : line) point = T_map_site * point;
   }
+  for (UwbAnchor& anchor : route.anchors) {
+    const Eigen::Vector2d p = T_map_site * Eigen::Vector2d(anchor.p_m.head<2>());
+    anchor.p_m.head<2>() = p;
+  }
+  if (route.dock) route.dock->T_route_docked = T_map_site * route.dock->T_route_docked;
   return route;
 }
 

@@ -80,8 +80,8 @@ constexpr Definition kDefinitions[] = {
      "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\nuint8[] data\n"
      "float64 fx_px\nfloat64 fy_px\nfloat64 cx_px\nfloat64 cy_px\n"},
     {"patrol_msgs/RemoteCommand",
-     "# What the person at the remote control asks for; mark: the button that marks a place is pressed.\n"
-     "std_msgs/Header header\nfloat64 vx_mps\nfloat64 yaw_rate_radps\nbool mark\n"},
+     "# What the person at the remote control asks for. Buttons: this place is a goal; the robot goes on by itself.\n"
+     "std_msgs/Header header\nfloat64 vx_mps\nfloat64 yaw_rate_radps\nbool mark\nbool hand_over\n"},
     {"patrol_msgs/LocalizationTrust",
      "# trust 0 (lost) ... 1 (sure); standard deviation along the weakest direction, and that direction in map.\n"
      "std_msgs/Header header\nfloat64 trust\nfloat64 weak_std_m\nfloat64 weak_direction_rad\nbool is_lost\n"},

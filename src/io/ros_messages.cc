@@ -317,6 +317,7 @@ void describe(Codec& codec, RemoteCommand& command) {
   codec(command.vx_mps);
   codec(command.yaw_rate_radps);
   codec(command.mark);
+  codec(command.hand_over);
 }
 
 template <typename Codec>

@@ -148,10 +148,16 @@ class SettingsWriter {
 /// The file's document with the overrides ("a.b.0.c=value") put in. Throws InputError.
 YAML::Node load_document(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 
+/// What the file says is put over what `settings` holds already.
+template <typename Settings>
+void read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides, Settings& settings) {
+  SettingsReader::read_section(file.string(), load_document(file, overrides), "", settings);
+}
+
 template <typename Settings>
 Settings load_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   Settings settings;
-  SettingsReader::read_section(file.string(), load_document(file, overrides), "", settings);
+  read_settings(file, overrides, settings);
   return settings;
 }
 

@@ -38,6 +38,16 @@ TEST(RouteFrame, AStartLookingNorthTurnsTheRouteByNinetyDegrees) {
   EXPECT_THAT(route.keep_out_lines[0][1], VectorNear(Eigen::Vector2d(0.0, -1.0), kExactTol));
 }
 
+TEST(RouteFrame, AnchorsAndDockGoAlong) {
+  Route site;
+  site.anchors.push_back({.number = 2, .p_m = {12.0, 7.0, 2.5}});
+  site.dock = Dock{.T_route_docked = {10.0, 5.0, pi / 2.0}, .profile_m = {{0.6, -0.3}, {0.6, 0.3}}};
+  const Route map = to_map(site, {10.0, 5.0, pi / 2.0});
+  EXPECT_THAT(map.anchors[0].p_m, VectorNear(Eigen::Vector3d(2.0, -2.0, 2.5), kExactTol));
+  EXPECT_THAT(map.dock->T_route_docked, Pose2Near(Pose2{}, kExactTol, kExactTol));
+  EXPECT_EQ(map.dock->profile_m[1], Eigen::Vector2d(0.6, 0.3));
+}
+
 TEST(RouteFrame, AStartAtTheOriginChangesNothing) {
   const Route route = to_map(make_route(), {});
   EXPECT_THAT(route.stations[0].T_route_body, Pose2Near(Pose2{12.0, 7.0, pi / 2.0}, kExactTol, kExactTol));

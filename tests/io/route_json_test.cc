@@ -75,8 +75,6 @@ TEST(LoadRoute, NamesThePlaceOfWhatIsWrong) {
   EXPECT_EQ(complaint_after([](Json& r) { r["version"] = 2; }), "r.json: version must be 1");
   EXPECT_EQ(complaint_after([](Json& r) { r["frame"] = "map"; }), "r.json: frame must be site");
   EXPECT_EQ(complaint_after([](Json& r) { r.erase("start"); }), "r.json: start is missing");
-  EXPECT_EQ(complaint_after([](Json& r) { r["stations"] = Json::array(); }),
-            "r.json: stations must be a list with at least one entry");
   EXPECT_EQ(complaint_after([](Json& r) { r["stations"][1].erase("name"); }),
             "r.json: stations[1]: name is missing");
   EXPECT_EQ(complaint_after([](Json& r) { r["stations"][1]["number"] = 1.5; }),
@@ -102,13 +100,41 @@ TEST(LoadRoute, NamesThePlaceOfWhatIsWrong) {
             }),
             "r.json: keep_out[0]: line must have at least two points");
   EXPECT_EQ(complaint_after([](Json& r) { r["stations"] = 3; }),
-            "r.json: stations must be a list with at least one entry");
+            "r.json: stations must be a list");
   EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0] = 3; }), "r.json: stations[0]: must be an object");
   EXPECT_EQ(complaint_after([](Json& r) { r["keep_out"] = 3; }), "r.json: keep_out must be a list");
   EXPECT_EQ(complaint_after([](Json& r) {
               r["keep_out"] = {{"name", "x"}};
             }),
             "r.json: keep_out must be a list");
+}
+
+TEST(LoadRoute, ReadsAnchorsAndDock) {
+  Json json = make_route();
+  json["stations"] = Json::array();
+  json["anchors"] = Json::parse(R"([{"number": 3, "position": [20.5, -5, 2.5]}])");
+  json["dock"] = Json::parse(
+      R"({"position": [5, 0, 0], "orientation": [0, 0, 1, 0], "profile": [[0.6, -0.3], [0.7, 0.0], [0.6, 0.3]]})");
+  const TemporaryFile file("r.json", json.dump());
+  const Route route = load_route(file.path()).route;
+  ASSERT_EQ(route.anchors.size(), 1U);
+  EXPECT_EQ(route.anchors[0].number, 3);
+  EXPECT_THAT(route.anchors[0].p_m, VectorNear(Eigen::Vector3d(20.5, -5.0, 2.5), 0.0));
+  ASSERT_TRUE(route.dock.has_value());
+  EXPECT_THAT(route.dock->T_route_docked, Pose2Near((Pose2{5.0, 0.0, std::numbers::pi}), 0.0, 1e-12));
+  EXPECT_EQ(route.dock->profile_m.size(), 3U);
+}
+
+TEST(LoadRoute, WrongAnchorsAndDocksAreNamed) {
+  const Json anchor = Json::parse(R"({"number": 3, "position": [20.5, -5, 2.5]})");
+  EXPECT_EQ(complaint_after([&](Json& r) { r["anchors"] = {anchor, anchor}; }),
+            "r.json: anchors[1]: number 3 stands there twice");
+  EXPECT_EQ(complaint_after([&](Json& r) { r["anchors"] = {{{"number", 3}}}; }), "r.json: anchors[0]: position is missing");
+  EXPECT_EQ(complaint_after([&](Json& r) { r["dock"] = {{"position", {0, 0, 0}}}; }), "r.json: dock: orientation is missing");
+  EXPECT_EQ(complaint_after([&](Json& r) {
+              r["dock"] = {{"position", {0, 0, 0}}, {"orientation", {0, 0, 0, 1}}, {"profile", {{1, 2}}}};
+            }),
+            "r.json: dock: profile must have at least two points");
 }
 
 TEST(LoadRoute, UnknownKeysGetTheNearestSpelling) {

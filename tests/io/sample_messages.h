@@ -77,7 +77,7 @@ inline DepthImage sample_depth() {
           .depth_mm = {1000, 2000, 0, 65535, 1, 256}};
 }
 inline RemoteCommand sample_remote() {
-  return {.stamp = kSampleStamp, .vx_mps = 0.5, .yaw_rate_radps = -0.25, .mark = true};
+  return {.stamp = kSampleStamp, .vx_mps = 0.5, .yaw_rate_radps = -0.25, .mark = true, .hand_over = true};
 }
 inline LocalizationTrust sample_trust() {
   return {.stamp = kSampleStamp, .trust = 0.25, .weak_std_m = 0.75, .weak_direction_rad = 1.5, .is_lost = true};
