@@ -61,6 +61,11 @@ std::string JsonObject::word(const char* key) const {
   return member(key).get<std::string>();
 }
 
+bool JsonObject::flag(const char* key) const {
+  if (!member(key).is_boolean()) fail(fmt::format("{} must be true or false", key));
+  return member(key).get<bool>();
+}
+
 std::vector<double> JsonObject::numbers(const char* key, std::size_t count) const {
   return numbers_of(member(key), key, count);
 }

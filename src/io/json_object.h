@@ -28,6 +28,7 @@ class JsonObject {
   int whole(const char* key) const;
   double number(const char* key) const;  ///< finite
   std::string word(const char* key) const;
+  bool flag(const char* key) const;
   std::vector<double> numbers(const char* key, std::size_t count) const;
   /// From `position` (x, y, z) and `orientation` (quaternion x, y, z, w of length 1).
   Pose2 pose() const;

@@ -1,0 +1,40 @@
+#include "io/drive_json.h"
+
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "io/json_object.h"
+
+namespace patrol::io {
+namespace {
+
+DriveWaypoint read_waypoint(const std::string& place, const Json& json) {
+  const JsonObject reader(place, json, {"position", "reverse", "mark_heading_deg"});
+  const std::vector<double> p = reader.numbers("position", 2);
+  DriveWaypoint waypoint{.p_m = {p[0], p[1]}};
+  if (reader.has("reverse")) waypoint.is_reverse = reader.flag("reverse");
+  if (reader.has("mark_heading_deg")) {
+    waypoint.is_mark = true;
+    waypoint.heading_rad = reader.number("mark_heading_deg") * std::numbers::pi / 180.0;
+  }
+  return waypoint;
+}
+
+}  // namespace
+
+RemoteDrive load_drive(const std::filesystem::path& file) {
+  const Json json = load_json(file);
+  const JsonObject root(file.string(), json, {"version", "frame", "waypoints"});
+  if (root.whole("version") != 1) root.fail("version must be 1");
+  if (root.word("frame") != "site") root.fail("frame must be site");
+  const Json& waypoints = root.list("waypoints");
+  RemoteDrive drive;
+  for (std::size_t i = 0; i < waypoints.size(); ++i) {
+    drive.push_back(read_waypoint(fmt::format("{}: waypoints[{}]", file.string(), i), waypoints[i]));
+  }
+  if (drive.size() < 2) root.fail("waypoints must be at least two");
+  return drive;
+}
+
+}  // namespace patrol::io

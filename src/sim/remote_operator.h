@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "core/messages.h"
+#include "core/random.h"
+#include "core/remote_drive.h"
+#include "core/settings.h"
+
+namespace patrol::sim {
+
+struct RemoteOperatorSettings {
+  double speed_mps = 0.8;
+  double yaw_rate_radps = 0.6;         ///< of a turn in place
+  double reaction_s = 0.25;            ///< what is seen leads to a command after this
+  double steering_noise_radps = 0.03;  ///< standard deviation of what the hand adds to each command
+  double stop_for_people_m = 2.0;      ///< waits while somebody is this near ahead of the robot
+  double rate_hz = 10.0;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("speed_mps", self.speed_mps, between(0.05, 2.0));
+    visit("yaw_rate_radps", self.yaw_rate_radps, between(0.05, 2.0));
+    visit("reaction_s", self.reaction_s, between(0.0, 2.0));
+    visit("steering_noise_radps", self.steering_noise_radps, between(0.0, 1.0));
+    visit("stop_for_people_m", self.stop_for_people_m, between(0.0, 10.0));
+    visit("rate_hz", self.rate_hz, between(1.0, 50.0));
+  }
+};
+
+/// A person who walks behind the robot with the remote control, sees where it is, and drives it along a way (pure pursuit, Coulter
+/// 1992) with a human's reaction time and an unsteady hand. At marks they stop, turn the robot to the heading and press the button;
+/// at the end they hand over.
+class RemoteOperator {
+ public:
+  /// `drive` in world.
+  RemoteOperator(const RemoteOperatorSettings& settings, RemoteDrive drive, std::uint64_t seed);
+
+  /// Call at every tick; a command when one is due. Nothing more after the hand-over.
+  std::optional<RemoteCommand> step(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people);
+
+ private:
+  enum class Phase { kDriving, kTurning, kLooking, kMarked, kDone };
+
+  RemoteCommand decide(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people);
+  void drive(const Pose2& T_world_body, RemoteCommand& command);
+  void turn_to(double yaw_rad, const Pose2& T_world_body, RemoteCommand& command) const;
+  bool passed(const Pose2& T_world_body) const;
+  bool is_somebody_ahead(const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people) const;
+  Eigen::Vector2d pursued_point(const Eigen::Vector2d& p_world_body) const;
+  const DriveWaypoint& waypoint() const { return drive_[next_]; }
+
+  RemoteOperatorSettings settings_;
+  RemoteDrive drive_;
+  RandomStream hand_;
+  Phase phase_ = Phase::kDriving;
+  std::size_t next_ = 0;
+  Eigen::Vector2d leg_start_m_ = Eigen::Vector2d::Zero();
+  bool has_started_ = false;
+  Time phase_start_{};
+  std::uint64_t count_ = 0;
+  std::deque<std::pair<Time, Pose2>> seen_;
+};
+
+}  // namespace patrol::sim

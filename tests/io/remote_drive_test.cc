@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/error.h"
+#include "io/drive_json.h"
+#include "io/remote_csv.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::io {
+namespace {
+
+using test::TemporaryFile;
+using namespace std::chrono_literals;
+
+template <typename Load>
+std::string complaint(const std::string& name, const std::string& text, const Load& load) {
+  const TemporaryFile file(name, text);
+  try {
+    load(file.path());
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    return what.substr(what.find(name));
+  }
+  return "";
+}
+
+std::string drive_complaint(const std::string& waypoints) {
+  return complaint("d.json", R"({"version": 1, "frame": "site", "waypoints": )" + waypoints + "}", load_drive);
+}
+
+std::string remote_complaint(const std::string& lines) {
+  return complaint("r.csv", "time_s,vx_mps,yaw_rate_radps,mark,hand_over\n" + lines, load_remote);
+}
+
+TEST(LoadDrive, ReadsReversesAndMarks) {
+  const TemporaryFile file("d.json", R"({"version": 1, "frame": "site", "waypoints": [
+    {"position": [1, 2], "reverse": true}, {"position": [3, 4], "mark_heading_deg": 90}]})");
+  const RemoteDrive drive = load_drive(file.path());
+  ASSERT_EQ(drive.size(), 2u);
+  EXPECT_TRUE(drive[0].is_reverse);
+  EXPECT_FALSE(drive[0].is_mark);
+  EXPECT_EQ(drive[1].p_m, Eigen::Vector2d(3.0, 4.0));
+  EXPECT_TRUE(drive[1].is_mark);
+  EXPECT_DOUBLE_EQ(drive[1].heading_rad, std::numbers::pi / 2.0);
+}
+
+TEST(LoadDrive, NamesTheWaypointAndTheKey) {
+  EXPECT_EQ(drive_complaint(R"([{"position": [1, 2]}])"), "d.json: waypoints must be at least two");
+  EXPECT_EQ(drive_complaint(R"([{"position": [1, 2]}, {"position": [1]}])"),
+            "d.json: waypoints[1]: position must be a list of 2 numbers");
+  EXPECT_EQ(drive_complaint(R"([{"position": [1, 2], "revers": true}])"),
+            "d.json: waypoints[0]: unknown key revers; did you mean reverse?");
+  EXPECT_EQ(drive_complaint(R"([{"position": [1, 2], "reverse": 1}])"), "d.json: waypoints[0]: reverse must be true or false");
+}
+
+TEST(LoadRemote, WhatWasSavedIsReadBack) {
+  const TemporaryFile file("r.csv", "");
+  save_remote(file.path(), {{.stamp = 100ms, .vx_mps = 0.5, .yaw_rate_radps = -0.25},
+                            {.stamp = 200ms, .mark = true},
+                            {.stamp = 300ms, .hand_over = true}});
+  const std::vector<RemoteCommand> commands = load_remote(file.path());
+  ASSERT_EQ(commands.size(), 3u);
+  EXPECT_EQ(commands[0].stamp, 100ms);
+  EXPECT_EQ(commands[0].vx_mps, 0.5);
+  EXPECT_EQ(commands[0].yaw_rate_radps, -0.25);
+  EXPECT_TRUE(commands[1].mark);
+  EXPECT_TRUE(commands[2].hand_over);
+}
+
+TEST(LoadRemote, NamesTheLine) {
+  EXPECT_EQ(complaint("r.csv", "t,v\n", load_remote),
+            "r.csv:1: the first line must be time_s,vx_mps,yaw_rate_radps,mark,hand_over");
+  EXPECT_EQ(remote_complaint(""), "r.csv: holds no command");
+  EXPECT_EQ(remote_complaint("0,1,2,0\n"), "r.csv:2: must be 5 numbers with commas between");
+  EXPECT_EQ(remote_complaint("0,1,nan,0,0\n"), "r.csv:2: must be 5 numbers with commas between");
+  EXPECT_EQ(remote_complaint("0,1,0,2,0\n"), "r.csv:2: a button must be 0 or 1");
+  EXPECT_EQ(remote_complaint("0,1,0,0,0\n0,1,0,0,0\n"), "r.csv:3: times must grow from 0");
+}
+
+}  // namespace
+}  // namespace patrol::io

@@ -1,0 +1,79 @@
+#include "sim/remote_operator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace patrol::sim {
+namespace {
+
+constexpr double kTick_s = 0.02;
+
+/// What came of a drive of a robot that does at once what it is told.
+struct Driven {
+  std::vector<Pose2> marks;
+  std::optional<Time> handed_over;
+  Pose2 T_world_body;
+  double nearest_m = 1e9;  ///< that it came to `p_watched`
+  double way_back_m = 0.0; ///< driven in reverse
+};
+
+Driven drive(const RemoteDrive& way, const Pose2& start, const RemoteOperatorSettings& settings = {}, double seconds = 120.0,
+             const std::vector<Eigen::Vector2d>& people = {}, const Eigen::Vector2d& p_watched = {0.0, 0.0}) {
+  RemoteOperator person(settings, way, 7);
+  Driven driven{.marks = {}, .handed_over = {}, .T_world_body = start};
+  RemoteCommand command;
+  for (double t = 0.0; t < seconds && !driven.handed_over; t += kTick_s) {
+    if (const auto next = person.step(from_seconds(t), driven.T_world_body, people)) command = *next;
+    if (command.mark) driven.marks.push_back(driven.T_world_body);
+    if (command.hand_over) driven.handed_over = from_seconds(t);
+    driven.T_world_body = driven.T_world_body * Pose2{command.vx_mps * kTick_s, 0.0, command.yaw_rate_radps * kTick_s};
+    driven.nearest_m = std::min(driven.nearest_m, (driven.T_world_body.position() - p_watched).norm());
+    driven.way_back_m += std::max(0.0, -command.vx_mps * kTick_s);
+    command.mark = false;
+  }
+  return driven;
+}
+
+TEST(RemoteOperator, MarksWithinTenCentimetresAndThreeDegreesAndHandsOverAtTheEnd) {
+  const Driven driven = drive({{.p_m = {6.0, 0.0}},
+                               {.p_m = {12.0, 2.0}, .is_mark = true, .heading_rad = 1.0},
+                               {.p_m = {4.0, 3.0}}},
+                              {});
+  ASSERT_EQ(driven.marks.size(), 1u);
+  EXPECT_LT((driven.marks[0].position() - Eigen::Vector2d(12.0, 2.0)).norm(), 0.10);
+  EXPECT_LT(std::abs(wrap_angle(driven.marks[0].yaw - 1.0)), 3.0 * std::numbers::pi / 180.0);
+  ASSERT_TRUE(driven.handed_over.has_value());
+  EXPECT_LT((driven.T_world_body.position() - Eigen::Vector2d(4.0, 3.0)).norm(), 0.10);
+}
+
+TEST(RemoteOperator, BacksOutOfTheDock) {
+  const Driven driven = drive({{.p_m = {2.0, 0.0}, .is_reverse = true}, {.p_m = {8.0, 0.0}}}, {0.0, 0.0, std::numbers::pi});
+  EXPECT_GT(driven.way_back_m, 1.2);
+  EXPECT_TRUE(driven.handed_over.has_value());
+}
+
+TEST(RemoteOperator, WaitsForSomebodyInTheWay) {
+  const Eigen::Vector2d person(5.0, 0.2);
+  const Driven driven = drive({{.p_m = {10.0, 0.0}}, {.p_m = {12.0, 0.0}}}, {}, {}, 60.0, {person}, person);
+  EXPECT_FALSE(driven.handed_over.has_value());
+  EXPECT_GT(driven.nearest_m, 1.5);
+}
+
+TEST(RemoteOperator, KeepsWithinTwentyCentimetresOfAStraightLegWithAReactionTimeOfAQuarterSecond) {
+  RemoteOperator person({}, {{.p_m = {30.0, 0.0}}, {.p_m = {31.0, 0.0}}}, 3);
+  Pose2 T;
+  RemoteCommand command;
+  double farthest = 0.0;
+  for (double t = 0.0; t < 30.0; t += kTick_s) {
+    if (const auto next = person.step(from_seconds(t), T, {})) command = *next;
+    T = T * Pose2{command.vx_mps * kTick_s, 0.0, command.yaw_rate_radps * kTick_s};
+    farthest = std::max(farthest, std::abs(T.y));
+  }
+  EXPECT_GT(T.x, 20.0);
+  EXPECT_LT(farthest, 0.2);
+}
+
+}  // namespace
+}  // namespace patrol::sim
