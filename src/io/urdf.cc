@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <regex>
 #include <sstream>
@@ -21,6 +22,8 @@ namespace patrol::io {
 namespace {
 
 constexpr std::array kLegNames = {"FL", "FR", "RL", "RR"};
+constexpr std::array kSideNames = {"left", "right"};
+constexpr std::array kTrackNames = {"left_track", "right_track"};
 
 /// A usual standing posture (abduction, hip, knee), at which the footprint is taken.
 const Eigen::Vector3d kStandingPosture(0.0, 0.8, -1.6);
@@ -31,6 +34,13 @@ int line_of(const std::string& text, const std::string& name) {
   if (at == std::string::npos) return 0;
   return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
 }
+
+/// What a track's belt runs round: a cylinder across the robot.
+struct Wheel {
+  Eigen::Vector3d centre_m;  ///< in body
+  double radius_m;
+  double width_m;
+};
 
 /// Reads elements of one file, with errors that say where.
 class UrdfReader {
@@ -58,8 +68,12 @@ class UrdfReader {
   urdf::JointConstSharedPtr joint(const std::string& name) const;
   Pose3 joint_origin(const std::string& name) const;
   LegGeometry read_leg(const std::string& name) const;
+  void read_legs(RobotDescription& robot) const;
+  void read_tracks(RobotDescription& robot) const;
   JointLimit read_limit(const std::string& name) const;
   double foot_radius_m(const std::string& link) const;
+  double sprocket_radius_m(const std::string& link) const;
+  std::vector<Wheel> read_wheels(const std::string& track) const;
   std::vector<Eigen::Vector2d> read_footprint(const RobotDescription& robot) const;
 
   std::string path_;
@@ -191,12 +205,43 @@ LegGeometry UrdfReader::read_leg(const std::string& name) const {
           .foot_radius_m = foot_radius_m(name + "_foot")};
 }
 
+double UrdfReader::sprocket_radius_m(const std::string& link) const {
+  const urdf::LinkConstSharedPtr sprocket = model_->getLink(link);
+  if (!sprocket || !sprocket->collision || sprocket->collision->geometry->type != urdf::Geometry::CYLINDER) {
+    fail(link, "a sprocket needs a cylinder as its collision shape");
+  }
+  return std::static_pointer_cast<const urdf::Cylinder>(sprocket->collision->geometry)->radius;
+}
+
+std::vector<Wheel> UrdfReader::read_wheels(const std::string& track) const {
+  const urdf::LinkConstSharedPtr link = model_->getLink(track);
+  if (!link || !link->parent_joint || link->parent_joint->type != urdf::Joint::FIXED ||
+      link->parent_joint->parent_link_name != frame_id::kBody) {
+    fail(track, fmt::format("a track is a link fixed to {}", frame_id::kBody));
+  }
+  const Pose3 T_body_track = to_pose(link->parent_joint->parent_to_joint_origin_transform);
+  std::vector<Wheel> wheels;
+  for (const urdf::CollisionSharedPtr& collision : link->collision_array) {
+    const Pose3 T_body_wheel = T_body_track * to_pose(collision->origin);
+    const bool is_across = std::abs((T_body_wheel.rotation * Eigen::Vector3d::UnitZ()).y()) > 0.9999;
+    if (collision->geometry->type != urdf::Geometry::CYLINDER || !is_across) {
+      fail(track, "the collision shapes of a track are the wheels that its belt runs round: cylinders along y");
+    }
+    const auto& cylinder = static_cast<const urdf::Cylinder&>(*collision->geometry);
+    wheels.push_back({.centre_m = T_body_wheel.position, .radius_m = cylinder.radius, .width_m = cylinder.length});
+  }
+  return wheels;
+}
+
 JointLimit UrdfReader::read_limit(const std::string& name) const {
   const urdf::JointLimitsSharedPtr limits = joint(name)->limits;
   if (!limits) fail(name, "has no <limit>");
-  if (limits->lower >= limits->upper) fail(name, fmt::format("limit lower {} is not below upper {}", limits->lower, limits->upper));
+  const bool is_endless = joint(name)->type == urdf::Joint::CONTINUOUS;
+  const double upper = is_endless ? std::numeric_limits<double>::infinity() : limits->upper;
+  const double lower = is_endless ? -upper : limits->lower;
+  if (lower >= upper) fail(name, fmt::format("limit lower {} is not below upper {}", lower, upper));
   if (limits->effort <= 0.0 || limits->velocity <= 0.0) fail(name, "limit effort and velocity must be positive");
-  return {.lower_rad = limits->lower, .upper_rad = limits->upper, .velocity_radps = limits->velocity, .effort_nm = limits->effort};
+  return {.lower_rad = lower, .upper_rad = upper, .velocity_radps = limits->velocity, .effort_nm = limits->effort};
 }
 
 /// Convex hull, counter-clockwise (Andrew's monotone chain).
@@ -220,7 +265,21 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   return hull;
 }
 
-/// The trunk's box and the standing feet, seen from above.
+/// Road wheels are those whose bottoms are the lowest: the belt lies on the ground between the first and the last.
+double contact_length_m(const std::vector<Wheel>& wheels) {
+  constexpr double kLevel_m = 1e-3;
+  double bottom = std::numeric_limits<double>::infinity();
+  for (const Wheel& wheel : wheels) bottom = std::min(bottom, wheel.centre_m.z() - wheel.radius_m);
+  double front = -std::numeric_limits<double>::infinity(), rear = -front;
+  for (const Wheel& wheel : wheels) {
+    if (wheel.centre_m.z() - wheel.radius_m > bottom + kLevel_m) continue;
+    front = std::max(front, wheel.centre_m.x());
+    rear = std::min(rear, wheel.centre_m.x());
+  }
+  return front - rear;
+}
+
+/// The trunk's box, and the standing feet or the tracks, seen from above.
 std::vector<Eigen::Vector2d> UrdfReader::read_footprint(const RobotDescription& robot) const {
   std::vector<Eigen::Vector2d> points;
   const urdf::LinkConstSharedPtr base = model_->getLink(frame_id::kBody);
@@ -237,7 +296,40 @@ std::vector<Eigen::Vector2d> UrdfReader::read_footprint(const RobotDescription& 
       points.emplace_back(foot.head<2>() + leg.foot_radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
     }
   }
+  for (const char* track : kTrackNames) {
+    if (!robot.tracks) break;
+    for (const Wheel& wheel : read_wheels(track)) {
+      for (const double x : {-wheel.radius_m, wheel.radius_m}) {
+        for (const double y : {-0.5, 0.5}) points.emplace_back(wheel.centre_m.head<2>() + Eigen::Vector2d(x, y * wheel.width_m));
+      }
+    }
+  }
   return convex_hull(std::move(points));
+}
+
+void UrdfReader::read_legs(RobotDescription& robot) const {
+  for (const char* leg : kLegNames) {
+    robot.legs.push_back(read_leg(leg));
+    for (const char* joint_suffix : {"_abduction_joint", "_hip_joint", "_knee_joint"}) {
+      robot.joint_names.push_back(std::string(leg) + joint_suffix);
+      robot.joint_limits.push_back(read_limit(robot.joint_names.back()));
+    }
+  }
+}
+
+void UrdfReader::read_tracks(RobotDescription& robot) const {
+  const std::vector<Wheel> left = read_wheels(kTrackNames[0]), right = read_wheels(kTrackNames[1]);
+  if (left.size() < 2 || left.size() != right.size()) fail(kTrackNames[0], "a track needs two wheels at least, as many as the other");
+  for (const char* side : kSideNames) {
+    robot.joint_names.push_back(side + std::string("_sprocket_joint"));
+    robot.joint_limits.push_back(read_limit(robot.joint_names.back()));
+  }
+  robot.tracks = TrackGeometry{.gauge_m = left.front().centre_m.y() - right.front().centre_m.y(),
+                               .width_m = left.front().width_m,
+                               .contact_length_m = contact_length_m(left),
+                               .sprocket_radius_m = sprocket_radius_m("left_sprocket")};
+  if (robot.tracks->gauge_m <= robot.tracks->width_m) fail(kTrackNames[0], "the left track must lie to the left of the right one");
+  if (robot.tracks->contact_length_m <= 0.0) fail(kTrackNames[0], "two wheels at least must stand on the ground");
 }
 
 RobotDescription UrdfReader::read() const {
@@ -253,12 +345,10 @@ RobotDescription UrdfReader::read() const {
     }
   }
   if (!model_->getLink(frame_id::kBody)) throw InputError(fmt::format("{}: there is no link {}", path_, frame_id::kBody));
-  for (const char* leg : kLegNames) {
-    robot.legs.push_back(read_leg(leg));
-    for (const char* joint_suffix : {"_abduction_joint", "_hip_joint", "_knee_joint"}) {
-      robot.joint_names.push_back(std::string(leg) + joint_suffix);
-      robot.joint_limits.push_back(read_limit(robot.joint_names.back()));
-    }
+  if (model_->getLink(kTrackNames[0])) {
+    read_tracks(robot);
+  } else {
+    read_legs(robot);
   }
   robot.footprint_m = read_footprint(robot);
   return robot;

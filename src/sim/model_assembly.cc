@@ -1,64 +1,32 @@
 #include "sim/model_assembly.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "sim/robot_model.h"
 
 namespace patrol::sim {
 namespace {
 
-/// Height of the base above the ground in the start posture: two links of 0.213 m at 0.8 rad, and the foot.
-constexpr double kStartHeight_m = 0.322;
+/// Every geom that no contact can involve goes; masses are stated in the files, so nothing else changes.
+void strip_untouchable(mjSpec& spec) { spec.compiler.discardvisual = 1; }
 
-bool can_touch(const mjsGeom& geom) { return geom.contype != 0 || geom.conaffinity != 0; }
-
-/// Deletes every geom that no contact can involve; masses are stated in the files, so nothing else changes.
-void strip_untouchable(mjSpec& spec) {
-  std::vector<mjsElement*> untouchable;
-  for (mjsElement* element = mjs_firstElement(&spec, mjOBJ_GEOM); element != nullptr;
-       element = mjs_nextElement(&spec, element)) {
-    if (!can_touch(*mjs_asGeom(element))) untouchable.push_back(element);
-  }
-  for (mjsElement* element : untouchable) mjs_delete(&spec, element);
-}
-
-/// Height of what one would stand on at (x, y), m: the highest touchable surface below knee height.
-double ground_height_m(const std::string& world_xml, const Pose2& T_world_start) {
-  SpecPtr spec = load_spec(world_xml);
+double world_ground_height_m(const std::string& world_xml, const Stance& stance, const Pose2& T_world_start) {
+  const SpecPtr spec = load_spec(world_xml);
   strip_untouchable(*spec);
   const ModelPtr model = compile(*spec, world_xml);
   const DataPtr data = make_data(*model);
   mj_forward(model.get(), data.get());
-  constexpr double kEyeHeight_m = 0.3;
-  const mjtNum from[3] = {T_world_start.x, T_world_start.y, kEyeHeight_m};
-  const mjtNum down[3] = {0.0, 0.0, -1.0};
-  const mjtNum distance = mj_ray(model.get(), data.get(), from, down, nullptr, 1, -1, nullptr, nullptr);
-  if (distance < 0.0) {
-    throw InputError(fmt::format("start pose ({:.2f}, {:.2f}): there is no ground below it in {}", T_world_start.x,
-                                 T_world_start.y, world_xml));
+  try {
+    return ground_height_m(*model, *data, stance, T_world_start, stance.eye_height_m);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("start pose {} in {}", error.what(), world_xml));
   }
-  return kEyeHeight_m - distance;
-}
-
-/// The reference configuration with the legs in the start posture.
-std::vector<double> start_configuration(const mjModel& model) {
-  std::vector<double> qpos(model.qpos0, model.qpos0 + model.nq);
-  for (int joint = 0; joint < model.njnt; ++joint) {
-    const char* name = mj_id2name(&model, mjOBJ_JOINT, joint);
-    if (model.jnt_type[joint] != mjJNT_HINGE || name == nullptr) continue;
-    const std::string_view joint_name(name);
-    const int kind = joint_name.ends_with("_abduction_joint") ? 0
-                     : joint_name.ends_with("_hip_joint")     ? 1
-                     : joint_name.ends_with("_knee_joint")    ? 2
-                                                              : -1;
-    if (kind >= 0) qpos[static_cast<std::size_t>(model.jnt_qposadr[joint])] = kStartPosture[kind];
-  }
-  return qpos;
 }
 
 void refuse_start_inside_something(const mjModel& model, const std::vector<double>& qpos, const Pose2& T_world_start) {
@@ -90,15 +58,49 @@ SpecPtr make_spec(const std::string& world_xml, const std::string& robot_urdf, c
 
 }  // namespace
 
+double ground_height_m(const mjModel& model, const mjData& data, const Stance& stance, const Pose2& T_world_body,
+                       double eye_height_m) {
+  constexpr mjtByte kScenery[mjNGROUP] = {1, 1, 1, 1, 0, 0};  // not the robot's own groups
+  const mjtNum down[3] = {0.0, 0.0, -1.0};
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& support : stance.support_m) {
+    const Eigen::Vector2d p_world = T_world_body * support;
+    const mjtNum from[3] = {p_world.x(), p_world.y(), eye_height_m};
+    const mjtNum distance = mj_ray(&model, &data, from, down, kScenery, 1, -1, nullptr, nullptr);
+    if (distance >= 0.0) nearest_m = std::min(nearest_m, distance);
+  }
+  if (!std::isfinite(nearest_m)) {
+    throw InputError(fmt::format("({:.2f}, {:.2f}): there is no ground below it", T_world_body.x, T_world_body.y));
+  }
+  return eye_height_m - nearest_m;
+}
+
+void put_legs_in_start_posture(const mjModel& model, mjtNum* qpos) {
+  for (int joint = 0; joint < model.njnt; ++joint) {
+    const char* name = mj_id2name(&model, mjOBJ_JOINT, joint);
+    if (model.jnt_type[joint] != mjJNT_HINGE || name == nullptr) continue;
+    const std::string_view joint_name(name);
+    const int kind = joint_name.ends_with("_abduction_joint") ? 0
+                     : joint_name.ends_with("_hip_joint")     ? 1
+                     : joint_name.ends_with("_knee_joint")    ? 2
+                                                              : -1;
+    if (kind >= 0) qpos[model.jnt_qposadr[joint]] = kStartPosture[kind];
+  }
+}
+
 AssembledModel assemble_model(const std::string& world_xml, const std::string& robot_urdf, const Pose2& T_world_start) {
-  const Pose3 T_world_body = to_spatial(T_world_start, ground_height_m(world_xml, T_world_start) + kStartHeight_m);
   AssembledModel assembled;
+  assembled.stance = stance_of(robot_urdf);
+  const double ground_m = world_ground_height_m(world_xml, assembled.stance, T_world_start);
+  const Pose3 T_world_body = to_spatial(T_world_start, ground_m + assembled.stance.height_m);
   assembled.view = compile(*make_spec(world_xml, robot_urdf, T_world_body), world_xml);
   const SpecPtr physics = make_spec(world_xml, robot_urdf, T_world_body);
   strip_untouchable(*physics);
   spare_still_bodies(*physics);
   assembled.physics = compile(*physics, world_xml);
-  assembled.start_qpos = start_configuration(*assembled.physics);
+  const mjModel& model = *assembled.physics;
+  assembled.start_qpos.assign(model.qpos0, model.qpos0 + model.nq);
+  put_legs_in_start_posture(model, assembled.start_qpos.data());
   refuse_start_inside_something(*assembled.physics, assembled.start_qpos, T_world_start);
   return assembled;
 }

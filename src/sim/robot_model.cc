@@ -165,8 +165,6 @@ void add_link(mjSpec& spec, const urdf::Link& link, mjsBody& body) {
   }
 }
 
-
-
 urdf::ModelInterfaceSharedPtr parse(const std::string& path) {
   std::ifstream file(path);
   std::ostringstream text;
@@ -176,7 +174,33 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& path) {
   return model;
 }
 
+/// On feet: two links of 0.213 m at 0.8 rad, and the foot.
+Stance stance_on_feet() { return {.height_m = 0.322, .support_m = {Eigen::Vector2d::Zero()}, .eye_height_m = 0.3}; }
+
+/// On tracks: a hand's breadth above the highest ground under any wheel, to settle from there in the first ticks.
+Stance stance_on_tracks(const urdf::ModelInterface& model) {
+  constexpr double kDrop_m = 0.04;
+  Stance stance{.height_m = 0.0, .support_m = {Eigen::Vector2d::Zero()}, .eye_height_m = 1.0};
+  for (const char* name : {"left_track", "right_track"}) {
+    const urdf::LinkConstSharedPtr track = model.getLink(name);
+    if (!track) throw InputError(fmt::format("robot {}: there is no link named {}", model.getName(), name));
+    const urdf::Vector3& origin = track->parent_joint->parent_to_joint_origin_transform.position;
+    for (const urdf::CollisionSharedPtr& wheel : track->collision_array) {
+      const urdf::Vector3 centre = wheel->origin.position;
+      const double radius_m = static_cast<const urdf::Cylinder&>(*wheel->geometry).radius;
+      stance.height_m = std::max(stance.height_m, radius_m - centre.z - origin.z + kDrop_m);
+      stance.support_m.emplace_back(origin.x + centre.x, origin.y + centre.y);
+    }
+  }
+  return stance;
+}
+
 }  // namespace
+
+Stance stance_of(const std::string& urdf_path) {
+  const urdf::ModelInterfaceSharedPtr model = parse(urdf_path);
+  return model->getLink("left_track") ? stance_on_tracks(*model) : stance_on_feet();
+}
 
 void add_robot(mjSpec& world, const std::string& urdf_path, const Pose3& T_world_body) {
   const urdf::ModelInterfaceSharedPtr model = parse(urdf_path);

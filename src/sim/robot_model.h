@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <mujoco/mujoco.h>
 
@@ -15,6 +16,15 @@ inline constexpr int kGroupLidarOnly = 2;
 inline constexpr int kGroupTouchOnly = 3;
 inline constexpr int kGroupRobotVisual = 4;
 inline constexpr int kGroupRobotCollision = 5;
+
+/// How a robot is put down, upright on level ground.
+struct Stance {
+  double height_m = 0.0;                   ///< of the base above the ground
+  std::vector<Eigen::Vector2d> support_m;  ///< where the ground's height is taken, in level
+  double eye_height_m = 0.0;               ///< what is higher than this, in world, is not for standing on at the start
+};
+
+Stance stance_of(const std::string& urdf_path);
 
 /// Adds the robot of a URDF to a world: bodies, inertias, joints and shapes from the file; what URDF cannot say
 /// (actuators, contact parameters, rotor inertia) from here. The base gets a free joint at `T_world_body`.

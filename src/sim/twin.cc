@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
+#include "sim/locomotion/quadruped_drive.h"
+
 namespace patrol::sim {
 namespace {
 
@@ -30,6 +32,11 @@ std::string geom_name(const mjModel& model, int geom) {
   return fmt::format("geom {} of {}", geom, body == nullptr ? "?" : body);
 }
 
+std::unique_ptr<Locomotion> make_locomotion(const TwinSettings& settings, const RobotDescription& robot) {
+  if (robot.legs.empty()) throw InputError(fmt::format("{}: a robot needs legs", settings.robot_urdf));
+  return std::make_unique<QuadrupedDrive>(robot, settings.locomotion);
+}
+
 }  // namespace
 
 Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uint64_t seed)
@@ -37,7 +44,9 @@ Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uin
       data_(make_data(*model_.physics)),
       nearby_(*model_.physics),
       robot_body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)),
-      controller_(robot, settings.locomotion),
+      settings_(settings),
+      robot_(robot),
+      locomotion_(make_locomotion(settings, robot)),
       actors_(*model_.physics, settings.actors),
       sensors_(settings.sensors, robot, *model_.physics, *model_.view,
                GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed),
@@ -55,7 +64,11 @@ void Twin::step() {
   const mjModel* model = model_.physics.get();
   {
     const auto lap = clock_.lap("locomotion");
-    drive_joints();
+    locomotion_->step({.imu = sensors_.latest_imu(),
+                       .joints = sensors_.latest_joint_state(),
+                       .feet = sensors_.latest_foot_contacts(),
+                       .ticks = sensors_.latest_track_ticks()},
+                      command_, *model_.physics, *data_);
   }
   {
     const auto lap = clock_.lap("actors");
@@ -74,12 +87,25 @@ void Twin::step() {
   sensors_.step(*model, *data_, now_);
 }
 
-void Twin::drive_joints() {
-  const JointTorques torques = controller_.step({.imu = sensors_.latest_imu(),
-                                                 .joints = sensors_.latest_joint_state(),
-                                                 .feet = sensors_.latest_foot_contacts()},
-                                                command_);
-  std::copy(torques.begin(), torques.end(), data_->ctrl);
+void Twin::put_at(const Pose2& T_world_body) {
+  mjModel& model = *model_.physics;
+  constexpr double kEyeAboveBase_m = 1.0;
+  const double eye_height_m = truth().T_world_body.position.z() + kEyeAboveBase_m;
+  const double ground_m = ground_height_m(model, *data_, model_.stance, T_world_body, eye_height_m);
+  const Pose3 pose = to_spatial(T_world_body, ground_m + model_.stance.height_m);
+
+  const int root = model.jnt_qposadr[model.body_jntadr[robot_body_]];
+  put_legs_in_start_posture(model, data_->qpos);
+  std::copy_n(pose.position.data(), 3, data_->qpos + root);
+  const double quaternion[4] = {pose.rotation.w(), pose.rotation.x(), pose.rotation.y(), pose.rotation.z()};
+  std::copy_n(quaternion, 4, data_->qpos + root + 3);
+  for (mjtNum* rates : {data_->qvel, data_->qacc_warmstart, data_->qfrc_applied}) std::fill_n(rates, model.nv, 0.0);
+  std::fill_n(data_->ctrl, model.nu, 0.0);
+
+  locomotion_ = make_locomotion(settings_, robot_);
+  mj_kinematics(&model, data_.get());
+  nearby_.update(*data_);
+  mj_forward(&model, data_.get());
 }
 
 void Twin::note_collisions() {

@@ -11,6 +11,7 @@
 #include "core/robot_description.h"
 #include "sim/actors.h"
 #include "sim/gas_plume.h"
+#include "sim/locomotion/locomotion.h"
 #include "sim/locomotion/quadruped_controller.h"
 #include "sim/model_assembly.h"
 #include "sim/nearby_scenery.h"
@@ -52,14 +53,17 @@ class Twin {
   /// New touches since the last call; one entry per touch, not per tick.
   std::vector<Collision> take_collisions();
   /// By the firmware's own sensing.
-  bool has_fallen() const { return controller_.has_fallen(); }
+  bool has_fallen() const { return locomotion_->has_fallen(); }
+
+  /// Lifts the robot to another place and puts it down there, upright on the ground, at rest, its firmware switched on anew. It
+  /// sees the ground from a metre above where it is now. Throws InputError where there is no ground.
+  void put_at(const Pose2& T_world_body);
 
   const SensorSuite& sensors() const { return sensors_; }
   const mjModel& physics() const { return *model_.physics; }
   const PartClock& clock() const { return clock_; }
 
  private:
-  void drive_joints();
   void note_collisions();
   void throw_if_diverged() const;
 
@@ -67,7 +71,9 @@ class Twin {
   DataPtr data_;
   NearbyScenery nearby_;
   int robot_body_;
-  QuadrupedController controller_;
+  TwinSettings settings_;
+  RobotDescription robot_;
+  std::unique_ptr<Locomotion> locomotion_;
   Actors actors_;
   SensorSuite sensors_;
   VelocityCommand command_;

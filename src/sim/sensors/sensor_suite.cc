@@ -59,6 +59,8 @@ SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescrip
       imu_(settings.imu, physics, seed),
       joint_encoders_(settings.joint_encoders, physics, robot.joint_names),
       foot_contact_(settings.foot_contact, physics, robot.legs, seed),
+      hall_(robot.tracks ? std::optional<HallSensors>(std::in_place, settings.hall, physics, robot.joint_names, seed)
+                         : std::nullopt),
       tdlas_(settings.tdlas, seed),
       gnss_(settings.gnss, seed),
       lidar_(make_lidar(settings.lidar, scene_, robot, "lidar", kRayLidar2d, seed)),
@@ -77,15 +79,19 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
   newest_imu_ = imu_.read(physics, data, now, tick_);
   newest_joints_ = joint_encoders_.read(data, now);
   newest_contacts_ = foot_contact_.read(physics, data, now, tick_);
+  if (hall_) newest_ticks_ = hall_->read(data, now);
   ++tick_;
   if (settings_.imu.enabled && is_due(settings_.imu.rate_hz, imu_count_, now)) {
     deliver("imu", now, settings_.imu.latency_s, newest_imu_);
   }
-  if (settings_.joint_encoders.enabled && is_due(settings_.joint_encoders.rate_hz, joint_count_, now)) {
+  if (settings_.joint_encoders.enabled && !robot_.legs.empty() && is_due(settings_.joint_encoders.rate_hz, joint_count_, now)) {
     deliver("joint_encoders", now, settings_.joint_encoders.latency_s, newest_joints_);
   }
-  if (settings_.foot_contact.enabled && is_due(settings_.foot_contact.rate_hz, contact_count_, now)) {
+  if (settings_.foot_contact.enabled && !robot_.legs.empty() && is_due(settings_.foot_contact.rate_hz, contact_count_, now)) {
     deliver("foot_contact", now, settings_.foot_contact.latency_s, newest_contacts_);
+  }
+  if (hall_ && settings_.hall.enabled && is_due(settings_.hall.rate_hz, hall_count_, now)) {
+    deliver("hall", now, settings_.hall.latency_s, newest_ticks_);
   }
 
   const auto start = std::chrono::steady_clock::now();

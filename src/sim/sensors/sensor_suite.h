@@ -15,6 +15,7 @@
 #include "sim/sensors/fault.h"
 #include "sim/sensors/foot_contact.h"
 #include "sim/sensors/gnss.h"
+#include "sim/sensors/hall_sensors.h"
 #include "sim/sensors/imu.h"
 #include "sim/sensors/joint_encoders.h"
 #include "sim/sensors/lidar.h"
@@ -28,6 +29,7 @@ struct SensorSuiteSettings {
   ImuSettings imu;
   JointEncoderSettings joint_encoders;
   FootContactSettings foot_contact;
+  HallSettings hall;
   TdlasSettings tdlas;
   GnssSettings gnss;
 
@@ -38,6 +40,7 @@ struct SensorSuiteSettings {
     visit("imu", self.imu);
     visit("joint_encoders", self.joint_encoders);
     visit("foot_contact", self.foot_contact);
+    visit("hall", self.hall);
     visit("tdlas", self.tdlas);
     visit("gnss", self.gnss);
   }
@@ -69,10 +72,11 @@ class SensorSuite {
   /// Messages due by `now`, in order of delivery.
   std::vector<SensorMessage> take_due(Time now);
 
-  /// What the walking firmware reads directly, every tick.
+  /// What the firmware reads directly, every tick.
   const Imu& latest_imu() const { return newest_imu_; }
   const JointState& latest_joint_state() const { return newest_joints_; }
   const FootContacts& latest_foot_contacts() const { return newest_contacts_; }
+  const TrackTicks& latest_track_ticks() const { return newest_ticks_; }
 
   const std::vector<FaultReport>& faults() const { return faults_; }
   double lidar_seconds() const { return lidar_seconds_; }
@@ -95,6 +99,7 @@ class SensorSuite {
   ImuSensor imu_;
   JointEncoders joint_encoders_;
   FootContactSensor foot_contact_;
+  std::optional<HallSensors> hall_;
   Tdlas tdlas_;
   Gnss gnss_;
   std::optional<Lidar> lidar_, lidar3d_;
@@ -104,10 +109,12 @@ class SensorSuite {
   std::uint64_t spike_count_ = 0;
 
   std::uint64_t tick_ = 0;
+  std::uint64_t hall_count_ = 0;
   std::uint64_t imu_count_ = 0, joint_count_ = 0, contact_count_ = 0, tdlas_count_ = 0, gnss_count_ = 0;
   Imu newest_imu_;
   JointState newest_joints_;
   FootContacts newest_contacts_;
+  TrackTicks newest_ticks_;
   std::optional<std::pair<Time, Pose3>> last_body_;
   std::vector<Delivery> queue_;
   double lidar_seconds_ = 0.0;

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <algorithm>
+
+#include "sim/locomotion/locomotion.h"
+#include "sim/locomotion/quadruped_controller.h"
+
+namespace patrol::sim {
+
+/// Four legs: the controller's torques are the motors'.
+class QuadrupedDrive : public Locomotion {
+ public:
+  QuadrupedDrive(const RobotDescription& robot, const LocomotionSettings& settings) : controller_(robot, settings) {}
+
+  void step(const FirmwareReadings& readings, const VelocityCommand& command, mjModel&, mjData& data) override {
+    const JointTorques torques =
+        controller_.step({.imu = readings.imu, .joints = readings.joints, .feet = readings.feet}, command);
+    std::copy(torques.begin(), torques.end(), data.ctrl);
+  }
+  bool has_fallen() const override { return controller_.has_fallen(); }
+
+ private:
+  QuadrupedController controller_;
+};
+
+}  // namespace patrol::sim
