@@ -1,0 +1,184 @@
+#include "inspect/tour.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace patrol::inspect {
+
+Tour::Tour(const TourSettings& settings, std::vector<MarkedGoal> goals, bool has_remote)
+    : settings_(settings), goals_(std::move(goals)), has_remote_(has_remote), is_docked_(settings.starts_docked) {
+  validate(settings, "tour");
+  if (goals_.empty() && !has_remote) throw InputError("tour: there is no goal, and no remote control to mark one");
+}
+
+TourOutput Tour::step(Time now, const TourInput& input) {
+  now_ = now;
+  T_map_body_ = input.pose.T_map_body;
+  TourOutput output;
+  if (watch_localization(input, output)) return output;
+  switch (phase_) {
+    case Phase::kWaiting:
+      wait(output);
+      break;
+    case Phase::kRemote:
+      follow_remote(input, output);
+      break;
+    case Phase::kUndocking:
+      undock(input);
+      break;
+    case Phase::kDriving:
+      drive(input, output);
+      break;
+    case Phase::kStanding:
+      stand(output);
+      break;
+    case Phase::kDocking:
+      dock(input, output);
+      break;
+    case Phase::kOver:
+      break;
+  }
+  if (phase_ == Phase::kRemote) output.mode = TourMode::kRemote;
+  if (phase_ == Phase::kUndocking) output.mode = TourMode::kUndock;
+  if (phase_ == Phase::kDocking) output.mode = TourMode::kDock;
+  if (phase_ == Phase::kDriving) {
+    const MarkedGoal& goal = goals_[goal_];
+    const bool stops = goal.type != 'V';
+    output.mode = TourMode::kNavigate;
+    output.goal = {.T_map_body = goal.T_map_body,
+                   .position_tol_m = stops ? std::min(settings_.position_tol_m, goal.accuracy_m) : goal.accuracy_m,
+                   .yaw_tol_rad = stops ? settings_.yaw_tol_rad : std::numbers::pi};
+  }
+  return output;
+}
+
+/// True while the robot stands because it does not know where it is.
+bool Tour::watch_localization(const TourInput& input, TourOutput& output) {
+  const bool needs_place = phase_ == Phase::kDriving || phase_ == Phase::kStanding || phase_ == Phase::kDocking;
+  if (!input.is_lost || !needs_place) {
+    if (lost_since_) output.events.push_back(event("relocalized", "", "The robot knows where it is again.", to_seconds(now_ - *lost_since_)));
+    lost_since_.reset();
+    return false;
+  }
+  if (!lost_since_) {
+    lost_since_ = now_;
+    output.events.push_back(event("lost", "", "The robot does not know where it is: it stands and looks."));
+  } else if (now_ - *lost_since_ > from_seconds(settings_.lost_patience_s)) {
+    output.events.push_back(event("cannot_localize", "", fmt::format("The robot cannot tell where it is after {:.0f} s of looking.",
+                                                                     settings_.lost_patience_s)));
+    ++num_failed_;
+    finish(output);
+  }
+  return true;
+}
+
+void Tour::wait(TourOutput& output) {
+  if (now_ < from_seconds(settings_.start_wait_s)) return;
+  if (!has_remote_) return start_navigation(output);
+  last_remote_ = now_;
+  enter(Phase::kRemote);
+}
+
+void Tour::follow_remote(const TourInput& input, TourOutput& output) {
+  is_docked_ = false;
+  if (input.remote) last_remote_ = now_;
+  if (input.remote && input.remote->mark) {
+    goals_.push_back({.number = static_cast<int>(goals_.size()) + 1, .T_map_body = T_map_body_});
+    goal_ = goals_.size() - 1;
+    output.events.push_back(event("goal_marked", goal_name(), fmt::format("Marked {}.", goal_name())));
+  }
+  const bool is_off = now_ - last_remote_ > from_seconds(settings_.remote_silence_s);
+  if (!is_off && !(input.remote && input.remote->hand_over)) return;
+  output.map_is_made = true;
+  output.events.push_back(event("mapping_done", "", fmt::format("The map is made; {} goals are marked.", goals_.size())));
+  end_navigation(output);
+}
+
+void Tour::undock(const TourInput& input) {
+  if (input.docking != DockingFeedback::kDone) return;
+  is_docked_ = false;
+  enter(Phase::kDriving);
+}
+
+void Tour::drive(const TourInput& input, TourOutput& output) {
+  if (now_ == phase_start_) return;  // the feedback is about the goal before
+  if (input.navigation == NavigationFeedback::kFailed) {
+    ++num_failed_;
+    output.events.push_back(event("goal_failed", goal_name(), fmt::format("No way to {}.", goal_name()), navigation_));
+    return next_goal(output);
+  }
+  if (input.navigation != NavigationFeedback::kArrived) return;
+  if (goals_[goal_].type == 'V') return next_goal(output);
+  enter(Phase::kStanding);
+}
+
+void Tour::stand(TourOutput& output) {
+  if (now_ - phase_start_ < from_seconds(settings_.stand_s)) return;
+  output.events.push_back(event("goal_reached", goal_name(), fmt::format("At {}.", goal_name()), navigation_));
+  next_goal(output);
+}
+
+void Tour::dock(const TourInput& input, TourOutput& output) {
+  if (now_ == phase_start_ || input.docking == DockingFeedback::kUnderWay) return;
+  is_docked_ = input.docking == DockingFeedback::kDone;
+  if (is_docked_) {
+    output.events.push_back(event("docked", "", "Docked at the charging post.", navigation_));
+  } else {
+    ++num_failed_;
+    output.events.push_back(event("dock_failed", "", "The robot could not dock.", navigation_));
+  }
+  start_navigation(output);
+}
+
+void Tour::start_navigation(TourOutput& output) {
+  if (navigation_ >= settings_.navigations || goals_.empty()) return finish(output);
+  ++navigation_;
+  goal_ = 0;
+  output.localize_anew = true;
+  output.events.push_back(event("navigation_started", fmt::format("navigation_{}", navigation_),
+                                fmt::format("Navigation {} of {}: {} goals.", navigation_, settings_.navigations, goals_.size()),
+                                navigation_));
+  enter(is_docked_ ? Phase::kUndocking : Phase::kDriving);
+}
+
+void Tour::next_goal(TourOutput& output) {
+  ++goal_;
+  if (goal_ < goals_.size()) return enter(Phase::kDriving);
+  end_navigation(output);
+}
+
+void Tour::end_navigation(TourOutput& output) {
+  if (settings_.docks) return enter(Phase::kDocking);
+  start_navigation(output);
+}
+
+void Tour::finish(TourOutput& output) {
+  enter(Phase::kOver);
+  if (num_failed_ == 0) {
+    output.events.push_back(event("mission_completed", "", "Every goal was reached."));
+  } else {
+    output.events.push_back(event("mission_failed", "", fmt::format("{} things went wrong on the way.", num_failed_)));
+  }
+}
+
+Event Tour::abort(Time now, const std::string& kind, const std::string& text) {
+  now_ = now;
+  phase_ = Phase::kOver;
+  return event(kind, goal_ < goals_.size() ? goal_name() : "", text);
+}
+
+void Tour::enter(Phase phase) {
+  phase_ = phase;
+  phase_start_ = now_;
+}
+
+Event Tour::event(const std::string& kind, const std::string& subject, const std::string& text, double value) const {
+  return {.stamp = now_, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = T_map_body_,
+          .p_map_target = T_map_body_.position()};
+}
+
+std::string Tour::goal_name() const { return fmt::format("goal_{}", goals_[goal_].number); }
+
+}  // namespace patrol::inspect

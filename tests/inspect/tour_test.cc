@@ -1,0 +1,139 @@
+#include "inspect/tour.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+
+namespace patrol::inspect {
+namespace {
+
+constexpr Time kStep = std::chrono::milliseconds(50);
+
+std::vector<MarkedGoal> two_goals() {
+  return {{.number = 1, .T_map_body = {10.0, 0.0, 0.0}}, {.number = 2, .T_map_body = {20.0, 1.0, 1.0}}};
+}
+
+/// A robot that does at once whatever the tour wants, unless told otherwise.
+class Robot {
+ public:
+  explicit Robot(Tour tour) : tour_(std::move(tour)) {}
+
+  bool is_lost = false;
+  NavigationFeedback navigation = NavigationFeedback::kArrived;
+  DockingFeedback docking = DockingFeedback::kDone;
+
+  void run(double seconds, std::optional<RemoteCommand> remote = std::nullopt) {
+    for (const Time end = now_ + from_seconds(seconds); now_ < end && !tour_.is_over(); now_ += kStep) {
+      if (output.goal) pose_ = output.goal->T_map_body;
+      output = tour_.step(now_, {.pose = {.stamp = now_, .T_map_body = pose_}, .is_lost = is_lost, .navigation = navigation,
+                                 .docking = docking, .remote = remote});
+      if (remote) remote->mark = remote->hand_over = false;
+      for (const Event& event : output.events) events.push_back(event);
+      restarts += output.localize_anew ? 1 : 0;
+      maps += output.map_is_made ? 1 : 0;
+    }
+  }
+  int count(const std::string& kind) const {
+    return static_cast<int>(std::count_if(events.begin(), events.end(), [&](const Event& e) { return e.kind == kind; }));
+  }
+  const Tour& tour() const { return tour_; }
+
+  TourOutput output;
+  std::vector<Event> events;
+  int restarts = 0;
+  int maps = 0;
+
+ private:
+  Tour tour_;
+  Time now_{};
+  Pose2 pose_;
+};
+
+TEST(Tour, TenNavigationsOfTwoGoalsReachTwentyAndDockTenTimes) {
+  Robot robot(Tour({}, two_goals(), false));
+  robot.run(1000.0);
+  EXPECT_TRUE(robot.tour().is_over());
+  EXPECT_EQ(robot.count("navigation_started"), 10);
+  EXPECT_EQ(robot.count("goal_reached"), 20);
+  EXPECT_EQ(robot.count("docked"), 10);
+  EXPECT_EQ(robot.count("mission_completed"), 1);
+  EXPECT_EQ(robot.restarts, 10);
+}
+
+TEST(Tour, MarksGoalsByRemoteControlThenDrivesToThemByItself) {
+  Robot robot(Tour({.navigations = 1}, {}, true));
+  robot.run(5.0);
+  EXPECT_EQ(robot.output.mode, TourMode::kRemote);
+  robot.run(1.0, RemoteCommand{.vx_mps = 0.5});
+  robot.run(1.0, RemoteCommand{.mark = true});
+  robot.run(1.0, RemoteCommand{.mark = true});
+  EXPECT_EQ(robot.maps, 0);
+  robot.run(1.0, RemoteCommand{.hand_over = true});
+  EXPECT_EQ(robot.maps, 1);
+  robot.run(100.0);
+  EXPECT_EQ(robot.count("goal_marked"), 2);
+  EXPECT_EQ(robot.count("goal_reached"), 2);
+  EXPECT_EQ(robot.count("docked"), 2);
+  EXPECT_EQ(robot.count("mission_completed"), 1);
+}
+
+TEST(Tour, ARemoteControlThatFallsSilentForTwoSecondsIsOff) {
+  Robot robot(Tour({.navigations = 0, .docks = false}, {}, true));
+  robot.run(4.1);
+  robot.run(1.0, RemoteCommand{.vx_mps = 0.5});
+  robot.run(1.9);
+  EXPECT_EQ(robot.output.mode, TourMode::kRemote);
+  robot.run(0.3);
+  EXPECT_EQ(robot.count("mapping_done"), 1);
+  EXPECT_TRUE(robot.tour().is_over());
+}
+
+TEST(Tour, AGoalWithoutAWayIsReportedAndLeftOut) {
+  Robot robot(Tour({.navigations = 1}, two_goals(), false));
+  robot.navigation = NavigationFeedback::kFailed;
+  robot.run(100.0);
+  EXPECT_EQ(robot.count("goal_failed"), 2);
+  EXPECT_EQ(robot.count("mission_failed"), 1);
+  EXPECT_EQ(robot.count("mission_completed"), 0);
+}
+
+TEST(Tour, ADockingThatFailsFailsTheMission) {
+  Robot robot(Tour({.navigations = 1, .starts_docked = false}, two_goals(), false));
+  robot.docking = DockingFeedback::kFailed;
+  robot.run(100.0);
+  EXPECT_EQ(robot.count("dock_failed"), 1);
+  EXPECT_EQ(robot.count("mission_failed"), 1);
+}
+
+TEST(Tour, LostItStandsAndGoesOnOnceItKnows) {
+  Robot robot(Tour({.navigations = 1, .starts_docked = false, .docks = false}, two_goals(), false));
+  robot.navigation = NavigationFeedback::kDriving;
+  robot.run(6.0);
+  EXPECT_EQ(robot.output.mode, TourMode::kNavigate);
+  robot.is_lost = true;
+  robot.run(10.0);
+  EXPECT_EQ(robot.output.mode, TourMode::kStand);
+  EXPECT_EQ(robot.count("lost"), 1);
+  robot.is_lost = false;
+  robot.navigation = NavigationFeedback::kArrived;
+  robot.run(10.0);
+  EXPECT_EQ(robot.count("relocalized"), 1);
+  EXPECT_EQ(robot.count("mission_completed"), 1);
+}
+
+TEST(Tour, LostForThirtySecondsItSaysThatItCannotTell) {
+  Robot robot(Tour({.navigations = 1, .starts_docked = false}, two_goals(), false));
+  robot.is_lost = true;
+  robot.run(4.0 + 29.0);
+  EXPECT_EQ(robot.count("cannot_localize"), 0);
+  robot.run(2.0);
+  EXPECT_EQ(robot.count("cannot_localize"), 1);
+  EXPECT_TRUE(robot.tour().is_over());
+}
+
+TEST(Tour, NeitherGoalsNorRemoteControlIsRefused) { EXPECT_THROW(Tour({}, {}, false), InputError); }
+
+}  // namespace
+}  // namespace patrol::inspect
