@@ -15,12 +15,15 @@ struct FaultSettings {
   std::string kind = "silence";
   double start_s = 0.0;
   double duration_s = 1.0;
-  double magnitude = 1.0;  ///< delay: s; drift: units of the sensor per s; spikes: units of the sensor; else unused
+  /// delay: s; jitter: standard deviation of a delay that changes from message to message, s; clock_offset: s added to the
+  /// stamps; drift: units of the sensor per s; spikes: units of the sensor; else unused.
+  double magnitude = 1.0;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("sensor", self.sensor, one_of({"lidar", "lidar3d", "imu", "joint_encoders", "foot_contact", "tdlas", "gnss"}));
-    visit("kind", self.kind, one_of({"silence", "freeze", "delay", "drift", "spikes"}));
+    visit("sensor", self.sensor, one_of({"lidar", "lidar3d", "imu", "joint_encoders", "foot_contact", "tdlas", "gnss", "hall", "uwb",
+                                           "ultrasonic", "depth_camera", "remote"}));
+    visit("kind", self.kind, one_of({"silence", "freeze", "delay", "jitter", "clock_offset", "drift", "spikes"}));
     visit("start_s", self.start_s, at_least(0.0));
     visit("duration_s", self.duration_s, at_least(0.0));
     visit("magnitude", self.magnitude);

@@ -21,6 +21,12 @@ std::optional<Lidar> make_lidar(const LidarSettings& settings, const LidarScene&
   return Lidar(settings, scene, robot.T_body(frame), housing, seed, frame);
 }
 
+std::optional<Uwb> make_uwb(const UwbSettings& settings, const mjModel& view, const RobotDescription& robot, std::uint64_t seed) {
+  if (!settings.enabled) return std::nullopt;
+  robot.T_body("uwb");  // or says that there is none
+  return Uwb(settings, view, seed);
+}
+
 /// Adds `offset` to the message's main reading, as drift and spikes do.
 struct OffsetBy {
   double offset;
@@ -65,7 +71,9 @@ SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescrip
       gnss_(settings.gnss, seed),
       lidar_(make_lidar(settings.lidar, scene_, robot, "lidar", kRayLidar2d, seed)),
       lidar3d_(make_lidar(settings.lidar3d, scene_, robot, "lidar3d", kRayLidar3d, seed)),
-      spikes_(seed, "fault/spikes") {
+      uwb_(make_uwb(settings.uwb, view, robot, seed)),
+      spikes_(seed, "fault/spikes"),
+      jitter_(seed, "fault/jitter") {
   for (const FaultSettings& fault : faults) faults_.push_back({.fault = fault});
 }
 
@@ -119,6 +127,13 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
     deliver("gnss", now, settings_.gnss.latency_s,
             gnss_.read(scene_, T_world_body * robot_.T_body("gnss").position, now, gnss_count_ - 1));
   }
+  if (uwb_) poll_uwb(T_world_body, now);
+}
+
+void SensorSuite::poll_uwb(const Pose3& T_world_body, Time now) {
+  if (!is_due(settings_.uwb.rate_hz, uwb_count_, now)) return;
+  const auto range = uwb_->read(scene_, T_world_body * robot_.T_body("uwb").position, now, uwb_count_ - 1);
+  if (range) deliver("uwb", now, settings_.uwb.latency_s, *range);
 }
 
 void SensorSuite::deliver(const char* sensor, Time ready, double latency_s, SensorMessage message) {
@@ -140,6 +155,8 @@ bool SensorSuite::apply_faults(const char* sensor, Time ready, Time& due, Sensor
     report.is_executed = true;
     if (fault.kind == "silence") return false;
     if (fault.kind == "delay") due += from_seconds(fault.magnitude);
+    if (fault.kind == "jitter") due += from_seconds(std::abs(fault.magnitude * jitter_.normal(jitter_count_++)));
+    if (fault.kind == "clock_offset") std::visit([&](auto& content) { content.stamp += from_seconds(fault.magnitude); }, message);
     if (fault.kind == "drift") std::visit(OffsetBy{fault.magnitude * (to_seconds(ready) - fault.start_s)}, message);
     if (fault.kind == "spikes" && spikes_.uniform(spike_count_++) < 0.1) std::visit(OffsetBy{fault.magnitude}, message);
     if (fault.kind == "freeze" && good != last_good_.end()) {

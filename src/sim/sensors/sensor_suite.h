@@ -20,6 +20,7 @@
 #include "sim/sensors/joint_encoders.h"
 #include "sim/sensors/lidar.h"
 #include "sim/sensors/tdlas.h"
+#include "sim/sensors/uwb.h"
 
 namespace patrol::sim {
 
@@ -32,6 +33,7 @@ struct SensorSuiteSettings {
   HallSettings hall;
   TdlasSettings tdlas;
   GnssSettings gnss;
+  UwbSettings uwb;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -43,6 +45,7 @@ struct SensorSuiteSettings {
     visit("hall", self.hall);
     visit("tdlas", self.tdlas);
     visit("gnss", self.gnss);
+    visit("uwb", self.uwb);
   }
 
  private:
@@ -62,7 +65,8 @@ struct FaultReport {
 /// All sensors of the robot. Messages come out when they are delivered: latency after the instant they are true of.
 class SensorSuite {
  public:
-  /// `view` must outlive the suite; `plume` is in world.
+  /// `view` must outlive the suite; `plume` is in world. Throws InputError when an enabled sensor has no frame on the robot,
+  /// or nothing in the world to speak to.
   SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
               const mjModel& view, GasPlume plume, const std::vector<FaultSettings>& faults, std::uint64_t seed);
 
@@ -90,6 +94,7 @@ class SensorSuite {
   void deliver(const char* sensor, Time ready, double latency_s, SensorMessage message);
   bool apply_faults(const char* sensor, Time ready, Time& due, SensorMessage& message);
   bool is_due(double rate_hz, std::uint64_t& count, Time now) const;
+  void poll_uwb(const Pose3& T_world_body, Time now);
 
   SensorSuiteSettings settings_;
   RobotDescription robot_;
@@ -103,14 +108,16 @@ class SensorSuite {
   Tdlas tdlas_;
   Gnss gnss_;
   std::optional<Lidar> lidar_, lidar3d_;
+  std::optional<Uwb> uwb_;
   std::vector<FaultReport> faults_;
   std::vector<std::pair<std::string, SensorMessage>> last_good_;  ///< by sensor, for a freeze
-  RandomStream spikes_;
-  std::uint64_t spike_count_ = 0;
+  RandomStream spikes_, jitter_;
+  std::uint64_t spike_count_ = 0, jitter_count_ = 0;
 
   std::uint64_t tick_ = 0;
   std::uint64_t hall_count_ = 0;
   std::uint64_t imu_count_ = 0, joint_count_ = 0, contact_count_ = 0, tdlas_count_ = 0, gnss_count_ = 0;
+  std::uint64_t uwb_count_ = 0;
   Imu newest_imu_;
   JointState newest_joints_;
   FootContacts newest_contacts_;

@@ -1,0 +1,120 @@
+#include "sim/sensors/uwb.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include "core/error.h"
+#include "sim/mujoco.h"
+
+namespace patrol::sim {
+namespace {
+
+/// The number in "uwb_anchor_<number>"; none for any other name.
+std::optional<int> anchor_number(const char* site) {
+  constexpr std::string_view kPrefix = "uwb_anchor_";
+  const std::string_view name = site == nullptr ? "" : site;
+  if (!name.starts_with(kPrefix)) return std::nullopt;
+  int number = 0;
+  const char* const end = name.data() + name.size();
+  const auto [stop, error] = std::from_chars(name.data() + kPrefix.size(), end, number);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return number;
+}
+
+bool is_free(const LidarScene& scene, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const Eigen::Vector3d way = to - from;
+  const double length_m = way.norm();
+  return length_m <= 0.0 || !scene.cast(from, way / length_m, length_m, kRayEverything);
+}
+
+}  // namespace
+
+std::vector<UwbAnchor> uwb_anchors(const mjModel& view) {
+  const DataPtr data = make_data(view);
+  mj_kinematics(&view, data.get());
+  std::vector<UwbAnchor> anchors;
+  for (int site = 0; site < view.nsite; ++site) {
+    const std::optional<int> number = anchor_number(mj_id2name(&view, mjOBJ_SITE, site));
+    if (number) anchors.push_back({*number, Eigen::Vector3d(data->site_xpos + 3 * site)});
+  }
+  std::sort(anchors.begin(), anchors.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+  return anchors;
+}
+
+double uwb_range_bias_m(double distance_m) {
+  constexpr double kStrongest_dbm = -61.0, kStep_db = 2.0;
+  constexpr std::array kBias_m = {-0.110, -0.105, -0.100, -0.093, -0.082, -0.069, -0.051, -0.027, 0.0,
+                                  0.021,  0.035,  0.042,  0.049,  0.062,  0.071,  0.076,  0.081};
+  constexpr double kSent_dbm = -14.3;  // -41.3 dBm/MHz over 500 MHz
+  constexpr double kChannel2_hz = 3993.6e6, kLight_mps = 299792458.0;
+  const double path_loss_db = 20.0 * std::log10(4.0 * std::numbers::pi * kChannel2_hz * std::max(distance_m, 0.01) / kLight_mps);
+  const double row = std::clamp((kStrongest_dbm - (kSent_dbm - path_loss_db)) / kStep_db, 0.0, kBias_m.size() - 1.0);
+  const auto above = static_cast<std::size_t>(std::min(row, kBias_m.size() - 2.0));
+  return kBias_m[above] + (row - static_cast<double>(above)) * (kBias_m[above + 1] - kBias_m[above]);
+}
+
+bool is_uwb_path_blocked(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna,
+                         const Eigen::Vector3d& p_world_anchor) {
+  constexpr double kHousing_m = 0.1;     // about antenna and anchor: what is nearer belongs to them
+  constexpr double kPathRadius_m = 0.1;  // halfway; thinner things are passed by diffraction
+  constexpr int kLines = 6;              // about the straight one
+  const Eigen::Vector3d way = p_world_anchor - p_world_antenna;
+  if (way.norm() <= 2.0 * kHousing_m) return false;
+  const Eigen::Vector3d along = way.normalized();
+  const Eigen::Vector3d start = p_world_antenna + kHousing_m * along, end = p_world_anchor - kHousing_m * along;
+  const Eigen::Vector3d middle = 0.5 * (start + end);
+  const Eigen::Vector3d across = along.unitOrthogonal(), other = along.cross(across);
+  int blocked = is_free(scene, start, end) ? 0 : 1;
+  for (int line = 0; line < kLines; ++line) {
+    const double angle = (line + 0.25) * 2.0 * std::numbers::pi / kLines;
+    const Eigen::Vector3d via = middle + kPathRadius_m * (std::cos(angle) * across + std::sin(angle) * other);
+    if (!is_free(scene, start, via) || !is_free(scene, via, end)) ++blocked;
+  }
+  return 2 * blocked > kLines + 1;
+}
+
+Uwb::Uwb(const UwbSettings& settings, const mjModel& view, std::uint64_t seed)
+    : settings_(settings),
+      anchors_(uwb_anchors(view)),
+      noise_(seed, "uwb/noise"),
+      loss_(seed, "uwb/loss"),
+      blocked_loss_(seed, "uwb/blocked_loss"),
+      excess_(seed, "uwb/excess") {
+  validate(settings, "sensors.uwb");
+  if (anchors_.empty()) throw InputError("sensors.uwb is enabled, but the world has no site named uwb_anchor_<number>");
+}
+
+const UwbAnchor* Uwb::next_in_reach(const Eigen::Vector3d& p_world_antenna) {
+  for (std::size_t asked = 0; asked < anchors_.size(); ++asked) {
+    const UwbAnchor& anchor = anchors_[turn_];
+    turn_ = (turn_ + 1) % anchors_.size();
+    if ((anchor.p_world - p_world_antenna).norm() <= settings_.range_max_m) return &anchor;
+  }
+  return nullptr;
+}
+
+std::optional<UwbRange> Uwb::read(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna, Time now,
+                                  std::uint64_t tick) {
+  const UwbAnchor* anchor = next_in_reach(p_world_antenna);
+  if (anchor == nullptr) return std::nullopt;
+  const auto index = static_cast<std::uint64_t>(anchor->number);
+  const double distance_m = (anchor->p_world - p_world_antenna).norm();
+  // Answers thin out towards the end of the reach: assumed, with the fourth power of the distance.
+  const double loss = settings_.loss + (1.0 - settings_.loss) * std::pow(distance_m / settings_.range_max_m, 4.0);
+  if (loss_.uniform(tick, index) < loss) return std::nullopt;
+
+  UwbRange range{.stamp = now, .anchor = anchor->number};
+  range.range_m = distance_m + settings_.bias_scale * uwb_range_bias_m(distance_m) + settings_.range_noise_m * noise_.normal(tick, index);
+  if (is_uwb_path_blocked(scene, p_world_antenna, anchor->p_world)) {
+    if (blocked_loss_.uniform(tick, index) < settings_.blocked_loss) return std::nullopt;
+    range.range_m -= settings_.blocked_excess_m * std::log(excess_.uniform(tick, index));
+  }
+  range.range_m = std::max(range.range_m, 0.0);
+  return range;
+}
+
+}  // namespace patrol::sim

@@ -1,0 +1,151 @@
+#include "sim/sensors/sensor_suite.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "tests/sim/small_world.h"
+
+namespace patrol::sim {
+namespace {
+
+/// A box on wheels that nobody sees: what carries the sensors of a tracked robot. It stands at the origin, 1 m up.
+const std::string kWorld = R"(<site name="uwb_anchor_1" pos="8 0 1"/><site name="uwb_anchor_2" pos="0 8 1"/>
+    <geom type="box" pos="3 0 1" size="0.5 3 3" rgba="1 1 1 1"/>
+    <body name="base_link" pos="0 0 1"><freejoint/><inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/><site name="imu"/></body>)";
+
+RobotDescription make_robot() {
+  RobotDescription robot;
+  robot.name = "carrier";
+  for (const char* frame : {"lidar", "imu", "uwb"}) robot.T_body_sensor[frame] = {};
+  return robot;
+}
+
+/// Only the sensors under test.
+SensorSuiteSettings quiet() {
+  SensorSuiteSettings settings;
+  settings.lidar.enabled = settings.imu.enabled = settings.joint_encoders.enabled = false;
+  settings.foot_contact.enabled = settings.tdlas.enabled = settings.gnss.enabled = false;
+  return settings;
+}
+
+struct Arrival {
+  Time at;
+  SensorMessage message;
+  Time stamp() const {
+    return std::visit([](const auto& content) { return content.stamp; }, message);
+  }
+};
+
+struct Ride {
+  std::vector<Arrival> arrivals;
+  std::vector<FaultReport> faults;
+
+  template <typename Message>
+  std::vector<Arrival> of() const {
+    std::vector<Arrival> chosen;
+    for (const Arrival& arrival : arrivals) {
+      if (std::holds_alternative<Message>(arrival.message)) chosen.push_back(arrival);
+    }
+    return chosen;
+  }
+};
+
+Ride stand(const SensorSuiteSettings& settings, double seconds, const std::vector<FaultSettings>& faults = {},
+           const RobotDescription& robot = make_robot()) {
+  SmallWorld world(kWorld);
+  SensorSuite suite(settings, robot, *world.model, *world.model, GasPlume(Eigen::Vector3d::Zero(), 0.0, {}), faults, 1);
+  Ride ride;
+  for (Time now{}; now <= from_seconds(seconds); now += std::chrono::milliseconds(2)) {
+    suite.step(*world.model, *world.data, now);
+    for (SensorMessage& message : suite.take_due(now)) ride.arrivals.push_back({now, std::move(message)});
+  }
+  ride.faults = suite.faults();
+  return ride;
+}
+
+FaultSettings fault(std::string sensor, std::string kind, double start_s, double duration_s, double magnitude = 1.0) {
+  return {.sensor = std::move(sensor), .kind = std::move(kind), .start_s = start_s, .duration_s = duration_s, .magnitude = magnitude};
+}
+
+SensorSuiteSettings with_uwb() {
+  SensorSuiteSettings settings = quiet();
+  settings.uwb.enabled = true;
+  settings.uwb.rate_hz = 25.0;
+  settings.uwb.loss = 0.0;
+  settings.uwb.range_max_m = 100.0;
+  settings.uwb.blocked_loss = 0.0;
+  return settings;
+}
+
+std::string refusal(const SensorSuiteSettings& settings, const std::string& missing_frame) {
+  RobotDescription robot = make_robot();
+  robot.T_body_sensor.erase(missing_frame);
+  try {
+    stand(settings, 0.0, {}, robot);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(SensorSuite, TheSensorsOfATrackedRobotAreSilentUnlessAskedFor) { EXPECT_TRUE(stand(quiet(), 1.0).arrivals.empty()); }
+
+TEST(SensorSuite, UwbSpeaks25TimesASecondTenMillisecondsLateAndAnchorsTakeTurns) {
+  const auto ranges = stand(with_uwb(), 2.009).of<UwbRange>();  // polls at 0, 0.04 ... 1.96; the next is on its way
+  ASSERT_EQ(ranges.size(), 50u);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    EXPECT_EQ(ranges[i].stamp(), from_seconds(0.04 * static_cast<double>(i)));
+    EXPECT_NEAR(to_seconds(ranges[i].at - ranges[i].stamp()), 0.01, 0.0021);
+    EXPECT_EQ(std::get<UwbRange>(ranges[i].message).anchor, i % 2 == 0 ? 1 : 2);
+  }
+}
+
+TEST(SensorSuite, AnEnabledSensorWithoutItsFrameIsRefusedByName) {
+  EXPECT_EQ(refusal(with_uwb(), "uwb"), "robot carrier: there is no link named uwb");
+}
+
+TEST(SensorSuite, EveryFaultOfUwbIsExecutedAndOneOfASilentSensorIsNot) {
+  const Ride ride = stand(with_uwb(), 2.0,
+                          {fault("uwb", "silence", 0.5, 0.1), fault("uwb", "drift", 1.0, 0.5), fault("hall", "silence", 0.0, 9.0),
+                           fault("uwb", "spikes", 1.5, 0.2), fault("remote", "silence", 0.0, 9.0)});
+  ASSERT_EQ(ride.faults.size(), 5u);
+  const std::vector<bool> executed = {true, true, false, true, false};
+  for (std::size_t i = 0; i < executed.size(); ++i) EXPECT_EQ(ride.faults[i].is_executed, executed[i]) << i;
+}
+
+TEST(SensorSuite, ADriftOf1MetrePerSecondLengthensUwbRangesByTheTimeSinceItsStart) {
+  const auto good = stand(with_uwb(), 2.0).of<UwbRange>(), bad = stand(with_uwb(), 2.0, {fault("uwb", "drift", 1.0, 5.0)}).of<UwbRange>();
+  ASSERT_EQ(good.size(), bad.size());
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    const double expected = std::max(0.0, to_seconds(good[i].stamp()) - 1.0);
+    EXPECT_NEAR(std::get<UwbRange>(bad[i].message).range_m - std::get<UwbRange>(good[i].message).range_m, expected, 1e-9);
+  }
+}
+
+TEST(Fault, AClockOffsetOf50MillisecondsMovesStampsAndNotArrivals) {
+  const auto good = stand(with_uwb(), 1.0).of<UwbRange>(),
+             bad = stand(with_uwb(), 1.0, {fault("uwb", "clock_offset", 0.0, 5.0, 0.05)}).of<UwbRange>();
+  ASSERT_EQ(good.size(), bad.size());
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    EXPECT_EQ(bad[i].at, good[i].at);
+    EXPECT_EQ(bad[i].stamp() - good[i].stamp(), from_seconds(0.05));
+  }
+}
+
+// |N(0, s)| has the mean s sqrt(2 / pi) and the standard deviation s sqrt(1 - 2 / pi); arrivals wait for the next tick: 1 ms.
+TEST(Fault, JitterOf20MillisecondsDelaysBy16OnAverage) {
+  const auto ranges = stand(with_uwb(), 40.0, {fault("uwb", "jitter", 0.0, 50.0, 0.02)}).of<UwbRange>();
+  Moments delay_s;
+  for (const Arrival& range : ranges) delay_s.add(to_seconds(range.at - range.stamp()) - 0.01);
+  EXPECT_GT(delay_s.count, 980);
+  EXPECT_NEAR(delay_s.mean(), 0.02 * std::sqrt(2.0 / M_PI) + 0.001, 4.0 * 0.02 * 0.603 / std::sqrt(delay_s.count));
+}
+
+}  // namespace
+}  // namespace patrol::sim
