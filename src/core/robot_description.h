@@ -36,6 +36,7 @@ struct TrackGeometry {
   double width_m = 0.0;            ///< of one track
   double contact_length_m = 0.0;   ///< between the axles of the outermost road wheels
   double sprocket_radius_m = 0.0;  ///< of the belt's pitch line: the belt runs at this times the sprocket's rate
+  double body_height_m = 0.0;      ///< of the body's origin above level ground under the belts
 };
 
 /// What the robot knows of itself, read from its URDF (io/urdf.h).

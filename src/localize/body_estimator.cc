@@ -10,10 +10,7 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kGravity_mps2 = 9.81;
 constexpr double kMaxStartAcceleration_mps2 = 1.0;  // the start's tilt is read from gravity alone
-constexpr double kMaxRate_radps = 35.0;  // beyond what a MEMS gyro of 2000 deg/s reads
-constexpr double kMaxForce_mps2 = 16.0 * 9.81 * 1.8;
 constexpr int kFrozenRepeats = 10;  // equal readings in a row while the legs move
 constexpr double kMovingJoint_radps = 0.2;
 constexpr Time kMaxContactAge = std::chrono::milliseconds(20);
@@ -37,12 +34,6 @@ bool is_complete(const JointState& joints) {
   return joints.position_rad.size() == 3 * kNumLegs && joints.velocity_radps.size() == 3 * kNumLegs;
 }
 
-bool is_plausible(const Imu& imu) {
-  return imu.angular_velocity_radps.allFinite() && imu.linear_acceleration_mps2.allFinite() &&
-         imu.angular_velocity_radps.cwiseAbs().maxCoeff() < kMaxRate_radps &&
-         imu.linear_acceleration_mps2.cwiseAbs().maxCoeff() < kMaxForce_mps2;
-}
-
 InertialFilter::Settings filter_settings(const BodyEstimatorSettings& s) {
   return {.gyro_noise_radps_per_sqrt_hz = s.gyro_noise_radps_per_sqrt_hz,
           .gyro_bias_std_radps = s.gyro_bias_std_radps,
@@ -52,6 +43,11 @@ InertialFilter::Settings filter_settings(const BodyEstimatorSettings& s) {
           .accel_bias_walk_mps2_per_sqrt_s = s.accel_bias_walk_mps2_per_sqrt_s,
           .way_std_m_per_sqrt_m = s.way_std_m_per_sqrt_m,
           .turn_std_rad_per_sqrt_rad = s.turn_std_rad_per_sqrt_rad};
+}
+
+Pose3 imu_pose(const RobotDescription& robot) {
+  const auto imu = robot.T_body_sensor.find("imu");
+  return imu == robot.T_body_sensor.end() ? Pose3{} : imu->second;
 }
 
 const BodyEstimatorSettings& checked(const BodyEstimatorSettings& settings) {
@@ -64,6 +60,7 @@ const BodyEstimatorSettings& checked(const BodyEstimatorSettings& settings) {
 BodyEstimator::BodyEstimator(const RobotDescription& robot, const BodyEstimatorSettings& settings)
     : robot_(robot),
       settings_(checked(settings)),
+      imu_mount_(imu_pose(robot)),
       history_(static_cast<std::size_t>(settings.history_s * kAssumedRate_hz)),
       contact_({.touch_n = settings.touch_force_n,
                 .release_n = settings.release_force_n,
@@ -76,8 +73,6 @@ BodyEstimator::BodyEstimator(const RobotDescription& robot, const BodyEstimatorS
     throw InputError(
         fmt::format("robot {} has {} legs: leg odometry needs {}", robot.name, robot.legs.size(), kNumLegs));
   }
-  if (const auto imu = robot.T_body_sensor.find("imu"); imu != robot.T_body_sensor.end())
-    T_body_imu_ = imu->second;
   pending_.reserve(kMaxPending);
 }
 
@@ -89,7 +84,7 @@ void BodyEstimator::add(const Imu& imu) {
     ++rejected_messages_;
     return;
   }
-  advance(imu.stamp, to_body(imu));
+  advance(imu.stamp, imu_mount_.to_body(imu));
   take_pending();
 }
 
@@ -135,22 +130,6 @@ void BodyEstimator::add(const FootContacts& contacts) {
     if (!sample.trust && sample.stamp <= contacts.stamp) sample.trust = trust_;
   }
   take_pending();
-}
-
-// The IMU's reading as it would be at the body's origin: turned, and without what its lever arm adds.
-InertialSample BodyEstimator::to_body(const Imu& imu) {
-  const Eigen::Vector3d rate = T_body_imu_.rotation * imu.angular_velocity_radps;
-  Eigen::Vector3d force = T_body_imu_.rotation * imu.linear_acceleration_mps2;
-  const Eigen::Vector3d& lever = T_body_imu_.position;
-  if (last_imu_ && imu.stamp > *last_imu_ && imu.stamp - *last_imu_ < kMaxImuStep) {
-    const Eigen::Vector3d angular_acceleration =
-        (rate - last_rate_radps_) / to_seconds(imu.stamp - *last_imu_);
-    force -= angular_acceleration.cross(lever);
-  }
-  force -= rate.cross(rate.cross(lever));
-  last_rate_radps_ = rate;
-  last_imu_ = imu.stamp;
-  return {rate, force};
 }
 
 // A living sensor never reads the same many times over while the robot moves.

@@ -7,6 +7,7 @@
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/settings.h"
+#include "localize/imu_mount.h"
 #include "localize/inertial_filter.h"
 #include "localize/leg_odometry.h"
 #include "localize/motion_history.h"
@@ -106,7 +107,6 @@ class BodyEstimator {
   const std::optional<InertialFilter>& filter() const { return filter_; }
 
  private:
-  InertialSample to_body(const Imu& imu);
   /// Counts equal readings in a row.
   struct Repeats {
     Eigen::Matrix<double, 3 * kNumLegs, 1> last = Eigen::Matrix<double, 3 * kNumLegs, 1>::Zero();
@@ -128,7 +128,7 @@ class BodyEstimator {
 
   RobotDescription robot_;
   BodyEstimatorSettings settings_;
-  Pose3 T_body_imu_;
+  ImuMount imu_mount_;
 
   std::optional<InertialFilter> filter_;
   Time now_{};  ///< of the filter's state
@@ -145,8 +145,6 @@ class BodyEstimator {
 
   // Faults.
   Repeats imu_repeats_, joint_repeats_, contact_repeats_;
-  Eigen::Vector3d last_rate_radps_ = Eigen::Vector3d::Zero();
-  std::optional<Time> last_imu_;
   bool joints_move_ = false;
   bool imu_is_silent_ = false;
   bool contacts_are_silent_ = false;

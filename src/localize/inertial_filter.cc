@@ -8,7 +8,6 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kGravity = 9.81;  // m/s2
 constexpr double kStartTiltStd_rad = 0.05;
 constexpr double kStartVelocityStd_mps = 0.1;
 constexpr double kGate = 16.27;  // 99.9 % of chi-square, three degrees of freedom
@@ -16,27 +15,6 @@ constexpr double kGate = 16.27;  // 99.9 % of chi-square, three degrees of freed
 constexpr double kCoastYawRateStd = 0.05;  // rad/sqrt(s): what the feet tell of the yaw rate, slip included
 constexpr double kCoastTiltStd = 0.15;     // rad/sqrt(s)
 constexpr double kCoastVelocityStd = 1.0;  // m/s/sqrt(s)
-
-const Eigen::Vector3d kGravityInOdom(0.0, 0.0, -kGravity);
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
-}
-
-/// Rotation by a vector, to third order: steps here are a few milliradians.
-Eigen::Quaterniond rotation_by(const Eigen::Vector3d& angle_rad) {
-  const double squared = angle_rad.squaredNorm();
-  const Eigen::Vector3d half = (0.5 - squared / 48.0) * angle_rad;
-  return Eigen::Quaterniond(1.0 - squared / 8.0, half.x(), half.y(), half.z()).normalized();
-}
-
-/// Roll and pitch at which gravity reads `force` at rest.
-Eigen::Quaterniond tilt_of(const Eigen::Vector3d& force) {
-  return quaternion_from_rpy(std::atan2(force.y(), force.z()),
-                             std::atan2(-force.x(), std::hypot(force.y(), force.z())), 0.0);
-}
 
 }  // namespace
 
@@ -60,18 +38,11 @@ void InertialFilter::predict(double dt_s, const InertialSample& sample) {
   const Eigen::Vector3d force = 0.5 * (last_.force_mps2 + sample.force_mps2) - accel_bias_;
   last_ = sample;
 
-  Pose3& T = motion_.T_odom_body;
-  const Eigen::Quaterniond rotation_mid = T.rotation * rotation_by(0.5 * dt_s * omega);
-  const Eigen::Matrix3d R = rotation_mid.toRotationMatrix();
-  const Eigen::Vector3d gravity = R.transpose() * kGravityInOdom;
-  const Eigen::Vector3d v_start = motion_.v_body;
-  const Eigen::Vector3d v_mid = v_start + 0.5 * dt_s * (force + gravity - omega.cross(v_start));
-  motion_.v_body = v_start + dt_s * (force + gravity - omega.cross(v_mid));
-  T.position += dt_s * (R * v_mid);
-  T.rotation = (rotation_mid * rotation_by(0.5 * dt_s * omega)).normalized();
+  const InertialStep step = integrate(motion_, dt_s, omega, force);
+  motion_ = step.after;
   motion_.omega_body = sample.rate_radps - gyro_bias_;
 
-  propagate_covariance(dt_s, R, v_mid, omega);
+  propagate_inertial_errors(P_, dt_s, step.R_odom_body, step.v_body, omega);
   const auto add_variance = [this](int block, double variance) {
     P_.diagonal().segment<3>(block).array() += variance;
   };
@@ -88,41 +59,13 @@ void InertialFilter::coast(double dt_s, double yaw_rate_radps) {
   T.position += dt_s * (R * motion_.v_body);
   T.rotation = (quaternion_from_yaw(dt_s * yaw_rate_radps) * T.rotation).normalized();
   motion_.omega_body = R.transpose() * Eigen::Vector3d(0.0, 0.0, yaw_rate_radps);
-  last_ = {motion_.omega_body + gyro_bias_, -(R.transpose() * kGravityInOdom) + accel_bias_};
+  last_ = {motion_.omega_body + gyro_bias_, kGravity_mps2 * R.transpose().col(2) + accel_bias_};
 
-  propagate_covariance(dt_s, R, motion_.v_body, motion_.omega_body);
+  propagate_inertial_errors(P_, dt_s, R, motion_.v_body, motion_.omega_body);
   P_.diagonal().segment<2>(kRotation).array() += dt_s * kCoastTiltStd * kCoastTiltStd;
   P_(kRotation + 2, kRotation + 2) += dt_s * kCoastYawRateStd * kCoastYawRateStd;
   P_.diagonal().segment<3>(kVelocity).array() += dt_s * kCoastVelocityStd * kCoastVelocityStd;
   add_dead_reckoning_noise(dt_s);
-}
-
-// With R_true = exp(phi) R, omega_true = omega - dbg, force_true = force - dba, to first order:
-//   dp'   = R dv - [R v]x phi
-//   phi'  = -R dbg
-//   dv'   = R^T [g]x phi - [omega]x dv - [v]x dbg - dba
-// P = F P F^T with F = I + dt A. F acts on rows in place (each row block uses only blocks not yet
-// overwritten), once before and once after transposing the symmetric P.
-void InertialFilter::propagate_covariance(double dt_s, const Eigen::Matrix3d& R, const Eigen::Vector3d& v,
-                                          const Eigen::Vector3d& omega) {
-  const Eigen::Matrix3d R_dt = dt_s * R;
-  const Eigen::Matrix3d p_from_rotation = -dt_s * cross_matrix(R * v);
-  const Eigen::Matrix3d v_from_rotation = R_dt.transpose() * cross_matrix(kGravityInOdom);
-  const Eigen::Matrix3d v_from_v = -dt_s * cross_matrix(omega);
-  const Eigen::Matrix3d v_from_gyro_bias = -dt_s * cross_matrix(v);
-  for (int pass = 0; pass < 2; ++pass) {
-    for (int col = 0; col < 15; ++col) {
-      auto column = P_.col(col);
-      const Eigen::Vector3d rotation = column.segment<3>(kRotation), velocity = column.segment<3>(kVelocity);
-      const Eigen::Vector3d gyro_bias = column.segment<3>(kGyroBias),
-                            accel_bias = column.segment<3>(kAccelBias);
-      column.segment<3>(kPosition) += p_from_rotation * rotation + R_dt * velocity;
-      column.segment<3>(kRotation) -= R_dt * gyro_bias;
-      column.segment<3>(kVelocity) +=
-          v_from_rotation * rotation + v_from_v * velocity + v_from_gyro_bias * gyro_bias - dt_s * accel_bias;
-    }
-    P_.transposeInPlace();
-  }
 }
 
 void InertialFilter::add_dead_reckoning_noise(double dt_s) {

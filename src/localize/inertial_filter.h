@@ -2,22 +2,9 @@
 
 #include <Eigen/Core>
 
-#include "core/frames.h"
+#include "localize/inertial_motion.h"
 
 namespace patrol::localize {
-
-/// Rate and specific force at the trunk's origin, in body, as measured (bias included).
-struct InertialSample {
-  Eigen::Vector3d rate_radps = Eigen::Vector3d::Zero();
-  Eigen::Vector3d force_mps2 = Eigen::Vector3d::Zero();
-};
-
-/// What the filter knows. Velocity is of the trunk's origin, in body.
-struct TrunkMotion {
-  Pose3 T_odom_body;
-  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();      ///< m/s
-  Eigen::Vector3d omega_body = Eigen::Vector3d::Zero();  ///< rad/s, bias removed
-};
 
 /// Error-state Kalman filter of the walking trunk: position, attitude, velocity, gyro and accelerometer bias,
 /// predicted by the IMU and corrected by what the legs say about the velocity.
@@ -69,15 +56,15 @@ class InertialFilter {
   /// Error covariance; rows and columns: position in odom, rotation in odom, velocity in body, gyro bias,
   /// accel bias.
   using Covariance = Eigen::Matrix<double, 15, 15>;
-  static constexpr int kPosition = 0, kRotation = 3, kVelocity = 6, kGyroBias = 9, kAccelBias = 12;
+  static constexpr int kPosition = InertialError::kPosition, kRotation = InertialError::kRotation,
+                       kVelocity = InertialError::kVelocity, kGyroBias = InertialError::kGyroBias,
+                       kAccelBias = InertialError::kAccelBias;
   const Covariance& covariance() const { return P_; }
   /// Of x, y, yaw in odom.
   Eigen::Matrix3d planar_covariance() const;
 
  private:
   using Gain = Eigen::Matrix<double, 15, 3>;
-  void propagate_covariance(double dt_s, const Eigen::Matrix3d& R, const Eigen::Vector3d& v,
-                            const Eigen::Vector3d& omega);
   void add_dead_reckoning_noise(double dt_s);
   /// P -= W S^-1 W^T and the state with it, where W = P H^T.
   void shift(const Eigen::Matrix<double, 15, 1>& error);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/time.h"
-#include "localize/inertial_filter.h"
+#include "localize/inertial_motion.h"
 
 namespace patrol::localize {
 
@@ -17,6 +17,8 @@ class MotionHistory {
 
   /// Stamps must grow; the same stamp again replaces the newest entry.
   void push(Time stamp, const TrunkMotion& motion);
+
+  void clear() { size_ = 0; }
 
   bool empty() const { return size_ == 0; }
   Time oldest() const { return at(0).stamp; }

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "localize/inertial_motion.h"
+
 namespace patrol::localize {
 namespace {
 
@@ -12,12 +14,6 @@ constexpr double kEndShare = 0.2;          // of the window, at each end, is ave
 constexpr double kMaxGap_s = 0.02;         // between samples
 constexpr double kMaxSlip_m = 0.001;       // residual of the rigid fit at any foot
 constexpr double kMaxRotation_rad = 0.02;  // beyond this it does not stand
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
-}
 
 struct SmallRotation {
   Eigen::Vector3d angle_rad;

@@ -1,0 +1,32 @@
+#include "localize/imu_mount.h"
+
+namespace patrol::localize {
+namespace {
+
+constexpr double kMaxRate_radps = 35.0;  // beyond what a MEMS gyro of 2000 deg/s reads
+constexpr double kMaxForce_mps2 = 16.0 * 9.81 * 1.8;
+constexpr Time kMaxStep = std::chrono::milliseconds(50);  // a longer gap tells no angular acceleration
+
+}  // namespace
+
+bool is_plausible(const Imu& imu) {
+  return imu.angular_velocity_radps.allFinite() && imu.linear_acceleration_mps2.allFinite() &&
+         imu.angular_velocity_radps.cwiseAbs().maxCoeff() < kMaxRate_radps &&
+         imu.linear_acceleration_mps2.cwiseAbs().maxCoeff() < kMaxForce_mps2;
+}
+
+InertialSample ImuMount::to_body(const Imu& imu) {
+  const Eigen::Vector3d rate = T_body_imu_.rotation * imu.angular_velocity_radps;
+  Eigen::Vector3d force = T_body_imu_.rotation * imu.linear_acceleration_mps2;
+  const Eigen::Vector3d& lever = T_body_imu_.position;
+  if (last_ && imu.stamp > *last_ && imu.stamp - *last_ < kMaxStep) {
+    const Eigen::Vector3d angular_acceleration = (rate - last_rate_radps_) / to_seconds(imu.stamp - *last_);
+    force -= angular_acceleration.cross(lever);
+  }
+  force -= rate.cross(rate.cross(lever));
+  last_rate_radps_ = rate;
+  last_ = imu.stamp;
+  return {rate, force};
+}
+
+}  // namespace patrol::localize

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "core/frames.h"
+
+/// Strapdown inertial navigation of the body over short steps, and how its errors grow: what the filters of both robots share.
+namespace patrol::localize {
+
+inline constexpr double kGravity_mps2 = 9.81;
+
+/// Rate and specific force at the trunk's origin, in body, as measured (bias included).
+struct InertialSample {
+  Eigen::Vector3d rate_radps = Eigen::Vector3d::Zero();
+  Eigen::Vector3d force_mps2 = Eigen::Vector3d::Zero();
+};
+
+/// What the filter knows. Velocity is of the trunk's origin, in body.
+struct TrunkMotion {
+  Pose3 T_odom_body;
+  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();      ///< m/s
+  Eigen::Vector3d omega_body = Eigen::Vector3d::Zero();  ///< rad/s, bias removed
+};
+
+/// [v]x: cross_matrix(v) * w = v x w.
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v);
+
+/// Rotation by a vector, to third order: for steps of a few milliradians.
+Eigen::Quaterniond rotation_by(const Eigen::Vector3d& angle_rad);
+
+/// Roll and pitch at which gravity reads `force` at rest; yaw 0.
+Eigen::Quaterniond tilt_of(const Eigen::Vector3d& force);
+
+/// One step of dead reckoning, and where it was linearised.
+struct InertialStep {
+  TrunkMotion after;  ///< its omega is that of the step
+  Eigen::Matrix3d R_odom_body = Eigen::Matrix3d::Identity();  ///< half way
+  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();           ///< half way, m/s
+};
+
+/// `omega_radps` and `force_mps2` hold on average over the step, in body, bias removed.
+InertialStep integrate(const TrunkMotion& before, double dt_s, const Eigen::Vector3d& omega_radps,
+                       const Eigen::Vector3d& force_mps2);
+
+/// Rows and columns of an error covariance: position in odom, rotation in odom, velocity in body, gyro bias, accelerometer bias;
+/// whatever a filter adds comes after.
+struct InertialError {
+  static constexpr int kPosition = 0, kRotation = 3, kVelocity = 6, kGyroBias = 9, kAccelBias = 12, kSize = 15;
+};
+
+/// With R_true = exp(phi) R, omega_true = omega - dbg, force_true = force - dba, to first order:
+///   dp'   = R dv - [R v]x phi
+///   phi'  = -R dbg
+///   dv'   = R^T [g]x phi - [omega]x dv - [v]x dbg - dba
+/// P = F P F^T with F = I + dt A. F acts on rows in place (each row block uses only blocks not yet overwritten), once before and
+/// once after transposing the symmetric P. Errors beyond the first fifteen stand still.
+template <typename Covariance>
+void propagate_inertial_errors(Covariance& P, double dt_s, const Eigen::Matrix3d& R, const Eigen::Vector3d& v,
+                               const Eigen::Vector3d& omega) {
+  using Error = InertialError;
+  const Eigen::Matrix3d R_dt = dt_s * R;
+  const Eigen::Matrix3d p_from_rotation = -dt_s * cross_matrix(R * v);
+  const Eigen::Matrix3d v_from_rotation = R_dt.transpose() * cross_matrix(Eigen::Vector3d(0.0, 0.0, -kGravity_mps2));
+  const Eigen::Matrix3d v_from_v = -dt_s * cross_matrix(omega);
+  const Eigen::Matrix3d v_from_gyro_bias = -dt_s * cross_matrix(v);
+  for (int pass = 0; pass < 2; ++pass) {
+    for (int col = 0; col < P.cols(); ++col) {
+      auto column = P.col(col);
+      const Eigen::Vector3d rotation = column.template segment<3>(Error::kRotation);
+      const Eigen::Vector3d velocity = column.template segment<3>(Error::kVelocity);
+      const Eigen::Vector3d gyro_bias = column.template segment<3>(Error::kGyroBias);
+      const Eigen::Vector3d accel_bias = column.template segment<3>(Error::kAccelBias);
+      column.template segment<3>(Error::kPosition) += p_from_rotation * rotation + R_dt * velocity;
+      column.template segment<3>(Error::kRotation) -= R_dt * gyro_bias;
+      column.template segment<3>(Error::kVelocity) +=
+          v_from_rotation * rotation + v_from_v * velocity + v_from_gyro_bias * gyro_bias - dt_s * accel_bias;
+    }
+    P.transposeInPlace();
+  }
+}
+
+}  // namespace patrol::localize

@@ -1,0 +1,202 @@
+#include "localize/track_filter.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace patrol::localize {
+namespace {
+
+using Error = InertialError;
+
+constexpr double kStartTiltStd_rad = 0.05;
+constexpr double kStartVelocityStd_mps = 0.05;
+constexpr double kGate = 16.27;     // 99.9 % of chi-square, three degrees of freedom
+constexpr double kLostSlipStd = 0.5;
+constexpr double kLostSpeedStd_mps = 0.1;
+constexpr double kMinBeltSpeed_mps = 0.05;  // below, the share of slip means nothing
+// Without an IMU.
+constexpr double kCoastYawRateStd = 0.05;  // rad/sqrt(s): what the belts tell of the yaw rate
+constexpr double kCoastTiltStd = 0.03;     // rad/sqrt(s)
+constexpr double kCoastVelocityStd = 1.0;  // m/s/sqrt(s)
+
+}  // namespace
+
+TrackFilter::TrackFilter(const Settings& settings, const InertialSample& first) : settings_(settings), last_(first) {
+  motion_.T_odom_body.rotation = tilt_of(first.force_mps2);
+  motion_.omega_body = first.rate_radps;
+  const auto set_std = [this](int block, double std) { P_.diagonal().segment<3>(block).setConstant(std * std); };
+  set_std(Error::kRotation, kStartTiltStd_rad);
+  P_(Error::kRotation + 2, Error::kRotation + 2) = 0.0;  // odom is where it started
+  set_std(Error::kVelocity, kStartVelocityStd_mps);
+  set_std(Error::kGyroBias, settings.gyro_bias_std_radps);
+  set_std(Error::kAccelBias, settings.accel_bias_std_mps2);
+  P_(kScale, kScale) = std::pow(settings.scale_std, 2);
+  P_(kTurnCentre, kTurnCentre) = std::pow(settings.turn_centre_x_std_m, 2);
+  P_(kTurnCentre + 1, kTurnCentre + 1) = std::pow(settings.turn_centre_y_std_m, 2);
+}
+
+void TrackFilter::predict(double dt_s, const InertialSample& sample) {
+  // Trapezoidal: the mean of the last sample and this one holds over the step.
+  const Eigen::Vector3d omega = 0.5 * (last_.rate_radps + sample.rate_radps) - gyro_bias_;
+  const Eigen::Vector3d force = 0.5 * (last_.force_mps2 + sample.force_mps2) - accel_bias_;
+  last_ = sample;
+
+  const InertialStep step = integrate(motion_, dt_s, omega, force);
+  forward_acceleration_mps2_ = (step.after.v_body - motion_.v_body).x() / dt_s;
+  motion_ = step.after;
+  motion_.omega_body = sample.rate_radps - gyro_bias_;
+
+  propagate_inertial_errors(P_, dt_s, step.R_odom_body, step.v_body, omega);
+  const auto add_noise = [&](int block, double density) {
+    P_.diagonal().segment<3>(block).array() += dt_s * density * density;
+  };
+  add_noise(Error::kRotation, settings_.gyro_noise_radps_per_sqrt_hz);
+  add_noise(Error::kVelocity, settings_.accel_noise_mps2_per_sqrt_hz);
+  add_noise(Error::kGyroBias, settings_.gyro_bias_walk_radps_per_sqrt_s);
+  add_noise(Error::kAccelBias, settings_.accel_bias_walk_mps2_per_sqrt_s);
+  P_(Error::kRotation + 2, Error::kRotation + 2) +=
+      dt_s * std::abs(omega.z()) * std::pow(settings_.turn_std_rad_per_sqrt_rad, 2);
+}
+
+void TrackFilter::coast(double dt_s, double yaw_rate_radps) {
+  Pose3& T = motion_.T_odom_body;
+  const Eigen::Matrix3d R = T.rotation.toRotationMatrix();
+  T.position += dt_s * (R * motion_.v_body);
+  T.rotation = (quaternion_from_yaw(dt_s * yaw_rate_radps) * T.rotation).normalized();
+  motion_.omega_body = R.transpose() * Eigen::Vector3d(0.0, 0.0, yaw_rate_radps);
+  last_ = {motion_.omega_body + gyro_bias_, kGravity_mps2 * R.transpose().col(2) + accel_bias_};
+  forward_acceleration_mps2_ = 0.0;
+
+  propagate_inertial_errors(P_, dt_s, R, motion_.v_body, motion_.omega_body);
+  P_.diagonal().segment<2>(Error::kRotation).array() += dt_s * kCoastTiltStd * kCoastTiltStd;
+  P_(Error::kRotation + 2, Error::kRotation + 2) += dt_s * kCoastYawRateStd * kCoastYawRateStd;
+  P_.diagonal().segment<3>(Error::kVelocity).array() += dt_s * kCoastVelocityStd * kCoastVelocityStd;
+}
+
+// First-order Gauss-Markov: what is remembered shrinks by a, and (1 - a^2) of the usual variance comes anew.
+void TrackFilter::wander(double way_m, double turn_rad, double slip_std) {
+  const auto forget = [this](int row, double& value, double a, double std) {
+    value *= a;
+    P_.row(row) *= a;
+    P_.col(row) *= a;
+    P_(row, row) += (1.0 - a * a) * std * std;
+  };
+  if (std::abs(slip_) < kGripSlip) {
+    forget(kSlip, slip_, std::exp(-way_m / settings_.slip_length_m), slip_std);
+  } else {
+    P_(kSlip, kSlip) += (1.0 - std::exp(-2.0 * way_m / settings_.slip_length_m)) * slip_std * slip_std;
+  }
+  const double a_turn = std::exp(-turn_rad / settings_.turn_centre_length_rad);
+  forget(kTurnCentre, turn_centre_m_.x(), a_turn, settings_.turn_centre_x_std_m);
+  forget(kTurnCentre + 1, turn_centre_m_.y(), a_turn, settings_.turn_centre_y_std_m);
+}
+
+// With p = p_true - dp, omega = omega_true + dbg and s = scale + slip = s_true - ds, the innovation
+// ((1 - s) u, 0, 0) - v - omega x p is dv + [p]x dbg + [omega]x dp + u (ds, 0, 0) + noise.
+double TrackFilter::correct_speed(const TrackSpeed& tracks, const TrunkMotion& then, const Eigen::Vector3d& std_mps) {
+  const double u = tracks.mean_mps();
+  const Eigen::Vector3d p(turn_centre_m_.x(), turn_centre_m_.y(), -settings_.height_m);
+  const Eigen::Vector3d innovation =
+      Eigen::Vector3d((1.0 - scale_ - slip_) * u, 0.0, 0.0) - then.v_body - then.omega_body.cross(p);
+
+  Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
+  H.middleCols<3>(Error::kVelocity).setIdentity();
+  H.middleCols<3>(Error::kGyroBias) = cross_matrix(p);
+  H(0, kScale) = H(0, kSlip) = u;
+  H.middleCols<2>(kTurnCentre) = cross_matrix(then.omega_body).leftCols<2>();
+
+  const Gain W = P_ * H.transpose();
+  Eigen::Matrix3d S = H * W;
+  S.diagonal().array() += std_mps.array().square();
+  const double along = innovation.x() * innovation.x() / S(0, 0);
+  const double distance = innovation.dot(S.inverse() * innovation);
+  if (distance > kGate) S.diagonal().array() += std_mps.array().square() * (distance / kGate - 1.0);
+  apply(W, S, innovation);
+  return along;
+}
+
+void TrackFilter::correct_velocity(const Eigen::Vector3d& v_body, double std_mps) {
+  const Gain W = P_.middleCols<3>(Error::kVelocity);
+  Eigen::Matrix3d S = W.middleRows<3>(Error::kVelocity);
+  S.diagonal().array() += std_mps * std_mps;
+  apply(W, S, v_body - motion_.v_body);
+}
+
+void TrackFilter::correct_gyro_bias(const Eigen::Vector3d& bias_radps, const Eigen::Vector3d& variance) {
+  const Gain W = P_.middleCols<3>(Error::kGyroBias);
+  Eigen::Matrix3d S = W.middleRows<3>(Error::kGyroBias);
+  S.diagonal() += variance;
+  // What the bias has done to place and heading so far stays: odom must not jump. With rows of the gain left out the
+  // covariance follows Joseph's form (Schmidt's consider update).
+  Gain K = W * S.inverse();
+  K.middleRows<3>(Error::kPosition).setZero();
+  K.row(Error::kRotation + 2).setZero();
+  shift(K * (bias_radps - gyro_bias_));
+  P_ += K * S * K.transpose() - K * W.transpose() - W * K.transpose();
+  P_ = (0.5 * (P_ + P_.transpose())).eval();
+}
+
+void TrackFilter::suspect_slip(double forward_mps, const TrackSpeed& tracks, double way_std_m) {
+  motion_.v_body.x() = forward_mps;
+  P_(Error::kVelocity, Error::kVelocity) += kLostSpeedStd_mps * kLostSpeedStd_mps;
+  const double u = tracks.mean_mps();
+  if (std::abs(u) > kMinBeltSpeed_mps) slip_ = std::clamp(1.0 - scale_ - forward_mps / u, -1.0, 2.0);
+  isolate(kSlip, kLostSlipStd * kLostSlipStd);
+  const Eigen::Vector3d along = motion_.T_odom_body.rotation * Eigen::Vector3d(way_std_m, 0.0, 0.0);
+  P_.block<3, 3>(Error::kPosition, Error::kPosition) += along * along.transpose();
+}
+
+void TrackFilter::forget_slip(double slip_std) {
+  slip_ = 0.0;
+  isolate(kSlip, slip_std * slip_std);
+}
+
+void TrackFilter::isolate(int row, double variance) {
+  P_.row(row).setZero();
+  P_.col(row).setZero();
+  P_(row, row) = variance;
+}
+
+void TrackFilter::set_origin() {
+  Pose3& T = motion_.T_odom_body;
+  const Eigen::Quaterniond turn_back = quaternion_from_yaw(-yaw_of(T.rotation));
+  T.position.setZero();
+  T.rotation = (turn_back * T.rotation).normalized();
+  const Eigen::Matrix3d R = turn_back.toRotationMatrix();
+  P_.middleRows<3>(Error::kRotation) = (R * P_.middleRows<3>(Error::kRotation)).eval();
+  P_.middleCols<3>(Error::kRotation) = (P_.middleCols<3>(Error::kRotation) * R.transpose()).eval();
+  for (const int row : {Error::kPosition, Error::kPosition + 1, Error::kPosition + 2, Error::kRotation + 2}) isolate(row, 0.0);
+}
+
+void TrackFilter::apply(const Gain& W, const Eigen::Matrix3d& S, const Eigen::Vector3d& innovation) {
+  const Gain K = W * S.inverse();
+  shift(K * innovation);
+  P_.noalias() -= K * W.transpose();
+  P_ = (0.5 * (P_ + P_.transpose())).eval();
+}
+
+void TrackFilter::shift(const Eigen::Matrix<double, kSize, 1>& error) {
+  Pose3& T = motion_.T_odom_body;
+  T.position += error.segment<3>(Error::kPosition);
+  T.rotation = (rotation_by(error.segment<3>(Error::kRotation)) * T.rotation).normalized();
+  motion_.v_body += error.segment<3>(Error::kVelocity);
+  gyro_bias_ += error.segment<3>(Error::kGyroBias);
+  accel_bias_ += error.segment<3>(Error::kAccelBias);
+  motion_.omega_body -= error.segment<3>(Error::kGyroBias);
+  scale_ += error[kScale];
+  slip_ += error[kSlip];
+  turn_centre_m_ += error.segment<2>(kTurnCentre);
+}
+
+Eigen::Matrix3d TrackFilter::planar_covariance() const {
+  constexpr int kIndex[3] = {Error::kPosition, Error::kPosition + 1, Error::kRotation + 2};
+  Eigen::Matrix3d planar;
+  for (int row = 0; row < 3; ++row) {
+    for (int col = 0; col < 3; ++col) planar(row, col) = P_(kIndex[row], kIndex[col]);
+  }
+  return planar;
+}
+
+}  // namespace patrol::localize

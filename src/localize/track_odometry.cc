@@ -1,0 +1,280 @@
+#include "localize/track_odometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace patrol::localize {
+namespace {
+
+constexpr double kMaxStartAcceleration_mps2 = 1.0;  // the start's tilt is read from gravity alone
+constexpr int kFrozenRepeats = 10;                  // equal IMU readings in a row while the belts run
+constexpr Time kMaxImuStep = std::chrono::milliseconds(50);  // a longer gap is not integrated across
+constexpr Time kTickSilence = std::chrono::milliseconds(200);
+constexpr double kStandingStd_mps = 0.002;
+constexpr double kStandstillCreep_m = 1e-5;  // of the belts' ends over a window at rest
+constexpr double kMaxBiasSigmas = 5.0;       // a gyro at rest that reads more is being turned
+constexpr double kHoldStd_mps = 0.5;         // without the belts the velocity is at least not this wrong
+constexpr double kAtRest_mps = 0.15;         // by the IMU: belts at rest are believed again below
+constexpr double kAssumedRate_hz = 1000.0;   // upper bound, for the size of the history
+constexpr std::size_t kMaxPending = 256;
+
+const TrackOdometrySettings& checked(const TrackOdometrySettings& settings) {
+  validate(settings, "odometry");
+  return settings;
+}
+
+const RobotDescription& checked(const RobotDescription& robot) {
+  if (!robot.tracks) throw InputError(fmt::format("robot {} has no tracks: track odometry needs them", robot.name));
+  return robot;
+}
+
+TrackFilter::Settings filter_settings(const TrackOdometrySettings& s, const TrackGeometry& tracks) {
+  return {.gyro_noise_radps_per_sqrt_hz = s.gyro_noise_radps_per_sqrt_hz,
+          .gyro_bias_std_radps = s.gyro_bias_std_radps,
+          .gyro_bias_walk_radps_per_sqrt_s = s.gyro_bias_walk_radps_per_sqrt_s,
+          .accel_noise_mps2_per_sqrt_hz = s.accel_noise_mps2_per_sqrt_hz,
+          .accel_bias_std_mps2 = s.accel_bias_std_mps2,
+          .accel_bias_walk_mps2_per_sqrt_s = s.accel_bias_walk_mps2_per_sqrt_s,
+          .turn_std_rad_per_sqrt_rad = s.turn_std_rad_per_sqrt_rad,
+          .scale_std = s.scale_std,
+          .slip_length_m = s.slip_length_m,
+          .turn_centre_x_std_m = s.turn_centre_x_std_m,
+          .turn_centre_y_std_m = s.turn_centre_y_std_m,
+          .turn_centre_length_rad = s.turn_centre_length_rad,
+          .height_m = tracks.body_height_m};
+}
+
+/// The four ends of the two belts, as feet that all stand.
+StanceFeet track_ends(const TrackGeometry& tracks) {
+  StanceFeet ends;
+  for (int end = 0; end < kNumLegs; ++end) {
+    const double x = (end < 2 ? 0.5 : -0.5) * tracks.contact_length_m, y = (end % 2 == 0 ? 0.5 : -0.5) * tracks.gauge_m;
+    ends.push_back({.leg = end, .p_contact = {x, y, -tracks.body_height_m}});
+  }
+  return ends;
+}
+
+}  // namespace
+
+TrackOdometry::TrackOdometry(const RobotDescription& robot, const TrackOdometrySettings& settings)
+    : robot_(checked(robot)),
+      settings_(checked(settings)),
+      metres_per_tick_(2.0 * std::numbers::pi * robot.tracks->sprocket_radius_m / settings.ticks_per_sprocket_turn),
+      track_ends_(track_ends(*robot.tracks)),
+      imu_mount_(robot.T_body("imu")),
+      history_(static_cast<std::size_t>(settings.history_s * kAssumedRate_hz)),
+      slip_watch_({.window_s = settings.slip_window_s, .threshold_mps = settings.slip_disagreement_mps}),
+      bias_meter_({.window_s = settings.standstill_window_s,
+                   .gyro_noise_radps_per_sqrt_hz = settings.gyro_noise_radps_per_sqrt_hz,
+                   .foot_std_m = kStandstillCreep_m}),
+      counters_({.metres_per_tick = metres_per_tick_, .max_acceleration_mps2 = settings.max_belt_acceleration_mps2}) {}
+
+void TrackOdometry::add(const Imu& imu) {
+  Eigen::Matrix<double, 6, 1> reading;
+  reading << imu.angular_velocity_radps, imu.linear_acceleration_mps2;
+  imu_repeats_ = reading == last_imu_reading_ ? imu_repeats_ + 1 : 0;
+  last_imu_reading_ = reading;
+  const bool is_frozen = imu_repeats_ >= kFrozenRepeats && !counters_.stand();
+  if (!is_plausible(imu) || is_frozen || (filter_ && imu.stamp <= now_)) {
+    ++rejected_messages_;
+    return;
+  }
+  advance(imu.stamp, imu_mount_.to_body(imu));
+  take_pending();
+}
+
+void TrackOdometry::add(const TrackTicks& ticks) {
+  const TrackTicks* newest = !pending_.empty() ? &pending_.back() : counters_.last() ? &*counters_.last() : nullptr;
+  if ((newest && ticks.stamp <= newest->stamp) || pending_.size() >= kMaxPending) {
+    ++rejected_messages_;
+    return;
+  }
+  pending_.push_back(ticks);
+  take_pending();
+}
+
+void TrackOdometry::advance(Time stamp, const InertialSample& sample) {
+  if (!filter_) {
+    if (std::abs(sample.force_mps2.norm() - kGravity_mps2) > kMaxStartAcceleration_mps2) return;
+    filter_.emplace(filter_settings(settings_, *robot_.tracks), sample);
+    filter_->forget_slip(settings_.slip_std);
+    started_ = stamp;
+  } else if (stamp - now_ > kMaxImuStep) {
+    filter_->coast(to_seconds(stamp - now_), filter_->yaw_rate_radps());
+    slip_watch_.reset();
+  } else {
+    const double dt_s = to_seconds(stamp - now_);
+    filter_->predict(dt_s, sample);
+    slip_watch_.add_acceleration(stamp, dt_s, filter_->forward_acceleration_mps2());
+  }
+  now_ = stamp;
+  imu_is_silent_ = false;
+  watch_standstill(sample);
+  has_settled_ = has_settled_ || to_seconds(now_ - started_) > settings_.start_patience_s;
+  remember();
+  if (last_speed_update_ && now_ - *last_speed_update_ > kTickSilence) hold_velocity();
+}
+
+// Counters are due once the IMU has passed their instant, or is late.
+void TrackOdometry::take_pending() {
+  if (!filter_) {
+    pending_.clear();
+    return;
+  }
+  while (!pending_.empty()) {
+    const TrackTicks ticks = pending_.front();
+    if (ticks.stamp > now_) {
+      if (to_seconds(pending_.back().stamp - now_) <= settings_.imu_patience_s) return;
+      coast_to(ticks);
+    }
+    pending_.pop_front();
+    use_ticks(ticks);
+  }
+}
+
+void TrackOdometry::coast_to(const TrackTicks& ticks) {
+  imu_is_silent_ = true;
+  bias_meter_.reset();
+  slip_watch_.reset();
+  double yaw_rate = filter_->yaw_rate_radps();
+  if (const auto& last = counters_.last()) {
+    const auto turn_ticks = static_cast<double>((ticks.right - last->right) - (ticks.left - last->left));
+    yaw_rate = turn_ticks * metres_per_tick_ / to_seconds(ticks.stamp - last->stamp) /
+               (robot_.tracks->gauge_m * settings_.turn_ratio);
+  }
+  filter_->coast(to_seconds(ticks.stamp - now_), yaw_rate);
+  now_ = ticks.stamp;
+  remember();
+}
+
+void TrackOdometry::use_ticks(const TrackTicks& ticks) {
+  const bool is_first = !counters_.last();
+  const std::optional<BeltInterval> belts = counters_.add(ticks);
+  const std::optional<TrunkMotion> then = belts ? history_.motion_at(belts->middle()) : std::nullopt;
+  if (!then) {
+    if (!is_first) ++rejected_messages_;
+    return;
+  }
+  if (!imu_is_silent_) watch_slip(*belts);
+  if (counters_may_be_frozen_) return;
+
+  const double disagreement = yaw_rate_disagreement_radps(*belts, *then);
+  const double yaw_rate = std::abs(then->omega_body.z());
+  filter_->wander(0.5 * (std::abs(belts->speed.left_mps) + std::abs(belts->speed.right_mps)) * belts->dt_s(),
+                  yaw_rate * belts->dt_s(), usual_slip_std(yaw_rate, disagreement));
+  filter_->correct_speed(belts->speed, *then, speed_std(*belts, *then, disagreement));
+  last_speed_update_ = belts->end;
+  last_speed_ = filter_->motion().v_body;
+  remember();
+}
+
+double TrackOdometry::yaw_rate_disagreement_radps(const BeltInterval& belts, const TrunkMotion& then) const {
+  const double by_belts = belts.speed.difference_mps() / (robot_.tracks->gauge_m * settings_.turn_ratio);
+  return std::abs(by_belts - then.omega_body.z());
+}
+
+double TrackOdometry::usual_slip_std(double yaw_rate_radps, double disagreement_radps) const {
+  const Eigen::Vector3d up = filter_->up_in_body();
+  const Eigen::Vector4d parts(settings_.slip_std, settings_.slip_std_per_radps * yaw_rate_radps,
+                              settings_.slip_std_per_tilt * up.head<2>().norm(),
+                              settings_.slip_std_per_disagreement * disagreement_radps);
+  return parts.norm();
+}
+
+Eigen::Vector3d TrackOdometry::speed_std(const BeltInterval& belts, const TrunkMotion& then,
+                                         double disagreement_radps) const {
+  if (counters_.stand()) return Eigen::Vector3d::Constant(kStandingStd_mps);
+  // A count is off by up to one tick at either end of the interval, evenly; two belts.
+  const double step_std = belts.step_mps / std::sqrt(12.0);
+  Eigen::Matrix<double, 5, 1> along;
+  along << settings_.speed_std_mps, step_std, settings_.scrub_std * belts.speed.difference_mps(),
+      settings_.acceleration_std_s * belts.acceleration_mps2, settings_.disagreement_std_m * disagreement_radps;
+  return {along.norm(), std::hypot(settings_.lateral_std_mps, settings_.lateral_std_m * then.omega_body.z()),
+          settings_.vertical_std_mps};
+}
+
+void TrackOdometry::watch_slip(const BeltInterval& belts) {
+  const double believed = filter_->motion().v_body.x();
+  const bool is_stopped = belts.speed.left_mps == 0.0 && belts.speed.right_mps == 0.0;
+  if (counters_may_be_frozen_ && (!is_stopped || std::abs(believed) < kAtRest_mps)) {
+    counters_may_be_frozen_ = false;
+    slip_watch_.reset();
+  }
+  const auto evidence = slip_watch_.add_speed(belts.end, belts.speed.mean_mps(), believed);
+  if (!evidence || counters_may_be_frozen_) return;
+  ++slip_events_;
+  slip_watch_.reset();
+  filter_->suspect_slip(evidence->forward_mps, belts.speed, 0.5 * std::abs(evidence->disagreement_mps) * evidence->duration_s);
+  counters_may_be_frozen_ = is_stopped;
+  last_speed_ = filter_->motion().v_body;
+}
+
+void TrackOdometry::watch_standstill(const InertialSample& sample) {
+  if (!counters_.stand() || counters_may_be_frozen_) {
+    bias_meter_.reset();
+    return;
+  }
+  const auto reading = bias_meter_.add(now_, track_ends_, sample.rate_radps);
+  if (!reading) return;
+  if (reading->bias_radps.cwiseAbs().maxCoeff() > kMaxBiasSigmas * settings_.gyro_bias_std_radps) return;
+  filter_->correct_gyro_bias(reading->bias_radps, reading->variance);
+  filter_->forget_slip(settings_.slip_std);
+  if (has_settled_ || to_seconds(now_ - counters_.stand_since()) < settings_.settle_s) return;
+  filter_->set_origin();
+  history_.clear();
+  has_settled_ = true;
+}
+
+// By the IMU alone the velocity would run away; it stays about what it was when the belts were last heard.
+void TrackOdometry::hold_velocity() {
+  if (now_ - last_velocity_hold_ < kTickSilence) return;
+  last_velocity_hold_ = now_;
+  filter_->correct_velocity(last_speed_, kHoldStd_mps);
+  remember();
+}
+
+std::optional<OdometryEstimate> TrackOdometry::estimate() const {
+  if (!has_settled_ || !last_speed_update_) return std::nullopt;
+  const TrunkMotion& motion = filter_->motion();
+  return OdometryEstimate{.stamp = now_,
+                          .T_odom_body = motion.T_odom_body,
+                          .twist = {.linear = motion.v_body, .angular = motion.omega_body},
+                          .planar_covariance = filter_->planar_covariance()};
+}
+
+std::optional<Pose3> TrackOdometry::T_odom_body_at(Time stamp) const {
+  if (history_.empty() || !estimate()) return std::nullopt;
+  if (stamp <= history_.newest()) return history_.pose_at(stamp);
+  const double ahead_s = to_seconds(stamp - history_.newest());
+  if (ahead_s > settings_.extrapolation_s) return std::nullopt;
+  const TrunkMotion& motion = history_.newest_motion();
+  const Eigen::Quaterniond& rotation = motion.T_odom_body.rotation;
+  const double yaw_rate = (rotation * motion.omega_body).z();
+  return Pose3{motion.T_odom_body.position + ahead_s * (rotation * motion.v_body),
+               quaternion_from_yaw(ahead_s * yaw_rate) * rotation};
+}
+
+Eigen::Vector3d TrackOdometry::twist_std() const {
+  if (!filter_) return Eigen::Vector3d::Zero();
+  constexpr int kVelocity = InertialError::kVelocity, kBias = InertialError::kGyroBias + 2;
+  const auto variance = filter_->covariance().diagonal();
+  return {std::sqrt(variance[kVelocity]), std::sqrt(variance[kVelocity + 1]), std::sqrt(variance[kBias])};
+}
+
+TrackOdometryHealth TrackOdometry::health() const {
+  TrackOdometryHealth health{.imu_is_silent = imu_is_silent_,
+                             .rejected_messages = rejected_messages_,
+                             .slip_events = slip_events_};
+  health.ticks_are_silent = !last_speed_update_ || now_ - *last_speed_update_ > kTickSilence;
+  if (!filter_) return health;
+  health.grip_is_lost = std::abs(filter_->slip()) > TrackFilter::kGripSlip;
+  health.gyro_z_bias_std_radps = twist_std().z();
+  return health;
+}
+
+}  // namespace patrol::localize
