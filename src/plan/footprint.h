@@ -12,14 +12,15 @@ struct Disc {
   double radius_m = 0.0;
 };
 
-/// The robot's outline on the ground as a planner needs it. With a distance field, a row of discs that covers the polygon
+/// The robot's outline on the ground as a planner needs it. With a distance field, rows of discs that cover the polygon
 /// answers "does it fit, and how far is the next obstacle" in a few look-ups, and never says free where the polygon is not.
 class Footprint {
  public:
   /// `polygon_m`: convex, counter-clockwise, in level. The discs stick out over the long sides of its bounding box by at
-  /// most `max_excess_m`, over its ends by less than half its width. Throws InputError when the polygon is not one (fewer
-  /// than three corners, the body's origin outside).
-  explicit Footprint(std::vector<Eigen::Vector2d> polygon_m, double max_excess_m = 0.03);
+  /// most `max_excess_m`, over its ends by less than half the width of a row: a wide robot that must come near to things
+  /// with its ends wants two rows, at twice the price. Throws InputError when the polygon is not one (fewer than three
+  /// corners, the body's origin outside).
+  explicit Footprint(std::vector<Eigen::Vector2d> polygon_m, int rows = 1, double max_excess_m = 0.03);
 
   const std::vector<Eigen::Vector2d>& polygon_m() const { return polygon_m_; }
   const std::vector<Disc>& discs() const { return discs_; }

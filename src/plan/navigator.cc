@@ -25,9 +25,10 @@ bool stands_still(const VelocityCommand& command) {
 Navigator::Navigator(const NavigatorSettings& settings, const RobotDescription& robot,
                      std::vector<Polyline> keep_out_lines_in_map)
     : settings_(settings),
-      costmap_(settings.costmap, Footprint(robot.footprint_m), std::move(keep_out_lines_in_map)),
+      costmap_(settings.costmap, Footprint(robot.footprint_m, settings.footprint_rows), std::move(keep_out_lines_in_map)),
       planner_(settings.global),
-      window_(settings.local) {
+      window_(settings.local),
+      approach_(settings.differential_approach) {
   validate(settings, "navigation");
 }
 
@@ -40,6 +41,7 @@ void Navigator::set_goal(const std::optional<NavigationGoal>& goal) {
   if (goal == goal_) return;
   goal_ = goal;
   has_arrived_ = false;
+  is_approaching_ = false;
   path_ = {};
   planned_at_ = Time::min();
   blocked_since_.reset();
@@ -52,7 +54,7 @@ void Navigator::set_goal(const std::optional<NavigationGoal>& goal) {
 NavigationStep Navigator::step(Time now, const Pose2& T_map_body) {
   NavigationStep step;
   if (goal_) {
-    if (has_arrived_ || is_reached(T_map_body, *goal_)) {
+    if (has_arrived_ || is_at_goal(T_map_body)) {
       has_arrived_ = true;
       step.status = NavigationStatus::kArrived;
     } else if (recoveries_ > settings_.max_recoveries) {
@@ -108,6 +110,11 @@ bool Navigator::plan_if_needed(Time now, const Pose2& T_map_body, NavigationStep
   return true;
 }
 
+/// A differential approach, once begun, says itself when it is done: it aims at less than the tolerances.
+bool Navigator::is_at_goal(const Pose2& T_map_body) const {
+  return is_approaching_ ? approach_.is_done() : is_reached(T_map_body, *goal_);
+}
+
 NavigationStatus Navigator::drive(Time now, const Pose2& T_map_body, VelocityCommand& command) {
   if (backing_until_) {
     command.vx_mps = -settings_.back_up_speed_mps;
@@ -118,11 +125,31 @@ NavigationStatus Navigator::drive(Time now, const Pose2& T_map_body, VelocityCom
     return NavigationStatus::kRecovering;
   }
   const double goal_distance_m = (goal_->T_map_body.position() - T_map_body.position()).norm();
+  if (settings_.drive == "differential") {
+    const bool is_end_of_path = path_.length_m() - along_m_ <= settings_.approach_m;
+    const double room_m = settings_.differential_approach.max_back_off_m;
+    if (!is_approaching_) approach_.reset();
+    is_approaching_ = is_approaching_ ? goal_distance_m <= settings_.approach_m + room_m
+                                      : goal_distance_m <= settings_.approach_m && is_end_of_path;
+    if (is_approaching_) return approach(now, T_map_body, command);
+  }
   const VelocityCommand straight = regulate_pose(settings_.approach, T_map_body, *goal_);
-  const bool is_near = goal_distance_m <= settings_.approach_m;
+  const bool is_near = settings_.drive != "differential" && goal_distance_m <= settings_.approach_m;
   command = is_near && is_safe(T_map_body, straight, 0.5) ? straight : follow_path(T_map_body);
   note_progress(T_map_body);
   if (stands_still(command) && !is_near) return stand_blocked(now, T_map_body, command);
+  blocked_since_.reset();
+  return NavigationStatus::kDriving;
+}
+
+/// The last metre of a differential robot. Where there is no room for it, it looks for another way in, then recovers.
+NavigationStatus Navigator::approach(Time now, const Pose2& T_map_body, VelocityCommand& command) {
+  note_progress(T_map_body);
+  command = approach_.step(T_map_body, *goal_);
+  if (!is_safe(T_map_body, command, 0.5)) {
+    approach_.block();
+    return stand_blocked(now, T_map_body, command);
+  }
   blocked_since_.reset();
   return NavigationStatus::kDriving;
 }
@@ -167,6 +194,7 @@ NavigationStatus Navigator::recover(Time now, const Pose2& T_map_body, VelocityC
   command = {};
   blocked_since_.reset();
   stay_.reset();
+  is_approaching_ = false;
   ++recoveries_;
   costmap_.forget_live(T_map_body.position(), 2.0);
   backing_until_ = now + from_seconds(settings_.back_up_s);

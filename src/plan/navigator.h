@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/messages.h"
@@ -8,6 +9,7 @@
 #include "core/robot_description.h"
 #include "plan/astar.h"
 #include "plan/costmap.h"
+#include "plan/differential_approach.h"
 #include "plan/dwa.h"
 #include "plan/planned_path.h"
 #include "plan/pose_regulator.h"
@@ -15,10 +17,12 @@
 namespace patrol::plan {
 
 struct NavigatorSettings {
+  std::string drive = "omnidirectional";  ///< or "differential": a robot that cannot step sideways
+  int footprint_rows = 1;             ///< of discs that stand for the outline (plan/footprint.h)
   double replan_period_s = 4.0;       ///< a new path after this time, for what the map has learnt
   double check_ahead_m = 6.0;         ///< an obstacle on the path nearer than this calls for a new one at once
   double stray_m = 0.8;               ///< so does being farther than this from it
-  double approach_m = 0.4;            ///< from here on the goal is walked to straight, sideways too
+  double approach_m = 0.4;            ///< from here on the goal is approached by itself, whatever the path
   double approach_decel_mps2 = 0.3;   ///< speed on the way falls so that the robot can stop at the goal
   double turn_first_rad = 1.0;        ///< the path leads off by more than this: turn in place first
   double turn_rate_radps = 0.7;
@@ -30,10 +34,13 @@ struct NavigatorSettings {
   CostmapSettings costmap;
   AstarSettings global;
   DwaSettings local;
-  PoseRegulatorSettings approach;
+  PoseRegulatorSettings approach;                      ///< of an omnidirectional robot
+  DifferentialApproachSettings differential_approach;  ///< of a differential one
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("drive", self.drive, one_of({"omnidirectional", "differential"}));
+    visit("footprint_rows", self.footprint_rows, between(1, 4));
     visit("replan_period_s", self.replan_period_s, between(0.1, 600.0));
     visit("check_ahead_m", self.check_ahead_m, between(0.5, 100.0));
     visit("stray_m", self.stray_m, between(0.1, 10.0));
@@ -50,6 +57,7 @@ struct NavigatorSettings {
     visit("global", self.global);
     visit("local", self.local);
     visit("approach", self.approach);
+    visit("differential_approach", self.differential_approach);
   }
 };
 
@@ -63,8 +71,8 @@ struct NavigationStep {
   std::vector<Pose2> path;  ///< in map; filled when replanned
 };
 
-/// Takes the body to a goal: costmap, A* for the way, the dynamic window for every step of it, a straight approach at
-/// its end. Blocked, it waits, then backs up and looks for another way, and says so when there is none.
+/// Takes the body to a goal: costmap, A* for the way, the dynamic window for every step of it, an approach of its own at
+/// the end. Blocked, it waits, then backs up and looks for another way, and says so when there is none.
 class Navigator {
  public:
   /// Throws InputError if a setting breaks its rule or the robot has no footprint.
@@ -89,7 +97,9 @@ class Navigator {
 
   bool is_path_blocked(double from_m) const;
   bool plan_if_needed(Time now, const Pose2& T_map_body, NavigationStep& step);
+  bool is_at_goal(const Pose2& T_map_body) const;
   NavigationStatus drive(Time now, const Pose2& T_map_body, VelocityCommand& command);
+  NavigationStatus approach(Time now, const Pose2& T_map_body, VelocityCommand& command);
   VelocityCommand follow_path(const Pose2& T_map_body);
   bool turn_in_place(const Pose2& T_map_body, VelocityCommand& command) const;
   NavigationStatus stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command);
@@ -102,9 +112,11 @@ class Navigator {
   Costmap costmap_;
   AstarPlanner planner_;
   DynamicWindow window_;
+  DifferentialApproach approach_;
 
   std::optional<NavigationGoal> goal_;
   bool has_arrived_ = false;
+  bool is_approaching_ = false;       ///< the differential approach drives
   PlannedPath path_;
   double along_m_ = 0.0;
   Time planned_at_ = Time::min();

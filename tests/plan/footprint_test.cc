@@ -54,7 +54,7 @@ double distance_outside_discs(const Footprint& footprint, const Eigen::Vector2d&
 TEST(Footprint, DiscsCoverEveryPointOfTwoHundredPolygons) {
   int num_inside = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    const Footprint footprint(make_random_polygon(seed));
+    const Footprint footprint(make_random_polygon(seed), 1 + static_cast<int>(seed % 3));
     for (const Eigen::Vector2d& corner : footprint.polygon_m()) {
       ASSERT_LE(distance_outside_discs(footprint, corner), kExactTol) << "seed " << seed;
     }
@@ -73,7 +73,7 @@ TEST(Footprint, DiscsCoverEveryPointOfTwoHundredPolygons) {
 // Over an end they stick out by hypot(piece, width) / 2 - piece / 2 < width / 2.
 TEST(Footprint, DiscsStickOutSidewaysByNoMoreThanAskedAndOverTheEndsByHalfTheWidth) {
   for (const double excess_m : {0.005, 0.03, 0.2}) {
-    const Footprint footprint(make_box(-0.5, 0.4, -0.15, 0.15), excess_m);
+    const Footprint footprint(make_box(-0.5, 0.4, -0.15, 0.15), 1, excess_m);
     for (const Disc& disc : footprint.discs()) {
       EXPECT_LE(disc.radius_m, 0.15 + excess_m + kExactTol);
       EXPECT_GE(disc.center_m.x() - disc.radius_m, -0.5 - 0.15);
@@ -85,16 +85,29 @@ TEST(Footprint, DiscsStickOutSidewaysByNoMoreThanAskedAndOverTheEndsByHalfTheWid
 // 0.8 by 0.3 m cut in four: pieces of 0.2 m, each in a disc of radius hypot(0.1, 0.15) = 0.1803 m, which
 // sticks out by 0.0303 m. Three pieces would stick out by hypot(0.1333, 0.15) - 0.15 = 0.0507 m.
 TEST(Footprint, FourDiscsOnALongRobot) {
-  const Footprint footprint(make_box(-0.4, 0.4, -0.15, 0.15), 0.031);
+  const Footprint footprint(make_box(-0.4, 0.4, -0.15, 0.15), 1, 0.031);
   ASSERT_EQ(footprint.discs().size(), 4u);
   EXPECT_NEAR(footprint.discs()[0].radius_m, std::hypot(0.1, 0.15), kExactTol);
   EXPECT_NEAR(footprint.discs()[0].center_m.x(), -0.3, kExactTol);
   EXPECT_NEAR(footprint.discs()[3].center_m.x(), 0.3, kExactTol);
-  EXPECT_EQ(Footprint(make_box(-0.4, 0.4, -0.15, 0.15), 0.051).discs().size(), 3u);
+  EXPECT_EQ(Footprint(make_box(-0.4, 0.4, -0.15, 0.15), 1, 0.051).discs().size(), 3u);
+}
+
+// 1.0 by 0.7 m. One row: pieces of 0.25 m in discs of hypot(0.125, 0.35) = 0.372 m, 0.247 m beyond the ends. Two rows: pieces
+// of 0.2 m by 0.35 m in discs of 0.2016 m, 0.102 m beyond them.
+TEST(Footprint, ASecondRowTakesFifteenCentimetresOffWhatSticksOutAtTheEnds) {
+  const auto excess_m = [](int rows) {
+    const Footprint footprint(make_box(-0.5, 0.5, -0.35, 0.35), rows);
+    double reach_m = 0.0;
+    for (const Disc& disc : footprint.discs()) reach_m = std::max(reach_m, disc.center_m.x() + disc.radius_m);
+    return reach_m - 0.5;
+  };
+  EXPECT_NEAR(excess_m(1), std::hypot(0.125, 0.35) - 0.125, kExactTol);
+  EXPECT_NEAR(excess_m(2), std::hypot(0.1, 0.175) - 0.1, kExactTol);
 }
 
 TEST(Footprint, AWideRobotHasItsDiscsSideBySide) {
-  const Footprint footprint(make_box(-0.1, 0.1, -0.3, 0.3), 0.05);
+  const Footprint footprint(make_box(-0.1, 0.1, -0.3, 0.3), 1, 0.05);
   ASSERT_GT(footprint.discs().size(), 1u);
   for (const Disc& disc : footprint.discs()) EXPECT_NEAR(disc.center_m.x(), 0.0, kExactTol);
 }

@@ -19,6 +19,14 @@ inline RobotDescription make_robot() {
   return robot;
 }
 
+/// 1.0 by 0.7 m, on tracks.
+inline RobotDescription make_tracked_robot() {
+  RobotDescription robot;
+  robot.name = "tracked box";
+  robot.footprint_m = {{-0.5, -0.35}, {0.5, -0.35}, {0.5, 0.35}, {-0.5, 0.35}};
+  return robot;
+}
+
 /// Between the robot's outline and the nearest wall; 0 if they cross.
 inline double gap_m(const test::RoomWorld& world, const RobotDescription& robot, const Pose2& T_map_body) {
   const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -70,6 +78,7 @@ struct DriveRecord {
   double time_s = 0.0;
   double way_m = 0.0;
   double min_gap_m = std::numeric_limits<double>::infinity();
+  double max_side_speed_mps = 0.0;   ///< asked for
   int num_plans = 0;
   int num_detours = 0;
   int num_recoveries = 0;
@@ -82,11 +91,11 @@ using WorldAt = std::function<test::RoomWorld(double time_s)>;
 
 /// Closed loop: the navigator steps at 20 Hz and sees an ideal scan at 10 Hz, until it arrives, gives up or
 /// the time is over. The world is map's frame. The robot's velocity follows its command with a lag of the
-/// first order; without one, at once.
+/// first order; without one, at once. Tracks lose a share of the yaw rate.
 inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_map_body,
-                         const NavigationGoal& goal, double time_limit_s, double lag_s = 0.0) {
+                         const NavigationGoal& goal, double time_limit_s, double lag_s = 0.0,
+                         const RobotDescription& robot = make_robot(), double turn_slip = 0.0) {
   constexpr double kPeriod_s = 0.05;
-  const RobotDescription robot = make_robot();
   DriveRecord record;
   NavigationStatus before = NavigationStatus::kIdle;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // ahead, left, yaw
@@ -112,7 +121,9 @@ inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_
     record.T_map_body = T_map_body;
     record.way.push_back(T_map_body.position());
     if (step.status == NavigationStatus::kArrived || step.status == NavigationStatus::kFailed) break;
-    const Eigen::Vector3d asked(step.command.vx_mps, step.command.vy_mps, step.command.yaw_rate_radps);
+    record.max_side_speed_mps = std::max(record.max_side_speed_mps, std::abs(step.command.vy_mps));
+    const Eigen::Vector3d asked(step.command.vx_mps, step.command.vy_mps,
+                                (1.0 - turn_slip) * step.command.yaw_rate_radps);
     velocity += (asked - velocity) * (lag_s > 0.0 ? 1.0 - std::exp(-kPeriod_s / lag_s) : 1.0);
     const Pose2 next = follow_arc(T_map_body, velocity[0], velocity[2], kPeriod_s) *
                        Pose2{0.0, kPeriod_s * velocity[1], 0.0};
@@ -123,9 +134,10 @@ inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_
 }
 
 inline DriveRecord drive(Navigator& navigator, const test::RoomWorld& world, const Pose2& T_map_body,
-                         const NavigationGoal& goal, double time_limit_s, double lag_s = 0.0) {
+                         const NavigationGoal& goal, double time_limit_s, double lag_s = 0.0,
+                         const RobotDescription& robot = make_robot(), double turn_slip = 0.0) {
   return drive(
-      navigator, [&](double) { return world; }, T_map_body, goal, time_limit_s, lag_s);
+      navigator, [&](double) { return world; }, T_map_body, goal, time_limit_s, lag_s, robot, turn_slip);
 }
 
 }  // namespace patrol::plan

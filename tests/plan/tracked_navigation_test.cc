@@ -1,0 +1,84 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/random.h"
+#include "plan/navigator.h"
+#include "tests/plan/kinematic_drive.h"
+#include "tests/plan/tracked_settings.h"
+#include "tests/support/pose_near.h"
+
+// The navigator with a robot of 1.0 by 0.7 m that cannot step sideways.
+namespace patrol::plan {
+namespace {
+
+using test::RoomWorld;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// 16 m by 16 m about the origin.
+RoomWorld make_hall() {
+  RoomWorld hall;
+  hall.add_box(-8.0, -8.0, 8.0, 8.0);
+  return hall;
+}
+
+Navigator make_navigator(const RoomWorld& known, const NavigatorSettings& settings = make_tracked_settings()) {
+  Navigator navigator(settings, make_tracked_robot(), {});
+  navigator.set_map(draw_map(known, -8.5, -8.5, 8.5, 8.5));
+  return navigator;
+}
+
+DriveRecord drive_tracked(Navigator& navigator, const RoomWorld& world, const Pose2& start, const NavigationGoal& goal,
+                          double turn_slip = 0.25, double time_limit_s = 120.0) {
+  return drive(navigator, world, start, goal, time_limit_s, 0.1, make_tracked_robot(), turn_slip);
+}
+
+TEST(TrackedNavigation, TwentyGoalsAmongPostsAreReachedToThreeCentimetresAndOneDegreeWithoutTouching) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const RandomStream stream(seed, "test/hall");
+    RoomWorld hall = make_hall();
+    const Pose2 start{-6.0, 10.0 * stream.uniform(0) - 5.0, 6.28 * stream.uniform(1)};
+    const NavigationGoal goal{.T_map_body = {6.0, 10.0 * stream.uniform(2) - 5.0, 6.28 * stream.uniform(3)},
+                              .position_tol_m = 0.03,
+                              .yaw_tol_rad = kDegree};
+    for (std::uint64_t post = 0; post < 6; ++post) {
+      hall.add_post(7.0 * stream.uniform(4, post) - 3.5, 14.0 * stream.uniform(5, post) - 7.0, 0.2);
+    }
+    Navigator navigator = make_navigator(hall);
+    const DriveRecord record = drive_tracked(navigator, hall, start, goal, 0.1 + 0.3 * stream.uniform(6));
+    EXPECT_EQ(record.end, NavigationStatus::kArrived)
+        << "seed " << seed << " at " << record.T_map_body.vector().transpose();
+    EXPECT_THAT(record.T_map_body, test::Pose2Near(goal.T_map_body, 0.03, kDegree)) << "seed " << seed;
+    EXPECT_GT(record.min_gap_m, 0.0) << "seed " << seed;
+    EXPECT_EQ(record.max_side_speed_mps, 0.0) << "seed " << seed;
+    EXPECT_EQ(record.num_recoveries, 0) << "seed " << seed;
+  }
+}
+
+// A wall 0.9 m behind the robot's middle, 0.4 m behind its tail, and a goal 5 cm to the left: it shuffles ahead.
+TEST(TrackedNavigation, ShufflesAheadWhereThereIsNoRoomBehind) {
+  RoomWorld hall = make_hall();
+  hall.add_box(-3.0, -2.0, -0.9, 2.0);
+  Navigator navigator = make_navigator(hall);
+  const NavigationGoal goal{.T_map_body = {0.0, 0.05, 0.0}, .position_tol_m = 0.02, .yaw_tol_rad = kDegree};
+  const DriveRecord record = drive_tracked(navigator, hall, {}, goal);
+  EXPECT_EQ(record.end, NavigationStatus::kArrived);
+  EXPECT_GT(record.min_gap_m, 0.0);
+}
+
+// Nose to a wall 0.75 m ahead, the goal behind: no room for an arc, but for a turn in place.
+TEST(TrackedNavigation, TurnsInPlaceToLeaveADeadEnd) {
+  RoomWorld hall = make_hall();
+  hall.add_box(0.75, -2.0, 2.0, 2.0);
+  Navigator navigator = make_navigator(hall);
+  const NavigationGoal goal{.T_map_body = {-5.0, 0.0, 0.0}, .position_tol_m = 0.1, .yaw_tol_rad = 0.1};
+  const DriveRecord record = drive_tracked(navigator, hall, {}, goal);
+  EXPECT_EQ(record.end, NavigationStatus::kArrived);
+  EXPECT_GT(record.min_gap_m, 0.0);
+  EXPECT_LT(record.way_m, 7.0);
+}
+
+}  // namespace
+}  // namespace patrol::plan
