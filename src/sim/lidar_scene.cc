@@ -3,31 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 #include <string_view>
 
 #include <Eigen/Geometry>
 #include <embree3/rtcore.h>
-#include <fmt/format.h>
 
-#include "core/error.h"
 #include "core/frames.h"
+#include "sim/embree_scene.h"
 #include "sim/robot_model.h"
 
 namespace patrol::sim {
 namespace {
-
-using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
-/// A geom placed in a frame: that of the world, or that of the body which it moves with.
-struct PlacedGeom {
-  int geom;
-  int type;
-  mjtNum position[3];
-  mjtNum rotation[9];
-  mjtNum size[3];
-};
 
 bool is_seen(const mjModel& model, int geom) {
   const int group = model.geom_group[geom];
@@ -44,198 +31,12 @@ std::uint32_t mask_of(const mjModel& model, int body) {
   return name == "lidar3d" ? kRayLidar3d : kRayRobot;
 }
 
-/// Half of the box, along the axes of its frame, that holds a geom of round shape.
-Eigen::Vector3d half_extent(const PlacedGeom& geom) {
-  const Eigen::Map<const Matrix3> R(geom.rotation);
-  const Eigen::Map<const Eigen::Vector3d> size(geom.size);
-  const Eigen::Vector3d axis = R.col(2).cwiseAbs();
-  switch (geom.type) {
-    case mjGEOM_SPHERE:
-      return Eigen::Vector3d::Constant(size[0]);
-    case mjGEOM_CAPSULE:
-      return axis * size[1] + Eigen::Vector3d::Constant(size[0]);
-    case mjGEOM_CYLINDER:
-      return axis * size[1] + size[0] * (1.0 - axis.array().square()).max(0.0).sqrt().matrix();
-    default:
-      return (R * size.asDiagonal()).rowwise().norm();
-  }
-}
-
-void round_bounds(const RTCBoundsFunctionArguments* arguments) {
-  const auto& geom = *static_cast<const PlacedGeom*>(arguments->geometryUserPtr);
-  const Eigen::Map<const Eigen::Vector3d> centre(geom.position);
-  const Eigen::Vector3d half =
-      half_extent(geom).array() + 1e-4;  // more than a float loses over a world of a kilometre
-  const Eigen::Vector3f lower = (centre - half).cast<float>(), upper = (centre + half).cast<float>();
-  *arguments->bounds_o = {.lower_x = lower.x(),
-                          .lower_y = lower.y(),
-                          .lower_z = lower.z(),
-                          .align0 = 0.0f,
-                          .upper_x = upper.x(),
-                          .upper_y = upper.y(),
-                          .upper_z = upper.z(),
-                          .align1 = 0.0f};
-}
-
-void intersect_round(const RTCIntersectFunctionNArguments* arguments) {
-  if (arguments->valid[0] == 0) return;
-  const auto& geom = *static_cast<const PlacedGeom*>(arguments->geometryUserPtr);
-  auto& ray_hit = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
-  RTCRay& ray = ray_hit.ray;
-  const mjtNum origin[3] = {ray.org_x, ray.org_y, ray.org_z};
-  const mjtNum direction[3] = {ray.dir_x, ray.dir_y, ray.dir_z};
-  mjtNum normal[3];
-  const mjtNum distance =
-      mju_rayGeom(geom.position, geom.rotation, geom.size, origin, direction, geom.type, normal);
-  if (distance < ray.tnear || distance >= ray.tfar || distance < 0.0) return;
-  ray.tfar = static_cast<float>(distance);
-  RTCHit& hit = ray_hit.hit;
-  hit.Ng_x = static_cast<float>(normal[0]);
-  hit.Ng_y = static_cast<float>(normal[1]);
-  hit.Ng_z = static_cast<float>(normal[2]);
-  hit.geomID = arguments->geomID;
-  hit.primID = 0;
-}
-
-/// Corners and faces of one geom, in the frame of its Embree scene.
-struct Triangles {
-  std::vector<Eigen::Vector3f> corners;
-  std::vector<std::array<unsigned, 3>> faces;
-};
-
-Triangles box_triangles(const mjtNum half[3]) {
-  Triangles box;
-  for (int corner = 0; corner < 8; ++corner) {
-    box.corners.emplace_back(static_cast<float>(corner & 1 ? half[0] : -half[0]),
-                             static_cast<float>(corner & 2 ? half[1] : -half[1]),
-                             static_cast<float>(corner & 4 ? half[2] : -half[2]));
-  }
-  box.faces = {{0, 1, 3}, {0, 3, 2}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-               {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 3, 7}, {1, 7, 5}};
-  return box;
-}
-
-Triangles plane_triangles(const mjtNum half[3]) {
-  constexpr float kEndless_m = 500.0f;
-  const float x = half[0] > 0.0 ? static_cast<float>(half[0]) : kEndless_m;
-  const float y = half[1] > 0.0 ? static_cast<float>(half[1]) : kEndless_m;
-  return {.corners = {{-x, -y, 0}, {x, -y, 0}, {x, y, 0}, {-x, y, 0}}, .faces = {{0, 1, 2}, {0, 2, 3}}};
-}
-
-Triangles mesh_triangles(const mjModel& model, int mesh) {
-  Triangles triangles;
-  const float* vertices = model.mesh_vert + 3 * model.mesh_vertadr[mesh];
-  for (int i = 0; i < model.mesh_vertnum[mesh]; ++i)
-    triangles.corners.emplace_back(Eigen::Map<const Eigen::Vector3f>(vertices + 3 * i));
-  const int* faces = model.mesh_face + 3 * model.mesh_faceadr[mesh];
-  for (int i = 0; i < model.mesh_facenum[mesh]; ++i) {
-    triangles.faces.push_back({static_cast<unsigned>(faces[3 * i]), static_cast<unsigned>(faces[3 * i + 1]),
-                               static_cast<unsigned>(faces[3 * i + 2])});
-  }
-  return triangles;
-}
-
-bool is_round(int type) {
-  return type == mjGEOM_SPHERE || type == mjGEOM_CAPSULE || type == mjGEOM_CYLINDER ||
-         type == mjGEOM_ELLIPSOID;
-}
-
-RTCRayHit make_query(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m) {
-  RTCRayHit query{};
-  query.ray.org_x = static_cast<float>(origin.x());
-  query.ray.org_y = static_cast<float>(origin.y());
-  query.ray.org_z = static_cast<float>(origin.z());
-  query.ray.dir_x = static_cast<float>(direction.x());
-  query.ray.dir_y = static_cast<float>(direction.y());
-  query.ray.dir_z = static_cast<float>(direction.z());
-  query.ray.tfar = static_cast<float>(max_range_m);
-  query.ray.mask = ~0u;
-  query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  return query;
-}
-
-/// Geoms that keep their places to each other, in Embree: triangles, and MuJoCo's own ray test for round
-/// shapes.
-class EmbreeScene {
- public:
-  EmbreeScene(RTCDevice device, RTCBuildQuality quality) : device_(device), scene_(rtcNewScene(device)) {
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene_, quality);
-  }
-  ~EmbreeScene() { rtcReleaseScene(scene_); }
-  EmbreeScene(const EmbreeScene&) = delete;
-  EmbreeScene& operator=(const EmbreeScene&) = delete;
-
-  void add(const mjModel& model, const PlacedGeom& placed) {
-    RTCGeometry geometry = nullptr;
-    if (is_round(placed.type)) {
-      rounds_.push_back(std::make_unique<PlacedGeom>(placed));
-      geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
-      rtcSetGeometryUserPrimitiveCount(geometry, 1);
-      rtcSetGeometryUserData(geometry, rounds_.back().get());
-      rtcSetGeometryBoundsFunction(geometry, round_bounds, nullptr);
-      rtcSetGeometryIntersectFunction(geometry, intersect_round);
-    } else {
-      geometry = make_triangles(model, placed);
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    geoms_.push_back(placed.geom);
-  }
-  void build() { rtcCommitScene(scene_); }
-
-  /// First hit nearer than `max_range_m`; the normal is not yet turned towards the origin.
-  std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                             double max_range_m) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRayHit query = make_query(origin, direction, max_range_m);
-    rtcIntersect1(scene_, &context, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-    return RayHit{
-        .distance_m = query.ray.tfar,
-        .geom = geoms_[query.hit.geomID],
-        .normal =
-            Eigen::Vector3f(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z).normalized().cast<double>()};
-  }
-
-  RTCScene handle() const { return scene_; }
-
- private:
-  RTCGeometry make_triangles(const mjModel& model, const PlacedGeom& placed) const {
-    const Triangles triangles = placed.type == mjGEOM_BOX ? box_triangles(placed.size)
-                                : placed.type == mjGEOM_PLANE
-                                    ? plane_triangles(placed.size)
-                                    : mesh_triangles(model, model.geom_dataid[placed.geom]);
-    const Eigen::Map<const Eigen::Vector3d> p(placed.position);
-    const Eigen::Map<const Matrix3> R(placed.rotation);
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* coordinates = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), triangles.corners.size()));
-    for (const Eigen::Vector3f& corner : triangles.corners) {
-      Eigen::Map<Eigen::Vector3f> in_scene(coordinates);
-      in_scene = (p + R * corner.cast<double>()).cast<float>();
-      coordinates += 3;
-    }
-    void* faces = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                          3 * sizeof(unsigned), triangles.faces.size());
-    std::memcpy(faces, triangles.faces.data(), triangles.faces.size() * sizeof(triangles.faces[0]));
-    return geometry;
-  }
-
-  RTCDevice device_;
-  RTCScene scene_;
-  std::vector<int> geoms_;  ///< [geometry of the scene]
-  std::vector<std::unique_ptr<PlacedGeom>> rounds_;
-};
-
 /// What moves as one: the geoms of a body and of everything welded to it.
 struct MovingPart {
   int body;
   std::uint32_t mask;
   std::vector<PlacedGeom> geoms;                       ///< in the body's frame
-  std::unique_ptr<EmbreeScene> meshes;                 ///< of `geoms`; null where there are none
+  std::unique_ptr<EmbreeScene> assets;                 ///< meshes and height fields of `geoms`; or null
   Eigen::AlignedBox3d box;                             ///< about all of them, in the body's frame
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the body, in world
   Matrix3 rotation = Matrix3::Identity();
@@ -318,7 +119,7 @@ struct LidarScene::Impl {
     }
     still->build();
     for (MovingPart& part : parts) {
-      if (part.meshes) part.meshes->build();
+      if (part.assets) part.assets->build();
       enclose(part);
     }
     boxes.resize(parts.size());
@@ -333,9 +134,6 @@ struct LidarScene::Impl {
 
   void add_geom(const mjData& data, int geom) {
     const int type = model.geom_type[geom];
-    if (!is_round(type) && type != mjGEOM_BOX && type != mjGEOM_PLANE && type != mjGEOM_MESH) {
-      throw InputError(fmt::format("geom {}: the lidar cannot see shapes of this type", geom));
-    }
     const int body = model.body_weldid[model.geom_bodyid[geom]];
     PlacedGeom placed{.geom = geom, .type = type, .position = {}, .rotation = {}, .size = {}};
     std::copy_n(model.geom_size + 3 * geom, 3, placed.size);
@@ -350,9 +148,9 @@ struct LidarScene::Impl {
     }
     MovingPart& part = part_of(body, mask_of(model, model.geom_bodyid[geom]));
     part.geoms.push_back(placed);
-    if (type != mjGEOM_MESH) return;
-    if (!part.meshes) part.meshes = std::make_unique<EmbreeScene>(device, RTC_BUILD_QUALITY_MEDIUM);
-    part.meshes->add(model, placed);
+    if (!is_asset(type)) return;
+    if (!part.assets) part.assets = std::make_unique<EmbreeScene>(device, RTC_BUILD_QUALITY_MEDIUM);
+    part.assets->add(model, placed);
   }
 
   MovingPart& part_of(int body, std::uint32_t mask) {
@@ -360,7 +158,7 @@ struct LidarScene::Impl {
       if (part.body == body && part.mask == mask) return part;
     }
     return parts.emplace_back(
-        MovingPart{.body = body, .mask = mask, .geoms = {}, .meshes = nullptr, .box = {}});
+        MovingPart{.body = body, .mask = mask, .geoms = {}, .assets = nullptr, .box = {}});
   }
 
   /// Puts a box about everything on a part.
@@ -393,15 +191,15 @@ struct LidarScene::Impl {
     const Eigen::Vector3d along = part.rotation.transpose() * direction;
     if (!meets(part.box, from, along, reach_m)) return;
     bool is_nearer = false;
-    if (part.meshes) {
-      if (const auto hit = part.meshes->cast(from, along, reach_m)) {
+    if (part.assets) {
+      if (const auto hit = part.assets->cast(from, along, reach_m)) {
         best = hit;
         reach_m = hit->distance_m;
         is_nearer = true;
       }
     }
     for (const PlacedGeom& geom : part.geoms) {
-      if (geom.type == mjGEOM_MESH) continue;
+      if (is_asset(geom.type)) continue;
       Eigen::Vector3d normal;
       const double distance_m = mju_rayGeom(geom.position, geom.rotation, geom.size, from.data(),
                                             along.data(), geom.type, normal.data());

@@ -29,14 +29,12 @@ struct RayHit {
   Eigen::Vector3d normal;  ///< unit, in world, towards the ray's origin
 };
 
-/// MuJoCo's geometry, for many rays a second. What stands still is in Embree: boxes, planes and meshes as
-/// triangles, round shapes by MuJoCo's own ray tests. What moves has few shapes: a ray that meets the box
-/// about a moving body is taken into its frame and tried on each. So nothing has to be built anew when bodies
-/// move.
+/// MuJoCo's geometry, for many rays a second. What stands still is in Embree (sim/embree_scene.h). What moves
+/// has few shapes: a ray that meets the box about a moving body is taken into its frame and tried on each. So
+/// nothing has to be built anew when bodies move.
 ///
 /// Sees geom groups 0 and 2 (solid and lidar-only) and the robot's visual shapes. Agrees with mj_ray within a
-/// millimetre (tests/sim/lidar_scene_test.cc). Height fields are not supported yet: a world that has one is
-/// refused.
+/// millimetre (tests/sim/lidar_scene_test.cc).
 class LidarScene {
  public:
   /// `view` must outlive the scene.

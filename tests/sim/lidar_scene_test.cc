@@ -190,12 +190,54 @@ TEST(LidarScene, NothingLiesBeyondTheRange) {
   EXPECT_FALSE(world.scene.cast({0, 0, 0}, {-1, 0, 0}, 30.0, kRayEverything));
 }
 
-TEST(LidarScene, AHeightFieldIsRefused) {
-  EXPECT_THROW(
-      SmallWorld(
-          R"(<geom type="hfield" hfield="hills"/>)",
-          R"(<hfield name="hills" nrow="3" ncol="3" size="1 1 1 0.1" elevation="0 0 0 0 1 0 0 0 0"/>)"),
-      InputError);
+/// Hills of 7 x 5 corners, three times as long as wide, turned and tilted, so that no wall or cell is like
+/// another.
+const std::string kHills = R"(<hfield name="hills" nrow="5" ncol="7" size="6 2 1.2 0.5" elevation="
+  0.0 0.2 0.1 0.4 0.6 0.3 0.9   0.3 0.8 0.2 0.5 0.1 0.7 0.2   0.5 0.1 1.0 0.3 0.8 0.2 0.4
+  0.9 0.4 0.6 0.0 0.5 0.9 0.1   0.2 0.7 0.3 0.6 0.2 0.4 0.8"/>)";
+const std::string kHillside =
+    R"(<geom name="hillside" type="hfield" hfield="hills" pos="1 -0.5 0.3" euler="8 -5 35"/>)";
+
+TEST(LidarScene, AHeightFieldIsHitWithin1MillimetreOfMjRayFromAboveBesideBelowAndWithin) {
+  const SmallWorld world(kHillside, kHills);
+  const RandomStream random(4, "rays");
+  Agreement agreement;
+  for (std::uint64_t ray = 0; ray < 20000; ++ray) {
+    const Eigen::Vector3d origin(16.0 * random.uniform(ray, 10) - 8.0, 10.0 * random.uniform(ray, 11) - 5.0,
+                                 5.0 * random.uniform(ray, 12) - 1.5);
+    const Eigen::Vector3d target(1.0 + 5.0 * random.normal(ray, 13), -0.5 + 2.0 * random.normal(ray, 14),
+                                 0.6);
+    compare(world.scene, *world.model, *world.data, origin, (target - origin).normalized(), agreement);
+  }
+  EXPECT_GT(agreement.hits, 10000);
+  EXPECT_EQ(agreement.unexplained, 0);
+  EXPECT_LE(agreement.beyond_1_mm, 5);
+  EXPECT_LT(agreement.largest_m, 1e-4);
+}
+
+TEST(LidarScene, StraightDownOnAHeightFieldMeetsTheCornersWhereTheFilePutsThem) {
+  // Corners 2 m and 1 m apart; the file's last row lies at the lowest y. Heights 0 ... 1.2 m over the geom's
+  // origin.
+  const SmallWorld world(R"(<geom type="hfield" hfield="hills"/>)", kHills);
+  const auto height = [&](double x, double y) {
+    return 5.0 - world.scene.cast({x, y, 5.0}, {0, 0, -1}, 9.0, kRayEverything)->distance_m;
+  };
+  EXPECT_NEAR(height(-2.0, 0.0), 1.0 * 1.2, 1e-6);
+  EXPECT_NEAR(height(-2.0, -1.0), 0.6 * 1.2, 1e-6);
+  EXPECT_NEAR(height(4.0, 1.0), 0.7 * 1.2, 1e-6);
+  EXPECT_NEAR(height(-1.0, 0.0), (1.0 + 0.3) / 2.0 * 1.2, 1e-6);
+}
+
+TEST(LidarScene, AShapeWithoutSurfaceToCastAtIsRefusedByItsNumber) {
+  const SmallWorld world(R"(<geom type="sphere" size="1"/>)");
+  ModelPtr odd(mj_copyModel(nullptr, world.model.get()));
+  odd->geom_type[0] = mjGEOM_SDF;
+  try {
+    LidarScene scene(*odd);
+    FAIL() << "a signed distance field was taken";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "geom 0: the lidar cannot see shapes of this type");
+  }
 }
 
 }  // namespace

@@ -1,0 +1,96 @@
+"""What the tools that make worlds share: lines of an MJCF file, procedural textures, people. All sizes in metres."""
+import math
+
+import numpy as np
+from PIL import Image
+
+SOLID = 'class="solid"'  # eye and lidar see it, and it can be touched
+SEEN = 'class="seen"'    # eye and lidar see it, and it is not touched
+EYE = 'class="eye"'      # only looked at
+TOUCH = 'class="touch"'  # only touched: a simple hull
+
+# What a thing is for, by geom group (README, "Worlds").
+CLASSES = '''  <default>
+    <!-- What a thing is for (README, "Worlds"): solid is seen by eye and lidar and touched; seen is seen by both and not touched; eye
+         is only looked at; touch is only touched, a simple hull; actor is what moves. -->
+    <default class="solid"><geom group="0" contype="1" conaffinity="2"/></default>
+    <default class="seen"><geom group="0" contype="0" conaffinity="0"/></default>
+    <default class="eye"><geom group="1" contype="0" conaffinity="0"/></default>
+    <default class="touch"><geom group="3" contype="1" conaffinity="2"/></default>
+    <default class="actor"><geom group="0" contype="1" conaffinity="2"/></default>
+  </default>
+'''
+
+
+def fmt(values):
+    return ' '.join(f'{round(v, 4):g}' for v in values)
+
+
+class World:
+    """Collects the body of the MJCF file."""
+
+    def __init__(self):
+        self.lines = []
+        self.count = 0
+
+    def geom(self, name, kind, pos, size, material, cls=SOLID, euler=None, quat=None, extra=''):
+        self.count += 1
+        turn = f' euler="{fmt(euler)}"' if euler else f' quat="{fmt(quat)}"' if quat else ''
+        self.lines.append(f'<geom name="{name}" {cls} type="{kind}" pos="{fmt(pos)}" size="{fmt(size)}"{turn} '
+                          f'material="{material}"{" " + extra if extra else ""}/>')
+
+    def box(self, name, x0, x1, y0, y1, z0, z1, material, cls=SOLID):
+        self.geom(name, 'box', ((x0 + x1) / 2, (y0 + y1) / 2, (z0 + z1) / 2),
+                  ((x1 - x0) / 2, (y1 - y0) / 2, (z1 - z0) / 2), material, cls)
+
+    def comment(self, text):
+        self.lines.append(f'<!-- {text} -->')
+
+
+# --- textures -------------------------------------------------------------------------------------------------------
+
+def noise(rng, size, scales, weights):
+    """Tileable value noise: sums of blurred random fields, 0 ... 1."""
+    field = np.zeros((size, size))
+    for scale, weight in zip(scales, weights):
+        coarse = rng.random((size // scale, size // scale))
+        tiled = np.tile(coarse, (3, 3))
+        image = Image.fromarray((tiled * 255).astype(np.uint8)).resize((3 * size, 3 * size), Image.BICUBIC)
+        field += weight * np.asarray(image)[size:2 * size, size:2 * size] / 255.0
+    return field / sum(weights)
+
+
+def shade(field, low, high):
+    low, high = np.array(low, float), np.array(high, float)
+    return Image.fromarray((low + field[..., None] * (high - low)).clip(0, 255).astype(np.uint8))
+
+
+# --- people -----------------------------------------------------------------------------------------------------------
+
+def person(name, x, y, z0, shirt, trousers, head):
+    """Torso and four limb parts, each a mocap body: sim/actors.cc walks them. Hip at 0.92 m, thigh and shank 0.43 m. `head` are
+    (part, kind, 'pos="..." size="..."', material) of what sits on the neck."""
+    hip = 0.92 + z0
+    out = [f'<body name="{name}" mocap="true" pos="{fmt((x, y, hip))}">',
+           f'<geom name="{name}_torso" class="actor" type="capsule" fromto="0 0 0.08 0 0 0.46" size="0.15" material="{shirt}"/>',
+           f'<geom name="{name}_hips" class="actor" type="ellipsoid" pos="0 0 0.02" size="0.13 0.17 0.13" material="{trousers}"/>',
+           f'<geom name="{name}_neck" class="actor" type="capsule" fromto="0 0 0.55 0 0 0.64" size="0.055" material="skin"/>']
+    out += [f'<geom name="{name}_{part}" class="actor" type="{kind}" {shape} material="{material}"/>' for part, kind, shape, material in head]
+    for side, sy in (('left', 1), ('right', -1)):
+        out.append(f'<geom name="{name}_arm_{side}" class="actor" type="capsule" fromto="0 {sy * 0.2} 0.46 0.02 {sy * 0.24} 0.0" size="0.045" material="{shirt}"/>')
+        out.append(f'<geom name="{name}_hand_{side}" class="actor" type="sphere" pos="0.03 {sy * 0.245} -0.06" size="0.05" material="skin"/>')
+    out.append('</body>')
+    for side, sy in (('left', 1), ('right', -1)):
+        out += [f'<body name="{name}_thigh_{side}" mocap="true" pos="{fmt((x, y + sy * 0.09, hip))}">',
+                f'<geom name="{name}_thigh_{side}" class="actor" type="capsule" fromto="0 0 0 0 0 -0.43" size="0.07" material="{trousers}"/></body>',
+                f'<body name="{name}_shank_{side}" mocap="true" pos="{fmt((x, y + sy * 0.09, hip - 0.43))}">',
+                f'<geom name="{name}_shank_{side}" class="actor" type="capsule" fromto="0 0 0 0 0 -0.40" size="0.052" material="{trousers}"/>',
+                f'<geom name="{name}_shoe_{side}" class="actor" type="ellipsoid" pos="0.06 0 -0.43" size="0.13 0.05 0.05" material="hair"/></body>']
+    return out
+
+
+# --- places -----------------------------------------------------------------------------------------------------------
+
+def quaternion(yaw_rad):
+    """x, y, z, w: the order of the survey's files."""
+    return [0.0, 0.0, round(math.sin(yaw_rad / 2), 9), round(math.cos(yaw_rad / 2), 9)]
