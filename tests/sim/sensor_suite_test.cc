@@ -22,7 +22,7 @@ const std::string kWorld = R"(<site name="uwb_anchor_1" pos="8 0 1"/><site name=
 RobotDescription make_robot() {
   RobotDescription robot;
   robot.name = "carrier";
-  for (const char* frame : {"lidar", "imu", "uwb"}) robot.T_body_sensor[frame] = {};
+  for (const char* frame : {"lidar", "imu", "uwb", "ultrasonic_0", "ultrasonic_1"}) robot.T_body_sensor[frame] = {};
   return robot;
 }
 
@@ -83,6 +83,13 @@ SensorSuiteSettings with_uwb() {
   return settings;
 }
 
+SensorSuiteSettings with_ultrasonic() {
+  SensorSuiteSettings settings = quiet();
+  settings.ultrasonic.enabled = true;
+  settings.ultrasonic.dropout = 0.0;
+  return settings;
+}
+
 std::string refusal(const SensorSuiteSettings& settings, const std::string& missing_frame) {
   RobotDescription robot = make_robot();
   robot.T_body_sensor.erase(missing_frame);
@@ -106,8 +113,20 @@ TEST(SensorSuite, UwbSpeaks25TimesASecondTenMillisecondsLateAndAnchorsTakeTurns)
   }
 }
 
+TEST(SensorSuite, TheTransducersFireInTurn40TimesASecondAndHearTheWallTwoAndAHalfMetresAhead) {
+  const auto ranges = stand(with_ultrasonic(), 1.009).of<UltrasonicRange>();  // pings at 0, 0.025 ... 0.975
+  ASSERT_EQ(ranges.size(), 40u);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const auto& range = std::get<UltrasonicRange>(ranges[i].message);
+    EXPECT_EQ(range.transducer, static_cast<int>(i % 2));
+    EXPECT_NEAR(range.range_m, 2.5 * std::sqrt(293.15 / 288.15), 0.03);
+    EXPECT_NEAR(to_seconds(ranges[i].at - range.stamp), 0.03, 0.0021);
+  }
+}
+
 TEST(SensorSuite, AnEnabledSensorWithoutItsFrameIsRefusedByName) {
   EXPECT_EQ(refusal(with_uwb(), "uwb"), "robot carrier: there is no link named uwb");
+  EXPECT_EQ(refusal(with_ultrasonic(), "ultrasonic_0"), "robot carrier: there is no link named ultrasonic_0");
 }
 
 TEST(SensorSuite, EveryFaultOfUwbIsExecutedAndOneOfASilentSensorIsNot) {

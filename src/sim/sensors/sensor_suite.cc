@@ -27,6 +27,12 @@ std::optional<Uwb> make_uwb(const UwbSettings& settings, const mjModel& view, co
   return Uwb(settings, view, seed);
 }
 
+std::optional<UltrasonicRing> make_ultrasonic(const UltrasonicSettings& settings, const LidarScene& scene,
+                                              const RobotDescription& robot, std::uint64_t seed) {
+  if (!settings.enabled) return std::nullopt;
+  return UltrasonicRing(settings, scene, robot, seed);
+}
+
 /// Adds `offset` to the message's main reading, as drift and spikes do.
 struct OffsetBy {
   double offset;
@@ -72,6 +78,7 @@ SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescrip
       lidar_(make_lidar(settings.lidar, scene_, robot, "lidar", kRayLidar2d, seed)),
       lidar3d_(make_lidar(settings.lidar3d, scene_, robot, "lidar3d", kRayLidar3d, seed)),
       uwb_(make_uwb(settings.uwb, view, robot, seed)),
+      ultrasonic_(make_ultrasonic(settings.ultrasonic, scene_, robot, seed)),
       spikes_(seed, "fault/spikes"),
       jitter_(seed, "fault/jitter") {
   for (const FaultSettings& fault : faults) faults_.push_back({.fault = fault});
@@ -128,12 +135,20 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
             gnss_.read(scene_, T_world_body * robot_.T_body("gnss").position, now, gnss_count_ - 1));
   }
   if (uwb_) poll_uwb(T_world_body, now);
+  if (ultrasonic_) ping_ultrasonic(T_world_body, now);
 }
 
 void SensorSuite::poll_uwb(const Pose3& T_world_body, Time now) {
   if (!is_due(settings_.uwb.rate_hz, uwb_count_, now)) return;
   const auto range = uwb_->read(scene_, T_world_body * robot_.T_body("uwb").position, now, uwb_count_ - 1);
   if (range) deliver("uwb", now, settings_.uwb.latency_s, *range);
+}
+
+void SensorSuite::ping_ultrasonic(const Pose3& T_world_body, Time now) {
+  if (!is_due(settings_.ultrasonic.ping_rate_hz, ultrasonic_count_, now)) return;
+  for (const UltrasonicRange& range : ultrasonic_->ping(T_world_body, now, ultrasonic_count_ - 1)) {
+    deliver("ultrasonic", now, settings_.ultrasonic.latency_s, range);
+  }
 }
 
 void SensorSuite::deliver(const char* sensor, Time ready, double latency_s, SensorMessage message) {

@@ -20,6 +20,7 @@
 #include "sim/sensors/joint_encoders.h"
 #include "sim/sensors/lidar.h"
 #include "sim/sensors/tdlas.h"
+#include "sim/sensors/ultrasonic.h"
 #include "sim/sensors/uwb.h"
 
 namespace patrol::sim {
@@ -34,6 +35,7 @@ struct SensorSuiteSettings {
   TdlasSettings tdlas;
   GnssSettings gnss;
   UwbSettings uwb;
+  UltrasonicSettings ultrasonic;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -46,6 +48,7 @@ struct SensorSuiteSettings {
     visit("tdlas", self.tdlas);
     visit("gnss", self.gnss);
     visit("uwb", self.uwb);
+    visit("ultrasonic", self.ultrasonic);
   }
 
  private:
@@ -95,6 +98,7 @@ class SensorSuite {
   bool apply_faults(const char* sensor, Time ready, Time& due, SensorMessage& message);
   bool is_due(double rate_hz, std::uint64_t& count, Time now) const;
   void poll_uwb(const Pose3& T_world_body, Time now);
+  void ping_ultrasonic(const Pose3& T_world_body, Time now);
 
   SensorSuiteSettings settings_;
   RobotDescription robot_;
@@ -109,6 +113,7 @@ class SensorSuite {
   Gnss gnss_;
   std::optional<Lidar> lidar_, lidar3d_;
   std::optional<Uwb> uwb_;
+  std::optional<UltrasonicRing> ultrasonic_;
   std::vector<FaultReport> faults_;
   std::vector<std::pair<std::string, SensorMessage>> last_good_;  ///< by sensor, for a freeze
   RandomStream spikes_, jitter_;
@@ -117,7 +122,7 @@ class SensorSuite {
   std::uint64_t tick_ = 0;
   std::uint64_t hall_count_ = 0;
   std::uint64_t imu_count_ = 0, joint_count_ = 0, contact_count_ = 0, tdlas_count_ = 0, gnss_count_ = 0;
-  std::uint64_t uwb_count_ = 0;
+  std::uint64_t uwb_count_ = 0, ultrasonic_count_ = 0;
   Imu newest_imu_;
   JointState newest_joints_;
   FootContacts newest_contacts_;

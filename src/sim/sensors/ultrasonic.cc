@@ -1,0 +1,171 @@
+#include "sim/sensors/ultrasonic.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string_view>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace patrol::sim {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kPulse_m = 0.065;  // 16 waves of 8 mm, there and back
+constexpr int kRays = 149;
+
+/// m/s, in dry air.
+double speed_of_sound(double temperature_c) { return 331.3 * std::sqrt(1.0 + temperature_c / 273.15); }
+
+std::vector<Pose3> transducers_of(const RobotDescription& robot) {
+  std::vector<Pose3> frames = {robot.T_body("ultrasonic_0")};
+  for (;;) {
+    const auto next = robot.T_body_sensor.find(fmt::format("ultrasonic_{}", frames.size()));
+    if (next == robot.T_body_sensor.end()) return frames;
+    frames.push_back(next->second);
+  }
+}
+
+/// Evenly spread over a cone about x, on a spiral of golden angles: no two at the same height, however it is turned.
+std::vector<Eigen::Vector3d> cone(double full_angle_rad) {
+  const double golden_rad = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  const double cap = 1.0 - std::cos(0.5 * full_angle_rad);  // of the unit sphere, along x
+  std::vector<Eigen::Vector3d> rays;
+  for (int i = 0; i < kRays; ++i) {
+    const double x = 1.0 - cap * (i + 0.5) / kRays, aside = std::sqrt(1.0 - x * x), angle = i * golden_rad;
+    rays.emplace_back(x, aside * std::cos(angle), aside * std::sin(angle));
+  }
+  return rays;
+}
+
+bool names_one_of(const char* name, const std::vector<std::string>& words) {
+  if (name == nullptr) return false;
+  return std::any_of(words.begin(), words.end(), [text = std::string_view(name)](const std::string& word) {
+    return !word.empty() && text.find(word) != std::string_view::npos;
+  });
+}
+
+bool is_rough(const mjModel& model, int geom, const std::vector<std::string>& words) {
+  if (model.geom_type[geom] == mjGEOM_HFIELD) return true;
+  const int material = model.geom_matid[geom];
+  return names_one_of(mj_id2name(&model, mjOBJ_GEOM, geom), words) ||
+         (material >= 0 && names_one_of(mj_id2name(&model, mjOBJ_MATERIAL, material), words));
+}
+
+}  // namespace
+
+UltrasonicRing::UltrasonicRing(const UltrasonicSettings& settings, const LidarScene& scene, const RobotDescription& robot,
+                               std::uint64_t seed)
+    : settings_(settings),
+      scene_(scene),
+      T_body_transducer_(transducers_of(robot)),
+      rays_(cone(settings.fov_deg * kDegree)),
+      scale_(speed_of_sound(settings.assumed_temperature_c) / speed_of_sound(settings.air_temperature_c)),
+      noise_(seed, "ultrasonic/noise"),
+      turn_(seed, "ultrasonic/turn"),
+      dropout_(seed, "ultrasonic/dropout"),
+      crosstalk_(seed, "ultrasonic/crosstalk") {
+  validate(settings, "sensors.ultrasonic");
+  const double fastest_hz = speed_of_sound(settings.air_temperature_c) / (2.0 * settings.range_max_m);
+  if (settings.ping_rate_hz > fastest_hz) {
+    throw InputError(fmt::format("sensors.ultrasonic.ping_rate_hz = {}: must be at most {:.1f}, or an echo from range_max_m = {} "
+                                 "comes after the next ping", settings.ping_rate_hz, fastest_hz, settings.range_max_m));
+  }
+  for (int geom = 0; geom < scene.model().ngeom; ++geom) is_rough_.push_back(is_rough(scene.model(), geom, settings.rough_names));
+}
+
+/// Of a ray that meets a surface of this geom at an angle to its normal of this cosine.
+double UltrasonicRing::strength(int geom, double cosine) const {
+  if (is_rough_[static_cast<std::size_t>(geom)]) return settings_.rough_echo * cosine;
+  return cosine >= std::cos(settings_.smooth_deg * kDegree) ? 1.0 : 0.0;
+}
+
+UltrasonicRing::Echo UltrasonicRing::listen(const Pose3& T_world_transducer, double turn_rad) const {
+  struct Part {
+    RayHit hit;
+    double strength;
+    Eigen::Vector3d direction;
+  };
+  const Eigen::Matrix3d R = (T_world_transducer.rotation * Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitX())).toRotationMatrix();
+  std::vector<Part> parts;
+  for (const Eigen::Vector3d& ray : rays_) {
+    const Eigen::Vector3d direction = R * ray;
+    const auto hit = scene_.cast(T_world_transducer.position, direction, settings_.range_max_m, kRayScenery);
+    if (!hit) continue;
+    const double returned = strength(hit->geom, std::abs(hit->normal.dot(direction)));
+    if (returned > 0.0) parts.push_back({*hit, returned, direction});
+  }
+  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.hit.distance_m < b.hit.distance_m; });
+
+  double sum = 0.0;  // of what comes back within the length of a pulse
+  for (std::size_t first = 0, last = 0; last < parts.size(); ++last) {
+    const RayHit& hit = parts[last].hit;
+    sum += parts[last].strength;
+    for (; parts[first].hit.distance_m < hit.distance_m - kPulse_m; ++first) sum -= parts[first].strength;
+    if (sum < settings_.least_echo * kRays) continue;
+    return {.distance_m = hit.distance_m,
+            .p_world = T_world_transducer.position + hit.distance_m * parts[last].direction,
+            .normal = hit.normal,
+            .geom = hit.geom};
+  }
+  return {.distance_m = kInfinity};
+}
+
+/// What a transducer takes the echo of another's ping for: half its way. +Inf where it cannot hear it: from beyond twice its
+/// cone, or when the surface throws the sound elsewhere.
+double UltrasonicRing::heard_of_other_m(const Echo& echo, const Pose3& T_world_other, const Pose3& T_world_transducer) const {
+  if (!std::isfinite(echo.distance_m)) return kInfinity;
+  const Eigen::Vector3d way = T_world_transducer.position - echo.p_world;
+  const Eigen::Vector3d axis = T_world_transducer.rotation * Eigen::Vector3d::UnitX();
+  const double off_axis = std::acos(std::clamp(-way.normalized().dot(axis), -1.0, 1.0));
+  if (off_axis > settings_.fov_deg * kDegree) return kInfinity;
+  const Eigen::Vector3d middle = (way.normalized() + (T_world_other.position - echo.p_world).normalized()).normalized();
+  if (strength(echo.geom, std::abs(middle.dot(echo.normal))) <= 0.0) return kInfinity;
+  return 0.5 * (echo.distance_m + way.norm());
+}
+
+float UltrasonicRing::reading(double distance_m, std::uint64_t tick, std::uint64_t transducer) const {
+  if (dropout_.uniform(tick, transducer) < settings_.dropout) return std::numeric_limits<float>::infinity();
+  double range_m = scale_ * distance_m;
+  if (range_m < settings_.range_min_m) return -std::numeric_limits<float>::infinity();
+  range_m += settings_.range_noise_m * noise_.normal(tick, transducer);
+  if (settings_.range_resolution_m > 0.0) range_m = settings_.range_resolution_m * std::round(range_m / settings_.range_resolution_m);
+  return range_m > settings_.range_max_m ? std::numeric_limits<float>::infinity() : static_cast<float>(range_m);
+}
+
+std::vector<UltrasonicRange> UltrasonicRing::ping(const Pose3& T_world_body, Time now, std::uint64_t tick) const {
+  const std::size_t group = std::min(num_transducers(), static_cast<std::size_t>(settings_.fire_together));
+  const std::size_t slots = (num_transducers() + group - 1) / group;
+  std::vector<std::size_t> fired;
+  std::vector<Pose3> frames;
+  std::vector<Echo> echoes;
+  for (std::size_t i = tick % slots; i < num_transducers(); i += slots) {
+    fired.push_back(i);
+    frames.push_back(T_world_body * T_body_transducer_[i]);
+    echoes.push_back(listen(frames.back(), 2.0 * std::numbers::pi * turn_.uniform(tick, i)));
+  }
+  std::vector<UltrasonicRange> ranges;
+  for (std::size_t mine = 0; mine < fired.size(); ++mine) {
+    double distance_m = echoes[mine].distance_m;
+    for (std::size_t other = 0; other < fired.size(); ++other) {
+      if (other == mine) continue;
+      if (crosstalk_.uniform(tick, fired[mine] * num_transducers() + fired[other]) >= settings_.crosstalk) continue;
+      distance_m = std::min(distance_m, heard_of_other_m(echoes[other], frames[other], frames[mine]));
+    }
+    ranges.push_back({.stamp = now,
+                      .transducer = static_cast<int>(fired[mine]),
+                      .field_of_view_rad = settings_.fov_deg * kDegree,
+                      .range_min_m = settings_.range_min_m,
+                      .range_max_m = settings_.range_max_m,
+                      .range_m = reading(distance_m, tick, fired[mine])});
+  }
+  return ranges;
+}
+
+}  // namespace patrol::sim
