@@ -17,7 +17,7 @@ std::optional<BeltInterval> BeltCounters::add(const TrackTicks& ticks) {
   const std::optional<TrackTicks> before = std::exchange(last_, ticks);
   if (!before || ticks.stamp - before->stamp > kMaxInterval) {
     stand_since_.reset();
-    smooth_mps_.reset();
+    smooth_.reset();
     return std::nullopt;
   }
   if (ticks.left != before->left || ticks.right != before->right) {
@@ -31,15 +31,19 @@ std::optional<BeltInterval> BeltCounters::add(const TrackTicks& ticks) {
                     .right_mps = interval.step_mps * static_cast<double>(ticks.right - before->right)};
   if (!is_believable(interval)) return std::nullopt;
 
-  const double speed = interval.speed.mean_mps();
-  const double smooth = smooth_mps_.value_or(speed);
-  interval.acceleration_mps2 = (speed - smooth) / kSmoothing_s;
-  smooth_mps_ = smooth + std::min(1.0, interval.dt_s() / kSmoothing_s) * (speed - smooth);
+  const TrackSpeed before_mps = smooth_.value_or(interval.speed);
+  const double share = std::min(1.0, interval.dt_s() / kSmoothing_s);
+  smooth_ = TrackSpeed{.left_mps = before_mps.left_mps + share * (interval.speed.left_mps - before_mps.left_mps),
+                       .right_mps = before_mps.right_mps + share * (interval.speed.right_mps - before_mps.right_mps)};
+  const double acceleration = (smooth_->mean_mps() - before_mps.mean_mps()) / interval.dt_s();
+  acceleration_mps2_ += share * (acceleration - acceleration_mps2_);
+  interval.smooth = *smooth_;
+  interval.acceleration_mps2 = acceleration_mps2_;
   return interval;
 }
 
 bool BeltCounters::is_believable(const BeltInterval& interval) {
-  const double change = std::abs(interval.speed.mean_mps() - smooth_mps_.value_or(interval.speed.mean_mps()));
+  const double change = std::abs(interval.speed.mean_mps() - smooth_.value_or(interval.speed).mean_mps());
   const double possible = settings_.max_acceleration_mps2 * (interval.dt_s() + kSmoothing_s) + 2.0 * interval.step_mps;
   if (change <= possible) {
     disbelieved_since_.reset();
@@ -47,7 +51,7 @@ bool BeltCounters::is_believable(const BeltInterval& interval) {
   }
   if (!disbelieved_since_) disbelieved_since_ = interval.start;
   if (interval.end - *disbelieved_since_ < kDisbelief) return false;
-  smooth_mps_.reset();
+  smooth_.reset();
   disbelieved_since_.reset();
   return true;
 }

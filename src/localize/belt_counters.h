@@ -3,15 +3,24 @@
 #include <optional>
 
 #include "core/messages.h"
-#include "localize/track_filter.h"
 
 namespace patrol::localize {
+
+/// Speed of the two belts over the robot's body, by their counters; forwards is positive.
+struct TrackSpeed {
+  double left_mps = 0.0;
+  double right_mps = 0.0;
+
+  double mean_mps() const { return 0.5 * (left_mps + right_mps); }
+  double difference_mps() const { return right_mps - left_mps; }
+};
 
 /// What two readings of the counters say.
 struct BeltInterval {
   Time start{}, end{};
   TrackSpeed speed{};
-  double acceleration_mps2 = 0.0;  ///< of the mean speed, smoothed
+  TrackSpeed smooth{};             ///< over the last tenth of a second or so
+  double acceleration_mps2 = 0.0;  ///< of the smooth mean speed, smoothed again: nearly free of the counters' steps
   double step_mps = 0.0;           ///< speed of one tick in the interval
 
   double dt_s() const { return to_seconds(end - start); }
@@ -45,7 +54,8 @@ class BeltCounters {
   Settings settings_;
   std::optional<TrackTicks> last_;
   std::optional<Time> stand_since_;
-  std::optional<double> smooth_mps_;
+  std::optional<TrackSpeed> smooth_;
+  double acceleration_mps2_ = 0.0;
   std::optional<Time> disbelieved_since_;
 };
 

@@ -15,6 +15,7 @@ constexpr double kStartVelocityStd_mps = 0.05;
 constexpr double kGate = 16.27;     // 99.9 % of chi-square, three degrees of freedom
 constexpr double kLostSlipStd = 0.5;
 constexpr double kLostSpeedStd_mps = 0.1;
+constexpr double kBeltSmoothing_s = 1.0;
 constexpr double kMinBeltSpeed_mps = 0.05;  // below, the share of slip means nothing
 // Without an IMU.
 constexpr double kCoastYawRateStd = 0.05;  // rad/sqrt(s): what the belts tell of the yaw rate
@@ -45,6 +46,7 @@ void TrackFilter::predict(double dt_s, const InertialSample& sample) {
 
   const InertialStep step = integrate(motion_, dt_s, omega, force);
   forward_acceleration_mps2_ = (step.after.v_body - motion_.v_body).x() / dt_s;
+  smooth_belts_mps_ += dt_s * forward_acceleration_mps2_;
   motion_ = step.after;
   motion_.omega_body = sample.rate_radps - gyro_bias_;
 
@@ -95,16 +97,19 @@ void TrackFilter::wander(double way_m, double turn_rad, double slip_std) {
 
 // With p = p_true - dp, omega = omega_true + dbg and s = scale + slip = s_true - ds, the innovation
 // ((1 - s) u, 0, 0) - v - omega x p is dv + [p]x dbg + [omega]x dp + u (ds, 0, 0) + noise.
-double TrackFilter::correct_speed(const TrackSpeed& tracks, const TrunkMotion& then, const Eigen::Vector3d& std_mps) {
-  const double u = tracks.mean_mps();
+//
+// The u that weighs slip must not share the noise of the reading it is compared with: counters in steps of 1 to 2 mm would drive
+// scale up by percents. So it is smoothed over a second, and the IMU carries it through accelerations meanwhile.
+double TrackFilter::correct_speed(double dt_s, double belts_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps) {
+  smooth_belts_mps_ += std::min(1.0, dt_s / kBeltSmoothing_s) * (belts_mps - smooth_belts_mps_);
   const Eigen::Vector3d p(turn_centre_m_.x(), turn_centre_m_.y(), -settings_.height_m);
   const Eigen::Vector3d innovation =
-      Eigen::Vector3d((1.0 - scale_ - slip_) * u, 0.0, 0.0) - then.v_body - then.omega_body.cross(p);
+      Eigen::Vector3d(belts_mps - (scale_ + slip_) * smooth_belts_mps_, 0.0, 0.0) - then.v_body - then.omega_body.cross(p);
 
   Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
   H.middleCols<3>(Error::kVelocity).setIdentity();
   H.middleCols<3>(Error::kGyroBias) = cross_matrix(p);
-  H(0, kScale) = H(0, kSlip) = u;
+  H(0, kScale) = H(0, kSlip) = smooth_belts_mps_;
   H.middleCols<2>(kTurnCentre) = cross_matrix(then.omega_body).leftCols<2>();
 
   const Gain W = P_ * H.transpose();
@@ -138,11 +143,11 @@ void TrackFilter::correct_gyro_bias(const Eigen::Vector3d& bias_radps, const Eig
   P_ = (0.5 * (P_ + P_.transpose())).eval();
 }
 
-void TrackFilter::suspect_slip(double forward_mps, const TrackSpeed& tracks, double way_std_m) {
+void TrackFilter::suspect_slip(double forward_mps, double belts_mps, double way_std_m) {
   motion_.v_body.x() = forward_mps;
   P_(Error::kVelocity, Error::kVelocity) += kLostSpeedStd_mps * kLostSpeedStd_mps;
-  const double u = tracks.mean_mps();
-  if (std::abs(u) > kMinBeltSpeed_mps) slip_ = std::clamp(1.0 - scale_ - forward_mps / u, -1.0, 2.0);
+  smooth_belts_mps_ = belts_mps;
+  if (std::abs(belts_mps) > kMinBeltSpeed_mps) slip_ = std::clamp(1.0 - scale_ - forward_mps / belts_mps, -1.0, 2.0);
   isolate(kSlip, kLostSlipStd * kLostSlipStd);
   const Eigen::Vector3d along = motion_.T_odom_body.rotation * Eigen::Vector3d(way_std_m, 0.0, 0.0);
   P_.block<3, 3>(Error::kPosition, Error::kPosition) += along * along.transpose();
@@ -150,6 +155,7 @@ void TrackFilter::suspect_slip(double forward_mps, const TrackSpeed& tracks, dou
 
 void TrackFilter::forget_slip(double slip_std) {
   slip_ = 0.0;
+  smooth_belts_mps_ = 0.0;
   isolate(kSlip, slip_std * slip_std);
 }
 

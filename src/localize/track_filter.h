@@ -6,15 +6,6 @@
 
 namespace patrol::localize {
 
-/// Speed of the two belts over the robot's body, by their counters; forwards is positive.
-struct TrackSpeed {
-  double left_mps = 0.0;
-  double right_mps = 0.0;
-
-  double mean_mps() const { return 0.5 * (left_mps + right_mps); }
-  double difference_mps() const { return right_mps - left_mps; }
-};
-
 /// Error-state Kalman filter of a tracked body: position, attitude, velocity, gyro and accelerometer bias, as InertialFilter, and
 /// what lies between the belts and the ground:
 ///
@@ -56,17 +47,17 @@ class TrackFilter {
 
   /// The belts have run: slip and the turn's centre wander on. `slip_std` is what slip usually is on this ground, in this turn.
   void wander(double way_m, double turn_rad, double slip_std);
-  /// What the belts said when the body moved as `then`; standard deviations of the velocity of the turn's centre, in body. An
-  /// innovation beyond the 99.9 % bound is believed less rather than refused. Returns the square of the innovation along the way
-  /// over its variance.
-  double correct_speed(const TrackSpeed& tracks, const TrunkMotion& then, const Eigen::Vector3d& std_mps);
+  /// What the belts said over `dt_s`, when the body moved as `then`; standard deviations of the velocity of the turn's centre, in
+  /// body. An innovation beyond the 99.9 % bound is believed less rather than refused. Returns the square of the innovation along
+  /// the way over its variance.
+  double correct_speed(double dt_s, double belts_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps);
   /// Any velocity, for when nothing better is known.
   void correct_velocity(const Eigen::Vector3d& v_body, double std_mps);
   void correct_gyro_bias(const Eigen::Vector3d& bias_radps, const Eigen::Vector3d& variance);
 
   /// The belts and the IMU do not agree: the body goes at `forward_mps` (by the IMU), the rest is slip, and neither is known well;
   /// `way_std_m` is what the past may have got wrong.
-  void suspect_slip(double forward_mps, const TrackSpeed& tracks, double way_std_m);
+  void suspect_slip(double forward_mps, double belts_mps, double way_std_m);
   /// At rest there is no slip; the next drive starts with what is usual.
   void forget_slip(double slip_std);
   /// Odom's origin and its x axis are here.
@@ -106,6 +97,7 @@ class TrackFilter {
   Eigen::Vector2d turn_centre_m_ = Eigen::Vector2d::Zero();
   InertialSample last_;
   double forward_acceleration_mps2_ = 0.0;
+  double smooth_belts_mps_ = 0.0;  ///< carried by the IMU, slowly corrected by the belts
   Covariance P_ = Covariance::Zero();
 };
 

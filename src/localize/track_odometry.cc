@@ -167,14 +167,14 @@ void TrackOdometry::use_ticks(const TrackTicks& ticks) {
   const double yaw_rate = std::abs(then->omega_body.z());
   filter_->wander(0.5 * (std::abs(belts->speed.left_mps) + std::abs(belts->speed.right_mps)) * belts->dt_s(),
                   yaw_rate * belts->dt_s(), usual_slip_std(yaw_rate, disagreement));
-  filter_->correct_speed(belts->speed, *then, speed_std(*belts, *then, disagreement));
+  filter_->correct_speed(belts->dt_s(), belts->speed.mean_mps(), *then, speed_std(*belts, *then, disagreement));
   last_speed_update_ = belts->end;
   last_speed_ = filter_->motion().v_body;
   remember();
 }
 
 double TrackOdometry::yaw_rate_disagreement_radps(const BeltInterval& belts, const TrunkMotion& then) const {
-  const double by_belts = belts.speed.difference_mps() / (robot_.tracks->gauge_m * settings_.turn_ratio);
+  const double by_belts = belts.smooth.difference_mps() / (robot_.tracks->gauge_m * settings_.turn_ratio);
   return std::abs(by_belts - then.omega_body.z());
 }
 
@@ -192,7 +192,7 @@ Eigen::Vector3d TrackOdometry::speed_std(const BeltInterval& belts, const TrunkM
   // A count is off by up to one tick at either end of the interval, evenly; two belts.
   const double step_std = belts.step_mps / std::sqrt(12.0);
   Eigen::Matrix<double, 5, 1> along;
-  along << settings_.speed_std_mps, step_std, settings_.scrub_std * belts.speed.difference_mps(),
+  along << settings_.speed_std_mps, step_std, settings_.scrub_std * belts.smooth.difference_mps(),
       settings_.acceleration_std_s * belts.acceleration_mps2, settings_.disagreement_std_m * disagreement_radps;
   return {along.norm(), std::hypot(settings_.lateral_std_mps, settings_.lateral_std_m * then.omega_body.z()),
           settings_.vertical_std_mps};
@@ -209,7 +209,7 @@ void TrackOdometry::watch_slip(const BeltInterval& belts) {
   if (!evidence || counters_may_be_frozen_) return;
   ++slip_events_;
   slip_watch_.reset();
-  filter_->suspect_slip(evidence->forward_mps, belts.speed, 0.5 * std::abs(evidence->disagreement_mps) * evidence->duration_s);
+  filter_->suspect_slip(evidence->forward_mps, belts.smooth.mean_mps(), 0.5 * std::abs(evidence->disagreement_mps) * evidence->duration_s);
   counters_may_be_frozen_ = is_stopped;
   last_speed_ = filter_->motion().v_body;
 }

@@ -27,7 +27,7 @@ struct TrackOdometrySettings {
   double accel_bias_walk_mps2_per_sqrt_s = 1e-3;
   double turn_std_rad_per_sqrt_rad = 0.002;  ///< the gyro's scale and misalignment
   // What the counters are, and how far the belts are to be believed.
-  double ticks_per_sprocket_turn = 360.0;
+  double ticks_per_sprocket_turn = 720.0;  ///< edges of the motor's Hall sensors, by the gear
   double turn_ratio = 1.5;             ///< yaw rate by the belts' difference over the gauge, to the true one: scrub
   double speed_std_mps = 0.01;         ///< of the mean belt speed, straight on
   double scrub_std = 0.02;             ///< and more by this share of the belts' difference,

@@ -68,6 +68,7 @@ TrackedDriveSettings TrackedDriveSettings::without_noise() {
           .scale = 0.0,
           .slip = 0.0,
           .slip_per_radps = 0.0,
+          .slip_per_tilt = 0.0,
           .turn_ratio_std = 0.0,
           .turn_centre_x_m = 0.0,
           .turn_centre_y_m = 0.0,
@@ -129,7 +130,8 @@ void TrackedDrive::run_belts(double dt_s) {
 }
 
 void TrackedDrive::slip_and_turn(double dt_s) {
-  const double slip_std = std::hypot(settings_.slip, settings_.slip_per_radps * yaw_rate_radps_);
+  const double tilt = (T_world_body_.rotation * Eigen::Vector3d::UnitZ()).head<2>().norm();
+  const double slip_std = std::hypot(settings_.slip, settings_.slip_per_radps * yaw_rate_radps_, settings_.slip_per_tilt * tilt);
   slip_left_.go(std::abs(belts_.left_mps) * dt_s / settings_.slip_length_m, slip_std, draw(0));
   slip_right_.go(std::abs(belts_.right_mps) * dt_s / settings_.slip_length_m, slip_std, draw(1));
   const double turned = std::abs(yaw_rate_radps_) * dt_s / settings_.turn_length_rad;

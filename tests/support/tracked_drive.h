@@ -31,11 +31,12 @@ struct TrackedDriveSettings {
   double imu_period_s = 0.004;
   double tick_period_s = 0.02;
   double max_belt_acceleration_mps2 = 1.0;
-  double ticks_per_sprocket_turn = 360.0;
+  double ticks_per_sprocket_turn = 720.0;
   // Ground.
   double scale = 0.01;          ///< of both belts, constant
   double slip = 0.02;           ///< of each belt, share of its way, wanders
-  double slip_per_radps = 0.05; ///< more of it on turns
+  double slip_per_radps = 0.07; ///< more of it on turns,
+  double slip_per_tilt = 0.14;  ///< and on slopes, by the sine of the tilt
   double slip_length_m = 3.0;
   double turn_ratio = 1.5;      ///< mean: distance of the tracks' centres of rotation over the gauge
   double turn_ratio_std = 0.15;
