@@ -53,6 +53,10 @@ void print_faults(const std::vector<sim::FaultReport>& reports) {
   }
 }
 
+void print_kidnaps(std::size_t declared, std::size_t executed) {
+  for (std::size_t i = 0; i < declared; ++i) fmt::print("kidnap {}: {}\n", i + 1, i < executed ? "executed" : "NOT EXECUTED");
+}
+
 /// The verdict of a run that came to its end.
 ExitCode exit_code_of(RunEnd end, const std::vector<CheckedExpectation>& checks) {
   if (end == RunEnd::kTimeLimit) return ExitCode::kTimeLimit;
@@ -67,7 +71,7 @@ ExitCode run_command(const RunOptions& options) {
   const std::string name = options.scenario.stem().string();
 
   sim::Twin twin = make_twin(scenario, files);  // these refuse bad input before anything is written
-  RobotStack stack = make_stack(scenario, files);
+  const std::unique_ptr<RobotStack> stack = make_stack(scenario, files);
   const RunDirectory directory = begin_run_directory(options.out.value_or(default_directory(options, scenario)));
   write_unfinished_junit(directory, scenario, name);
   save_scenario(directory.scenario(), scenario, made_by(name));
@@ -75,7 +79,7 @@ ExitCode run_command(const RunOptions& options) {
   ProgressBar bar;
   const InterruptGuard interrupt;
   const RunOutcome outcome =
-      run_loop(scenario, files, twin, stack, directory.log(), [&](Time now, double distance_m) {
+      run_loop(scenario, files, twin, *stack, directory.log(), [&](Time now, double distance_m) {
         bar.show(fmt::format("{}  {:6.1f} s simulated  {:6.1f} m walked", name, to_seconds(now), distance_m));
         return !interrupt.is_interrupted();
       });
@@ -94,6 +98,7 @@ ExitCode run_command(const RunOptions& options) {
 
   fmt::print("{}\n", score_table(metrics, checks));
   print_faults(outcome.faults);
+  print_kidnaps(scenario.kidnaps.size(), outcome.num_kidnaps);
   fmt::print("run directory: {}\n", directory.root.string());
   return code;
 }

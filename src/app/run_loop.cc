@@ -1,10 +1,13 @@
 #include "app/run_loop.h"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <numbers>
 #include <utility>
 
+#include "app/patrol_stack.h"
+#include "app/tour_stack.h"
 #include "inspect/route_frame.h"
 #include "io/run_log.h"
 
@@ -37,7 +40,10 @@ sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& f
           .actors = scenario.actors,
           .leaks = scenario.leaks,
           .wind = scenario.wind,
-          .faults = scenario.faults};
+          .faults = scenario.faults,
+          .drive = files.drive,
+          .driver = scenario.remote.driver,
+          .recorded = files.recorded};
 }
 
 }  // namespace
@@ -51,9 +57,14 @@ sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files) {
   return sim::Twin(twin_settings(scenario, files), files.robot, scenario.seed);
 }
 
-RobotStack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
-  return RobotStack(scenario.stack, files.robot, inspect::to_map(files.route, files.T_site_start), scenario.log.map_period_s,
-                    scenario.seed);
+std::unique_ptr<RobotStack> make_stack(const Scenario& scenario, const ScenarioFiles& files) {
+  const Route route_in_map = inspect::to_map(files.route, files.T_site_start);
+  if (files.robot.tracks) {
+    return std::make_unique<TourStack>(scenario.stack, files.robot, route_in_map,
+                                       TourStart{.map = files.map, .goals = files.goals, .has_remote = files.has_remote()},
+                                       scenario.log.map_period_s, scenario.seed);
+  }
+  return std::make_unique<PatrolStack>(scenario.stack, files.robot, route_in_map, scenario.log.map_period_s, scenario.seed);
 }
 
 RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin, RobotStack& stack,
@@ -70,6 +81,8 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
   double distance_m = 0.0;
   Eigen::Vector3d last_position = twin.truth().T_world_body.position;
   RunOutcome outcome;
+  std::vector<KidnapSettings> kidnaps = scenario.kidnaps;
+  std::stable_sort(kidnaps.begin(), kidnaps.end(), [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
 
   const auto write_stack_messages = [&](Time now) {
     for (const StackMessage& message : stack.take_messages()) {
@@ -95,6 +108,11 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
     write_stack_messages(now);
     twin.set_command(stack.command());
 
+    const auto is_kidnapped = [&](const KidnapSettings& kidnap) { return from_seconds(kidnap.at_s) <= now; };
+    while (outcome.num_kidnaps < kidnaps.size() && is_kidnapped(kidnaps[outcome.num_kidnaps])) {
+      const KidnapSettings& kidnap = kidnaps[outcome.num_kidnaps++];
+      twin.put_at({kidnap.x_m, kidnap.y_m, kidnap.heading_deg * std::numbers::pi / 180.0});
+    }
     const GroundTruth truth = twin.truth();
     for (const Collision& collision : twin.take_collisions()) log.write(now, collision);
     if (truth_due.is_due(now)) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct RunOutcome {
   double cpu_s = 0.0;
   std::map<std::string, double> seconds_by_part;     ///< wall
   std::vector<sim::FaultReport> faults;
+  std::size_t num_kidnaps = 0;                       ///< of those declared, in order, that were executed
 };
 
 /// Called twice a simulated second; true to go on, false to stop.
@@ -31,7 +33,7 @@ Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files);
 
 /// Throw InputError when what the scenario names does not go together.
 sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files);
-RobotStack make_stack(const Scenario& scenario, const ScenarioFiles& files);
+std::unique_ptr<RobotStack> make_stack(const Scenario& scenario, const ScenarioFiles& files);
 
 /// Runs twin and stack against each other until the mission is over, and writes everything to `log_mcap`.
 RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin, RobotStack& stack,

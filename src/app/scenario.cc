@@ -6,6 +6,10 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "io/drive_json.h"
+#include "io/map_server.h"
+#include "io/nav_json.h"
+#include "io/remote_csv.h"
 #include "io/route_json.h"
 #include "io/settings_yaml.h"
 #include "io/urdf.h"
@@ -71,13 +75,23 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   files.world_xml = find_definition(data_root, "worlds", "world", scenario.world, ".xml");
   files.robot_urdf = find_definition(data_root, "models", "robot", scenario.robot, ".urdf");
   files.robot = io::load_robot_description(files.robot_urdf.string());
-  const std::filesystem::path mission = files.world_xml.parent_path() / scenario.mission;
-  if (!std::filesystem::exists(mission)) {
-    throw InputError(fmt::format("mission = {}: there is no {}", scenario.mission, mission.string()));
-  }
-  const io::RouteFile route = io::load_route(mission);
+  /// A file below the world's folder that a key names.
+  const auto named_file = [&](const char* key, const std::string& name) {
+    const std::filesystem::path file = files.world_xml.parent_path() / name;
+    if (!std::filesystem::exists(file)) throw InputError(fmt::format("{} = {}: there is no {}", key, name, file.string()));
+    return file;
+  };
+  const io::RouteFile route = io::load_route(named_file("mission", scenario.mission));
   files.route = route.route;
   files.T_site_start = route.T_site_start;
+  if (!scenario.map.empty()) files.map = io::load_map(named_file("map", scenario.map));
+  if (!scenario.goals.empty()) files.goals = io::load_nav(named_file("goals", scenario.goals));
+  const RemoteSettings& remote = scenario.remote;
+  if (!remote.drive.empty() && !remote.recorded.empty()) {
+    throw InputError("remote: has a drive and recorded commands: only one of them can be followed");
+  }
+  if (!remote.drive.empty()) files.drive = io::load_drive(named_file("remote.drive", remote.drive));
+  if (!remote.recorded.empty()) files.recorded = io::load_remote(named_file("remote.recorded", remote.recorded));
   return files;
 }
 

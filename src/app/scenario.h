@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/remote_drive.h"
 #include "core/route.h"
 #include "core/settings.h"
 #include "app/robot_stack.h"
@@ -24,6 +26,36 @@ struct StartOffsetSettings {
     visit("ahead_m", self.ahead_m);
     visit("left_m", self.left_m);
     visit("turn_deg", self.turn_deg, between(-180.0, 180.0));
+  }
+};
+
+/// Who drives while the map is made, and the goals are marked. At most one of the two.
+struct RemoteSettings {
+  std::string drive;     ///< where a person at the remote control drives, below the world's folder
+  std::string recorded;  ///< or a table of commands that were recorded, likewise
+  sim::RemoteOperatorSettings driver;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("drive", self.drive);
+    visit("recorded", self.recorded);
+    visit("driver", self.driver);
+  }
+};
+
+/// The robot is lifted to another place, and nobody tells it.
+struct KidnapSettings {
+  double at_s = 0.0;
+  double x_m = 0.0;  ///< in world
+  double y_m = 0.0;
+  double heading_deg = 0.0;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("at_s", self.at_s, at_least(0.0));
+    visit("x_m", self.x_m);
+    visit("y_m", self.y_m);
+    visit("heading_deg", self.heading_deg, between(-360.0, 360.0));
   }
 };
 
@@ -49,6 +81,9 @@ struct Scenario {
   std::uint64_t seed = 1;
   double time_limit_s = 900.0;  ///< simulated
   std::string mission = "routes/boxes_and_well.json";  ///< below the world's folder
+  std::string map;    ///< map_server YAML below the world's folder, in map; empty: the robot makes its own
+  std::string goals;  ///< nav.json likewise; empty: marked on the drive by remote control
+  RemoteSettings remote;
   StartOffsetSettings start;
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;
@@ -57,6 +92,7 @@ struct Scenario {
   std::vector<sim::LeakSettings> leaks;
   sim::WindSettings wind;
   std::vector<sim::FaultSettings> faults;
+  std::vector<KidnapSettings> kidnaps;
   LogSettings log;
   io::Expectations expect;
 
@@ -68,6 +104,9 @@ struct Scenario {
     visit("seed", self.seed);
     visit("time_limit_s", self.time_limit_s, between(0.1, 86400.0));
     visit("mission", self.mission);
+    visit("map", self.map);
+    visit("goals", self.goals);
+    visit("remote", self.remote);
     visit("start", self.start);
     visit("sensors", self.sensors);
     visit("locomotion", self.locomotion);
@@ -76,6 +115,7 @@ struct Scenario {
     visit("leaks", self.leaks);
     visit("wind", self.wind);
     visit("faults", self.faults);
+    visit("kidnaps", self.kidnaps);
     visit("log", self.log);
     visit("expect", self.expect);
   }
@@ -113,6 +153,12 @@ struct ScenarioFiles {
   RobotDescription robot;
   Route route;          ///< in site
   Pose2 T_site_start;   ///< surveyed
+  RemoteDrive drive;                    ///< in site
+  std::vector<RemoteCommand> recorded;
+  std::vector<MarkedGoal> goals;        ///< in map
+  std::optional<OccupancyGrid> map;
+
+  bool has_remote() const { return !drive.empty() || !recorded.empty(); }
 };
 
 /// Throws InputError, naming file and key, when one is missing or wrong.

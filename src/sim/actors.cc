@@ -174,6 +174,12 @@ void Actors::advance(Time now, const Eigen::Vector2d& p_world_robot, mjData& dat
   }
 }
 
+std::vector<Eigen::Vector2d> Actors::positions() const {
+  std::vector<Eigen::Vector2d> positions;
+  for (const Actor& actor : actors_) positions.push_back(actor.path.position(along_path(actor)));
+  return positions;
+}
+
 void Actors::place(const Actor& actor, mjData& data) const {
   const double along = along_path(actor);
   const bool is_turned = is_returning(actor) && actor.settings.kind != "car";  // a car reverses

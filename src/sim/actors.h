@@ -76,6 +76,9 @@ class Actors {
   /// Moves everybody on to `now` and writes their poses.
   void advance(Time now, const Eigen::Vector2d& p_world_robot, mjData& data);
 
+  /// Where everybody is, in world.
+  std::vector<Eigen::Vector2d> positions() const;
+
  private:
   struct Actor {
     ActorSettings settings;

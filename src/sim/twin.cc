@@ -51,6 +51,7 @@ Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uin
       sensors_(settings.sensors, robot, *model_.physics, *model_.view,
                GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed),
       tick_(from_seconds(model_.physics->opt.timestep)) {
+  if (!settings.drive.empty()) driver_.emplace(settings.driver, settings.drive, seed);
   if (robot_body_ < 0) throw InputError(fmt::format("{}: no link named {}", settings.robot_urdf, frame_id::kBody));
   std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
   actors_.advance(now_, settings.T_world_start.position(), *data_);
@@ -83,8 +84,20 @@ void Twin::step() {
     throw_if_diverged();
     note_collisions();
   }
+  hear_remote();
   const auto lap = clock_.lap("sensors");
   sensors_.step(*model, *data_, now_);
+}
+
+void Twin::hear_remote() {
+  if (driver_) {
+    if (const auto command = driver_->step(now_, to_planar(truth().T_world_body), actors_.positions())) {
+      sensors_.hear(*command);
+    }
+  }
+  while (num_replayed_ < settings_.recorded.size() && settings_.recorded[num_replayed_].stamp <= now_) {
+    sensors_.hear(settings_.recorded[num_replayed_++]);
+  }
 }
 
 void Twin::put_at(const Pose2& T_world_body) {

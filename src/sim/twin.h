@@ -15,6 +15,7 @@
 #include "sim/locomotion/quadruped_controller.h"
 #include "sim/model_assembly.h"
 #include "sim/nearby_scenery.h"
+#include "sim/remote_operator.h"
 #include "sim/sensors/sensor_suite.h"
 
 namespace patrol::sim {
@@ -30,6 +31,9 @@ struct TwinSettings {
   std::vector<LeakSettings> leaks;
   WindSettings wind;
   std::vector<FaultSettings> faults;
+  RemoteDrive drive;                    ///< in world; driven by a person with a remote control, empty: nobody
+  RemoteOperatorSettings driver;
+  std::vector<RemoteCommand> recorded;  ///< or: what a remote control said on another day
 };
 
 /// The digital twin: robot, world, sensors and actors, advanced tick by tick. It takes velocity commands and gives what
@@ -64,6 +68,7 @@ class Twin {
   const PartClock& clock() const { return clock_; }
 
  private:
+  void hear_remote();
   void note_collisions();
   void throw_if_diverged() const;
 
@@ -76,6 +81,8 @@ class Twin {
   std::unique_ptr<Locomotion> locomotion_;
   Actors actors_;
   SensorSuite sensors_;
+  std::optional<RemoteOperator> driver_;
+  std::size_t num_replayed_ = 0;  ///< of the recorded commands
   VelocityCommand command_;
   Time now_{};
   Time tick_;

@@ -23,6 +23,7 @@ SlamUpdate GridSlam::update(const LevelScan& scan, const Pose2& T_odom_body) {
   const std::vector<MatchPoint> points =
       select_match_points(scan, settings_.matching.point_spacing_m, settings_.matching.max_points);
 
+  accept_ranges(T_odom_body, scan.stamp);
   Proposal best = track(points, T_odom_body, scan.stamp);
   SlamUpdate update;
   update.is_keyframe = is_keyframe_due(best.posterior.mean);
@@ -35,6 +36,7 @@ SlamUpdate GridSlam::update(const LevelScan& scan, const Pose2& T_odom_body) {
     update.resampled = resample_if_needed(update.effective_sample_size);
     integrate(scan);
     T_odom_keyframe_ = T_odom_body, keyframe_stamp_ = scan.stamp;
+    ranges_.clear();
   }
 
   T_map_last_ = update.T_map_body = best.posterior.mean;
@@ -44,15 +46,30 @@ SlamUpdate GridSlam::update(const LevelScan& scan, const Pose2& T_odom_body) {
   return update;
 }
 
-PoseGaussian GridSlam::predict(const Particle& particle, const Pose2& T_odom_body, Time stamp) const {
-  return predict_motion(particle.T_map_body, T_odom_keyframe_.inverse() * T_odom_body,
-                        to_seconds(stamp - keyframe_stamp_), settings_.motion);
+GridSlam::Prediction GridSlam::predict(const Particle& particle, const Pose2& T_odom_body, Time stamp) const {
+  Prediction prediction{.pose = predict_motion(particle.T_map_body, T_odom_keyframe_.inverse() * T_odom_body,
+                                               to_seconds(stamp - keyframe_stamp_), settings_.motion)};
+  prediction.log_density = update_with_ranges(ranges_, T_odom_body, settings_.ranges, prediction.pose);
+  return prediction;
+}
+
+// All particles use the same ranges, or those that doubt one would be favoured.
+void GridSlam::accept_ranges(const Pose2& T_odom_body, Time stamp) {
+  if (settings_.ranges.enabled) {
+    for (const RangeSighting& sighting : new_ranges_) {
+      const PoseGaussian pose = predict(particles_[best_], T_odom_body, stamp).pose;
+      if (is_plausible(range_innovation(pose, T_odom_body, sighting, settings_.ranges), settings_.ranges)) {
+        ranges_.push_back(sighting);
+      }
+    }
+  }
+  new_ranges_.clear();
 }
 
 // The best particle's pose now. If the match fails, odometry may have slipped: look around.
 Proposal GridSlam::track(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp) const {
   const Particle& particle = particles_[best_];
-  const PoseGaussian prediction = predict(particle, T_odom_body, stamp);
+  const PoseGaussian prediction = predict(particle, T_odom_body, stamp).pose;
   const Pose2 T_map_start = T_map_last_ * (T_odom_last_.inverse() * T_odom_body);
   const auto match_from = [&](const Pose2& start) {
     return propose_from_scan(particle.map, points, start, prediction, settings_.likelihood_gain, settings_.matching);
@@ -75,9 +92,10 @@ std::vector<Proposal> GridSlam::propose(const std::vector<MatchPoint>& points, c
   const Pose2 T_keyframe_body = particles_[best_].T_map_body.inverse() * T_map_last_;
   std::vector<Proposal> proposals;
   for (const Particle& particle : particles_) {
-    proposals.push_back(propose_from_scan(particle.map, points, particle.T_map_body * T_keyframe_body,
-                                          predict(particle, T_odom_body, stamp), settings_.likelihood_gain,
-                                          settings_.matching));
+    const Prediction prediction = predict(particle, T_odom_body, stamp);
+    proposals.push_back(propose_from_scan(particle.map, points, particle.T_map_body * T_keyframe_body, prediction.pose,
+                                          settings_.likelihood_gain, settings_.matching));
+    proposals.back().log_weight_change += prediction.log_density;
   }
   return proposals;
 }

@@ -9,6 +9,7 @@
 #include "slam/motion_model.h"
 #include "slam/particle.h"
 #include "slam/proposal.h"
+#include "slam/range_update.h"
 #include "slam/scan_integration.h"
 #include "slam/scan_matcher.h"
 
@@ -29,6 +30,7 @@ struct GridSlamSettings {
   double likelihood_gain = 0.2;           ///< share of the points that err independently (proposal.h)
   double resample_threshold = 0.5;        ///< resample when the effective sample size falls below this share of the particles
   MotionModelSettings motion;
+  RangeUpdateSettings ranges;
   ScanMatcherSettings matching;
   ScanIntegrationSettings integration;
 
@@ -45,6 +47,7 @@ struct GridSlamSettings {
     visit("likelihood_gain", self.likelihood_gain, between(0.0, 1.0));
     visit("resample_threshold", self.resample_threshold, between(0.0, 1.0));
     visit("motion", self.motion);
+    visit("ranges", self.ranges);
     visit("matching", self.matching);
     visit("integration", self.integration);
   }
@@ -62,6 +65,7 @@ struct SlamUpdate {
 /// Grid mapping with a Rao-Blackwellised particle filter and improved proposals (Grisetti, Stachniss, Burgard 2007).
 ///
 ///   every scan     odometry -> match against the best particle's map -> pose
+///   ranges         judged by the best particle's prediction; part of every particle's, until the next keyframe has used them
 ///   a keyframe     each particle: predict, match on its own map, draw, weigh -> resample -> write the scan into each map
 ///
 /// Departures from Gmapping, and why. Every scan is matched, but only keyframes are written and weighed: the pose is
@@ -73,6 +77,10 @@ class GridSlam {
   /// Throws InputError if a setting breaks its rule. `T_map_start` is where the first scan is taken.
   GridSlam(const GridSlamSettings& settings, std::uint64_t seed, const Pose2& T_map_start = {});
 
+  /// A UWB range of before the next scan. It holds the particles where the scans leave a direction open, as along a lined tunnel;
+  /// one that went round a corner is left out.
+  void add(const RangeSighting& sighting) { new_ranges_.push_back(sighting); }
+
   /// `T_odom_body` at the scan's stamp.
   SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
 
@@ -83,6 +91,13 @@ class GridSlam {
   ParticleSet particles() const;
 
  private:
+  /// Where a particle should be by odometry and ranges, and how probable those ranges are there.
+  struct Prediction {
+    PoseGaussian pose;
+    double log_density = 0.0;
+  };
+
+  void accept_ranges(const Pose2& T_odom_body, Time stamp);
   Proposal track(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp) const;
   bool is_keyframe_due(const Pose2& T_map_body) const;
   std::vector<Proposal> propose(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp) const;
@@ -90,7 +105,7 @@ class GridSlam {
   double choose_best();
   bool resample_if_needed(double num_effective);
   void integrate(const LevelScan& scan);
-  PoseGaussian predict(const Particle& particle, const Pose2& T_odom_body, Time stamp) const;
+  Prediction predict(const Particle& particle, const Pose2& T_odom_body, Time stamp) const;
 
   GridSlamSettings settings_;
   RandomStream proposal_noise_, resampling_noise_;
@@ -102,6 +117,8 @@ class GridSlam {
   Pose2 T_odom_last_;      ///< odometry at the newest scan
   Pose2 T_odom_keyframe_;  ///< odometry at the last keyframe
   Time keyframe_stamp_{};
+  std::vector<RangeSighting> new_ranges_;  ///< not yet judged
+  std::vector<RangeSighting> ranges_;      ///< accepted since the last keyframe
 };
 
 }  // namespace patrol::slam

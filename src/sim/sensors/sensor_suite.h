@@ -76,6 +76,9 @@ class SensorSuite {
   /// Once a tick, with kinematics and accelerations of `now` in `data`.
   void step(const mjModel& physics, mjData& data, Time now);
 
+  /// What comes in by radio from the remote control.
+  void hear(const RemoteCommand& command) { deliver("remote", command.stamp, 0.0, command); }
+
   /// Messages due by `now`, in order of delivery.
   std::vector<SensorMessage> take_due(Time now);
 

@@ -1,4 +1,4 @@
-#include "app/robot_stack.h"
+#include "app/patrol_stack.h"
 
 #include <utility>
 
@@ -8,25 +8,9 @@ namespace {
 constexpr Time kControlPeriod = std::chrono::milliseconds(50);
 constexpr Time kOdometryPeriod = std::chrono::milliseconds(20);
 
-template <typename... Handlers>
-struct Overloaded : Handlers... {
-  using Handlers::operator()...;
-};
-
-inspect::NavigationFeedback feedback_of(plan::NavigationStatus status) {
-  switch (status) {
-    case plan::NavigationStatus::kArrived:
-      return inspect::NavigationFeedback::kArrived;
-    case plan::NavigationStatus::kFailed:
-      return inspect::NavigationFeedback::kFailed;
-    default:
-      return inspect::NavigationFeedback::kDriving;
-  }
-}
-
 }  // namespace
 
-RobotStack::RobotStack(const StackSettings& settings, const RobotDescription& robot, const Route& route_in_map,
+PatrolStack::PatrolStack(const StackSettings& settings, const RobotDescription& robot, const Route& route_in_map,
                        double map_period_s, std::uint64_t seed)
     : odometry_(robot, settings.odometry),
       leveler_(robot.T_body("lidar"), settings.leveling),
@@ -38,7 +22,7 @@ RobotStack::RobotStack(const StackSettings& settings, const RobotDescription& ro
   navigator_.set_map(slam_.map());  // empty yet, but its resolution must suit the costmap's
 }
 
-void RobotStack::handle(const SensorMessage& message) {
+void PatrolStack::handle(const SensorMessage& message) {
   std::visit(Overloaded{
                  [&](const LaserScan& scan) { handle_scan(scan); },
                  [&](const GasReading& reading) { newest_gas_ = reading; },
@@ -60,7 +44,7 @@ void RobotStack::handle(const SensorMessage& message) {
 }
 
 // Level, match, correct the map pose, and show the planner what stands there now.
-void RobotStack::handle_scan(const LaserScan& raw) {
+void PatrolStack::handle_scan(const LaserScan& raw) {
   if (!first_odometry_ || raw.stamp < *first_odometry_ + settle_) return;
   std::optional<LevelScan> scan;
   {
@@ -80,11 +64,11 @@ void RobotStack::handle_scan(const LaserScan& raw) {
   navigator_.add_scan(*scan, tracker_.at(scan->stamp, T_odom_body).T_map_body);
 }
 
-void RobotStack::handle_fall(Time now) {
+void PatrolStack::handle_fall(Time now) {
   if (!mission_.is_over()) messages_.emplace_back(mission_.abort(now, "fall", "The robot fell."));
 }
 
-void RobotStack::step(Time now) {
+void PatrolStack::step(Time now) {
   const std::optional<OdometryEstimate> odometry = odometry_.estimate();
   if (!odometry) return;
   if (!first_odometry_) first_odometry_ = odometry->stamp;
@@ -116,12 +100,12 @@ void RobotStack::step(Time now) {
   messages_.emplace_back(command_);
 }
 
-void RobotStack::note(Time now, const PoseEstimate& pose, const char* kind, const char* text) {
+void PatrolStack::note(Time now, const PoseEstimate& pose, const char* kind, const char* text) {
   messages_.emplace_back(Event{.stamp = now, .kind = kind, .subject = "", .text = text, .value = 0.0,
                                .T_map_body = pose.T_map_body, .p_map_target = pose.T_map_body.position()});
 }
 
-void RobotStack::publish_map(Time now) {
+void PatrolStack::publish_map(Time now) {
   const auto lap = clock_.lap("slam");
   MapUpdate update{now, slam_.map()};
   navigator_.set_map(update.map);

@@ -1,0 +1,244 @@
+#include "app/tour_stack.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/error.h"
+
+namespace patrol::app {
+namespace {
+
+constexpr Time kControlPeriod = std::chrono::milliseconds(50);
+constexpr Time kOdometryPeriod = std::chrono::milliseconds(20);
+constexpr Time kRemoteHold = std::chrono::milliseconds(500);  // a command is followed for so long
+
+// How exactly the robot stands at its post.
+constexpr double kDockedPosition_m = 0.03;
+constexpr double kDockedYaw_rad = 0.02;
+
+Eigen::Matrix3d docked_covariance() {
+  return Eigen::Vector3d(kDockedPosition_m * kDockedPosition_m, kDockedPosition_m * kDockedPosition_m,
+                         kDockedYaw_rad * kDockedYaw_rad)
+      .asDiagonal();
+}
+
+}  // namespace
+
+TourStack::TourStack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, TourStart start,
+                     double map_period_s, std::uint64_t seed)
+    : settings_(settings),
+      robot_(robot),
+      site_in_map_(site_in_map),
+      seed_(seed),
+      odometry_(robot, settings.track_odometry),
+      leveler_(robot.T_body("lidar"), settings.leveling),
+      map_(std::move(start.map)),
+      navigator_(settings.navigation, robot, site_in_map.keep_out_lines),
+      docking_(settings.docking),
+      tour_(settings.tour, std::move(start.goals), start.has_remote),
+      settle_(from_seconds(settings.settle_s)),
+      map_period_(from_seconds(map_period_s)) {
+  if (!map_ && !start.has_remote) throw InputError("tour: there is no map, and no remote control to make one");
+  if ((settings.tour.docks || settings.tour.starts_docked) && !site_in_map.dock) {
+    throw InputError("tour: docks, but the site's survey has no dock");
+  }
+  if (site_in_map.dock) dock_detector_.emplace(settings.dock_detector, site_in_map.dock->profile_m);
+  if (map_) {
+    localizer_.emplace(settings.localization, *map_, anchors_above_body(), robot.T_body("uwb"), seed);
+    navigator_.set_map(*map_);
+  } else {
+    slam_.emplace(settings.slam, seed);
+    navigator_.set_map(slam_->map());  // empty yet, but its resolution must suit the costmap's
+  }
+}
+
+void TourStack::handle(const SensorMessage& message) {
+  std::visit(Overloaded{
+                 [&](const LaserScan& scan) { handle_scan(scan); },
+                 [&](const UwbRange& range) { handle_range(range); },
+                 [&](const UltrasonicRange& range) { handle_ultrasonic(range); },
+                 [&](const DepthImage& image) { handle_depth(image); },
+                 [&](const RemoteCommand& command) { new_remote_ = last_remote_ = command; },
+                 [&](const Imu& imu) {
+                   const auto lap = clock_.lap("odometry");
+                   odometry_.add(imu);
+                 },
+                 [&](const TrackTicks& ticks) {
+                   const auto lap = clock_.lap("odometry");
+                   odometry_.add(ticks);
+                 },
+                 [](const auto&) {},
+             },
+             message);
+}
+
+void TourStack::handle_scan(const LaserScan& raw) {
+  if (!first_odometry_ || raw.stamp < *first_odometry_ + settle_) return;
+  std::optional<LevelScan> scan;
+  {
+    const auto lap = clock_.lap("odometry");
+    scan = leveler_.level(
+        raw, [this](Time stamp) { return odometry_.T_odom_body_at(stamp); }, odometry_.height_above_ground_m());
+  }
+  if (!scan) return;
+  const Pose2 T_odom_body = to_planar(*odometry_.T_odom_body_at(scan->stamp));
+  slam_ ? map_scan(*scan, T_odom_body) : localize_scan(*scan, T_odom_body);
+  const Pose2 T_map_body = tracker_.at(scan->stamp, T_odom_body).T_map_body;
+  const auto lap = clock_.lap("planning");
+  navigator_.add_scan(*scan, T_map_body);
+  if (dock_detector_ && mode_ == inspect::TourMode::kDock) {
+    new_sighting_ = dock_detector_->detect(*scan, docking_.expected(T_odom_body).value_or(
+                                                      T_map_body.inverse() * site_in_map_.dock->T_route_docked));
+  }
+}
+
+void TourStack::map_scan(const LevelScan& scan, const Pose2& T_odom_body) {
+  const auto lap = clock_.lap("slam");
+  const slam::SlamUpdate update = slam_->update(scan, T_odom_body);
+  tracker_.correct(scan.stamp, T_odom_body, update.T_map_body, update.covariance);
+  messages_.emplace_back(PoseEstimate{scan.stamp, update.T_map_body, update.covariance});
+  if (update.is_keyframe) messages_.emplace_back(slam_->particles());
+}
+
+void TourStack::localize_scan(const LevelScan& scan, const Pose2& T_odom_body) {
+  const auto lap = clock_.lap("localization");
+  localize::LocalizationUpdate update = localizer_->update(scan, T_odom_body);
+  tracker_.correct(scan.stamp, T_odom_body, update.estimate.T_map_body, update.estimate.covariance);
+  trust_ = update.trust;
+  messages_.emplace_back(update.estimate);
+  messages_.emplace_back(update.trust);
+  if (update.particles) messages_.emplace_back(std::move(*update.particles));
+}
+
+void TourStack::handle_range(const UwbRange& range) {
+  const std::optional<Pose3> T_odom_body = odometry_.T_odom_body_at(range.stamp);
+  if (!T_odom_body) return;
+  if (localizer_) return localizer_->add(range, to_planar(*T_odom_body));
+  const auto anchor = std::find_if(site_in_map_.anchors.begin(), site_in_map_.anchors.end(),
+                                   [&](const UwbAnchor& known) { return known.number == range.anchor; });
+  if (anchor == site_in_map_.anchors.end()) return;
+  slam_->add({.anchor = *anchor,
+              .range_m = range.range_m,
+              .T_odom_body = to_planar(*T_odom_body),
+              .p_level_antenna = uwb_antenna_in_level(T_odom_body->rotation, robot_.T_body("uwb"), odometry_.height_above_ground_m())});
+}
+
+void TourStack::handle_ultrasonic(const UltrasonicRange&) {}
+void TourStack::handle_depth(const DepthImage&) {}
+
+/// The localiser counts heights from the body's origin.
+std::vector<UwbAnchor> TourStack::anchors_above_body() const {
+  std::vector<UwbAnchor> anchors = site_in_map_.anchors;
+  for (UwbAnchor& anchor : anchors) anchor.p_m.z() -= odometry_.height_above_ground_m();
+  return anchors;
+}
+
+std::optional<Pose2> TourStack::T_map_body_at(Time stamp) const {
+  const std::optional<Pose3> T_odom_body = odometry_.T_odom_body_at(stamp);
+  if (!T_odom_body) return std::nullopt;
+  return tracker_.at(stamp, to_planar(*T_odom_body)).T_map_body;
+}
+
+void TourStack::handle_fall(Time now) {
+  if (!tour_.is_over()) messages_.emplace_back(tour_.abort(now, "fall", "The robot has rolled over."));
+}
+
+void TourStack::step(Time now) {
+  const std::optional<OdometryEstimate> odometry = odometry_.estimate();
+  if (!odometry) return;
+  if (!first_odometry_) first_odometry_ = odometry->stamp;
+  if (now >= next_odometry_) {
+    next_odometry_ += kOdometryPeriod;
+    messages_.emplace_back(*odometry);
+  }
+  if (slam_ && now >= next_map_) {
+    next_map_ += map_period_;
+    publish_map(now);
+  }
+  if (now < next_control_) return;
+  next_control_ += kControlPeriod;
+  const auto lap = clock_.lap("planning");
+  control(now, *odometry);
+}
+
+void TourStack::control(Time now, const OdometryEstimate& odometry) {
+  const Pose2 T_odom_body = to_planar(odometry.T_odom_body);
+  const PoseEstimate pose = tracker_.at(odometry.stamp, T_odom_body);
+  const inspect::TourOutput tour = tour_.step(now, {.pose = pose,
+                                                    .is_lost = trust_.is_lost,
+                                                    .navigation = feedback_of(navigation_),
+                                                    .docking = docking_feedback_,
+                                                    .remote = std::exchange(new_remote_, std::nullopt)});
+  for (const Event& event : tour.events) messages_.emplace_back(event);
+  if (tour.map_is_made) take_over_map(now);
+  if (tour.localize_anew) localize_anew(now, T_odom_body);
+  follow(now, tour, pose);
+  command_.stamp = now;
+  messages_.emplace_back(command_);
+}
+
+void TourStack::follow(Time now, const inspect::TourOutput& tour, const PoseEstimate& pose) {
+  const bool is_new_mode = std::exchange(mode_, tour.mode) != tour.mode;
+  command_ = {};
+  switch (tour.mode) {
+    case inspect::TourMode::kStand:
+      break;
+    case inspect::TourMode::kRemote:
+      if (last_remote_ && now - last_remote_->stamp < kRemoteHold) {
+        command_.vx_mps = last_remote_->vx_mps;
+        command_.yaw_rate_radps = last_remote_->yaw_rate_radps;
+      }
+      break;
+    case inspect::TourMode::kNavigate:
+      navigate(now, tour.goal, pose);
+      break;
+    case inspect::TourMode::kUndock:
+    case inspect::TourMode::kDock:
+      (void)is_new_mode;
+      break;
+  }
+  if (tour.mode != inspect::TourMode::kNavigate && tour.mode != inspect::TourMode::kDock) navigate(now, std::nullopt, pose);
+}
+
+void TourStack::navigate(Time now, const std::optional<NavigationGoal>& goal, const PoseEstimate& pose) {
+  navigator_.set_goal(goal);
+  const plan::NavigationStep drive = navigator_.step(now, pose.T_map_body);
+  if (drive.replanned) messages_.emplace_back(Path{now, drive.path});
+  if (drive.is_detour) note(now, pose, "replan", "Something stands on the path: a new one is planned.");
+  if (drive.status == plan::NavigationStatus::kRecovering && navigation_ != drive.status) {
+    note(now, pose, "recovery", "Blocked for too long: backing up.");
+  }
+  navigation_ = drive.status;
+  if (goal) command_ = drive.command;
+}
+
+/// The mapping drive is over: from here on the map is what it is.
+void TourStack::take_over_map(Time now) {
+  map_ = slam_->map();
+  slam_.reset();
+  publish_map(now);
+  localizer_.emplace(settings_.localization, *map_, anchors_above_body(), robot_.T_body("uwb"), seed_);
+  localizer_->start_at(tracker_.at(now, {}).T_map_body, docked_covariance());
+}
+
+/// As after switching the robot off and on at its post.
+void TourStack::localize_anew(Time now, const Pose2& T_odom_body) {
+  if (!settings_.tour.starts_docked) return localizer_->start_anywhere();
+  localizer_->start_at(site_in_map_.dock->T_route_docked, docked_covariance());
+  tracker_ = localize::MapPoseTracker();
+  tracker_.correct(now, T_odom_body, site_in_map_.dock->T_route_docked, docked_covariance());
+}
+
+void TourStack::note(Time now, const PoseEstimate& pose, const char* kind, const char* text) {
+  messages_.emplace_back(Event{.stamp = now, .kind = kind, .subject = "", .text = text, .value = 0.0,
+                               .T_map_body = pose.T_map_body, .p_map_target = pose.T_map_body.position()});
+}
+
+void TourStack::publish_map(Time now) {
+  const auto lap = clock_.lap("slam");
+  MapUpdate update{now, map()};
+  navigator_.set_map(update.map);
+  messages_.emplace_back(std::move(update));
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "app/robot_stack.h"
+#include "localize/map_pose_tracker.h"
+
+namespace patrol::app {
+
+/// What a tour starts from, beside the survey; all in map.
+struct TourStart {
+  std::optional<OccupancyGrid> map;  ///< none: made on a drive by remote control
+  std::vector<MarkedGoal> goals;     ///< none: marked on that drive
+  bool has_remote = false;
+};
+
+/// The tracked robot's: maps while it is driven by remote control, then localises on that map and navigates by itself. Track
+/// odometry, levelling, SLAM, Monte-Carlo localisation with UWB ranges, navigation, docking, tour.
+class TourStack final : public RobotStack {
+ public:
+  /// `site` in map, whose origin is the level body pose at the start. Throws InputError when settings, robot, survey and start do not
+  /// go together.
+  TourStack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, TourStart start,
+            double map_period_s, std::uint64_t seed);
+
+  void handle(const SensorMessage& message) override;
+  void handle_fall(Time now) override;
+  void step(Time now) override;
+
+  const VelocityCommand& command() const override { return command_; }
+  MapUpdate final_map(Time now) const override { return {now, map()}; }
+  bool mission_is_over() const override { return tour_.is_over(); }
+  std::vector<StackMessage> take_messages() override { return std::exchange(messages_, {}); }
+  const PartClock& clock() const override { return clock_; }
+
+ private:
+  void handle_scan(const LaserScan& scan);
+  void map_scan(const LevelScan& scan, const Pose2& T_odom_body);
+  void localize_scan(const LevelScan& scan, const Pose2& T_odom_body);
+  void handle_range(const UwbRange& range);
+  void handle_ultrasonic(const UltrasonicRange& range);
+  void handle_depth(const DepthImage& image);
+  std::optional<Pose2> T_map_body_at(Time stamp) const;
+  std::vector<UwbAnchor> anchors_above_body() const;
+
+  void control(Time now, const OdometryEstimate& odometry);
+  void follow(Time now, const inspect::TourOutput& tour, const PoseEstimate& pose);
+  void navigate(Time now, const std::optional<NavigationGoal>& goal, const PoseEstimate& pose);
+  void take_over_map(Time now);
+  void localize_anew(Time now, const Pose2& T_odom_body);
+  void publish_map(Time now);
+  void note(Time now, const PoseEstimate& pose, const char* kind, const char* text);
+  OccupancyGrid map() const { return slam_ ? slam_->map() : *map_; }
+
+  StackSettings settings_;
+  RobotDescription robot_;
+  Route site_in_map_;
+  std::uint64_t seed_;
+  localize::TrackOdometry odometry_;
+  localize::ScanLeveler leveler_;
+  std::optional<slam::GridSlam> slam_;  ///< on the mapping drive
+  std::optional<OccupancyGrid> map_;    ///< from then on
+  std::optional<localize::MonteCarloLocalizer> localizer_;
+  localize::MapPoseTracker tracker_;
+  plan::Navigator navigator_;
+  std::optional<localize::DockDetector> dock_detector_;
+  plan::Docking docking_;
+  inspect::Tour tour_;
+
+  Time settle_;
+  std::optional<Time> first_odometry_;
+  LocalizationTrust trust_{.trust = 1.0};
+  std::optional<RemoteCommand> new_remote_, last_remote_;
+  std::optional<DockSighting> new_sighting_;
+  inspect::TourMode mode_ = inspect::TourMode::kStand;
+  plan::NavigationStatus navigation_ = plan::NavigationStatus::kIdle;  ///< a control period ago
+  inspect::DockingFeedback docking_feedback_ = inspect::DockingFeedback::kUnderWay;
+  VelocityCommand command_;
+  Time map_period_;
+  Time next_control_{};
+  Time next_odometry_{};
+  Time next_map_{};
+  std::vector<StackMessage> messages_;
+  PartClock clock_;
+};
+
+}  // namespace patrol::app
