@@ -89,7 +89,23 @@ def person(name, x, y, z0, shirt, trousers, head):
     return out
 
 
-# --- places -----------------------------------------------------------------------------------------------------------
+# --- turns and places -----------------------------------------------------------------------------------------------------------
+
+def product(a, b):
+    """Of two quaternions w, x, y, z."""
+    w1, x1, y1, z1 = a
+    w2, x2, y2, z2 = b
+    return (w1 * w2 - x1 * x2 - y1 * y2 - z1 * z2, w1 * x2 + x1 * w2 + y1 * z2 - z1 * y2,
+            w1 * y2 - x1 * z2 + y1 * w2 + z1 * x2, w1 * z2 + x1 * y2 - y1 * x2 + z1 * w2)
+
+
+def upright(yaw_deg):
+    """Turns local z to face -y (yaw 0), local y up."""
+    a, b = math.radians(90), math.radians(yaw_deg)
+    qx = (math.cos(a / 2), math.sin(a / 2), 0, 0)
+    qz = (math.cos(b / 2), 0, 0, math.sin(b / 2))
+    return product(qz, qx)
+
 
 def quaternion(yaw_rad):
     """x, y, z, w: the order of the survey's files."""

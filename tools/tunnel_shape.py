@@ -149,14 +149,20 @@ class Mesh:
                 e, f = a + columns, b + columns
                 self.faces += [(a, b, e), (b, f, e)] if flip else [(a, e, b), (b, e, f)]
 
-    def slab(self, front, back, texture, flip=False):
-        """A closed body between two grids of the same size."""
-        self.grid(front, texture, flip)
-        self.grid(back, texture, not flip)
-        for pick in (np.s_[0, :], np.s_[-1, :], np.s_[:, 0], np.s_[:, -1]):
-            rim = np.stack([front[pick], back[pick]])
-            is_turned = pick in (np.s_[0, :], np.s_[:, -1])
-            self.grid(rim, np.stack([texture[pick], texture[pick]]), flip != (not is_turned))
+    def slab(self, front, back, texture):
+        """A closed body between two grids of the same size, seen from outside."""
+        first = len(self.faces)
+        self.grid(front, texture)
+        self.grid(back, texture, flip=True)
+        for pick, flip in ((np.s_[0, :], False), (np.s_[-1, :], True), (np.s_[:, 0], True), (np.s_[:, -1], False)):
+            self.grid(np.stack([back[pick], front[pick]]), np.stack([texture[pick], texture[pick]]), flip)
+        if self.volume(first) < 0.0:
+            self.faces[first:] = [(a, c, b) for a, b, c in self.faces[first:]]
+
+    def volume(self, first=0):
+        """Of what the faces from `first` on enclose; negative when they look inwards."""
+        corners = np.array(self.points)[np.array(self.faces[first:])]
+        return float(np.einsum('ij,ij->', corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6.0
 
     def write(self, path):
         with open(path, 'w') as out:

@@ -139,10 +139,15 @@ def tread_plate(size):
 
 
 def sign(text, background, ink, size=(256, 128)):
+    """Letters of the built-in font, enlarged."""
+    letters = Image.new('L', (6 * len(text) + 2, 12), 0)
+    ImageDraw.Draw(letters).text((1, 0), text, fill=255)
+    letters = letters.crop(letters.getbbox())
+    scale = min((size[0] - 40) / letters.width, (size[1] - 40) / letters.height)
+    letters = letters.resize((int(letters.width * scale), int(letters.height * scale)), Image.BICUBIC)
     image = Image.new('RGB', size, background)
-    draw = ImageDraw.Draw(image)
-    draw.rectangle((5, 5, size[0] - 6, size[1] - 6), outline=ink, width=4)
-    draw.text((size[0] // 2, size[1] // 2), text, fill=ink, anchor='mm', font_size=size[1] // (2 if len(text) < 7 else 3))
+    ImageDraw.Draw(image).rectangle((5, 5, size[0] - 6, size[1] - 6), outline=ink, width=4)
+    image.paste(ink, ((size[0] - letters.width) // 2, (size[1] - letters.height) // 2), letters)
     return image
 
 

@@ -1,0 +1,164 @@
+#include "sim/props.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Core>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "sim/robot_model.h"
+
+namespace patrol::sim {
+namespace {
+
+constexpr std::array kKinds = {"rebar", "kerb", "hose", "brick"};
+constexpr double kFoot_m = 0.1;  // in the ground
+
+using Color = std::array<float, 4>;
+constexpr Color kRust = {0.42f, 0.24f, 0.14f, 1.0f}, kStone = {0.56f, 0.55f, 0.52f, 1.0f},
+                kBlue = {0.10f, 0.26f, 0.52f, 1.0f}, kBrick = {0.55f, 0.25f, 0.18f, 1.0f};
+
+mjsGeom* add_geom(mjsBody& body, mjtGeom type, const PropSettings& prop, const Color& color) {
+  mjsGeom* geom = mjs_addGeom(&body, nullptr);
+  geom->type = type;
+  geom->pos[0] = prop.x_m;
+  geom->pos[1] = prop.y_m;
+  const double half_turn = prop.turn_deg * std::numbers::pi / 360.0;
+  geom->quat[0] = std::cos(half_turn);
+  geom->quat[3] = std::sin(half_turn);
+  geom->group = kGroupSolid;
+  geom->contype = geom->conaffinity = 0;
+  std::copy(color.begin(), color.end(), geom->rgba);
+  return geom;
+}
+
+/// What can be touched of a prop carries its name.
+void make_solid(mjsGeom& geom, int number) {
+  mjs_setName(geom.element, fmt::format("prop_{}", number).c_str());
+  geom.contype = 1;
+  geom.conaffinity = 2;
+}
+
+void add_block(mjsBody& body, const PropSettings& prop, int number, int group, const Color& color) {
+  const PropSize size = prop_size(prop.kind);
+  mjsGeom* block = add_geom(body, mjGEOM_BOX, prop, color);
+  block->group = group;
+  block->pos[2] = (size.height_m - kFoot_m) / 2.0;
+  block->size[0] = size.length_m / 2.0;
+  block->size[1] = size.width_m / 2.0;
+  block->size[2] = (size.height_m + kFoot_m) / 2.0;
+  make_solid(*block, number);
+}
+
+/// Lies along the prop's long side, `aside_m` to its left.
+mjsGeom* add_rod(mjsBody& body, const PropSettings& prop, double radius_m, double aside_m, double height_m,
+                 const Color& color) {
+  mjsGeom* rod = add_geom(body, mjGEOM_CAPSULE, prop, color);
+  const double turn = prop.turn_deg * std::numbers::pi / 180.0;
+  rod->pos[0] -= aside_m * std::sin(turn);
+  rod->pos[1] += aside_m * std::cos(turn);
+  rod->pos[2] = height_m;
+  // A capsule's axis is z: first laid along x, then turned.
+  const double s = std::sqrt(0.5), w = std::cos(turn / 2.0), z = std::sin(turn / 2.0);
+  const double laid[4] = {w * s, -z * s, w * s, z * s};
+  std::copy_n(laid, 4, rod->quat);
+  rod->size[0] = radius_m;
+  rod->size[1] = prop_size(prop.kind).length_m / 2.0 - radius_m;
+  return rod;
+}
+
+void add_rebar(mjsBody& body, const PropSettings& prop, int number) {
+  constexpr double kRadius_m = 0.016;
+  const PropSize size = prop_size(prop.kind);
+  for (int layer = 0; layer < 3; ++layer) {
+    for (int bar = 0; bar < 4 - layer; ++bar) {
+      const double aside = (bar - 0.5 * (3 - layer)) * (size.width_m - 2.0 * kRadius_m) / 3.0;
+      const double height = kRadius_m + layer * (size.height_m - 2.0 * kRadius_m) / 2.0;
+      add_rod(body, prop, kRadius_m, aside, height, kRust);
+    }
+  }
+  add_block(body, prop, number, kGroupTouchOnly, kRust);
+}
+
+void add_prop(mjsBody& body, const PropSettings& prop, int number) {
+  if (prop.kind == "rebar") return add_rebar(body, prop, number);
+  if (prop.kind == "kerb") return add_block(body, prop, number, kGroupSolid, kStone);
+  if (prop.kind == "brick") return add_block(body, prop, number, kGroupSolid, kBrick);
+  const double radius = prop_size("hose").height_m / 2.0;
+  make_solid(*add_rod(body, prop, radius, 0.0, radius, kBlue), number);
+}
+
+struct RoutePlace {
+  Eigen::Vector2d point;
+  Eigen::Vector2d ahead;  ///< unit
+};
+
+double length_m(const std::vector<WaypointSettings>& route) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < route.size(); ++i) {
+    length += std::hypot(route[i].x_m - route[i - 1].x_m, route[i].y_m - route[i - 1].y_m);
+  }
+  return length;
+}
+
+RoutePlace place_at(const std::vector<WaypointSettings>& route, double along_m) {
+  RoutePlace place{};
+  for (std::size_t i = 1; i < route.size(); ++i) {
+    const Eigen::Vector2d from(route[i - 1].x_m, route[i - 1].y_m), to(route[i].x_m, route[i].y_m);
+    const double leg = (to - from).norm();
+    if (leg <= 0.0) continue;
+    place = {.point = from + std::min(along_m / leg, 1.0) * (to - from), .ahead = (to - from) / leg};
+    if (along_m <= leg) break;
+    along_m -= leg;
+  }
+  return place;
+}
+
+}  // namespace
+
+PropSize prop_size(const std::string& kind) {
+  if (kind == "rebar") return {.length_m = 2.0, .width_m = 0.16, .height_m = 0.10};
+  if (kind == "kerb") return {.length_m = 1.0, .width_m = 0.15, .height_m = 0.22};
+  if (kind == "hose") return {.length_m = 1.6, .width_m = 0.10, .height_m = 0.10};
+  if (kind == "brick") return {.length_m = 0.25, .width_m = 0.12, .height_m = 0.14};
+  throw InputError(fmt::format("there is no prop of kind {} (known: {})", kind, fmt::join(kKinds, ", ")));
+}
+
+void add_props(mjSpec& world, const std::vector<PropSettings>& props) {
+  mjsBody* body = mjs_findBody(&world, "world");
+  for (std::size_t i = 0; i < props.size(); ++i) {
+    validate(props[i], fmt::format("props.{}", i));
+    add_prop(*body, props[i], static_cast<int>(i) + 1);
+  }
+}
+
+std::vector<PropSettings> scatter_low_obstacles(const LowObstacleSettings& settings, std::uint64_t seed) {
+  validate(settings, "low_obstacles");
+  if (settings.count == 0) return {};
+  const double part = (length_m(settings.route) - 2.0 * settings.clear_ends_m) / settings.count;
+  if (!(part > settings.apart_m)) {
+    throw InputError(fmt::format(
+        "low_obstacles.route is {:.1f} m long: too short for {} obstacles {} m apart, {} m clear at its ends",
+        length_m(settings.route), settings.count, settings.apart_m, settings.clear_ends_m));
+  }
+  const RandomStream random(seed, "low_obstacles");
+  std::vector<PropSettings> props;
+  for (int i = 0; i < settings.count; ++i) {
+    const auto obstacle = static_cast<std::uint64_t>(i);
+    const double in_part = random.uniform(obstacle, 0) * (part - settings.apart_m) + settings.apart_m / 2.0;
+    const RoutePlace place = place_at(settings.route, settings.clear_ends_m + i * part + in_part);
+    const double beside = settings.beside_m * (2.0 * random.uniform(obstacle, 1) - 1.0);
+    const auto kind = static_cast<std::size_t>(random.uniform(obstacle, 2) * kKinds.size());
+    props.push_back({.kind = kKinds[kind],
+                     .x_m = place.point.x() - beside * place.ahead.y(),
+                     .y_m = place.point.y() + beside * place.ahead.x(),
+                     .turn_deg = 180.0 * random.uniform(obstacle, 3)});
+  }
+  return props;
+}
+
+}  // namespace patrol::sim
