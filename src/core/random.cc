@@ -19,11 +19,11 @@ std::uint64_t hash_of(std::string_view text) {
   return hash;
 }
 
-std::array<std::uint64_t, 2> bits_at(std::uint64_t seed, std::uint64_t stream, std::uint64_t tick,
+std::array<std::uint64_t, 4> bits_at(std::uint64_t seed, std::uint64_t stream, std::uint64_t tick,
                                      std::uint64_t index) {
   const r123::Philox4x64 philox;
   const r123::Philox4x64::ctr_type out = philox({{tick, index, 0, 0}}, {{seed, stream}});
-  return {out[0], out[1]};
+  return {out[0], out[1], out[2], out[3]};
 }
 
 /// 53 random bits, moved half a step up: never 0, never 1.
@@ -40,6 +40,17 @@ double RandomStream::uniform(std::uint64_t tick, std::uint64_t index) const {
 double RandomStream::normal(std::uint64_t tick, std::uint64_t index) const {
   const auto bits = bits_at(seed_, stream_, tick, index);
   return std::sqrt(-2.0 * std::log(to_unit(bits[0]))) * std::cos(2.0 * std::numbers::pi * to_unit(bits[1]));
+}
+
+std::array<double, 4> RandomStream::normals(std::uint64_t tick, std::uint64_t index) const {
+  const auto bits = bits_at(seed_, stream_, tick, index);
+  std::array<double, 4> drawn{};
+  for (std::size_t pair = 0; pair < 4; pair += 2) {
+    const double radius = std::sqrt(-2.0 * std::log(to_unit(bits[pair])));
+    const double angle = 2.0 * std::numbers::pi * to_unit(bits[pair + 1]);
+    drawn[pair] = radius * std::cos(angle), drawn[pair + 1] = radius * std::sin(angle);
+  }
+  return drawn;
 }
 
 }  // namespace patrol

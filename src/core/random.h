@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -19,6 +20,9 @@ class RandomStream {
 
   /// Standard normal (Box-Muller).
   double normal(std::uint64_t tick, std::uint64_t index = 0) const;
+
+  /// Four standard normals of one address, for about the price of two. The first is normal(tick, index).
+  std::array<double, 4> normals(std::uint64_t tick, std::uint64_t index = 0) const;
 
  private:
   std::uint64_t seed_;

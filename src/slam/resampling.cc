@@ -22,11 +22,15 @@ double effective_sample_size(const std::vector<double>& weights) {
 }
 
 std::vector<std::size_t> resample_systematic(const std::vector<double>& weights, double uniform) {
-  std::vector<std::size_t> parents(weights.size());
-  const double spacing = 1.0 / static_cast<double>(weights.size());
+  return resample_systematic(weights, uniform, weights.size());
+}
+
+std::vector<std::size_t> resample_systematic(const std::vector<double>& weights, double uniform, std::size_t num_children) {
+  std::vector<std::size_t> parents(num_children);
+  const double spacing = 1.0 / static_cast<double>(num_children);
   std::size_t parent = 0;
   double cumulative = weights.front();
-  for (std::size_t child = 0; child < weights.size(); ++child) {
+  for (std::size_t child = 0; child < num_children; ++child) {
     const double pointer = (static_cast<double>(child) + uniform) * spacing;
     while (pointer > cumulative && parent + 1 < weights.size()) cumulative += weights[++parent];
     parents[child] = parent;

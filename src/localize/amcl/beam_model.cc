@@ -1,0 +1,88 @@
+#include "localize/amcl/beam_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "localize/amcl/distance_to_occupied.h"
+
+namespace patrol::localize {
+namespace {
+
+constexpr double kFieldCap_m = 1.0;  // longest stride along a ray
+
+struct PolarBeam {
+  double angle_rad, range_m;  ///< from the lidar; +Inf: no echo
+};
+
+std::vector<PolarBeam> polar_beams(const LevelScan& scan, int max_beams) {
+  std::vector<PolarBeam> beams;
+  const std::size_t count = std::min(scan.beams.size(), static_cast<std::size_t>(max_beams));
+  for (std::size_t i = 0; i < count; ++i) {
+    const LevelScan::Beam& beam = scan.beams[i * scan.beams.size() / count];
+    const Eigen::Vector2d way = beam.end_m.cast<double>() - scan.origin_m;
+    if (!way.allFinite()) continue;
+    beams.push_back({std::atan2(way.y(), way.x()), beam.is_hit ? way.norm() : std::numeric_limits<double>::infinity()});
+  }
+  return beams;
+}
+
+double normal_cdf(double ratio) { return 0.5 * std::erfc(-ratio / std::numbers::sqrt2); }
+
+}  // namespace
+
+double beam_log_likelihood(double range_m, double expected_m, const BeamModelSettings& settings) {
+  const double sum = settings.hit_share + settings.short_share + settings.max_share + settings.random_share;
+  const double max_m = settings.max_range_m;
+  if (!(range_m < max_m)) {
+    // Nothing within reach to hit is the best reason for no echo.
+    const double out_of_reach = expected_m < max_m ? 0.0 : settings.hit_share;
+    return std::log((settings.max_share + out_of_reach + settings.random_share / max_m) / sum);
+  }
+  const double sigma = settings.hit_std_m, ratio = (range_m - expected_m) / sigma;
+  const double in_range = normal_cdf((max_m - expected_m) / sigma) - normal_cdf(-expected_m / sigma);
+  const double hit = std::exp(-0.5 * ratio * ratio) / (sigma * std::sqrt(2.0 * std::numbers::pi) * in_range);
+  const double lambda = 1.0 / settings.short_mean_m;
+  const double in_front = range_m <= expected_m && expected_m > 0.0 ? lambda * std::exp(-lambda * range_m) / -std::expm1(-lambda * expected_m) : 0.0;
+  return std::log((settings.hit_share * hit + settings.short_share * in_front + settings.random_share / max_m) / sum);
+}
+
+BeamModel::BeamModel(const BeamModelSettings& settings, const OccupancyGrid& map)
+    : settings_(settings), distance_m_(distance_to_occupied(map, kFieldCap_m)) {}
+
+ScanLikelihoods BeamModel::evaluate(const LevelScan& scan, const std::vector<Pose2>& T_map_body) const {
+  const std::vector<PolarBeam> beams = polar_beams(scan, settings_.max_beams);
+  const double best = beam_log_likelihood(1.0, 1.0, settings_);
+  ScanLikelihoods result{.mean_log = std::vector<double>(T_map_body.size(), 0.0), .num_beams = static_cast<int>(beams.size())};
+  if (beams.empty()) return result;
+  for (std::size_t i = 0; i < T_map_body.size(); ++i) {
+    const Eigen::Vector2d origin = T_map_body[i] * scan.origin_m;
+    double sum = 0.0;
+    for (const PolarBeam& beam : beams) {
+      const double expected_m = expected_range_m(origin, T_map_body[i].yaw + beam.angle_rad);
+      const double nothing = std::isinf(beam.range_m) ? 0.0 : best;
+      sum += std::min(0.0, beam_log_likelihood(beam.range_m, expected_m, settings_) - nothing);
+    }
+    result.mean_log[i] = sum / static_cast<double>(beams.size());
+  }
+  return result;
+}
+
+// Strides as long as nothing can be in the way (Hart, "Sphere tracing", The Visual Computer 1996): the distance to the nearest
+// occupied centre less half a cell's diagonal, twice, for where we and the wall are in our cells.
+double BeamModel::expected_range_m(const Eigen::Vector2d& p_map_origin, double angle_rad) const {
+  const GridGeometry& geometry = distance_m_.geometry();
+  const Eigen::Vector2d direction(std::cos(angle_rad), std::sin(angle_rad));
+  const double margin_m = std::numbers::sqrt2 * geometry.resolution_m, least_m = 0.5 * geometry.resolution_m;
+  for (double way_m = 0.0; way_m < settings_.max_range_m;) {
+    const Cell cell = geometry.cell_at(p_map_origin + way_m * direction);
+    if (!geometry.contains(cell)) return settings_.max_range_m;
+    const auto distance = static_cast<double>(distance_m_.at(cell));
+    if (distance == 0.0) return way_m;
+    way_m += std::max(least_m, distance - margin_m);
+  }
+  return settings_.max_range_m;
+}
+
+}  // namespace patrol::localize

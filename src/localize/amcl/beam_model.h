@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <vector>
+
+#include "core/grid.h"
+#include "core/settings.h"
+#include "localize/amcl/sensor_model.h"
+
+namespace patrol::localize {
+
+/// Shares of the mixture; they are divided by their sum.
+struct BeamModelSettings {
+  double hit_share = 0.75;
+  double short_share = 0.1;     ///< somebody stands in the way
+  double max_share = 0.1;       ///< no echo
+  double random_share = 0.05;
+  double hit_std_m = 0.1;
+  double short_mean_m = 5.0;    ///< of the exponential distribution of what stands in the way: 1 / lambda_short
+  double max_range_m = 30.0;
+  int max_beams = 60;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("hit_share", self.hit_share, between(0.01, 1.0));
+    visit("short_share", self.short_share, between(0.0, 1.0));
+    visit("max_share", self.max_share, between(0.0, 1.0));
+    visit("random_share", self.random_share, between(1e-4, 1.0));
+    visit("hit_std_m", self.hit_std_m, between(0.01, 2.0));
+    visit("short_mean_m", self.short_mean_m, between(0.1, 1000.0));
+    visit("max_range_m", self.max_range_m, between(1.0, 1000.0));
+    visit("max_beams", self.max_beams, between(1, 10000));
+  }
+};
+
+/// log p(z | z_expected) of one range, 1/m, or of no echo (+Inf) (Thrun et al. 2005, table 6.1 with equations 6.4 to 6.11).
+double beam_log_likelihood(double range_m, double expected_m, const BeamModelSettings& settings);
+
+/// The beam model: what every beam should have measured is found by following it through the map. Dearer than the likelihood
+/// field and less smooth, but it knows that a wall cannot be seen through another.
+class BeamModel final : public SensorModel {
+ public:
+  BeamModel(const BeamModelSettings& settings, const OccupancyGrid& map);
+
+  /// Likelihoods are divided by that of a perfect range at 0 m, so that 0 is about the best.
+  ScanLikelihoods evaluate(const LevelScan& scan, const std::vector<Pose2>& T_map_body) const override;
+
+  /// The way to the first occupied cell, at most `max_range_m`, m; within a cell of the truth.
+  double expected_range_m(const Eigen::Vector2d& p_map_origin, double angle_rad) const;
+
+ private:
+  BeamModelSettings settings_;
+  Grid<float> distance_m_;
+};
+
+}  // namespace patrol::localize

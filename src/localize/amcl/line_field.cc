@@ -1,0 +1,50 @@
+#include "localize/amcl/line_field.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "localize/amcl/distance_to_occupied.h"
+#include "slam/grid_map.h"
+#include "slam/local_line.h"
+
+namespace patrol::localize {
+namespace {
+
+/// The surfaces of the map, each occupied cell hit once in its middle. The cells inside of a thick wall are no surface.
+slam::GridMap surfaces_of(const OccupancyGrid& map) {
+  const GridGeometry& geometry = map.geometry();
+  const Eigen::Vector2d far = geometry.origin_m.cwiseAbs() +
+                              geometry.resolution_m * Eigen::Vector2d(geometry.width, geometry.height);
+  slam::GridMap surfaces(geometry.resolution_m, 2.0 * far.maxCoeff() + 10.0);
+  const auto is_solid = [&](Cell cell) { return !map.contains(cell) || is_occupied(map.at(cell)); };
+  for (int row = 0; row < geometry.height; ++row) {
+    for (int col = 0; col < geometry.width; ++col) {
+      const bool is_inside = is_solid({col - 1, row}) && is_solid({col + 1, row}) && is_solid({col, row - 1}) && is_solid({col, row + 1});
+      if (is_occupied(map.at({col, row})) && !is_inside) surfaces.add_hit(geometry.center_of({col, row}));
+    }
+  }
+  return surfaces;
+}
+
+}  // namespace
+
+LineField::LineField(const OccupancyGrid& map, int radius_cells)
+    : reach_m_(radius_cells * map.geometry().resolution_m), index_(map.geometry(), kNone) {
+  const slam::GridMap surfaces = surfaces_of(map);
+  for (int row = 0; row < map.geometry().height; ++row) {
+    for (int col = 0; col < map.geometry().width; ++col) {
+      const std::optional<slam::LocalLine> line = slam::fit_local_line(surfaces, map.geometry().center_of({col, row}), radius_cells);
+      if (!line) continue;
+      index_.at({col, row}) = static_cast<std::int32_t>(lines_.size());
+      lines_.push_back({line->point_map, line->normal_map, line->roughness_var_m2, line->straightness});
+    }
+  }
+}
+
+const SurfaceLine* LineField::find(const Eigen::Vector2d& p_map) const {
+  const Cell cell = index_.geometry().cell_at(p_map);
+  if (!index_.contains(cell) || index_.at(cell) == kNone) return nullptr;
+  return &lines_[static_cast<std::size_t>(index_.at(cell))];
+}
+
+}  // namespace patrol::localize

@@ -1,0 +1,238 @@
+#include "localize/amcl/monte_carlo.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "core/error.h"
+#include "localize/amcl/distance_to_occupied.h"
+#include "slam/resampling.h"
+
+namespace patrol::localize {
+namespace {
+
+// A clump of equal particles has no width; its prior must have some.
+const Eigen::Vector3d kLeastStd(2e-3, 2e-3, 5e-4);
+constexpr int kLineRadius_cells = 4;
+constexpr int kMinPoints = 10;           // of a scan that may be judged
+constexpr double kWastefulShare = 0.67;  // so few of the particles would do
+constexpr Time kRangesBeforeStart = std::chrono::seconds(2);  // that the first weighing may use
+
+const OccupancyGrid& checked(const OccupancyGrid& map) {
+  const auto& cells = map.values();
+  if (cells.empty()) throw InputError("localisation: the map has no cells");
+  if (std::none_of(cells.begin(), cells.end(), is_free)) throw InputError("localisation: the map has no free cell to stand on");
+  if (std::none_of(cells.begin(), cells.end(), is_occupied)) throw InputError("localisation: the map has no occupied cell to see");
+  return map;
+}
+
+const MonteCarloSettings& checked(const MonteCarloSettings& settings) {
+  validate(settings, "localization");
+  return settings;
+}
+
+std::unique_ptr<SensorModel> make_sensor_model(const MonteCarloSettings& settings, const OccupancyGrid& map) {
+  if (settings.sensor_model == "beam") return std::make_unique<BeamModel>(settings.beam, map);
+  return std::make_unique<LikelihoodField>(settings.likelihood_field, map);
+}
+
+}  // namespace
+
+MonteCarloLocalizer::MonteCarloLocalizer(const MonteCarloSettings& settings, const OccupancyGrid& map,
+                                         const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb, std::uint64_t seed)
+    : settings_(checked(settings)),
+      ranges_(anchors_in_map, T_body_uwb.position),
+      sensor_model_(make_sensor_model(settings, checked(map))),
+      lines_(map, kLineRadius_cells),
+      search_(settings.search, settings.likelihood_field, map),
+      start_noise_(seed, "localize/start"),
+      motion_noise_(seed, "localize/motion"),
+      resampling_noise_(seed, "localize/resampling"),
+      injection_noise_(seed, "localize/injection"),
+      fit_(settings.fit) {}
+
+void MonteCarloLocalizer::start_at(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) {
+  start_anywhere();
+  starts_anywhere_ = false;
+  belief_ = {.mean = T_map_body, .covariance = covariance};
+  belief_.covariance.diagonal() += kLeastStd.cwiseAbs2();
+  clump_weight_ = 1.0;
+  const Eigen::Matrix3d L = belief_.covariance.llt().matrixL();
+  PoseBins bins(settings_.kld);
+  while (cloud_.size() < static_cast<std::size_t>(kld_particles(bins.size(), settings_.kld))) {
+    const std::array<double, 4> unit = start_noise_.normals(starts_, cloud_.size());
+    const Pose2 pose = slam::shifted(T_map_body, L * Eigen::Vector3d(unit[0], unit[1], unit[2]));
+    cloud_.add(pose, settings_.odometry.way_scale_std * unit[3]);
+    bins.add(pose);
+  }
+}
+
+void MonteCarloLocalizer::start_anywhere() {
+  ++starts_;
+  starts_anywhere_ = true;
+  cloud_ = {};
+  fit_.reset();
+  T_odom_last_.reset();
+  last_search_.reset();
+}
+
+LocalizationUpdate MonteCarloLocalizer::update(const LevelScan& scan, const Pose2& T_odom_body) {
+  if (starts_anywhere_) start_from(scan, T_odom_body);
+  const bool is_first = !T_odom_last_;
+  if (is_first) T_odom_last_ = T_odom_body, last_weighing_ = last_scan_ = scan.stamp - kRangesBeforeStart;
+  const Pose2 T_before_now = T_odom_last_->inverse() * T_odom_body;
+  const double dt_s = is_first ? 0.0 : to_seconds(scan.stamp - last_weighing_);
+
+  const slam::PoseGaussian belief = moved(belief_, T_before_now, dt_s, settings_.odometry);
+  judge_ranges(ranges_.taken_after(last_scan_, T_odom_body), belief);
+  last_scan_ = scan.stamp;
+  if (!is_first && !is_due(T_before_now, scan.stamp)) {
+    return describe(scan, refine_pose(lines_, scan, belief, belief.mean, settings_.refinement));
+  }
+
+  move_particles(cloud_, T_before_now, dt_s, settings_.odometry, motion_noise_, updates_);
+  const RefinedPose refined = weigh(scan, ranges_.taken_after(last_weighing_, T_odom_body));
+  LocalizationUpdate update = describe(scan, refined);
+  update.is_weighed = true;
+  update.particles = logged_particles(scan.stamp);
+  update.num_injected = resample_and_inject(scan, T_odom_body);
+  update.num_particles = static_cast<int>(cloud_.size());
+  T_odom_last_ = T_odom_body;
+  last_weighing_ = scan.stamp;
+  ++updates_;
+  return update;
+}
+
+void MonteCarloLocalizer::start_from(const LevelScan& scan, const Pose2& T_odom_body) {
+  const auto count = static_cast<std::size_t>(std::max(settings_.kld.min_particles, settings_.kld.max_particles));
+  const std::vector<Pose2> poses = draw_poses(search(scan, T_odom_body), count, start_noise_, starts_);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    cloud_.add(poses[i], settings_.odometry.way_scale_std * start_noise_.normals(starts_, count + i)[3]);
+  }
+  starts_anywhere_ = false;
+  last_search_ = scan.stamp;
+}
+
+bool MonteCarloLocalizer::is_due(const Pose2& T_before_now, Time stamp) const {
+  return T_before_now.position().norm() >= settings_.update_distance_m || std::abs(T_before_now.yaw) >= settings_.update_angle_rad ||
+         (is_lost_ && to_seconds(stamp - last_weighing_) >= settings_.update_period_s);
+}
+
+// A range is held against the belief with the belief's own doubt added to the range's.
+void MonteCarloLocalizer::judge_ranges(const std::vector<AnchoredRange>& ranges, const slam::PoseGaussian& belief) {
+  for (const AnchoredRange& range : ranges) {
+    const Eigen::Vector2d to_anchor = (range.p_map_anchor.head<2>() - belief.mean.position()).stableNormalized();
+    const double belief_var = to_anchor.dot(belief.covariance.topLeftCorner<2, 2>() * to_anchor);
+    RangeLikelihoodSettings doubtful = settings_.ranges;
+    doubtful.range_std_m = std::sqrt(doubtful.range_std_m * doubtful.range_std_m + belief_var);
+    fit_.add_range(std::exp(range_log_likelihood(range_excess_m(range, belief.mean), doubtful)));
+  }
+}
+
+// The pose comes from the belief before the scan and the scan, each once.
+RefinedPose MonteCarloLocalizer::weigh(const LevelScan& scan, const std::vector<AnchoredRange>& ranges) {
+  for (const AnchoredRange& range : ranges) {
+    for (std::size_t i = 0; i < cloud_.size(); ++i) {
+      cloud_.log_weights[i] += range_log_likelihood(range_excess_m(range, cloud_.T_map_body[i]), settings_.ranges);
+    }
+  }
+  const std::vector<double> prior_weights = slam::normalized_weights(cloud_.log_weights);
+
+  const ScanLikelihoods fits = sensor_model_->evaluate(scan, cloud_.T_map_body);
+  const double gain = std::min(settings_.independent_beams, static_cast<double>(fits.num_beams));
+  double likelihood = 0.0;
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    cloud_.log_weights[i] += gain * fits.mean_log[i];
+    likelihood += prior_weights[i] * std::exp(fits.mean_log[i]);
+  }
+  if (fits.num_beams > 0) fit_.add_scan_likelihood(likelihood);
+  const std::vector<double> weights = slam::normalized_weights(cloud_.log_weights);
+
+  const ParticleClumps clumps = find_clumps(cloud_.T_map_body, weights, settings_.kld);
+  clump_weight_ = clumps.heaviest_weight;
+  belief_ = gaussian_of(cloud_.T_map_body, weights, clumps);
+  slam::PoseGaussian prior = gaussian_of(cloud_.T_map_body, prior_weights, clumps);
+  if (!prior.covariance.allFinite()) prior = belief_;
+  belief_.covariance.diagonal() += kLeastStd.cwiseAbs2();
+  prior.covariance.diagonal() += kLeastStd.cwiseAbs2();
+  return refine_pose(lines_, scan, prior, belief_.mean, settings_.refinement);
+}
+
+int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2& T_odom_body) {
+  const bool may_search = !last_search_ || to_seconds(scan.stamp - *last_search_) >= settings_.search_period_s;
+  const double share = may_search ? fit_.injection_share() : 0.0;
+  const std::vector<double> weights = slam::normalized_weights(cloud_.log_weights);
+  const auto count = static_cast<double>(cloud_.size());
+  const std::size_t needed = particles_needed(weights);
+  const bool is_wasteful = static_cast<double>(needed) < kWastefulShare * count;
+  if (share > 0.0 || is_wasteful || slam::effective_sample_size(weights) < settings_.resample_threshold * count) resample(weights, needed);
+
+  const auto num_injected = static_cast<std::size_t>(share * static_cast<double>(cloud_.size()));
+  if (num_injected == 0) return 0;
+  last_search_ = scan.stamp;
+  const std::vector<Pose2> poses = draw_poses(search(scan, T_odom_body), num_injected, injection_noise_, updates_);
+  for (std::size_t i = 0; i < poses.size(); ++i) cloud_.T_map_body[i * cloud_.size() / poses.size()] = poses[i];
+  return static_cast<int>(poses.size());
+}
+
+void MonteCarloLocalizer::resample(const std::vector<double>& weights, std::size_t count) {
+  ParticleCloud children;
+  for (const std::size_t parent : slam::resample_systematic(weights, resampling_noise_.uniform(updates_), count)) {
+    children.add(cloud_.T_map_body[parent], cloud_.way_scale[parent]);
+  }
+  cloud_ = std::move(children);
+}
+
+// Draws one after the other until there are as many as the bins that they fill ask for (Fox 2003, table 3); the draws
+// themselves are then made again systematically, which scatters less.
+std::size_t MonteCarloLocalizer::particles_needed(const std::vector<double>& weights) const {
+  std::vector<double> cumulative(weights.size());
+  std::partial_sum(weights.begin(), weights.end(), cumulative.begin());
+  PoseBins bins(settings_.kld);
+  std::size_t drawn = 0;
+  while (drawn < static_cast<std::size_t>(kld_particles(bins.size(), settings_.kld))) {
+    const double pointer = resampling_noise_.uniform(updates_, ++drawn);
+    const auto parent = std::lower_bound(cumulative.begin(), cumulative.end() - 1, pointer) - cumulative.begin();
+    bins.add(cloud_.T_map_body[static_cast<std::size_t>(parent)]);
+  }
+  return drawn;
+}
+
+GlobalSearch::Candidates MonteCarloLocalizer::search(const LevelScan& scan, const Pose2& T_odom_body) const {
+  const Time since = scan.stamp - from_seconds(settings_.range_memory_s);
+  return search_.find(scan, ranges_.taken_after(since, T_odom_body), settings_.ranges, settings_.independent_beams,
+                      injection_noise_.uniform(updates_, 0));
+}
+
+LocalizationUpdate MonteCarloLocalizer::describe(const LevelScan& scan, const RefinedPose& refined) {
+  if (refined.num_points >= kMinPoints) fit_.add_scan_fit(refined.matched_share);
+  LocalizationUpdate update;
+  update.estimate = {.stamp = scan.stamp, .T_map_body = refined.posterior.mean, .covariance = refined.posterior.covariance};
+  update.trust = assess_trust(scan.stamp, {.covariance = refined.posterior.covariance, .clump_weight = clump_weight_,
+                                           .scan_fit = fit_.scan_fit(), .range_fit = fit_.range_trust()}, settings_.trust);
+  update.num_particles = static_cast<int>(cloud_.size());
+  update.clump_weight = clump_weight_;
+  update.matched_share = refined.matched_share;
+  is_lost_ = update.trust.is_lost;
+  return update;
+}
+
+ParticleSet MonteCarloLocalizer::logged_particles(Time stamp) const {
+  ParticleSet set{.stamp = stamp, .T_map_body = {}, .weights = {}};
+  const auto count = std::min(cloud_.size(), static_cast<std::size_t>(settings_.max_logged_particles));
+  std::vector<double> log_weights;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t from = i * cloud_.size() / count;
+    set.T_map_body.push_back(cloud_.T_map_body[from]);
+    log_weights.push_back(cloud_.log_weights[from]);
+  }
+  set.weights = slam::normalized_weights(log_weights);
+  return set;
+}
+
+}  // namespace patrol::localize

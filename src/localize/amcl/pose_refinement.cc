@@ -1,0 +1,112 @@
+#include "localize/amcl/pose_refinement.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace patrol::localize {
+namespace {
+
+constexpr double kStepTol_m = 2e-4;
+constexpr double kStepTol_rad = 1e-5;
+
+double squared(double value) { return value * value; }
+
+/// A point and its line at some pose.
+struct Residual {
+  double distance_m;
+  double weight;           ///< inverse variance, and less for outliers
+  Eigen::Vector2d normal;  ///< of the line, in map
+  double turn;             ///< d distance / d yaw, m
+};
+
+/// Those of the points that are near a surface.
+std::vector<Residual> residuals_at(const LineField& lines, const std::vector<slam::MatchPoint>& points, const Pose2& T_map_body,
+                                   const PoseRefinementSettings& settings) {
+  std::vector<Residual> residuals;
+  residuals.reserve(points.size());
+  const Eigen::Matrix2d R = Eigen::Rotation2Dd(T_map_body.yaw).toRotationMatrix();
+  for (const slam::MatchPoint& point : points) {
+    const Eigen::Vector2d arm = R * point.p_body;
+    const Eigen::Vector2d p_map = T_map_body.position() + arm;
+    const SurfaceLine* line = lines.find(p_map);
+    if (!line) continue;
+    const Eigen::Vector2d& n = line->normal_map;
+    const double distance_m = n.dot(p_map - line->point_map);
+    const double variance =
+        squared(settings.point_std_m) + squared(settings.point_angle_std_rad * point.range_m) + line->roughness_var_m2;
+    // Cauchy: weight = 1 / (1 + (r / kernel)^2).
+    const double weight = squared(line->straightness) / (variance * (1.0 + squared(distance_m / settings.kernel_m)));
+    residuals.push_back({distance_m, weight, n, n.y() * arm.x() - n.x() * arm.y()});
+  }
+  return residuals;
+}
+
+struct NormalEquations {
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+};
+
+/// What every normal is multiplied with so that the weaker direction loses the information that the normals' own scatter
+/// has put there.
+Eigen::Matrix2d remapping_of(const std::vector<Residual>& residuals, double normal_std_rad) {
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (const Residual& residual : residuals) sum += residual.weight * residual.normal * residual.normal.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(sum);
+  const double weak = axes.eigenvalues()[0], strong = axes.eigenvalues()[1];
+  if (!(weak > 0.0)) return Eigen::Matrix2d::Identity();
+  const double kept = std::max(0.0, 1.0 - squared(normal_std_rad) * strong / weak);
+  return axes.eigenvectors() * Eigen::Vector2d(std::sqrt(kept), 1.0).asDiagonal() * axes.eigenvectors().transpose();
+}
+
+NormalEquations equations_of(const std::vector<Residual>& residuals, double normal_std_rad, double gain) {
+  NormalEquations sum;
+  const Eigen::Matrix2d remapping = remapping_of(residuals, normal_std_rad);
+  for (const Residual& residual : residuals) {
+    Eigen::Vector3d J;
+    J << remapping * residual.normal, residual.turn;
+    sum.H += gain * residual.weight * J * J.transpose();
+    sum.b += gain * residual.weight * residual.distance_m * J;
+  }
+  return sum;
+}
+
+double share_within(const std::vector<Residual>& residuals, double tol_m, std::size_t num_points) {
+  const auto count = std::count_if(residuals.begin(), residuals.end(), [&](const Residual& residual) { return std::abs(residual.distance_m) < tol_m; });
+  return num_points > 0 ? static_cast<double>(count) / static_cast<double>(num_points) : 0.0;
+}
+
+}  // namespace
+
+RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const slam::PoseGaussian& prior, const Pose2& T_map_start,
+                        const PoseRefinementSettings& settings) {
+  RefinedPose refined{.posterior = prior};
+  const std::vector<slam::MatchPoint> points = slam::select_match_points(scan, settings.point_spacing_m, settings.max_points);
+  refined.num_points = static_cast<int>(points.size());
+  const Eigen::Matrix3d prior_information = prior.covariance.inverse();
+  Pose2 pose = T_map_start;
+  NormalEquations sum;
+  for (int iteration = 0; iteration < settings.max_iterations; ++iteration) {
+    const std::vector<Residual> residuals = residuals_at(lines, points, pose, settings);
+    refined.matched_share = share_within(residuals, 2.0 * settings.kernel_m, points.size());
+    if (refined.matched_share < settings.min_matched_share) return refined;
+
+    sum = equations_of(residuals, settings.normal_std_rad, settings.likelihood_gain);
+    const Eigen::Vector3d step = -(sum.H + prior_information).ldlt().solve(sum.b + prior_information * prior.offset_of(pose));
+    if (!step.allFinite()) return refined;
+    pose = slam::shifted(pose, step);
+    if (step.head<2>().norm() < kStepTol_m && std::abs(step.z()) < kStepTol_rad) break;
+  }
+  refined.is_matched = true;
+  refined.information = sum.H;
+  Eigen::Matrix3d covariance = (refined.information + prior_information).inverse();
+  covariance.diagonal() += Eigen::Vector3d(squared(settings.map_std_m), squared(settings.map_std_m), squared(settings.map_std_rad));
+  refined.posterior = {.mean = pose, .covariance = 0.5 * (covariance + covariance.transpose())};
+  return refined;
+}
+
+}  // namespace patrol::localize

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/frames.h"
+#include "core/messages.h"
+#include "core/settings.h"
+#include "localize/amcl/line_field.h"
+#include "slam/match_points.h"
+#include "slam/pose_gaussian.h"
+
+namespace patrol::localize {
+
+struct PoseRefinementSettings {
+  int max_points = 400;                 ///< of a scan that are laid on the map
+  double point_spacing_m = 0.1;         ///< beams nearer together than this are averaged
+  double point_std_m = 0.03;            ///< of a point's range, and of the map's cells
+  double point_angle_std_rad = 0.0015;  ///< of its direction
+  double kernel_m = 0.08;               ///< from here on a point counts as an outlier, gradually
+  double likelihood_gain = 0.1;         ///< share of the points that err independently
+  double normal_std_rad = 0.06;         ///< of a line's direction, from cells and noise in the map
+  double map_std_m = 0.01;              ///< of the map itself, which no number of scans averages away
+  double map_std_rad = 0.001;
+  int max_iterations = 8;
+  double min_matched_share = 0.3;       ///< fewer points on surfaces are no match
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("max_points", self.max_points, between(10, 100000));
+    visit("point_spacing_m", self.point_spacing_m, between(0.0, 5.0));
+    visit("point_std_m", self.point_std_m, between(1e-4, 1.0));
+    visit("point_angle_std_rad", self.point_angle_std_rad, between(0.0, 0.1));
+    visit("kernel_m", self.kernel_m, between(1e-3, 10.0));
+    visit("likelihood_gain", self.likelihood_gain, between(1e-4, 1.0));
+    visit("normal_std_rad", self.normal_std_rad, between(0.0, 0.5));
+    visit("map_std_m", self.map_std_m, between(0.0, 1.0));
+    visit("map_std_rad", self.map_std_rad, between(0.0, 0.1));
+    visit("max_iterations", self.max_iterations, between(1, 100));
+    visit("min_matched_share", self.min_matched_share, between(0.0, 1.0));
+  }
+};
+
+struct RefinedPose {
+  slam::PoseGaussian posterior;  ///< of the pose, given the prior and the scan
+  /// Of the scan alone, x, y, yaw in map, with the gain; zero in a direction in which the map says nothing.
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  int num_points = 0;            ///< of the scan that were laid on the map
+  double matched_share = 0.0;    ///< of these, on a surface: within twice the kernel
+  bool is_matched = false;       ///< otherwise the posterior is the prior
+};
+
+/// The Gaussian posterior of a prior and a scan on the map: Gauss-Newton on the points' distances to the lines of the map,
+/// as slam/scan_matcher.h does while the map grows, from the prior's mean.
+///
+/// In a degenerate corridor every line is parallel to the way, but noise and the pattern of cells turn some a few
+/// degrees, and hundreds of them would tell the place along the way to centimetres: wrongly. Sums of squares of normals
+/// grow by the variance of their direction, so that much is taken off the weaker direction again; what is left there is
+/// what the map knows, and in a featureless tunnel that is nothing ("solution remapping", Zhang, Kaess, Singh, "On
+/// degeneracy of optimization-based state estimation problems", ICRA 2016, with a share in place of a threshold).
+RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const slam::PoseGaussian& prior, const Pose2& T_map_start,
+                        const PoseRefinementSettings& settings);
+
+}  // namespace patrol::localize

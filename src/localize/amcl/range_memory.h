@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <map>
+#include <vector>
+
+#include "core/frames.h"
+#include "core/messages.h"
+#include "core/uwb.h"
+#include "localize/amcl/range_likelihood.h"
+
+namespace patrol::localize {
+
+/// The newest range of each anchor, and where odometry had the body when it was taken.
+class RangeMemory {
+ public:
+  /// Anchors in map, heights above z = 0 of the level body. `p_body_antenna`: m, in body.
+  RangeMemory(const std::vector<UwbAnchor>& anchors_in_map, const Eigen::Vector3d& p_body_antenna);
+
+  /// Ranges of anchors that the survey does not know are ignored, and those that are not finite and positive.
+  void add(const UwbRange& range, const Pose2& T_odom_body);
+  /// Those taken after `since`, as seen from the body when odometry has it at `T_odom_now`; by number of the anchor.
+  std::vector<AnchoredRange> taken_after(Time since, const Pose2& T_odom_now) const;
+
+ private:
+  struct Heard {
+    UwbRange range;
+    Pose2 T_odom_body;
+  };
+
+  std::map<int, Eigen::Vector3d> p_map_anchor_;
+  Eigen::Vector3d p_body_antenna_;
+  std::map<int, Heard> newest_;
+};
+
+}  // namespace patrol::localize
