@@ -86,10 +86,14 @@ void TourStack::handle_scan(const LaserScan& raw) {
   const Pose2 T_map_body = tracker_.at(scan->stamp, T_odom_body).T_map_body;
   const auto lap = clock_.lap("planning");
   navigator_.add_scan(*scan, T_map_body);
-  if (dock_detector_ && mode_ == inspect::TourMode::kDock) {
-    new_sighting_ = dock_detector_->detect(*scan, docking_.expected(T_odom_body).value_or(
-                                                      T_map_body.inverse() * site_in_map_.dock->T_route_docked));
-  }
+  if (docking_.status() == plan::DockingStatus::kDocking) look_for_dock(*scan, T_odom_body, T_map_body);
+}
+
+void TourStack::look_for_dock(const LevelScan& scan, const Pose2& T_odom_body, const Pose2& T_map_body) {
+  const Pose2 T_level_expected =
+      docking_.T_level_docked(T_odom_body).value_or(T_map_body.inverse() * site_in_map_.dock->T_route_docked);
+  const std::optional<DockSighting> sighting = dock_detector_->detect(scan, T_level_expected);
+  if (sighting) docking_.add(*sighting, T_odom_body);
 }
 
 void TourStack::map_scan(const LevelScan& scan, const Pose2& T_odom_body) {
@@ -172,13 +176,14 @@ void TourStack::control(Time now, const OdometryEstimate& odometry) {
   for (const Event& event : tour.events) messages_.emplace_back(event);
   if (tour.map_is_made) take_over_map(now);
   if (tour.localize_anew) localize_anew(now, T_odom_body);
-  follow(now, tour, pose);
+  follow(now, tour, pose, T_odom_body);
   command_.stamp = now;
   messages_.emplace_back(command_);
 }
 
-void TourStack::follow(Time now, const inspect::TourOutput& tour, const PoseEstimate& pose) {
+void TourStack::follow(Time now, const inspect::TourOutput& tour, const PoseEstimate& pose, const Pose2& T_odom_body) {
   const bool is_new_mode = std::exchange(mode_, tour.mode) != tour.mode;
+  if (is_new_mode) docking_.stop(), docking_feedback_ = inspect::DockingFeedback::kUnderWay;
   command_ = {};
   switch (tour.mode) {
     case inspect::TourMode::kStand:
@@ -193,11 +198,38 @@ void TourStack::follow(Time now, const inspect::TourOutput& tour, const PoseEsti
       navigate(now, tour.goal, pose);
       break;
     case inspect::TourMode::kUndock:
+      if (is_new_mode) docking_.undock(now, T_odom_body);
+      move_at_dock(now, T_odom_body, pose);
+      break;
     case inspect::TourMode::kDock:
-      (void)is_new_mode;
+      if (docking_.status() != plan::DockingStatus::kIdle) {
+        move_at_dock(now, T_odom_body, pose);
+        break;
+      }
+      navigate(now, docking_.staging_goal(site_in_map_.dock->T_route_docked), pose);
+      if (navigation_ == plan::NavigationStatus::kArrived) docking_.dock(now);
+      if (navigation_ == plan::NavigationStatus::kFailed) docking_feedback_ = inspect::DockingFeedback::kFailed;
       break;
   }
-  if (tour.mode != inspect::TourMode::kNavigate && tour.mode != inspect::TourMode::kDock) navigate(now, std::nullopt, pose);
+  const bool is_navigating = tour.mode == inspect::TourMode::kNavigate || tour.mode == inspect::TourMode::kDock;
+  if (!is_navigating) navigate(now, std::nullopt, pose);
+}
+
+void TourStack::move_at_dock(Time now, const Pose2& T_odom_body, const PoseEstimate& pose) {
+  const plan::DockingStep step = docking_.step(now, T_odom_body);
+  command_ = step.command;
+  if (!step.text.empty()) note(now, pose, "docking", step.text);
+  switch (step.status) {
+    case plan::DockingStatus::kDocked:
+    case plan::DockingStatus::kFree:
+      docking_feedback_ = inspect::DockingFeedback::kDone;
+      break;
+    case plan::DockingStatus::kFailed:
+      docking_feedback_ = inspect::DockingFeedback::kFailed;
+      break;
+    default:
+      docking_feedback_ = inspect::DockingFeedback::kUnderWay;
+  }
 }
 
 void TourStack::navigate(Time now, const std::optional<NavigationGoal>& goal, const PoseEstimate& pose) {
@@ -229,7 +261,7 @@ void TourStack::localize_anew(Time now, const Pose2& T_odom_body) {
   tracker_.correct(now, T_odom_body, site_in_map_.dock->T_route_docked, docked_covariance());
 }
 
-void TourStack::note(Time now, const PoseEstimate& pose, const char* kind, const char* text) {
+void TourStack::note(Time now, const PoseEstimate& pose, const char* kind, const std::string& text) {
   messages_.emplace_back(Event{.stamp = now, .kind = kind, .subject = "", .text = text, .value = 0.0,
                                .T_map_body = pose.T_map_body, .p_map_target = pose.T_map_body.position()});
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -38,6 +38,7 @@ class TourStack final : public RobotStack {
 
  private:
   void handle_scan(const LaserScan& scan);
+  void look_for_dock(const LevelScan& scan, const Pose2& T_odom_body, const Pose2& T_map_body);
   void map_scan(const LevelScan& scan, const Pose2& T_odom_body);
   void localize_scan(const LevelScan& scan, const Pose2& T_odom_body);
   void handle_range(const UwbRange& range);
@@ -47,12 +48,13 @@ class TourStack final : public RobotStack {
   std::vector<UwbAnchor> anchors_above_body() const;
 
   void control(Time now, const OdometryEstimate& odometry);
-  void follow(Time now, const inspect::TourOutput& tour, const PoseEstimate& pose);
+  void follow(Time now, const inspect::TourOutput& tour, const PoseEstimate& pose, const Pose2& T_odom_body);
+  void move_at_dock(Time now, const Pose2& T_odom_body, const PoseEstimate& pose);
   void navigate(Time now, const std::optional<NavigationGoal>& goal, const PoseEstimate& pose);
   void take_over_map(Time now);
   void localize_anew(Time now, const Pose2& T_odom_body);
   void publish_map(Time now);
-  void note(Time now, const PoseEstimate& pose, const char* kind, const char* text);
+  void note(Time now, const PoseEstimate& pose, const char* kind, const std::string& text);
   OccupancyGrid map() const { return slam_ ? slam_->map() : *map_; }
 
   StackSettings settings_;
@@ -74,7 +76,6 @@ class TourStack final : public RobotStack {
   std::optional<Time> first_odometry_;
   LocalizationTrust trust_{.trust = 1.0};
   std::optional<RemoteCommand> new_remote_, last_remote_;
-  std::optional<DockSighting> new_sighting_;
   inspect::TourMode mode_ = inspect::TourMode::kStand;
   plan::NavigationStatus navigation_ = plan::NavigationStatus::kIdle;  ///< a control period ago
   inspect::DockingFeedback docking_feedback_ = inspect::DockingFeedback::kUnderWay;
