@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <optional>
+
+#include "core/dock_sighting.h"
+#include "core/settings.h"
+
+namespace patrol::plan {
+
+struct DockTrackSettings {
+  double way_std_m_per_m = 0.03;      ///< how far odometry goes wrong between two looks
+  double turn_std_rad_per_rad = 0.05;
+  double turn_std_rad_per_m = 0.01;
+  double side_std_m_per_rad = 0.03;   ///< a skidding turn moves the body aside
+  double least_std_m = 0.002;         ///< of a look: what looks from one place have in common
+  double least_std_rad = 0.002;
+  double gate = 16.0;                 ///< squared Mahalanobis distance from which a look is an outlier
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("way_std_m_per_m", self.way_std_m_per_m, between(0.0, 1.0));
+    visit("turn_std_rad_per_rad", self.turn_std_rad_per_rad, between(0.0, 1.0));
+    visit("turn_std_rad_per_m", self.turn_std_rad_per_m, between(0.0, 1.0));
+    visit("side_std_m_per_rad", self.side_std_m_per_rad, between(0.0, 1.0));
+    visit("least_std_m", self.least_std_m, between(1e-4, 0.1));
+    visit("least_std_rad", self.least_std_rad, between(1e-4, 0.1));
+    visit("gate", self.gate, between(1.0, 1000.0));
+  }
+};
+
+/// Where the dock is in `odom`: every sighting, fused. One look is good to a centimetre and a degree; the robot comes near by
+/// smooth odometry and some fifty of them. A Kalman filter of T_odom_docked, whose process noise is the odometry's drift
+/// since the last look: it moves the dock about the robot.
+class DockTrack {
+ public:
+  explicit DockTrack(const DockTrackSettings& settings) : settings_(settings) {}
+
+  void reset();
+  /// `T_odom_body` at the sighting's stamp. Older sightings than the last are ignored.
+  void add(const DockSighting& sighting, const Pose2& T_odom_body);
+
+  std::optional<Pose2> T_odom_docked() const { return T_odom_docked_; }
+  const Eigen::Matrix3d& covariance() const { return covariance_; }  ///< of x, y, yaw in odom
+  int num_sightings() const { return num_sightings_; }
+  Time last_stamp() const { return last_stamp_; }
+
+ private:
+  void drift(const Pose2& T_odom_body);
+
+  DockTrackSettings settings_;
+  std::optional<Pose2> T_odom_docked_;
+  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
+  Pose2 T_odom_before_;  ///< the body at the last look
+  Time last_stamp_ = Time::min();
+  int num_sightings_ = 0;
+  int num_outliers_ = 0;  ///< one after the other
+};
+
+}  // namespace patrol::plan
