@@ -20,18 +20,11 @@ constexpr double kWidth_stds = 4.0;       // beyond so many standard deviations 
 constexpr double kCoarseWidth_m = 0.2;    // of the support while the post is being looked for
 constexpr int kCoarseSteps = 2;           // to each side of the expected pose
 constexpr std::size_t kNumCandidates = 4;
+constexpr double kFineStep_m = 0.02;
 constexpr double kFinest_m = 0.0005;
-constexpr double kRadPerMetre = 1.0;      // a step of the search in yaw, per step in position
-constexpr double kMaxStd_m = 0.05;        // and as many radians: more leaves a direction open
+constexpr double kRadPerMetre = 4.0;      // a step of the search in yaw, per step in position: half a post's width apart
+constexpr double kMaxStd_m = 0.05;        // in the search's steps: more leaves a direction open
 
-
-Pose2 moved(const Pose2& T, int axis, double step_m) {
-  Pose2 result = T;
-  if (axis == 0) result.x += step_m;
-  if (axis == 1) result.y += step_m;
-  if (axis == 2) result.yaw = wrap_angle(result.yaw + kRadPerMetre * step_m);
-  return result;
-}
 
 double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Eigen::Vector2d ab = b - a;
@@ -58,9 +51,13 @@ std::optional<DockSighting> DockDetector::detect(const LevelScan& scan, const Po
   const std::vector<Beam> beams = beams_about(scan, T_level_expected);
   if (static_cast<int>(beams.size()) < settings_.min_beams) return std::nullopt;
   const std::vector<Beam> hits = hits_near(beams, scan.origin_m, T_level_expected);
-  const Fit fit = search(hits, scan.origin_m, T_level_expected);
+  Fit fit = refine(hits, scan.origin_m, T_level_expected);
   DockSighting sighting{.stamp = scan.stamp, .T_level_docked = fit.T_level_docked};
-  if (!judge(beams, scan.origin_m, sighting)) return std::nullopt;
+  if (!judge(beams, scan.origin_m, sighting)) {  // not where it is expected: all around
+    fit = search(hits, scan.origin_m, T_level_expected);
+    sighting.T_level_docked = fit.T_level_docked;
+    if (!judge(beams, scan.origin_m, sighting)) return std::nullopt;
+  }
   const std::optional<Eigen::Matrix3d> spread = covariance(hits, scan.origin_m, fit);
   if (!spread) return std::nullopt;
   sighting.covariance = *spread;
@@ -126,6 +123,15 @@ double DockDetector::support(const std::vector<Beam>& beams, const Eigen::Vector
   return total;
 }
 
+/// Moved in level, or turned about the middle of the outline: about the docked body, half a metre off, a turn would move the
+/// outline aside, and axis by axis the search would creep along a ridge.
+Pose2 DockDetector::moved(const Pose2& T_level_docked, int axis, double step_m) const {
+  if (axis == 0) return {T_level_docked.x + step_m, T_level_docked.y, T_level_docked.yaw};
+  if (axis == 1) return {T_level_docked.x, T_level_docked.y + step_m, T_level_docked.yaw};
+  const Pose2 T_docked_middle{middle_m_.x(), middle_m_.y(), 0.0};
+  return T_level_docked * T_docked_middle * Pose2{0.0, 0.0, kRadPerMetre * step_m} * T_docked_middle.inverse();
+}
+
 DockDetector::Fit DockDetector::search(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
                                        const Pose2& T_level_expected) const {
   std::vector<Fit> candidates;
@@ -133,8 +139,8 @@ DockDetector::Fit DockDetector::search(const std::vector<Beam>& beams, const Eig
     for (int j = -kCoarseSteps; j <= kCoarseSteps; ++j) {
       for (int k = -kCoarseSteps; k <= kCoarseSteps; ++k) {
         const double step_m = settings_.search_m / kCoarseSteps, step_rad = settings_.search_rad / kCoarseSteps;
-        const Pose2 T{T_level_expected.x + i * step_m, T_level_expected.y + j * step_m,
-                      wrap_angle(T_level_expected.yaw + k * step_rad)};
+        const Pose2 turned = moved(T_level_expected, 2, k * step_rad / kRadPerMetre);
+        const Pose2 T = moved(moved(turned, 0, i * step_m), 1, j * step_m);
         candidates.push_back({T, support(beams, origin_m, T, kCoarseWidth_m)});
       }
     }
@@ -144,11 +150,18 @@ DockDetector::Fit DockDetector::search(const std::vector<Beam>& beams, const Eig
   candidates.resize(kNumCandidates);
   for (Fit& fit : candidates) {
     climb(beams, origin_m, kCoarseWidth_m, settings_.search_m / (2.0 * kCoarseSteps), fit);
-    const double width_m = kWidth_stds * settings_.range_std_m;
-    fit.support = support(beams, origin_m, fit.T_level_docked, width_m);
-    climb(beams, origin_m, width_m, 0.02, fit);
+    fit = refine(beams, origin_m, fit.T_level_docked);
   }
   return *std::min_element(candidates.begin(), candidates.end(), has_more);
+}
+
+/// From a pose that is good to some centimetres.
+DockDetector::Fit DockDetector::refine(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
+                                       const Pose2& T_level_docked) const {
+  const double width_m = kWidth_stds * settings_.range_std_m;
+  Fit fit{T_level_docked, support(beams, origin_m, T_level_docked, width_m)};
+  climb(beams, origin_m, width_m, kFineStep_m, fit);
+  return fit;
 }
 
 /// Pattern search: a step along each axis that gains is taken; when none does, the step is halved.
@@ -188,7 +201,14 @@ std::optional<Eigen::Matrix3d> DockDetector::covariance(const std::vector<Beam>&
   const Eigen::Matrix3d information = 0.25 * w_per_std * w_per_std * (curvature + curvature.transpose());
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
   if (eigen.eigenvalues().minCoeff() < 1.0 / (kMaxStd_m * kMaxStd_m)) return std::nullopt;
-  return information.inverse();
+
+  // From steps of the search to x, y, yaw of the docked body: a turn about the middle moves it.
+  const Eigen::Vector2d arm = fit.T_level_docked.position() - fit.T_level_docked * middle_m_;
+  Eigen::Matrix3d J;
+  J << 1.0, 0.0, -kRadPerMetre * arm.y(),
+       0.0, 1.0, kRadPerMetre * arm.x(),
+       0.0, 0.0, kRadPerMetre;
+  return J * information.inverse() * J.transpose();
 }
 
 /// Whether beam for beam the outline is there, and free ground beside it.

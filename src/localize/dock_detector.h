@@ -13,9 +13,9 @@ struct DockDetectorSettings {
   double search_m = 0.3;        ///< the post is looked for so far from where it is expected, along and across
   double search_rad = 0.2;      ///< and turned by so much
   double range_std_m = 0.025;   ///< of one beam
-  double margin_m = 0.1;        ///< the post's ends are free-standing by so much: hits there speak against it
+  double margin_m = 0.15;       ///< the post's ends are free-standing by so much: hits there speak against it
   double min_explained = 0.75;  ///< share of the beams about the post
-  double max_rms_m = 0.05;
+  double max_rms_m = 0.04;
   int min_beams = 25;           ///< on the post
   double max_range_m = 4.0;     ///< farther away it is not looked for
 
@@ -68,7 +68,9 @@ class DockDetector {
                  double width_m) const;
   /// Distance along a ray to the outline; infinite if it passes by.
   double cast(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction) const;
+  Pose2 moved(const Pose2& T_level_docked, int axis, double step_m) const;
   Fit search(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, const Pose2& T_level_expected) const;
+  Fit refine(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, const Pose2& T_level_docked) const;
   void climb(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, double width_m, double step_m, Fit& fit) const;
   std::optional<Eigen::Matrix3d> covariance(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
                                             const Fit& fit) const;
