@@ -63,7 +63,7 @@ def lining(rng, size, length_along):
     glow = np.exp(-((metres - LAMP_SPACING / 2) / 1.9) ** 2)[None, :] * np.exp(-(down / 0.11) ** 2)[:, None]
     veil = 0.62 + 0.16 * np.cos(2 * math.pi * (metres / LAMP_SPACING - 0.5))[None, :] * np.exp(-(down / 0.45) ** 2)[:, None]
     image = image * veil[..., None] + glow[..., None] * np.array((96, 88, 66)) * (0.55 + 0.9 * field[..., None])
-    return colours(Image.fromarray(image.clip(0, 255).astype(np.uint8)))
+    return Image.fromarray(image.clip(0, 255).astype(np.uint8))
 
 
 def rock(rng, size, low, high, crack):
@@ -72,7 +72,7 @@ def rock(rng, size, low, high, crack):
     image = paint(field ** 1.2, low, high) * (1.0 - crack * np.exp(-(sharp / 0.05) ** 2))[..., None]
     wet = (stretched_noise(rng, size, (16, 32, 64), (1, 1, 1), 4) > 0.60)
     image[wet] *= 0.74
-    return colours(Image.fromarray(image.clip(0, 255).astype(np.uint8)))
+    return Image.fromarray(image.clip(0, 255).astype(np.uint8))
 
 
 def invert(rng, size, width):
@@ -97,7 +97,7 @@ def invert(rng, size, width):
     image += edge * 0.5 * (paint(noise(rng, size, (4, 8, 16), (1, 1, 1)), (50, 46, 42), (150, 142, 130)) - image)
     metres = np.arange(size) / size * LAMP_SPACING
     veil = 0.80 + 0.20 * np.cos(2 * math.pi * (metres / LAMP_SPACING - 0.5))[None, :] * np.exp(-((d - 4.0) / 4.0) ** 2)[:, None]
-    return colours(Image.fromarray((image * veil[..., None]).clip(0, 255).astype(np.uint8)))
+    return Image.fromarray((image * veil[..., None]).clip(0, 255).astype(np.uint8))
 
 
 def duct(rng, size):
@@ -105,7 +105,7 @@ def duct(rng, size):
     hoop = 0.80 + 0.20 * np.abs(np.sin(math.pi * x * 8 / size)) ** 0.5
     seam = 1.0 - 0.35 * (x % (size // 2) < 3)
     field = noise(rng, size, (4, 16, 64), (1, 1, 1))
-    return colours(Image.fromarray((paint(field, (176, 138, 28), (226, 184, 60)) * (hoop * seam)[None, :, None]).clip(0, 255).astype(np.uint8)))
+    return Image.fromarray((paint(field, (176, 138, 28), (226, 184, 60)) * (hoop * seam)[None, :, None]).clip(0, 255).astype(np.uint8))
 
 
 def stripes(size, light, dark):

@@ -35,15 +35,16 @@ std::string known_actors(const mjModel& model) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Height of what one stands on at a place: the highest still, touchable surface below the knee.
-double ground_at(const mjModel& model, const mjData& data, const Eigen::Vector2d& place) {
+/// Height of what one stands on at a place: the highest still, touchable surface below the knee of somebody who comes
+/// from ground of height `from_m`.
+double ground_at(const mjModel& model, const mjData& data, const Eigen::Vector2d& place, double from_m) {
   constexpr double kKnee_m = 0.5, kThrough_m = 1e-6;
   const mjtNum down[3] = {0.0, 0.0, -1.0};
-  const mjtByte solid_only[mjNGROUP] = {1, 0, 0, 1, 0, 0};
-  for (double height = kKnee_m;;) {
+  const mjtByte can_carry[mjNGROUP] = {1, 0, 1, 1, 0, 0};
+  for (double height = from_m + kKnee_m;;) {
     const mjtNum from[3] = {place.x(), place.y(), height};
     int geom = -1;
-    const mjtNum distance = mj_ray(&model, &data, from, down, solid_only, 1, -1, &geom, nullptr);
+    const mjtNum distance = mj_ray(&model, &data, from, down, can_carry, 1, -1, &geom, nullptr);
     if (distance < 0.0) return 0.0;
     height -= distance;
     const bool is_actor = model.body_mocapid[model.body_rootid[model.geom_bodyid[geom]]] >= 0;
@@ -134,9 +135,11 @@ Actors::Actors(const mjModel& model, const std::vector<ActorSettings>& settings)
                 .ground_m = {}};
     if (actor.path.length_m() <= 0.0) throw InputError(fmt::format("actors.{}.path: has no length", name));
     const Eigen::Vector3d placed(model.body_pos + 3 * body);
-    actor.base_height_m = placed.z() - ground_at(model, *data, placed.head<2>());
+    actor.base_height_m = placed.z() - ground_at(model, *data, placed.head<2>(), 0.0);
+    double ground = 0.0;
     for (double along = 0.0; along < actor.path.length_m() + kGroundStep_m; along += kGroundStep_m) {
-      actor.ground_m.push_back(ground_at(model, *data, actor.path.position(along)));
+      ground = ground_at(model, *data, actor.path.position(along), ground);
+      actor.ground_m.push_back(ground);
     }
     actors_.push_back(std::move(actor));
   }

@@ -75,8 +75,8 @@ void add_rebar(mjsBody& body, const PropSettings& prop, int number) {
   constexpr double kRadius_m = 0.016;
   const PropSize size = prop_size(prop.kind);
   for (int layer = 0; layer < 3; ++layer) {
-    for (int bar = 0; bar < 4 - layer; ++bar) {
-      const double aside = (bar - 0.5 * (3 - layer)) * (size.width_m - 2.0 * kRadius_m) / 3.0;
+    for (int bar = 0; bar < 5 - layer; ++bar) {
+      const double aside = (bar - 0.5 * (4 - layer)) * (size.width_m - 2.0 * kRadius_m) / 4.0;
       const double height = kRadius_m + layer * (size.height_m - 2.0 * kRadius_m) / 2.0;
       add_rod(body, prop, kRadius_m, aside, height, kRust);
     }

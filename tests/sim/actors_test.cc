@@ -30,7 +30,7 @@ const std::string kTraffic = R"(<geom type="plane" size="50 50 1"/>
   <body name="cart" mocap="true" pos="0 5 0.5"><geom size="0.1"/></body>)";
 
 struct Traffic : SmallWorld {
-  Traffic() : SmallWorld(kTraffic) {}
+  explicit Traffic(const std::string& more = "", const std::string& asset = "") : SmallWorld(kTraffic + more, asset) {}
 
   Eigen::Vector3d place_of(const char* name) const {
     return Eigen::Vector3d(data->mocap_pos +
@@ -132,6 +132,20 @@ TEST(Actors, TheHipRises10CentimetresOntoThePavementWithoutAJump) {
   });
   EXPECT_NEAR(after.largest - before.largest, 0.10, 1e-6);
   EXPECT_LT(highest_step, 0.035);
+}
+
+TEST(Actors, AWalkerClimbsARampOfGroundToADeckHigherThanTheKnee) {
+  // A height field 3 m long rises evenly to 0.8 m, where a deck carries on. The lidar sees it, as in a tunnel.
+  Traffic traffic(R"(<geom type="hfield" hfield="ramp" pos="-6.5 -10 0" group="2"/>
+                     <geom type="box" pos="-3 -10 0.4" size="2 1 0.4"/>)",
+                  R"(<hfield name="ramp" nrow="2" ncol="2" size="1.5 1 0.8 0.1" elevation="0 1 0 1"/>)");
+  Moments before, after;
+  run(traffic, walker({{.x_m = -12, .y_m = -10}, {.x_m = -2, .y_m = -10}}), 10.0, [&](double now) {
+    const Eigen::Vector3d hip = traffic.place_of("walker");
+    if (now > 1.0 && hip.x() < -8.5) before.add(hip.z());
+    if (hip.x() > -4.5 && hip.x() < -2.5) after.add(hip.z());
+  });
+  EXPECT_NEAR(after.largest - before.largest, 0.8, 1e-3);
 }
 
 TEST(Actors, ALoopGoesThereAndBackAgainAndTurnsRound) {

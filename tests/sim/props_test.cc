@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <string>
 
 #include "core/error.h"
 #include "sim/lidar_scene.h"
@@ -47,7 +46,7 @@ TEST(Props, EachKindHasOneTouchableGeomUnderItsNumberAndIsSeenAtItsHeight) {
     }
     EXPECT_EQ(touchable, 1) << kind;
     const double height = prop_size(kind).height_m;
-    EXPECT_NEAR(seen_height(*model, 3.0, -1.0), height, kind == std::string("rebar") ? 0.02 : 1e-6) << kind;
+    EXPECT_NEAR(seen_height(*model, 3.0, -1.0), height, 1e-6) << kind;
     EXPECT_GE(height, 0.06);
     EXPECT_LE(height, 0.25) << "a lidar at 0.35 m must look over it";
   }
