@@ -9,13 +9,10 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include "core/error.h"
+#include "sim/track_model.h"
 
 namespace patrol::sim {
 namespace {
-
-// Robot against scenery only: scenery has contype 1, conaffinity 2.
-constexpr int kRobotContype = 2;
-constexpr int kRobotConaffinity = 1;
 
 // Legs of this class reflect about this much rotor inertia through their gears, with the friction of a good bearing
 // (tuned so that the passive leg swings as the public robot description's damping says).
@@ -121,20 +118,28 @@ void set_inertia(const urdf::Inertial& inertial, mjsBody& body) {
 }
 
 void add_joint(mjSpec& spec, const urdf::Joint& joint, mjsBody& body) {
-  if (joint.type != urdf::Joint::REVOLUTE) return;
+  const bool is_sprocket = joint.type == urdf::Joint::CONTINUOUS;
+  if (joint.type != urdf::Joint::REVOLUTE && !is_sprocket) return;
   mjsJoint* hinge = mjs_addJoint(&body, nullptr);
   mjs_setName(hinge->element, joint.name.c_str());
   hinge->type = mjJNT_HINGE;
   hinge->axis[0] = joint.axis.x;
   hinge->axis[1] = joint.axis.y;
   hinge->axis[2] = joint.axis.z;
-  hinge->limited = mjLIMITED_TRUE;
-  const double unit = spec.compiler.degree ? 180.0 / M_PI : 1.0;  // a spec holds angles as its world's file writes them
-  hinge->range[0] = joint.limits->lower * unit;
-  hinge->range[1] = joint.limits->upper * unit;
-  hinge->armature = kArmature;
-  hinge->damping[0] = kDamping;
-  hinge->frictionloss = kFrictionLoss;
+  if (is_sprocket) {
+    hinge->armature = sprocket_armature();
+    hinge->frictionloss = joint.dynamics ? joint.dynamics->friction : 0.0;
+    hinge->solref_friction[0] = 0.01;  // as firm as the ground: the parking brake is this friction too
+    hinge->solimp_friction[0] = hinge->solimp_friction[1] = 0.999;
+  } else {
+    hinge->limited = mjLIMITED_TRUE;
+    const double unit = spec.compiler.degree ? 180.0 / M_PI : 1.0;  // a spec holds angles as its world's file writes them
+    hinge->range[0] = joint.limits->lower * unit;
+    hinge->range[1] = joint.limits->upper * unit;
+    hinge->armature = kArmature;
+    hinge->damping[0] = kDamping;
+    hinge->frictionloss = kFrictionLoss;
+  }
 
   mjsActuator* motor = mjs_addActuator(&spec, nullptr);
   mjs_setToMotor(motor);
@@ -146,16 +151,25 @@ void add_joint(mjSpec& spec, const urdf::Joint& joint, mjsBody& body) {
   motor->ctrlrange[1] = joint.limits->effort;
 }
 
-void add_link(mjSpec& spec, const urdf::Link& link, mjsBody& body) {
+bool is_sprocket(const urdf::Link& link) {
+  return link.parent_joint && link.parent_joint->type == urdf::Joint::CONTINUOUS;
+}
+
+/// `load_n` is what each road wheel carries, if the robot has any.
+void add_link(mjSpec& spec, const urdf::Link& link, double load_n, mjsBody& body) {
   mjs_setName(body.element, link.name.c_str());
   if (link.inertial) set_inertia(*link.inertial, body);
   add_visuals(link, body);
-  add_collisions(link, body);
+  if (is_track(link)) {
+    add_wheels(link, load_n, body);
+  } else if (!is_sprocket(link)) {  // the belt covers it
+    add_collisions(link, body);
+  }
   for (const urdf::LinkSharedPtr& child : link.child_links) {
     mjsBody* child_body = mjs_addBody(&body, nullptr);
     set_pose(child->parent_joint->parent_to_joint_origin_transform, child_body->pos, child_body->quat);
     add_joint(spec, *child->parent_joint, *child_body);
-    add_link(spec, *child, *child_body);
+    add_link(spec, *child, load_n, *child_body);
     if (child->parent_joint->type == urdf::Joint::FIXED && !is_foot(*child)) {
       mjsSite* site = mjs_addSite(child_body, nullptr);
       mjs_setName(site->element, child->name.c_str());
@@ -177,29 +191,13 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& path) {
 /// On feet: two links of 0.213 m at 0.8 rad, and the foot.
 Stance stance_on_feet() { return {.height_m = 0.322, .support_m = {Eigen::Vector2d::Zero()}, .eye_height_m = 0.3}; }
 
-/// On tracks: a hand's breadth above the highest ground under any wheel, to settle from there in the first ticks.
-Stance stance_on_tracks(const urdf::ModelInterface& model) {
-  constexpr double kDrop_m = 0.04;
-  Stance stance{.height_m = 0.0, .support_m = {Eigen::Vector2d::Zero()}, .eye_height_m = 1.0};
-  for (const char* name : {"left_track", "right_track"}) {
-    const urdf::LinkConstSharedPtr track = model.getLink(name);
-    if (!track) throw InputError(fmt::format("robot {}: there is no link named {}", model.getName(), name));
-    const urdf::Vector3& origin = track->parent_joint->parent_to_joint_origin_transform.position;
-    for (const urdf::CollisionSharedPtr& wheel : track->collision_array) {
-      const urdf::Vector3 centre = wheel->origin.position;
-      const double radius_m = static_cast<const urdf::Cylinder&>(*wheel->geometry).radius;
-      stance.height_m = std::max(stance.height_m, radius_m - centre.z - origin.z + kDrop_m);
-      stance.support_m.emplace_back(origin.x + centre.x, origin.y + centre.y);
-    }
-  }
-  return stance;
-}
+bool has_tracks(const urdf::ModelInterface& model) { return model.getLink("left_track") != nullptr; }
 
 }  // namespace
 
 Stance stance_of(const std::string& urdf_path) {
   const urdf::ModelInterfaceSharedPtr model = parse(urdf_path);
-  return model->getLink("left_track") ? stance_on_tracks(*model) : stance_on_feet();
+  return has_tracks(*model) ? stance_on_tracks(*model) : stance_on_feet();
 }
 
 void add_robot(mjSpec& world, const std::string& urdf_path, const Pose3& T_world_body) {
@@ -212,7 +210,8 @@ void add_robot(mjSpec& world, const std::string& urdf_path, const Pose3& T_world
   base->quat[3] = T_world_body.rotation.z();
   mjsJoint* freejoint = mjs_addFreeJoint(base);
   mjs_setName(freejoint->element, "robot");
-  add_link(world, *model->getRoot(), *base);
+  add_link(world, *model->getRoot(), road_wheel_load_n(*model), *base);
+  if (has_tracks(*model)) use_track_friction(world.option);
 }
 
 }  // namespace patrol::sim

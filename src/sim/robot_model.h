@@ -17,6 +17,10 @@ inline constexpr int kGroupTouchOnly = 3;
 inline constexpr int kGroupRobotVisual = 4;
 inline constexpr int kGroupRobotCollision = 5;
 
+/// A robot touches scenery only, which has contype 1 and conaffinity 2.
+inline constexpr int kRobotContype = 2;
+inline constexpr int kRobotConaffinity = 1;
+
 /// How a robot is put down, upright on level ground.
 struct Stance {
   double height_m = 0.0;                   ///< of the base above the ground

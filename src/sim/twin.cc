@@ -11,6 +11,7 @@
 #include <mujoco/mujoco.h>
 
 #include "sim/locomotion/quadruped_drive.h"
+#include "sim/locomotion/track_drive.h"
 
 namespace patrol::sim {
 namespace {
@@ -32,9 +33,9 @@ std::string geom_name(const mjModel& model, int geom) {
   return fmt::format("geom {} of {}", geom, body == nullptr ? "?" : body);
 }
 
-std::unique_ptr<Locomotion> make_locomotion(const TwinSettings& settings, const RobotDescription& robot) {
-  if (robot.legs.empty()) throw InputError(fmt::format("{}: a robot needs legs", settings.robot_urdf));
-  return std::make_unique<QuadrupedDrive>(robot, settings.locomotion);
+std::unique_ptr<Locomotion> make_locomotion(const TwinSettings& settings, const RobotDescription& robot, mjModel& physics) {
+  if (!robot.tracks) return std::make_unique<QuadrupedDrive>(robot, settings.locomotion);
+  return std::make_unique<TrackDrive>(robot, settings.track_drive, settings.sensors.hall.ticks_per_rad(), physics);
 }
 
 }  // namespace
@@ -44,9 +45,7 @@ Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uin
       data_(make_data(*model_.physics)),
       nearby_(*model_.physics),
       robot_body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)),
-      settings_(settings),
-      robot_(robot),
-      locomotion_(make_locomotion(settings, robot)),
+      locomotion_(make_locomotion(settings, robot, *model_.physics)),
       actors_(*model_.physics, settings.actors),
       sensors_(settings.sensors, robot, *model_.physics, *model_.view,
                GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed),
@@ -115,7 +114,7 @@ void Twin::put_at(const Pose2& T_world_body) {
   for (mjtNum* rates : {data_->qvel, data_->qacc_warmstart, data_->qfrc_applied}) std::fill_n(rates, model.nv, 0.0);
   std::fill_n(data_->ctrl, model.nu, 0.0);
 
-  locomotion_ = make_locomotion(settings_, robot_);
+  locomotion_->restart();
   mj_kinematics(&model, data_.get());
   nearby_.update(*data_);
   mj_forward(&model, data_.get());

@@ -13,6 +13,7 @@
 #include "sim/gas_plume.h"
 #include "sim/locomotion/locomotion.h"
 #include "sim/locomotion/quadruped_controller.h"
+#include "sim/locomotion/track_drive_settings.h"
 #include "sim/model_assembly.h"
 #include "sim/nearby_scenery.h"
 #include "sim/remote_operator.h"
@@ -26,7 +27,8 @@ struct TwinSettings {
   std::string robot_urdf;
   Pose2 T_world_start;  ///< where the robot is put down
   SensorSuiteSettings sensors;
-  LocomotionSettings locomotion;
+  LocomotionSettings locomotion;   ///< of a robot with legs
+  TrackDriveSettings track_drive;  ///< of a robot with tracks
   std::vector<ActorSettings> actors;
   std::vector<LeakSettings> leaks;
   WindSettings wind;
@@ -76,8 +78,6 @@ class Twin {
   DataPtr data_;
   NearbyScenery nearby_;
   int robot_body_;
-  TwinSettings settings_;
-  RobotDescription robot_;
   std::unique_ptr<Locomotion> locomotion_;
   Actors actors_;
   SensorSuite sensors_;

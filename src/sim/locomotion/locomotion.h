@@ -22,6 +22,9 @@ class Locomotion {
   /// One tick, with the physics evaluated and not yet stepped: what the motors do until the next one.
   virtual void step(const FirmwareReadings& readings, const VelocityCommand& command, mjModel& physics, mjData& data) = 0;
 
+  /// The firmware is switched off and on again.
+  virtual void restart() = 0;
+
   /// By the firmware's own sensing.
   virtual bool has_fallen() const = 0;
 };

@@ -10,17 +10,19 @@ namespace patrol::sim {
 /// Four legs: the controller's torques are the motors'.
 class QuadrupedDrive : public Locomotion {
  public:
-  QuadrupedDrive(const RobotDescription& robot, const LocomotionSettings& settings) : controller_(robot, settings) {}
+  QuadrupedDrive(const RobotDescription& robot, const LocomotionSettings& settings)
+      : fresh_(robot, settings), controller_(fresh_) {}
 
   void step(const FirmwareReadings& readings, const VelocityCommand& command, mjModel&, mjData& data) override {
     const JointTorques torques =
         controller_.step({.imu = readings.imu, .joints = readings.joints, .feet = readings.feet}, command);
     std::copy(torques.begin(), torques.end(), data.ctrl);
   }
+  void restart() override { controller_ = fresh_; }
   bool has_fallen() const override { return controller_.has_fallen(); }
 
  private:
-  QuadrupedController controller_;
+  QuadrupedController fresh_, controller_;
 };
 
 }  // namespace patrol::sim

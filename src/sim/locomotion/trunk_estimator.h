@@ -37,7 +37,7 @@ class TrunkEstimator {
   void update_feet(const Imu& imu, const JointState& joints, const FootContacts& contacts);
   void update_velocity(const Imu& imu);
 
-  const RobotDescription robot_;
+  RobotDescription robot_;
   double tick_s_;
   double age_s_ = 0.0;  ///< since switch-on
   Eigen::Vector3d up_in_body_ = Eigen::Vector3d::UnitZ();

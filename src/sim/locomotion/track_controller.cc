@@ -1,0 +1,113 @@
+#include "sim/locomotion/track_controller.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace patrol::sim {
+namespace {
+
+constexpr double kRestSpeed_mps = 0.005, kRestRate_radps = 0.005;   // asked less than this is asked nothing
+constexpr double kRestSprocket_radps = 0.5;  // a tick that comes and goes looks like 0.3
+constexpr double kBiasTime_s = 2.0;          // of the gyroscope's, at rest
+constexpr double kLevelling_per_s = 0.5;   // of the gyroscope's attitude by the accelerometer
+constexpr double kSettling_s = 0.5;        // after switch-on the accelerometer alone
+const double kFallenCosine = std::cos(60.0 * M_PI / 180.0);
+
+double approach(double value, double target, double max_change) {
+  return value + std::clamp(target - value, -max_change, max_change);
+}
+
+TrackMotor motor_of(const JointLimit& limit, const TrackDriveSettings& settings) {
+  return {.max_torque_nm = limit.effort_nm, .stall_torque_nm = settings.stall_torque_nm, .no_load_radps = limit.velocity_radps};
+}
+
+}  // namespace
+
+TrackController::TrackController(const RobotDescription& robot, const TrackDriveSettings& settings, double ticks_per_rad,
+                                 double tick_s)
+    : settings_(settings),
+      tracks_(robot.tracks.value()),
+      tick_s_(tick_s),
+      R_body_imu_(robot.T_body("imu").rotation.toRotationMatrix()),
+      regulators_{SprocketRegulator(settings, motor_of(robot.joint_limits[0], settings), ticks_per_rad, tick_s),
+                  SprocketRegulator(settings, motor_of(robot.joint_limits[1], settings), ticks_per_rad, tick_s)} {
+  validate(settings, "track_drive");
+}
+
+TrackOrders TrackController::step(const Imu& imu, const TrackTicks& ticks, const VelocityCommand& command) {
+  watch_for_fall(imu);
+  follow_command(command);
+  const std::array<double, 2> wanted_radps = sprocket_speeds(speed_mps_, corrected_yaw_rate(imu));
+  TrackOrders orders{.torque_nm = {regulators_[0].step(wanted_radps[0], ticks.left),
+                                   regulators_[1].step(wanted_radps[1], ticks.right)}};
+  update_brake();
+  if (is_brake_closed_) {
+    for (SprocketRegulator& regulator : regulators_) regulator.let_go();
+    learn_bias(imu);
+    orders = {.is_brake_closed = true};
+  }
+  return orders;
+}
+
+void TrackController::follow_command(const VelocityCommand& command) {
+  const double speed = std::clamp(command.vx_mps, -settings_.max_speed_mps, settings_.max_speed_mps);
+  const double rate = std::clamp(command.yaw_rate_radps, -settings_.max_yaw_rate_radps, settings_.max_yaw_rate_radps);
+  speed_mps_ = approach(speed_mps_, speed, settings_.max_acceleration_mps2 * tick_s_);
+  yaw_rate_radps_ = approach(yaw_rate_radps_, rate, settings_.max_yaw_acceleration_radps2 * tick_s_);
+}
+
+/// The yaw rate to ask of the kinematics so that the gyroscope reads the one that is wanted.
+double TrackController::corrected_yaw_rate(const Imu& imu) {
+  if (!settings_.use_gyro) return yaw_rate_radps_;
+  if (is_asked_to_rest()) {
+    yaw_behind_rad_ = 0.0;
+    return yaw_rate_radps_;
+  }
+  const double missing = yaw_rate_radps_ - (measured_yaw_rate(imu) - gyro_bias_radps_);
+  const double limit = settings_.max_gyro_correction_radps;
+  const double gain = settings_.gyro_integral_per_s;
+  if (gain > 0.0) yaw_behind_rad_ = std::clamp(yaw_behind_rad_ + tick_s_ * missing, -limit / gain, limit / gain);
+  return yaw_rate_radps_ + std::clamp(settings_.gyro_gain * missing + gain * yaw_behind_rad_, -limit, limit);
+}
+
+void TrackController::learn_bias(const Imu& imu) {
+  gyro_bias_radps_ += tick_s_ / kBiasTime_s * (measured_yaw_rate(imu) - gyro_bias_radps_);
+}
+
+double TrackController::measured_yaw_rate(const Imu& imu) const {
+  return up_in_body_.dot(R_body_imu_ * imu.angular_velocity_radps);
+}
+
+/// Left and right, rad/s. When one belt would be too fast, both are slowed alike, and the robot keeps to its curve.
+std::array<double, 2> TrackController::sprocket_speeds(double speed_mps, double yaw_rate_radps) const {
+  const double half_gauge_m = settings_.gauge_factor * tracks_.gauge_m / 2.0;
+  const double left = speed_mps - yaw_rate_radps * half_gauge_m, right = speed_mps + yaw_rate_radps * half_gauge_m;
+  const double excess = std::max({1.0, std::abs(left) / settings_.max_speed_mps, std::abs(right) / settings_.max_speed_mps});
+  return {left / excess / tracks_.sprocket_radius_m, right / excess / tracks_.sprocket_radius_m};
+}
+
+/// Closes once both sprockets have been at rest without command for a while, and opens on command only.
+void TrackController::update_brake() {
+  const bool is_still = std::abs(regulators_[0].speed_radps()) < kRestSprocket_radps &&
+                        std::abs(regulators_[1].speed_radps()) < kRestSprocket_radps;
+  idle_s_ = is_asked_to_rest() && (is_still || is_brake_closed_) ? idle_s_ + tick_s_ : 0.0;
+  is_brake_closed_ = idle_s_ > settings_.brake_delay_s;
+}
+
+bool TrackController::is_asked_to_rest() const {
+  return std::abs(speed_mps_) < kRestSpeed_mps && std::abs(yaw_rate_radps_) < kRestRate_radps;
+}
+
+/// Where up is, by the gyroscope, drawn slowly to where the accelerometer has it.
+void TrackController::watch_for_fall(const Imu& imu) {
+  age_s_ += tick_s_;
+  const Eigen::Vector3d rate = R_body_imu_ * imu.angular_velocity_radps;
+  const Eigen::Vector3d force = R_body_imu_ * imu.linear_acceleration_mps2;
+  up_in_body_ += tick_s_ * up_in_body_.cross(rate);
+  const double gain = age_s_ < kSettling_s ? 10.0 : kLevelling_per_s;
+  if (force.norm() > 1.0) up_in_body_ += gain * tick_s_ * (force.normalized() - up_in_body_);
+  up_in_body_.normalize();
+  fallen_s_ = up_in_body_.z() < kFallenCosine ? fallen_s_ + tick_s_ : 0.0;
+}
+
+}  // namespace patrol::sim

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+
+#include "sim/locomotion/locomotion.h"
+#include "sim/locomotion/track_belts.h"
+#include "sim/locomotion/track_controller.h"
+
+namespace patrol::sim {
+
+/// Two tracks: firmware, motors and brakes on the sprockets, belts on the ground.
+class TrackDrive : public Locomotion {
+ public:
+  /// `ticks_per_rad`: Hall counts per radian of a sprocket.
+  TrackDrive(const RobotDescription& robot, const TrackDriveSettings& settings, double ticks_per_rad, mjModel& physics);
+
+  void step(const FirmwareReadings& readings, const VelocityCommand& command, mjModel& physics, mjData& data) override;
+  void restart() override { controller_ = fresh_; }
+  bool has_fallen() const override { return controller_.has_fallen(); }
+
+ private:
+  TrackController fresh_, controller_;
+  TrackBelts belts_;
+  double brake_torque_nm_;
+  std::array<double, 2> gear_friction_nm_;  ///< left, right
+  std::array<int, 2> motors_;
+};
+
+}  // namespace patrol::sim

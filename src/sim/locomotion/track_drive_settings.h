@@ -1,0 +1,49 @@
+#pragma once
+
+#include "core/settings.h"
+
+namespace patrol::sim {
+
+/// The tracks, their motors and their firmware.
+struct TrackDriveSettings {
+  double friction = 0.8;                        ///< of the rubber, on whatever the ground is (where the ground does not say otherwise)
+  double max_speed_mps = 1.0;                   ///< of either belt, and of the robot
+  double max_yaw_rate_radps = 0.8;
+  double max_acceleration_mps2 = 0.8;
+  double max_yaw_acceleration_radps2 = 1.5;
+  double gauge_factor = 1.41;                   ///< gauge that the firmware counts with over the tracks' own: a track that turns slips
+  bool use_gyro = true;                         ///< corrects the yaw rate by the gyroscope
+  double gyro_gain = 0.3;                       ///< rad/s asked more per rad/s missing
+  double gyro_integral_per_s = 1.0;             ///< the same per rad missing
+  double max_gyro_correction_radps = 0.4;
+  double proportional_nms = 8.0;                ///< torque per rad/s that a sprocket is too slow
+  double integral_nm = 40.0;                    ///< torque per rad that it is behind
+  double derivative_nms2 = 0.02;                ///< torque per rad/s2 that it lacks
+  double observer_radps = 100.0;                ///< bandwidth of the speed from the Hall ticks
+  double stall_torque_nm = 120.0;               ///< of the motor at the sprocket, without its current limit
+  double brake_torque_nm = 60.0;                ///< of the parking brake on each sprocket
+  double brake_delay_s = 0.5;                   ///< at rest without command until it closes
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("friction", self.friction, between(0.0, 2.0));
+    visit("max_speed_mps", self.max_speed_mps, between(0.05, 2.0));
+    visit("max_yaw_rate_radps", self.max_yaw_rate_radps, between(0.05, 3.0));
+    visit("max_acceleration_mps2", self.max_acceleration_mps2, between(0.05, 5.0));
+    visit("max_yaw_acceleration_radps2", self.max_yaw_acceleration_radps2, between(0.05, 10.0));
+    visit("gauge_factor", self.gauge_factor, between(1.0, 4.0));
+    visit("use_gyro", self.use_gyro);
+    visit("gyro_gain", self.gyro_gain, between(0.0, 2.0));
+    visit("gyro_integral_per_s", self.gyro_integral_per_s, between(0.0, 10.0));
+    visit("max_gyro_correction_radps", self.max_gyro_correction_radps, between(0.0, 2.0));
+    visit("proportional_nms", self.proportional_nms, between(0.0, 30.0));
+    visit("integral_nm", self.integral_nm, between(0.0, 300.0));
+    visit("derivative_nms2", self.derivative_nms2, between(0.0, 1.0));
+    visit("observer_radps", self.observer_radps, between(5.0, 200.0));
+    visit("stall_torque_nm", self.stall_torque_nm, at_least(1.0));
+    visit("brake_torque_nm", self.brake_torque_nm, at_least(0.0));
+    visit("brake_delay_s", self.brake_delay_s, between(0.0, 10.0));
+  }
+};
+
+}  // namespace patrol::sim

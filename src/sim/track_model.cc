@@ -1,0 +1,138 @@
+#include "sim/track_model.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <initializer_list>
+#include <limits>
+
+#include "core/error.h"
+
+namespace patrol::sim {
+namespace {
+
+// Springs: 4.6 Hz for the whole robot, at a third of critical damping.
+constexpr double kSpringStiffness = 6000.0, kSpringDamping = 150.0;  // N/m, N s/m
+constexpr double kDroop_m = 0.02, kBump_m = 0.03;                    // travel from where they carry the robot
+constexpr double kWheelMass_kg = 0.8, kWheelInertia_kgm2 = 0.002;
+constexpr double kGravity_mps2 = 9.81;
+
+// Rubber on firm ground: it grips within 10 ms, and creeps by half a millimetre a second on a slope of 10 degrees.
+constexpr double kGripTime_s = 0.01;
+
+// Rotor (flat brushless motors of 300 W: 1.2e-4 kg m2) through a gear of 30, the belt's 6 kg at its pitch line, and the wheels
+// that it turns.
+constexpr double kSprocketArmature_kgm2 = 0.16;
+
+void set(double* to, std::initializer_list<double> values) { std::copy(values.begin(), values.end(), to); }
+
+const urdf::Cylinder& wheel_shape(const urdf::Collision& wheel) {
+  if (wheel.geometry->type != urdf::Geometry::CYLINDER) throw InputError(wheel.name + ": a track's wheels must be cylinders");
+  return static_cast<const urdf::Cylinder&>(*wheel.geometry);
+}
+
+/// Height of the lowest point of a track's wheels, in the link, m.
+double bottom_m(const urdf::Link& track) {
+  double bottom = std::numeric_limits<double>::infinity();
+  for (const urdf::CollisionSharedPtr& wheel : track.collision_array) {
+    bottom = std::min(bottom, wheel->origin.position.z - wheel_shape(*wheel).radius);
+  }
+  return bottom;
+}
+
+bool is_road_wheel(const urdf::Link& track, const urdf::Collision& wheel) {
+  return wheel.origin.position.z - wheel_shape(wheel).radius < bottom_m(track) + 1e-3;
+}
+
+/// The body that carries a road wheel, pressed down by `load_n` where it stands in the URDF.
+mjsBody* add_suspension(const urdf::Collision& wheel, double load_n, mjsBody& track) {
+  mjsBody* carrier = mjs_addBody(&track, nullptr);
+  mjs_setName(carrier->element, (wheel.name + "_carrier").c_str());
+  const urdf::Vector3& centre = wheel.origin.position;
+  set(carrier->pos, {centre.x, centre.y, centre.z});
+  carrier->explicitinertial = 1;
+  carrier->mass = kWheelMass_kg;
+  std::fill_n(carrier->inertia, 3, kWheelInertia_kgm2);
+  mjsJoint* slide = mjs_addJoint(carrier, nullptr);
+  mjs_setName(slide->element, (wheel.name + "_spring").c_str());
+  slide->type = mjJNT_SLIDE;
+  set(slide->axis, {0.0, 0.0, 1.0});
+  slide->stiffness[0] = kSpringStiffness;
+  slide->damping[0] = kSpringDamping;
+  slide->springref = -load_n / kSpringStiffness;
+  slide->limited = mjLIMITED_TRUE;
+  slide->range[0] = -kDroop_m;
+  slide->range[1] = kBump_m;
+  return carrier;
+}
+
+/// A wheel rounded at its edges, as wide as the URDF says: a capsule across, or a sphere where the wheel is no wider than high.
+void add_wheel(const urdf::Collision& wheel, mjsBody& body, bool is_at_origin) {
+  const urdf::Cylinder& shape = wheel_shape(wheel);
+  mjsGeom* geom = mjs_addGeom(&body, nullptr);
+  mjs_setName(geom->element, wheel.name.c_str());
+  const urdf::Vector3& centre = wheel.origin.position;
+  if (!is_at_origin) set(geom->pos, {centre.x, centre.y, centre.z});
+  const urdf::Rotation& q = wheel.origin.rotation;
+  set(geom->quat, {q.w, q.x, q.y, q.z});
+  const double straight_m = shape.length / 2.0 - shape.radius;
+  geom->type = straight_m > 1e-6 ? mjGEOM_CAPSULE : mjGEOM_SPHERE;
+  geom->size[0] = shape.radius;
+  geom->size[1] = straight_m;
+  geom->contype = kRobotContype;
+  geom->conaffinity = kRobotConaffinity;
+  geom->group = kGroupRobotCollision;
+  geom->condim = 3;
+  geom->priority = 1;
+  geom->solref[0] = kGripTime_s;
+  set(geom->solimp, {0.99, 0.999, 0.001});
+}
+
+}  // namespace
+
+bool is_track(const urdf::Link& link) { return link.name.ends_with("_track"); }
+
+double road_wheel_load_n(const urdf::ModelInterface& robot) {
+  double mass_kg = 0.0;
+  std::ptrdiff_t wheels = 0;
+  for (const auto& [name, link] : robot.links_) {
+    if (link->inertial) mass_kg += link->inertial->mass;
+    if (!is_track(*link)) continue;
+    wheels += std::count_if(link->collision_array.begin(), link->collision_array.end(),
+                            [&](const auto& wheel) { return is_road_wheel(*link, *wheel); });
+  }
+  return wheels == 0 ? 0.0 : (mass_kg / static_cast<double>(wheels) - kWheelMass_kg) * kGravity_mps2;
+}
+
+void add_wheels(const urdf::Link& track, double load_n, mjsBody& body) {
+  for (const urdf::CollisionSharedPtr& wheel : track.collision_array) {
+    const bool is_sprung = is_road_wheel(track, *wheel);
+    add_wheel(*wheel, is_sprung ? *add_suspension(*wheel, load_n, body) : body, is_sprung);
+    if (is_sprung) body.mass -= kWheelMass_kg;
+  }
+}
+
+double sprocket_armature() { return kSprocketArmature_kgm2; }
+
+void use_track_friction(mjOption& option) {
+  option.cone = mjCONE_PYRAMIDAL;
+  option.impratio = 1.0;
+}
+
+Stance stance_on_tracks(const urdf::ModelInterface& robot) {
+  constexpr double kDrop_m = 0.04;
+  Stance stance{.height_m = 0.0, .support_m = {Eigen::Vector2d::Zero()}, .eye_height_m = 1.0};
+  for (const char* name : {"left_track", "right_track"}) {
+    const urdf::LinkConstSharedPtr track = robot.getLink(name);
+    if (!track) throw InputError("robot " + robot.getName() + ": there is no link named " + name);
+    const urdf::Vector3& origin = track->parent_joint->parent_to_joint_origin_transform.position;
+    for (const urdf::CollisionSharedPtr& wheel : track->collision_array) {
+      const urdf::Vector3& centre = wheel->origin.position;
+      const double radius_m = wheel_shape(*wheel).radius;
+      stance.height_m = std::max(stance.height_m, radius_m - centre.z - origin.z + kDrop_m);
+      stance.support_m.emplace_back(origin.x + centre.x, origin.y + centre.y);
+    }
+  }
+  return stance;
+}
+
+}  // namespace patrol::sim
