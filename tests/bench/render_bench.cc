@@ -1,6 +1,7 @@
 // What a replay frame costs beyond the drawing itself: painter, smoothed edges and overlay against a bare
 // loop of mjr_render and mjr_readPixels, of the same size and the same scenes along the street.
 //   tests/bench/render_bench        `ratio` is to be at most 1.15
+// And what a frame of the depth camera costs at places along the street, wall time: to be at most 4 ms.
 // Processor time of all threads: the software renderer's own are most of it.
 
 #include <benchmark/benchmark.h>
@@ -10,6 +11,7 @@
 #include <numbers>
 
 #include "render/antialias.h"
+#include "render/depth_renderer.h"
 #include "render/overlay.h"
 #include "render/scene_painter.h"
 #include "sim/model_assembly.h"
@@ -113,6 +115,25 @@ void ReplayFrameAgainstBareRender(benchmark::State& state) {
   state.counters["overlay_ms"] = 1e3 * overlay_s / num_frames;
 }
 BENCHMARK(ReplayFrameAgainstBareRender)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
+
+void DepthFrame(benchmark::State& state, double far_m) {
+  const std::string root = PATROL_SOURCE_DIR;
+  const sim::AssembledModel model = sim::assemble_model(
+      root + "/worlds/street/street.xml", root + "/models/quadruped/quadruped.urdf", {11.0, 8.0, std::numbers::pi / 2.0});
+  const sim::DataPtr data = sim::make_data(*model.view);
+  mj_forward(model.view.get(), data.get());
+  DepthRenderer renderer(*model.view, sim::lens_of({}), 0.3, far_m);
+  sim::SurfaceImage image;
+  std::size_t place = 0;
+  int num_drawn = 0;
+  for (auto _ : state) {
+    const double y_m = kPlacesY_m[place++ % std::size(kPlacesY_m)];
+    renderer.draw(*data, {{11.0, y_m, 0.5}, quaternion_from_rpy(0.0, 0.2, std::numbers::pi / 2.0)}, image);
+    num_drawn += renderer.num_drawn();
+  }
+  state.counters["drawn"] = static_cast<double>(num_drawn) / static_cast<double>(state.iterations());
+}
+BENCHMARK_CAPTURE(DepthFrame, street_8m, 8.0)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace patrol::bench

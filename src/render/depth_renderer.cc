@@ -1,0 +1,185 @@
+#include "render/depth_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "sim/robot_model.h"
+
+namespace patrol::render {
+namespace {
+
+using RowMajor3 = Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>;
+
+constexpr float kBrightest = 254.0f;  // colours are segment numbers plus one, in the red channel
+
+/// The view model without what a depth picture does not need, as it goes to OpenGL.
+sim::ModelPtr strip_looks(const mjModel& view, const sim::PinholeLens& lens) {
+  sim::ModelPtr model(mj_copyModel(nullptr, &view));
+  model->ntex = 0;
+  model->vis.quality.shadowsize = 0;
+  model->vis.quality.offsamples = 0;
+  model->vis.quality.numslices = 40;
+  model->vis.quality.numstacks = 28;
+  model->vis.quality.numquads = 1;
+  model->vis.global.offwidth = lens.width_px;
+  model->vis.global.offheight = lens.height_px;
+  return model;
+}
+
+const float* rgba_of(const mjModel& model, int geom) {
+  const int material = model.geom_matid[geom];
+  return material >= 0 ? model.mat_rgba + 4 * material : model.geom_rgba + 4 * geom;
+}
+
+bool is_housing(const mjModel& model, int geom) {
+  const char* link = mj_id2name(&model, mjOBJ_BODY, model.geom_bodyid[geom]);
+  return link != nullptr && std::string_view(link) == "depth_camera";
+}
+
+bool is_drawn(const mjModel& model, int geom) {
+  constexpr float kSeeThrough = 0.5f;
+  const int group = model.geom_group[geom];
+  const bool is_for_the_eye = group == sim::kGroupSolid || group == sim::kGroupEyeOnly || group == sim::kGroupRobotVisual;
+  const float alpha = std::min(model.geom_rgba[4 * geom + 3], rgba_of(model, geom)[3]);
+  return is_for_the_eye && alpha > kSeeThrough && !is_housing(model, geom);
+}
+
+/// Luminance (ITU-R BT.709).
+float reflectivity_of(const mjModel& model, int geom) {
+  const float* rgba = rgba_of(model, geom);
+  return std::clamp(0.2126f * rgba[0] + 0.7152f * rgba[1] + 0.0722f * rgba[2], 0.0f, 1.0f);
+}
+
+}  // namespace
+
+/// Where the camera is, and the sides of what it sees as unit normals that point inwards.
+struct DepthRenderer::Camera {
+  Camera(const Pose3& T_world_camera, const sim::PinholeLens& lens)
+      : eye(T_world_camera.position), R(T_world_camera.rotation.toRotationMatrix()) {
+    const double half_width = 0.5 * lens.width_px / lens.focal_px, half_height = 0.5 * lens.height_px / lens.focal_px;
+    sides = {Eigen::Vector3d(half_width, 1.0, 0.0), Eigen::Vector3d(half_width, -1.0, 0.0), Eigen::Vector3d(half_height, 0.0, 1.0),
+             Eigen::Vector3d(half_height, 0.0, -1.0)};
+    for (Eigen::Vector3d& side : sides) side = R * side.normalized();
+  }
+  Eigen::Vector3d forward() const { return R.col(0); }
+  Eigen::Vector3d up() const { return R.col(2); }
+
+  Eigen::Vector3d eye;
+  Eigen::Matrix3d R;
+  std::array<Eigen::Vector3d, 4> sides;
+};
+
+DepthRenderer::DepthRenderer(const mjModel& view, const sim::PinholeLens& lens, double near_m, double far_m)
+    : lens_(lens), near_m_(near_m), far_m_(far_m), offscreen_(*strip_looks(view, lens), lens.width_px, lens.height_px) {
+  offscreen_.context().readDepthMap = mjDEPTH_ZEROFAR;  // as it is stored: most exact far away
+  collect(view);
+  mjv_defaultScene(&scene_);
+  mjv_makeScene(nullptr, &scene_, static_cast<int>(shapes_.size()) + 1);
+  std::fill(std::begin(scene_.flags), std::end(scene_.flags), mjtByte{0});
+  scene_.flags[mjRND_SEGMENT] = scene_.flags[mjRND_IDCOLOR] = 1;
+}
+
+DepthRenderer::~DepthRenderer() { mjv_freeScene(&scene_); }
+
+void DepthRenderer::collect(const mjModel& view) {
+  constexpr float kWhite[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+  for (int geom = 0; geom < view.ngeom; ++geom) {
+    if (!is_drawn(view, geom)) continue;
+    const mjtNum* q = view.geom_quat + 4 * geom;
+    Shape shape{.geom = geom,
+                .body = view.geom_bodyid[geom],
+                .position = Eigen::Vector3d(view.geom_pos + 3 * geom),
+                .rotation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix(),
+                .radius_m = view.geom_rbound[geom],
+                .is_endless = {view.geom_size[3 * geom] <= 0.0, view.geom_size[3 * geom + 1] <= 0.0},
+                .drawn = {}};
+    const RowMajor3 R = shape.rotation;
+    mjv_initGeom(&shape.drawn, view.geom_type[geom], view.geom_size + 3 * geom, shape.position.data(), R.data(), kWhite);
+    if (view.geom_type[geom] == mjGEOM_MESH) shape.drawn.dataid = 2 * view.geom_dataid[geom];
+    if (view.geom_type[geom] == mjGEOM_HFIELD) shape.drawn.dataid = view.geom_dataid[geom];
+    shape.drawn.segid = static_cast<int>(std::lround(kBrightest * reflectivity_of(view, geom)));
+    shapes_.push_back(shape);
+  }
+}
+
+/// Moves what is drawn to where its body is.
+void DepthRenderer::place(Shape& shape, const mjData& data) const {
+  if (shape.body == 0) return;
+  const Eigen::Map<const RowMajor3> R_world_body(data.xmat + 9 * shape.body);
+  const Eigen::Vector3d position = Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * shape.body) + R_world_body * shape.position;
+  const RowMajor3 R = R_world_body * shape.rotation;
+  for (int i = 0; i < 3; ++i) shape.drawn.pos[i] = static_cast<float>(position[i]);
+  for (int i = 0; i < 9; ++i) shape.drawn.mat[i] = static_cast<float>(R.data()[i]);
+}
+
+/// A plane without end is drawn as far as the camera sees, from below the camera.
+void DepthRenderer::cut_endless(Shape& shape, const Camera& camera) const {
+  if (shape.drawn.type != mjGEOM_PLANE) return;
+  Eigen::Map<Eigen::Vector3f> position(shape.drawn.pos);
+  const Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>> R(shape.drawn.mat);
+  const Eigen::Vector3f to_eye = camera.eye.cast<float>() - position;
+  for (int axis = 0; axis < 2; ++axis) {
+    if (!shape.is_endless[static_cast<std::size_t>(axis)]) continue;
+    shape.drawn.size[axis] = static_cast<float>(2.0 * far_m_);
+    position += R.col(axis) * R.col(axis).dot(to_eye);
+  }
+}
+
+bool DepthRenderer::is_in_sight(const Shape& shape, const Camera& camera) const {
+  if (shape.radius_m <= 0.0) return true;
+  const Eigen::Vector3d to_shape = Eigen::Map<const Eigen::Vector3f>(shape.drawn.pos).cast<double>() - camera.eye;
+  const double ahead_m = camera.forward().dot(to_shape);
+  if (ahead_m < near_m_ - shape.radius_m || ahead_m > far_m_ + shape.radius_m) return false;
+  return std::ranges::all_of(camera.sides, [&](const Eigen::Vector3d& side) { return side.dot(to_shape) > -shape.radius_m; });
+}
+
+void DepthRenderer::aim(const Camera& camera) {
+  mjvGLCamera gl{};
+  for (int axis = 0; axis < 3; ++axis) {
+    gl.pos[axis] = static_cast<float>(camera.eye[axis]);
+    gl.forward[axis] = static_cast<float>(camera.forward()[axis]);
+    gl.up[axis] = static_cast<float>(camera.up()[axis]);
+  }
+  gl.frustum_width = static_cast<float>(near_m_ * 0.5 * lens_.width_px / lens_.focal_px);  // half of it
+  gl.frustum_top = static_cast<float>(near_m_ * 0.5 * lens_.height_px / lens_.focal_px);
+  gl.frustum_bottom = -gl.frustum_top;
+  gl.frustum_near = static_cast<float>(near_m_);
+  gl.frustum_far = static_cast<float>(far_m_);
+  scene_.camera[0] = scene_.camera[1] = gl;
+}
+
+void DepthRenderer::draw(const mjData& data, const Pose3& T_world_camera, sim::SurfaceImage& image) {
+  const Camera camera(T_world_camera, lens_);
+  aim(camera);
+  scene_.ngeom = 0;
+  for (Shape& shape : shapes_) {
+    place(shape, data);
+    cut_endless(shape, camera);
+    if (is_in_sight(shape, camera)) scene_.geoms[scene_.ngeom++] = shape.drawn;
+  }
+  offscreen_.make_current();
+  offscreen_.render(scene_);
+  offscreen_.read(colors_);
+  offscreen_.read_depth(depth_);
+
+  image.depth_m.resize(depth_.size());
+  image.reflectivity.resize(depth_.size());
+  for (std::size_t pixel = 0; pixel < depth_.size(); ++pixel) {
+    // 1 at the near plane, 0 at the far plane, linear in the inverse depth.
+    const auto share = static_cast<double>(depth_[pixel]);
+    const bool is_something = share > 0.0;
+    image.depth_m[pixel] = is_something ? static_cast<float>(near_m_ * far_m_ / (near_m_ + share * (far_m_ - near_m_)))
+                                        : std::numeric_limits<float>::infinity();
+    const float red = static_cast<float>(colors_.bytes()[3 * pixel]);
+    image.reflectivity[pixel] = is_something ? std::max(0.0f, red - 1.0f) / kBrightest : 0.0f;
+  }
+}
+
+std::unique_ptr<sim::DepthImager> make_depth_renderer(const mjModel& view, const sim::PinholeLens& lens, double near_m, double far_m) {
+  return std::make_unique<DepthRenderer>(view, lens, near_m, far_m);
+}
+
+}  // namespace patrol::render

@@ -1,0 +1,120 @@
+#include "sim/sensors/depth_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace patrol::sim {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kDarkest = 0.02;  // nothing throws back less
+
+/// The slope that the smaller of both differences has: that of the surface which the pixel is on, also beside an edge.
+double gentler(double before, double here, double after) {
+  const double left = here - before, right = after - here;
+  return std::abs(left) < std::abs(right) ? left : right;
+}
+
+}  // namespace
+
+PinholeLens lens_of(const DepthCameraSettings& settings) {
+  return {.width_px = settings.width_px,
+          .height_px = settings.height_px,
+          .focal_px = 0.5 * settings.width_px / std::tan(0.5 * settings.fov_deg * kDegree)};
+}
+
+DepthCamera::DepthCamera(const DepthCameraSettings& settings, const DustSettings& dust, std::unique_ptr<DepthImager> imager,
+                         std::uint64_t seed)
+    : settings_(settings),
+      dust_(dust),
+      lens_(lens_of(settings)),
+      imager_(std::move(imager)),
+      noise_(seed, "depth_camera/noise"),
+      edge_(seed, "depth_camera/edge"),
+      dropout_(seed, "depth_camera/dropout") {
+  validate(settings, "sensors.depth_camera");
+}
+
+// A plane's inverse depth is linear over the picture: slopes and edges are told from it.
+void DepthCamera::measure_disparity() {
+  inverse_depth_.resize(seen_.depth_m.size());
+  std::transform(seen_.depth_m.begin(), seen_.depth_m.end(), inverse_depth_.begin(),
+                 [](float depth_m) { return std::isfinite(depth_m) ? 1.0 / static_cast<double>(depth_m) : 0.0; });
+}
+
+/// True when something farther to the right of the picture stands in the other imager's line of sight to the same point: there,
+/// a pixel lies further left by its disparity, focal length x baseline / depth.
+bool DepthCamera::is_hidden_from_fellow(int u, int v) const {
+  const double pixel_metres = lens_.focal_px * settings_.baseline_m;
+  const auto most = static_cast<int>(pixel_metres / settings_.range_min_m);
+  for (int k = 1; k <= most && u + k < lens_.width_px; ++k) {
+    if (pixel_metres * (inverse_depth(u + k, v) - inverse_depth(u, v)) >= k) return true;
+  }
+  return false;
+}
+
+bool DepthCamera::is_at_edge(int u, int v) const {
+  const double here = inverse_depth(u, v);
+  const auto bends = [&](double before, double after) {
+    return std::abs(before - 2.0 * here + after) > settings_.edge_step * here;
+  };
+  return (u > 0 && u + 1 < lens_.width_px && bends(inverse_depth(u - 1, v), inverse_depth(u + 1, v))) ||
+         (v > 0 && v + 1 < lens_.height_px && bends(inverse_depth(u, v - 1), inverse_depth(u, v + 1)));
+}
+
+/// Cosine of the angle between the line of sight and the surface's normal. On the plane n . X = 1 with X = z (a, b, 1) the
+/// inverse depth is n . (a, b, 1): its slopes over the picture give n.
+double DepthCamera::incidence_cosine(int u, int v) const {
+  const double here = inverse_depth(u, v);
+  const int left = std::max(u - 1, 0), right = std::min(u + 1, lens_.width_px - 1);
+  const int up = std::max(v - 1, 0), down = std::min(v + 1, lens_.height_px - 1);
+  const Eigen::Vector3d sight((u - lens_.cx_px()) / lens_.focal_px, (v - lens_.cy_px()) / lens_.focal_px, 1.0);
+  Eigen::Vector3d n(lens_.focal_px * (left == u || right == u ? inverse_depth(right, v) - inverse_depth(left, v)
+                                                              : gentler(inverse_depth(left, v), here, inverse_depth(right, v))),
+                    lens_.focal_px * (up == v || down == v ? inverse_depth(u, down) - inverse_depth(u, up)
+                                                           : gentler(inverse_depth(u, up), here, inverse_depth(u, down))),
+                    0.0);
+  n.z() = here - n.dot(sight);
+  return here / (n.norm() * sight.norm());
+}
+
+/// Enough of the pattern comes back, and both imagers see it.
+bool DepthCamera::is_visible(int u, int v) const {
+  if (is_hidden_from_fellow(u, v)) return false;
+  const double cosine = incidence_cosine(u, v);
+  if (cosine < std::cos(settings_.grazing_deg * kDegree)) return false;
+  const double reflectivity = std::max(kDarkest, static_cast<double>(seen_.reflectivity[index_of(u, v)]));
+  const double reach_m = settings_.dark_range_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1);  // as of the lidar
+  return dust_.clear_distance_m(static_cast<double>(seen_.depth_m[index_of(u, v)])) <= reach_m;
+}
+
+DepthImage DepthCamera::take(const mjData& data, const Pose3& T_world_camera, Time now, std::uint64_t tick) {
+  imager_->draw(data, T_world_camera, seen_);
+  measure_disparity();
+  DepthImage image{.stamp = now,
+                   .width = lens_.width_px,
+                   .height = lens_.height_px,
+                   .fx_px = lens_.focal_px,
+                   .fy_px = lens_.focal_px,
+                   .cx_px = lens_.cx_px(),
+                   .cy_px = lens_.cy_px(),
+                   .depth_mm = std::vector<std::uint16_t>(seen_.depth_m.size(), 0)};
+  for (int v = 0; v < lens_.height_px; ++v) {
+    for (int u = 0; u < lens_.width_px; ++u) {
+      const std::size_t pixel = index_of(u, v);
+      const auto true_m = static_cast<double>(seen_.depth_m[pixel]);
+      if (!(true_m <= settings_.range_max_m) || !is_visible(u, v)) continue;
+      if (dropout_.uniform(tick, pixel) < settings_.dropout) continue;
+      if (is_at_edge(u, v) && edge_.uniform(tick, pixel) < settings_.edge_loss) continue;
+      const double std_m = settings_.depth_noise_per_m * true_m * true_m * std::exp(2.0 * dust_.extinction_per_m() * true_m);
+      const double depth_m = true_m + std_m * noise_.normal(tick, pixel);
+      if (depth_m < settings_.range_min_m || depth_m > settings_.range_max_m) continue;
+      image.depth_mm[pixel] = static_cast<std::uint16_t>(std::lround(1000.0 * depth_m));
+    }
+  }
+  return image;
+}
+
+}  // namespace patrol::sim
