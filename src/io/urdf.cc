@@ -265,11 +265,17 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   return hull;
 }
 
+/// Where the belt touches level ground, in body.
+double underside_m(const std::vector<Wheel>& wheels) {
+  double bottom = std::numeric_limits<double>::infinity();
+  for (const Wheel& wheel : wheels) bottom = std::min(bottom, wheel.centre_m.z() - wheel.radius_m);
+  return bottom;
+}
+
 /// Road wheels are those whose bottoms are the lowest: the belt lies on the ground between the first and the last.
 double contact_length_m(const std::vector<Wheel>& wheels) {
   constexpr double kLevel_m = 1e-3;
-  double bottom = std::numeric_limits<double>::infinity();
-  for (const Wheel& wheel : wheels) bottom = std::min(bottom, wheel.centre_m.z() - wheel.radius_m);
+  const double bottom = underside_m(wheels);
   double front = -std::numeric_limits<double>::infinity(), rear = -front;
   for (const Wheel& wheel : wheels) {
     if (wheel.centre_m.z() - wheel.radius_m > bottom + kLevel_m) continue;
@@ -327,7 +333,8 @@ void UrdfReader::read_tracks(RobotDescription& robot) const {
   robot.tracks = TrackGeometry{.gauge_m = left.front().centre_m.y() - right.front().centre_m.y(),
                                .width_m = left.front().width_m,
                                .contact_length_m = contact_length_m(left),
-                               .sprocket_radius_m = sprocket_radius_m("left_sprocket")};
+                               .sprocket_radius_m = sprocket_radius_m("left_sprocket"),
+                               .body_height_m = -underside_m(left)};
   if (robot.tracks->gauge_m <= robot.tracks->width_m) fail(kTrackNames[0], "the left track must lie to the left of the right one");
   if (robot.tracks->contact_length_m <= 0.0) fail(kTrackNames[0], "two wheels at least must stand on the ground");
 }

@@ -196,6 +196,14 @@ void TrackFilter::shift(const Eigen::Matrix<double, kSize, 1>& error) {
   turn_centre_m_ += error.segment<2>(kTurnCentre);
 }
 
+// v = ((1 - scale - slip) u, 0) - omega x p
+Eigen::Vector2d TrackFilter::lasting_velocity_variance() const {
+  const double u = smooth_belts_mps_, omega = motion_.omega_body.z();
+  const Eigen::Vector4d ahead(-u, -u, 0.0, omega), left(0.0, 0.0, -omega, 0.0);
+  const Eigen::Matrix4d P = P_.bottomRightCorner<4, 4>();
+  return {ahead.dot(P * ahead), left.dot(P * left)};
+}
+
 Eigen::Matrix3d TrackFilter::planar_covariance() const {
   constexpr int kIndex[3] = {Error::kPosition, Error::kPosition + 1, Error::kRotation + 2};
   Eigen::Matrix3d planar;

@@ -78,6 +78,8 @@ class TrackFilter {
   static constexpr int kScale = InertialError::kSize, kSlip = kScale + 1, kTurnCentre = kSlip + 1, kSize = kTurnCentre + 2;
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   const Covariance& covariance() const { return P_; }
+  /// What scale, slip and the turn's centre leave open of the velocity ahead and to the left, (m/s)2.
+  Eigen::Vector2d lasting_velocity_variance() const;
   /// Of x, y, yaw in odom.
   Eigen::Matrix3d planar_covariance() const;
 

@@ -19,6 +19,7 @@ constexpr double kStandingStd_mps = 0.002;
 constexpr double kStandstillCreep_m = 1e-5;  // of the belts' ends over a window at rest
 constexpr double kMaxBiasSigmas = 5.0;       // a gyro at rest that reads more is being turned
 constexpr double kHoldStd_mps = 0.5;         // without the belts the velocity is at least not this wrong
+constexpr double kLastingSideways = 0.005;   // share of the way, straight on
 constexpr double kAtRest_mps = 0.15;         // by the IMU: belts at rest are believed again below
 constexpr double kAssumedRate_hz = 1000.0;   // upper bound, for the size of the history
 constexpr std::size_t kMaxPending = 256;
@@ -117,7 +118,7 @@ void TrackOdometry::advance(Time stamp, const InertialSample& sample) {
   watch_standstill(sample);
   has_settled_ = has_settled_ || to_seconds(now_ - started_) > settings_.start_patience_s;
   remember();
-  if (last_speed_update_ && now_ - *last_speed_update_ > kTickSilence) hold_velocity();
+  if (last_speed_update_ && ticks_are_silent()) hold_velocity();
 }
 
 // Counters are due once the IMU has passed their instant, or is late.
@@ -259,18 +260,25 @@ std::optional<Pose3> TrackOdometry::T_odom_body_at(Time stamp) const {
                quaternion_from_yaw(ahead_s * yaw_rate) * rotation};
 }
 
+// With the belts heard, the velocity's quick errors (steps of the counters, shocks) average out within a tenth of a second; what
+// lasts is slip and the turn's centre, unless the IMU knows better.
 Eigen::Vector3d TrackOdometry::twist_std() const {
   if (!filter_) return Eigen::Vector3d::Zero();
   constexpr int kVelocity = InertialError::kVelocity, kBias = InertialError::kGyroBias + 2;
-  const auto variance = filter_->covariance().diagonal();
-  return {std::sqrt(variance[kVelocity]), std::sqrt(variance[kVelocity + 1]), std::sqrt(variance[kBias])};
+  const auto& P = filter_->covariance();
+  Eigen::Vector2d variance = P.diagonal().segment<2>(kVelocity);
+  if (!ticks_are_silent()) variance = variance.cwiseMin(filter_->lasting_velocity_variance());
+  const double sideways = kLastingSideways * filter_->motion().v_body.x();
+  return {std::sqrt(variance.x()), std::hypot(std::sqrt(variance.y()), sideways), std::sqrt(P(kBias, kBias))};
 }
+
+bool TrackOdometry::ticks_are_silent() const { return !last_speed_update_ || now_ - *last_speed_update_ > kTickSilence; }
 
 TrackOdometryHealth TrackOdometry::health() const {
   TrackOdometryHealth health{.imu_is_silent = imu_is_silent_,
                              .rejected_messages = rejected_messages_,
                              .slip_events = slip_events_};
-  health.ticks_are_silent = !last_speed_update_ || now_ - *last_speed_update_ > kTickSilence;
+  health.ticks_are_silent = ticks_are_silent();
   if (!filter_) return health;
   health.grip_is_lost = std::abs(filter_->slip()) > TrackFilter::kGripSlip;
   health.gyro_z_bias_std_radps = twist_std().z();

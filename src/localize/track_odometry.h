@@ -126,8 +126,8 @@ class TrackOdometry {
   std::optional<OdometryEstimate> estimate() const;
   /// The body at an instant of the last seconds, or slightly after the newest; none outside of that.
   std::optional<Pose3> T_odom_body_at(Time stamp) const;
-  /// Standard deviation of the velocity that the estimate reports, in body: ahead m/s, to the left m/s, yaw rate rad/s. These
-  /// errors last (scale, slip, bias): what they add to a pose grows with the way, not with its root.
+  /// Standard deviation of what is wrong with the velocity for longer than moments, in body: ahead m/s, to the left m/s, yaw rate
+  /// rad/s. These errors last (scale, slip, bias): what they add to a pose grows with the way, not with its root.
   Eigen::Vector3d twist_std() const;
   /// Of the body's origin above the ground, m, by the robot's geometry.
   double height_above_ground_m() const { return robot_.tracks->body_height_m; }
@@ -149,6 +149,7 @@ class TrackOdometry {
   /// With the belts at rest: bias, slip, and whether the odometry may begin.
   void watch_standstill(const InertialSample& sample);
   void hold_velocity();
+  bool ticks_are_silent() const;
   void remember() { history_.push(now_, filter_->motion()); }
 
   RobotDescription robot_;

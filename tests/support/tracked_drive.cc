@@ -46,11 +46,23 @@ RobotDescription make_tracked_robot() {
 }
 
 BeltProgram stand_then_drive(const Belts& belts) {
-  return [belts](double time_s) { return time_s < kStand_s ? Belts{} : belts; };
+  return [belts](double time_s, const Pose3&) { return time_s < kStand_s ? Belts{} : belts; };
+}
+
+BeltProgram stand_then_weave() {
+  return [](double time_s, const Pose3& T_world_body) -> Belts {
+    if (time_s < kStand_s) return {};
+    const Pose2 body = to_planar(T_world_body);
+    const double wave = 2.0 * std::numbers::pi / 60.0;
+    const double slope = std::atan(1.5 * wave * std::cos(wave * body.x));
+    const double turn = 0.5 * wrap_angle(slope - body.yaw) + 0.3 * (1.5 * std::sin(wave * body.x) - body.y);
+    const double half_difference = 0.4 * std::clamp(turn, -0.4, 0.4);
+    return {0.5 - half_difference, 0.5 + half_difference};
+  };
 }
 
 BeltProgram make_tour() {
-  return [](double time_s) -> Belts {
+  return [](double time_s, const Pose3&) -> Belts {
     if (time_s < kStand_s) return {};
     const double phase = std::fmod(time_s - kStand_s, 40.0);
     if (phase < 12.0) return {0.6, 0.6};
@@ -122,7 +134,7 @@ void TrackedDrive::step() {
 }
 
 void TrackedDrive::run_belts(double dt_s) {
-  const Belts asked = program_(to_seconds(now()));
+  const Belts asked = program_(to_seconds(now()), T_world_body_);
   const double most = settings_.max_belt_acceleration_mps2 * dt_s;
   belts_.left_mps = towards(belts_.left_mps, asked.left_mps, most);
   belts_.right_mps = towards(belts_.right_mps, asked.right_mps, most);

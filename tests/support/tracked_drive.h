@@ -14,17 +14,20 @@ namespace patrol::test {
 /// A tracked robot of the size of models/tracked, without reading the file.
 RobotDescription make_tracked_robot();
 
-/// Belt speeds asked for at a time.
+/// Belt speeds asked for.
 struct Belts {
   double left_mps = 0.0;
   double right_mps = 0.0;
 };
-using BeltProgram = std::function<Belts(double time_s)>;
+/// At a time; a driver with eyes may look where the body is.
+using BeltProgram = std::function<Belts(double time_s, const Pose3& T_world_body)>;
 
 /// Straight stretches, curves and turns on the spot, about 0.4 m/s on average, with halts; the first 3 s it stands.
 BeltProgram make_tour();
 /// Stands 3 s, then keeps the belts at these speeds.
 BeltProgram stand_then_drive(const Belts& belts);
+/// Stands 3 s, then follows the line y = 1.5 m sin(2 pi x / 60 m) to +x at 0.5 m/s, by sight.
+BeltProgram stand_then_weave();
 
 /// What is wrong with the world. Every figure is a standard deviation unless it says otherwise; the constants are drawn once.
 struct TrackedDriveSettings {
