@@ -18,7 +18,8 @@ const Eigen::Matrix3d kStart = Eigen::Vector3d(0.04, 0.04, 0.003).asDiagonal();
 
 TEST(Study, Drive) {
   const Tunnel tunnel;
-  MonteCarloLocalizer localizer({}, test::tunnel_map(), tunnel.anchors(), kAntenna, 1);
+  MonteCarloSettings settings; if (getenv("IB")) settings.independent_beams = atof(getenv("IB")); if (getenv("MF")) settings.refinement.min_facing = atof(getenv("MF"));
+  MonteCarloLocalizer localizer(settings, test::tunnel_map(), tunnel.anchors(), kAntenna, 1);
   TunnelDrive drive(tunnel.world, tunnel.anchors(), kAntenna, {0.0, 0.0, 0.0}, {.way_scale_error = getenv("SCALE") ? atof(getenv("SCALE")) : 0.02}, getenv("SEED") ? atoi(getenv("SEED")) : 1);
   const bool uwb = getenv("UWB") != nullptr;
   if (getenv("ANY")) localizer.start_anywhere(); else

@@ -18,8 +18,10 @@ namespace {
 
 // A clump of equal particles has no width; its prior must have some.
 const Eigen::Vector3d kLeastStd(2e-3, 2e-3, 5e-4);
-constexpr int kLineRadius_cells = 4;
+constexpr int kLineRadius_cells = 6;
 constexpr int kMinPoints = 10;           // of a scan that may be judged
+constexpr double kOpenStd_m = 0.2;       // a direction is open if a scan does not even tell it to this deviation
+constexpr double kMaxShift_m = 1.0;      // along an open direction: no tunnel is straight for ever
 constexpr double kWastefulShare = 0.67;  // so few of the particles would do
 constexpr Time kRangesBeforeStart = std::chrono::seconds(2);  // that the first weighing may use
 
@@ -36,9 +38,9 @@ const MonteCarloSettings& checked(const MonteCarloSettings& settings) {
   return settings;
 }
 
-std::unique_ptr<SensorModel> make_sensor_model(const MonteCarloSettings& settings, const OccupancyGrid& map) {
+std::unique_ptr<SensorModel> make_sensor_model(const MonteCarloSettings& settings, const OccupancyGrid& map, const LineField& lines) {
   if (settings.sensor_model == "beam") return std::make_unique<BeamModel>(settings.beam, map);
-  return std::make_unique<LikelihoodField>(settings.likelihood_field, map);
+  return std::make_unique<LikelihoodField>(settings.likelihood_field, map, lines);
 }
 
 }  // namespace
@@ -47,9 +49,9 @@ MonteCarloLocalizer::MonteCarloLocalizer(const MonteCarloSettings& settings, con
                                          const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb, std::uint64_t seed)
     : settings_(checked(settings)),
       ranges_(anchors_in_map, T_body_uwb.position),
-      sensor_model_(make_sensor_model(settings, checked(map))),
-      lines_(map, kLineRadius_cells),
-      search_(settings.search, settings.likelihood_field, map),
+      lines_(checked(map), kLineRadius_cells),
+      sensor_model_(make_sensor_model(settings, map, lines_)),
+      search_(settings.search, settings.likelihood_field, map, lines_),
       start_noise_(seed, "localize/start"),
       motion_noise_(seed, "localize/motion"),
       resampling_noise_(seed, "localize/resampling"),
@@ -143,7 +145,8 @@ RefinedPose MonteCarloLocalizer::weigh(const LevelScan& scan, const std::vector<
   }
   const std::vector<double> prior_weights = slam::normalized_weights(cloud_.log_weights);
 
-  const ScanLikelihoods fits = sensor_model_->evaluate(scan, cloud_.T_map_body);
+  const std::vector<std::size_t> clumps = clumps_of(cloud_.T_map_body, settings_.kld);
+  const ScanLikelihoods fits = sensor_model_->evaluate(scan, places_to_evaluate(scan, prior_weights, clumps));
   const double gain = std::min(settings_.independent_beams, static_cast<double>(fits.num_beams));
   double likelihood = 0.0;
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
@@ -153,14 +156,34 @@ RefinedPose MonteCarloLocalizer::weigh(const LevelScan& scan, const std::vector<
   if (fits.num_beams > 0) fit_.add_scan_likelihood(likelihood);
   const std::vector<double> weights = slam::normalized_weights(cloud_.log_weights);
 
-  const ParticleClumps clumps = find_clumps(cloud_.T_map_body, weights, settings_.kld);
-  clump_weight_ = clumps.heaviest_weight;
-  belief_ = gaussian_of(cloud_.T_map_body, weights, clumps);
-  slam::PoseGaussian prior = gaussian_of(cloud_.T_map_body, prior_weights, clumps);
+  const HeaviestClump heaviest = heaviest_clump(clumps, weights);
+  clump_weight_ = heaviest.weight;
+  belief_ = gaussian_of(cloud_.T_map_body, weights, clumps, heaviest.number);
+  slam::PoseGaussian prior = gaussian_of(cloud_.T_map_body, prior_weights, clumps, heaviest.number);
   if (!prior.covariance.allFinite()) prior = belief_;
   belief_.covariance.diagonal() += kLeastStd.cwiseAbs2();
   prior.covariance.diagonal() += kLeastStd.cwiseAbs2();
   return refine_pose(lines_, scan, prior, belief_.mean, settings_.refinement);
+}
+
+// What a scan cannot tell it must not weigh. Where the lines of the map leave a direction open, the field's cells do not quite:
+// ragged walls prefer some places to others, and the same ones scan after scan. There the particles of the heaviest
+// clump are weighed where they would be without their offset along that direction.
+std::vector<Pose2> MonteCarloLocalizer::places_to_evaluate(const LevelScan& scan, const std::vector<double>& prior_weights,
+                                                           const std::vector<std::size_t>& clumps) const {
+  const std::size_t clump = heaviest_clump(clumps, prior_weights).number;
+  const Pose2 center = gaussian_of(cloud_.T_map_body, prior_weights, clumps, clump).mean;
+  const WeakDirection weak = weak_direction(lines_, scan, center, settings_.refinement);
+  const double told = std::min(1.0, weak.information * kOpenStd_m * kOpenStd_m);
+  std::vector<Pose2> places = cloud_.T_map_body;
+  if (told == 1.0) return places;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (clumps[i] != clump) continue;
+    const double offset_m = weak.u_map.dot(places[i].position() - center.position());
+    const double shift_m = (1.0 - told) * std::clamp(offset_m, -kMaxShift_m, kMaxShift_m);
+    places[i].x -= shift_m * weak.u_map.x(), places[i].y -= shift_m * weak.u_map.y();
+  }
+  return places;
 }
 
 int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2& T_odom_body) {

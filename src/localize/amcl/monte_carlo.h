@@ -32,7 +32,7 @@ namespace patrol::localize {
 struct MonteCarloSettings {
   std::string sensor_model = "likelihood_field";
   double independent_beams = 20.0;     ///< a scan says as much as so many beams that err independently; more beams only average
-  double update_distance_m = 0.1;      ///< particles are weighed after so much way,
+  double update_distance_m = 0.2;      ///< particles are weighed after so much way,
   double update_angle_rad = 0.05;      ///< or such a turn,
   double update_period_s = 1.0;        ///< or, as long as the robot is lost, after this time
   double resample_threshold = 0.5;     ///< resample when the effective sample size falls below this share of the particles
@@ -117,6 +117,8 @@ class MonteCarloLocalizer {
   bool is_due(const Pose2& T_before_now, Time stamp) const;
   void judge_ranges(const std::vector<AnchoredRange>& ranges, const slam::PoseGaussian& belief);
   RefinedPose weigh(const LevelScan& scan, const std::vector<AnchoredRange>& ranges);
+  std::vector<Pose2> places_to_evaluate(const LevelScan& scan, const std::vector<double>& prior_weights,
+                                        const std::vector<std::size_t>& clumps) const;
   int resample_and_inject(const LevelScan& scan, const Pose2& T_odom_body);
   void resample(const std::vector<double>& weights, std::size_t count);
   std::size_t particles_needed(const std::vector<double>& weights) const;
@@ -126,8 +128,8 @@ class MonteCarloLocalizer {
 
   MonteCarloSettings settings_;
   RangeMemory ranges_;
-  std::unique_ptr<SensorModel> sensor_model_;
   LineField lines_;
+  std::unique_ptr<SensorModel> sensor_model_;
   GlobalSearch search_;
   RandomStream start_noise_, motion_noise_, resampling_noise_, injection_noise_;
   FitMonitor fit_;
