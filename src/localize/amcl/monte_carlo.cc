@@ -20,8 +20,6 @@ namespace {
 const Eigen::Vector3d kLeastStd(2e-3, 2e-3, 5e-4);
 constexpr int kLineRadius_cells = 6;
 constexpr int kMinPoints = 10;           // of a scan that may be judged
-constexpr double kOpenStd_m = 0.2;       // a direction is open if a scan does not even tell it to this deviation
-constexpr double kMaxShift_m = 1.0;      // along an open direction: no tunnel is straight for ever
 constexpr double kWastefulShare = 0.67;  // so few of the particles would do
 constexpr Time kRangesBeforeStart = std::chrono::seconds(2);  // that the first weighing may use
 
@@ -60,7 +58,7 @@ MonteCarloLocalizer::MonteCarloLocalizer(const MonteCarloSettings& settings, con
 
 void MonteCarloLocalizer::start_at(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) {
   start_anywhere();
-  starts_anywhere_ = false;
+  starts_anywhere_ = is_lost_ = false;
   belief_ = {.mean = T_map_body, .covariance = covariance};
   belief_.covariance.diagonal() += kLeastStd.cwiseAbs2();
   clump_weight_ = 1.0;
@@ -76,7 +74,7 @@ void MonteCarloLocalizer::start_at(const Pose2& T_map_body, const Eigen::Matrix3
 
 void MonteCarloLocalizer::start_anywhere() {
   ++starts_;
-  starts_anywhere_ = true;
+  starts_anywhere_ = is_lost_ = true;
   cloud_ = {};
   fit_.reset();
   T_odom_last_.reset();
@@ -145,17 +143,19 @@ RefinedPose MonteCarloLocalizer::weigh(const LevelScan& scan, const std::vector<
   }
   const std::vector<double> prior_weights = slam::normalized_weights(cloud_.log_weights);
 
-  const std::vector<std::size_t> clumps = clumps_of(cloud_.T_map_body, settings_.kld);
-  const ScanLikelihoods fits = sensor_model_->evaluate(scan, places_to_evaluate(scan, prior_weights, clumps));
+  const ScanLikelihoods fits = sensor_model_->evaluate(scan, cloud_.T_map_body);
   const double gain = std::min(settings_.independent_beams, static_cast<double>(fits.num_beams));
+  // What fits as well as the best but for the model's own error is as good.
+  const double good = *std::max_element(fits.mean_log.begin(), fits.mean_log.end()) - settings_.scan_fit_tol;
   double likelihood = 0.0;
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
-    cloud_.log_weights[i] += gain * fits.mean_log[i];
+    cloud_.log_weights[i] += gain * std::min(0.0, fits.mean_log[i] - good);
     likelihood += prior_weights[i] * std::exp(fits.mean_log[i]);
   }
   if (fits.num_beams > 0) fit_.add_scan_likelihood(likelihood);
   const std::vector<double> weights = slam::normalized_weights(cloud_.log_weights);
 
+  const std::vector<std::size_t> clumps = clumps_of(cloud_.T_map_body, settings_.kld);
   const HeaviestClump heaviest = heaviest_clump(clumps, weights);
   clump_weight_ = heaviest.weight;
   belief_ = gaussian_of(cloud_.T_map_body, weights, clumps, heaviest.number);
@@ -164,26 +164,6 @@ RefinedPose MonteCarloLocalizer::weigh(const LevelScan& scan, const std::vector<
   belief_.covariance.diagonal() += kLeastStd.cwiseAbs2();
   prior.covariance.diagonal() += kLeastStd.cwiseAbs2();
   return refine_pose(lines_, scan, prior, belief_.mean, settings_.refinement);
-}
-
-// What a scan cannot tell it must not weigh. Where the lines of the map leave a direction open, the field's cells do not quite:
-// ragged walls prefer some places to others, and the same ones scan after scan. There the particles of the heaviest
-// clump are weighed where they would be without their offset along that direction.
-std::vector<Pose2> MonteCarloLocalizer::places_to_evaluate(const LevelScan& scan, const std::vector<double>& prior_weights,
-                                                           const std::vector<std::size_t>& clumps) const {
-  const std::size_t clump = heaviest_clump(clumps, prior_weights).number;
-  const Pose2 center = gaussian_of(cloud_.T_map_body, prior_weights, clumps, clump).mean;
-  const WeakDirection weak = weak_direction(lines_, scan, center, settings_.refinement);
-  const double told = std::min(1.0, weak.information * kOpenStd_m * kOpenStd_m);
-  std::vector<Pose2> places = cloud_.T_map_body;
-  if (told == 1.0) return places;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (clumps[i] != clump) continue;
-    const double offset_m = weak.u_map.dot(places[i].position() - center.position());
-    const double shift_m = (1.0 - told) * std::clamp(offset_m, -kMaxShift_m, kMaxShift_m);
-    places[i].x -= shift_m * weak.u_map.x(), places[i].y -= shift_m * weak.u_map.y();
-  }
-  return places;
 }
 
 int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2& T_odom_body) {
@@ -223,7 +203,8 @@ std::size_t MonteCarloLocalizer::particles_needed(const std::vector<double>& wei
     const auto parent = std::lower_bound(cumulative.begin(), cumulative.end() - 1, pointer) - cumulative.begin();
     bins.add(cloud_.T_map_body[static_cast<std::size_t>(parent)]);
   }
-  return drawn;
+  const auto least = static_cast<std::size_t>(is_lost_ ? settings_.min_particles_when_lost : 0);
+  return std::max(drawn, least);
 }
 
 GlobalSearch::Candidates MonteCarloLocalizer::search(const LevelScan& scan, const Pose2& T_odom_body) const {
@@ -237,7 +218,7 @@ LocalizationUpdate MonteCarloLocalizer::describe(const LevelScan& scan, const Re
   LocalizationUpdate update;
   update.estimate = {.stamp = scan.stamp, .T_map_body = refined.posterior.mean, .covariance = refined.posterior.covariance};
   update.trust = assess_trust(scan.stamp, {.covariance = refined.posterior.covariance, .clump_weight = clump_weight_,
-                                           .scan_fit = fit_.scan_fit(), .range_fit = fit_.range_trust()}, settings_.trust);
+                                           .scan_fit = fit_.scan_fit(), .range_fit = fit_.range_trust()}, is_lost_, settings_.trust);
   update.num_particles = static_cast<int>(cloud_.size());
   update.clump_weight = clump_weight_;
   update.matched_share = refined.matched_share;

@@ -78,14 +78,6 @@ double share_within(const std::vector<Residual>& residuals, double tol_m, std::s
 
 }  // namespace
 
-WeakDirection weak_direction(const LineField& lines, const LevelScan& scan, const Pose2& T_map_body, const PoseRefinementSettings& settings) {
-  const std::vector<slam::MatchPoint> points = slam::select_match_points(scan, settings.point_spacing_m, settings.max_points);
-  const std::vector<Residual> residuals = residuals_at(lines, points, T_map_body, settings);
-  if (residuals.empty()) return {};
-  const Eigen::Vector2d u = weak_axis(residuals);
-  return {.u_map = u, .information = u.dot(equations_of(residuals, settings).H.topLeftCorner<2, 2>() * u)};
-}
-
 RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const slam::PoseGaussian& prior, const Pose2& T_map_start,
                         const PoseRefinementSettings& settings) {
   RefinedPose refined{.posterior = prior};

@@ -49,13 +49,6 @@ struct RefinedPose {
   bool is_matched = false;       ///< otherwise the posterior is the prior
 };
 
-/// The direction in which a scan on the map tells the place least.
-struct WeakDirection {
-  Eigen::Vector2d u_map = Eigen::Vector2d::UnitX();  ///< unit, either way
-  double information = 0.0;                          ///< there, 1/m^2; 0: nothing
-};
-WeakDirection weak_direction(const LineField& lines, const LevelScan& scan, const Pose2& T_map_body, const PoseRefinementSettings& settings);
-
 /// The Gaussian posterior of a prior and a scan on the map: Gauss-Newton on the points' distances to the lines of the map,
 /// as slam/scan_matcher.h does while the map grows, from `T_map_start`.
 ///
