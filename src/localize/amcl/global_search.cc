@@ -31,10 +31,12 @@ double log_likelihood_of(const std::vector<AnchoredRange>& ranges, const Pose2& 
 
 }  // namespace
 
-GlobalSearch::GlobalSearch(const GlobalSearchSettings& settings, const LikelihoodFieldSettings& field, const OccupancyGrid& map)
+GlobalSearch::GlobalSearch(const GlobalSearchSettings& settings, const LikelihoodFieldSettings& field, const OccupancyGrid& map,
+                           const LineField& lines)
     : settings_(settings),
-      coarse_({.hit_std_m = std::hypot(field.hit_std_m, settings.step_m), .random_share = field.random_share, .max_beams = settings.max_beams}, map),
-      fine_(field, map) {
+      coarse_({.hit_std_m = std::hypot(field.hit_std_m, settings.step_m), .random_share = field.random_share, .max_beams = settings.max_beams},
+              map, lines),
+      fine_(field, map, lines) {
   const GridGeometry& geometry = map.geometry();
   const Grid<float> clearance_m = distance_to_occupied(map, settings.min_clearance_m + geometry.resolution_m);
   const int stride = std::max(1, static_cast<int>(std::lround(settings.step_m / geometry.resolution_m)));

@@ -38,7 +38,7 @@ struct GlobalSearchSettings {
 /// in a tunnel that looks alike everywhere all places stay candidates, and the filter stays honestly undecided.
 class GlobalSearch {
  public:
-  GlobalSearch(const GlobalSearchSettings& settings, const LikelihoodFieldSettings& field, const OccupancyGrid& map);
+  GlobalSearch(const GlobalSearchSettings& settings, const LikelihoodFieldSettings& field, const OccupancyGrid& map, const LineField& lines);
 
   struct Candidates {
     std::vector<Pose2> T_map_body;

@@ -11,6 +11,14 @@ namespace {
 
 constexpr std::size_t kBlock = 64;  // ends that are turned before they are looked up
 constexpr int kMaxLevel = 255;
+constexpr double kMinStraightness = 0.6;  // what is not a line is as far as its cells
+
+/// Distance from a cell's centre to the surface, m. Past the end of a wall, where its line runs on, the cells still tell.
+double distance_to_surface(const Eigen::Vector2d& center, double to_cells_m, double resolution_m, const LineField& lines) {
+  const SurfaceLine* line = lines.find(center);
+  if (!line || line->straightness < kMinStraightness) return to_cells_m;
+  return std::max(std::abs(line->normal_map.dot(center - line->point_map)), to_cells_m - resolution_m);
+}
 
 }  // namespace
 
@@ -29,7 +37,7 @@ BeamEnds select_beam_ends(const LevelScan& scan, int max_beams) {
   return ends;
 }
 
-LikelihoodField::LikelihoodField(const LikelihoodFieldSettings& settings, const OccupancyGrid& map)
+LikelihoodField::LikelihoodField(const LikelihoodFieldSettings& settings, const OccupancyGrid& map, const LineField& lines)
     : settings_(settings), inverse_resolution_(1.0 / map.geometry().resolution_m) {
   const GridGeometry& geometry = map.geometry();
   const double random = settings.random_share, sigma = settings.hit_std_m;
@@ -42,7 +50,8 @@ LikelihoodField::LikelihoodField(const LikelihoodFieldSettings& settings, const 
   const Grid<float> distance_m = distance_to_occupied(map, 4.0 * sigma);
   for (int row = 0; row < geometry.height; ++row) {
     for (int col = 0; col < geometry.width; ++col) {
-      const double ratio = static_cast<double>(distance_m.at({col, row})) / sigma;
+      const auto to_cells_m = static_cast<double>(distance_m.at({col, row}));
+      const double ratio = distance_to_surface(geometry.center_of({col, row}), to_cells_m, geometry.resolution_m, lines) / sigma;
       const double log_likelihood = std::log((1.0 - random) * std::exp(-0.5 * ratio * ratio) + random);
       level_[static_cast<std::size_t>(row + 1) * stride_ + static_cast<std::size_t>(col + 1)] =
           static_cast<std::uint8_t>(std::lround(-log_likelihood / level_step_));

@@ -18,7 +18,7 @@ namespace {
 
 // A clump of equal particles has no width; its prior must have some.
 const Eigen::Vector3d kLeastStd(2e-3, 2e-3, 5e-4);
-constexpr int kLineRadius_cells = 4;
+constexpr int kLineRadius_cells = 6;
 constexpr int kMinPoints = 10;           // of a scan that may be judged
 constexpr double kWastefulShare = 0.67;  // so few of the particles would do
 constexpr Time kRangesBeforeStart = std::chrono::seconds(2);  // that the first weighing may use
@@ -36,9 +36,9 @@ const MonteCarloSettings& checked(const MonteCarloSettings& settings) {
   return settings;
 }
 
-std::unique_ptr<SensorModel> make_sensor_model(const MonteCarloSettings& settings, const OccupancyGrid& map) {
+std::unique_ptr<SensorModel> make_sensor_model(const MonteCarloSettings& settings, const OccupancyGrid& map, const LineField& lines) {
   if (settings.sensor_model == "beam") return std::make_unique<BeamModel>(settings.beam, map);
-  return std::make_unique<LikelihoodField>(settings.likelihood_field, map);
+  return std::make_unique<LikelihoodField>(settings.likelihood_field, map, lines);
 }
 
 }  // namespace
@@ -47,9 +47,9 @@ MonteCarloLocalizer::MonteCarloLocalizer(const MonteCarloSettings& settings, con
                                          const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb, std::uint64_t seed)
     : settings_(checked(settings)),
       ranges_(anchors_in_map, T_body_uwb.position),
-      sensor_model_(make_sensor_model(settings, checked(map))),
-      lines_(map, kLineRadius_cells),
-      search_(settings.search, settings.likelihood_field, map),
+      lines_(checked(map), kLineRadius_cells),
+      sensor_model_(make_sensor_model(settings, map, lines_)),
+      search_(settings.search, settings.likelihood_field, map, lines_),
       start_noise_(seed, "localize/start"),
       motion_noise_(seed, "localize/motion"),
       resampling_noise_(seed, "localize/resampling"),
@@ -58,7 +58,7 @@ MonteCarloLocalizer::MonteCarloLocalizer(const MonteCarloSettings& settings, con
 
 void MonteCarloLocalizer::start_at(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) {
   start_anywhere();
-  starts_anywhere_ = false;
+  starts_anywhere_ = is_lost_ = false;
   belief_ = {.mean = T_map_body, .covariance = covariance};
   belief_.covariance.diagonal() += kLeastStd.cwiseAbs2();
   clump_weight_ = 1.0;
@@ -74,7 +74,7 @@ void MonteCarloLocalizer::start_at(const Pose2& T_map_body, const Eigen::Matrix3
 
 void MonteCarloLocalizer::start_anywhere() {
   ++starts_;
-  starts_anywhere_ = true;
+  starts_anywhere_ = is_lost_ = true;
   cloud_ = {};
   fit_.reset();
   T_odom_last_.reset();
@@ -145,18 +145,21 @@ RefinedPose MonteCarloLocalizer::weigh(const LevelScan& scan, const std::vector<
 
   const ScanLikelihoods fits = sensor_model_->evaluate(scan, cloud_.T_map_body);
   const double gain = std::min(settings_.independent_beams, static_cast<double>(fits.num_beams));
+  // What fits as well as the best but for the model's own error is as good.
+  const double good = *std::max_element(fits.mean_log.begin(), fits.mean_log.end()) - settings_.scan_fit_tol;
   double likelihood = 0.0;
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
-    cloud_.log_weights[i] += gain * fits.mean_log[i];
+    cloud_.log_weights[i] += gain * std::min(0.0, fits.mean_log[i] - good);
     likelihood += prior_weights[i] * std::exp(fits.mean_log[i]);
   }
   if (fits.num_beams > 0) fit_.add_scan_likelihood(likelihood);
   const std::vector<double> weights = slam::normalized_weights(cloud_.log_weights);
 
-  const ParticleClumps clumps = find_clumps(cloud_.T_map_body, weights, settings_.kld);
-  clump_weight_ = clumps.heaviest_weight;
-  belief_ = gaussian_of(cloud_.T_map_body, weights, clumps);
-  slam::PoseGaussian prior = gaussian_of(cloud_.T_map_body, prior_weights, clumps);
+  const std::vector<std::size_t> clumps = clumps_of(cloud_.T_map_body, settings_.kld);
+  const HeaviestClump heaviest = heaviest_clump(clumps, weights);
+  clump_weight_ = heaviest.weight;
+  belief_ = gaussian_of(cloud_.T_map_body, weights, clumps, heaviest.number);
+  slam::PoseGaussian prior = gaussian_of(cloud_.T_map_body, prior_weights, clumps, heaviest.number);
   if (!prior.covariance.allFinite()) prior = belief_;
   belief_.covariance.diagonal() += kLeastStd.cwiseAbs2();
   prior.covariance.diagonal() += kLeastStd.cwiseAbs2();
@@ -200,7 +203,8 @@ std::size_t MonteCarloLocalizer::particles_needed(const std::vector<double>& wei
     const auto parent = std::lower_bound(cumulative.begin(), cumulative.end() - 1, pointer) - cumulative.begin();
     bins.add(cloud_.T_map_body[static_cast<std::size_t>(parent)]);
   }
-  return drawn;
+  const auto least = static_cast<std::size_t>(is_lost_ ? settings_.min_particles_when_lost : 0);
+  return std::max(drawn, least);
 }
 
 GlobalSearch::Candidates MonteCarloLocalizer::search(const LevelScan& scan, const Pose2& T_odom_body) const {
@@ -214,7 +218,7 @@ LocalizationUpdate MonteCarloLocalizer::describe(const LevelScan& scan, const Re
   LocalizationUpdate update;
   update.estimate = {.stamp = scan.stamp, .T_map_body = refined.posterior.mean, .covariance = refined.posterior.covariance};
   update.trust = assess_trust(scan.stamp, {.covariance = refined.posterior.covariance, .clump_weight = clump_weight_,
-                                           .scan_fit = fit_.scan_fit(), .range_fit = fit_.range_trust()}, settings_.trust);
+                                           .scan_fit = fit_.scan_fit(), .range_fit = fit_.range_trust()}, is_lost_, settings_.trust);
   update.num_particles = static_cast<int>(cloud_.size());
   update.clump_weight = clump_weight_;
   update.matched_share = refined.matched_share;

@@ -32,10 +32,12 @@ namespace patrol::localize {
 struct MonteCarloSettings {
   std::string sensor_model = "likelihood_field";
   double independent_beams = 20.0;     ///< a scan says as much as so many beams that err independently; more beams only average
-  double update_distance_m = 0.1;      ///< particles are weighed after so much way,
+  double scan_fit_tol = 0.05;          ///< mean log-likelihood of a beam by which maps and models err: 3 cm at a deviation of 0.1 m
+  double update_distance_m = 0.2;      ///< particles are weighed after so much way,
   double update_angle_rad = 0.05;      ///< or such a turn,
   double update_period_s = 1.0;        ///< or, as long as the robot is lost, after this time
   double resample_threshold = 0.5;     ///< resample when the effective sample size falls below this share of the particles
+  int min_particles_when_lost = 2000;  ///< few particles forget one possible place after the other by chance
   double range_memory_s = 2.0;         ///< ranges this old are still used to search with
   double search_period_s = 1.0;        ///< at most one global search in this time
   int max_logged_particles = 300;
@@ -53,10 +55,12 @@ struct MonteCarloSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("sensor_model", self.sensor_model, one_of({"likelihood_field", "beam"}));
     visit("independent_beams", self.independent_beams, between(1.0, 10000.0));
+    visit("scan_fit_tol", self.scan_fit_tol, between(0.0, 1.0));
     visit("update_distance_m", self.update_distance_m, between(0.0, 10.0));
     visit("update_angle_rad", self.update_angle_rad, between(0.0, 3.2));
     visit("update_period_s", self.update_period_s, between(0.0, 1000.0));
     visit("resample_threshold", self.resample_threshold, between(0.0, 1.0));
+    visit("min_particles_when_lost", self.min_particles_when_lost, between(1, 1000000));
     visit("range_memory_s", self.range_memory_s, between(0.0, 100.0));
     visit("search_period_s", self.search_period_s, between(0.0, 1000.0));
     visit("max_logged_particles", self.max_logged_particles, between(0, 1000000));
@@ -126,8 +130,8 @@ class MonteCarloLocalizer {
 
   MonteCarloSettings settings_;
   RangeMemory ranges_;
-  std::unique_ptr<SensorModel> sensor_model_;
   LineField lines_;
+  std::unique_ptr<SensorModel> sensor_model_;
   GlobalSearch search_;
   RandomStream start_noise_, motion_noise_, resampling_noise_, injection_noise_;
   FitMonitor fit_;

@@ -21,17 +21,18 @@ struct ParticleCloud {
   }
 };
 
-/// Which clump of the belief each particle belongs to (PoseBins::clumps).
-struct ParticleClumps {
-  std::vector<std::size_t> clump_of;  ///< [particle]
-  std::size_t heaviest = 0;           ///< the clump of the largest weight
-  double heaviest_weight = 0.0;       ///< its share, 0 ... 1
+/// Which clump of the belief each particle belongs to (PoseBins::clumps): [particle] -> number of the clump.
+std::vector<std::size_t> clumps_of(const std::vector<Pose2>& T_map_body, const KldSettings& settings);
+
+struct HeaviestClump {
+  std::size_t number = 0;
+  double weight = 0.0;  ///< its share of the belief, 0 ... 1
 };
-
 /// `weights`: [particle], sum 1.
-ParticleClumps find_clumps(const std::vector<Pose2>& T_map_body, const std::vector<double>& weights, const KldSettings& settings);
+HeaviestClump heaviest_clump(const std::vector<std::size_t>& clumps, const std::vector<double>& weights);
 
-/// Mean and covariance of the heaviest clump's particles. The mean of the headings is that of their directions.
-slam::PoseGaussian gaussian_of(const std::vector<Pose2>& T_map_body, const std::vector<double>& weights, const ParticleClumps& clumps);
+/// Mean and covariance of one clump's particles. The mean of the headings is that of their directions.
+slam::PoseGaussian gaussian_of(const std::vector<Pose2>& T_map_body, const std::vector<double>& weights,
+                               const std::vector<std::size_t>& clumps, std::size_t clump);
 
 }  // namespace patrol::localize

@@ -51,26 +51,22 @@ struct NormalEquations {
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
 };
 
-/// What every normal is multiplied with so that the weaker direction loses the information that the normals' own scatter
-/// has put there.
-Eigen::Matrix2d remapping_of(const std::vector<Residual>& residuals, double normal_std_rad) {
+/// The unit vector along which the lines face least, taken all together.
+Eigen::Vector2d weak_axis(const std::vector<Residual>& residuals) {
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (const Residual& residual : residuals) sum += residual.weight * residual.normal * residual.normal.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(sum);
-  const double weak = axes.eigenvalues()[0], strong = axes.eigenvalues()[1];
-  if (!(weak > 0.0)) return Eigen::Matrix2d::Identity();
-  const double kept = std::max(0.0, 1.0 - squared(normal_std_rad) * strong / weak);
-  return axes.eigenvectors() * Eigen::Vector2d(std::sqrt(kept), 1.0).asDiagonal() * axes.eigenvectors().transpose();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(sum).eigenvectors().col(0);
 }
 
-NormalEquations equations_of(const std::vector<Residual>& residuals, double normal_std_rad, double gain) {
+NormalEquations equations_of(const std::vector<Residual>& residuals, const PoseRefinementSettings& settings) {
   NormalEquations sum;
-  const Eigen::Matrix2d remapping = remapping_of(residuals, normal_std_rad);
+  const Eigen::Vector2d u = weak_axis(residuals), v(-u.y(), u.x());
   for (const Residual& residual : residuals) {
+    const double facing = residual.normal.dot(u);
     Eigen::Vector3d J;
-    J << remapping * residual.normal, residual.turn;
-    sum.H += gain * residual.weight * J * J.transpose();
-    sum.b += gain * residual.weight * residual.distance_m * J;
+    J << (std::abs(facing) > settings.min_facing ? residual.normal : Eigen::Vector2d(residual.normal.dot(v) * v)), residual.turn;
+    sum.H += settings.likelihood_gain * residual.weight * J * J.transpose();
+    sum.b += settings.likelihood_gain * residual.weight * residual.distance_m * J;
   }
   return sum;
 }
@@ -95,7 +91,7 @@ RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const sla
     refined.matched_share = share_within(residuals, 2.0 * settings.kernel_m, points.size());
     if (refined.matched_share < settings.min_matched_share) return refined;
 
-    sum = equations_of(residuals, settings.normal_std_rad, settings.likelihood_gain);
+    sum = equations_of(residuals, settings);
     const Eigen::Vector3d step = -(sum.H + prior_information).ldlt().solve(sum.b + prior_information * prior.offset_of(pose));
     if (!step.allFinite()) return refined;
     pose = slam::shifted(pose, step);

@@ -18,7 +18,7 @@ struct PoseRefinementSettings {
   double point_angle_std_rad = 0.0015;  ///< of its direction
   double kernel_m = 0.08;               ///< from here on a point counts as an outlier, gradually
   double likelihood_gain = 0.1;         ///< share of the points that err independently
-  double normal_std_rad = 0.06;         ///< of a line's direction, from cells and noise in the map
+  double min_facing = 0.15;             ///< a line that faces the weak direction by no more (a sine) says nothing about it
   double map_std_m = 0.01;              ///< of the map itself, which no number of scans averages away
   double map_std_rad = 0.001;
   int max_iterations = 8;
@@ -32,7 +32,7 @@ struct PoseRefinementSettings {
     visit("point_angle_std_rad", self.point_angle_std_rad, between(0.0, 0.1));
     visit("kernel_m", self.kernel_m, between(1e-3, 10.0));
     visit("likelihood_gain", self.likelihood_gain, between(1e-4, 1.0));
-    visit("normal_std_rad", self.normal_std_rad, between(0.0, 0.5));
+    visit("min_facing", self.min_facing, between(0.0, 0.9));
     visit("map_std_m", self.map_std_m, between(0.0, 1.0));
     visit("map_std_rad", self.map_std_rad, between(0.0, 0.1));
     visit("max_iterations", self.max_iterations, between(1, 100));
@@ -50,13 +50,13 @@ struct RefinedPose {
 };
 
 /// The Gaussian posterior of a prior and a scan on the map: Gauss-Newton on the points' distances to the lines of the map,
-/// as slam/scan_matcher.h does while the map grows, from the prior's mean.
+/// as slam/scan_matcher.h does while the map grows, from `T_map_start`.
 ///
-/// In a degenerate corridor every line is parallel to the way, but noise and the pattern of cells turn some a few
-/// degrees, and hundreds of them would tell the place along the way to centimetres: wrongly. Sums of squares of normals
-/// grow by the variance of their direction, so that much is taken off the weaker direction again; what is left there is
-/// what the map knows, and in a featureless tunnel that is nothing ("solution remapping", Zhang, Kaess, Singh, "On
-/// degeneracy of optimization-based state estimation problems", ICRA 2016, with a share in place of a threshold).
+/// In a degenerate corridor every line is parallel to the way, but noise in the map turns each a few degrees, and hundreds
+/// of them would tell the place along the way to centimetres: wrongly, and the same wrong place scan after scan. So a line
+/// counts in the weaker direction only if it clearly faces it. What is left there is what the map knows, and in a
+/// featureless tunnel that is nothing: the direction stays with the prior ("solution remapping", Zhang, Kaess, Singh, "On
+/// degeneracy of optimization-based state estimation problems", ICRA 2016; there by eigenvalue, here line by line).
 RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const slam::PoseGaussian& prior, const Pose2& T_map_start,
                         const PoseRefinementSettings& settings);
 

@@ -16,16 +16,18 @@ double ramp(double value, double low, double high) {
 
 }  // namespace
 
-LocalizationTrust assess_trust(Time stamp, const BeliefEvidence& evidence, const TrustSettings& settings) {
+LocalizationTrust assess_trust(Time stamp, const BeliefEvidence& evidence, bool was_lost, const TrustSettings& settings) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(Eigen::Matrix2d(evidence.covariance.topLeftCorner<2, 2>()));
   const Eigen::Vector2d weak = axes.eigenvectors().col(1);
   LocalizationTrust trust{.stamp = stamp, .weak_std_m = std::sqrt(std::max(0.0, axes.eigenvalues()[1]))};
   trust.weak_direction_rad = weak.x() != 0.0 ? std::atan(weak.y() / weak.x()) : std::acos(0.0);
   const double narrow = 1.0 - 0.5 * ramp(trust.weak_std_m, settings.sure_std_m, settings.doubtful_std_m) -
                         0.5 * ramp(trust.weak_std_m, settings.doubtful_std_m, settings.hopeless_std_m);
-  const double founded = evidence.clump_weight * ramp(evidence.scan_fit, settings.bad_fit, settings.good_fit) * evidence.range_fit;
+  const double decided = ramp(evidence.clump_weight, settings.undecided_weight, settings.decided_weight);
+  const double founded = decided * ramp(evidence.scan_fit, settings.bad_fit, settings.good_fit) * evidence.range_fit;
   trust.trust = std::clamp(narrow * founded, 0.0, 1.0);
-  trust.is_lost = !(trust.trust >= settings.lost_below);
+  const bool is_found = was_lost ? trust.trust > settings.found_above && decided >= 1.0 : trust.trust >= settings.lost_below;
+  trust.is_lost = !is_found;
   return trust;
 }
 
