@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/robot_stack.h"
+#include "localize/map_pose_tracker.h"
 
 namespace patrol::app {
 

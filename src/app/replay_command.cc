@@ -52,7 +52,7 @@ ExitCode replay_command(const ReplayOptions& options) {
   if (!record.has_estimate()) throw InputError(fmt::format("{}: ended before the robot had an estimate", directory.log().string()));
   const Pose2 T_world_map = score::join_at_start(record.T_map_body, record.T_world_body);
   sim::AssembledModel model =
-      sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), start_in_world(scenario, files));
+      sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), start_in_world(scenario, files), props_of(scenario));
 
   if (options.still_s) {
     const Time at = from_seconds(*options.still_s);

@@ -13,10 +13,10 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::array<std::string_view, 15> kOurFiles = {
+constexpr std::array<std::string_view, 17> kOurFiles = {
     "scenario.yaml", "log.mcap", "metrics.json", "junit.xml", "estimate.tum", "truth.tum",  "odometry.tum",
     "map.yaml",      "map.pgm",  "truth_map.yaml", "truth_map.pgm", "INCOMPLETE",   "report.html", "replay.mp4",
-    "replay.mp4.part"};
+    "replay.mp4.part", "nav.json", "remote.csv"};
 
 bool is_ours(const std::filesystem::path& file) {
   const std::string name = file.filename().string();

@@ -37,6 +37,8 @@ sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& f
           .T_world_start = start_in_world(scenario, files),
           .sensors = scenario.sensors,
           .locomotion = scenario.locomotion,
+          .track_drive = scenario.track_drive,
+          .props = props_of(scenario),
           .actors = scenario.actors,
           .leaks = scenario.leaks,
           .wind = scenario.wind,
@@ -51,6 +53,13 @@ sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& f
 Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files) {
   return files.T_site_start * Pose2{scenario.start.ahead_m, scenario.start.left_m,
                                     scenario.start.turn_deg * std::numbers::pi / 180.0};
+}
+
+std::vector<sim::PropSettings> props_of(const Scenario& scenario) {
+  std::vector<sim::PropSettings> props = scenario.props;
+  const std::vector<sim::PropSettings> scattered = sim::scatter_low_obstacles(scenario.low_obstacles, scenario.seed);
+  props.insert(props.end(), scattered.begin(), scattered.end());
+  return props;
 }
 
 sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files) {

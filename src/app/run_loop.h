@@ -31,6 +31,9 @@ using ProgressCallback = std::function<bool(Time now, double distance_m)>;
 /// Where the robot is put down, in world.
 Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files);
 
+/// What lies about: the props named and those scattered.
+std::vector<sim::PropSettings> props_of(const Scenario& scenario);
+
 /// Throw InputError when what the scenario names does not go together.
 sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files);
 std::unique_ptr<RobotStack> make_stack(const Scenario& scenario, const ScenarioFiles& files);

@@ -36,6 +36,8 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   handlers.truth = [&](Time, const GroundTruth& truth) { append(record.T_world_body, truth.stamp, truth.T_world_body); };
   handlers.event = [&](Time, const Event& event) { record.events.push_back(event); };
   handlers.collision = [&](Time, const Collision& collision) { record.collisions.push_back(collision); };
+  handlers.trust = [&](Time, const LocalizationTrust& trust) { record.trusts.push_back(trust); };
+  handlers.remote = [&](Time, const RemoteCommand& command) { record.remote.push_back(command); };
   handlers.map = [&](Time, const MapUpdate& update) { record.map = update.map; };
   record.is_complete = io::read_run_log(log_mcap, handlers);
   if (record.T_world_body.empty()) throw InputError(fmt::format("{}: holds no ground truth", log_mcap.string()));

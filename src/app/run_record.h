@@ -15,6 +15,8 @@ struct RunRecord {
   Trajectory T_odom_body;
   Trajectory T_world_body;  ///< the truth
   std::vector<Event> events;
+  std::vector<LocalizationTrust> trusts;
+  std::vector<RemoteCommand> remote;
   std::vector<Collision> collisions;
   OccupancyGrid map;        ///< the last one
   bool is_complete = false; ///< the log has its end

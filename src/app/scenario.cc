@@ -51,6 +51,7 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<std:
     const auto profile = io::load_settings<RobotProfile>(profile_file, {});
     scenario.sensors = profile.sensors;
     scenario.locomotion = profile.locomotion;
+    scenario.track_drive = profile.track_drive;
     scenario.stack = profile.stack;
   }
   io::read_settings(file, overrides, scenario);

@@ -86,8 +86,11 @@ struct Scenario {
   RemoteSettings remote;
   StartOffsetSettings start;
   sim::SensorSuiteSettings sensors;
-  sim::LocomotionSettings locomotion;
+  sim::LocomotionSettings locomotion;      ///< of a robot with legs
+  sim::TrackDriveSettings track_drive;     ///< of a robot with tracks
   StackSettings stack;
+  std::vector<sim::PropSettings> props;
+  sim::LowObstacleSettings low_obstacles;  ///< scattered by the seed, beside the props
   std::vector<sim::ActorSettings> actors;
   std::vector<sim::LeakSettings> leaks;
   sim::WindSettings wind;
@@ -110,7 +113,10 @@ struct Scenario {
     visit("start", self.start);
     visit("sensors", self.sensors);
     visit("locomotion", self.locomotion);
+    visit("track_drive", self.track_drive);
     visit("stack", self.stack);
+    visit("props", self.props);
+    visit("low_obstacles", self.low_obstacles);
     visit("actors", self.actors);
     visit("leaks", self.leaks);
     visit("wind", self.wind);
@@ -125,12 +131,14 @@ struct Scenario {
 struct RobotProfile {
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;
+  sim::TrackDriveSettings track_drive;
   StackSettings stack;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("sensors", self.sensors);
     visit("locomotion", self.locomotion);
+    visit("track_drive", self.track_drive);
     visit("stack", self.stack);
   }
 };

@@ -1,14 +1,21 @@
 #include "app/score_run.h"
 
+#include <cmath>
+
 #include "app/run_loop.h"
 #include "app/run_record.h"
 #include "inspect/route_frame.h"
 #include "io/map_server.h"
+#include "io/nav_json.h"
+#include "io/remote_csv.h"
 #include "io/tum.h"
 #include "render/reference_map.h"
+#include "score/goal_error.h"
 #include "score/inspection_score.h"
+#include "score/localization_score.h"
 #include "score/map_error.h"
 #include "score/station_error.h"
+#include "score/statistics.h"
 #include "score/trajectory_error.h"
 
 namespace patrol::app {
@@ -83,6 +90,66 @@ io::Metrics to_json(const score::InspectionScore& score) {
   return metrics;
 }
 
+io::Metrics spread_of(const std::vector<double>& values) {
+  io::Metrics metrics;
+  metrics["mean"] = values.empty() ? io::Metrics() : io::Metrics(score::mean(values));
+  metrics["std"] = values.empty() ? io::Metrics() : io::Metrics(std::sqrt(score::variance(values)));
+  metrics["max"] = values.empty() ? io::Metrics() : io::Metrics(score::maximum(values));
+  return metrics;
+}
+
+io::Metrics to_json(const score::GoalError& error) {
+  io::Metrics metrics;
+  metrics["name"] = error.name;
+  metrics["arrivals"] = error.arrivals.size();
+  metrics["failed"] = error.num_failed;
+  metrics["position_error_m"] = spread_of(error.position_errors_m());
+  metrics["heading_error_deg"] = spread_of(error.heading_errors_deg());
+  return metrics;
+}
+
+io::Metrics optional_json(const std::optional<double>& value) { return value ? io::Metrics(*value) : io::Metrics(); }
+
+io::Metrics to_json(const score::LocalizationScore& score) {
+  io::Metrics metrics;
+  metrics["max_error_m"] = score.max_error_m;
+  metrics["min_trust"] = score.min_trust;
+  metrics["doubted_s"] = optional_json(score.doubted_s);
+  metrics["strayed_s"] = optional_json(score.strayed_s);
+  metrics["doubted_before_straying"] = score.strayed_s ? io::Metrics(score.doubted_s && *score.doubted_s < *score.strayed_s) : io::Metrics();
+  metrics["lost_s"] = score.lost_s;
+  return metrics;
+}
+
+io::Metrics to_json(const score::RelocalizationScore& score) {
+  io::Metrics metrics;
+  metrics["at_s"] = score.at_s;
+  metrics["moved_m"] = score.moved_m;
+  metrics["said_lost_s"] = optional_json(score.said_lost_s);
+  metrics["relocalized_s"] = optional_json(score.relocalized_s);
+  return metrics;
+}
+
+/// Of a robot that drives a tour: nothing in the log, nothing here.
+void add_tour_metrics(const RunRecord& record, const Scenario& scenario, const ScenarioFiles& files, const Pose2& T_world_map,
+                      io::Metrics& metrics) {
+  const std::vector<score::GoalError> goals = score::goal_errors(record.events, files.goals, T_world_map, record.T_world_body);
+  if (!goals.empty()) metrics["goals"] = io::Metrics::array();
+  for (const score::GoalError& goal : goals) metrics["goals"].push_back(to_json(goal));
+  if (files.route.dock) {
+    metrics["docking"] = to_json(score::docking_error(record.events, files.route.dock->T_route_docked, record.T_world_body));
+    metrics["docking"].erase("name");
+  }
+  if (record.trusts.empty()) return;
+  std::vector<score::MatchedPose> matched = score::match_poses(record.T_map_body, T_world_map, record.T_world_body);
+  std::erase_if(matched, [&](const score::MatchedPose& pose) { return pose.stamp < record.trusts.front().stamp; });
+  metrics["localization"] = to_json(score::localization_score(matched, record.trusts));
+  for (const KidnapSettings& kidnap : scenario.kidnaps) {
+    metrics["localization"]["kidnaps"].push_back(
+        to_json(score::relocalization_score(from_seconds(kidnap.at_s), matched, record.trusts)));
+  }
+}
+
 io::Metrics mission_metrics(const RunRecord& record) {
   io::Metrics metrics;
   metrics["completed"] = record.has_event("mission_completed");
@@ -115,6 +182,18 @@ void save_trajectories(const RunDirectory& directory, const RunRecord& record) {
   io::save_tum(directory.odometry(), record.T_odom_body, "base_link in odom, by legs and IMU alone");
 }
 
+/// What a drive by remote control leaves: its commands, to be driven again, and the goals that were marked.
+void save_drive(const RunDirectory& directory, const RunRecord& record) {
+  if (record.remote.empty()) return;
+  io::save_remote(directory.remote(), record.remote);
+  std::vector<MarkedGoal> goals;
+  for (const Event& event : record.events) {
+    if (event.kind != "goal_marked") continue;
+    goals.push_back({.number = static_cast<int>(goals.size()) + 1, .T_map_body = event.T_map_body});
+  }
+  if (!goals.empty()) io::save_nav(directory.nav(), goals);
+}
+
 }  // namespace
 
 io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, const ScenarioFiles& files) {
@@ -123,6 +202,7 @@ io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, c
   metrics["mission"] = mission_metrics(record);
   if (!record.has_estimate()) return metrics;
   save_trajectories(directory, record);
+  save_drive(directory, record);
   const sim::SpecPtr spec = sim::load_spec(files.world_xml.string());
   const sim::ModelPtr world = sim::compile(*spec, files.world_xml.string());
   const render::ReferenceMap truth = world_map(record, files, *world);
@@ -139,6 +219,7 @@ io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, c
   metrics["map"]["reference_agreement"] = truth.check.share_agreeing();  // of its render with rays
   metrics["stations"] = to_json(score::station_errors(files.route, record.events, T_world_map, record.T_world_body, record.map,
                                                       reference));
+  add_tour_metrics(record, scenario, files, T_world_map, metrics);
   metrics["inspection"] = to_json(score::inspection_score(record.events, T_world_map, true_leaks(scenario, *world)));
   return metrics;
 }

@@ -44,18 +44,19 @@ RelocalizationScore relocalization_score(Time kidnapped, const std::vector<Match
     score.said_lost_s = to_seconds(trust.stamp - kidnapped);
     break;
   }
-  std::optional<Time> good_since;
+  constexpr Time kNever = Time::max();
+  Time good_since = kNever;
   bool is_first = true;
   for (const MatchedPose& pose : matched) {
     if (pose.stamp < kidnapped) continue;
     if (std::exchange(is_first, false)) score.moved_m = pose.position_error_m();
     const LocalizationTrust* trust = trust_at(trusts, pose.stamp);
     const bool is_good = pose.position_error_m() < kStrayed_m && trust != nullptr && !trust->is_lost;
-    if (!is_good) good_since.reset();
-    if (is_good && !good_since) good_since = pose.stamp;
-    if (good_since && pose.stamp - *good_since >= kKeeps) break;
+    if (!is_good) good_since = kNever;
+    if (is_good) good_since = std::min(good_since, pose.stamp);
+    if (good_since != kNever && pose.stamp - good_since >= kKeeps) break;
   }
-  if (good_since) score.relocalized_s = to_seconds(*good_since - kidnapped);
+  if (good_since != kNever) score.relocalized_s = to_seconds(good_since - kidnapped);
   return score;
 }
 

@@ -50,8 +50,10 @@ void spare_still_bodies(mjSpec& spec) {
   mjs_findBody(&spec, frame_id::kBody)->sleep = mjSLEEP_NEVER;
 }
 
-SpecPtr make_spec(const std::string& world_xml, const std::string& robot_urdf, const Pose3& T_world_body) {
+SpecPtr make_spec(const std::string& world_xml, const std::string& robot_urdf, const Pose3& T_world_body,
+                  const std::vector<PropSettings>& props) {
   SpecPtr spec = load_spec(world_xml);
+  add_props(*spec, props);
   add_robot(*spec, robot_urdf, T_world_body);
   return spec;
 }
@@ -88,13 +90,14 @@ void put_legs_in_start_posture(const mjModel& model, mjtNum* qpos) {
   }
 }
 
-AssembledModel assemble_model(const std::string& world_xml, const std::string& robot_urdf, const Pose2& T_world_start) {
+AssembledModel assemble_model(const std::string& world_xml, const std::string& robot_urdf, const Pose2& T_world_start,
+                              const std::vector<PropSettings>& props) {
   AssembledModel assembled;
   assembled.stance = stance_of(robot_urdf);
   const double ground_m = world_ground_height_m(world_xml, assembled.stance, T_world_start);
   const Pose3 T_world_body = to_spatial(T_world_start, ground_m + assembled.stance.height_m);
-  assembled.view = compile(*make_spec(world_xml, robot_urdf, T_world_body), world_xml);
-  const SpecPtr physics = make_spec(world_xml, robot_urdf, T_world_body);
+  assembled.view = compile(*make_spec(world_xml, robot_urdf, T_world_body, props), world_xml);
+  const SpecPtr physics = make_spec(world_xml, robot_urdf, T_world_body, props);
   strip_untouchable(*physics);
   spare_still_bodies(*physics);
   assembled.physics = compile(*physics, world_xml);

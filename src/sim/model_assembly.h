@@ -5,6 +5,7 @@
 
 #include "core/frames.h"
 #include "sim/mujoco.h"
+#include "sim/props.h"
 #include "sim/robot_model.h"
 
 namespace patrol::sim {
@@ -18,9 +19,10 @@ struct AssembledModel {
   Stance stance;                   ///< that of `start_qpos`
 };
 
-/// Puts the robot of a URDF into the world of an MJCF file, standing on the ground at `T_world_start`.
+/// Puts the robot of a URDF and some props into the world of an MJCF file, the robot standing on the ground at `T_world_start`.
 /// Throws InputError when a file is wrong or when the start pose is inside something.
-AssembledModel assemble_model(const std::string& world_xml, const std::string& robot_urdf, const Pose2& T_world_start);
+AssembledModel assemble_model(const std::string& world_xml, const std::string& robot_urdf, const Pose2& T_world_start,
+                              const std::vector<PropSettings>& props = {});
 
 /// Height of what the robot would stand on with its base over `T_world_body`, m: the highest touchable surface under any point of
 /// its stance, seen from `eye_height_m` downwards. The robot itself does not count. Throws InputError if there is none.

@@ -41,7 +41,7 @@ std::unique_ptr<Locomotion> make_locomotion(const TwinSettings& settings, const 
 }  // namespace
 
 Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uint64_t seed)
-    : model_(assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start)),
+    : model_(assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start, settings.props)),
       data_(make_data(*model_.physics)),
       nearby_(*model_.physics),
       robot_body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)),
@@ -49,6 +49,7 @@ Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uin
       actors_(*model_.physics, settings.actors),
       sensors_(settings.sensors, robot, *model_.physics, *model_.view,
                GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed),
+      recorded_(settings.recorded),
       tick_(from_seconds(model_.physics->opt.timestep)) {
   if (!settings.drive.empty()) driver_.emplace(settings.driver, settings.drive, seed);
   if (robot_body_ < 0) throw InputError(fmt::format("{}: no link named {}", settings.robot_urdf, frame_id::kBody));
@@ -94,8 +95,8 @@ void Twin::hear_remote() {
       sensors_.hear(*command);
     }
   }
-  while (num_replayed_ < settings_.recorded.size() && settings_.recorded[num_replayed_].stamp <= now_) {
-    sensors_.hear(settings_.recorded[num_replayed_++]);
+  while (num_replayed_ < recorded_.size() && recorded_[num_replayed_].stamp <= now_) {
+    sensors_.hear(recorded_[num_replayed_++]);
   }
 }
 

@@ -16,6 +16,7 @@
 #include "sim/locomotion/track_drive_settings.h"
 #include "sim/model_assembly.h"
 #include "sim/nearby_scenery.h"
+#include "sim/props.h"
 #include "sim/remote_operator.h"
 #include "sim/sensors/sensor_suite.h"
 
@@ -29,6 +30,7 @@ struct TwinSettings {
   SensorSuiteSettings sensors;
   LocomotionSettings locomotion;   ///< of a robot with legs
   TrackDriveSettings track_drive;  ///< of a robot with tracks
+  std::vector<PropSettings> props;
   std::vector<ActorSettings> actors;
   std::vector<LeakSettings> leaks;
   WindSettings wind;
@@ -82,7 +84,8 @@ class Twin {
   Actors actors_;
   SensorSuite sensors_;
   std::optional<RemoteOperator> driver_;
-  std::size_t num_replayed_ = 0;  ///< of the recorded commands
+  std::vector<RemoteCommand> recorded_;
+  std::size_t num_replayed_ = 0;
   VelocityCommand command_;
   Time now_{};
   Time tick_;
