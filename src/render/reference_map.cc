@@ -89,6 +89,7 @@ class SliceScene {
     mjv_initGeom(&added, model.geom_type[geom], model.geom_size + 3 * geom, data.geom_xpos + 3 * geom,
                  data.geom_xmat + 9 * geom, kWhite);
     if (model.geom_type[geom] == mjGEOM_MESH) added.dataid = 2 * model.geom_dataid[geom];
+    if (model.geom_type[geom] == mjGEOM_HFIELD) added.dataid = model.geom_dataid[geom];
   }
 
   /// Depth, rows from high y to low y, columns along the camera's right: +x looking down, -x looking up.

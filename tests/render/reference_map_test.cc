@@ -78,6 +78,28 @@ TEST(ReferenceMapTest, ASphereIsCutAtTheHeightThatWasAsked) {
   }
 }
 
+/// A ridge along y: its height rises evenly from 0 at x = -2.01 m to 1 m at x = -0.01 m and falls again.
+constexpr const char* kRidge =
+    R"(<hfield name="ridge" nrow="2" ncol="3" size="2 1 1 0.3" elevation="0 1 0 0 1 0"/>)";
+
+TEST(ReferenceMapTest, AHeightFieldIsCutWhereItsGroundIsHigherThanTheLidar) {
+  // Higher than 0.4 m within 0.6 * 2 m of the ridge.
+  const auto model =
+      small_scene(R"(<geom type="hfield" hfield="ridge" pos="-0.01 0.01 0" group="2"/>)", kRidge);
+  const ReferenceMap reference = reference_map(*model, {.height_m = 0.4});
+  EXPECT_EQ(num_wrong(reference.map,
+                      [](double x, double y) { return std::abs(x + 0.01) < 1.2 && y > -0.99 && y < 1.01; }),
+            0);
+  EXPECT_EQ(reference.check.share_agreeing(), 1.0);
+}
+
+TEST(ReferenceMapTest, GroundBelowTheLidarIsNoSurface) {
+  const auto model = small_scene(R"(<geom type="hfield" hfield="ridge" pos="0 0 -0.7" group="2"/>
+                                    <geom type="box" size="0.5 0.25 0.5" pos="2.51 1.26 0.5"/>)",
+                                 kRidge);
+  EXPECT_EQ(num_occupied(reference_map(*model, {.height_m = 0.4}).map), 2u * 40 + 2 * 18);
+}
+
 TEST(ReferenceMapTest, OverlappingThingsAreOne) {
   const auto model = small_scene(R"(<geom type="box" size="0.5 0.5 0.5" pos="0.51 0.51 0.5"/>
                                     <geom type="box" size="0.5 0.2 0.3" pos="1.01 0.51 0.3"/>

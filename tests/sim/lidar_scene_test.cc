@@ -141,6 +141,26 @@ TEST(LidarScene, InTheStreetWithRobotAndTrafficUnderWayItIsWithin1MillimetreOfMj
   EXPECT_LT(agreement.largest_m, 5e-4);
 }
 
+TEST(LidarScene, InTheTunnelItIsWithin1MillimetreOfMjRayOnLiningRockAndInvert) {
+  const ModelPtr model = compile(*load_spec(PATROL_SOURCE_DIR "/worlds/tunnel/tunnel.xml"), "tunnel");
+  const DataPtr data = make_data(*model);
+  mj_kinematics(model.get(), data.get());
+  LidarScene scene(*model);
+  scene.update(*data);
+  const RandomStream random(5, "rays");
+  Agreement agreement;
+  for (std::uint64_t ray = 0; ray < 3000; ++ray) {
+    const double x = 2.0 + 150.0 * random.uniform(ray, 10), bend = std::max(0.0, x - 80.0);
+    const Eigen::Vector3d origin(x, bend * bend / 800.0 + 8.0 * random.uniform(ray, 11) - 4.0,
+                                 0.3 + 1.2 * random.uniform(ray, 12));
+    compare(scene, *model, *data, origin, random_direction(random, ray), agreement);
+  }
+  EXPECT_GT(agreement.hits, 2500);
+  EXPECT_EQ(agreement.unexplained, 0);
+  EXPECT_LE(agreement.beyond_1_mm, 8);
+  EXPECT_LT(agreement.largest_m, 5e-4);
+}
+
 TEST(LidarScene, NormalsAreThoseOfMuJoCoAndLookTowardsTheRaysOrigin) {
   const SmallWorld world(kEveryShape, kMesh);
   const RandomStream random(3, "rays");
