@@ -10,6 +10,7 @@
 #include "app/tour_stack.h"
 #include "inspect/route_frame.h"
 #include "io/run_log.h"
+#include "render/depth_renderer.h"
 
 namespace patrol::app {
 namespace {
@@ -54,7 +55,7 @@ Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files) {
 }
 
 sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files) {
-  return sim::Twin(twin_settings(scenario, files), files.robot, scenario.seed);
+  return sim::Twin(twin_settings(scenario, files), files.robot, scenario.seed, render::make_depth_renderer);
 }
 
 std::unique_ptr<RobotStack> make_stack(const Scenario& scenario, const ScenarioFiles& files) {
@@ -143,6 +144,10 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
   // The lidar is one of the sensors, and the dearest by far: a part of its own.
   outcome.seconds_by_part["lidar"] = twin.sensors().lidar_seconds();
   outcome.seconds_by_part["sensors"] -= twin.sensors().lidar_seconds();
+  if (const double seconds = twin.sensors().depth_camera_seconds(); seconds > 0.0) {
+    outcome.seconds_by_part["depth_camera"] = seconds;
+    outcome.seconds_by_part["sensors"] -= seconds;
+  }
   return outcome;
 }
 
