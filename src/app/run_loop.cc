@@ -10,6 +10,8 @@
 #include "app/tour_stack.h"
 #include "inspect/route_frame.h"
 #include "io/run_log.h"
+#include "render/depth_renderer.h"
+#include "render/depth_renderer.h"
 
 namespace patrol::app {
 namespace {
@@ -63,7 +65,7 @@ std::vector<sim::PropSettings> props_of(const Scenario& scenario) {
 }
 
 sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files) {
-  return sim::Twin(twin_settings(scenario, files), files.robot, scenario.seed);
+  return sim::Twin(twin_settings(scenario, files), files.robot, scenario.seed, render::make_depth_renderer);
 }
 
 std::unique_ptr<RobotStack> make_stack(const Scenario& scenario, const ScenarioFiles& files) {
@@ -152,6 +154,10 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
   // The lidar is one of the sensors, and the dearest by far: a part of its own.
   outcome.seconds_by_part["lidar"] = twin.sensors().lidar_seconds();
   outcome.seconds_by_part["sensors"] -= twin.sensors().lidar_seconds();
+  if (const double seconds = twin.sensors().depth_camera_seconds(); seconds > 0.0) {
+    outcome.seconds_by_part["depth_camera"] = seconds;
+    outcome.seconds_by_part["sensors"] -= seconds;
+  }
   return outcome;
 }
 

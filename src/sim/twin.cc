@@ -40,7 +40,8 @@ std::unique_ptr<Locomotion> make_locomotion(const TwinSettings& settings, const 
 
 }  // namespace
 
-Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uint64_t seed)
+Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uint64_t seed,
+           const DepthImagerFactory& make_depth_imager)
     : model_(assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start, settings.props)),
       data_(make_data(*model_.physics)),
       nearby_(*model_.physics),
@@ -48,7 +49,7 @@ Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uin
       locomotion_(make_locomotion(settings, robot, *model_.physics)),
       actors_(*model_.physics, settings.actors),
       sensors_(settings.sensors, robot, *model_.physics, *model_.view,
-               GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed),
+               GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed, make_depth_imager),
       recorded_(settings.recorded),
       tick_(from_seconds(model_.physics->opt.timestep)) {
   if (!settings.drive.empty()) driver_.emplace(settings.driver, settings.drive, seed);

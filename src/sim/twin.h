@@ -44,7 +44,9 @@ struct TwinSettings {
 /// the sensors say; the truth is for the log and the judge.
 class Twin {
  public:
-  Twin(const TwinSettings& settings, const RobotDescription& robot, std::uint64_t seed);
+  /// A depth camera needs `make_depth_imager` (render/depth_renderer.h).
+  Twin(const TwinSettings& settings, const RobotDescription& robot, std::uint64_t seed,
+       const DepthImagerFactory& make_depth_imager = {});
 
   /// One physics tick (2 ms).
   void step();

@@ -282,6 +282,41 @@ TEST(Lidar, RainOfOnePerCentAMetreShortensTheShareOfBeamsThatBeersLawSays) {
   EXPECT_NEAR(static_cast<double>(drops.count) / all, (1.0 - std::exp(-0.1)) * 0.99, 0.007);
 }
 
+/// One scan of 400 narrow beams squarely at a white wall, through dust.
+LaserScan scan_in_dust(double wall_m, const DustSettings& dust, const LidarSettings& settings) {
+  const SmallWorld world(box(std::to_string(wall_m + 0.5) + " 0 0", "0.5 20 5"));
+  Lidar lidar(settings, world.scene, {}, kRayLidar2d, 1, "lidar", dust);
+  for (Time now{};; now += kTick) {
+    lidar.advance(now, now + kTick, {}, {});
+    const auto scans = lidar.take_scans();
+    if (!scans.empty()) return scans.front();
+  }
+}
+
+// White is seen to 30 m in clear air. Light falls by ln 50 / 20 m = 0.1956 / m: at 9 m it is as from 9 exp(1.760) = 52.3 m, at
+// 7 m as from 7 exp(1.369) = 27.5 m.
+TEST(Lidar, InDustOf20MetresVisibilityAWhiteWallIsSeenAt7MetresAndNotAt9) {
+  LidarSettings settings = narrow();
+  settings.dark_range_m = 10.0;
+  const DustSettings dust{.enabled = true, .visibility_m = 20.0, .echo_share = 0.0};
+  EXPECT_NEAR(scan_in_dust(7.0, dust, settings).ranges_m.at(200), 7.0, 1e-3);
+  EXPECT_EQ(scan_in_dust(9.0, dust, settings).ranges_m.at(200), kInfinity);
+  EXPECT_NEAR(scan_in_dust(9.0, {}, settings).ranges_m.at(200), 9.0, 1e-3);
+}
+
+TEST(Lidar, DustGivesEchoesOfItsOwnByBeersLaw) {
+  LidarSettings settings = ideal();
+  settings.fov_deg = 4.0;
+  settings.beams = 20000;
+  settings.rate_hz = 10.0;
+  const DustSettings dust{.enabled = true, .visibility_m = 20.0, .echo_share = 0.1};
+  const LaserScan scan = scan_in_dust(5.0, dust, settings);
+  int echoes = 0;
+  for (const float range : scan.ranges_m) echoes += range < 4.99f;
+  const double expected = 1.0 - std::exp(-0.1 * std::log(50.0) / 20.0 * 5.0);  // 9.3 %; those in the last centimetre look right
+  EXPECT_NEAR(echoes / 20000.0, expected * (1.0 - 0.01 / 5.0), 4.0 * std::sqrt(expected / 20000.0));
+}
+
 /// The edge of a plate at `near_m` in front of a wall at `far_m`; the plate fills the beams left of 0.
 std::string edge(double near_m, double far_m) {
   return box(std::to_string(near_m + 0.01) + " 2 0", "0.01 2 5") +

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,7 +23,7 @@ const std::string kWorld = R"(<site name="uwb_anchor_1" pos="8 0 1"/><site name=
 RobotDescription make_robot() {
   RobotDescription robot;
   robot.name = "carrier";
-  for (const char* frame : {"lidar", "imu", "uwb", "ultrasonic_0", "ultrasonic_1"}) robot.T_body_sensor[frame] = {};
+  for (const char* frame : {"lidar", "imu", "uwb", "ultrasonic_0", "ultrasonic_1", "depth_camera"}) robot.T_body_sensor[frame] = {};
   return robot;
 }
 
@@ -56,10 +57,27 @@ struct Ride {
   }
 };
 
+/// Draws a wall 2 m ahead.
+class WallImager : public DepthImager {
+ public:
+  explicit WallImager(const PinholeLens& lens) : pixels_(static_cast<std::size_t>(lens.width_px * lens.height_px)) {}
+  void draw(const mjData&, const Pose3&, SurfaceImage& image) override {
+    image.depth_m.assign(pixels_, 2.0f);
+    image.reflectivity.assign(pixels_, 1.0f);
+  }
+
+ private:
+  std::size_t pixels_;
+};
+
+std::unique_ptr<DepthImager> make_wall_imager(const mjModel&, const PinholeLens& lens, double, double) {
+  return std::make_unique<WallImager>(lens);
+}
+
 Ride stand(const SensorSuiteSettings& settings, double seconds, const std::vector<FaultSettings>& faults = {},
-           const RobotDescription& robot = make_robot()) {
+           const RobotDescription& robot = make_robot(), const DepthImagerFactory& make_imager = make_wall_imager) {
   SmallWorld world(kWorld);
-  SensorSuite suite(settings, robot, *world.model, *world.model, GasPlume(Eigen::Vector3d::Zero(), 0.0, {}), faults, 1);
+  SensorSuite suite(settings, robot, *world.model, *world.model, GasPlume(Eigen::Vector3d::Zero(), 0.0, {}), faults, 1, make_imager);
   Ride ride;
   for (Time now{}; now <= from_seconds(seconds); now += std::chrono::milliseconds(2)) {
     suite.step(*world.model, *world.data, now);
@@ -87,6 +105,13 @@ SensorSuiteSettings with_ultrasonic() {
   SensorSuiteSettings settings = quiet();
   settings.ultrasonic.enabled = true;
   settings.ultrasonic.dropout = 0.0;
+  return settings;
+}
+
+SensorSuiteSettings with_depth_camera() {
+  SensorSuiteSettings settings = quiet();
+  settings.depth_camera.enabled = true;
+  settings.depth_camera.dropout = 0.0;
   return settings;
 }
 
@@ -124,9 +149,43 @@ TEST(SensorSuite, TheTransducersFireInTurn40TimesASecondAndHearTheWallTwoAndAHal
   }
 }
 
+TEST(SensorSuite, TheDepthCameraTakes5FramesASecondAndTheyComeOut50MillisecondsLater) {
+  const auto frames = stand(with_depth_camera(), 1.049).of<DepthImage>();  // at 0, 0.2 ... 0.8; that of 1 s is on its way
+  ASSERT_EQ(frames.size(), 5u);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_EQ(frames[i].stamp(), from_seconds(0.2 * static_cast<double>(i)));
+    EXPECT_NEAR(to_seconds(frames[i].at - frames[i].stamp()), 0.05, 0.0021);
+    EXPECT_NEAR(std::get<DepthImage>(frames[i].message).depth_mm[2440], 2000, 60);
+  }
+}
+
+TEST(SensorSuite, ADepthCameraWithoutARendererIsRefusedInASentence) {
+  try {
+    stand(with_depth_camera(), 0.0, {}, make_robot(), {});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "sensors.depth_camera is enabled, but there is no renderer for it here");
+  }
+}
+
+TEST(SensorSuite, FaultsOfUltrasonicAndDepthCameraAreExecuted) {
+  SensorSuiteSettings settings = with_ultrasonic();
+  settings.depth_camera = with_depth_camera().depth_camera;
+  const Ride ride = stand(settings, 1.0, {fault("ultrasonic", "freeze", 0.1, 0.5), fault("depth_camera", "silence", 0.1, 0.5),
+                                          fault("depth_camera", "drift", 0.7, 0.3, 0.5), fault("uwb", "silence", 0.0, 1.0)});
+  EXPECT_TRUE(ride.faults[0].is_executed);
+  EXPECT_TRUE(ride.faults[1].is_executed);
+  EXPECT_TRUE(ride.faults[2].is_executed);
+  EXPECT_FALSE(ride.faults[3].is_executed);
+  const auto frames = ride.of<DepthImage>();  // 0 and 0.6 s, 0.8 s; 0.2 and 0.4 s are silent
+  ASSERT_EQ(frames.size(), 3u);
+  EXPECT_NEAR(std::get<DepthImage>(frames[2].message).depth_mm[2440], 2050, 60);  // 0.1 s at 0.5 m/s
+}
+
 TEST(SensorSuite, AnEnabledSensorWithoutItsFrameIsRefusedByName) {
   EXPECT_EQ(refusal(with_uwb(), "uwb"), "robot carrier: there is no link named uwb");
   EXPECT_EQ(refusal(with_ultrasonic(), "ultrasonic_0"), "robot carrier: there is no link named ultrasonic_0");
+  EXPECT_EQ(refusal(with_depth_camera(), "depth_camera"), "robot carrier: there is no link named depth_camera");
 }
 
 TEST(SensorSuite, EveryFaultOfUwbIsExecutedAndOneOfASilentSensorIsNot) {

@@ -63,11 +63,13 @@ LidarSettings LidarSettings::of_preset(const std::string& name) {
 }
 
 Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3& T_body_lidar,
-             RayMask own_housing, std::uint64_t seed, const std::string& name)
+             RayMask own_housing, std::uint64_t seed, const std::string& name, const DustSettings& dust)
     : settings_(settings),
       scene_(scene),
       T_body_lidar_(T_body_lidar),
       mask_(kRayEverything & ~static_cast<std::uint32_t>(own_housing)),
+      dust_(dust),
+      false_echoes_per_m_(settings.rain_rate + dust.echo_share * dust.extinction_per_m()),
       range_noise_(seed, name + "/range"),
       angle_noise_(seed, name + "/angle"),
       dropout_(seed, name + "/dropout"),
@@ -185,9 +187,9 @@ Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose
   if (jump_m > kLeastJump_m && jump_m < kPulse_m && settings_.beam_width_deg > 0.0) {
     got = mix_over_width(T_world_lidar, aimed, got);
   }
-  if (settings_.rain_rate > 0.0) {
+  if (false_echoes_per_m_ > 0.0) {
     const double path_m = std::min(got.range_m, settings_.range_max_m);
-    if (rain_.uniform(tick, index) < 1.0 - std::exp(-settings_.rain_rate * path_m)) {
+    if (rain_.uniform(tick, index) < 1.0 - std::exp(-false_echoes_per_m_ * path_m)) {
       got = {path_m * rain_range_.uniform(tick, index), 5.0};
     }
   }
@@ -242,7 +244,7 @@ Lidar::Return Lidar::echo(const RayHit& hit, const Eigen::Vector3d& direction, d
   const double reflectivity = std::max(0.02, static_cast<double>(reflectivity_[geom]));
   const double reach_m = std::min(settings_.range_max_m,
                                   settings_.dark_range_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1));
-  if (settings_.dark_range_m > 0.0 && range_m > reach_m) return {kInfinity, 0.0};
+  if (settings_.dark_range_m > 0.0 && dust_.clear_distance_m(range_m) > reach_m) return {kInfinity, 0.0};
   return {range_m, 255.0 * std::min(1.0, reflectivity * cosine)};
 }
 

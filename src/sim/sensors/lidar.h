@@ -8,6 +8,7 @@
 #include "core/messages.h"
 #include "core/random.h"
 #include "core/settings.h"
+#include "sim/dust.h"
 #include "sim/lidar_scene.h"
 
 namespace patrol::sim {
@@ -81,9 +82,9 @@ struct LidarSettings {
 class Lidar {
  public:
   /// One ring gives scans, several give clouds. `name` names the random streams; `own_housing` is what the
-  /// beams start in.
+  /// beams start in. Dust takes from the reach and gives echoes of its own.
   Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3& T_body_lidar,
-        RayMask own_housing, std::uint64_t seed, const std::string& name);
+        RayMask own_housing, std::uint64_t seed, const std::string& name, const DustSettings& dust = {});
 
   /// Fires the beams whose instants lie in (from, to]; the body moves evenly in between.
   void advance(Time from, Time to, const Pose3& T_world_body_from, const Pose3& T_world_body_to);
@@ -112,6 +113,8 @@ class Lidar {
   const LidarScene& scene_;
   Pose3 T_body_lidar_;
   std::uint32_t mask_;
+  DustSettings dust_;
+  double false_echoes_per_m_;  ///< of rain and dust
   RandomStream range_noise_, angle_noise_, dropout_, rain_, rain_range_;
   std::int64_t next_beam_ = 0;              ///< since the start
   std::vector<Eigen::Vector2d> azimuth_;    ///< [beam]: cosine and sine

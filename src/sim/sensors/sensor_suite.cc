@@ -16,9 +16,9 @@ Pose3 body_pose(const mjData& data, int body) {
 }
 
 std::optional<Lidar> make_lidar(const LidarSettings& settings, const LidarScene& scene, const RobotDescription& robot,
-                                const std::string& frame, RayMask housing, std::uint64_t seed) {
+                                const std::string& frame, RayMask housing, const DustSettings& dust, std::uint64_t seed) {
   if (!settings.enabled) return std::nullopt;
-  return Lidar(settings, scene, robot.T_body(frame), housing, seed, frame);
+  return Lidar(settings, scene, robot.T_body(frame), housing, seed, frame, dust);
 }
 
 std::optional<Uwb> make_uwb(const UwbSettings& settings, const mjModel& view, const RobotDescription& robot, std::uint64_t seed) {
@@ -31,6 +31,17 @@ std::optional<UltrasonicRing> make_ultrasonic(const UltrasonicSettings& settings
                                               const RobotDescription& robot, std::uint64_t seed) {
   if (!settings.enabled) return std::nullopt;
   return UltrasonicRing(settings, scene, robot, seed);
+}
+
+std::optional<DepthCamera> make_depth_camera(const SensorSuiteSettings& settings, const mjModel& view, const RobotDescription& robot,
+                                             const DepthImagerFactory& make_imager, std::uint64_t seed) {
+  const DepthCameraSettings& camera = settings.depth_camera;
+  if (!camera.enabled) return std::nullopt;
+  validate(camera, "sensors.depth_camera");
+  robot.T_body("depth_camera");  // or says that there is none
+  if (!make_imager) throw InputError("sensors.depth_camera is enabled, but there is no renderer for it here");
+  constexpr double kNear_m = 0.05;  // what is nearer is the housing's
+  return DepthCamera(camera, settings.dust, make_imager(view, lens_of(camera), kNear_m, 1.1 * camera.range_max_m), seed);
 }
 
 /// Adds `offset` to the message's main reading, as drift and spikes do.
@@ -62,7 +73,8 @@ struct OffsetBy {
 }  // namespace
 
 SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
-                         const mjModel& view, GasPlume plume, const std::vector<FaultSettings>& faults, std::uint64_t seed)
+                         const mjModel& view, GasPlume plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
+                         const DepthImagerFactory& make_depth_imager)
     : settings_(settings),
       robot_(robot),
       body_(mj_name2id(&physics, mjOBJ_BODY, frame_id::kBody)),
@@ -75,12 +87,14 @@ SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescrip
                          : std::nullopt),
       tdlas_(settings.tdlas, seed),
       gnss_(settings.gnss, seed),
-      lidar_(make_lidar(settings.lidar, scene_, robot, "lidar", kRayLidar2d, seed)),
-      lidar3d_(make_lidar(settings.lidar3d, scene_, robot, "lidar3d", kRayLidar3d, seed)),
+      lidar_(make_lidar(settings.lidar, scene_, robot, "lidar", kRayLidar2d, settings.dust, seed)),
+      lidar3d_(make_lidar(settings.lidar3d, scene_, robot, "lidar3d", kRayLidar3d, settings.dust, seed)),
       uwb_(make_uwb(settings.uwb, view, robot, seed)),
       ultrasonic_(make_ultrasonic(settings.ultrasonic, scene_, robot, seed)),
+      depth_camera_(make_depth_camera(settings, view, robot, make_depth_imager, seed)),
       spikes_(seed, "fault/spikes"),
       jitter_(seed, "fault/jitter") {
+  validate(settings.dust, "sensors.dust");
   for (const FaultSettings& fault : faults) faults_.push_back({.fault = fault});
 }
 
@@ -136,6 +150,7 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
   }
   if (uwb_) poll_uwb(T_world_body, now);
   if (ultrasonic_) ping_ultrasonic(T_world_body, now);
+  if (depth_camera_) take_depth_image(data, T_world_body, now);
 }
 
 void SensorSuite::poll_uwb(const Pose3& T_world_body, Time now) {
@@ -149,6 +164,14 @@ void SensorSuite::ping_ultrasonic(const Pose3& T_world_body, Time now) {
   for (const UltrasonicRange& range : ultrasonic_->ping(T_world_body, now, ultrasonic_count_ - 1)) {
     deliver("ultrasonic", now, settings_.ultrasonic.latency_s, range);
   }
+}
+
+void SensorSuite::take_depth_image(const mjData& data, const Pose3& T_world_body, Time now) {
+  if (!is_due(settings_.depth_camera.rate_hz, depth_camera_count_, now)) return;
+  const auto start = std::chrono::steady_clock::now();
+  deliver("depth_camera", now, settings_.depth_camera.latency_s,
+          depth_camera_->take(data, T_world_body * robot_.T_body("depth_camera"), now, depth_camera_count_ - 1));
+  depth_camera_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void SensorSuite::deliver(const char* sensor, Time ready, double latency_s, SensorMessage message) {

@@ -10,8 +10,10 @@
 
 #include "core/messages.h"
 #include "core/robot_description.h"
+#include "sim/dust.h"
 #include "sim/gas_plume.h"
 #include "sim/lidar_scene.h"
+#include "sim/sensors/depth_camera.h"
 #include "sim/sensors/fault.h"
 #include "sim/sensors/foot_contact.h"
 #include "sim/sensors/gnss.h"
@@ -36,6 +38,8 @@ struct SensorSuiteSettings {
   GnssSettings gnss;
   UwbSettings uwb;
   UltrasonicSettings ultrasonic;
+  DepthCameraSettings depth_camera;
+  DustSettings dust;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -49,6 +53,8 @@ struct SensorSuiteSettings {
     visit("gnss", self.gnss);
     visit("uwb", self.uwb);
     visit("ultrasonic", self.ultrasonic);
+    visit("depth_camera", self.depth_camera);
+    visit("dust", self.dust);
   }
 
  private:
@@ -69,9 +75,10 @@ struct FaultReport {
 class SensorSuite {
  public:
   /// `view` must outlive the suite; `plume` is in world. Throws InputError when an enabled sensor has no frame on the robot,
-  /// or nothing in the world to speak to.
+  /// or nothing in the world to speak to; and when the depth camera is enabled and there is no `make_depth_imager`.
   SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
-              const mjModel& view, GasPlume plume, const std::vector<FaultSettings>& faults, std::uint64_t seed);
+              const mjModel& view, GasPlume plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
+              const DepthImagerFactory& make_depth_imager = {});
 
   /// Once a tick, with kinematics and accelerations of `now` in `data`.
   void step(const mjModel& physics, mjData& data, Time now);
@@ -90,6 +97,7 @@ class SensorSuite {
 
   const std::vector<FaultReport>& faults() const { return faults_; }
   double lidar_seconds() const { return lidar_seconds_; }
+  double depth_camera_seconds() const { return depth_camera_seconds_; }
 
  private:
   struct Delivery {
@@ -102,6 +110,7 @@ class SensorSuite {
   bool is_due(double rate_hz, std::uint64_t& count, Time now) const;
   void poll_uwb(const Pose3& T_world_body, Time now);
   void ping_ultrasonic(const Pose3& T_world_body, Time now);
+  void take_depth_image(const mjData& data, const Pose3& T_world_body, Time now);
 
   SensorSuiteSettings settings_;
   RobotDescription robot_;
@@ -117,6 +126,7 @@ class SensorSuite {
   std::optional<Lidar> lidar_, lidar3d_;
   std::optional<Uwb> uwb_;
   std::optional<UltrasonicRing> ultrasonic_;
+  std::optional<DepthCamera> depth_camera_;
   std::vector<FaultReport> faults_;
   std::vector<std::pair<std::string, SensorMessage>> last_good_;  ///< by sensor, for a freeze
   RandomStream spikes_, jitter_;
@@ -125,14 +135,14 @@ class SensorSuite {
   std::uint64_t tick_ = 0;
   std::uint64_t hall_count_ = 0;
   std::uint64_t imu_count_ = 0, joint_count_ = 0, contact_count_ = 0, tdlas_count_ = 0, gnss_count_ = 0;
-  std::uint64_t uwb_count_ = 0, ultrasonic_count_ = 0;
+  std::uint64_t uwb_count_ = 0, ultrasonic_count_ = 0, depth_camera_count_ = 0;
   Imu newest_imu_;
   JointState newest_joints_;
   FootContacts newest_contacts_;
   TrackTicks newest_ticks_;
   std::optional<std::pair<Time, Pose3>> last_body_;
   std::vector<Delivery> queue_;
-  double lidar_seconds_ = 0.0;
+  double lidar_seconds_ = 0.0, depth_camera_seconds_ = 0.0;
 };
 
 }  // namespace patrol::sim
