@@ -25,7 +25,7 @@ struct RangeFilterSettings {
   // Odometry: its errors' standard deviations come with it; here is how long they last, and what is white.
   double along_length_m = 8.0;  ///< scale, slip
   double across_length_m = 4.0;
-  double turn_time_s = 100.0;  ///< bias
+  double turn_time_s = 300.0;  ///< bias, from one standstill to the next
   double way_std_m_per_sqrt_m = 0.003;
   double turn_std_rad_per_sqrt_s = 3.5e-4;
   double turn_std_rad_per_sqrt_rad = 0.002;

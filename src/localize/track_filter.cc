@@ -13,10 +13,8 @@ using Error = InertialError;
 constexpr double kStartTiltStd_rad = 0.05;
 constexpr double kStartVelocityStd_mps = 0.05;
 constexpr double kGate = 16.27;     // 99.9 % of chi-square, three degrees of freedom
-constexpr double kLostSlipStd = 0.5;
 constexpr double kLostSpeedStd_mps = 0.1;
 constexpr double kBeltSmoothing_s = 1.0;
-constexpr double kMinBeltSpeed_mps = 0.05;  // below, the share of slip means nothing
 // Without an IMU.
 constexpr double kCoastYawRateStd = 0.05;  // rad/sqrt(s): what the belts tell of the yaw rate
 constexpr double kCoastTiltStd = 0.03;     // rad/sqrt(s)
@@ -85,11 +83,7 @@ void TrackFilter::wander(double way_m, double turn_rad, double slip_std) {
     P_.col(row) *= a;
     P_(row, row) += (1.0 - a * a) * std * std;
   };
-  if (std::abs(slip_) < kGripSlip) {
-    forget(kSlip, slip_, std::exp(-way_m / settings_.slip_length_m), slip_std);
-  } else {
-    P_(kSlip, kSlip) += (1.0 - std::exp(-2.0 * way_m / settings_.slip_length_m)) * slip_std * slip_std;
-  }
+  forget(kSlip, slip_, std::exp(-way_m / settings_.slip_length_m), slip_std);
   const double a_turn = std::exp(-turn_rad / settings_.turn_centre_length_rad);
   forget(kTurnCentre, turn_centre_m_.x(), a_turn, settings_.turn_centre_x_std_m);
   forget(kTurnCentre + 1, turn_centre_m_.y(), a_turn, settings_.turn_centre_y_std_m);
@@ -100,7 +94,7 @@ void TrackFilter::wander(double way_m, double turn_rad, double slip_std) {
 //
 // The u that weighs slip must not share the noise of the reading it is compared with: counters in steps of 1 to 2 mm would drive
 // scale up by percents. So it is smoothed over a second, and the IMU carries it through accelerations meanwhile.
-double TrackFilter::correct_speed(double dt_s, double belts_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps) {
+void TrackFilter::correct_speed(double dt_s, double belts_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps) {
   smooth_belts_mps_ += std::min(1.0, dt_s / kBeltSmoothing_s) * (belts_mps - smooth_belts_mps_);
   const Eigen::Vector3d p(turn_centre_m_.x(), turn_centre_m_.y(), -settings_.height_m);
   const Eigen::Vector3d innovation =
@@ -115,11 +109,9 @@ double TrackFilter::correct_speed(double dt_s, double belts_mps, const TrunkMoti
   const Gain W = P_ * H.transpose();
   Eigen::Matrix3d S = H * W;
   S.diagonal().array() += std_mps.array().square();
-  const double along = innovation.x() * innovation.x() / S(0, 0);
   const double distance = innovation.dot(S.inverse() * innovation);
   if (distance > kGate) S.diagonal().array() += std_mps.array().square() * (distance / kGate - 1.0);
   apply(W, S, innovation);
-  return along;
 }
 
 void TrackFilter::correct_velocity(const Eigen::Vector3d& v_body, double std_mps) {
@@ -143,19 +135,16 @@ void TrackFilter::correct_gyro_bias(const Eigen::Vector3d& bias_radps, const Eig
   P_ = (0.5 * (P_ + P_.transpose())).eval();
 }
 
-void TrackFilter::suspect_slip(double forward_mps, double belts_mps, double way_std_m) {
+void TrackFilter::lose_grip(double forward_mps, double way_std_m) {
   motion_.v_body.x() = forward_mps;
   P_(Error::kVelocity, Error::kVelocity) += kLostSpeedStd_mps * kLostSpeedStd_mps;
-  smooth_belts_mps_ = belts_mps;
-  if (std::abs(belts_mps) > kMinBeltSpeed_mps) slip_ = std::clamp(1.0 - scale_ - forward_mps / belts_mps, -1.0, 2.0);
-  isolate(kSlip, kLostSlipStd * kLostSlipStd);
   const Eigen::Vector3d along = motion_.T_odom_body.rotation * Eigen::Vector3d(way_std_m, 0.0, 0.0);
   P_.block<3, 3>(Error::kPosition, Error::kPosition) += along * along.transpose();
 }
 
-void TrackFilter::forget_slip(double slip_std) {
+void TrackFilter::regain_grip(double belts_mps, double slip_std) {
+  smooth_belts_mps_ = belts_mps;
   slip_ = 0.0;
-  smooth_belts_mps_ = 0.0;
   isolate(kSlip, slip_std * slip_std);
 }
 

@@ -35,8 +35,6 @@ class TrackFilter {
     double height_m;                ///< of the body's origin above the ground
   };
 
-  static constexpr double kGripSlip = 0.3;  ///< gripping tracks slip less; beyond, slip does not go away by itself
-
   /// Starts at odom's origin, heading along x, tilted as gravity in the first sample says.
   TrackFilter(const Settings& settings, const InertialSample& first);
 
@@ -48,18 +46,17 @@ class TrackFilter {
   /// The belts have run: slip and the turn's centre wander on. `slip_std` is what slip usually is on this ground, in this turn.
   void wander(double way_m, double turn_rad, double slip_std);
   /// What the belts said over `dt_s`, when the body moved as `then`; standard deviations of the velocity of the turn's centre, in
-  /// body. An innovation beyond the 99.9 % bound is believed less rather than refused. Returns the square of the innovation along
-  /// the way over its variance.
-  double correct_speed(double dt_s, double belts_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps);
+  /// body. An innovation beyond the 99.9 % bound is believed less rather than refused.
+  void correct_speed(double dt_s, double belts_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps);
   /// Any velocity, for when nothing better is known.
   void correct_velocity(const Eigen::Vector3d& v_body, double std_mps);
   void correct_gyro_bias(const Eigen::Vector3d& bias_radps, const Eigen::Vector3d& variance);
 
-  /// The belts and the IMU do not agree: the body goes at `forward_mps` (by the IMU), the rest is slip, and neither is known well;
-  /// `way_std_m` is what the past may have got wrong.
-  void suspect_slip(double forward_mps, double belts_mps, double way_std_m);
-  /// At rest there is no slip; the next drive starts with what is usual.
-  void forget_slip(double slip_std);
+  /// The belts and the IMU do not agree: the body goes at `forward_mps`, by the IMU; `way_std_m` is what the past may have got
+  /// wrong.
+  void lose_grip(double forward_mps, double way_std_m);
+  /// The belts hold, at rest or at this speed: what was learnt of slip before is void.
+  void regain_grip(double belts_mps, double slip_std);
   /// Odom's origin and its x axis are here.
   void set_origin();
 

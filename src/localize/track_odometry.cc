@@ -20,7 +20,8 @@ constexpr double kStandstillCreep_m = 1e-5;  // of the belts' ends over a window
 constexpr double kMaxBiasSigmas = 5.0;       // a gyro at rest that reads more is being turned
 constexpr double kHoldStd_mps = 0.5;         // without the belts the velocity is at least not this wrong
 constexpr double kLastingSideways = 0.005;   // share of the way, straight on
-constexpr double kAtRest_mps = 0.15;         // by the IMU: belts at rest are believed again below
+constexpr double kAgreement_mps = 0.15;      // of belts and IMU, after their disagreement,
+constexpr Time kAgreement = std::chrono::milliseconds(300);  // and how long it must last
 constexpr double kAssumedRate_hz = 1000.0;   // upper bound, for the size of the history
 constexpr std::size_t kMaxPending = 256;
 
@@ -103,7 +104,7 @@ void TrackOdometry::advance(Time stamp, const InertialSample& sample) {
   if (!filter_) {
     if (std::abs(sample.force_mps2.norm() - kGravity_mps2) > kMaxStartAcceleration_mps2) return;
     filter_.emplace(filter_settings(settings_, *robot_.tracks), sample);
-    filter_->forget_slip(settings_.slip_std);
+    filter_->regain_grip(0.0, settings_.slip_std);
     started_ = stamp;
   } else if (stamp - now_ > kMaxImuStep) {
     filter_->coast(to_seconds(stamp - now_), filter_->yaw_rate_radps());
@@ -161,8 +162,7 @@ void TrackOdometry::use_ticks(const TrackTicks& ticks) {
     if (!is_first) ++rejected_messages_;
     return;
   }
-  if (!imu_is_silent_) watch_slip(*belts);
-  if (counters_may_be_frozen_) return;
+  if (!imu_is_silent_ && !watch_grip(*belts)) return;
 
   const double disagreement = yaw_rate_disagreement_radps(*belts, *then);
   const double yaw_rate = std::abs(then->omega_body.z());
@@ -199,24 +199,31 @@ Eigen::Vector3d TrackOdometry::speed_std(const BeltInterval& belts, const TrunkM
           settings_.vertical_std_mps};
 }
 
-void TrackOdometry::watch_slip(const BeltInterval& belts) {
-  const double believed = filter_->motion().v_body.x();
-  const bool is_stopped = belts.speed.left_mps == 0.0 && belts.speed.right_mps == 0.0;
-  if (counters_may_be_frozen_ && (!is_stopped || std::abs(believed) < kAtRest_mps)) {
-    counters_may_be_frozen_ = false;
+// Belts that have lost their grip, and counters that stand still while the body goes on, look alike: what they say is not what
+// the body does. The IMU carries on alone until both agree for a while.
+bool TrackOdometry::watch_grip(const BeltInterval& belts) {
+  const double believed = filter_->motion().v_body.x(), belts_mps = belts.smooth.mean_mps();
+  if (grip_is_lost_) {
+    if (std::abs(belts_mps - believed) > kAgreement_mps) agree_since_.reset();
+    else if (!agree_since_) agree_since_ = belts.start;
+    if (!agree_since_ || belts.end - *agree_since_ < kAgreement) return false;
+    grip_is_lost_ = false;
     slip_watch_.reset();
+    filter_->regain_grip(belts_mps, settings_.slip_std);
   }
   const auto evidence = slip_watch_.add_speed(belts.end, belts.speed.mean_mps(), believed);
-  if (!evidence || counters_may_be_frozen_) return;
+  if (!evidence) return true;
   ++slip_events_;
-  slip_watch_.reset();
-  filter_->suspect_slip(evidence->forward_mps, belts.smooth.mean_mps(), 0.5 * std::abs(evidence->disagreement_mps) * evidence->duration_s);
-  counters_may_be_frozen_ = is_stopped;
+  grip_is_lost_ = true;
+  agree_since_.reset();
+  filter_->lose_grip(evidence->forward_mps, 0.5 * std::abs(evidence->disagreement_mps) * evidence->duration_s);
   last_speed_ = filter_->motion().v_body;
+  remember();
+  return false;
 }
 
 void TrackOdometry::watch_standstill(const InertialSample& sample) {
-  if (!counters_.stand() || counters_may_be_frozen_) {
+  if (!counters_.stand() || grip_is_lost_) {
     bias_meter_.reset();
     return;
   }
@@ -224,7 +231,7 @@ void TrackOdometry::watch_standstill(const InertialSample& sample) {
   if (!reading) return;
   if (reading->bias_radps.cwiseAbs().maxCoeff() > kMaxBiasSigmas * settings_.gyro_bias_std_radps) return;
   filter_->correct_gyro_bias(reading->bias_radps, reading->variance);
-  filter_->forget_slip(settings_.slip_std);
+  filter_->regain_grip(0.0, settings_.slip_std);
   if (has_settled_ || to_seconds(now_ - counters_.stand_since()) < settings_.settle_s) return;
   filter_->set_origin();
   history_.clear();
@@ -276,11 +283,11 @@ bool TrackOdometry::ticks_are_silent() const { return !last_speed_update_ || now
 
 TrackOdometryHealth TrackOdometry::health() const {
   TrackOdometryHealth health{.imu_is_silent = imu_is_silent_,
+                             .grip_is_lost = grip_is_lost_,
                              .rejected_messages = rejected_messages_,
                              .slip_events = slip_events_};
   health.ticks_are_silent = ticks_are_silent();
   if (!filter_) return health;
-  health.grip_is_lost = std::abs(filter_->slip()) > TrackFilter::kGripSlip;
   health.gyro_z_bias_std_radps = twist_std().z();
   return health;
 }

@@ -101,7 +101,7 @@ struct TrackOdometrySettings {
 struct TrackOdometryHealth {
   bool imu_is_silent = false;     ///< going on by the belts alone
   bool ticks_are_silent = false;  ///< going on by the IMU alone: nothing heard, or nothing that can be believed
-  bool grip_is_lost = false;      ///< the belts run and the body does not follow
+  bool grip_is_lost = false;      ///< belts and body do not go alike (or the counters are frozen): going on by the IMU
   double gyro_z_bias_std_radps = 0.0;
   std::uint64_t rejected_messages = 0;  ///< not finite, frozen, implausible, or older than what was already used
   std::uint64_t slip_events = 0;
@@ -145,7 +145,8 @@ class TrackOdometry {
   double yaw_rate_disagreement_radps(const BeltInterval& belts, const TrunkMotion& then) const;
   double usual_slip_std(double yaw_rate_radps, double disagreement_radps) const;
   Eigen::Vector3d speed_std(const BeltInterval& belts, const TrunkMotion& then, double disagreement_radps) const;
-  void watch_slip(const BeltInterval& belts);
+  /// Whether the belts say what the body does.
+  bool watch_grip(const BeltInterval& belts);
   /// With the belts at rest: bias, slip, and whether the odometry may begin.
   void watch_standstill(const InertialSample& sample);
   void hold_velocity();
@@ -175,7 +176,8 @@ class TrackOdometry {
   // Faults.
   Eigen::Matrix<double, 6, 1> last_imu_reading_ = Eigen::Matrix<double, 6, 1>::Zero();
   int imu_repeats_ = 0;
-  bool counters_may_be_frozen_ = false;  ///< they have stopped and the body has not
+  bool grip_is_lost_ = false;
+  std::optional<Time> agree_since_;  ///< belts and IMU, after that
   bool imu_is_silent_ = false;
   std::uint64_t rejected_messages_ = 0;
   std::uint64_t slip_events_ = 0;

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <memory>
 
 #include "core/error.h"
 #include "localize/track_odometry.h"
@@ -22,11 +22,15 @@ using test::stand_then_weave;
 using test::TrackedDrive;
 using test::UwbPolls;
 
+// A charging post is surveyed.
+constexpr double kStartStd_m = 0.02, kStartStd_rad = 0.01;
+
 struct TunnelRun {
   double max_error_m = 0.0;
   double max_odometry_error_m = 0.0;
   double mean_nees = 0.0;  ///< of x, y, yaw, once a second
   double end_nees = 0.0;
+  double end_error_m = 0.0;
   double nis_sum = 0.0;  ///< of the clear ranges
   int num_clear = 0, num_blocked = 0, num_blocked_accepted = 0, num_clear_refused = 0;
   std::uint64_t doubts = 0;
@@ -62,8 +66,10 @@ TunnelRun drive_tunnel(std::uint64_t seed, const TunnelSetting& setting) {
     if (!filter.has_started()) {
       PoseEstimate start;
       start.stamp = estimate->stamp;
-      start.T_map_body = {setting.start_error_m, 0.0, 0.0};
-      start.covariance.diagonal() << 0.05 * 0.05, 0.05 * 0.05, 0.01 * 0.01;
+      // The start is known as well as it claims to be.
+      const RandomStream draw(seed, "start");
+      start.T_map_body = {setting.start_error_m + kStartStd_m * draw.normal(0), kStartStd_m * draw.normal(1), kStartStd_rad * draw.normal(2)};
+      start.covariance.diagonal() << kStartStd_m * kStartStd_m, kStartStd_m * kStartStd_m, kStartStd_rad * kStartStd_rad;
       filter.start_at(start, estimate->T_odom_body);
     }
     filter.predict(estimate->stamp, estimate->T_odom_body, odometry.twist_std());
@@ -83,6 +89,7 @@ TunnelRun drive_tunnel(std::uint64_t seed, const TunnelSetting& setting) {
     const Pose2 truth = to_planar(T_map_body);
     const Eigen::Vector3d error(pose.T_map_body.x - truth.x, pose.T_map_body.y - truth.y, wrap_angle(pose.T_map_body.yaw - truth.yaw));
     result.max_error_m = std::max(result.max_error_m, error.head<2>().norm());
+    result.end_error_m = error.head<2>().norm();
     result.max_odometry_error_m = std::max(result.max_odometry_error_m, (estimate->T_odom_body.position - T_map_body.position).head<2>().norm());
     if (to_seconds(drive.now()) >= seconds + 10.0) {
       ++seconds;
@@ -95,15 +102,159 @@ TunnelRun drive_tunnel(std::uint64_t seed, const TunnelSetting& setting) {
   return result;
 }
 
-TEST(RangeFilter, Explore) {
-  for (double share : {0.0, 0.3}) {
-    double nees = 0, end = 0;
-    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-      const TunnelRun r = drive_tunnel(seed, {.blocked_share = share});
-      nees += r.mean_nees / 10; end += r.end_nees / 10;
-      std::printf("share %.1f seed %lu max %.3f odo %.2f nees %.2f end %.2f nis %.3f n %d refused clear %d blocked %d accepted %d doubts %lu\n", share, seed, r.max_error_m, r.max_odometry_error_m, r.mean_nees, r.end_nees, r.nis_sum / r.num_clear, r.num_clear, r.num_clear_refused, r.num_blocked, r.num_blocked_accepted, r.doubts);
-    }
-    std::printf("mean nees %.2f end %.2f\n", nees, end);
+/// Bounds that hold 95 % of the mean of 20 chi-square values of three degrees of freedom.
+constexpr double kLowNees = 40.48 / 20.0, kHighNees = 83.30 / 20.0;
+
+TEST(RangeFilter, OverTheWholeTunnelErrsLessThanFifteenCentimetresWithThirtyPercentBlocked) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const TunnelRun run = drive_tunnel(seed, {.blocked_share = 0.3});
+    EXPECT_LT(run.max_error_m, 0.15) << "seed " << seed;
+    EXPECT_GT(run.max_odometry_error_m, 2.0) << "odometry alone does not do it, seed " << seed;
+    EXPECT_NEAR(static_cast<double>(run.num_blocked) / (run.num_blocked + run.num_clear), 0.3, 0.02);
+    EXPECT_EQ(run.doubts, 0U);
+  }
+}
+
+TEST(RangeFilter, NeesAndNisOverTwentySeedsLieWithinTheirBounds) {
+  double end_nees = 0.0, mean_nees = 0.0, nis = 0.0;
+  int num_clear = 0, num_refused = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const TunnelRun run = drive_tunnel(seed, {.until_s = 63.0});
+    end_nees += run.end_nees;
+    mean_nees += run.mean_nees;
+    nis += run.nis_sum;
+    num_clear += run.num_clear;
+    num_refused += run.num_clear_refused;
+  }
+  EXPECT_GT(end_nees / 20.0, kLowNees);
+  EXPECT_LT(end_nees / 20.0, kHighNees);
+  // Over time a run's values are alike but not the same: their mean lies closer than that.
+  EXPECT_GT(mean_nees / 20.0, kLowNees);
+  EXPECT_LT(mean_nees / 20.0, kHighNees);
+  // Innovations are white: n values of mean 1 and variance 2.
+  EXPECT_NEAR(nis / num_clear, 1.0, 1.96 * std::sqrt(2.0 / num_clear));
+  EXPECT_LT(num_refused, num_clear / 100) << "clear ranges are refused";
+}
+
+TEST(RangeFilter, WithBlockedRangesTheNeesStaysWithinItsBounds) {
+  double end_nees = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) end_nees += drive_tunnel(seed, {.blocked_share = 0.3, .until_s = 63.0}).end_nees;
+  EXPECT_GT(end_nees / 20.0, kLowNees);
+  EXPECT_LT(end_nees / 20.0, kHighNees);
+}
+
+TEST(RangeFilter, AStartTwoMetresOffIsDoubtedAndFoundAgain) {
+  const TunnelRun run = drive_tunnel(1, {.blocked_share = 0.3, .until_s = 43.0, .start_error_m = 2.0});
+  EXPECT_GT(run.max_error_m, 1.9);
+  EXPECT_GE(run.doubts, 1U);
+  EXPECT_LT(run.end_error_m, 0.15);
+}
+
+/// Standing at map's origin with the antenna in the body's origin, one anchor 10 m ahead; no bias.
+struct Standing {
+  RangeFilterSettings settings;
+  std::unique_ptr<RangeFilter> filter;
+  Time now = std::chrono::seconds(1);
+
+  explicit Standing(double std_m) {
+    settings.bias_distance_m = settings.bias_m = {};
+    settings.start_height_std_m = 0.0;
+    filter = std::make_unique<RangeFilter>(settings, std::vector<UwbAnchor>{{.number = 3, .p_m = {10.0, 0.0, 0.0}}}, Pose3{});
+    PoseEstimate start;
+    start.stamp = now;
+    start.covariance.diagonal() << std_m * std_m, 1.0, 1e-4;
+    filter->start_at(start, Pose3{});
+  }
+  RangeOutcome read(double range_m) {
+    now += std::chrono::milliseconds(50);
+    filter->predict(now, Pose3{}, Eigen::Vector3d::Zero());
+    return filter->add({.stamp = now, .anchor = 3, .range_m = range_m}, Pose3{});
+  }
+};
+
+TEST(RangeFilter, OneRangeIsWeighedAsKalmanSays) {
+  Standing standing(0.1);
+  const RangeOutcome outcome = standing.read(9.95);
+  ASSERT_TRUE(outcome.is_accepted());
+  EXPECT_NEAR(outcome.innovation_m, -0.05, 1e-9);
+  EXPECT_NEAR(outcome.variance_m2, 0.02, 1e-6);  // 0.1^2 of the pose and 0.1^2 of the range
+  // x = 0.05 P / (P + R / clear)
+  const double expected = 0.05 * 0.01 / (0.01 + 0.01 / outcome.clear_probability);
+  const PoseEstimate estimate = standing.filter->estimate(standing.now, Pose3{});
+  EXPECT_NEAR(estimate.T_map_body.x, expected, 1e-6);
+  EXPECT_NEAR(estimate.T_map_body.y, 0.0, 1e-12);
+  EXPECT_NEAR(estimate.covariance(1, 1), 1.0, 1e-6) << "an anchor ahead says nothing of the side";
+}
+
+TEST(RangeFilter, HalfAMetreTooLongIsBlockedAndHalfAMetreTooShortIsAnOutlier) {
+  Standing standing(0.01);
+  EXPECT_EQ(standing.read(10.5).verdict, RangeVerdict::kTooLong);
+  EXPECT_EQ(standing.read(9.5).verdict, RangeVerdict::kTooShort);
+  EXPECT_EQ(standing.read(10.05).verdict, RangeVerdict::kAccepted);
+  // One-sided: three sigma too long are refused, as much too short is not.
+  EXPECT_EQ(standing.read(10.32).verdict, RangeVerdict::kTooLong);
+  EXPECT_EQ(standing.read(9.70).verdict, RangeVerdict::kAccepted);
+}
+
+TEST(RangeFilter, ExcessDensityIsThatOfTheSum) {
+  // Far from the gaussian's width the exponential is left: a long range is all the more likely blocked.
+  Standing standing(0.01);
+  double last = 1.0;
+  for (const double range_m : {10.0, 10.1, 10.2, 10.3, 10.4}) {
+    const double probability = standing.read(range_m).clear_probability;
+    EXPECT_LT(probability, last);
+    last = probability;
+  }
+}
+
+TEST(RangeFilter, UnusableRangesChangeNothing) {
+  Standing standing(0.1);
+  standing.read(10.0);
+  const PoseEstimate before = standing.filter->estimate(standing.now, Pose3{});
+  RangeFilter& filter = *standing.filter;
+  const Time later = standing.now + std::chrono::milliseconds(10);
+  EXPECT_EQ(filter.add({.stamp = later, .anchor = 99, .range_m = 9.9}, Pose3{}).verdict, RangeVerdict::kUnusable);
+  EXPECT_EQ(filter.add({.stamp = standing.now, .anchor = 3, .range_m = 9.9}, Pose3{}).verdict, RangeVerdict::kUnusable) << "heard";
+  EXPECT_EQ(filter.add({.stamp = later, .anchor = 3, .range_m = std::nan("")}, Pose3{}).verdict, RangeVerdict::kUnusable);
+  EXPECT_EQ(filter.add({.stamp = later, .anchor = 3, .range_m = -1.0}, Pose3{}).verdict, RangeVerdict::kUnusable);
+  EXPECT_EQ(filter.estimate(standing.now, Pose3{}).T_map_body.vector(), before.T_map_body.vector());
+}
+
+TEST(RangeFilter, AFrozenReadingIsRefusedFromItsSixthRepeat) {
+  Standing standing(0.1);
+  for (int repeat = 0; repeat < 5; ++repeat) EXPECT_TRUE(standing.read(10.02).is_accepted());
+  EXPECT_EQ(standing.read(10.02).verdict, RangeVerdict::kUnusable);
+  EXPECT_TRUE(standing.read(10.03).is_accepted());
+}
+
+TEST(RangeFilter, NeverLocksItselfOut) {
+  // Sure of a place 2 m off: all is refused at first.
+  Standing standing(0.01);
+  EXPECT_FALSE(standing.read(8.0).is_accepted());
+  for (int read = 0; read < 200; ++read) standing.read(8.0 + 0.001 * (read % 7));
+  EXPECT_GE(standing.filter->doubts(), 1U);
+  EXPECT_NEAR(standing.filter->estimate(standing.now, Pose3{}).T_map_body.x, 2.0, 0.05);
+}
+
+TEST(RangeFilter, ALateRangeIsMeasuredFromWhereTheBodyWas) {
+  Standing standing(0.1);
+  RangeFilter& filter = *standing.filter;
+  const Pose3 now_in_odom = to_spatial({0.5, 0.0, 0.0});
+  filter.predict(standing.now + std::chrono::milliseconds(500), now_in_odom, Eigen::Vector3d::Zero());
+  const RangeOutcome outcome = filter.add({.stamp = standing.now + std::chrono::milliseconds(200), .anchor = 3, .range_m = 9.8},
+                                          to_spatial({0.2, 0.0, 0.0}));
+  EXPECT_NEAR(outcome.innovation_m, 0.0, 1e-9);
+}
+
+TEST(RangeFilter, BadSettingsAndDoubleAnchorsAreNamed) {
+  EXPECT_THROW(RangeFilter({.range_std_m = 0.0}, {}, {}), InputError);
+  EXPECT_THROW(RangeFilter({.bias_distance_m = {1.0, 2.0}, .bias_m = {0.1}}, {}, {}), InputError);
+  EXPECT_THROW(RangeFilter({.bias_distance_m = {2.0, 1.0}, .bias_m = {0.1, 0.1}}, {}, {}), InputError);
+  try {
+    RangeFilter({}, {{.number = 4}, {.number = 4}}, {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "uwb anchor 4 is surveyed twice: each number must stand for one anchor");
   }
 }
 

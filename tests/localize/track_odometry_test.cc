@@ -4,8 +4,10 @@
 
 #include <Eigen/LU>
 
+#include <array>
 #include <cmath>
-#include <cstdlib>
+#include <deque>
+#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -49,39 +51,272 @@ double nees(const TrackOdometry& odometry, const TrackedDrive& drive) {
   return error.dot(odometry.estimate()->planar_covariance.inverse() * error);
 }
 
-TEST(TrackOdometry, Quiet) {
-  for (int variant = 0; variant < 2; ++variant) {
-    auto st = TrackedDriveSettings::without_noise();
-    if (variant == 1) st.ticks_per_sprocket_turn = 360;
-    if (variant == 2) st.pitch_rad = st.roll_rad = 0;
-    if (variant == 3) st.max_belt_acceleration_mps2 = 0.2;
-      TrackedDrive drive(make_tracked_robot(), make_tour(), st, 1);
-      TrackOdometry odometry(make_tracked_robot(), {.ticks_per_sprocket_turn = st.ticks_per_sprocket_turn});
-      for (double t : {3.2, 4.0, 5.0, 10.0, 16.0, 60.0}) {
-      run(drive, odometry, t);
-      auto& f = *odometry.filter();
-      const Eigen::Vector3d e = planar_error(odometry, drive);
-      std::printf("v%d t %.1f e %.4f %.4f %.5f scale %.5f slip %.5f centre %.4f %.4f v %.4f true %.4f gyro bias %.5f\n", variant, t, e.x(), e.y(), e.z(), f.scale(), f.slip(), f.turn_centre_m().x(), f.turn_centre_m().y(), f.motion().v_body.x(), drive.speed_mps(), f.gyro_bias_radps().y());
-      }
+/// Dead reckoning by the counters alone, as wheeled robots do it: heading by the belts' difference over the gauge.
+Pose2 by_counters_alone(const Pose2& before, const TrackTicks& last, const TrackTicks& now, double metres_per_tick, double gauge_m) {
+  const double left = metres_per_tick * static_cast<double>(now.left - last.left);
+  const double right = metres_per_tick * static_cast<double>(now.right - last.right);
+  return before * Pose2{0.5 * (left + right), 0.0, (right - left) / gauge_m};
+}
+
+/// Mean of 20 values of chi-square with three degrees of freedom: 95 % lie between these (chi-square of 60, 2.5 % and 97.5 %,
+/// over 20).
+constexpr double kLowNees = 40.48 / 20.0, kHighNees = 83.30 / 20.0;
+
+TEST(TrackOdometry, NeesOverTwentySeedsLiesWithinItsBoundsAfter30And60And120Seconds) {
+  std::array<double, 3> sum{};
+  const std::array<double, 3> times{30.0, 60.0, 120.0};
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    TrackedDrive drive(make_tracked_robot(), make_tour(), {}, seed);
+    TrackOdometry odometry(make_tracked_robot(), {});
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      run(drive, odometry, times[i]);
+      sum[i] += nees(odometry, drive);
+    }
+  }
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    EXPECT_GT(sum[i] / 20.0, kLowNees) << times[i] << " s";
+    EXPECT_LT(sum[i] / 20.0, kHighNees) << times[i] << " s";
   }
 }
 
-TEST(TrackOdometry, Explore) {
-  for (double until : {10.0, 16.0, 30.0, 60.0, 120.0, 240.0}) {
-    double sum = 0;
-    Eigen::Vector3d e2 = Eigen::Vector3d::Zero(), v2 = e2; double way = 0; unsigned long slips = 0;
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-      TrackedDrive drive(make_tracked_robot(), make_tour(), {}, seed);
-      TrackOdometry odometry(make_tracked_robot(), {});
-      run(drive, odometry, until);
-      const double n = nees(odometry, drive);
-      const Eigen::Vector3d e = planar_error(odometry, drive);
-      e2 += e.cwiseAbs2() / 20; v2 += odometry.estimate()->planar_covariance.diagonal() / 20;
-      sum += n; way += drive.way_m() / 20; slips += odometry.health().slip_events;
-      if (until == 61.0) std::printf("  seed %lu e %.3f %.3f %.4f sigma %.3f %.3f %.4f nees %.2f bias err %.5f +- %.5f z %.3f\n", seed, e.x(), e.y(), e.z(), std::sqrt(odometry.estimate()->planar_covariance(0,0)), std::sqrt(odometry.estimate()->planar_covariance(1,1)), std::sqrt(odometry.estimate()->planar_covariance(2,2)), n, odometry.filter()->gyro_bias_radps().z() - drive.gyro_z_bias_radps(), odometry.health().gyro_z_bias_std_radps, odometry.estimate()->T_odom_body.position.z() + 0.25 - drive.T_world_body().position.z());
+TEST(TrackOdometry, DriftsLessThanOnePercentAndAFifthOfCountersAlone) {
+  double by_filter = 0.0, by_counters = 0.0, way = 0.0;  // m, sums over the seeds
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const RobotDescription robot = make_tracked_robot();
+    TrackedDrive drive(robot, make_tour(), {}, seed);
+    TrackOdometry odometry(robot, {});
+    Pose2 alone;
+    TrackTicks last = drive.ticks();
+    while (to_seconds(drive.now()) < 120.0) {
+      run(drive, odometry, to_seconds(drive.now()) + 0.02);
+      const TrackTicks ticks = drive.ticks();
+      // Even with the mean of the scrub known: what remains is what scrub does from turn to turn.
+      alone = by_counters_alone(alone, last, ticks, 2.0 * std::numbers::pi * 0.1 / 720.0, 1.5 * robot.tracks->gauge_m);
+      last = ticks;
     }
-    std::printf("t %.0f way %.1f NEES/20 = %.2f rms %.3f %.3f %.4f  sigma %.3f %.3f %.4f slips %lu\n", until, way, sum / 20, std::sqrt(e2.x()), std::sqrt(e2.y()), std::sqrt(e2.z()), std::sqrt(v2.x()), std::sqrt(v2.y()), std::sqrt(v2.z()), slips);
+    by_filter += planar_error(odometry, drive).head<2>().norm();
+    by_counters += (alone.position() - drive.T_world_body().position.head<2>()).norm();
+    way += drive.way_m();
   }
+  EXPECT_LT(by_filter, 0.01 * way);
+  EXPECT_LT(by_filter, 0.2 * by_counters);
+}
+
+TEST(TrackOdometry, WithoutNoiseATourOfThirtySevenMetresIsExactToOneCentimetre) {
+  const TrackedDriveSettings quiet = TrackedDriveSettings::without_noise();
+  TrackedDrive drive(make_tracked_robot(), make_tour(), quiet, 1);
+  TrackOdometry odometry(make_tracked_robot(), {.ticks_per_sprocket_turn = quiet.ticks_per_sprocket_turn});
+  run(drive, odometry, 90.0);
+  EXPECT_GT(drive.way_m(), 35.0);
+  EXPECT_LT(planar_error(odometry, drive).head<2>().norm(), 0.01);
+  EXPECT_LT(std::abs(planar_error(odometry, drive).z()), 1e-3);
+}
+
+TEST(TrackOdometry, StepsOfTheCountersDoNotMoveTheScale) {
+  TrackedDriveSettings coarse = TrackedDriveSettings::without_noise();
+  coarse.ticks_per_sprocket_turn = 360.0;  // 1.7 mm, 0.09 m/s in an interval of 20 ms
+  TrackedDrive drive(make_tracked_robot(), make_tour(), coarse, 1);
+  TrackOdometry odometry(make_tracked_robot(), {.ticks_per_sprocket_turn = 360.0});
+  run(drive, odometry, 63.0);
+  // Weighing slip by the reading itself drives it to 0.136 in this minute.
+  EXPECT_LT(std::abs(odometry.filter()->scale()), 0.003);
+}
+
+TEST(TrackOdometry, SaysNothingBeforeItHasStoodAndStartsAtTheOrigin) {
+  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 3);
+  TrackOdometry odometry(make_tracked_robot(), {});
+  EXPECT_FALSE(odometry.estimate());
+  EXPECT_FALSE(odometry.T_odom_body_at(Time{0}));
+  run(drive, odometry, 1.4);
+  EXPECT_FALSE(odometry.estimate()) << "it has not stood for 1.5 s";
+  run(drive, odometry, 2.9);
+  ASSERT_TRUE(odometry.estimate());
+  EXPECT_LT(planar_error(odometry, drive).norm(), 1e-3);
+  // Two windows of a second: 3.5e-4 / sqrt(2 * 0.8 s), four of these.
+  EXPECT_NEAR(odometry.filter()->gyro_bias_radps().z(), drive.gyro_z_bias_radps(), 4.0 * 3.5e-4 / std::sqrt(1.6));
+}
+
+TEST(TrackOdometry, ARobotThatNeverStandsGetsAnEstimateAfterSixSeconds) {
+  TrackedDrive drive(make_tracked_robot(), [](double, const Pose3&) { return test::Belts{0.3, 0.3}; }, {}, 4);
+  TrackOdometry odometry(make_tracked_robot(), {});
+  run(drive, odometry, 5.9);
+  EXPECT_FALSE(odometry.estimate());
+  run(drive, odometry, 6.1);
+  ASSERT_TRUE(odometry.estimate());
+  EXPECT_GT(odometry.health().gyro_z_bias_std_radps, 0.004) << "nothing has shown the bias";
+}
+
+TEST(TrackOdometry, OnIceTheBodyStaysWithinThreeSigmaOfWhereItStands) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    TrackedDriveSettings settings;
+    settings.friction = [](double time_s) { return time_s > 2.5 && time_s < 9.0 ? 0.0 : 0.8; };
+    TrackedDrive drive(make_tracked_robot(), stand_then_drive({0.5, 0.5}), settings, seed);
+    TrackOdometry odometry(make_tracked_robot(), {});
+    run(drive, odometry, 2.9);
+    const double std_before = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
+    run(drive, odometry, 9.0);  // 5.7 s of belts at 0.5 m/s: 2.9 m by the counters
+    EXPECT_LT(drive.way_m(), 0.01);
+    EXPECT_TRUE(odometry.health().grip_is_lost);
+    const double std = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
+    EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 3.0 * std);
+    EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 0.6);
+    EXPECT_GT(std, 0.2 + std_before) << "a map matcher or UWB must be let in";
+
+    run(drive, odometry, 12.0);  // the tracks have taken hold
+    EXPECT_FALSE(odometry.health().grip_is_lost);
+    EXPECT_NEAR(odometry.estimate()->twist.linear.x(), drive.speed_mps(), 0.05);
+    EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 3.0 * std);
+  }
+}
+
+TEST(TrackOdometry, CountersFrozenForFourSecondsAreSurvivedAndReported) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    TrackedDrive drive(make_tracked_robot(), make_tour(), {}, seed);
+    TrackOdometry odometry(make_tracked_robot(), {});
+    run(drive, odometry, 8.0);
+    const TrackTicks frozen = drive.ticks();
+    while (to_seconds(drive.now()) < 12.0) {
+      drive.step();
+      odometry.add(drive.imu());
+      if (drive.has_ticks()) odometry.add(TrackTicks{drive.now(), frozen.left, frozen.right});
+    }
+    EXPECT_TRUE(odometry.health().grip_is_lost);
+    const double std = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
+    EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 3.0 * std);
+    run(drive, odometry, 14.0);
+    EXPECT_FALSE(odometry.health().grip_is_lost);
+    // Believing them would have lost 4 s at 0.6 m/s: 2.4 m.
+    EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 0.5);
+  }
+}
+
+TEST(TrackOdometry, SilentCountersAreReportedAndTheCovarianceGrows) {
+  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 5);
+  TrackOdometry odometry(make_tracked_robot(), {});
+  run(drive, odometry, 8.0);
+  const double std_before = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
+  run(drive, odometry, 11.0, [](double) { return Channels{.ticks = false}; });
+  EXPECT_TRUE(odometry.health().ticks_are_silent);
+  const double std = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
+  EXPECT_GT(std, 2.0 * std_before);
+  EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 3.0 * std);
+  run(drive, odometry, 12.0);
+  EXPECT_FALSE(odometry.health().ticks_are_silent);
+}
+
+TEST(TrackOdometry, TwoSecondsWithoutImuTurnWithTheBeltsAndSaySo) {
+  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 6);
+  TrackOdometry odometry(make_tracked_robot(), {});
+  run(drive, odometry, 16.0);
+  const double yaw_std_before = std::sqrt(odometry.estimate()->planar_covariance(2, 2));
+  run(drive, odometry, 18.0, [](double) { return Channels{.imu = false}; });
+  EXPECT_TRUE(odometry.health().imu_is_silent);
+  const double yaw_std = std::sqrt(odometry.estimate()->planar_covariance(2, 2));
+  EXPECT_GT(yaw_std, 2.0 * yaw_std_before);
+  EXPECT_LT(std::abs(planar_error(odometry, drive).z()), 3.0 * yaw_std);
+  run(drive, odometry, 19.0);
+  EXPECT_FALSE(odometry.health().imu_is_silent);
+}
+
+TEST(TrackOdometry, AFrozenImuCountsAsSilent) {
+  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 7);
+  TrackOdometry odometry(make_tracked_robot(), {});
+  run(drive, odometry, 10.0);
+  Imu frozen = drive.imu();
+  while (to_seconds(drive.now()) < 11.0) {
+    drive.step();
+    frozen.stamp = drive.now();
+    odometry.add(frozen);
+    if (drive.has_ticks()) odometry.add(drive.ticks());
+  }
+  EXPECT_TRUE(odometry.health().imu_is_silent);
+  EXPECT_GT(odometry.health().rejected_messages, 200U);
+}
+
+TEST(TrackOdometry, CountersFortyMillisecondsLateChangeTheEndByLessThanACentimetre) {
+  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 8);
+  TrackOdometry punctual(make_tracked_robot(), {}), late(make_tracked_robot(), {});
+  std::deque<TrackTicks> under_way;
+  while (to_seconds(drive.now()) < 30.0) {
+    drive.step();
+    punctual.add(drive.imu());
+    late.add(drive.imu());
+    if (!drive.has_ticks()) continue;
+    punctual.add(drive.ticks());
+    under_way.push_back(drive.ticks());
+    if (under_way.size() <= 2) continue;
+    late.add(under_way.front());
+    under_way.pop_front();
+  }
+  const Eigen::Vector3d difference = late.estimate()->T_odom_body.position - punctual.estimate()->T_odom_body.position;
+  EXPECT_LT(difference.head<2>().norm(), 0.05);
+  EXPECT_EQ(late.health().slip_events, 0U);
+}
+
+TEST(TrackOdometry, RepeatedOldAndBrokenMessagesAreRejectedAndChangeNothing) {
+  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 9);
+  TrackOdometry clean(make_tracked_robot(), {}), pestered(make_tracked_robot(), {});
+  while (to_seconds(drive.now()) < 8.0) {
+    drive.step();
+    clean.add(drive.imu());
+    pestered.add(drive.imu());
+    pestered.add(drive.imu());
+    Imu broken = drive.imu();
+    broken.stamp += std::chrono::milliseconds(1);
+    broken.angular_velocity_radps.x() = std::numeric_limits<double>::quiet_NaN();
+    pestered.add(broken);
+    if (!drive.has_ticks()) continue;
+    clean.add(drive.ticks());
+    pestered.add(drive.ticks());
+    pestered.add(drive.ticks());
+  }
+  EXPECT_EQ(clean.estimate()->T_odom_body.position, pestered.estimate()->T_odom_body.position);
+  EXPECT_EQ(pestered.health().rejected_messages, 2U * 2000U + 400U);
+}
+
+TEST(TrackOdometry, CountersThatStartAnewAtZeroCostNoMetres) {
+  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 10);
+  TrackOdometry odometry(make_tracked_robot(), {});
+  run(drive, odometry, 8.0);
+  const TrackTicks at_restart = drive.ticks();
+  while (to_seconds(drive.now()) < 12.0) {
+    drive.step();
+    odometry.add(drive.imu());
+    if (!drive.has_ticks()) continue;
+    const TrackTicks ticks = drive.ticks();
+    odometry.add(TrackTicks{ticks.stamp, ticks.left - at_restart.left, ticks.right - at_restart.right});
+  }
+  EXPECT_LT(planar_error(odometry, drive).head<2>().norm(), 0.25);
+  EXPECT_EQ(odometry.health().slip_events, 0U);
+}
+
+TEST(TrackOdometry, PosesOfAtLeastTwoSecondsAreRememberedWithTheirTilt) {
+  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 11);
+  TrackOdometry odometry(make_tracked_robot(), {});
+  run(drive, odometry, 10.0);
+  const Time then = drive.now();
+  const Pose3 truth = drive.T_world_body();
+  run(drive, odometry, 11.5);
+  const std::optional<Pose3> remembered = odometry.T_odom_body_at(then);
+  ASSERT_TRUE(remembered);
+  EXPECT_LT(remembered->rotation.angularDistance(truth.rotation), 0.5 * kDegree);
+  EXPECT_FALSE(odometry.T_odom_body_at(then - std::chrono::seconds(9)));
+  EXPECT_TRUE(odometry.T_odom_body_at(drive.now() + std::chrono::milliseconds(100)));
+  EXPECT_FALSE(odometry.T_odom_body_at(drive.now() + std::chrono::milliseconds(200)));
+}
+
+TEST(TrackOdometry, ARobotWithoutTracksOrImuIsRefusedWithASentence) {
+  RobotDescription robot = make_tracked_robot();
+  robot.T_body_sensor.erase("imu");
+  EXPECT_THROW(TrackOdometry(robot, {}), InputError);
+  robot.tracks.reset();
+  try {
+    TrackOdometry odometry(robot, {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "robot tracked has no tracks: track odometry needs them");
+  }
+  EXPECT_THROW(TrackOdometry(make_tracked_robot(), {.slip_length_m = 0.0}), InputError);
 }
 
 }  // namespace

@@ -81,6 +81,7 @@ TrackedDriveSettings TrackedDriveSettings::without_noise() {
           .slip = 0.0,
           .slip_per_radps = 0.0,
           .slip_per_tilt = 0.0,
+          .crab = 0.0,
           .turn_ratio_std = 0.0,
           .turn_centre_x_m = 0.0,
           .turn_centre_y_m = 0.0,
@@ -119,6 +120,7 @@ TrackedDrive::TrackedDrive(const RobotDescription& robot, BeltProgram program, c
       accel_bias_(draw_vector(constants_, 5, 0, settings.accel_bias_mps2)) {
   slip_left_.value = settings.slip * constants_.normal(1, 0);
   slip_right_.value = settings.slip * constants_.normal(1, 1);
+  crab_.value = settings.crab * constants_.normal(1, 5);
   turn_ratio_.value = settings.turn_ratio_std * constants_.normal(1, 2);
   turn_x_.value = settings.turn_centre_x_m * constants_.normal(1, 3);
   turn_y_.value = settings.turn_centre_y_m * constants_.normal(1, 4);
@@ -146,6 +148,7 @@ void TrackedDrive::slip_and_turn(double dt_s) {
   const double slip_std = std::hypot(settings_.slip, settings_.slip_per_radps * yaw_rate_radps_, settings_.slip_per_tilt * tilt);
   slip_left_.go(std::abs(belts_.left_mps) * dt_s / settings_.slip_length_m, slip_std, draw(0));
   slip_right_.go(std::abs(belts_.right_mps) * dt_s / settings_.slip_length_m, slip_std, draw(1));
+  crab_.go(std::abs(ahead_mps_) * dt_s / settings_.slip_length_m, settings_.crab, draw(5));
   const double turned = std::abs(yaw_rate_radps_) * dt_s / settings_.turn_length_rad;
   turn_ratio_.go(turned, settings_.turn_ratio_std, draw(2));
   turn_x_.go(turned, settings_.turn_centre_x_m, draw(3));
@@ -159,7 +162,7 @@ void TrackedDrive::slip_and_turn(double dt_s) {
   const double most = (settings_.friction ? settings_.friction(to_seconds(now())) : 0.8) * kGravity_mps2 * dt_s;
   ahead_mps_ = towards(ahead_mps_, ahead, most);
   yaw_rate_radps_ = towards(yaw_rate_radps_, yaw_rate, most / (0.25 * robot_.tracks->gauge_m));
-  leftward_mps_ = -turn_x_.value * yaw_rate_radps_;
+  leftward_mps_ = -turn_x_.value * yaw_rate_radps_ + crab_.value * ahead_mps_;
 }
 
 void TrackedDrive::place_body(double dt_s) {

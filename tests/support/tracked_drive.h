@@ -41,6 +41,7 @@ struct TrackedDriveSettings {
   double slip_per_radps = 0.07; ///< more of it on turns,
   double slip_per_tilt = 0.14;  ///< and on slopes, by the sine of the tilt
   double slip_length_m = 3.0;
+  double crab = 0.005;          ///< sideways, share of the way; wanders over the same length
   double turn_ratio = 1.5;      ///< mean: distance of the tracks' centres of rotation over the gauge
   double turn_ratio_std = 0.15;
   double turn_centre_x_m = 0.05;
@@ -67,7 +68,7 @@ struct TrackedDriveSettings {
 
 /// A tracked robot by kinematics alone, for tests of odometry. Each belt slips by a share of its way that wanders; the body turns
 /// about the tracks' instantaneous centres of rotation (Mandow et al., IROS 2007):
-///   yaw rate = (r - l) / D,  ahead = (l y_l - r y_r) / (y_l - y_r) with y_l - y_r = D,  left = -x yaw rate.
+///   yaw rate = (r - l) / D,  ahead = (l y_l - r y_r) / (y_l - y_r) with y_l - y_r = D,  left = -x yaw rate, and a little crabbing.
 /// The ground waves gently under it. Friction below what the belts ask for limits what the body can follow.
 class TrackedDrive {
  public:
@@ -111,7 +112,7 @@ class TrackedDrive {
   Belts belts_;                                                ///< as they run
   Eigen::Vector2d belt_way_m_ = Eigen::Vector2d::Zero();  ///< left, right
   double scale_;
-  Wanderer slip_left_, slip_right_, turn_ratio_, turn_x_, turn_y_;
+  Wanderer slip_left_, slip_right_, crab_, turn_ratio_, turn_x_, turn_y_;
   double ahead_mps_ = 0.0, leftward_mps_ = 0.0, yaw_rate_radps_ = 0.0;
   double way_m_ = 0.0;
   double yaw_rad_ = 0.0;

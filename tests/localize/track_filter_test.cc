@@ -1,0 +1,95 @@
+#include "localize/track_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+
+namespace patrol::localize {
+namespace {
+
+constexpr double kDt = 0.004;
+const InertialSample kAtRest{.force_mps2 = {0.0, 0.0, 9.81}};
+
+TrackFilter::Settings quiet() {
+  return {.gyro_noise_radps_per_sqrt_hz = 1e-4,
+          .gyro_bias_std_radps = 1e-3,
+          .gyro_bias_walk_radps_per_sqrt_s = 1e-6,
+          .accel_noise_mps2_per_sqrt_hz = 0.02,
+          .accel_bias_std_mps2 = 0.01,
+          .accel_bias_walk_mps2_per_sqrt_s = 1e-4,
+          .turn_std_rad_per_sqrt_rad = 0.0,
+          .scale_std = 0.02,
+          .slip_length_m = 2.0,
+          .turn_centre_x_std_m = 0.05,
+          .turn_centre_y_std_m = 0.02,
+          .turn_centre_length_rad = 2.0,
+          .height_m = 0.0};
+}
+
+/// Steady at a speed for a time, belts heard each 20 ms.
+void drive(TrackFilter& filter, double belts_mps, double duration_s, double slip_std) {
+  for (int step = 1; step <= std::lround(duration_s / kDt); ++step) {
+    filter.predict(kDt, kAtRest);
+    if (step % 5 != 0) continue;
+    filter.wander(std::abs(belts_mps) * 0.02, 0.0, slip_std);
+    filter.correct_speed(0.02, belts_mps, filter.motion(), {0.005, 0.005, 0.005});
+  }
+}
+
+TEST(TrackFilter, AScaleOfTwoPercentLeavesTwoPercentOfTheWay) {
+  TrackFilter filter(quiet(), kAtRest);
+  filter.set_origin();
+  drive(filter, 0.5, 20.0, 0.0);
+  const double std = std::sqrt(filter.covariance()(0, 0));
+  EXPECT_NEAR(std, 0.02 * filter.motion().T_odom_body.position.x(), 0.15 * std);
+}
+
+TEST(TrackFilter, SlipThatForgetsGrowsWithTheRootOfTheWay) {
+  TrackFilter::Settings settings = quiet();
+  settings.scale_std = 0.0;
+  TrackFilter filter(settings, kAtRest);
+  filter.set_origin();
+  drive(filter, 0.5, 80.0, 0.03);
+  // The integral of a Gauss-Markov process over a way s much longer than its length L: sigma sqrt(2 L (s - L)), and heading's.
+  const double way = filter.motion().T_odom_body.position.x();
+  EXPECT_NEAR(std::sqrt(filter.covariance()(0, 0)), 0.03 * std::sqrt(2.0 * 2.0 * (way - 2.0)), 0.03);
+}
+
+TEST(TrackFilter, AStandstillsBiasMovesNeitherPlaceNorHeading) {
+  TrackFilter filter(quiet(), kAtRest);
+  drive(filter, 0.5, 2.0, 0.02);
+  const Pose3 before = filter.motion().T_odom_body;
+  filter.correct_gyro_bias({0.0, 0.0, 0.0008}, Eigen::Vector3d::Constant(1e-10));
+  EXPECT_EQ(filter.motion().T_odom_body.position, before.position);
+  // Roll and pitch move with the bias: of the second order that is yaw.
+  EXPECT_NEAR(yaw_of(filter.motion().T_odom_body.rotation), yaw_of(before.rotation), 1e-7);
+  EXPECT_NEAR(filter.gyro_bias_radps().z(), 0.0008, 1e-6);
+}
+
+TEST(TrackFilter, CovarianceStaysPositiveThroughDriveAndLossOfGrip) {
+  TrackFilter filter(quiet(), kAtRest);
+  drive(filter, 0.5, 5.0, 0.02);
+  filter.lose_grip(0.2, 0.1);
+  filter.predict(kDt, kAtRest);
+  filter.regain_grip(0.5, 0.02);
+  drive(filter, 0.5, 5.0, 0.02);
+  const Eigen::SelfAdjointEigenSolver<TrackFilter::Covariance> solver(filter.covariance());
+  EXPECT_GT(solver.eigenvalues().minCoeff(), -1e-12);
+}
+
+TEST(TrackFilter, TheTurnsCentreFiveCentimetresBehindDragsTheBodySideways) {
+  TrackFilter filter(quiet(), kAtRest);
+  const InertialSample turning{.rate_radps = {0, 0, 0.5}, .force_mps2 = {0, 0, 9.81}};
+  for (int step = 1; step <= 250; ++step) {
+    filter.predict(kDt, turning);
+    if (step % 5 == 0) filter.correct_speed(0.02, 0.0, filter.motion(), {0.005, 0.005, 0.005});
+  }
+  // Turning on the spot by 0.5 rad/s, 0.05 m of centre leave 0.025 m/s to the left, and 0.02 m leave 0.01 m/s ahead.
+  EXPECT_NEAR(std::sqrt(filter.lasting_velocity_variance().y()), 0.025, 0.005);
+  EXPECT_NEAR(std::sqrt(filter.lasting_velocity_variance().x()), 0.010, 0.002);
+}
+
+}  // namespace
+}  // namespace patrol::localize
