@@ -74,7 +74,7 @@ void UpdateAgainstBareFieldLoop(benchmark::State& state) {
   for (auto _ : state) {
     for (int i = 0; i < 10; ++i) drive.step();
     if (with_ranges) {
-      for (const UwbRange& range : drive.ranges()) localizer.add(range, drive.T_odom_body());
+      for (const UwbRange& range : drive.ranges()) localizer.add(range, to_spatial(drive.T_odom_body()));
     }
     const LevelScan scan = drive.scan();
     const BeamEnds ends = localize::select_beam_ends(scan, kBeams);
