@@ -117,7 +117,7 @@ void TourStack::localize_scan(const LevelScan& scan, const Pose2& T_odom_body) {
 void TourStack::handle_range(const UwbRange& range) {
   const std::optional<Pose3> T_odom_body = odometry_.T_odom_body_at(range.stamp);
   if (!T_odom_body) return;
-  if (localizer_) return localizer_->add(range, to_planar(*T_odom_body));
+  if (localizer_) return localizer_->add(range, *T_odom_body);
   const auto anchor = std::find_if(site_in_map_.anchors.begin(), site_in_map_.anchors.end(),
                                    [&](const UwbAnchor& known) { return known.number == range.anchor; });
   if (anchor == site_in_map_.anchors.end()) return;

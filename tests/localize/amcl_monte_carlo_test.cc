@@ -25,7 +25,7 @@ TEST(Study, Drive) {
   if (getenv("ANY")) localizer.start_anywhere(); else
   localizer.start_at({0.1, -0.1, 0.03}, kStart);
   for (int i = 0; i < 1300; ++i) {
-    if (uwb) for (const UwbRange& range : drive.ranges()) localizer.add(range, drive.T_odom_body());
+    if (uwb) for (const UwbRange& range : drive.ranges()) localizer.add(range, to_spatial(drive.T_odom_body()));
     const LocalizationUpdate update = localizer.update(drive.scan(), drive.T_odom_body());
     const Pose2 e = drive.T_map_body().inverse() * update.estimate.T_map_body;
     if (i < 10 || i % 25 == 0 || (i > 395 && i < 450 && i % 2 == 0)) std::printf("x %6.2f  err %7.3f %7.3f %6.2f deg  std %6.3f %6.3f %6.3f deg  trust %.2f lost %d n %d clump %.2f match %.2f inj %d\n", drive.T_map_body().x, e.x, e.y, e.yaw * 57.3,

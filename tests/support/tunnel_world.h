@@ -126,7 +126,7 @@ class TunnelDrive {
     for (const UwbAnchor& anchor : anchors_) {
       const double way = (anchor.p_m - antenna).norm();
       if (way > settings_.range_reach_m) continue;
-      heard.push_back({stamp_, anchor.number, way + settings_.range_std_m * uwb_noise_.normal(tick_, static_cast<std::uint64_t>(anchor.number))});
+      heard.push_back({stamp_, anchor.number, way + uwb_bias_at({}, way).bias_m + settings_.range_std_m * uwb_noise_.normal(tick_, static_cast<std::uint64_t>(anchor.number))});
     }
     return heard;
   }

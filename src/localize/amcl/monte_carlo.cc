@@ -16,8 +16,8 @@
 namespace patrol::localize {
 namespace {
 
-// A clump of equal particles has no width; its prior must have some.
-const Eigen::Vector3d kLeastStd(2e-3, 2e-3, 5e-4);
+// How finely particles tell poses apart: the likelihood's tolerance and their number leave so much open.
+const Eigen::Vector3d kLeastStd(0.02, 0.02, 0.003);
 constexpr int kLineRadius_cells = 6;
 constexpr int kMinPoints = 10;           // of a scan that may be judged
 constexpr double kWastefulShare = 0.67;  // so few of the particles would do
@@ -46,7 +46,7 @@ std::unique_ptr<SensorModel> make_sensor_model(const MonteCarloSettings& setting
 MonteCarloLocalizer::MonteCarloLocalizer(const MonteCarloSettings& settings, const OccupancyGrid& map,
                                          const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb, std::uint64_t seed)
     : settings_(checked(settings)),
-      ranges_(anchors_in_map, T_body_uwb.position),
+      ranges_(anchors_in_map, T_body_uwb),
       lines_(checked(map), kLineRadius_cells),
       sensor_model_(make_sensor_model(settings, map, lines_)),
       search_(settings.search, settings.likelihood_field, map, lines_),

@@ -98,8 +98,7 @@ struct LocalizationUpdate {
 /// (pose_refinement.h): millimetres where the map tells the place, and the particles' own width where it does not.
 class MonteCarloLocalizer {
  public:
-  /// `T_body_uwb`: where the antenna is; only its position counts. Anchors in map, heights above the level body's origin at
-  /// z = 0 of map. Throws InputError if a setting breaks its rule, or the map is empty or has no free or no occupied cell.
+  /// Anchors in map, their heights above the body's origin: the ground is taken to be level. Throws InputError if a setting breaks its rule, or the map is empty or has no free or no occupied cell.
   MonteCarloLocalizer(const MonteCarloSettings& settings, const OccupancyGrid& map, const std::vector<UwbAnchor>& anchors_in_map,
                       const Pose3& T_body_uwb, std::uint64_t seed);
 
@@ -110,7 +109,7 @@ class MonteCarloLocalizer {
 
   /// `T_odom_body` at the range's stamp. Ranges of anchors that the survey does not know are ignored, and so are those that are
   /// not finite and positive. The newest of each anchor is weighed with the next scan that is.
-  void add(const UwbRange& range, const Pose2& T_odom_body) { ranges_.add(range, T_odom_body); }
+  void add(const UwbRange& range, const Pose3& T_odom_body) { ranges_.add(range, T_odom_body); }
   /// `T_odom_body` at the scan's stamp.
   LocalizationUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
 

@@ -4,24 +4,28 @@
 
 namespace patrol::localize {
 
-RangeMemory::RangeMemory(const std::vector<UwbAnchor>& anchors_in_map, const Eigen::Vector3d& p_body_antenna)
-    : p_body_antenna_(p_body_antenna) {
+RangeMemory::RangeMemory(const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb) : T_body_uwb_(T_body_uwb) {
   for (const UwbAnchor& anchor : anchors_in_map) p_map_anchor_[anchor.number] = anchor.p_m;
 }
 
-void RangeMemory::add(const UwbRange& range, const Pose2& T_odom_body) {
+void RangeMemory::add(const UwbRange& range, const Pose3& T_odom_body) {
   if (!p_map_anchor_.contains(range.anchor) || !std::isfinite(range.range_m) || !(range.range_m > 0.0)) return;
-  newest_[range.anchor] = {range, T_odom_body};
+  // The bias is a function of the true distance, and so flat that two steps find it.
+  const double nearly_m = range.range_m - uwb_bias_at(calibration_, range.range_m).bias_m;
+  newest_[range.anchor] = {.stamp = range.stamp,
+                           .T_odom_body = to_planar(T_odom_body),
+                           .p_level_antenna = uwb_antenna_in_level(T_odom_body.rotation, T_body_uwb_, 0.0),
+                           .distance_m = range.range_m - uwb_bias_at(calibration_, nearly_m).bias_m};
 }
 
 std::vector<AnchoredRange> RangeMemory::taken_after(Time since, const Pose2& T_odom_now) const {
   std::vector<AnchoredRange> ranges;
   for (const auto& [number, heard] : newest_) {
-    if (heard.range.stamp <= since) continue;
-    const Eigen::Vector2d antenna = (T_odom_now.inverse() * heard.T_odom_body) * p_body_antenna_.head<2>().eval();
+    if (heard.stamp <= since) continue;
+    const Eigen::Vector2d antenna = (T_odom_now.inverse() * heard.T_odom_body) * heard.p_level_antenna.head<2>().eval();
     ranges.push_back({.p_map_anchor = p_map_anchor_.at(number),
-                      .p_body_antenna = {antenna.x(), antenna.y(), p_body_antenna_.z()},
-                      .range_m = heard.range.range_m});
+                      .p_body_antenna = {antenna.x(), antenna.y(), heard.p_level_antenna.z()},
+                      .range_m = heard.distance_m});
   }
   return ranges;
 }
