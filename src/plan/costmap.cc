@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -10,6 +11,8 @@ namespace patrol::plan {
 namespace {
 
 constexpr double kGrowth_m = 5.0;  ///< added at each growth, so that growth is rare
+constexpr int kMoving_cells = 3;     ///< a low obstacle this near to a live hit may be a person's foot
+constexpr int kExplained_cells = 2;  ///< an echo this near to what the lidar hits is that
 
 /// Reach of the distance field in cells: all that costs, and all that the robot's outline may ask for.
 int cap_of(const CostmapSettings& settings, const Footprint& footprint) {
@@ -77,7 +80,8 @@ Costmap::Costmap(const CostmapSettings& settings, const Footprint& footprint, st
     : settings_(settings),
       footprint_(footprint),
       keep_out_lines_(std::move(keep_out_lines_in_map)),
-      transform_(cap_of(settings, footprint)) {
+      transform_(cap_of(settings, footprint)),
+      low_(settings.low) {
   validate(settings_, "costmap");
   const double lethal_m = footprint_.inscribed_radius_m() + settings_.safety_margin_m;
   for (int squared = 0; squared <= transform_.beyond(); ++squared) {
@@ -126,6 +130,8 @@ void Costmap::allocate(Cell min, Cell max) {
   }
   map_ = std::move(map);
   live_ = Grid<std::uint32_t>(geometry, 0);
+  is_low_ = Grid<std::uint8_t>(geometry, 0);
+  for (const Cell lattice : low_.obstacles()) is_low_.at(to_grid(lattice)) = 1;
   squared_ = Grid<std::int16_t>(geometry, transform_.beyond());
   cost_ = Grid<Cost>(geometry, kFreeCost);
   for (std::size_t i = 0; i < live_cells_.size(); ++i) {
@@ -247,8 +253,72 @@ void Costmap::mark_hits(const LevelScan& scan, const Pose2& T_map_body, CellBox&
   }
 }
 
+std::vector<Cell> Costmap::lattice_cells(const std::vector<Eigen::Vector2d>& p_level, const Pose2& T_map_body,
+                                         int min_count) const {
+  std::map<std::pair<int, int>, int> counts;  // in an order that does not depend on the points'
+  for (const Eigen::Vector2d& p : p_level) {
+    const Cell cell = geometry().cell_at(T_map_body * p);
+    if (cost_.contains(cell)) ++counts[{cell.row + lattice_origin_.row, cell.col + lattice_origin_.col}];
+  }
+  std::vector<Cell> cells;
+  for (const auto& [key, count] : counts) {
+    if (count >= min_count) cells.push_back({key.second, key.first});
+  }
+  return cells;
+}
+
+bool Costmap::is_seen_by_lidar(Cell cell, int reach, bool with_map) const {
+  for (int row = cell.row - reach; row <= cell.row + reach; ++row) {
+    for (int col = cell.col - reach; col <= cell.col + reach; ++col) {
+      if (is_live_obstacle({col, row})) return true;
+      if (with_map && map_.contains({col, row}) && map_.at({col, row}) >= settings_.occupied_percent) return true;
+    }
+  }
+  return false;
+}
+
+void Costmap::add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body) {
+  include(T_map_body.position(), settings_.obstacle_range_m);
+  const std::vector<Cell> obstacles = lattice_cells(points.obstacles_m, T_map_body, settings_.low.min_camera_points);
+  std::vector<bool> may_move;
+  for (const Cell cell : obstacles) may_move.push_back(is_seen_by_lidar(to_grid(cell), kMoving_cells, false));
+  // Ground, where no point of the same image speaks against it.
+  std::vector<Cell> ground;
+  const std::vector<Cell> doubtful = lattice_cells(points.obstacles_m, T_map_body, 1);
+  for (const Cell cell : lattice_cells(points.ground_m, T_map_body, settings_.low.min_camera_points)) {
+    if (std::find(doubtful.begin(), doubtful.end(), cell) == doubtful.end()) ground.push_back(cell);
+  }
+  low_.add_image(obstacles, ground, may_move, stamp);
+  low_.forget_old(stamp);
+  CellBox changed;
+  apply_low_changes(changed);
+  refresh(changed);
+}
+
+void Costmap::add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body) {
+  include(T_map_body.position(), settings_.obstacle_range_m);
+  std::vector<Cell> arc = lattice_cells(cone.arc_m, T_map_body, 1);
+  // An echo that the lidar explains, anywhere on the arc, is no news.
+  const auto is_explained = [this](Cell cell) { return is_seen_by_lidar(to_grid(cell), kExplained_cells, true); };
+  if (std::any_of(arc.begin(), arc.end(), is_explained)) arc.clear();
+  low_.add_ping(arc, lattice_cells(cone.free_m, T_map_body, 1), stamp);
+  CellBox changed;
+  apply_low_changes(changed);
+  refresh(changed);
+}
+
+void Costmap::apply_low_changes(CellBox& changed) {
+  for (const Cell lattice : low_.take_changed()) {
+    const Cell cell = to_grid(lattice);
+    is_low_.at(cell) = low_.is_obstacle(lattice);
+    changed.extend(cell);
+  }
+}
+
 void Costmap::forget_live(const Eigen::Vector2d& p_map, double radius_m) {
   CellBox changed;
+  low_.forget_sonar([&](Cell lattice) { return (geometry().center_of(to_grid(lattice)) - p_map).norm() <= radius_m; });
+  apply_low_changes(changed);
   std::vector<LiveObstacle> kept;
   for (const LiveObstacle& obstacle : live_cells_) {
     const Cell cell = to_cell(obstacle);
@@ -265,7 +335,7 @@ void Costmap::forget_live(const Eigen::Vector2d& p_map, double radius_m) {
 }
 
 bool Costmap::is_occupied(Cell cell) const {
-  return map_.at(cell) >= settings_.occupied_percent || live_.at(cell) != 0;
+  return map_.at(cell) >= settings_.occupied_percent || live_.at(cell) != 0 || is_low_.at(cell) != 0;
 }
 
 // Distances change up to the cap around what changed, and depend on obstacles up to the cap around those.

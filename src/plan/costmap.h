@@ -7,8 +7,11 @@
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/settings.h"
+#include "plan/depth_points.h"
 #include "plan/distance_field.h"
 #include "plan/footprint.h"
+#include "plan/low_obstacles.h"
+#include "plan/sonar_cone.h"
 
 namespace patrol::plan {
 
@@ -23,6 +26,7 @@ struct CostmapSettings {
   double obstacle_memory_s = 8.0;       ///< how long a live obstacle is believed without being seen again
   double keep_out_margin_m = 0.2;       ///< between a keep-out line and the axis of the body
   double keep_out_inflation_m = 0.25;   ///< beyond the margin, where nearness to a line costs something
+  LowObstaclesSettings low = {};
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -36,6 +40,7 @@ struct CostmapSettings {
     visit("obstacle_memory_s", self.obstacle_memory_s, between(0.1, 600.0));
     visit("keep_out_margin_m", self.keep_out_margin_m, between(0.0, 1.0));
     visit("keep_out_inflation_m", self.keep_out_inflation_m, between(0.0, 2.0));
+    visit("low", self.low);
   }
 };
 
@@ -45,11 +50,12 @@ inline constexpr Cost kFreeCost = 0;
 inline constexpr Cost kMaxPassableCost = 252;
 inline constexpr Cost kLethalCost = 255;
 
-/// Where the body may go, and how gladly, in `map`. Three layers:
+/// Where the body may go, and how gladly, in `map`. Four layers:
 ///
 ///   map       SLAM's occupancy grid, max-pooled to the costmap's cells;
 ///   live      what the lidar hits now and the map does not (yet) have. A hit vanishes when a later beam passes beyond it:
 ///             people move on, and leave nothing behind;
+///   low       what stands below the lidar's plane, from the depth camera and the ultrasonic ring (plan/low_obstacles.h);
 ///   keep-out  surveyed lines that the lidar cannot see (full-height kerbs).
 ///
 /// Obstacles are inflated by their exact distance: lethal where the robot's inscribed circle would touch, then falling
@@ -62,7 +68,10 @@ class Costmap {
   /// Throws InputError if the map's cells are larger than the costmap's.
   void set_map(const OccupancyGrid& map);
   void add_scan(const LevelScan& scan, const Pose2& T_map_body);
-  /// Forgets the live obstacles around a place; what is really there will be seen again.
+  /// What a depth image shows, and what a ping says of the ground; in level, when the body was there.
+  void add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body);
+  void add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body);
+  /// Forgets the live obstacles around a place, and what only sonar has heard; what is really there will be seen again.
   void forget_live(const Eigen::Vector2d& p_map, double radius_m);
   /// Grows, if needed, so that `margin_m` around the point lies inside.
   void include(const Eigen::Vector2d& p_map, double margin_m);
@@ -75,6 +84,8 @@ class Costmap {
   Cost cost_at(const Eigen::Vector2d& p_map) const;
   bool is_live_obstacle(Cell cell) const { return live_.contains(cell) && live_.at(cell) != 0; }
   std::size_t num_live_obstacles() const { return live_cells_.size(); }
+  bool is_low_obstacle(Cell cell) const { return is_low_.contains(cell) && is_low_.at(cell) != 0; }
+  std::size_t num_low_obstacles() const { return low_.num_obstacles(); }
 
   /// To the nearest obstacle's surface, interpolated between cells; at most `max_distance_m`.
   double obstacle_distance_m(const Eigen::Vector2d& p_map) const;
@@ -99,12 +110,16 @@ class Costmap {
   };
 
   void allocate(Cell min, Cell max);
-  Cell to_cell(const LiveObstacle& obstacle) const {
-    return {obstacle.lattice.col - lattice_origin_.col, obstacle.lattice.row - lattice_origin_.row};
-  }
+  Cell to_cell(const LiveObstacle& obstacle) const { return to_grid(obstacle.lattice); }
   void lay_keep_out_lines();
   void drop_live(const LevelScan& scan, const Pose2& T_map_body, CellBox& changed);
   void mark_hits(const LevelScan& scan, const Pose2& T_map_body, CellBox& changed);
+  /// The cells of these places that hold at least `min_count` of them; inside the grid, on the lattice.
+  std::vector<Cell> lattice_cells(const std::vector<Eigen::Vector2d>& p_level, const Pose2& T_map_body, int min_count) const;
+  Cell to_grid(Cell lattice) const { return {lattice.col - lattice_origin_.col, lattice.row - lattice_origin_.row}; }
+  /// Whether the lidar, now or (with the map) ever, has hit something within `reach` cells of the cell.
+  bool is_seen_by_lidar(Cell cell, int reach, bool with_map) const;
+  void apply_low_changes(CellBox& changed);
   bool is_occupied(Cell cell) const;
   void refresh(const CellBox& changed);
   void price(Cell first, int count);
@@ -120,6 +135,8 @@ class Costmap {
   OccupancyGrid map_;                      ///< max-pooled
   Grid<std::uint32_t> live_;               ///< 1 + index in live_cells_, 0 where there is none
   std::vector<LiveObstacle> live_cells_;
+  LowObstacles low_;                       ///< on the lattice
+  Grid<std::uint8_t> is_low_;              ///< the same, for quick looking up
   Grid<float> keep_out_distance_m_;
   Grid<std::int16_t> squared_;             ///< squared distance to the nearest obstacle, cells
   Grid<Cost> cost_;

@@ -16,6 +16,9 @@ Twist3 twist_of(const VelocityCommand& command) {
   return {.linear = {command.vx_mps, command.vy_mps, 0.0}, .angular = {0.0, 0.0, command.yaw_rate_radps}};
 }
 
+/// Of the body's origin above the ground. Robots on legs have no sensors that ask for it.
+double body_height_m(const RobotDescription& robot) { return robot.tracks ? robot.tracks->body_height_m : 0.0; }
+
 bool stands_still(const VelocityCommand& command) {
   return std::abs(command.vx_mps) < 0.03 && std::abs(command.vy_mps) < 0.03 && std::abs(command.yaw_rate_radps) < 0.05;
 }
@@ -25,6 +28,7 @@ bool stands_still(const VelocityCommand& command) {
 Navigator::Navigator(const NavigatorSettings& settings, const RobotDescription& robot,
                      std::vector<Polyline> keep_out_lines_in_map)
     : settings_(settings),
+      robot_(robot),
       costmap_(settings.costmap, Footprint(robot.footprint_m, settings.footprint_rows), std::move(keep_out_lines_in_map)),
       planner_(settings.global),
       window_(settings.local),
@@ -35,6 +39,18 @@ Navigator::Navigator(const NavigatorSettings& settings, const RobotDescription& 
 void Navigator::set_map(const OccupancyGrid& map) {
   costmap_.set_map(map);
   map_is_new_ = true;
+}
+
+void Navigator::add_depth(const DepthImage& image, const Pose3& T_level_body, const Pose2& T_map_body) {
+  const Pose3 T_level_camera = T_level_body * robot_.T_body("depth_camera");
+  costmap_.add_image(find_depth_points(settings_.depth, image, T_level_camera, body_height_m(robot_)), image.stamp, T_map_body);
+}
+
+void Navigator::add_range(const UltrasonicRange& ping, const Pose3& T_level_body, const Pose2& T_map_body) {
+  const Pose3 T_level_transducer = T_level_body * robot_.T_body("ultrasonic_" + std::to_string(ping.transducer));
+  const SonarCone cone =
+      find_sonar_cone(settings_.sonar, ping, T_level_transducer, body_height_m(robot_), settings_.costmap.resolution_m);
+  costmap_.add_ping(cone, ping.stamp, T_map_body);
 }
 
 void Navigator::set_goal(const std::optional<NavigationGoal>& goal) {

@@ -32,6 +32,8 @@ struct NavigatorSettings {
   double back_up_speed_mps = 0.15;
   int max_recoveries = 8;             ///< without getting nearer; then the goal is given up
   CostmapSettings costmap;
+  DepthPointsSettings depth;
+  SonarConeSettings sonar;
   AstarSettings global;
   DwaSettings local;
   PoseRegulatorSettings approach;                      ///< of an omnidirectional robot
@@ -54,6 +56,8 @@ struct NavigatorSettings {
     visit("back_up_speed_mps", self.back_up_speed_mps, between(0.0, 1.0));
     visit("max_recoveries", self.max_recoveries, between(0, 1000));
     visit("costmap", self.costmap);
+    visit("depth", self.depth);
+    visit("sonar", self.sonar);
     visit("global", self.global);
     visit("local", self.local);
     visit("approach", self.approach);
@@ -80,6 +84,9 @@ class Navigator {
 
   void set_map(const OccupancyGrid& map);
   void add_scan(const LevelScan& scan, const Pose2& T_map_body) { costmap_.add_scan(scan, T_map_body); }
+  /// `T_level_body`: the body's tilt. Throw InputError if the robot has no such camera or transducer.
+  void add_depth(const DepthImage& image, const Pose3& T_level_body, const Pose2& T_map_body);
+  void add_range(const UltrasonicRange& ping, const Pose3& T_level_body, const Pose2& T_map_body);
   /// The same goal again changes nothing; none stops the robot.
   void set_goal(const std::optional<NavigationGoal>& goal);
 
@@ -109,6 +116,7 @@ class Navigator {
   void note_progress(const Pose2& T_map_body);
 
   NavigatorSettings settings_;
+  RobotDescription robot_;
   Costmap costmap_;
   AstarPlanner planner_;
   DynamicWindow window_;
