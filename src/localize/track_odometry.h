@@ -111,7 +111,8 @@ struct TrackOdometryHealth {
 /// estimate is at its newest reading; odom starts, level, where the robot has first stood for a while.
 ///
 /// Messages may come late or not at all: counters wait for the IMU of their instant (up to `imu_patience_s`, then the belts carry
-/// on alone), and are compared with the state remembered from the middle of their interval. Not handled: a robot that is carried,
+/// on alone), and are compared with the state remembered from the middle of their interval. When belts and body agree again after a
+/// loss of grip, what the IMU has drifted meanwhile is taken back: odom then shifts by decimetres, once. Not handled: a robot that is carried,
 /// and belts that lose their grip so gently that the accelerometer cannot feel it (below `slip_disagreement_mps` in
 /// `slip_window_s`).
 class TrackOdometry {

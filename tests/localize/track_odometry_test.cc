@@ -233,7 +233,7 @@ TEST(TrackOdometry, AFrozenImuCountsAsSilent) {
   EXPECT_GT(odometry.health().rejected_messages, 200U);
 }
 
-TEST(TrackOdometry, CountersFortyMillisecondsLateChangeTheEndByLessThanACentimetre) {
+TEST(TrackOdometry, CountersFortyMillisecondsLateChangeTheEndOfThirtySecondsByLessThanFiveCentimetres) {
   TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 8);
   TrackOdometry punctual(make_tracked_robot(), {}), late(make_tracked_robot(), {});
   std::deque<TrackTicks> under_way;
