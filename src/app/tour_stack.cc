@@ -127,8 +127,16 @@ void TourStack::handle_range(const UwbRange& range) {
               .p_level_antenna = uwb_antenna_in_level(T_odom_body->rotation, robot_.T_body("uwb"), odometry_.height_above_ground_m())});
 }
 
-void TourStack::handle_ultrasonic(const UltrasonicRange&) {}
-void TourStack::handle_depth(const DepthImage&) {}
+void TourStack::handle_ultrasonic(const UltrasonicRange& range) {
+  const auto place = place_at(range.stamp);
+  if (place) navigator_.add_range(range, place->T_level_body, place->T_map_body);
+}
+
+void TourStack::handle_depth(const DepthImage& image) {
+  const auto lap = clock_.lap("planning");
+  const auto place = place_at(image.stamp);
+  if (place) navigator_.add_depth(image, place->T_level_body, place->T_map_body);
+}
 
 /// The localiser counts heights from the body's origin.
 std::vector<UwbAnchor> TourStack::anchors_above_body() const {
@@ -137,10 +145,13 @@ std::vector<UwbAnchor> TourStack::anchors_above_body() const {
   return anchors;
 }
 
-std::optional<Pose2> TourStack::T_map_body_at(Time stamp) const {
+/// Where the body was, for what a sensor saw from there.
+std::optional<TourStack::Place> TourStack::place_at(Time stamp) const {
   const std::optional<Pose3> T_odom_body = odometry_.T_odom_body_at(stamp);
   if (!T_odom_body) return std::nullopt;
-  return tracker_.at(stamp, to_planar(*T_odom_body)).T_map_body;
+  const Eigen::Quaterniond tilt = quaternion_from_yaw(-yaw_of(T_odom_body->rotation)) * T_odom_body->rotation;
+  return Place{.T_level_body = {{0.0, 0.0, odometry_.height_above_ground_m()}, tilt},
+               .T_map_body = tracker_.at(stamp, to_planar(*T_odom_body)).T_map_body};
 }
 
 void TourStack::handle_fall(Time now) {
@@ -174,7 +185,7 @@ void TourStack::control(Time now, const OdometryEstimate& odometry) {
                                                     .docking = docking_feedback_,
                                                     .remote = std::exchange(new_remote_, std::nullopt)});
   for (const Event& event : tour.events) messages_.emplace_back(event);
-  if (tour.map_is_made) take_over_map(now);
+  if (tour.map_is_made) take_over_map(now, pose);
   if (tour.localize_anew) localize_anew(now, T_odom_body);
   follow(now, tour, pose, T_odom_body);
   command_.stamp = now;
@@ -245,12 +256,12 @@ void TourStack::navigate(Time now, const std::optional<NavigationGoal>& goal, co
 }
 
 /// The mapping drive is over: from here on the map is what it is.
-void TourStack::take_over_map(Time now) {
+void TourStack::take_over_map(Time now, const PoseEstimate& pose) {
   map_ = slam_->map();
   slam_.reset();
   publish_map(now);
   localizer_.emplace(settings_.localization, *map_, anchors_above_body(), robot_.T_body("uwb"), seed_);
-  localizer_->start_at(tracker_.at(now, {}).T_map_body, docked_covariance());
+  localizer_->start_at(pose.T_map_body, pose.covariance);
 }
 
 /// As after switching the robot off and on at its post.

@@ -44,14 +44,18 @@ class TourStack final : public RobotStack {
   void handle_range(const UwbRange& range);
   void handle_ultrasonic(const UltrasonicRange& range);
   void handle_depth(const DepthImage& image);
-  std::optional<Pose2> T_map_body_at(Time stamp) const;
+  struct Place {
+    Pose3 T_level_body;  ///< tilt, and height above the ground
+    Pose2 T_map_body;
+  };
+  std::optional<Place> place_at(Time stamp) const;
   std::vector<UwbAnchor> anchors_above_body() const;
 
   void control(Time now, const OdometryEstimate& odometry);
   void follow(Time now, const inspect::TourOutput& tour, const PoseEstimate& pose, const Pose2& T_odom_body);
   void move_at_dock(Time now, const Pose2& T_odom_body, const PoseEstimate& pose);
   void navigate(Time now, const std::optional<NavigationGoal>& goal, const PoseEstimate& pose);
-  void take_over_map(Time now);
+  void take_over_map(Time now, const PoseEstimate& pose);
   void localize_anew(Time now, const Pose2& T_odom_body);
   void publish_map(Time now);
   void note(Time now, const PoseEstimate& pose, const char* kind, const std::string& text);
