@@ -16,14 +16,19 @@ namespace {
 /// Every geom that no contact can involve goes; masses are stated in the files, so nothing else changes.
 void strip_untouchable(mjSpec& spec) { spec.compiler.discardvisual = 1; }
 
-double world_ground_height_m(const std::string& world_xml, const Stance& stance, const Pose2& T_world_start) {
-  const SpecPtr spec = load_spec(world_xml);
-  strip_untouchable(*spec);
-  const ModelPtr model = compile(*spec, world_xml);
+SpecPtr load_world(const std::string& world_xml, const std::vector<PropSettings>& props) {
+  SpecPtr spec = load_spec(world_xml);
+  add_props(*spec, props);
+  return spec;
+}
+
+double start_height_m(const std::string& world_xml, mjSpec& world, const Stance& stance, const Pose2& T_world_start) {
+  strip_untouchable(world);
+  const ModelPtr model = compile(world, world_xml);
   const DataPtr data = make_data(*model);
   mj_forward(model.get(), data.get());
   try {
-    return ground_height_m(*model, *data, stance, T_world_start, stance.eye_height_m);
+    return ground_height_m(*model, *data, stance, T_world_start, stance.eye_height_m) + stance.height_m;
   } catch (const InputError& error) {
     throw InputError(fmt::format("start pose {} in {}", error.what(), world_xml));
   }
@@ -48,14 +53,6 @@ void refuse_start_inside_something(const mjModel& model, const std::vector<doubl
 void spare_still_bodies(mjSpec& spec) {
   spec.option.enableflags |= mjENBL_SLEEP;
   mjs_findBody(&spec, frame_id::kBody)->sleep = mjSLEEP_NEVER;
-}
-
-SpecPtr make_spec(const std::string& world_xml, const std::string& robot_urdf, const Pose3& T_world_body,
-                  const std::vector<PropSettings>& props) {
-  SpecPtr spec = load_spec(world_xml);
-  add_props(*spec, props);
-  add_robot(*spec, robot_urdf, T_world_body);
-  return spec;
 }
 
 }  // namespace
@@ -94,17 +91,17 @@ AssembledModel assemble_model(const std::string& world_xml, const std::string& r
                               const std::vector<PropSettings>& props) {
   AssembledModel assembled;
   assembled.stance = stance_of(robot_urdf);
-  const double ground_m = world_ground_height_m(world_xml, assembled.stance, T_world_start);
-  const Pose3 T_world_body = to_spatial(T_world_start, ground_m + assembled.stance.height_m);
-  assembled.view = compile(*make_spec(world_xml, robot_urdf, T_world_body, props), world_xml);
-  const SpecPtr physics = make_spec(world_xml, robot_urdf, T_world_body, props);
+  const double height_m = start_height_m(world_xml, *load_world(world_xml, props), assembled.stance, T_world_start);
+  const SpecPtr view = load_world(world_xml, props), physics = load_world(world_xml, props);
+  for (mjSpec* spec : {view.get(), physics.get()}) add_robot(*spec, robot_urdf, to_spatial(T_world_start, height_m));
   strip_untouchable(*physics);
   spare_still_bodies(*physics);
+  assembled.view = compile(*view, world_xml);
   assembled.physics = compile(*physics, world_xml);
   const mjModel& model = *assembled.physics;
   assembled.start_qpos.assign(model.qpos0, model.qpos0 + model.nq);
   put_legs_in_start_posture(model, assembled.start_qpos.data());
-  refuse_start_inside_something(*assembled.physics, assembled.start_qpos, T_world_start);
+  refuse_start_inside_something(model, assembled.start_qpos, T_world_start);
   return assembled;
 }
 

@@ -75,6 +75,7 @@ void add_visuals(const urdf::Link& link, mjsBody& body) {
     set_colour(visual->material.get(), *geom);
     geom->contype = geom->conaffinity = 0;
     geom->group = kGroupRobotVisual;
+    geom->density = 0.0;  // a link without an <inertial> weighs nothing
   }
 }
 

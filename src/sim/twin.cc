@@ -46,6 +46,7 @@ Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uin
       data_(make_data(*model_.physics)),
       nearby_(*model_.physics),
       robot_body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)),
+      settings_(settings),
       locomotion_(make_locomotion(settings, robot, *model_.physics)),
       actors_(*model_.physics, settings.actors),
       sensors_(settings.sensors, robot, *model_.physics, *model_.view,

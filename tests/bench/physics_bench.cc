@@ -1,10 +1,13 @@
 // What scenery costs physics: a step of the walking robot in the street against the same robot on a bare
-// plane.
+// plane. And what tracks cost: a tick of the tracked robot on rubble, firmware, belts and all, against a bare mj_step of the same
+// model under the same orders.
 //   tests/bench/physics_bench                       `ratio` is to be at most 1.2
 
 #include <benchmark/benchmark.h>
 
 #include "tests/bench/ratio.h"
+#include "tests/sim/rubble.h"
+#include "tests/sim/tracked_robot.h"
 #include "tests/sim/walking_robot.h"
 
 namespace patrol::bench {
@@ -42,6 +45,37 @@ BENCHMARK(StreetAgainstBarePlane)
     ->Arg(0)
     ->Arg(50)
     ->ArgName("speed_cmps")
+    ->UseManualTime()
+    ->Iterations(200)
+    ->Unit(benchmark::kMicrosecond);
+
+/// `yaw_crps`: driving straight at 0.5 m/s when 0, else turning on the spot. `elliptic`: cones of friction.
+void TracksOnRubbleAgainstBareStep(benchmark::State& state) {
+  const double yaw_rate = static_cast<double>(state.range(0)) / 100.0;
+  const VelocityCommand command{
+      .stamp = {}, .vx_mps = yaw_rate == 0.0 ? 0.5 : 0.0, .vy_mps = 0.0, .yaw_rate_radps = yaw_rate};
+  const std::string world = sim::make_rubble_world(24.0, 6.0);
+  sim::TrackedRobot whole(world, {-10.0, 0.0, 0.0}), bare(world, {-10.0, 0.0, 0.0});
+  if (state.range(1) != 0) whole.options().cone = bare.options().cone = mjCONE_ELLIPTIC;
+  Ratio ratio;
+  double all_s = 0.0, ticks = 0.0;
+  for (auto _ : state) {
+    double whole_s = 0.0;
+    for (int tick = 0; tick < kTicksPerTurn; ++tick) {
+      bare.command_drive(command);
+      ratio.reference([&] { mj_step(&bare.model(), &bare.data()); });
+      whole_s += ratio.subject([&] { whole.step(command); });
+    }
+    state.SetIterationTime(whole_s / kTicksPerTurn);
+    all_s += whole_s;
+    ticks += kTicksPerTurn;
+  }
+  state.counters["real_time_factor"] = whole.model().opt.timestep * ticks / all_s;
+  ratio.report(state);
+}
+BENCHMARK(TracksOnRubbleAgainstBareStep)
+    ->ArgsProduct({{0, 40}, {0, 1}})
+    ->ArgNames({"yaw_crps", "elliptic"})
     ->UseManualTime()
     ->Iterations(200)
     ->Unit(benchmark::kMicrosecond);

@@ -95,6 +95,74 @@ TEST(Quadruped, CarriesItsSensors) {
   EXPECT_THAT(sensors.at("lidar3d").position, VectorNear(Eigen::Vector3d(0.1, 0.0, 0.098), 1e-12));
 }
 
+const std::string kTracked = PATROL_SOURCE_DIR "/models/tracked/tracked.urdf";
+
+/// What is said of the tracked robot's file with the first `old` behind `after` replaced.
+std::string complaint_about_tracked(const std::string& old, const std::string& by, const std::string& after = "") {
+  std::string text = test::read_bytes(kTracked);
+  const std::size_t at = text.find(old, text.find(after));
+  if (at == std::string::npos) {
+    ADD_FAILURE() << "the URDF no longer holds " << old;
+    return "";
+  }
+  return complaint_about(text.replace(at, old.size(), by));
+}
+
+TEST(Tracked, Weighs85KilogramsAndHasNoLegs) {
+  const RobotDescription robot = load_robot_description(kTracked);
+  EXPECT_NEAR(robot.mass_kg, 85.0, 0.05);
+  EXPECT_TRUE(robot.legs.empty());
+}
+
+TEST(Tracked, HasTracks55CentimetresApartWith60CentimetresOnTheGround) {
+  const RobotDescription robot = load_robot_description(kTracked);
+  ASSERT_TRUE(robot.tracks.has_value());
+  EXPECT_NEAR(robot.tracks->gauge_m, 0.55, 1e-9);
+  EXPECT_NEAR(robot.tracks->width_m, 0.15, 1e-9);
+  EXPECT_NEAR(robot.tracks->contact_length_m, 0.60, 1e-9);
+  EXPECT_NEAR(robot.tracks->sprocket_radius_m, 0.07, 1e-9);
+}
+
+TEST(Tracked, ItsSprocketsTurnWithoutEndLeftFirst) {
+  const RobotDescription robot = load_robot_description(kTracked);
+  EXPECT_THAT(robot.joint_names, ::testing::ElementsAre("left_sprocket_joint", "right_sprocket_joint"));
+  ASSERT_EQ(robot.joint_limits.size(), 2U);
+  for (const JointLimit& limit : robot.joint_limits) {
+    EXPECT_TRUE(std::isinf(limit.lower_rad) && std::isinf(limit.upper_rad));
+    EXPECT_DOUBLE_EQ(limit.effort_nm, 45.0);
+    EXPECT_DOUBLE_EQ(limit.velocity_radps, 18.7);
+  }
+}
+
+TEST(Tracked, ItsFootprintIs1MetreBy70Centimetres) {
+  const auto hull = load_robot_description(kTracked).footprint_m;
+  Eigen::Vector2d lower(0.0, 0.0), upper(0.0, 0.0);
+  for (const Eigen::Vector2d& corner : hull) {
+    lower = lower.cwiseMin(corner);
+    upper = upper.cwiseMax(corner);
+  }
+  EXPECT_THAT(upper, VectorNear(Eigen::Vector2d(0.50, 0.35), 1e-9));
+  EXPECT_THAT(lower, VectorNear(Eigen::Vector2d(-0.50, -0.35), 1e-9));
+}
+
+TEST(Tracked, CarriesItsSensorsWithTheLidar55CentimetresAboveTheGround) {
+  const RobotDescription robot = load_robot_description(kTracked);
+  for (const char* name : {"lidar", "imu", "uwb", "depth_camera", "ultrasonic_0", "ultrasonic_7"})
+    EXPECT_NO_THROW(robot.T_body(name)) << name;
+  EXPECT_NEAR(robot.T_body("lidar").position.z() + 0.15, 0.55, 1e-9);
+}
+
+TEST(Tracked, WhatIsWrongWithATrackIsNamed) {
+  EXPECT_THAT(complaint_about_tracked("<cylinder radius=\"0.075\" length=\"0.15\"/>", "<sphere radius=\"0.075\"/>",
+                                      "<collision name=\"left_wheel_0\""),
+              HasSubstr("left_track: the collision shapes of a track are the wheels"));
+  EXPECT_THAT(complaint_about_tracked("rpy=\"1.571 0 0\"", "rpy=\"0 0 0\"", "<collision name=\"right_wheel_3\""),
+              HasSubstr("right_track: the collision shapes of a track are the wheels"));
+  EXPECT_THAT(complaint_about_tracked("xyz=\"0 0.275 0\"", "xyz=\"0 -0.275 0\""), HasSubstr("must lie to the left"));
+  EXPECT_THAT(complaint_about_tracked("effort=\"45\"", "effort=\"0\""),
+              HasSubstr("left_sprocket_joint: limit effort and velocity must be positive"));
+}
+
 TEST(Urdf, AMissingLinkIsNamedWithItsLine) {
   EXPECT_THAT(
       complaint_about(changed("<child link=\"imu\"/>", "<child link=\"gyro\"/>")),

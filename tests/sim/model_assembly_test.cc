@@ -11,6 +11,8 @@
 #include "core/error.h"
 #include "io/urdf.h"
 #include "sim/robot_model.h"
+#include "tests/sim/rubble.h"
+#include "tests/sim/tracked_robot.h"
 #include "tests/sim/walking_robot.h"
 #include "tests/support/temporary_file.h"
 
@@ -152,6 +154,37 @@ TEST_F(StreetAssembly, EachJointHasAMotorLimitedToTheUrdfsTorque) {
     EXPECT_NEAR(model.actuator_ctrlrange[2 * motor + 1], limit_nm, 1e-9) << joint;
     EXPECT_NEAR(model.actuator_ctrlrange[2 * motor], -limit_nm, 1e-9) << joint;
   }
+}
+
+AssembledModel tracked_on(const std::string& world, const Pose2& T_world_start = {}) {
+  const test::TemporaryFile file("world.xml", world);
+  return assemble_model(file.path(), kTrackedUrdf, T_world_start);
+}
+
+TEST(ModelAssembly, TheTrackedRobotWeighsItsUrdfs85KilogramsWithItsWheelsTakenOffTheTracks) {
+  const AssembledModel model = tracked_on(make_flat_world());
+  const int base = mj_name2id(model.physics.get(), mjOBJ_BODY, frame_id::kBody);
+  EXPECT_NEAR(model.physics->body_subtreemass[base], io::load_robot_description(kTrackedUrdf).mass_kg, 1e-9);
+}
+
+TEST(ModelAssembly, TheTrackedRobotStartsAHandsBreadthAboveRubbleAndAboveAKerbUnderOneTrack) {
+  for (const std::string& world :
+       {make_rubble_world(4.0, 4.0), make_flat_world(R"(<geom type="box" pos="0 0.3 0.06" size="1 0.1 0.06"/>)")}) {
+    const AssembledModel model = tracked_on(world, {0.1, 0.0, 0.0});
+    const DataPtr data = make_data(*model.physics);
+    std::copy(model.start_qpos.begin(), model.start_qpos.end(), data->qpos);
+    mj_forward(model.physics.get(), data.get());
+    EXPECT_EQ(data->ncon, 0);
+    EXPECT_LT(data->qpos[2], 0.15 + 0.04 + 0.121);  // stands 0.15 m high, 0.04 m above the highest ground
+  }
+}
+
+TEST(ModelAssembly, PropsAreThereToBeTouchedAndSeen) {
+  const test::TemporaryFile file("world.xml", make_flat_world());
+  const AssembledModel model =
+      assemble_model(file.path(), kTrackedUrdf, {}, {PropSettings{.kind = "kerb", .x_m = 2.0, .y_m = 0.0, .turn_deg = 0.0}});
+  EXPECT_GE(mj_name2id(model.physics.get(), mjOBJ_GEOM, "prop_1"), 0);
+  EXPECT_GE(mj_name2id(model.view.get(), mjOBJ_GEOM, "prop_1"), 0);
 }
 
 TEST(ModelAssembly, AStartInsideAWallIsRefusedWithTheWallsName) {

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/random.h"
+#include "tests/sim/rubble.h"
+#include "tests/sim/tracked_robot.h"
 #include "tests/sim/walking_robot.h"
 
 namespace patrol::sim {
@@ -54,6 +56,20 @@ TEST(NearbyScenery, At600PlacesOfTheStreetAndAnyPostureTheContactsAreThoseOfTheW
   }
   EXPECT_GT(contacts, 1500u);
   EXPECT_GT(with_actors, 50);
+}
+
+TEST(NearbyScenery, OnRubbleWithStonesTheTrackedRobotDrivesAsInTheWholeWorldToTheLastBit) {
+  const auto drive = [](bool spare) {
+    std::string world = make_rubble_world(10.0, 4.0);
+    const std::string stone = R"(<geom name="ground_stone" type="sphere" size="0.2" pos="0.4 0.25 -0.1" contype="1" conaffinity="2"/>)";
+    world.insert(world.find("</worldbody>"), stone);
+    TrackedRobot robot(world, {-2.0, 0.0, 0.0}, {}, tracked_description(), 1, spare);
+    robot.drive(0.5, 0.0, 6.0);
+    return robot.T_world_body();
+  };
+  const Pose3 spared = drive(true), whole = drive(false);
+  EXPECT_EQ(spared.position, whole.position);
+  EXPECT_GT(spared.position.x(), 0.5);
 }
 
 TEST(NearbyScenery, AWorldOfAPlaneOnlyKeepsItsGround) {

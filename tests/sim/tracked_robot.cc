@@ -21,15 +21,15 @@ double tilt_of(const Pose3& pose) { return std::acos(std::min(1.0, pose.rotation
 RobotDescription tracked_description() { return io::load_robot_description(kTrackedUrdf); }
 
 TrackedRobot::TrackedRobot(const std::string& world, const Pose2& T_world_start, const TrackDriveSettings& settings,
-                           const RobotDescription& robot, std::uint64_t seed)
+                           const RobotDescription& robot, std::uint64_t seed, bool uses_nearby_scenery)
     : robot_(robot),
       model_(assemble(world, T_world_start)),
       data_(make_data(*model_.physics)),
-      nearby_(*model_.physics),
       imu_sensor_({}, *model_.physics, seed),
       hall_(hall_settings_, *model_.physics, robot_.joint_names, seed),
       drive_(robot_, settings, hall_settings_.ticks_per_rad(), *model_.physics),
       body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)) {
+  if (uses_nearby_scenery) nearby_.emplace(*model_.physics);
   std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
   mj_forward(model_.physics.get(), data_.get());
   stand(1.0);
@@ -44,7 +44,7 @@ void TrackedRobot::command_drive(const VelocityCommand& command) {
 
 void TrackedRobot::advance() {
   mj_Euler(model_.physics.get(), data_.get());
-  nearby_.update(*data_);
+  if (nearby_) nearby_->update(*data_);
   mj_forward(model_.physics.get(), data_.get());
   ++tick_;
 }
@@ -74,6 +74,18 @@ DriveReport TrackedRobot::drive(double vx_mps, double yaw_rate_radps, double dur
   report.right_belt_m = static_cast<double>(ticks_.right - ticks_at_start.right) * m_per_tick;
   report.has_fallen = drive_.has_fallen();
   return report;
+}
+
+double TrackedRobot::force_on_n(const std::string& geom) const {
+  const int id = mj_name2id(model_.physics.get(), mjOBJ_GEOM, geom.c_str());
+  double sum = 0.0;
+  for (int i = 0; i < data_->ncon; ++i) {
+    if (data_->contact[i].geom[0] != id && data_->contact[i].geom[1] != id) continue;
+    mjtNum force[6];  // normal first
+    mj_contactForce(model_.physics.get(), data_.get(), i, force);
+    sum += force[0];
+  }
+  return sum;
 }
 
 Pose3 TrackedRobot::T_world_body() const {

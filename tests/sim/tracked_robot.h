@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/frames.h"
@@ -37,7 +38,8 @@ class TrackedRobot {
  public:
   /// `world` is MJCF. The robot has settled when this returns.
   explicit TrackedRobot(const std::string& world, const Pose2& T_world_start = {}, const TrackDriveSettings& settings = {},
-                        const RobotDescription& robot = tracked_description(), std::uint64_t seed = 1);
+                        const RobotDescription& robot = tracked_description(), std::uint64_t seed = 1,
+                        bool uses_nearby_scenery = true);
 
   DriveReport drive(double vx_mps, double yaw_rate_radps, double duration_s);
   DriveReport stand(double duration_s) { return drive(0.0, 0.0, duration_s); }
@@ -46,6 +48,9 @@ class TrackedRobot {
   const RobotDescription& description() const { return robot_; }
   const mjModel& model() const { return *model_.physics; }
   const AssembledModel& assembled() const { return model_; }
+  mjOption& options() { return model_.physics->opt; }
+  /// What the robot presses on a geom with, N.
+  double force_on_n(const std::string& geom) const;
   mjData& data() { return *data_; }
   const TrackTicks& ticks() const { return ticks_; }
   /// One tick: the firmware, then the physics.
@@ -60,7 +65,7 @@ class TrackedRobot {
   RobotDescription robot_;
   AssembledModel model_;
   DataPtr data_;
-  NearbyScenery nearby_;
+  std::optional<NearbyScenery> nearby_;
   HallSettings hall_settings_;
   ImuSensor imu_sensor_;
   HallSensors hall_;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kRestSpeed_mps = 0.005, kRestRate_radps = 0.005;   // asked less than this is asked nothing
 constexpr double kRestSprocket_radps = 0.5;  // a tick that comes and goes looks like 0.3
-constexpr double kBiasTime_s = 2.0;          // of the gyroscope's, at rest
+constexpr double kBiasTime_s = 5.0;          // to learn the gyroscope's bias at rest
 constexpr double kLevelling_per_s = 0.5;   // of the gyroscope's attitude by the accelerometer
 constexpr double kSettling_s = 0.5;        // after switch-on the accelerometer alone
 const double kFallenCosine = std::cos(60.0 * M_PI / 180.0);
@@ -70,8 +70,10 @@ double TrackController::corrected_yaw_rate(const Imu& imu) {
   return yaw_rate_radps_ + std::clamp(settings_.gyro_gain * missing + gain * yaw_behind_rad_, -limit, limit);
 }
 
+/// The mean over the first seconds at rest, and a running one after.
 void TrackController::learn_bias(const Imu& imu) {
-  gyro_bias_radps_ += tick_s_ / kBiasTime_s * (measured_yaw_rate(imu) - gyro_bias_radps_);
+  learning_s_ = std::min(learning_s_ + tick_s_, kBiasTime_s);
+  gyro_bias_radps_ += tick_s_ / learning_s_ * (measured_yaw_rate(imu) - gyro_bias_radps_);
 }
 
 double TrackController::measured_yaw_rate(const Imu& imu) const {

@@ -49,7 +49,7 @@ class TrackController {
   std::array<SprocketRegulator, 2> regulators_;  ///< left, right
   double speed_mps_ = 0.0, yaw_rate_radps_ = 0.0;  ///< asked, within the limits of acceleration
   double yaw_behind_rad_ = 0.0;
-  double gyro_bias_radps_ = 0.0;  ///< learnt at rest
+  double gyro_bias_radps_ = 0.0, learning_s_ = 0.0;  ///< learnt at rest
   double idle_s_ = 0.0;
   bool is_brake_closed_ = false;
   Eigen::Vector3d up_in_body_ = Eigen::Vector3d::UnitZ();

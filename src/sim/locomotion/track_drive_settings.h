@@ -14,7 +14,7 @@ struct TrackDriveSettings {
   double gauge_factor = 1.41;                   ///< gauge that the firmware counts with over the tracks' own: a track that turns slips
   bool use_gyro = true;                         ///< corrects the yaw rate by the gyroscope
   double gyro_gain = 0.3;                       ///< rad/s asked more per rad/s missing
-  double gyro_integral_per_s = 1.0;             ///< the same per rad missing
+  double gyro_integral_per_s = 2.0;             ///< the same per rad missing
   double max_gyro_correction_radps = 0.4;
   double proportional_nms = 8.0;                ///< torque per rad/s that a sprocket is too slow
   double integral_nm = 40.0;                    ///< torque per rad that it is behind
