@@ -83,7 +83,7 @@ Costmap::Costmap(const CostmapSettings& settings, const Footprint& footprint, st
       transform_(cap_of(settings, footprint)),
       low_(settings.low) {
   validate(settings_, "costmap");
-  const double lethal_m = footprint_.inscribed_radius_m() + settings_.safety_margin_m;
+  const double lethal_m = footprint_.inscribed_radius_m() + settings_.safety_margin_m + settings_.route_margin_m;
   for (int squared = 0; squared <= transform_.beyond(); ++squared) {
     // Somewhere in its cell an obstacle has its surface; half a cell is the middle guess.
     const double distance = std::max(0.0, settings_.resolution_m * (std::sqrt(squared) - 0.5));
@@ -222,8 +222,7 @@ void Costmap::drop_live(const LevelScan& scan, const Pose2& T_map_body, CellBox&
     const Cell cell = to_cell(live_cells_[i]);
     const Eigen::Vector2d from_lidar = T_body_map * geometry().center_of(cell) - scan.origin_m;
     const bool is_passed = seen.along(from_lidar) > from_lidar.norm() + slack_m;
-    const bool is_in_map = map_.at(cell) >= settings_.occupied_percent;
-    if (!is_passed && !is_in_map && scan.stamp - live_cells_[i].seen <= memory) {
+    if (!is_passed && !is_in_map(cell, settings_.map_slack_cells) && scan.stamp - live_cells_[i].seen <= memory) {
       ++i;
       continue;
     }
@@ -241,13 +240,13 @@ void Costmap::mark_hits(const LevelScan& scan, const Pose2& T_map_body, CellBox&
     if (!beam.is_hit || (end_m - scan.origin_m).norm() > settings_.obstacle_range_m) continue;
     const Eigen::Vector2d p_map = T_map_body * end_m;
     const Cell cell = geometry().cell_at(p_map);
-    if (!live_.contains(cell) || map_.at(cell) >= settings_.occupied_percent) continue;
+    if (!live_.contains(cell) || is_in_map(cell, settings_.map_slack_cells)) continue;
     if (live_.at(cell) != 0) {
       live_cells_[live_.at(cell) - 1].seen = scan.stamp;
       continue;
     }
     const Cell lattice{cell.col + lattice_origin_.col, cell.row + lattice_origin_.row};
-    live_cells_.push_back({.lattice = lattice, .seen = scan.stamp});
+    live_cells_.push_back({.lattice = lattice, .seen = scan.stamp, .first_seen = scan.stamp});
     live_.at(cell) = static_cast<std::uint32_t>(live_cells_.size());
     changed.extend(cell);
   }
@@ -267,11 +266,19 @@ std::vector<Cell> Costmap::lattice_cells(const std::vector<Eigen::Vector2d>& p_l
   return cells;
 }
 
-bool Costmap::is_seen_by_lidar(Cell cell, int reach, bool with_map) const {
+bool Costmap::has_live_obstacle(Cell cell, int reach) const {
   for (int row = cell.row - reach; row <= cell.row + reach; ++row) {
     for (int col = cell.col - reach; col <= cell.col + reach; ++col) {
       if (is_live_obstacle({col, row})) return true;
-      if (with_map && map_.contains({col, row}) && map_.at({col, row}) >= settings_.occupied_percent) return true;
+    }
+  }
+  return false;
+}
+
+bool Costmap::is_in_map(Cell cell, int reach) const {
+  for (int row = cell.row - reach; row <= cell.row + reach; ++row) {
+    for (int col = cell.col - reach; col <= cell.col + reach; ++col) {
+      if (map_.contains({col, row}) && map_.at({col, row}) >= settings_.occupied_percent) return true;
     }
   }
   return false;
@@ -281,7 +288,7 @@ void Costmap::add_image(const DepthPoints& points, Time stamp, const Pose2& T_ma
   include(T_map_body.position(), settings_.obstacle_range_m);
   const std::vector<Cell> obstacles = lattice_cells(points.obstacles_m, T_map_body, settings_.low.min_camera_points);
   std::vector<bool> may_move;
-  for (const Cell cell : obstacles) may_move.push_back(is_seen_by_lidar(to_grid(cell), kMoving_cells, false));
+  for (const Cell cell : obstacles) may_move.push_back(has_live_obstacle(to_grid(cell), kMoving_cells));
   // Ground, where no point of the same image speaks against it.
   std::vector<Cell> ground;
   const std::vector<Cell> doubtful = lattice_cells(points.obstacles_m, T_map_body, 1);
@@ -299,7 +306,10 @@ void Costmap::add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_bod
   include(T_map_body.position(), settings_.obstacle_range_m);
   std::vector<Cell> arc = lattice_cells(cone.arc_m, T_map_body, 1);
   // An echo that the lidar explains, anywhere on the arc, is no news.
-  const auto is_explained = [this](Cell cell) { return is_seen_by_lidar(to_grid(cell), kExplained_cells, true); };
+  const auto is_explained = [this](Cell lattice) {
+    const Cell cell = to_grid(lattice);
+    return has_live_obstacle(cell, kExplained_cells) || is_in_map(cell, kExplained_cells);
+  };
   if (std::any_of(arc.begin(), arc.end(), is_explained)) arc.clear();
   low_.add_ping(arc, lattice_cells(cone.free_m, T_map_body, 1), stamp);
   CellBox changed;
@@ -313,6 +323,20 @@ void Costmap::apply_low_changes(CellBox& changed) {
     is_low_.at(cell) = low_.is_obstacle(lattice);
     changed.extend(cell);
   }
+}
+
+std::optional<Time> Costmap::live_since(const Eigen::Vector2d& p_map, double radius_m) const {
+  const int reach = static_cast<int>(std::ceil(radius_m / settings_.resolution_m));
+  const Cell center = geometry().cell_at(p_map);
+  std::optional<Time> since;
+  for (int row = center.row - reach; row <= center.row + reach; ++row) {
+    for (int col = center.col - reach; col <= center.col + reach; ++col) {
+      if (!is_live_obstacle({col, row}) || (geometry().center_of({col, row}) - p_map).norm() > radius_m) continue;
+      const Time first_seen = live_cells_[live_.at({col, row}) - 1].first_seen;
+      since = since ? std::min(*since, first_seen) : first_seen;
+    }
+  }
+  return since;
 }
 
 void Costmap::forget_live(const Eigen::Vector2d& p_map, double radius_m) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/frames.h"
@@ -20,10 +21,12 @@ struct CostmapSettings {
   double inflation_radius_m = 1.0;      ///< obstacles nearer than this to the body's centre cost something
   double inflation_decay_m = 0.25;      ///< over this distance the cost falls to 1/e
   double safety_margin_m = 0.05;        ///< kept from the robot's outline
+  double route_margin_m = 0.0;          ///< kept by routes beyond that: the discs stick out, and a robot must be steered
   double unknown_cost = 0.15;           ///< of a cell nobody has seen, as a fraction of the highest passable cost
   int occupied_percent = 65;            ///< map cells from here on are obstacles
   double obstacle_range_m = 8.0;        ///< live hits nearer than this are obstacles before the map knows them
   double obstacle_memory_s = 8.0;       ///< how long a live obstacle is believed without being seen again
+  int map_slack_cells = 0;              ///< a hit this near to an obstacle of the map is that: noise makes no wall thicker
   double keep_out_margin_m = 0.2;       ///< between a keep-out line and the axis of the body
   double keep_out_inflation_m = 0.25;   ///< beyond the margin, where nearness to a line costs something
   LowObstaclesSettings low = {};
@@ -34,10 +37,12 @@ struct CostmapSettings {
     visit("inflation_radius_m", self.inflation_radius_m, between(0.05, 3.0));
     visit("inflation_decay_m", self.inflation_decay_m, between(0.01, 3.0));
     visit("safety_margin_m", self.safety_margin_m, between(0.0, 0.5));
+    visit("route_margin_m", self.route_margin_m, between(0.0, 0.5));
     visit("unknown_cost", self.unknown_cost, between(0.0, 1.0));
     visit("occupied_percent", self.occupied_percent, between(1, 100));
     visit("obstacle_range_m", self.obstacle_range_m, between(1.0, 30.0));
     visit("obstacle_memory_s", self.obstacle_memory_s, between(0.1, 600.0));
+    visit("map_slack_cells", self.map_slack_cells, between(0, 5));
     visit("keep_out_margin_m", self.keep_out_margin_m, between(0.0, 1.0));
     visit("keep_out_inflation_m", self.keep_out_inflation_m, between(0.0, 2.0));
     visit("low", self.low);
@@ -83,6 +88,8 @@ class Costmap {
   /// Outside the grid nothing is known.
   Cost cost_at(const Eigen::Vector2d& p_map) const;
   bool is_live_obstacle(Cell cell) const { return live_.contains(cell) && live_.at(cell) != 0; }
+  /// Since when the longest-standing of the live obstacles about a place is known; none if there are none.
+  std::optional<Time> live_since(const Eigen::Vector2d& p_map, double radius_m) const;
   std::size_t num_live_obstacles() const { return live_cells_.size(); }
   bool is_low_obstacle(Cell cell) const { return is_low_.contains(cell) && is_low_.at(cell) != 0; }
   std::size_t num_low_obstacles() const { return low_.num_obstacles(); }
@@ -107,6 +114,7 @@ class Costmap {
   struct LiveObstacle {
     Cell lattice;  ///< cell counted from the map's origin, so that growing keeps it
     Time seen{};
+    Time first_seen{};
   };
 
   void allocate(Cell min, Cell max);
@@ -117,8 +125,8 @@ class Costmap {
   /// The cells of these places that hold at least `min_count` of them; inside the grid, on the lattice.
   std::vector<Cell> lattice_cells(const std::vector<Eigen::Vector2d>& p_level, const Pose2& T_map_body, int min_count) const;
   Cell to_grid(Cell lattice) const { return {lattice.col - lattice_origin_.col, lattice.row - lattice_origin_.row}; }
-  /// Whether the lidar, now or (with the map) ever, has hit something within `reach` cells of the cell.
-  bool is_seen_by_lidar(Cell cell, int reach, bool with_map) const;
+  bool has_live_obstacle(Cell cell, int reach) const;  ///< within so many cells
+  bool is_in_map(Cell cell, int reach) const;          ///< an obstacle, likewise
   void apply_low_changes(CellBox& changed);
   bool is_occupied(Cell cell) const;
   void refresh(const CellBox& changed);

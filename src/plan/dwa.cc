@@ -19,30 +19,8 @@ std::vector<double> samples(double low, double high, int count) {
 
 }  // namespace
 
-Pose2 follow_arc(const Pose2& T_map_body, double vx_mps, double yaw_rate_radps, double time_s) {
-  const double turn = yaw_rate_radps * time_s;
-  const double way = vx_mps * time_s;
-  // sin(turn)/turn and (1 - cos(turn))/turn, with their limits at 0.
-  const bool is_straight = std::abs(turn) < 1e-6;
-  const double along = is_straight ? way : way * std::sin(turn) / turn;
-  const double aside = is_straight ? way * turn / 2.0 : way * (1.0 - std::cos(turn)) / turn;
-  return T_map_body * Pose2{along, aside, turn};
-}
-
 DynamicWindow::DynamicWindow(const DwaSettings& settings)
     : settings_(settings), clearance_{.comfortable_m = settings.comfortable_clearance_m} {}
-
-Rollout DynamicWindow::roll_out(const Costmap& costmap, const Pose2& T_map_body, double vx_mps,
-                                double yaw_rate_radps) const {
-  Rollout rollout{.vx_mps = vx_mps, .yaw_rate_radps = yaw_rate_radps, .T_map_body = {}, .min_clearance_m = 0.0};
-  rollout.min_clearance_m = std::numeric_limits<double>::infinity();
-  for (int step = 1; step <= settings_.steps; ++step) {
-    const double time_s = settings_.horizon_s * step / settings_.steps;
-    rollout.T_map_body.push_back(follow_arc(T_map_body, vx_mps, yaw_rate_radps, time_s));
-    rollout.min_clearance_m = std::min(rollout.min_clearance_m, costmap.clearance_m(rollout.T_map_body.back()));
-  }
-  return rollout;
-}
 
 double DynamicWindow::cost(const Rollout& rollout, const RolloutScene& scene) const {
   return settings_.path_weight * path_distance_(rollout, scene) + settings_.progress_weight * progress_(rollout, scene) +
@@ -77,7 +55,7 @@ std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, con
     for (const double yaw : samples(std::max(-settings_.max_yaw_rate_radps, yaw_rate - yaw_window),
                                     std::min(settings_.max_yaw_rate_radps, yaw_rate + yaw_window),
                                     settings_.yaw_rate_samples)) {
-      const Rollout rollout = roll_out(costmap, T_map_body, vx, yaw);
+      const Rollout rollout = roll_out(costmap, T_map_body, vx, yaw, settings_.horizon_s, settings_.steps);
       const bool leads_away = clearance_now < 0.0 && costmap.clearance_m(rollout.T_map_body.back()) > clearance_now + 0.02 &&
                               rollout.min_clearance_m > clearance_now - 0.02;
       if (rollout.min_clearance_m <= 0.0 && !leads_away) continue;

@@ -10,6 +10,7 @@
 #include "plan/costs/path_distance.h"
 #include "plan/costs/path_heading.h"
 #include "plan/costs/progress.h"
+#include "plan/local_planner.h"
 #include "plan/rollout.h"
 
 namespace patrol::plan {
@@ -59,17 +60,14 @@ struct DwaSettings {
 /// The dynamic window approach (Fox, Burgard, Thrun 1997): of the commands that the robot can reach within a moment, the one
 /// whose constant-velocity arc costs least. An arc that comes nearer to an obstacle than the robot's outline allows
 /// is no choice, unless the robot already stands so near and the arc leads away from it.
-class DynamicWindow {
+class DynamicWindow final : public LocalPlanner {
  public:
   explicit DynamicWindow(const DwaSettings& settings);
 
-  /// The command to give now, along the path from `along_m` on, no faster than `speed_limit_mps`. None if every arc is
-  /// blocked: then the robot must stand.
   std::optional<VelocityCommand> choose(const Costmap& costmap, const PlannedPath& path, double along_m,
-                                        const Pose2& T_map_body, const Twist3& twist, double speed_limit_mps) const;
+                                        const Pose2& T_map_body, const Twist3& twist, double speed_limit_mps) const override;
 
  private:
-  Rollout roll_out(const Costmap& costmap, const Pose2& T_map_body, double vx_mps, double yaw_rate_radps) const;
   double cost(const Rollout& rollout, const RolloutScene& scene) const;
 
   DwaSettings settings_;
@@ -79,8 +77,5 @@ class DynamicWindow {
   ClearanceCost clearance_;
   CommandChangeCost change_;
 };
-
-/// The robot after moving at constant velocity for a time: an arc, or a turn in place.
-Pose2 follow_arc(const Pose2& T_map_body, double vx_mps, double yaw_rate_radps, double time_s);
 
 }  // namespace patrol::plan

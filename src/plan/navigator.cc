@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <utility>
+
+#include "core/error.h"
 
 namespace patrol::plan {
 namespace {
@@ -11,6 +15,7 @@ constexpr double kPathStep_m = 0.25;          // poses of the published path
 constexpr double kProgress_m = 0.5;           // that much nearer counts as getting on
 constexpr double kMinApproachSpeed_mps = 0.15;
 constexpr double kMinPassable_m = 0.02;       // of a turn in place
+constexpr double kTurnPatience = 2.0;         // tracks that slip turn more slowly than asked
 
 Twist3 twist_of(const VelocityCommand& command) {
   return {.linear = {command.vx_mps, command.vy_mps, 0.0}, .angular = {0.0, 0.0, command.yaw_rate_radps}};
@@ -23,7 +28,44 @@ bool stands_still(const VelocityCommand& command) {
   return std::abs(command.vx_mps) < 0.03 && std::abs(command.vy_mps) < 0.03 && std::abs(command.yaw_rate_radps) < 0.05;
 }
 
+std::unique_ptr<LocalPlanner> make_local_planner(const NavigatorSettings& settings) {
+  if (settings.local_planner == "paper_dwa") return std::make_unique<PaperDwa>(settings.paper_local);
+  return std::make_unique<DynamicWindow>(settings.local);
+}
+
+NavigationTrouble trouble_of(PlanStatus status) {
+  switch (status) {
+    case PlanStatus::kStartBlocked:
+      return NavigationTrouble::kStartBlocked;
+    case PlanStatus::kGoalBlocked:
+      return NavigationTrouble::kGoalBlocked;
+    case PlanStatus::kNoRoute:
+      return NavigationTrouble::kNoRoute;
+    case PlanStatus::kFound:
+      break;
+  }
+  return NavigationTrouble::kNone;
+}
+
 }  // namespace
+
+const char* sentence_of(NavigationTrouble trouble) {
+  switch (trouble) {
+    case NavigationTrouble::kNone:
+      return "";
+    case NavigationTrouble::kStartBlocked:
+      return "The robot stands too near to an obstacle to set off.";
+    case NavigationTrouble::kGoalBlocked:
+      return "The goal lies in an obstacle or too near to one.";
+    case NavigationTrouble::kNoRoute:
+      return "There is no route to the goal.";
+    case NavigationTrouble::kPathBlocked:
+      return "Something stands in the way.";
+    case NavigationTrouble::kStuck:
+      return "The robot moves and gets nowhere.";
+  }
+  return "";
+}
 
 Navigator::Navigator(const NavigatorSettings& settings, const RobotDescription& robot,
                      std::vector<Polyline> keep_out_lines_in_map)
@@ -31,9 +73,10 @@ Navigator::Navigator(const NavigatorSettings& settings, const RobotDescription& 
       robot_(robot),
       costmap_(settings.costmap, Footprint(robot.footprint_m, settings.footprint_rows), std::move(keep_out_lines_in_map)),
       planner_(settings.global),
-      window_(settings.local),
+      local_planner_(make_local_planner(settings)),
       approach_(settings.differential_approach) {
   validate(settings, "navigation");
+  if (settings.recoveries.empty()) throw InputError("navigation.recoveries: must name at least one recovery");
 }
 
 void Navigator::set_map(const OccupancyGrid& map) {
@@ -62,7 +105,11 @@ void Navigator::set_goal(const std::optional<NavigationGoal>& goal) {
   planned_at_ = Time::min();
   blocked_since_.reset();
   stay_.reset();
-  backing_until_.reset();
+  recovery_.reset();
+  no_route_since_.reset();
+  trouble_ = NavigationTrouble::kNone;
+  text_.clear();
+  has_given_up_ = false;
   recoveries_ = 0;
   nearest_left_m_ = std::numeric_limits<double>::infinity();
 }
@@ -72,19 +119,37 @@ NavigationStep Navigator::step(Time now, const Pose2& T_map_body) {
   if (goal_) {
     if (has_arrived_ || is_at_goal(T_map_body)) {
       has_arrived_ = true;
+      trouble_ = NavigationTrouble::kNone;
       step.status = NavigationStatus::kArrived;
-    } else if (recoveries_ > settings_.max_recoveries) {
+    } else if (has_given_up(now)) {
+      if (!has_given_up_) text_ = std::string("The goal is given up. ") + sentence_of(trouble_);
+      has_given_up_ = true;
       step.status = NavigationStatus::kFailed;
-    } else if (!backing_until_ && is_stuck(now, T_map_body)) {
+    } else if (recovery_) {
+      step.status = carry_on_recovery(now, T_map_body, step.command);
+    } else if (is_stuck(now, T_map_body)) {
+      say(NavigationTrouble::kStuck);
       step.status = recover(now, T_map_body, step.command);
-    } else if (backing_until_ || plan_if_needed(now, T_map_body, step)) {
+    } else if (plan_if_needed(now, T_map_body, step)) {
       step.status = drive(now, T_map_body, step.command);
     } else {
       step.status = stand_blocked(now, T_map_body, step.command);
     }
   }
+  step.trouble = trouble_;
+  step.text = std::exchange(text_, {});
   last_ = step.command;
   return step;
+}
+
+bool Navigator::has_given_up(Time now) const {
+  const bool has_no_route = no_route_since_ && now - *no_route_since_ > from_seconds(settings_.no_route_s);
+  return has_given_up_ || recoveries_ > settings_.max_recoveries || has_no_route;
+}
+
+void Navigator::say(NavigationTrouble trouble) {
+  if (trouble != trouble_) text_ = sentence_of(trouble);
+  trouble_ = trouble;
 }
 
 /// Whether something stands on the path within `check_ahead_m`.
@@ -96,6 +161,21 @@ bool Navigator::is_path_blocked(double from_m) const {
   return false;
 }
 
+/// Whether all that stands on the path has only just come there.
+bool Navigator::is_blocked_by_newcomer(Time now) const {
+  const CostmapSettings& costmap = settings_.costmap;
+  const double reach_m = costmap_.footprint().inscribed_radius_m() + costmap.safety_margin_m + costmap.route_margin_m +
+                         2.0 * costmap.resolution_m;
+  const double to_m = std::min(path_.length_m(), along_m_ + settings_.check_ahead_m);
+  for (double along_m = along_m_; along_m < to_m; along_m += costmap.resolution_m) {
+    const Eigen::Vector2d p_map = path_.point_at(along_m);
+    if (costmap_.cost_at(p_map) != kLethalCost) continue;
+    const std::optional<Time> since = costmap_.live_since(p_map, reach_m);
+    if (!since || now - *since >= from_seconds(settings_.detour_after_s)) return false;
+  }
+  return true;
+}
+
 /// False if there is no path.
 bool Navigator::plan_if_needed(Time now, const Pose2& T_map_body, NavigationStep& step) {
   bool is_blocked = false;
@@ -104,6 +184,7 @@ bool Navigator::plan_if_needed(Time now, const Pose2& T_map_body, NavigationStep
         path_.project(T_map_body.position(), std::max(0.0, along_m_ - 0.5), along_m_ + 2.0);
     along_m_ = here.along_m;
     is_blocked = is_path_blocked(along_m_);
+    if (is_blocked && settings_.detour_after_s > 0.0 && is_blocked_by_newcomer(now)) return true;
     const bool is_old = map_is_new_ && now - planned_at_ >= from_seconds(settings_.replan_period_s);
     if (!is_blocked && !is_old && here.distance_m <= settings_.stray_m) return true;
   }
@@ -116,8 +197,11 @@ bool Navigator::plan_if_needed(Time now, const Pose2& T_map_body, NavigationStep
   const PlanResult plan = planner_.plan(costmap_.cost(), T_map_body.position(), goal_->T_map_body.position());
   if (plan.status != PlanStatus::kFound) {
     if (is_blocked) path_ = {};
+    if (path_.is_empty()) note_no_route(now, trouble_of(plan.status));
     return !path_.is_empty();
   }
+  no_route_since_.reset();
+  trouble_ = NavigationTrouble::kNone;
   path_ = PlannedPath(shortcut(costmap_.cost(), settings_.global.cost_weight, plan.points_m));
   along_m_ = 0.0;
   step.replanned = true;
@@ -126,20 +210,17 @@ bool Navigator::plan_if_needed(Time now, const Pose2& T_map_body, NavigationStep
   return true;
 }
 
+void Navigator::note_no_route(Time now, NavigationTrouble trouble) {
+  if (!no_route_since_) no_route_since_ = now;
+  say(trouble);
+}
+
 /// A differential approach, once begun, says itself when it is done: it aims at less than the tolerances.
 bool Navigator::is_at_goal(const Pose2& T_map_body) const {
   return is_approaching_ ? approach_.is_done() : is_reached(T_map_body, *goal_);
 }
 
 NavigationStatus Navigator::drive(Time now, const Pose2& T_map_body, VelocityCommand& command) {
-  if (backing_until_) {
-    command.vx_mps = -settings_.back_up_speed_mps;
-    if (now < *backing_until_ && is_safe(T_map_body, command, 1.0)) return NavigationStatus::kRecovering;
-    backing_until_.reset();
-    path_ = {};
-    command = {};
-    return NavigationStatus::kRecovering;
-  }
   const double goal_distance_m = (goal_->T_map_body.position() - T_map_body.position()).norm();
   if (settings_.drive == "differential") {
     const bool is_end_of_path = path_.length_m() - along_m_ <= settings_.approach_m;
@@ -175,7 +256,7 @@ VelocityCommand Navigator::follow_path(const Pose2& T_map_body) {
   if (turn_in_place(T_map_body, command)) return command;
   const double left_m = std::max(0.0, path_.length_m() - along_m_);
   const double speed_limit = std::max(kMinApproachSpeed_mps, std::sqrt(2.0 * settings_.approach_decel_mps2 * left_m));
-  return window_.choose(costmap_, path_, along_m_, T_map_body, twist_of(last_), speed_limit).value_or(VelocityCommand{});
+  return local_planner_->choose(costmap_, path_, along_m_, T_map_body, twist_of(last_), speed_limit).value_or(VelocityCommand{});
 }
 
 /// Whether the path leads off so far to the side that the robot should turn before it walks.
@@ -196,6 +277,7 @@ NavigationStatus Navigator::stand_blocked(Time now, const Pose2& T_map_body, Vel
   command = {};
   if (!blocked_since_) blocked_since_ = now;
   if (now - *blocked_since_ < from_seconds(settings_.patience_s)) return NavigationStatus::kBlocked;
+  if (!no_route_since_) say(NavigationTrouble::kPathBlocked);
   return recover(now, T_map_body, command);
 }
 
@@ -205,15 +287,34 @@ bool Navigator::is_stuck(Time now, const Pose2& T_map_body) {
   return now - stay_->since > from_seconds(settings_.stuck_s);
 }
 
-/// Backs up and looks for another way.
+/// Begins the next recovery.
 NavigationStatus Navigator::recover(Time now, const Pose2& T_map_body, VelocityCommand& command) {
   command = {};
   blocked_since_.reset();
   stay_.reset();
   is_approaching_ = false;
+  const std::string& kind = settings_.recoveries[static_cast<std::size_t>(recoveries_) % settings_.recoveries.size()];
   ++recoveries_;
-  costmap_.forget_live(T_map_body.position(), 2.0);
-  backing_until_ = now + from_seconds(settings_.back_up_s);
+  if (kind != "wait") costmap_.forget_live(T_map_body.position(), 2.0);
+  double duration_s = 0.0;  // clear: nothing more
+  if (kind == "back_up") duration_s = settings_.back_up_s;
+  if (kind == "wait") duration_s = settings_.patience_s;
+  if (kind == "look_around") duration_s = kTurnPatience * 2.0 * std::numbers::pi / settings_.turn_rate_radps;
+  recovery_ = Recovery{.kind = kind, .until = now + from_seconds(duration_s), .yaw_before = T_map_body.yaw};
+  return NavigationStatus::kRecovering;
+}
+
+/// Ends with its time, when it is done, or where there is no room for it; then a new path is looked for.
+NavigationStatus Navigator::carry_on_recovery(Time now, const Pose2& T_map_body, VelocityCommand& command) {
+  recovery_->turned_rad += std::abs(wrap_angle(T_map_body.yaw - recovery_->yaw_before));
+  recovery_->yaw_before = T_map_body.yaw;
+  if (recovery_->kind == "back_up") command.vx_mps = -settings_.back_up_speed_mps;
+  if (recovery_->kind == "look_around") command.yaw_rate_radps = settings_.turn_rate_radps;
+  const bool is_done = now >= recovery_->until || recovery_->turned_rad >= 2.0 * std::numbers::pi;
+  if (!is_done && is_safe(T_map_body, command, 1.0)) return NavigationStatus::kRecovering;
+  recovery_.reset();
+  path_ = {};
+  command = {};
   return NavigationStatus::kRecovering;
 }
 

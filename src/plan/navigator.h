@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "plan/costmap.h"
 #include "plan/differential_approach.h"
 #include "plan/dwa.h"
+#include "plan/local_planner.h"
+#include "plan/paper_dwa.h"
 #include "plan/planned_path.h"
 #include "plan/pose_regulator.h"
 
@@ -18,6 +21,7 @@ namespace patrol::plan {
 
 struct NavigatorSettings {
   std::string drive = "omnidirectional";  ///< or "differential": a robot that cannot step sideways
+  std::string local_planner = "dwa";      ///< or "paper_dwa": paper 004's, as printed
   int footprint_rows = 1;             ///< of discs that stand for the outline (plan/footprint.h)
   double replan_period_s = 4.0;       ///< a new path after this time, for what the map has learnt
   double check_ahead_m = 6.0;         ///< an obstacle on the path nearer than this calls for a new one at once
@@ -28,7 +32,10 @@ struct NavigatorSettings {
   double turn_rate_radps = 0.7;
   double patience_s = 6.0;            ///< standing blocked for so long calls for a recovery
   double stuck_s = 15.0;              ///< so does moving for so long without getting half a metre away
-  double back_up_s = 2.0;             ///< the recovery: backwards, if there is room, and a new path
+  double detour_after_s = 0.0;        ///< what has newly come into the way is waited for so long: people walk on
+  double no_route_s = 600.0;          ///< after so long without any route the goal is given up
+  std::vector<std::string> recoveries = {"back_up"};  ///< in turn: wait, clear, back_up, look_around; then a new path
+  double back_up_s = 2.0;             ///< backwards, if there is room
   double back_up_speed_mps = 0.15;
   int max_recoveries = 8;             ///< without getting nearer; then the goal is given up
   CostmapSettings costmap;
@@ -36,12 +43,14 @@ struct NavigatorSettings {
   SonarConeSettings sonar;
   AstarSettings global;
   DwaSettings local;
+  PaperDwaSettings paper_local;
   PoseRegulatorSettings approach;                      ///< of an omnidirectional robot
   DifferentialApproachSettings differential_approach;  ///< of a differential one
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("drive", self.drive, one_of({"omnidirectional", "differential"}));
+    visit("local_planner", self.local_planner, one_of({"dwa", "paper_dwa"}));
     visit("footprint_rows", self.footprint_rows, between(1, 4));
     visit("replan_period_s", self.replan_period_s, between(0.1, 600.0));
     visit("check_ahead_m", self.check_ahead_m, between(0.5, 100.0));
@@ -52,6 +61,9 @@ struct NavigatorSettings {
     visit("turn_rate_radps", self.turn_rate_radps, between(0.05, 3.0));
     visit("patience_s", self.patience_s, between(0.5, 600.0));
     visit("stuck_s", self.stuck_s, between(1.0, 600.0));
+    visit("detour_after_s", self.detour_after_s, between(0.0, 60.0));
+    visit("no_route_s", self.no_route_s, between(0.5, 3600.0));
+    visit("recoveries", self.recoveries, one_of({"wait", "clear", "back_up", "look_around"}));
     visit("back_up_s", self.back_up_s, between(0.0, 20.0));
     visit("back_up_speed_mps", self.back_up_speed_mps, between(0.0, 1.0));
     visit("max_recoveries", self.max_recoveries, between(0, 1000));
@@ -60,6 +72,7 @@ struct NavigatorSettings {
     visit("sonar", self.sonar);
     visit("global", self.global);
     visit("local", self.local);
+    visit("paper_local", self.paper_local);
     visit("approach", self.approach);
     visit("differential_approach", self.differential_approach);
   }
@@ -67,16 +80,24 @@ struct NavigatorSettings {
 
 enum class NavigationStatus { kIdle, kDriving, kArrived, kBlocked, kRecovering, kFailed };
 
+/// Why it does not get on.
+enum class NavigationTrouble { kNone, kStartBlocked, kGoalBlocked, kNoRoute, kPathBlocked, kStuck };
+
+/// The same as one sentence; empty for none.
+const char* sentence_of(NavigationTrouble trouble);
+
 struct NavigationStep {
   VelocityCommand command;
   NavigationStatus status = NavigationStatus::kIdle;
+  NavigationTrouble trouble = NavigationTrouble::kNone;
+  std::string text;         ///< one sentence, in the step in which the trouble begins or the goal is given up; else empty
   bool replanned = false;
   bool is_detour = false;   ///< replanned because something stands on the path
   std::vector<Pose2> path;  ///< in map; filled when replanned
 };
 
 /// Takes the body to a goal: costmap, A* for the way, the dynamic window for every step of it, an approach of its own at
-/// the end. Blocked, it waits, then backs up and looks for another way, and says so when there is none.
+/// the end. Blocked, it waits, then recovers (backs up, looks around) and plans anew, and says so when there is no way.
 class Navigator {
  public:
   /// Throws InputError if a setting breaks its rule or the robot has no footprint.
@@ -93,6 +114,9 @@ class Navigator {
   /// Once a control period.
   NavigationStep step(Time now, const Pose2& T_map_body);
 
+  /// Whether the robot can move like that for half a second without touching anything known.
+  bool is_free(const Pose2& T_map_body, const VelocityCommand& command) const { return is_safe(T_map_body, command, 0.5); }
+
   const Costmap& costmap() const { return costmap_; }
   const PlannedPath& path() const { return path_; }
 
@@ -101,10 +125,20 @@ class Navigator {
     Eigen::Vector2d p_map;
     Time since{};
   };
+  struct Recovery {
+    std::string kind;
+    Time until{};
+    double turned_rad = 0.0;
+    double yaw_before = 0.0;
+  };
 
+  bool has_given_up(Time now) const;
   bool is_path_blocked(double from_m) const;
+  bool is_blocked_by_newcomer(Time now) const;
   bool plan_if_needed(Time now, const Pose2& T_map_body, NavigationStep& step);
   bool is_at_goal(const Pose2& T_map_body) const;
+  void note_no_route(Time now, NavigationTrouble trouble);
+  NavigationStatus carry_on_recovery(Time now, const Pose2& T_map_body, VelocityCommand& command);
   NavigationStatus drive(Time now, const Pose2& T_map_body, VelocityCommand& command);
   NavigationStatus approach(Time now, const Pose2& T_map_body, VelocityCommand& command);
   VelocityCommand follow_path(const Pose2& T_map_body);
@@ -112,6 +146,7 @@ class Navigator {
   NavigationStatus stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command);
   bool is_stuck(Time now, const Pose2& T_map_body);
   NavigationStatus recover(Time now, const Pose2& T_map_body, VelocityCommand& command);
+  void say(NavigationTrouble trouble);
   bool is_safe(const Pose2& T_map_body, const VelocityCommand& command, double time_s) const;
   void note_progress(const Pose2& T_map_body);
 
@@ -119,7 +154,7 @@ class Navigator {
   RobotDescription robot_;
   Costmap costmap_;
   AstarPlanner planner_;
-  DynamicWindow window_;
+  std::unique_ptr<LocalPlanner> local_planner_;
   DifferentialApproach approach_;
 
   std::optional<NavigationGoal> goal_;
@@ -132,7 +167,11 @@ class Navigator {
   VelocityCommand last_;              ///< the command before, in place of the noisy measured twist
   std::optional<Time> blocked_since_;
   std::optional<Stay> stay_;          ///< where the robot has been about for how long
-  std::optional<Time> backing_until_;
+  std::optional<Recovery> recovery_;
+  std::optional<Time> no_route_since_;
+  NavigationTrouble trouble_ = NavigationTrouble::kNone;
+  std::string text_;                  ///< not said yet
+  bool has_given_up_ = false;
   int recoveries_ = 0;
   double nearest_left_m_ = 0.0;       ///< the shortest way left so far
 };

@@ -27,4 +27,11 @@ struct RolloutScene {
   double max_yaw_rate_radps = 0.0;
 };
 
+/// The robot after moving at constant velocity for a time: an arc, or a turn in place.
+Pose2 follow_arc(const Pose2& T_map_body, double vx_mps, double yaw_rate_radps, double time_s);
+
+/// A constant command followed for `horizon_s` in `steps` equal steps.
+Rollout roll_out(const Costmap& costmap, const Pose2& T_map_body, double vx_mps, double yaw_rate_radps, double horizon_s,
+                 int steps);
+
 }  // namespace patrol::plan

@@ -196,6 +196,39 @@ TEST(Costmap, HitsBeyondTheObstacleRangeAreLeftToTheMap) {
   EXPECT_EQ(costmap.num_live_obstacles(), 1u);
 }
 
+// The map's wall is at x = 2; noise puts hits one cell before it.
+TEST(Costmap, WithSlackAHitBesideTheMapsObstacleIsThatObstacle) {
+  OccupancyGrid map = make_free_map();
+  occupy(map, {2.05, 0.05});
+  Costmap strict = make_costmap(map), slack = make_costmap(map, {.map_slack_cells = 1});
+  for (Costmap* costmap : {&strict, &slack}) {
+    costmap->add_scan(one_beam({}, {1.95, 0.05}, 0.0), {});
+    costmap->add_scan(one_beam({}, {0.05, 1.85}, 0.1), {});
+  }
+  EXPECT_EQ(strict.num_live_obstacles(), 2u);
+  EXPECT_EQ(slack.num_live_obstacles(), 1u);
+}
+
+TEST(Costmap, KnowsSinceWhenALiveObstacleStands) {
+  Costmap costmap = make_costmap(make_free_map());
+  costmap.add_scan(one_beam({}, {2.05, 0.05}, 1.0), {});
+  costmap.add_scan(one_beam({}, {2.05, 0.05}, 3.0), {});
+  costmap.add_scan(one_beam({}, {0.05, 2.05}, 4.0), {});
+  EXPECT_EQ(costmap.live_since({2.2, 0.1}, 0.3), from_seconds(1.0));
+  EXPECT_EQ(costmap.live_since({0.05, 2.05}, 0.3), from_seconds(4.0));
+  EXPECT_FALSE(costmap.live_since({-2.0, 0.0}, 0.3));
+}
+
+TEST(Costmap, RoutesKeepTheirMarginBeyondTheOutlines) {
+  OccupancyGrid map = make_free_map();
+  occupy(map, {0.05, 0.05});
+  const Costmap costmap = make_costmap(map, {.safety_margin_m = 0.05, .route_margin_m = 0.1});
+  EXPECT_EQ(costmap.cost_at({0.45, 0.05}), kLethalCost);  // its surface is 0.35 m away, 0.2 + 0.05 + 0.1
+  EXPECT_NE(costmap.cost_at({0.55, 0.05}), kLethalCost);
+  EXPECT_EQ(make_costmap(map, {.safety_margin_m = 0.05}).clearance_m({0.65, 0.05, 1.57}),
+            costmap.clearance_m({0.65, 0.05, 1.57}));
+}
+
 TEST(Costmap, WhatTheMapHasIsNoLiveObstacle) {
   OccupancyGrid map = make_free_map();
   occupy(map, {2.05, 0.05});

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "plan/navigator.h"
@@ -82,6 +83,9 @@ struct DriveRecord {
   int num_plans = 0;
   int num_detours = 0;
   int num_recoveries = 0;
+  double turned_rad = 0.0;           ///< to both sides
+  NavigationTrouble trouble = NavigationTrouble::kNone;  ///< at the end
+  std::vector<std::string> texts;
   Pose2 T_map_body;                  ///< at the end
   std::vector<Eigen::Vector2d> way;  ///< [tick], in map
 };
@@ -116,6 +120,8 @@ inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_
     record.num_recoveries +=
         step.status == NavigationStatus::kRecovering && before != NavigationStatus::kRecovering;
     record.end = before = step.status;
+    record.trouble = step.trouble;
+    if (!step.text.empty()) record.texts.push_back(step.text);
     record.time_s = time_s;
     record.min_gap_m = std::min(record.min_gap_m, gap_m(world, robot, T_map_body));
     record.T_map_body = T_map_body;
@@ -127,6 +133,7 @@ inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_
     velocity += (asked - velocity) * (lag_s > 0.0 ? 1.0 - std::exp(-kPeriod_s / lag_s) : 1.0);
     const Pose2 next = follow_arc(T_map_body, velocity[0], velocity[2], kPeriod_s) *
                        Pose2{0.0, kPeriod_s * velocity[1], 0.0};
+    record.turned_rad += std::abs(wrap_angle(next.yaw - T_map_body.yaw));
     record.way_m += (next.position() - T_map_body.position()).norm();
     T_map_body = next;
   }

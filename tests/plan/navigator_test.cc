@@ -181,6 +181,52 @@ TEST(Navigator, WalledInSaysThatItFailed) {
   EXPECT_GT(record.min_gap_m, 0.0);
 }
 
+TEST(Navigator, TellsAGoalInAWallFromOneWithoutARoute) {
+  NavigatorSettings settings;
+  settings.no_route_s = 5.0;
+  RoomWorld room = make_room();
+  room.add_box(-0.1, -kRoom_m, 0.1, kRoom_m).add_box(-5.0, -1.0, -3.0, 1.0);
+  Navigator navigator = make_navigator(map_of_room(room), settings);
+  const DriveRecord in_wall = drive(navigator, room, {-2.0, 0.0, 0.0}, make_goal({0.0, 2.0, 0.0}), 30.0);
+  EXPECT_EQ(in_wall.end, NavigationStatus::kFailed);
+  EXPECT_EQ(in_wall.trouble, NavigationTrouble::kGoalBlocked);
+  EXPECT_THAT(in_wall.texts,
+              ::testing::ElementsAre("The goal lies in an obstacle or too near to one.",
+                                     "The goal is given up. The goal lies in an obstacle or too near to one."));
+  EXPECT_NEAR(in_wall.time_s, 5.0, 1.0);
+  const DriveRecord behind = drive(navigator, room, {-2.0, 0.0, 0.0}, make_goal({3.0, 0.0, 0.0}), 30.0);
+  EXPECT_EQ(behind.end, NavigationStatus::kFailed);
+  EXPECT_EQ(behind.trouble, NavigationTrouble::kNoRoute);
+  EXPECT_EQ(behind.texts.back(), "The goal is given up. There is no route to the goal.");
+  const DriveRecord walled_in = drive(navigator, room, {-4.0, 0.0, 0.0}, make_goal({-1.0, 3.0, 0.0}), 30.0);
+  EXPECT_EQ(walled_in.trouble, NavigationTrouble::kNoRoute);
+  const DriveRecord free = drive(navigator, room, {-2.0, 0.0, 0.0}, make_goal({-1.0, 2.9, 0.0}), 30.0);
+  EXPECT_EQ(free.end, NavigationStatus::kArrived);
+  EXPECT_EQ(free.trouble, NavigationTrouble::kNone);
+}
+
+// The corridor is blocked for 12 s. Six seconds of patience, then it turns round once, then it is free.
+TEST(Navigator, LooksAroundAsARecovery) {
+  RoomWorld empty = make_corridor(), blocked = make_corridor();
+  blocked.add_box(3.0, -0.99, 3.3, 0.99);
+  NavigatorSettings settings;
+  settings.recoveries = {"look_around"};
+  Navigator navigator = make_navigator(map_of_corridor(empty), settings);
+  const DriveRecord record = drive(
+      navigator, [&](double time_s) { return time_s < 16.0 ? blocked : empty; }, {0.0, 0.0, 0.0},
+      make_goal({12.0, 0.0, 0.0}), 90.0);
+  EXPECT_EQ(record.end, NavigationStatus::kArrived);
+  EXPECT_GE(record.num_recoveries, 1);
+  EXPECT_GT(record.turned_rad, 2.0 * pi);
+}
+
+TEST(Navigator, RefusesAnEmptyListOfRecoveries) {
+  NavigatorSettings settings;
+  settings.recoveries = {};
+  EXPECT_THAT([&] { Navigator(settings, make_robot(), {}); },
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("navigation.recoveries")));
+}
+
 // Nose on, 25 cm from the wall and less: nearer than discs and margins allow. It may not circle before such a
 // place for ever.
 TEST(Navigator, AGoalThatItsOutlineDoesNotFitFailsInsteadOfCircling) {

@@ -80,5 +80,72 @@ TEST(TrackedNavigation, TurnsInPlaceToLeaveADeadEnd) {
   EXPECT_LT(record.way_m, 7.0);
 }
 
+/// A wall across the hall with a gap about y = 0.
+RoomWorld make_gap(double width_m) {
+  RoomWorld hall = make_hall();
+  hall.add_box(-0.2, width_m / 2.0, 0.2, 8.0).add_box(-0.2, -8.0, 0.2, -width_m / 2.0);
+  return hall;
+}
+
+// What A* plans through, the dynamic window passes: of every width of gap the robot either passes it without touching and without
+// a recovery, or there is no route: 0.7 m wide, margins of 5 and 8 cm on each side, and cells of 10 cm.
+TEST(TrackedNavigation, PassesEveryGapThatItPlansThrough) {
+  const NavigationGoal goal{.T_map_body = {4.0, 0.3, 0.0}, .position_tol_m = 0.1, .yaw_tol_rad = 0.1};
+  for (double width_m = 0.70; width_m < 1.31; width_m += 0.05) {
+    const RoomWorld hall = make_gap(width_m);
+    Navigator navigator = make_navigator(hall);
+    const DriveRecord record = drive_tracked(navigator, hall, {-4.0, 0.5, 0.0}, goal, 0.25, 80.0);
+    EXPECT_GT(record.min_gap_m, 0.0) << width_m;
+    if (record.num_plans == 0) {
+      EXPECT_EQ(record.end, NavigationStatus::kFailed) << width_m;
+      EXPECT_EQ(record.trouble, NavigationTrouble::kNoRoute) << width_m;
+      EXPECT_LT(width_m, 1.16);
+    } else {
+      EXPECT_EQ(record.end, NavigationStatus::kArrived) << width_m;
+      EXPECT_EQ(record.num_recoveries, 0) << width_m;
+      EXPECT_GT(width_m, 0.86);
+    }
+  }
+}
+
+// Somebody walks across 3 m before the robot at 1 m/s: no new path for that.
+TEST(TrackedNavigation, LetsAPersonWalkByWithoutANewPath) {
+  const RoomWorld hall = make_hall();
+  Navigator navigator = make_navigator(hall);
+  const NavigationGoal goal{.T_map_body = {6.0, 0.0, 0.0}, .position_tol_m = 0.1, .yaw_tol_rad = 0.1};
+  const auto world_at = [&](double time_s) {
+    RoomWorld world = hall;
+    return world.add_post(1.0, -5.0 + time_s, 0.25);
+  };
+  const DriveRecord record = drive(navigator, world_at, {-5.0, 0.0, 0.0}, goal, 80.0, 0.1, make_tracked_robot(), 0.25);
+  EXPECT_EQ(record.end, NavigationStatus::kArrived);
+  EXPECT_EQ(record.num_detours, 0);
+  EXPECT_GT(record.min_gap_m, 0.2);
+  EXPECT_LT(record.way_m, 12.0);
+}
+
+TEST(TrackedNavigation, GoesRoundWhatStays) {
+  RoomWorld hall = make_hall();
+  Navigator navigator = make_navigator(hall);
+  hall.add_post(1.0, 0.1, 0.3);
+  const NavigationGoal goal{.T_map_body = {6.0, 0.0, 0.0}, .position_tol_m = 0.1, .yaw_tol_rad = 0.1};
+  const DriveRecord record = drive_tracked(navigator, hall, {-5.0, 0.0, 0.0}, goal);
+  EXPECT_EQ(record.end, NavigationStatus::kArrived);
+  EXPECT_GT(record.min_gap_m, 0.0);
+  EXPECT_EQ(record.num_recoveries, 0);
+}
+
+TEST(TrackedNavigation, PapersDwaDrivesItAcrossTheHallToo) {
+  RoomWorld hall = make_hall();
+  hall.add_post(0.0, 0.2, 0.3);
+  NavigatorSettings settings = make_tracked_settings();
+  settings.local_planner = "paper_dwa";
+  Navigator navigator = make_navigator(hall, settings);
+  const NavigationGoal goal{.T_map_body = {5.0, 1.0, 0.5}, .position_tol_m = 0.05, .yaw_tol_rad = 0.05};
+  const DriveRecord record = drive_tracked(navigator, hall, {-5.0, 0.0, 0.0}, goal);
+  EXPECT_EQ(record.end, NavigationStatus::kArrived);
+  EXPECT_GT(record.min_gap_m, 0.0);
+}
+
 }  // namespace
 }  // namespace patrol::plan
