@@ -126,6 +126,50 @@ TEST(DepthRenderer, OwnHousingGlassAndWhatIsNotForTheEyeDoNotHideTheWall) {
   EXPECT_NEAR(look.depth_m(40, 30), 4.0, 1e-3);
 }
 
+/// A wavy wall along y from -40 m to 40 m, 0.2 m a step and 3 m high: 800 x 2 faces.
+std::string long_wall_asset() {
+  constexpr int kSteps = 401;
+  std::string vertices, faces;
+  for (int i = 0; i < kSteps; ++i) {
+    const double y = -40.0 + 0.2 * i, x = 5.0 + 0.2 * std::sin(0.7 * y);
+    for (const double z : {-1.0, 0.5, 2.0}) vertices += std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + " ";
+    if (i == 0) continue;
+    for (const int low : {3 * i, 3 * i + 1}) {
+      for (const int corner : {low - 3, low, low + 1, low - 3, low + 1, low - 2}) faces += std::to_string(corner) + " ";
+    }
+  }
+  return "<mesh name=\"wall\" inertia=\"shell\" vertex=\"" + vertices + "\" face=\"" + faces + "\"/>";
+}
+
+TEST(DepthRenderer, OfALongMeshOnlyWhatIsNearIsDrawnAndTheDepthIsThatOfRaysAlongAllOfIt) {
+  Look look(kShapes, kAhead);  // for its comparison
+  look.model = sim::compile(*sim::parse_spec("<mujoco><asset>" + long_wall_asset() +
+                                             R"(</asset><worldbody><geom type="mesh" mesh="wall"/></worldbody></mujoco>)"), "wall");
+  look.data = sim::make_data(*look.model);
+  mj_forward(look.model.get(), look.data.get());
+  DepthRenderer renderer(*look.model, kLens, 0.1, 10.0);
+  for (double y = -30.0; y < 30.0; y += 1.3) {
+    look.T.position = {0.0, y, 0.5};
+    renderer.draw(*look.data, look.T, look.image);
+    int compared = 0;
+    EXPECT_LT(worst_against_rays(look, 7.0, &compared), 0.001) << y;
+    EXPECT_GT(compared, 1000) << y;
+    EXPECT_LT(renderer.num_near_faces(), 800);
+  }
+}
+
+TEST(DepthRenderer, ThinBarsAreWithin1CentimetreAndEndWhereTheyEnd) {
+  const Look look(R"(<geom type="capsule" pos="0.8 0 0.5" euler="90 0 0" size="0.03 0.2"/>
+      <geom type="cylinder" pos="1 0.45 0.5" euler="0 20 0" size="0.03 0.3"/>
+      <geom type="box" pos="3 0 0" size="0.1 5 5"/>)", kAhead);
+  int compared = 0;
+  EXPECT_LT(worst_against_rays(look, 2.0, &compared), 0.01);
+  EXPECT_GT(compared, 100);
+  // The capsule lies across the way from y = -0.23 to 0.23, its front at 0.77: 57 x 0.23 / 0.77 = 17 pixels each side of 39.5.
+  EXPECT_LT(look.depth_m(39 + 16, 30), 0.8);
+  EXPECT_GT(look.depth_m(39 + 19, 30), 2.0);
+}
+
 TEST(DepthRenderer, ARobotsOwnArmBeforeTheCameraIsSeenWhereItsBodyIs) {
   Look look(R"(<body name="base_link"><freejoint/><geom type="box" size="0.1 2 2" pos="1 0 0" group="4"/></body>)", kAhead);
   EXPECT_NEAR(look.depth_m(40, 30), 0.9, 1e-4);
