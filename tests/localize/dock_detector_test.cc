@@ -82,6 +82,22 @@ TEST(DockDetector, FindsTheMiddleOfAFlatFaceByItsEdges) {
   EXPECT_THAT(sighting->T_level_docked, Pose2Near(T_world_body.inverse(), 0.02, 2.0 * kDegree));
 }
 
+// The notches look alike, 0.36 m apart: from the whole search it must not take one for the other. A single look errs by up to
+// 5 cm and 4 degrees (ItsErrorsAreAsLargeAsItsCovarianceSays).
+TEST(DockDetector, IsNotMistakenByOneNotchOfTwo) {
+  const Pose2 T_world_body{-1.35, 0.02, 0.03};
+  const Pose2 T_level_docked = T_world_body.inverse();
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    const RandomStream stream(i, "test/expected");
+    const Pose2 expected{T_level_docked.x + 0.5 * (stream.uniform(0) - 0.5), T_level_docked.y + 0.6 * (stream.uniform(1) - 0.5),
+                         T_level_docked.yaw + 0.3 * (stream.uniform(2) - 0.5)};
+    const auto sighting = look(make_dock_world({}, test::make_notched_dock_profile()), T_world_body, expected, i, kStd_m,
+                               test::make_notched_dock_profile());
+    ASSERT_TRUE(sighting) << i;
+    EXPECT_THAT(sighting->T_level_docked, Pose2Near(T_level_docked, 0.05, 4.0 * kDegree)) << i;
+  }
+}
+
 TEST(DockDetector, RefusesAFlatWallWhereThePostShouldBe) {
   const std::vector<Eigen::Vector2d> box = {{0.9, -0.2}, {0.7, -0.2}, {0.7, 0.2}, {0.9, 0.2}};
   RoomWorld wall;

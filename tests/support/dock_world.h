@@ -11,6 +11,12 @@ inline std::vector<Eigen::Vector2d> make_dock_profile() {
   return {{0.9, -0.25}, {0.75, -0.25}, {0.75, -0.1}, {0.65, 0.0}, {0.75, 0.1}, {0.75, 0.25}, {0.9, 0.25}};
 }
 
+/// The tunnel's: 0.84 m wide, with two notches 14 cm deep, 0.63 m ahead.
+inline std::vector<Eigen::Vector2d> make_notched_dock_profile() {
+  return {{0.63, -0.42}, {0.63, -0.34}, {0.77, -0.2}, {0.77, -0.16}, {0.63, -0.06},
+          {0.63, 0.06},  {0.77, 0.16},  {0.77, 0.2},  {0.63, 0.34},  {0.63, 0.42}};
+}
+
 /// The outline, placed.
 inline RoomWorld make_dock_world(const Pose2& T_world_docked, const std::vector<Eigen::Vector2d>& profile_m) {
   std::vector<Eigen::Vector2d> points;
