@@ -20,6 +20,7 @@ namespace {
 const Eigen::Vector3d kLeastStd(0.02, 0.02, 0.003);
 constexpr int kLineRadius_cells = 6;
 constexpr int kMinPoints = 10;           // of a scan that may be judged
+constexpr double kNear_m = 3.0;          // to the pose: a scan laid on the map there says something about a particle here
 constexpr double kWastefulShare = 0.67;  // so few of the particles would do
 constexpr Time kRangesBeforeStart = std::chrono::seconds(2);  // that the first weighing may use
 
@@ -53,6 +54,7 @@ MonteCarloLocalizer::MonteCarloLocalizer(const MonteCarloSettings& settings, con
       start_noise_(seed, "localize/start"),
       motion_noise_(seed, "localize/motion"),
       resampling_noise_(seed, "localize/resampling"),
+      proposal_noise_(seed, "localize/proposal"),
       injection_noise_(seed, "localize/injection"),
       fit_(settings.fit) {}
 
@@ -101,6 +103,7 @@ LocalizationUpdate MonteCarloLocalizer::update(const LevelScan& scan, const Pose
   update.is_weighed = true;
   update.particles = logged_particles(scan.stamp);
   update.num_injected = resample_and_inject(scan, T_odom_body);
+  if (refined.is_matched && !is_lost_) draw_towards(refined);
   update.num_particles = static_cast<int>(cloud_.size());
   T_odom_last_ = T_odom_body;
   last_weighing_ = scan.stamp;
@@ -181,6 +184,18 @@ int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2&
   const std::vector<Pose2> poses = draw_poses(search(scan, T_odom_body), num_injected, injection_noise_, updates_);
   for (std::size_t i = 0; i < poses.size(); ++i) cloud_.T_map_body[i * cloud_.size() / poses.size()] = poses[i];
   return static_cast<int>(poses.size());
+}
+
+// Every other particle about the pose is drawn to where the scan fits best. The others, left to the odometry and the likelihood
+// field alone, keep the match from being believed when it has settled in the wrong place.
+void MonteCarloLocalizer::draw_towards(const RefinedPose& refined) {
+  const ScanProposal proposal(refined, kLeastStd.cwiseAbs2().asDiagonal());
+  for (std::size_t i = 0; i < cloud_.size(); i += 2) {
+    Pose2& pose = cloud_.T_map_body[i];
+    if ((pose.position() - refined.posterior.mean.position()).norm() > kNear_m) continue;
+    const std::array<double, 4> unit = proposal_noise_.normals(updates_, i);
+    pose = proposal.draw(pose, {unit[0], unit[1], unit[2]});
+  }
 }
 
 void MonteCarloLocalizer::resample(const std::vector<double>& weights, std::size_t count) {

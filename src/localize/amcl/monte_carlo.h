@@ -121,6 +121,7 @@ class MonteCarloLocalizer {
   void judge_ranges(const std::vector<AnchoredRange>& ranges, const slam::PoseGaussian& belief);
   RefinedPose weigh(const LevelScan& scan, const std::vector<AnchoredRange>& ranges);
   int resample_and_inject(const LevelScan& scan, const Pose2& T_odom_body);
+  void draw_towards(const RefinedPose& refined);
   void resample(const std::vector<double>& weights, std::size_t count);
   std::size_t particles_needed(const std::vector<double>& weights) const;
   GlobalSearch::Candidates search(const LevelScan& scan, const Pose2& T_odom_body) const;
@@ -132,7 +133,7 @@ class MonteCarloLocalizer {
   LineField lines_;
   std::unique_ptr<SensorModel> sensor_model_;
   GlobalSearch search_;
-  RandomStream start_noise_, motion_noise_, resampling_noise_, injection_noise_;
+  RandomStream start_noise_, motion_noise_, resampling_noise_, proposal_noise_, injection_noise_;
   FitMonitor fit_;
 
   ParticleCloud cloud_;

@@ -105,4 +105,15 @@ RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const sla
   return refined;
 }
 
+ScanProposal::ScanProposal(const RefinedPose& refined, const Eigen::Matrix3d& spread) : matched_(refined.posterior.mean) {
+  const Eigen::Matrix3d covariance = (spread.inverse() + refined.information).inverse();
+  gain_ = covariance * refined.information;
+  root_ = Eigen::Matrix3d(0.5 * (covariance + covariance.transpose())).llt().matrixL();
+}
+
+Pose2 ScanProposal::draw(const Pose2& particle, const Eigen::Vector3d& unit) const {
+  const Eigen::Vector3d way = slam::PoseGaussian{.mean = particle}.offset_of(matched_);
+  return slam::shifted(particle, gain_ * way + root_ * unit);
+}
+
 }  // namespace patrol::localize

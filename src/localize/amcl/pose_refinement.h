@@ -60,4 +60,20 @@ struct RefinedPose {
 RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const slam::PoseGaussian& prior, const Pose2& T_map_start,
                         const PoseRefinementSettings& settings);
 
+/// Draws poses from what a particle and the scan say together, both normally distributed: the improved proposal of Grisetti,
+/// Stachniss, Burgard (IEEE T-RO 2007), with one scan match for all particles near it. Along a direction that the scan leaves
+/// open a particle stays where it is.
+class ScanProposal {
+ public:
+  /// `spread`: covariance of a particle about its pose; x, y, yaw.
+  ScanProposal(const RefinedPose& refined, const Eigen::Matrix3d& spread);
+
+  /// `unit` is standard normal.
+  Pose2 draw(const Pose2& particle, const Eigen::Vector3d& unit) const;
+
+ private:
+  Pose2 matched_;
+  Eigen::Matrix3d gain_, root_;  ///< of the way to the match, and of the posterior's covariance
+};
+
 }  // namespace patrol::localize
