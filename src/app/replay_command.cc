@@ -50,7 +50,8 @@ ExitCode replay_command(const ReplayOptions& options) {
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
   const RunRecord record = read_run_record(directory.log());
   if (!record.has_estimate()) throw InputError(fmt::format("{}: ended before the robot had an estimate", directory.log().string()));
-  const Pose2 T_world_map = score::join_at_start(record.T_map_body, record.T_world_body);
+  const Pose2 T_world_map =
+      files.map ? files.T_site_start : score::join_at_start(record.T_map_body, record.T_world_body);
   sim::AssembledModel model =
       sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), start_in_world(scenario, files), props_of(scenario));
 

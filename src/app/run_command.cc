@@ -5,6 +5,7 @@
 
 #include "app/commands.h"
 #include "app/expectations.h"
+#include "app/goal_table.h"
 #include "app/progress_bar.h"
 #include "app/run_directory.h"
 #include "app/run_junit.h"
@@ -97,6 +98,7 @@ ExitCode run_command(const RunOptions& options) {
   complete_run_directory(directory);
 
   fmt::print("{}\n", score_table(metrics, checks));
+  if (const std::string goals = goal_table(metrics); !goals.empty()) fmt::print("{}\n", goals);
   print_faults(outcome.faults);
   print_kidnaps(scenario.kidnaps.size(), outcome.num_kidnaps);
   fmt::print("run directory: {}\n", directory.root.string());

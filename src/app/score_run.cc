@@ -211,9 +211,12 @@ io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, c
   io::save_map(directory.map(), record.map);
   io::save_map(directory.truth_map(), score::seeable_part(reference));
 
-  const Pose2 T_world_map = score::join_at_start(record.T_map_body, record.T_world_body);
+  // A map that was there before has its origin where the survey says; one that the robot makes, where the robot truly started.
+  const Pose2 T_world_map =
+      files.map ? files.T_site_start : score::join_at_start(record.T_map_body, record.T_world_body);
   const Pose2 T_world_odom = score::join_at_start(record.T_odom_body, record.T_world_body);
-  metrics["pose"] = score_trajectories(record.T_map_body, record.T_world_body)["pose"];
+  metrics["pose"] = to_json(score::trajectory_error(record.T_map_body, T_world_map, record.T_world_body));
+  metrics["pose"]["aligned"] = to_json(score::aligned_error(record.T_map_body, record.T_world_body));
   metrics["odometry"] = to_json(score::trajectory_error(record.T_odom_body, T_world_odom, record.T_world_body));
   metrics["map"] = to_json(score::map_error(record.map, T_world_map, reference));
   metrics["map"]["reference_agreement"] = truth.check.share_agreeing();  // of its render with rays

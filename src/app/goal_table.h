@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "io/metrics_json.h"
+
+namespace patrol::app {
+
+/// A tour's goals beside paper 004's table 2; empty when the metrics hold no goal that was reached.
+std::string goal_table(const io::Metrics& metrics);
+
+}  // namespace patrol::app
