@@ -25,12 +25,14 @@ std::size_t PoseBins::Hash::operator()(const Key& key) const {
   return static_cast<std::size_t>(hash ^ (hash >> 32));
 }
 
-int PoseBins::num_turns() const { return std::max(1, static_cast<int>(std::ceil(2.0 * std::numbers::pi * inverse_bin_rad_))); }
+PoseBins::PoseBins(const KldSettings& settings)
+    : inverse_bin_m_(1.0 / settings.bin_m),
+      num_turns_(std::max(1, static_cast<int>(std::lround(2.0 * std::numbers::pi / settings.bin_rad)))) {}
 
 PoseBins::Key PoseBins::key_of(const Pose2& pose) const {
-  const double turned = (wrap_angle(pose.yaw) + std::numbers::pi) * inverse_bin_rad_;
+  const double turned = (wrap_angle(pose.yaw) / std::numbers::pi + 1.0) * 0.5 * num_turns_;
   return {static_cast<int>(std::floor(pose.x * inverse_bin_m_)), static_cast<int>(std::floor(pose.y * inverse_bin_m_)),
-          static_cast<int>(turned) % num_turns()};
+          static_cast<int>(turned) % num_turns_};
 }
 
 std::size_t PoseBins::add(const Pose2& pose) {
@@ -46,11 +48,10 @@ std::vector<std::size_t> PoseBins::clumps() const {
     while (parent[bin] != bin) bin = parent[bin] = parent[parent[bin]];
     return bin;
   };
-  const int turns = num_turns();
   for (std::size_t bin = 0; bin < keys_.size(); ++bin) {
     for (int step = 0; step < 27; ++step) {
       const Key& key = keys_[bin];
-      const auto found = bins_.find({key.col + step % 3 - 1, key.row + step / 3 % 3 - 1, (key.turn + step / 9 - 1 + turns) % turns});
+      const auto found = bins_.find({key.col + step % 3 - 1, key.row + step / 3 % 3 - 1, (key.turn + step / 9 - 1 + num_turns_) % num_turns_});
       if (found == bins_.end()) continue;
       const std::size_t mine = root_of(bin), other = root_of(found->second);
       parent[std::max(mine, other)] = std::min(mine, other);

@@ -37,7 +37,8 @@ int kld_particles(std::size_t bins, const KldSettings& settings);
 /// The bins of position and heading that poses fall into.
 class PoseBins {
  public:
-  explicit PoseBins(const KldSettings& settings) : inverse_bin_m_(1.0 / settings.bin_m), inverse_bin_rad_(1.0 / settings.bin_rad) {}
+  /// The circle is cut into equal bins, as near to `bin_rad` as goes.
+  explicit PoseBins(const KldSettings& settings);
 
   /// Number of the pose's bin; bins are numbered in the order in which they are first met.
   std::size_t add(const Pose2& pose);
@@ -55,9 +56,9 @@ class PoseBins {
     std::size_t operator()(const Key& key) const;
   };
   Key key_of(const Pose2& pose) const;
-  int num_turns() const;
 
-  double inverse_bin_m_, inverse_bin_rad_;
+  double inverse_bin_m_;
+  int num_turns_;  ///< bins round the circle
   std::unordered_map<Key, std::size_t, Hash> bins_;
   std::vector<Key> keys_;  ///< [bin]
 };

@@ -17,6 +17,7 @@ double ramp(double value, double low, double high) {
 }  // namespace
 
 LocalizationTrust assess_trust(Time stamp, const BeliefEvidence& evidence, bool was_lost, const TrustSettings& settings) {
+  if (!evidence.covariance.allFinite()) return {.stamp = stamp, .is_lost = true};
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(Eigen::Matrix2d(evidence.covariance.topLeftCorner<2, 2>()));
   const Eigen::Vector2d weak = axes.eigenvectors().col(1);
   LocalizationTrust trust{.stamp = stamp, .weak_std_m = std::sqrt(std::max(0.0, axes.eigenvalues()[1]))};
