@@ -32,7 +32,7 @@ void write_log(const std::filesystem::path& file, std::size_t num_qpos = 7) {
 }
 
 sim::AssembledModel model() {
-  return {.physics = nullptr, .view = small_scene(kRobotBeforeWall), .start_qpos = {}};
+  return {.physics = nullptr, .view = small_scene(kRobotBeforeWall), .start_qpos = {}, .stance = {}};
 }
 
 class Replay : public ::testing::Test {

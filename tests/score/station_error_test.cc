@@ -97,7 +97,7 @@ Event reached(const std::string& name, Time stamp, const Pose2& T_map_body) {
 TEST(StationErrors, TellBeliefTruthAndSurveyApart) {
   const Route route{
       .stations = {make_station("box_1", {2.0, 1.0, 0.0}), make_station("box_2", {9.0, 1.0, 0.0})},
-      .keep_out_lines = {}};
+      .keep_out_lines = {}, .anchors = {}, .dock = {}};
   // At 1 s the robot stands at (2, 1.1) heading 3 degrees; it believes (2.03, 1.14) and 5 degrees.
   const Trajectory truth = {{Time(0s), to_spatial({1.0, 1.1, 3.0 * kDeg})},
                             {Time(2s), to_spatial({3.0, 1.1, 3.0 * kDeg})}};

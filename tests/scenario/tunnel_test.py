@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+"""The tunnel's scenarios end as they expect to: docking, a kidnap, things that the lidar looks over.
+
+usage: tunnel_test.py PATROL SOURCE_DIR [TEST...]
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+SCENARIOS = SOURCE / "worlds/tunnel/scenarios"
+
+
+class Tunnel(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.out = pathlib.Path(self.folder.name) / "run"
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def run_patrol(self, scenario, *options):
+        return subprocess.run([PATROL, "run", SCENARIOS / f"{scenario}.yaml", "--out", self.out, *options],
+                              capture_output=True, text=True, cwd=SOURCE)
+
+    def metrics(self):
+        return json.loads((self.out / "metrics.json").read_text())
+
+    def assert_as_expected(self, scenario):
+        done = self.run_patrol(scenario)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_docks_within_2_cm_and_1_degree(self):
+        self.assert_as_expected("docking")
+        self.assertEqual(self.metrics()["docking"]["arrivals"], 1)
+
+    def test_relocalises_within_30_s_of_a_kidnap(self):
+        self.assert_as_expected("kidnap")
+        kidnap = self.metrics()["localization"]["kidnaps"][0]
+        self.assertGreater(kidnap["moved_m"], 15.0)
+        self.assertLess(kidnap["relocalized_s"], 30.0)
+
+    def test_touches_none_of_twenty_low_obstacles(self):
+        self.assert_as_expected("low_obstacles")
+
+    def test_touches_some_without_ultrasonic_and_camera(self):
+        self.run_patrol("low_obstacles", "--set", "sensors.ultrasonic.enabled=false", "--set", "sensors.depth_camera.enabled=false",
+                        "--set", "time_limit_s=120")
+        self.assertGreater(self.metrics()["mission"]["collisions"], 0)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], "-v", *sys.argv[3:]])
