@@ -12,6 +12,9 @@ namespace {
 
 ExitCode score_directory(const std::filesystem::path& root) {
   const RunDirectory directory = open_run_directory(root);
+  if (std::filesystem::exists(directory.incomplete_marker())) {
+    throw InputError(fmt::format("{}: is incomplete: the run was cut off, there is nothing to score", directory.root.string()));
+  }
   const Scenario scenario = load_scenario(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
   io::Metrics metrics = score_run(directory, scenario, files);
