@@ -1,0 +1,56 @@
+#include "score/goal_error.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace patrol::score {
+namespace {
+
+using namespace std::chrono_literals;
+constexpr double kDeg = std::numbers::pi / 180.0;
+
+Event event(const char* kind, const char* subject, Time stamp, double value = 0.0) {
+  Event event;
+  event.kind = kind;
+  event.subject = subject;
+  event.stamp = stamp;
+  event.value = value;
+  return event;
+}
+
+/// At 1 s at (10, 0), at 2 s 3 cm ahead and 4 cm beside of it and turned by 2 degrees, at 3 s exactly there.
+Trajectory truth() {
+  return {{1s, to_spatial({10.0, 0.0, 0.0})}, {2s, to_spatial({10.03, 0.04, 2.0 * kDeg})}, {3s, to_spatial({10.0, 0.0, 0.0})}};
+}
+
+TEST(GoalErrors, AMarkedGoalIsMetWhereTheRobotTrulyStoodAtTheMark) {
+  const std::vector<Event> events = {event("goal_marked", "goal_1", 1s), event("goal_reached", "goal_1", 2s, 1),
+                                     event("goal_reached", "goal_1", 3s, 2), event("goal_failed", "goal_1", 3s, 3)};
+  const std::vector<GoalError> errors = goal_errors(events, {}, {}, truth());
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].name, "goal_1");
+  EXPECT_EQ(errors[0].num_failed, 1);
+  ASSERT_EQ(errors[0].arrivals.size(), 2u);
+  EXPECT_NEAR(errors[0].arrivals[0].position_error_m, 0.05, 1e-12);
+  EXPECT_NEAR(errors[0].arrivals[0].heading_error_deg, 2.0, 1e-9);
+  EXPECT_EQ(errors[0].arrivals[1].navigation, 2);
+  EXPECT_NEAR(errors[0].position_errors_m()[1], 0.0, 1e-12);
+}
+
+TEST(GoalErrors, AGivenGoalIsMetWhereTheMapLiesInTheWorld) {
+  const MarkedGoal goal{.number = 4, .T_map_body = {8.0, 0.0, 0.0}};
+  const std::vector<GoalError> errors = goal_errors({event("goal_reached", "goal_4", 1s, 1)}, {goal}, {1.0, 0.0, 0.0}, truth());
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_NEAR(errors[0].arrivals[0].position_error_m, 1.0, 1e-12);
+}
+
+TEST(DockingError, CountsDockingsAndFailures) {
+  const GoalError error = docking_error({event("docked", "", 2s, 1), event("dock_failed", "", 3s)}, {10.03, 0.0, 0.0}, truth());
+  EXPECT_EQ(error.num_failed, 1);
+  ASSERT_EQ(error.arrivals.size(), 1u);
+  EXPECT_NEAR(error.arrivals[0].position_error_m, 0.04, 1e-12);
+}
+
+}  // namespace
+}  // namespace patrol::score
