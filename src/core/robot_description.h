@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -50,6 +51,13 @@ struct RobotDescription {
   std::vector<Eigen::Vector2d> footprint_m;    ///< convex hull of the collision shapes in level, counter-clockwise
   /// Fixed frames: "lidar", "lidar3d", "imu", "tdlas", "gnss", "uwb", "depth_camera", "ultrasonic_0", "ultrasonic_1" ...
   std::map<std::string, Pose3> T_body_sensor;
+
+  /// Of the circle about the body's origin that holds the outline.
+  double outline_radius_m() const {
+    double radius_m = 0.0;
+    for (const Eigen::Vector2d& corner : footprint_m) radius_m = std::max(radius_m, corner.norm());
+    return radius_m;
+  }
 
   /// Throws InputError when the robot has no such frame.
   const Pose3& T_body(const std::string& sensor) const {

@@ -255,8 +255,16 @@ VelocityCommand Navigator::follow_path(const Pose2& T_map_body) {
   VelocityCommand command;
   if (turn_in_place(T_map_body, command)) return command;
   const double left_m = std::max(0.0, path_.length_m() - along_m_);
-  const double speed_limit = std::max(kMinApproachSpeed_mps, std::sqrt(2.0 * settings_.approach_decel_mps2 * left_m));
+  double speed_limit = std::max(kMinApproachSpeed_mps, std::sqrt(2.0 * settings_.approach_decel_mps2 * left_m));
+  if (is_newcomer_ahead(T_map_body)) speed_limit = std::min(speed_limit, settings_.newcomer_speed_mps);
   return local_planner_->choose(costmap_, path_, along_m_, T_map_body, twist_of(last_), speed_limit).value_or(VelocityCommand{});
+}
+
+bool Navigator::is_newcomer_ahead(const Pose2& T_map_body) const {
+  if (settings_.newcomer_distance_m <= 0.0) return false;
+  const double reach_m = settings_.newcomer_distance_m / 2.0;
+  const Eigen::Vector2d p_map_ahead = T_map_body * Eigen::Vector2d(reach_m, 0.0);
+  return costmap_.live_since(p_map_ahead, reach_m).has_value();
 }
 
 /// Whether the path leads off so far to the side that the robot should turn before it walks.

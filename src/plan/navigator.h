@@ -33,6 +33,8 @@ struct NavigatorSettings {
   double patience_s = 6.0;            ///< standing blocked for so long calls for a recovery
   double stuck_s = 15.0;              ///< so does moving for so long without getting half a metre away
   double detour_after_s = 0.0;        ///< what has newly come into the way is waited for so long: people walk on
+  double newcomer_distance_m = 0.0;   ///< something the map does not know, nearer ahead than this, calls for caution; 0: never
+  double newcomer_speed_mps = 0.4;    ///< no faster then: it may be somebody who walks
   double no_route_s = 600.0;          ///< after so long without any route the goal is given up
   std::vector<std::string> recoveries = {"back_up"};  ///< in turn: wait, clear, back_up, look_around; then a new path
   double back_up_s = 2.0;             ///< backwards, if there is room
@@ -62,6 +64,8 @@ struct NavigatorSettings {
     visit("patience_s", self.patience_s, between(0.5, 600.0));
     visit("stuck_s", self.stuck_s, between(1.0, 600.0));
     visit("detour_after_s", self.detour_after_s, between(0.0, 60.0));
+    visit("newcomer_distance_m", self.newcomer_distance_m, between(0.0, 10.0));
+    visit("newcomer_speed_mps", self.newcomer_speed_mps, between(0.05, 5.0));
     visit("no_route_s", self.no_route_s, between(0.5, 3600.0));
     visit("recoveries", self.recoveries, one_of({"wait", "clear", "back_up", "look_around"}));
     visit("back_up_s", self.back_up_s, between(0.0, 20.0));
@@ -142,6 +146,7 @@ class Navigator {
   NavigationStatus drive(Time now, const Pose2& T_map_body, VelocityCommand& command);
   NavigationStatus approach(Time now, const Pose2& T_map_body, VelocityCommand& command);
   VelocityCommand follow_path(const Pose2& T_map_body);
+  bool is_newcomer_ahead(const Pose2& T_map_body) const;
   bool turn_in_place(const Pose2& T_map_body, VelocityCommand& command) const;
   NavigationStatus stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command);
   bool is_stuck(Time now, const Pose2& T_map_body);

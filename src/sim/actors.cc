@@ -20,6 +20,19 @@ constexpr double kHipWidth_m = 0.09;    // of each hip from the middle
 constexpr double kThigh_m = 0.43, kShank_m = 0.43;
 constexpr double kStep_m = 0.65;        // length of a step; a stride is two
 
+constexpr double kForesight_s = 1.5;    // so far ahead one sees where the robot will be
+constexpr double kForesightStep_s = 0.25;
+
+/// Half of what one takes up, along and across the course; across with the room one likes to keep.
+struct Extent {
+  double half_length_m, half_width_m;
+};
+
+Extent extent_of(const ActorSettings& settings) {
+  return settings.kind == "car" ? Extent{.half_length_m = 2.2, .half_width_m = 1.6}
+                                : Extent{.half_length_m = 0.3, .half_width_m = 0.4};
+}
+
 int mocap_of(const mjModel& model, const std::string& name) {
   const int body = mj_name2id(&model, mjOBJ_BODY, name.c_str());
   return body < 0 ? -1 : model.body_mocapid[body];
@@ -156,21 +169,33 @@ bool Actors::is_returning(const Actor& actor) {
   return actor.settings.loop && std::fmod(actor.walked_m, 2.0 * actor.path.length_m()) > actor.path.length_m();
 }
 
-void Actors::advance(Time now, const Eigen::Vector2d& p_world_robot, mjData& data) {
+double Actors::course_rad(const Actor& actor) {
+  return actor.path.heading_rad(along_path(actor)) + (is_returning(actor) ? std::numbers::pi : 0.0);
+}
+
+bool Actors::must_wait(const Actor& actor, const RobotInView& robot) {
+  const double course = course_rad(actor);
+  const Eigen::Vector2d ahead(std::cos(course), std::sin(course));
+  const Eigen::Vector2d p_actor = actor.path.position(along_path(actor));
+  const Extent extent = extent_of(actor.settings);
+  for (double in_s = 0.0; in_s <= kForesight_s; in_s += kForesightStep_s) {
+    const Eigen::Vector2d to_robot = robot.p_world + in_s * robot.v_world_mps - p_actor;
+    const double gap_m = to_robot.dot(ahead) - extent.half_length_m;
+    const double across_m = std::abs(to_robot.x() * ahead.y() - to_robot.y() * ahead.x());
+    const double nearest_m = in_s > 0.0 ? robot.radius_m : -extent.half_length_m;  // nearer, it is better to walk on
+    if (gap_m > nearest_m && gap_m < actor.settings.yield_distance_m && across_m < extent.half_width_m + robot.radius_m) return true;
+  }
+  return false;
+}
+
+void Actors::advance(Time now, const RobotInView& robot, mjData& data) {
   const double dt_s = to_seconds(now - last_);
   last_ = now;
   for (Actor& actor : actors_) {
-    const double along = along_path(actor);
-    const double course = actor.path.heading_rad(along) + (is_returning(actor) ? std::numbers::pi : 0.0);
-    const Eigen::Vector2d ahead(std::cos(course), std::sin(course));
-    const Eigen::Vector2d to_robot = p_world_robot - actor.path.position(along);
-    const double half_length = actor.settings.kind == "car" ? 2.2 : 0.3, half_width = actor.settings.kind == "car" ? 2.0 : 0.8;
-    const double gap = to_robot.dot(ahead) - half_length;
-    const bool is_in_the_way = gap > -half_length && gap < actor.settings.yield_distance_m &&
-                               std::abs(to_robot.x() * ahead.y() - to_robot.y() * ahead.x()) < half_width;
+    const bool waits = must_wait(actor, robot);
     const bool is_over = !actor.settings.loop && actor.walked_m >= actor.path.length_m();
-    const double wanted = is_in_the_way || is_over || to_seconds(now) < actor.settings.start_s ? 0.0 : actor.settings.speed_mps;
-    const double change = (is_in_the_way ? 4.0 : 1.0) * kAcceleration_mps2 * dt_s;
+    const double wanted = waits || is_over || to_seconds(now) < actor.settings.start_s ? 0.0 : actor.settings.speed_mps;
+    const double change = (waits ? 4.0 : 1.0) * kAcceleration_mps2 * dt_s;
     actor.speed_mps += std::clamp(wanted - actor.speed_mps, -change, change);
     actor.walked_m += actor.speed_mps * dt_s;
     place(actor, data);

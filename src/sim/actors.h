@@ -33,7 +33,7 @@ struct ActorSettings {
   double speed_mps = 1.2;
   double start_s = 0.0;
   bool loop = true;                     ///< there and back again (a car reverses); otherwise it stops at the end
-  double yield_distance_m = 1.5;        ///< stops while the robot is this near ahead of it
+  double yield_distance_m = 1.5;        ///< stops while the robot's middle is this near ahead of it
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -45,6 +45,13 @@ struct ActorSettings {
     visit("loop", self.loop);
     visit("yield_distance_m", self.yield_distance_m, between(0.0, 20.0));
   }
+};
+
+/// What somebody sees of the robot, in world.
+struct RobotInView {
+  Eigen::Vector2d p_world;
+  Eigen::Vector2d v_world_mps = Eigen::Vector2d::Zero();
+  double radius_m = 0.0;  ///< of the circle about its outline
 };
 
 /// A polyline walked at constant speed, with rounded heading at its corners.
@@ -63,8 +70,9 @@ class ActorPath {
   std::vector<double> along_;  ///< [point]: way from the start, m
 };
 
-/// People and cars: mocap bodies moved along their paths. Where they are depends on nothing but time and the robot's way
-/// (they stop for it), so the same run has the same traffic.
+/// People and cars: mocap bodies moved along their paths. Where they are depends on nothing but time and the robot's way, so the
+/// same run has the same traffic. They stop for a robot that is in their way, or will be if it goes on as it does; one who
+/// already walks across the robot's way walks on.
 ///
 /// A pedestrian's legs swing with the way walked: the foot that stands stays where it is. Parts are found by name: `<name>`,
 /// `<name>_thigh_left`, `<name>_shank_left`, `..._right`.
@@ -74,7 +82,7 @@ class Actors {
   Actors(const mjModel& model, const std::vector<ActorSettings>& settings);
 
   /// Moves everybody on to `now` and writes their poses.
-  void advance(Time now, const Eigen::Vector2d& p_world_robot, mjData& data);
+  void advance(Time now, const RobotInView& robot, mjData& data);
 
   /// Where everybody is, in world.
   std::vector<Eigen::Vector2d> positions() const;
@@ -94,6 +102,8 @@ class Actors {
   void place_legs(const Actor& actor, const Eigen::Vector3d& hip, double heading_rad, mjData& data) const;
   static double along_path(const Actor& actor);
   static bool is_returning(const Actor& actor);
+  static double course_rad(const Actor& actor);
+  static bool must_wait(const Actor& actor, const RobotInView& robot);
 
   std::vector<Actor> actors_;
   Time last_{};

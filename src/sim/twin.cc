@@ -46,6 +46,7 @@ Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uin
       data_(make_data(*model_.physics)),
       nearby_(*model_.physics),
       robot_body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)),
+      robot_radius_m_(robot.outline_radius_m()),
       settings_(settings),
       locomotion_(make_locomotion(settings, robot, *model_.physics)),
       actors_(*model_.physics, settings.actors),
@@ -56,7 +57,7 @@ Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uin
   if (!settings.drive.empty()) driver_.emplace(settings.driver, settings.drive, seed);
   if (robot_body_ < 0) throw InputError(fmt::format("{}: no link named {}", settings.robot_urdf, frame_id::kBody));
   std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
-  actors_.advance(now_, settings.T_world_start.position(), *data_);
+  actors_.advance(now_, {.p_world = settings.T_world_start.position(), .radius_m = robot_radius_m_}, *data_);
   mj_forward(model_.physics.get(), data_.get());
   sensors_.step(*model_.physics, *data_, now_);
 }
@@ -75,7 +76,12 @@ void Twin::step() {
   }
   {
     const auto lap = clock_.lap("actors");
-    actors_.advance(now_ + tick_, truth().T_world_body.position.head<2>(), *data_);
+    const GroundTruth robot = truth();
+    actors_.advance(now_ + tick_,
+                    {.p_world = robot.T_world_body.position.head<2>(),
+                     .v_world_mps = (robot.T_world_body.rotation * robot.twist.linear).head<2>(),
+                     .radius_m = robot_radius_m_},
+                    *data_);
   }
   {
     const auto lap = clock_.lap("physics");

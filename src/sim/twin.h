@@ -82,6 +82,7 @@ class Twin {
   DataPtr data_;
   NearbyScenery nearby_;
   int robot_body_;
+  double robot_radius_m_;
   TwinSettings settings_;
   std::unique_ptr<Locomotion> locomotion_;
   Actors actors_;

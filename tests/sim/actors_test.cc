@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr Time kTick = std::chrono::milliseconds(2);
-const Eigen::Vector2d kFarAway(1000.0, 1000.0);
+const RobotInView kFarAway{.p_world = {1000.0, 1000.0}};
 
 /// A walker with legs and a cart, on the ground and on a pavement 0.1 m high beyond x = 10 m.
 const std::string kTraffic = R"(<geom type="plane" size="50 50 1"/>
@@ -50,12 +50,13 @@ ActorSettings walker(std::vector<WaypointSettings> path) {
   return {.name = "walker", .path = std::move(path)};
 }
 
-/// Calls `look` at every tick of `seconds`.
+/// Calls `look` at every tick of `seconds`. The robot keeps its velocity.
 void run(Traffic& traffic, const ActorSettings& settings, double seconds,
-         const std::function<void(double)>& look, const Eigen::Vector2d& robot = kFarAway) {
+         const std::function<void(double)>& look, RobotInView robot = kFarAway) {
   Actors actors(*traffic.model, {settings});
   for (Time now{}; now <= from_seconds(seconds); now += kTick) {
     actors.advance(now, robot, *traffic.data);
+    robot.p_world += to_seconds(kTick) * robot.v_world_mps;
     look(to_seconds(now));
   }
 }
@@ -174,11 +175,31 @@ TEST(Actors, StartsAtItsTimeAndWithoutALoopStopsAtTheEnd) {
 TEST(Actors, WaitsForARobotInItsWayAndNotForOneBesideIt) {
   Traffic traffic;
   const ActorSettings settings = walker({{.x_m = 0, .y_m = 0}, {.x_m = 9, .y_m = 0}});
-  run(traffic, settings, 6.0, [](double) {}, {4.0, 0.0});
+  run(traffic, settings, 6.0, [](double) {}, {.p_world = {4.0, 0.0}, .radius_m = 0.4});
   EXPECT_LT(traffic.place_of("walker").x(), 4.0 - 1.5);
   EXPECT_GT(traffic.place_of("walker").x(), 4.0 - 1.5 - 0.5);
-  run(traffic, settings, 6.0, [](double) {}, {4.0, 1.5});
+  run(traffic, settings, 6.0, [](double) {}, {.p_world = {4.0, 1.5}, .radius_m = 0.4});
   EXPECT_GT(traffic.place_of("walker").x(), 6.0);
+}
+
+// A metre long and at a metre per second, from the side, at every time of crossing: never nearer than its outline and a shoulder.
+TEST(Actors, ARobotThatCrossesAtOneMetrePerSecondIsNeverTouched) {
+  for (double from_m = -10.0; from_m <= 1.0; from_m += 0.25) {
+    for (const double side : {-1.0, 1.0}) {
+      Traffic traffic;
+      RobotInView robot{.p_world = {4.0, side * from_m}, .v_world_mps = {0.0, side}, .radius_m = 0.6};
+      const Eigen::Vector2d start = robot.p_world, velocity = robot.v_world_mps;
+      double nearest_m = 100.0;
+      run(traffic, walker({{.x_m = 0, .y_m = 0}, {.x_m = 30, .y_m = 0}}), 14.0,
+          [&](double now_s) {
+            const Eigen::Vector2d p_robot = start + now_s * velocity;
+            nearest_m = std::min(nearest_m, (traffic.place_of("walker").head<2>() - p_robot).norm());
+          },
+          robot);
+      EXPECT_GT(nearest_m, 0.6 + 0.3) << "from " << start.transpose();
+      EXPECT_GT(traffic.place_of("walker").x(), 5.0) << "walks on when it has passed";
+    }
+  }
 }
 
 TEST(Actors, ACarKeepsTheHeightAtWhichTheWorldPutsItAndLooksAlongItsWay) {
