@@ -141,6 +141,29 @@ TEST(Navigator, PassesABoxInACorridorThatTheMapDoesNotKnow) {
   EXPECT_EQ(record.num_recoveries, 0);
 }
 
+// A box in the corridor's right half that the map does not know: 0.8 m/s while it is 5 m away, 0.4 m/s at 2.5 m.
+TEST(Navigator, SlowsDownNearWhatTheMapDoesNotKnow) {
+  const auto speed_with_box_at = [](double x_m) {
+    RoomWorld corridor = make_corridor();
+    NavigatorSettings settings;
+    settings.newcomer_distance_m = 3.0;
+    settings.newcomer_speed_mps = 0.4;
+    Navigator navigator = make_navigator(map_of_corridor(corridor), settings);
+    navigator.set_goal(make_goal({12.0, 0.0, 0.0}));
+    corridor.add_box(x_m, -0.9, x_m + 0.4, -0.5);
+    double speed_mps = 0.0;
+    for (Time now{}; now < from_seconds(3.0); now += from_seconds(0.05)) {
+      LevelScan scan = corridor.scan({}, {.beams = 720});
+      scan.stamp = now;
+      navigator.add_scan(scan, {});
+      speed_mps = navigator.step(now, {}).command.vx_mps;
+    }
+    return speed_mps;
+  };
+  EXPECT_NEAR(speed_with_box_at(5.0), DwaSettings{}.max_speed_mps, 0.05);
+  EXPECT_NEAR(speed_with_box_at(2.5), 0.4, 0.05);
+}
+
 // A box appears 3 m before the robot when it is already on its way, and leaves a gap of 0.9 m.
 TEST(Navigator, PlansANewPathWhenSomethingIsPutInItsWay) {
   RoomWorld empty = make_corridor(), blocked = make_corridor();
