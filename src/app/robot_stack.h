@@ -1,60 +1,29 @@
 #pragma once
 
+#include <optional>
+#include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
+#include "app/stack_settings.h"
 #include "core/messages.h"
 #include "core/part_clock.h"
 #include "core/robot_description.h"
 #include "core/route.h"
-#include "inspect/mission.h"
-#include "inspect/tour.h"
-#include "localize/amcl/monte_carlo.h"
-#include "localize/body_estimator.h"
-#include "localize/dock_detector.h"
-#include "localize/scan_leveler.h"
-#include "localize/track_odometry.h"
-#include "plan/docking.h"
+#include "inspect/navigation_feedback.h"
+#include "localize/map_pose_tracker.h"
 #include "plan/navigator.h"
 #include "slam/grid_slam.h"
 
 namespace patrol::app {
-
-/// Of every part that some robot has; each stack takes what it is built of.
-struct StackSettings {
-  double settle_s = 1.0;  ///< after odometry's start, before the first scan makes the map's origin
-  localize::BodyEstimatorSettings odometry;        ///< of a robot with legs
-  localize::TrackOdometrySettings track_odometry;  ///< of a robot with tracks
-  localize::ScanLevelerSettings leveling;
-  slam::GridSlamSettings slam;
-  localize::MonteCarloSettings localization;  ///< on a map that is known
-  plan::NavigatorSettings navigation;
-  localize::DockDetectorSettings dock_detector;
-  plan::DockingSettings docking;
-  inspect::MissionSettings mission;
-  inspect::TourSettings tour;
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("settle_s", self.settle_s, between(0.0, 60.0));
-    visit("odometry", self.odometry);
-    visit("track_odometry", self.track_odometry);
-    visit("leveling", self.leveling);
-    visit("slam", self.slam);
-    visit("localization", self.localization);
-    visit("navigation", self.navigation);
-    visit("dock_detector", self.dock_detector);
-    visit("docking", self.docking);
-    visit("mission", self.mission);
-    visit("tour", self.tour);
-  }
-};
 
 /// What the stack says.
 using StackMessage =
     std::variant<OdometryEstimate, PoseEstimate, LocalizationTrust, ParticleSet, MapUpdate, Path, VelocityCommand, Event>;
 
 /// The robot's own software, put together. It sees sensor messages and nothing else; a recorded log can take the twin's place.
+/// Here is what every robot's has: the rhythm of odometry, map and control, the pose in map, and the navigator.
 class RobotStack {
  public:
   virtual ~RobotStack() = default;
@@ -62,15 +31,54 @@ class RobotStack {
   virtual void handle(const SensorMessage& message) = 0;
   /// The robot's firmware reports a fall.
   virtual void handle_fall(Time now) = 0;
-  /// Mission, planning and control, once a control period; call at every tick.
-  virtual void step(Time now) = 0;
-
-  virtual const VelocityCommand& command() const = 0;
-  virtual MapUpdate final_map(Time now) const = 0;
   virtual bool mission_is_over() const = 0;
+
+  /// Mission, planning and control, once a control period; call at every tick.
+  void step(Time now);
+
+  const VelocityCommand& command() const { return command_; }
+  MapUpdate final_map(Time now) const { return {now, map()}; }
   /// What was said since the last call, in order.
-  virtual std::vector<StackMessage> take_messages() = 0;
-  virtual const PartClock& clock() const = 0;
+  std::vector<StackMessage> take_messages() { return std::exchange(messages_, {}); }
+  const PartClock& clock() const { return clock_; }
+
+ protected:
+  RobotStack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, double map_period_s);
+
+  virtual std::optional<OdometryEstimate> odometry() const = 0;
+  virtual OccupancyGrid map() const = 0;
+  virtual bool is_mapping() const = 0;
+  /// Once a control period: what to do now.
+  virtual VelocityCommand control(Time now, const OdometryEstimate& odometry) = 0;
+
+  /// The first scan, which makes the map's origin, waits until odometry has settled.
+  bool has_settled(Time stamp) const { return first_odometry_ && stamp >= *first_odometry_ + settle_; }
+  /// Matches a scan, corrects the pose in map, and says both.
+  void map_scan(slam::GridSlam& slam, const LevelScan& scan, const Pose2& T_odom_body);
+  /// A step of the navigator, with what is to be told of it.
+  plan::NavigationStep navigate(Time now, const PoseEstimate& pose);
+  inspect::NavigationFeedback navigation_feedback() const;
+  void publish_map(Time now);
+  template <typename Message>
+  void say(Message&& message) {
+    messages_.emplace_back(std::forward<Message>(message));
+  }
+  void note(Time now, const PoseEstimate& pose, const char* kind, const std::string& text);
+
+  localize::MapPoseTracker tracker_;
+  plan::Navigator navigator_;
+  plan::NavigationStatus navigation_ = plan::NavigationStatus::kIdle;  ///< a control period ago
+  PartClock clock_;
+
+ private:
+  Time settle_;
+  Time map_period_;
+  std::optional<Time> first_odometry_;
+  Time next_control_{};
+  Time next_odometry_{};
+  Time next_map_{};
+  VelocityCommand command_;
+  std::vector<StackMessage> messages_;
 };
 
 /// For std::visit.
@@ -78,16 +86,5 @@ template <typename... Handlers>
 struct Overloaded : Handlers... {
   using Handlers::operator()...;
 };
-
-inline inspect::NavigationFeedback feedback_of(plan::NavigationStatus status) {
-  switch (status) {
-    case plan::NavigationStatus::kArrived:
-      return inspect::NavigationFeedback::kArrived;
-    case plan::NavigationStatus::kFailed:
-      return inspect::NavigationFeedback::kFailed;
-    default:
-      return inspect::NavigationFeedback::kDriving;
-  }
-}
 
 }  // namespace patrol::app

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core/time.h"
+#include "app/robot_stack.h"
 #include "app/scenario.h"
+#include "core/time.h"
 
 namespace patrol::app {
 

@@ -9,7 +9,7 @@
 #include "core/remote_drive.h"
 #include "core/route.h"
 #include "core/settings.h"
-#include "app/robot_stack.h"
+#include "app/stack_settings.h"
 #include "io/expectations.h"
 #include "sim/twin.h"
 

@@ -8,8 +8,6 @@
 namespace patrol::app {
 namespace {
 
-constexpr Time kControlPeriod = std::chrono::milliseconds(50);
-constexpr Time kOdometryPeriod = std::chrono::milliseconds(20);
 constexpr Time kRemoteHold = std::chrono::milliseconds(500);  // a command is followed for so long
 
 // How exactly the robot stands at its post.
@@ -26,18 +24,16 @@ Eigen::Matrix3d docked_covariance() {
 
 TourStack::TourStack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, TourStart start,
                      double map_period_s, std::uint64_t seed)
-    : settings_(settings),
+    : RobotStack(settings, robot, site_in_map, map_period_s),
+      settings_(settings),
       robot_(robot),
       site_in_map_(site_in_map),
       seed_(seed),
       odometry_(robot, settings.track_odometry),
       leveler_(robot.T_body("lidar"), settings.leveling),
       map_(std::move(start.map)),
-      navigator_(settings.navigation, robot, site_in_map.keep_out_lines),
       docking_(settings.docking),
-      tour_(settings.tour, std::move(start.goals), start.has_remote),
-      settle_(from_seconds(settings.settle_s)),
-      map_period_(from_seconds(map_period_s)) {
+      tour_(settings.tour, std::move(start.goals), start.has_remote) {
   if (!map_ && !start.has_remote) throw InputError("tour: there is no map, and no remote control to make one");
   if ((settings.tour.docks || settings.tour.starts_docked) && !site_in_map.dock) {
     throw InputError("tour: docks, but the site's survey has no dock");
@@ -73,7 +69,7 @@ void TourStack::handle(const SensorMessage& message) {
 }
 
 void TourStack::handle_scan(const LaserScan& raw) {
-  if (!first_odometry_ || raw.stamp < *first_odometry_ + settle_) return;
+  if (!has_settled(raw.stamp)) return;
   std::optional<LevelScan> scan;
   {
     const auto lap = clock_.lap("odometry");
@@ -82,7 +78,7 @@ void TourStack::handle_scan(const LaserScan& raw) {
   }
   if (!scan) return;
   const Pose2 T_odom_body = to_planar(*odometry_.T_odom_body_at(scan->stamp));
-  slam_ ? map_scan(*scan, T_odom_body) : localize_scan(*scan, T_odom_body);
+  slam_ ? map_scan(*slam_, *scan, T_odom_body) : localize_scan(*scan, T_odom_body);
   const Pose2 T_map_body = tracker_.at(scan->stamp, T_odom_body).T_map_body;
   const auto lap = clock_.lap("planning");
   navigator_.add_scan(*scan, T_map_body);
@@ -96,22 +92,14 @@ void TourStack::look_for_dock(const LevelScan& scan, const Pose2& T_odom_body, c
   if (sighting) docking_.add(*sighting, T_odom_body);
 }
 
-void TourStack::map_scan(const LevelScan& scan, const Pose2& T_odom_body) {
-  const auto lap = clock_.lap("slam");
-  const slam::SlamUpdate update = slam_->update(scan, T_odom_body);
-  tracker_.correct(scan.stamp, T_odom_body, update.T_map_body, update.covariance);
-  messages_.emplace_back(PoseEstimate{scan.stamp, update.T_map_body, update.covariance});
-  if (update.is_keyframe) messages_.emplace_back(slam_->particles());
-}
-
 void TourStack::localize_scan(const LevelScan& scan, const Pose2& T_odom_body) {
   const auto lap = clock_.lap("localization");
   localize::LocalizationUpdate update = localizer_->update(scan, T_odom_body);
   tracker_.correct(scan.stamp, T_odom_body, update.estimate.T_map_body, update.estimate.covariance);
   trust_ = update.trust;
-  messages_.emplace_back(update.estimate);
-  messages_.emplace_back(update.trust);
-  if (update.particles) messages_.emplace_back(std::move(*update.particles));
+  say(update.estimate);
+  say(update.trust);
+  if (update.particles) say(std::move(*update.particles));
 }
 
 void TourStack::handle_range(const UwbRange& range) {
@@ -155,80 +143,54 @@ std::optional<TourStack::Place> TourStack::place_at(Time stamp) const {
 }
 
 void TourStack::handle_fall(Time now) {
-  if (!tour_.is_over()) messages_.emplace_back(tour_.abort(now, "fall", "The robot has rolled over."));
+  if (!tour_.is_over()) say(tour_.abort(now, "fall", "The robot has rolled over."));
 }
 
-void TourStack::step(Time now) {
-  const std::optional<OdometryEstimate> odometry = odometry_.estimate();
-  if (!odometry) return;
-  if (!first_odometry_) first_odometry_ = odometry->stamp;
-  if (now >= next_odometry_) {
-    next_odometry_ += kOdometryPeriod;
-    messages_.emplace_back(*odometry);
-  }
-  if (slam_ && now >= next_map_) {
-    next_map_ += map_period_;
-    publish_map(now);
-  }
-  if (now < next_control_) return;
-  next_control_ += kControlPeriod;
-  const auto lap = clock_.lap("planning");
-  control(now, *odometry);
-}
-
-void TourStack::control(Time now, const OdometryEstimate& odometry) {
+VelocityCommand TourStack::control(Time now, const OdometryEstimate& odometry) {
   const Pose2 T_odom_body = to_planar(odometry.T_odom_body);
   const PoseEstimate pose = tracker_.at(odometry.stamp, T_odom_body);
   const inspect::TourOutput tour = tour_.step(now, {.pose = pose,
                                                     .is_lost = trust_.is_lost,
-                                                    .navigation = feedback_of(navigation_),
+                                                    .navigation = navigation_feedback(),
                                                     .docking = docking_feedback_,
                                                     .remote = std::exchange(new_remote_, std::nullopt)});
-  for (const Event& event : tour.events) messages_.emplace_back(event);
+  for (const Event& event : tour.events) say(event);
   if (tour.map_is_made) take_over_map(now, pose);
   if (tour.localize_anew) localize_anew(now, T_odom_body);
-  follow(now, tour, pose, T_odom_body);
-  command_.stamp = now;
-  messages_.emplace_back(command_);
+  return follow(now, tour, pose, T_odom_body);
 }
 
-void TourStack::follow(Time now, const inspect::TourOutput& tour, const PoseEstimate& pose, const Pose2& T_odom_body) {
+VelocityCommand TourStack::follow(Time now, const inspect::TourOutput& tour, const PoseEstimate& pose, const Pose2& T_odom_body) {
   const bool is_new_mode = std::exchange(mode_, tour.mode) != tour.mode;
   if (is_new_mode) docking_.stop(), docking_feedback_ = inspect::DockingFeedback::kUnderWay;
-  command_ = {};
-  switch (tour.mode) {
-    case inspect::TourMode::kStand:
-      break;
-    case inspect::TourMode::kRemote:
-      if (last_remote_ && now - last_remote_->stamp < kRemoteHold) {
-        command_.vx_mps = last_remote_->vx_mps;
-        command_.yaw_rate_radps = last_remote_->yaw_rate_radps;
-      }
-      break;
-    case inspect::TourMode::kNavigate:
-      navigate(now, tour.goal, pose);
-      break;
-    case inspect::TourMode::kUndock:
-      if (is_new_mode) docking_.undock(now, T_odom_body);
-      move_at_dock(now, T_odom_body, pose);
-      break;
-    case inspect::TourMode::kDock:
-      if (docking_.status() != plan::DockingStatus::kIdle) {
-        move_at_dock(now, T_odom_body, pose);
-        break;
-      }
-      navigate(now, docking_.staging_goal(site_in_map_.dock->T_route_docked), pose);
-      if (navigation_ == plan::NavigationStatus::kArrived) docking_.dock(now);
-      if (navigation_ == plan::NavigationStatus::kFailed) docking_feedback_ = inspect::DockingFeedback::kFailed;
-      break;
-  }
-  const bool is_navigating = tour.mode == inspect::TourMode::kNavigate || tour.mode == inspect::TourMode::kDock;
-  if (!is_navigating) navigate(now, std::nullopt, pose);
+  if (tour.mode == inspect::TourMode::kNavigate) return go_to(now, tour.goal, pose);
+  if (tour.mode == inspect::TourMode::kDock) return go_to_dock(now, pose, T_odom_body);
+  go_to(now, std::nullopt, pose);
+  if (tour.mode == inspect::TourMode::kRemote) return follow_remote(now);
+  if (tour.mode != inspect::TourMode::kUndock) return {};
+  if (is_new_mode) docking_.undock(now, T_odom_body);
+  return move_at_dock(now, T_odom_body, pose);
 }
 
-void TourStack::move_at_dock(Time now, const Pose2& T_odom_body, const PoseEstimate& pose) {
+VelocityCommand TourStack::follow_remote(Time now) const {
+  VelocityCommand command;
+  if (!last_remote_ || now - last_remote_->stamp >= kRemoteHold) return command;
+  command.vx_mps = last_remote_->vx_mps;
+  command.yaw_rate_radps = last_remote_->yaw_rate_radps;
+  return command;
+}
+
+/// To the place before the post, then in.
+VelocityCommand TourStack::go_to_dock(Time now, const PoseEstimate& pose, const Pose2& T_odom_body) {
+  if (docking_.status() != plan::DockingStatus::kIdle) return move_at_dock(now, T_odom_body, pose);
+  const VelocityCommand command = go_to(now, docking_.staging_goal(site_in_map_.dock->T_route_docked), pose);
+  if (navigation_ == plan::NavigationStatus::kArrived) docking_.dock(now);
+  if (navigation_ == plan::NavigationStatus::kFailed) docking_feedback_ = inspect::DockingFeedback::kFailed;
+  return command;
+}
+
+VelocityCommand TourStack::move_at_dock(Time now, const Pose2& T_odom_body, const PoseEstimate& pose) {
   const plan::DockingStep step = docking_.step(now, T_odom_body);
-  command_ = step.command;
   if (!step.text.empty()) note(now, pose, "docking", step.text);
   switch (step.status) {
     case plan::DockingStatus::kDocked:
@@ -241,18 +203,12 @@ void TourStack::move_at_dock(Time now, const Pose2& T_odom_body, const PoseEstim
     default:
       docking_feedback_ = inspect::DockingFeedback::kUnderWay;
   }
+  return step.command;
 }
 
-void TourStack::navigate(Time now, const std::optional<NavigationGoal>& goal, const PoseEstimate& pose) {
+VelocityCommand TourStack::go_to(Time now, const std::optional<NavigationGoal>& goal, const PoseEstimate& pose) {
   navigator_.set_goal(goal);
-  const plan::NavigationStep drive = navigator_.step(now, pose.T_map_body);
-  if (drive.replanned) messages_.emplace_back(Path{now, drive.path});
-  if (drive.is_detour) note(now, pose, "replan", "Something stands on the path: a new one is planned.");
-  if (drive.status == plan::NavigationStatus::kRecovering && navigation_ != drive.status) {
-    note(now, pose, "recovery", "Blocked for too long: backing up.");
-  }
-  navigation_ = drive.status;
-  if (goal) command_ = drive.command;
+  return navigate(now, pose).command;
 }
 
 /// The mapping drive is over: from here on the map is what it is.
@@ -270,18 +226,6 @@ void TourStack::localize_anew(Time now, const Pose2& T_odom_body) {
   localizer_->start_at(site_in_map_.dock->T_route_docked, docked_covariance());
   tracker_ = localize::MapPoseTracker();
   tracker_.correct(now, T_odom_body, site_in_map_.dock->T_route_docked, docked_covariance());
-}
-
-void TourStack::note(Time now, const PoseEstimate& pose, const char* kind, const std::string& text) {
-  messages_.emplace_back(Event{.stamp = now, .kind = kind, .subject = "", .text = text, .value = 0.0,
-                               .T_map_body = pose.T_map_body, .p_map_target = pose.T_map_body.position()});
-}
-
-void TourStack::publish_map(Time now) {
-  const auto lap = clock_.lap("slam");
-  MapUpdate update{now, map()};
-  navigator_.set_map(update.map);
-  messages_.emplace_back(std::move(update));
 }
 
 }  // namespace patrol::app

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "app/robot_stack.h"
-#include "localize/map_pose_tracker.h"
 
 namespace patrol::app {
 
@@ -28,18 +27,16 @@ class TourStack final : public RobotStack {
 
   void handle(const SensorMessage& message) override;
   void handle_fall(Time now) override;
-  void step(Time now) override;
-
-  const VelocityCommand& command() const override { return command_; }
-  MapUpdate final_map(Time now) const override { return {now, map()}; }
   bool mission_is_over() const override { return tour_.is_over(); }
-  std::vector<StackMessage> take_messages() override { return std::exchange(messages_, {}); }
-  const PartClock& clock() const override { return clock_; }
 
  private:
+  std::optional<OdometryEstimate> odometry() const override { return odometry_.estimate(); }
+  OccupancyGrid map() const override { return slam_ ? slam_->map() : *map_; }
+  bool is_mapping() const override { return slam_.has_value(); }
+  VelocityCommand control(Time now, const OdometryEstimate& odometry) override;
+
   void handle_scan(const LaserScan& scan);
   void look_for_dock(const LevelScan& scan, const Pose2& T_odom_body, const Pose2& T_map_body);
-  void map_scan(const LevelScan& scan, const Pose2& T_odom_body);
   void localize_scan(const LevelScan& scan, const Pose2& T_odom_body);
   void handle_range(const UwbRange& range);
   void handle_ultrasonic(const UltrasonicRange& range);
@@ -51,15 +48,13 @@ class TourStack final : public RobotStack {
   std::optional<Place> place_at(Time stamp) const;
   std::vector<UwbAnchor> anchors_above_body() const;
 
-  void control(Time now, const OdometryEstimate& odometry);
-  void follow(Time now, const inspect::TourOutput& tour, const PoseEstimate& pose, const Pose2& T_odom_body);
-  void move_at_dock(Time now, const Pose2& T_odom_body, const PoseEstimate& pose);
-  void navigate(Time now, const std::optional<NavigationGoal>& goal, const PoseEstimate& pose);
+  VelocityCommand follow(Time now, const inspect::TourOutput& tour, const PoseEstimate& pose, const Pose2& T_odom_body);
+  VelocityCommand follow_remote(Time now) const;
+  VelocityCommand go_to_dock(Time now, const PoseEstimate& pose, const Pose2& T_odom_body);
+  VelocityCommand move_at_dock(Time now, const Pose2& T_odom_body, const PoseEstimate& pose);
+  VelocityCommand go_to(Time now, const std::optional<NavigationGoal>& goal, const PoseEstimate& pose);
   void take_over_map(Time now, const PoseEstimate& pose);
   void localize_anew(Time now, const Pose2& T_odom_body);
-  void publish_map(Time now);
-  void note(Time now, const PoseEstimate& pose, const char* kind, const std::string& text);
-  OccupancyGrid map() const { return slam_ ? slam_->map() : *map_; }
 
   StackSettings settings_;
   RobotDescription robot_;
@@ -70,26 +65,14 @@ class TourStack final : public RobotStack {
   std::optional<slam::GridSlam> slam_;  ///< on the mapping drive
   std::optional<OccupancyGrid> map_;    ///< from then on
   std::optional<localize::MonteCarloLocalizer> localizer_;
-  localize::MapPoseTracker tracker_;
-  plan::Navigator navigator_;
   std::optional<localize::DockDetector> dock_detector_;
   plan::Docking docking_;
   inspect::Tour tour_;
 
-  Time settle_;
-  std::optional<Time> first_odometry_;
   LocalizationTrust trust_{.trust = 1.0};
   std::optional<RemoteCommand> new_remote_, last_remote_;
   inspect::TourMode mode_ = inspect::TourMode::kStand;
-  plan::NavigationStatus navigation_ = plan::NavigationStatus::kIdle;  ///< a control period ago
   inspect::DockingFeedback docking_feedback_ = inspect::DockingFeedback::kUnderWay;
-  VelocityCommand command_;
-  Time map_period_;
-  Time next_control_{};
-  Time next_odometry_{};
-  Time next_map_{};
-  std::vector<StackMessage> messages_;
-  PartClock clock_;
 };
 
 }  // namespace patrol::app

@@ -10,6 +10,7 @@
 #include "core/route.h"
 #include "core/settings.h"
 #include "inspect/gas_measurement.h"
+#include "inspect/navigation_feedback.h"
 
 namespace patrol::inspect {
 
@@ -35,9 +36,6 @@ struct MissionSettings {
     visit("yaw_tol_rad", self.yaw_tol_rad, between(0.005, 3.2));
   }
 };
-
-/// What navigation says about the goal it was given.
-enum class NavigationFeedback { kDriving, kArrived, kFailed };
 
 struct MissionOutput {
   std::optional<NavigationGoal> goal;  ///< none: stand

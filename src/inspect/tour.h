@@ -8,7 +8,7 @@
 #include "core/navigation_goal.h"
 #include "core/route.h"
 #include "core/settings.h"
-#include "inspect/mission.h"
+#include "inspect/navigation_feedback.h"
 
 namespace patrol::inspect {
 

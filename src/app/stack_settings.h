@@ -1,0 +1,47 @@
+#pragma once
+
+#include "core/settings.h"
+#include "inspect/mission.h"
+#include "inspect/tour.h"
+#include "localize/amcl/monte_carlo.h"
+#include "localize/body_estimator.h"
+#include "localize/dock_detector.h"
+#include "localize/scan_leveler.h"
+#include "localize/track_odometry.h"
+#include "plan/docking.h"
+#include "plan/navigator.h"
+#include "slam/grid_slam.h"
+
+namespace patrol::app {
+
+/// Of every part that some robot has; each stack takes what it is built of.
+struct StackSettings {
+  double settle_s = 1.0;  ///< after odometry's start, before the first scan makes the map's origin
+  localize::BodyEstimatorSettings odometry;        ///< of a robot with legs
+  localize::TrackOdometrySettings track_odometry;  ///< of a robot with tracks
+  localize::ScanLevelerSettings leveling;
+  slam::GridSlamSettings slam;
+  localize::MonteCarloSettings localization;  ///< on a map that is known
+  plan::NavigatorSettings navigation;
+  localize::DockDetectorSettings dock_detector;
+  plan::DockingSettings docking;
+  inspect::MissionSettings mission;
+  inspect::TourSettings tour;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("settle_s", self.settle_s, between(0.0, 60.0));
+    visit("odometry", self.odometry);
+    visit("track_odometry", self.track_odometry);
+    visit("leveling", self.leveling);
+    visit("slam", self.slam);
+    visit("localization", self.localization);
+    visit("navigation", self.navigation);
+    visit("dock_detector", self.dock_detector);
+    visit("docking", self.docking);
+    visit("mission", self.mission);
+    visit("tour", self.tour);
+  }
+};
+
+}  // namespace patrol::app
