@@ -46,9 +46,8 @@ plan::NavigationStep RobotStack::navigate(Time now, const PoseEstimate& pose) {
   plan::NavigationStep step = navigator_.step(now, pose.T_map_body);
   if (step.replanned) say(Path{now, step.path});
   if (step.is_detour) note(now, pose, "replan", "Something stands on the path: a new one is planned.");
-  if (step.status == plan::NavigationStatus::kRecovering && navigation_ != step.status) {
-    note(now, pose, "recovery", "Blocked for too long: backing up.");
-  }
+  if (!step.text.empty()) note(now, pose, "navigation", step.text);
+  if (!step.recovery.empty()) note(now, pose, "recovery", step.recovery);
   navigation_ = step.status;
   return step;
 }

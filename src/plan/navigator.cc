@@ -33,6 +33,13 @@ std::unique_ptr<LocalPlanner> make_local_planner(const NavigatorSettings& settin
   return std::make_unique<DynamicWindow>(settings.local);
 }
 
+std::string sentence_of_recovery(const std::string& kind) {
+  if (kind == "wait") return "Recovery: the robot waits.";
+  if (kind == "clear") return "Recovery: the robot forgets what it saw about it.";
+  if (kind == "back_up") return "Recovery: the robot backs up.";
+  return "Recovery: the robot looks around.";
+}
+
 NavigationTrouble trouble_of(PlanStatus status) {
   switch (status) {
     case PlanStatus::kStartBlocked:
@@ -109,6 +116,7 @@ void Navigator::set_goal(const std::optional<NavigationGoal>& goal) {
   no_route_since_.reset();
   trouble_ = NavigationTrouble::kNone;
   text_.clear();
+  recovery_text_.clear();
   has_given_up_ = false;
   recoveries_ = 0;
   nearest_left_m_ = std::numeric_limits<double>::infinity();
@@ -138,6 +146,7 @@ NavigationStep Navigator::step(Time now, const Pose2& T_map_body) {
   }
   step.trouble = trouble_;
   step.text = std::exchange(text_, {});
+  step.recovery = std::exchange(recovery_text_, {});
   last_ = step.command;
   return step;
 }
@@ -303,6 +312,7 @@ NavigationStatus Navigator::recover(Time now, const Pose2& T_map_body, VelocityC
   is_approaching_ = false;
   const std::string& kind = settings_.recoveries[static_cast<std::size_t>(recoveries_) % settings_.recoveries.size()];
   ++recoveries_;
+  recovery_text_ = sentence_of_recovery(kind);
   if (kind != "wait") costmap_.forget_live(T_map_body.position(), 2.0);
   double duration_s = 0.0;  // clear: nothing more
   if (kind == "back_up") duration_s = settings_.back_up_s;

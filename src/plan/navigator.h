@@ -95,6 +95,7 @@ struct NavigationStep {
   NavigationStatus status = NavigationStatus::kIdle;
   NavigationTrouble trouble = NavigationTrouble::kNone;
   std::string text;         ///< one sentence, in the step in which the trouble begins or the goal is given up; else empty
+  std::string recovery;     ///< one sentence, in the step in which a recovery begins; else empty
   bool replanned = false;
   bool is_detour = false;   ///< replanned because something stands on the path
   std::vector<Pose2> path;  ///< in map; filled when replanned
@@ -175,7 +176,7 @@ class Navigator {
   std::optional<Recovery> recovery_;
   std::optional<Time> no_route_since_;
   NavigationTrouble trouble_ = NavigationTrouble::kNone;
-  std::string text_;                  ///< not said yet
+  std::string text_, recovery_text_;  ///< not said yet
   bool has_given_up_ = false;
   int recoveries_ = 0;
   double nearest_left_m_ = 0.0;       ///< the shortest way left so far

@@ -82,10 +82,9 @@ struct DriveRecord {
   double max_side_speed_mps = 0.0;   ///< asked for
   int num_plans = 0;
   int num_detours = 0;
-  int num_recoveries = 0;
   double turned_rad = 0.0;           ///< to both sides
   NavigationTrouble trouble = NavigationTrouble::kNone;  ///< at the end
-  std::vector<std::string> texts;
+  std::vector<std::string> texts, recoveries;
   Pose2 T_map_body;                  ///< at the end
   std::vector<Eigen::Vector2d> way;  ///< [tick], in map
 };
@@ -101,7 +100,6 @@ inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_
                          const RobotDescription& robot = make_robot(), double turn_slip = 0.0) {
   constexpr double kPeriod_s = 0.05;
   DriveRecord record;
-  NavigationStatus before = NavigationStatus::kIdle;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // ahead, left, yaw
   navigator.set_goal(goal);
   const int ticks = static_cast<int>(std::lround(time_limit_s / kPeriod_s));
@@ -117,9 +115,8 @@ inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_
     const NavigationStep step = navigator.step(now, T_map_body);
     record.num_plans += step.replanned;
     record.num_detours += step.is_detour;
-    record.num_recoveries +=
-        step.status == NavigationStatus::kRecovering && before != NavigationStatus::kRecovering;
-    record.end = before = step.status;
+    if (!step.recovery.empty()) record.recoveries.push_back(step.recovery);
+    record.end = step.status;
     record.trouble = step.trouble;
     if (!step.text.empty()) record.texts.push_back(step.text);
     record.time_s = time_s;
