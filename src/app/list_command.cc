@@ -58,7 +58,10 @@ ExitCode list_command() {
   print("lidar presets", allowed<sim::LidarSettings>("preset"));
   print("sensor faults", allowed<sim::FaultSettings>("kind"));
   print("mapping methods", {"grid particle filter with scan matching (stack.slam)"});
-  print("planners", {"A* with the dynamic window approach (stack.navigation)"});
+  print("localisation methods", {"Monte-Carlo localisation with KLD sampling (stack.localization)"});
+  print("sensor models of localisation", allowed<localize::MonteCarloSettings>("sensor_model"));
+  print("global planners", {"A* (stack.navigation.global)"});
+  print("local planners", allowed<plan::NavigatorSettings>("local_planner"));
   return ExitCode::kDone;
 }
 

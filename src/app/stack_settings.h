@@ -6,6 +6,7 @@
 #include "localize/amcl/monte_carlo.h"
 #include "localize/body_estimator.h"
 #include "localize/dock_detector.h"
+#include "localize/range_filter.h"
 #include "localize/scan_leveler.h"
 #include "localize/track_odometry.h"
 #include "plan/docking.h"
@@ -22,6 +23,7 @@ struct StackSettings {
   localize::ScanLevelerSettings leveling;
   slam::GridSlamSettings slam;
   localize::MonteCarloSettings localization;  ///< on a map that is known
+  localize::RangeFilterSettings range_filter;  ///< of a robot with tracks and UWB: a second opinion
   plan::NavigatorSettings navigation;
   localize::DockDetectorSettings dock_detector;
   plan::DockingSettings docking;
@@ -36,6 +38,7 @@ struct StackSettings {
     visit("leveling", self.leveling);
     visit("slam", self.slam);
     visit("localization", self.localization);
+    visit("range_filter", self.range_filter);
     visit("navigation", self.navigation);
     visit("dock_detector", self.dock_detector);
     visit("docking", self.docking);

@@ -31,6 +31,7 @@ TourStack::TourStack(const StackSettings& settings, const RobotDescription& robo
       seed_(seed),
       odometry_(robot, settings.track_odometry),
       leveler_(robot.T_body("lidar"), settings.leveling),
+      range_filter_(settings.range_filter, site_in_map.anchors, robot.T_body("uwb")),
       map_(std::move(start.map)),
       docking_(settings.docking),
       tour_(settings.tour, std::move(start.goals), start.has_remote) {
@@ -105,6 +106,7 @@ void TourStack::localize_scan(const LevelScan& scan, const Pose2& T_odom_body) {
 void TourStack::handle_range(const UwbRange& range) {
   const std::optional<Pose3> T_odom_body = odometry_.T_odom_body_at(range.stamp);
   if (!T_odom_body) return;
+  range_filter_.add(range, *T_odom_body);
   if (localizer_) return localizer_->add(range, *T_odom_body);
   const auto anchor = std::find_if(site_in_map_.anchors.begin(), site_in_map_.anchors.end(),
                                    [&](const UwbAnchor& known) { return known.number == range.anchor; });
@@ -113,6 +115,16 @@ void TourStack::handle_range(const UwbRange& range) {
               .range_m = range.range_m,
               .T_odom_body = to_planar(*T_odom_body),
               .p_level_antenna = uwb_antenna_in_level(T_odom_body->rotation, robot_.T_body("uwb"), odometry_.height_above_ground_m())});
+}
+
+/// Odometry and ranges alone, from where the robot first knows its place; what is said begins with the first scan, as the other
+/// poses do.
+void TourStack::follow_ranges(const OdometryEstimate& odometry, const PoseEstimate& pose) {
+  const bool knows_its_place = slam_ || (trust_.stamp > Time{} && !trust_.is_lost);
+  if (site_in_map_.anchors.empty() || !(knows_its_place || range_filter_.has_started())) return;
+  if (!range_filter_.has_started()) start_ranges(odometry, pose.T_map_body, slam_ ? docked_covariance() : pose.covariance);
+  range_filter_.predict(odometry.stamp, odometry.T_odom_body, odometry_.twist_std());
+  if (has_settled(odometry.stamp)) say(RangePoseEstimate{range_filter_.estimate(odometry.stamp, odometry.T_odom_body)});
 }
 
 void TourStack::handle_ultrasonic(const UltrasonicRange& range) {
@@ -156,7 +168,8 @@ VelocityCommand TourStack::control(Time now, const OdometryEstimate& odometry) {
                                                     .remote = std::exchange(new_remote_, std::nullopt)});
   for (const Event& event : tour.events) say(event);
   if (tour.map_is_made) take_over_map(now, pose);
-  if (tour.localize_anew) localize_anew(now, T_odom_body);
+  if (tour.localize_anew) localize_anew(odometry);
+  follow_ranges(odometry, pose);
   return follow(now, tour, pose, T_odom_body);
 }
 
@@ -221,11 +234,18 @@ void TourStack::take_over_map(Time now, const PoseEstimate& pose) {
 }
 
 /// As after switching the robot off and on at its post.
-void TourStack::localize_anew(Time now, const Pose2& T_odom_body) {
+void TourStack::localize_anew(const OdometryEstimate& odometry) {
   if (!settings_.tour.starts_docked) return localizer_->start_anywhere();
-  localizer_->start_at(site_in_map_.dock->T_route_docked, docked_covariance());
+  const Pose2& T_map_docked = site_in_map_.dock->T_route_docked;
+  localizer_->start_at(T_map_docked, docked_covariance());
   tracker_ = localize::MapPoseTracker();
-  tracker_.correct(now, T_odom_body, site_in_map_.dock->T_route_docked, docked_covariance());
+  tracker_.correct(odometry.stamp, to_planar(odometry.T_odom_body), T_map_docked, docked_covariance());
+  start_ranges(odometry, T_map_docked, docked_covariance());
+}
+
+void TourStack::start_ranges(const OdometryEstimate& odometry, const Pose2& T_map_body, const Eigen::Matrix3d& covariance) {
+  range_filter_.start_at({.stamp = odometry.stamp, .T_map_body = T_map_body, .covariance = covariance}, odometry.T_odom_body,
+                         odometry_.height_above_ground_m());
 }
 
 }  // namespace patrol::app

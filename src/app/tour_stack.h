@@ -39,6 +39,8 @@ class TourStack final : public RobotStack {
   void look_for_dock(const LevelScan& scan, const Pose2& T_odom_body, const Pose2& T_map_body);
   void localize_scan(const LevelScan& scan, const Pose2& T_odom_body);
   void handle_range(const UwbRange& range);
+  void follow_ranges(const OdometryEstimate& odometry, const PoseEstimate& pose);
+  void start_ranges(const OdometryEstimate& odometry, const Pose2& T_map_body, const Eigen::Matrix3d& covariance);
   void handle_ultrasonic(const UltrasonicRange& range);
   void handle_depth(const DepthImage& image);
   struct Place {
@@ -54,7 +56,7 @@ class TourStack final : public RobotStack {
   VelocityCommand move_at_dock(Time now, const Pose2& T_odom_body, const PoseEstimate& pose);
   VelocityCommand go_to(Time now, const std::optional<NavigationGoal>& goal, const PoseEstimate& pose);
   void take_over_map(Time now, const PoseEstimate& pose);
-  void localize_anew(Time now, const Pose2& T_odom_body);
+  void localize_anew(const OdometryEstimate& odometry);
 
   StackSettings settings_;
   RobotDescription robot_;
@@ -62,6 +64,7 @@ class TourStack final : public RobotStack {
   std::uint64_t seed_;
   localize::TrackOdometry odometry_;
   localize::ScanLeveler leveler_;
+  localize::RangeFilter range_filter_;  ///< beside the others: it decides nothing
   std::optional<slam::GridSlam> slam_;  ///< on the mapping drive
   std::optional<OccupancyGrid> map_;    ///< from then on
   std::optional<localize::MonteCarloLocalizer> localizer_;

@@ -153,6 +153,9 @@ struct PoseEstimate {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in map; m, m, rad
 };
 
+/// The same by odometry and UWB ranges alone, without map or lidar: a second opinion.
+struct RangePoseEstimate : PoseEstimate {};
+
 /// How far the localisation believes itself: "am I lost?".
 struct LocalizationTrust {
   Time stamp{};

@@ -38,6 +38,7 @@ template <> inline constexpr const char* kRosType<DepthImage> = "patrol_msgs/msg
 template <> inline constexpr const char* kRosType<RemoteCommand> = "patrol_msgs/msg/RemoteCommand";
 template <> inline constexpr const char* kRosType<LocalizationTrust> = "patrol_msgs/msg/LocalizationTrust";
 template <> inline constexpr const char* kRosType<OdometryEstimate> = "nav_msgs/msg/Odometry";
+template <> inline constexpr const char* kRosType<RangePoseEstimate> = "geometry_msgs/msg/PoseWithCovarianceStamped";
 template <> inline constexpr const char* kRosType<PoseEstimate> = "geometry_msgs/msg/PoseWithCovarianceStamped";
 template <> inline constexpr const char* kRosType<ParticleSet> = "nav2_msgs/msg/ParticleCloud";
 template <> inline constexpr const char* kRosType<MapUpdate> = "nav_msgs/msg/OccupancyGrid";

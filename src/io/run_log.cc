@@ -92,6 +92,7 @@ bool read_run_log(const std::filesystem::path& log_mcap, const LogHandlers& hand
   dispatch.add(handlers.trust);
   dispatch.add(handlers.odometry);
   dispatch.add(handlers.pose);
+  dispatch.add(handlers.range_pose);
   dispatch.add(handlers.particles);
   dispatch.add(handlers.map);
   dispatch.add(handlers.path);

@@ -32,6 +32,7 @@ template <> inline constexpr const char* kTopic<RemoteCommand> = "/remote";
 template <> inline constexpr const char* kTopic<LocalizationTrust> = "/trust";
 template <> inline constexpr const char* kTopic<OdometryEstimate> = "/odom";
 template <> inline constexpr const char* kTopic<PoseEstimate> = "/pose";
+template <> inline constexpr const char* kTopic<RangePoseEstimate> = "/uwb/pose";
 template <> inline constexpr const char* kTopic<ParticleSet> = "/particles";
 template <> inline constexpr const char* kTopic<MapUpdate> = "/map";
 template <> inline constexpr const char* kTopic<Path> = "/plan";
@@ -94,6 +95,7 @@ struct LogHandlers {
   Handler<LocalizationTrust> trust;
   Handler<OdometryEstimate> odometry;
   Handler<PoseEstimate> pose;
+  Handler<RangePoseEstimate> range_pose;
   Handler<ParticleSet> particles;
   Handler<MapUpdate> map;
   Handler<Path> path;

@@ -8,7 +8,7 @@ namespace patrol::slam {
 RangeInnovation range_innovation(const PoseGaussian& now, const Pose2& T_odom_body, const RangeSighting& sighting,
                                  const RangeUpdateSettings& settings) {
   const Pose2 T_map_then = now.mean * (T_odom_body.inverse() * sighting.T_odom_body);
-  const PredictedRange predicted = predict_uwb_range(sighting.anchor, T_map_then, sighting.p_level_antenna, {});
+  const PredictedRange predicted = predict_uwb_range(sighting.anchor, T_map_then, sighting.p_level_antenna, settings.calibration);
   const Eigen::Vector2d back = T_map_then.position() - now.mean.position();
   RangeInnovation innovation{.excess_m = sighting.range_m - predicted.range_m, .variance_m2 = 0.0, .by_pose = predicted.by_pose};
   innovation.by_pose.z() += predicted.by_pose.y() * back.x() - predicted.by_pose.x() * back.y();  // a turn now swings then

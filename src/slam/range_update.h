@@ -13,6 +13,7 @@ struct RangeUpdateSettings {
   double range_std_m = 0.15;   ///< of a clear range: the radio's noise, and what the calibration leaves of its bias
   double gate_std = 3.0;       ///< a range farther off than so many standard deviations went round a corner
   double gate_excess_std = 2.0;  ///< the same for one that is too long, as those are
+  UwbCalibration calibration = {};  ///< the radio's; not for the scenario
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

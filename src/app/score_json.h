@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "io/metrics_json.h"
+#include "score/goal_error.h"
+#include "score/inspection_score.h"
+#include "score/localization_score.h"
+#include "score/map_error.h"
+#include "score/station_error.h"
+#include "score/trajectory_error.h"
+
+namespace patrol::app {
+
+/// Scores as they stand in metrics.json: every figure by its name, null where there is none.
+io::Metrics to_json(const score::TrajectoryError& error);
+io::Metrics to_json(const score::AlignedError& error);
+io::Metrics to_json(const score::MapError& error);
+io::Metrics to_json(const std::vector<score::StationError>& errors);
+io::Metrics to_json(const score::InspectionScore& score);
+io::Metrics to_json(const score::GoalError& error);
+io::Metrics to_json(const score::LocalizationScore& score);
+io::Metrics to_json(const score::RelocalizationScore& score);
+
+}  // namespace patrol::app
