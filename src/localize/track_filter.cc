@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 namespace patrol::localize {
 namespace {
@@ -15,6 +17,8 @@ constexpr double kStartVelocityStd_mps = 0.05;
 constexpr double kGate = 16.27;     // 99.9 % of chi-square, three degrees of freedom
 constexpr double kLostSpeedStd_mps = 0.1;
 constexpr double kBeltSmoothing_s = 1.0;
+constexpr double kTakeBack_s = 0.5;       // after a loss of grip; the first readings say nearly all
+constexpr int kPlace[4] = {Error::kPosition, Error::kPosition + 1, Error::kPosition + 2, Error::kRotation + 2};
 // Without an IMU.
 constexpr double kCoastYawRateStd = 0.05;  // rad/sqrt(s): what the belts tell of the yaw rate
 constexpr double kCoastTiltStd = 0.03;     // rad/sqrt(s)
@@ -112,6 +116,7 @@ void TrackFilter::correct_speed(double dt_s, double belts_mps, const TrunkMotion
   const double distance = innovation.dot(S.inverse() * innovation);
   if (distance > kGate) S.diagonal().array() += std_mps.array().square() * (distance / kGate - 1.0);
   apply(W, S, innovation);
+  takes_back_s_ = std::max(0.0, takes_back_s_ - dt_s);
 }
 
 void TrackFilter::correct_velocity(const Eigen::Vector3d& v_body, double std_mps) {
@@ -125,24 +130,20 @@ void TrackFilter::correct_gyro_bias(const Eigen::Vector3d& bias_radps, const Eig
   const Gain W = P_.middleCols<3>(Error::kGyroBias);
   Eigen::Matrix3d S = W.middleRows<3>(Error::kGyroBias);
   S.diagonal() += variance;
-  // What the bias has done to place and heading so far stays: odom must not jump. With rows of the gain left out the
-  // covariance follows Joseph's form (Schmidt's consider update).
-  Gain K = W * S.inverse();
-  K.middleRows<3>(Error::kPosition).setZero();
-  K.row(Error::kRotation + 2).setZero();
-  shift(K * (bias_radps - gyro_bias_));
-  P_ += K * S * K.transpose() - K * W.transpose() - W * K.transpose();
-  P_ = (0.5 * (P_ + P_.transpose())).eval();
+  apply(W, S, bias_radps - gyro_bias_);
 }
 
 void TrackFilter::lose_grip(double forward_mps, double way_std_m) {
   motion_.v_body.x() = forward_mps;
+  forget_what_place_owes();
+  takes_back_s_ = std::numeric_limits<double>::infinity();
   P_(Error::kVelocity, Error::kVelocity) += kLostSpeedStd_mps * kLostSpeedStd_mps;
   const Eigen::Vector3d along = motion_.T_odom_body.rotation * Eigen::Vector3d(way_std_m, 0.0, 0.0);
   P_.block<3, 3>(Error::kPosition, Error::kPosition) += along * along.transpose();
 }
 
 void TrackFilter::regain_grip(double belts_mps, double slip_std) {
+  takes_back_s_ = std::min(takes_back_s_, kTakeBack_s);
   smooth_belts_mps_ = belts_mps;
   slip_ = 0.0;
   isolate(kSlip, slip_std * slip_std);
@@ -162,14 +163,30 @@ void TrackFilter::set_origin() {
   const Eigen::Matrix3d R = turn_back.toRotationMatrix();
   P_.middleRows<3>(Error::kRotation) = (R * P_.middleRows<3>(Error::kRotation)).eval();
   P_.middleCols<3>(Error::kRotation) = (P_.middleCols<3>(Error::kRotation) * R.transpose()).eval();
-  for (const int row : {Error::kPosition, Error::kPosition + 1, Error::kPosition + 2, Error::kRotation + 2}) isolate(row, 0.0);
+  for (const int row : kPlace) isolate(row, 0.0);
 }
 
+// With rows of the gain left out the covariance follows Joseph's form (Schmidt's consider update).
 void TrackFilter::apply(const Gain& W, const Eigen::Matrix3d& S, const Eigen::Vector3d& innovation) {
-  const Gain K = W * S.inverse();
+  Gain K = W * S.inverse();
+  if (takes_back_s_ <= 0.0) {
+    for (const int row : kPlace) K.row(row).setZero();
+  }
   shift(K * innovation);
-  P_.noalias() -= K * W.transpose();
+  P_ += K * S * K.transpose() - K * W.transpose() - W * K.transpose();
   P_ = (0.5 * (P_ + P_.transpose())).eval();
+}
+
+void TrackFilter::forget_what_place_owes() {
+  constexpr std::size_t kRows = std::size(kPlace);
+  Eigen::Matrix<double, kRows, kRows> place;
+  for (std::size_t i = 0; i < kRows; ++i) {
+    for (std::size_t k = 0; k < kRows; ++k) place(i, k) = P_(kPlace[i], kPlace[k]);
+  }
+  for (const int row : kPlace) isolate(row, 0.0);
+  for (std::size_t i = 0; i < kRows; ++i) {
+    for (std::size_t k = 0; k < kRows; ++k) P_(kPlace[i], kPlace[k]) = place(i, k);
+  }
 }
 
 void TrackFilter::shift(const Eigen::Matrix<double, kSize, 1>& error) {

@@ -16,7 +16,9 @@ namespace patrol::localize {
 ///                wanders with the turn
 ///
 /// The belts say how fast that point p goes, at the ground: v + omega x p = ((1 - scale - slip) u, 0, 0), u their mean speed. The
-/// yaw rate is the gyro's: what the belts' difference says of it is mostly scrub. Nothing measures yaw or position.
+/// yaw rate is the gyro's: what the belts' difference says of it is mostly scrub. Nothing measures yaw or position, and nothing that
+/// is learnt later corrects them (after a kilometre a hair's breadth of scale would be a centimetre of place, again and again):
+/// odom is smooth. Only what the IMU alone has drifted while the belts had lost their grip is taken back.
 class TrackFilter {
  public:
   struct Settings {
@@ -84,6 +86,8 @@ class TrackFilter {
   using Gain = Eigen::Matrix<double, kSize, 3>;
   void shift(const Eigen::Matrix<double, kSize, 1>& error);
   void apply(const Gain& W, const Eigen::Matrix3d& S, const Eigen::Vector3d& innovation);
+  /// What is learnt from now on does not correct what place and heading have got wrong so far.
+  void forget_what_place_owes();
   /// Cuts row and column off from the rest.
   void isolate(int row, double variance);
 
@@ -96,6 +100,7 @@ class TrackFilter {
   Eigen::Vector2d turn_centre_m_ = Eigen::Vector2d::Zero();
   InertialSample last_;
   double forward_acceleration_mps2_ = 0.0;
+  double takes_back_s_ = 0.0;      ///< corrections move the place, too, for so much longer
   double smooth_belts_mps_ = 0.0;  ///< carried by the IMU, slowly corrected by the belts
   Covariance P_ = Covariance::Zero();
 };

@@ -68,6 +68,31 @@ TEST(TrackFilter, AStandstillsBiasMovesNeitherPlaceNorHeading) {
   EXPECT_NEAR(filter.gyro_bias_radps().z(), 0.0008, 1e-6);
 }
 
+// After 500 m each reading of the belts still tells a little of scale and slip. A hundred-thousandth of the way would be 5 mm.
+TEST(TrackFilter, NoReadingOfTheBeltsMovesThePlaceHoweverFarItHasGone) {
+  TrackFilter filter(quiet(), kAtRest);
+  filter.set_origin();
+  drive(filter, 1.0, 500.0, 0.03);
+  const Pose3 before = filter.motion().T_odom_body;
+  for (const double surprise_mps : {0.02, -0.02, 0.1, -0.1}) {
+    filter.correct_speed(0.02, 1.0 + surprise_mps, filter.motion(), {0.005, 0.005, 0.005});
+  }
+  EXPECT_EQ(filter.motion().T_odom_body.position, before.position);
+}
+
+// By the IMU alone it has gone 0.2 m/s for a second, and slid 0.3 m/s in truth: the belts that hold again put the 10 cm right.
+TEST(TrackFilter, WhatTheImuDriftedWithoutGripIsTakenBack) {
+  TrackFilter filter(quiet(), kAtRest);
+  filter.set_origin();
+  drive(filter, 0.2, 20.0, 0.02);
+  filter.lose_grip(0.2, 0.0);
+  const double lost_m = filter.motion().T_odom_body.position.x();
+  for (int step = 0; step < 250; ++step) filter.predict(kDt, kAtRest);
+  filter.regain_grip(0.3, 0.02);
+  drive(filter, 0.3, 1.0, 0.02);
+  EXPECT_NEAR(filter.motion().T_odom_body.position.x() - lost_m, 0.3 + 0.3, 0.03);
+}
+
 TEST(TrackFilter, CovarianceStaysPositiveThroughDriveAndLossOfGrip) {
   TrackFilter filter(quiet(), kAtRest);
   drive(filter, 0.5, 5.0, 0.02);
