@@ -59,8 +59,10 @@ double JsonObject::number(const char* key) const {
 }
 
 std::string JsonObject::word(const char* key) const {
-  if (!member(key).is_string()) fail(fmt::format("{} must be a word", key));
-  return member(key).get<std::string>();
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+  const Json& value = member(key);
+  if (!value.is_string() || std::ranges::any_of(value.get<std::string>(), is_control)) fail(fmt::format("{} must be a word", key));
+  return value.get<std::string>();
 }
 
 bool JsonObject::flag(const char* key) const {

@@ -80,6 +80,7 @@ TEST(LoadNav, EachWrongTypeIsNamed) {
   EXPECT_EQ(complaint_after([](Json& goal) { goal["orientation"] = "north"; }),
             "nav.json: [1]: orientation must be a list of 4 numbers");
   EXPECT_EQ(complaint_after([](Json& goal) { goal["type"] = 7; }), "nav.json: [1]: type must be a word");
+  EXPECT_EQ(complaint_after([](Json& goal) { goal["type"] = std::string("N\0", 2); }), "nav.json: [1]: type must be a word");
   EXPECT_EQ(complaint_after([](Json& goal) { goal["accuracy"] = "0.1"; }), "nav.json: [1]: accuracy must be a number");
 }
 
