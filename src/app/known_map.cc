@@ -37,8 +37,9 @@ void check_goals(const std::string& file, const std::vector<MarkedGoal>& goals, 
   for (const MarkedGoal& goal : goals) {
     const Eigen::Vector2d p_map = goal.T_map_body.position();
     const std::string place = fmt::format("{}: goal {}: position {:.6g}, {:.6g} lies", file, goal.number, p_map.x(), p_map.y());
-    if (map && !holds(map->geometry(), p_map)) throw InputError(fmt::format("{} outside the map ({})", place, extent_of(map->geometry())));
-    if (!map && !(p_map.norm() <= kFarthestGoal_m)) throw InputError(fmt::format("{} more than {} m from the start", place, kFarthestGoal_m));
+    const auto refuse = [&](const std::string& what) { throw InputError(place + " " + what); };
+    if (map && !holds(map->geometry(), p_map)) refuse(fmt::format("outside the map ({})", extent_of(map->geometry())));
+    if (!map && p_map.norm() > kFarthestGoal_m) refuse(fmt::format("more than {} m from the start", kFarthestGoal_m));
   }
 }
 

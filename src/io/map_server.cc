@@ -132,8 +132,8 @@ OccupancyGrid load_map(const std::filesystem::path& file) {
   const MapFile about = load_map_file(file);
   const Image image = load_pgm(about.image);
   const bool negate = about.negate == "1" || about.negate == "true";
-  OccupancyGrid map({.resolution_m = about.resolution, .width = image.width, .height = image.height, .origin_m = {about.origin[0], about.origin[1]}},
-                    kUnknown);
+  const Eigen::Vector2d origin_m(about.origin[0], about.origin[1]);
+  OccupancyGrid map({.resolution_m = about.resolution, .width = image.width, .height = image.height, .origin_m = origin_m}, kUnknown);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const double value = image.pixels[i];
     const double p = (negate ? value : kMostPixelValue - value) / kMostPixelValue;

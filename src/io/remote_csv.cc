@@ -49,10 +49,16 @@ RemoteCommand read_command(const std::string& line, std::optional<Time> since, c
   if (time_s < 0.0 || time_s > kLongest_s) refuse(fmt::format("time_s = {}: must lie in 0 ... {}", time_s, kLongest_s));
   const Time stamp = from_seconds(time_s);
   if (since && stamp <= *since) refuse(fmt::format("time_s = {}: must be later than in the line before", time_s));
-  if (std::abs(vx_mps) > kFastest) refuse(fmt::format("vx_mps = {}: must lie in -{} ... {}", vx_mps, kFastest, kFastest));
-  if (std::abs(yaw_rate_radps) > kFastest) refuse(fmt::format("yaw_rate_radps = {}: must lie in -{} ... {}", yaw_rate_radps, kFastest, kFastest));
-  if (mark != 0.0 && mark != 1.0) refuse(fmt::format("mark = {}: must be 0 or 1", mark));
-  if (hand_over != 0.0 && hand_over != 1.0) refuse(fmt::format("hand_over = {}: must be 0 or 1", hand_over));
+  const auto check_speed = [&](const char* key, double value) {
+    if (std::abs(value) > kFastest) refuse(fmt::format("{} = {}: must lie in -{} ... {}", key, value, kFastest, kFastest));
+  };
+  const auto check_button = [&](const char* key, double value) {
+    if (value != 0.0 && value != 1.0) refuse(fmt::format("{} = {}: must be 0 or 1", key, value));
+  };
+  check_speed("vx_mps", vx_mps);
+  check_speed("yaw_rate_radps", yaw_rate_radps);
+  check_button("mark", mark);
+  check_button("hand_over", hand_over);
   return {.stamp = stamp, .vx_mps = vx_mps, .yaw_rate_radps = yaw_rate_radps, .mark = mark == 1.0, .hand_over = hand_over == 1.0};
 }
 
