@@ -61,8 +61,20 @@ void refuse_unknown_command(const CLI::App& app, int argc, const char* const* ar
   throw InputError(fmt::format("there is no command '{}' (known: {})", word, fmt::join(known, ", ")));
 }
 
-int report(const char* what, ExitCode code) {
-  fmt::print(stderr, "patrol: {}\n", what);
+/// What a message quotes from a file may hold line ends and other control characters: they are written out.
+std::string on_one_line(const std::string& text) {
+  std::string line;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '\n') line += "\\n";
+    else if (code < 0x20 || code == 0x7f) line += fmt::format("\\x{:02x}", code);
+    else line += c;
+  }
+  return line;
+}
+
+int report(const std::string& what, ExitCode code) {
+  fmt::print(stderr, "patrol: {}\n", on_one_line(what));
   return static_cast<int>(code);
 }
 

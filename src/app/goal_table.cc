@@ -34,7 +34,9 @@ std::string goal_table(const io::Metrics& metrics) {
   for (const io::Metrics& goal : metrics.at("goals")) {
     const Published* published = row < kTable2.size() ? &kTable2[row] : nullptr;
     ++row;
-    if (goal.at("arrivals").get<int>() > 0) text += line(goal, published);
+    const int arrivals = goal.at("arrivals").get<int>(), failed = goal.at("failed").get<int>();
+    if (arrivals > 0) text += line(goal, published);
+    if (failed > 0) text += fmt::format("  {:<8} not reached {} of {} times\n", goal.at("name").get<std::string>(), failed, arrivals + failed);
   }
   if (text.empty()) return "";
   return "  goal     arrivals   position, cm     heading, deg     paper 004, table 2: the same\n" + text;

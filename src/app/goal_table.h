@@ -6,7 +6,7 @@
 
 namespace patrol::app {
 
-/// A tour's goals beside paper 004's table 2; empty when the metrics hold no goal that was reached.
+/// A tour's goals beside paper 004's table 2, and how often each was not reached; empty when the metrics hold no goal that was driven to.
 std::string goal_table(const io::Metrics& metrics);
 
 }  // namespace patrol::app

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/known_map.h"
 #include "core/error.h"
 #include "io/drive_json.h"
 #include "io/map_server.h"
@@ -80,19 +81,32 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   const auto named_file = [&](const char* key, const std::string& name) {
     const std::filesystem::path file = files.world_xml.parent_path() / name;
     if (!std::filesystem::exists(file)) throw InputError(fmt::format("{} = {}: there is no {}", key, name, file.string()));
+    if (std::filesystem::is_directory(file)) throw InputError(fmt::format("{} = {}: {} is a folder", key, name, file.string()));
     return file;
   };
   const io::RouteFile route = io::load_route(named_file("mission", scenario.mission));
   files.route = route.route;
   files.T_site_start = route.T_site_start;
-  if (!scenario.map.empty()) files.map = io::load_map(named_file("map", scenario.map));
-  if (!scenario.goals.empty()) files.goals = io::load_nav(named_file("goals", scenario.goals));
+  if (!scenario.map.empty()) {
+    const std::filesystem::path file = named_file("map", scenario.map);
+    files.map = io::load_map(file);
+    check_known_map(file.string(), *files.map);
+  }
+  if (!scenario.goals.empty()) {
+    const std::filesystem::path file = named_file("goals", scenario.goals);
+    files.goals = io::load_nav(file);
+    check_goals(file.string(), files.goals, files.map);
+  }
   const RemoteSettings& remote = scenario.remote;
   if (!remote.drive.empty() && !remote.recorded.empty()) {
     throw InputError("remote: has a drive and recorded commands: only one of them can be followed");
   }
   if (!remote.drive.empty()) files.drive = io::load_drive(named_file("remote.drive", remote.drive));
   if (!remote.recorded.empty()) files.recorded = io::load_remote(named_file("remote.recorded", remote.recorded));
+  if (files.map && files.has_remote()) {
+    throw InputError(fmt::format("map = {}: a map is given, and by remote control another would be made: only one of them can be used",
+                                 scenario.map));
+  }
   return files;
 }
 

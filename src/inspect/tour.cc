@@ -158,9 +158,10 @@ void Tour::finish(TourOutput& output) {
   enter(Phase::kOver);
   if (num_failed_ == 0) {
     output.events.push_back(event("mission_completed", "", "Every goal was reached."));
-  } else {
-    output.events.push_back(event("mission_failed", "", fmt::format("{} things went wrong on the way.", num_failed_)));
+    return;
   }
+  const std::string count = num_failed_ == 1 ? "One thing" : fmt::format("{} things", num_failed_);
+  output.events.push_back(event("mission_failed", "", count + " went wrong on the way."));
 }
 
 Event Tour::abort(Time now, const std::string& kind, const std::string& text) {

@@ -1,13 +1,17 @@
 #include "io/drive_json.h"
 
+#include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/error.h"
 #include "io/json_object.h"
 
 namespace patrol::io {
 namespace {
+
+constexpr double kLongestLeg_m = 1000.0;
 
 DriveWaypoint read_waypoint(const std::string& place, const Json& json) {
   const JsonObject reader(place, json, {"position", "reverse", "mark_heading_deg"});
@@ -16,7 +20,9 @@ DriveWaypoint read_waypoint(const std::string& place, const Json& json) {
   if (reader.has("reverse")) waypoint.is_reverse = reader.flag("reverse");
   if (reader.has("mark_heading_deg")) {
     waypoint.is_mark = true;
-    waypoint.heading_rad = reader.number("mark_heading_deg") * std::numbers::pi / 180.0;
+    const double heading_deg = reader.number("mark_heading_deg");
+    if (std::abs(heading_deg) > 360.0) reader.fail("mark_heading_deg must lie in -360 ... 360");
+    waypoint.heading_rad = heading_deg * std::numbers::pi / 180.0;
   }
   return waypoint;
 }
@@ -31,7 +37,11 @@ RemoteDrive load_drive(const std::filesystem::path& file) {
   const Json& waypoints = root.list("waypoints");
   RemoteDrive drive;
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
-    drive.push_back(read_waypoint(fmt::format("{}: waypoints[{}]", file.string(), i), waypoints[i]));
+    const std::string place = fmt::format("{}: waypoints[{}]", file.string(), i);
+    drive.push_back(read_waypoint(place, waypoints[i]));
+    if (i > 0 && (drive[i].p_m - drive[i - 1].p_m).norm() > kLongestLeg_m) {
+      throw InputError(fmt::format("{}: position lies more than {} m from the one before", place, kLongestLeg_m));
+    }
   }
   if (drive.size() < 2) root.fail("waypoints must be at least two");
   return drive;

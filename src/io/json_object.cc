@@ -2,25 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "io/json_check.h"
 #include "io/settings_yaml.h"
 
 namespace patrol::io {
+namespace {
 
-Json load_json(const std::filesystem::path& file) {
+constexpr double kLeastUpright = 0.707;  // cosine of the tilt; who writes w first has the robot stand on its head
+
+}  // namespace
+
+Json load_json(const std::filesystem::path& file, std::size_t max_entries) {
   const std::string text = load_text(file);
-  try {
-    return Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    throw InputError(fmt::format("{}: is not JSON at byte {}", file.string(), error.byte));
-  } catch (const Json::out_of_range&) {
-    throw InputError(fmt::format("{}: holds a number too large to be one", file.string()));
-  }
+  check_json(file.string(), text, max_entries);
+  return Json::parse(text);
 }
 
 JsonObject::JsonObject(std::string place, const Json& json, const std::vector<std::string>& keys)
@@ -46,9 +47,10 @@ const Json& JsonObject::list(const char* key) const {
 int JsonObject::whole(const char* key) const {
   const Json& value = member(key);
   if (!value.is_number_integer()) fail(fmt::format("{} must be a whole number", key));
-  const auto number = value.get<std::int64_t>();
-  if (std::abs(number) > std::numeric_limits<int>::max()) fail(fmt::format("{} is too large", key));
-  return static_cast<int>(number);
+  const bool fits = value.is_number_unsigned() ? std::in_range<int>(value.get<std::uint64_t>())
+                                                   : std::in_range<int>(value.get<std::int64_t>());
+  if (!fits) fail(fmt::format("{} is too large", key));
+  return value.get<int>();
 }
 
 double JsonObject::number(const char* key) const {
@@ -57,8 +59,10 @@ double JsonObject::number(const char* key) const {
 }
 
 std::string JsonObject::word(const char* key) const {
-  if (!member(key).is_string()) fail(fmt::format("{} must be a word", key));
-  return member(key).get<std::string>();
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+  const Json& value = member(key);
+  if (!value.is_string() || std::ranges::any_of(value.get<std::string>(), is_control)) fail(fmt::format("{} must be a word", key));
+  return value.get<std::string>();
 }
 
 bool JsonObject::flag(const char* key) const {
@@ -85,6 +89,8 @@ Pose2 JsonObject::pose() const {
   const std::vector<double> p = numbers("position", 3), q = numbers("orientation", 4);
   const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
   if (std::abs(rotation.norm() - 1.0) > 1e-3) fail("orientation must be a quaternion x, y, z, w of length 1");
+  const double upright = (rotation * Eigen::Vector3d::UnitZ()).z();
+  if (upright < kLeastUpright) fail("orientation must stand upright, within 45 degrees: a quaternion x, y, z, w");
   return {p[0], p[1], yaw_of(rotation)};
 }
 

@@ -12,8 +12,8 @@ namespace patrol::io {
 
 using Json = nlohmann::json;
 
-/// Throws InputError, naming the file and the byte, when it is not JSON.
-Json load_json(const std::filesystem::path& file);
+/// Throws InputError, naming the file and the place, when it is not JSON, says a key twice, or has a list of more than `max_entries`.
+Json load_json(const std::filesystem::path& file, std::size_t max_entries = 100'000);
 
 /// Reads the members of one JSON object and knows where it stands: whatever is missing, unknown or of the wrong kind is refused
 /// with an InputError that names the place ("site.json: stations[2]") and the key.
@@ -27,10 +27,10 @@ class JsonObject {
   const Json& list(const char* key) const;
   int whole(const char* key) const;
   double number(const char* key) const;  ///< finite
-  std::string word(const char* key) const;
+  std::string word(const char* key) const;  ///< without control characters
   bool flag(const char* key) const;
   std::vector<double> numbers(const char* key, std::size_t count) const;
-  /// From `position` (x, y, z) and `orientation` (quaternion x, y, z, w of length 1).
+  /// From `position` (x, y, z) and `orientation` (quaternion x, y, z, w of length 1, upright).
   Pose2 pose() const;
   /// At least two points [x, y].
   std::vector<Eigen::Vector2d> polyline(const char* key) const;

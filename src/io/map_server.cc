@@ -8,6 +8,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "core/error.h"
+#include "core/settings.h"
 #include "io/atomic_file.h"
 #include "io/settings_yaml.h"
 
@@ -15,6 +16,8 @@ namespace patrol::io {
 namespace {
 
 constexpr double kOccupiedThreshold = 0.65, kFreeThreshold = 0.196;
+constexpr int kMostPixelValue = 255;
+constexpr std::size_t kMostPixels = 100'000'000;
 constexpr unsigned char kOccupiedPixel = 0, kFreePixel = 254, kUnknownPixel = 205;
 
 unsigned char pixel_of(std::int8_t occupancy) {
@@ -38,28 +41,75 @@ int pgm_number(std::istream& in) {
 /// PGM, binary (P5) or in figures (P2).
 Image load_pgm(const std::filesystem::path& file) {
   std::istringstream in(load_text(file));
+  const auto refuse = [&](const std::string& what) { throw InputError(file.string() + ": " + what); };
   const std::size_t size = in.view().size();
   std::string magic;
   in >> magic;
   Image image{.width = pgm_number(in), .height = pgm_number(in), .pixels = {}};
   const int maximum = pgm_number(in);
-  if ((magic != "P5" && magic != "P2") || image.width <= 0 || image.height <= 0 || maximum != 255) {
-    throw InputError(file.string() + ": is not an 8-bit PGM");
-  }
+  if ((magic != "P5" && magic != "P2") || maximum != kMostPixelValue) refuse("is not an 8-bit PGM");
+  if (image.width <= 0 || image.height <= 0) refuse(fmt::format("is {} x {} pixels: holds no map", image.width, image.height));
   // Each pixel takes at least a byte of the file: a wrong size must not fill the memory.
   const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-  if (count > size) throw InputError(file.string() + ": ends too early");
+  const std::string pixels = fmt::format("{} x {} pixels", image.width, image.height);
+  if (count > size) refuse("ends too early for " + pixels);
+  if (count > kMostPixels) refuse(fmt::format("has {}: at most {} are read", pixels, kMostPixels));
   image.pixels.resize(count);
   in.get();
   if (magic == "P5") in.read(reinterpret_cast<char*>(image.pixels.data()), static_cast<std::streamsize>(count));
   for (std::size_t i = 0; magic == "P2" && i < count; ++i) {
     const int value = pgm_number(in);
     if (value < 0) in.setstate(std::ios::failbit);
-    if (value > maximum) throw InputError(fmt::format("{}: a pixel of {} is brighter than {}", file.string(), value, maximum));
+    if (value > maximum) refuse(fmt::format("a pixel of {} is brighter than {}", value, maximum));
     image.pixels[i] = static_cast<unsigned char>(value);
   }
-  if (!in) throw InputError(file.string() + ": ends too early");
+  if (!in) refuse("ends too early for " + pixels);
+  if (magic == "P2") in >> std::ws;
+  if (in.peek() != std::istringstream::traits_type::eof()) refuse("holds more than its " + pixels);
   return image;
+}
+
+/// What the YAML says. One that is not written keeps its value here.
+struct MapFile {
+  std::string image;
+  std::string mode = "trinary";
+  double resolution = 0.0;     ///< m
+  std::vector<double> origin;  ///< x, y, yaw of the lower-left corner
+  std::string negate = "0";
+  double occupied_thresh = kOccupiedThreshold;
+  double free_thresh = kFreeThreshold;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("image", self.image);
+    visit("mode", self.mode, one_of({"trinary"}));
+    visit("resolution", self.resolution, between(0.001, 10.0));
+    visit("origin", self.origin, between(-1e5, 1e5));
+    visit("negate", self.negate, one_of({"0", "1", "false", "true"}));
+    visit("occupied_thresh", self.occupied_thresh, between(0.0, 1.0));
+    visit("free_thresh", self.free_thresh, between(0.0, 1.0));
+  }
+};
+
+/// The image's path is made one that opens.
+MapFile load_map_file(const std::filesystem::path& file) {
+  const YAML::Node document = load_document(file, {});
+  const auto refuse = [&](const char* key, const std::string& what) {
+    const YAML::Node node = document[key];
+    throw input_error(file.string(), node.IsDefined() ? line_of(node) : 0, fmt::format("{}: {}", key, what));
+  };
+  for (const char* key : {"image", "resolution", "origin"}) {
+    if (!document[key].IsDefined()) refuse(key, "is missing");
+  }
+  MapFile map;
+  SettingsReader::read_section(file.string(), document, "", map);
+  if (map.origin.size() != 2 && map.origin.size() != 3) refuse("origin", "must be a list x, y, yaw");
+  if (map.origin.size() == 3 && map.origin[2] != 0.0) refuse("origin", "a turned map (yaw other than 0) is not read");
+  if (map.free_thresh > map.occupied_thresh) refuse("free_thresh", "must not be above occupied_thresh");
+  const std::filesystem::path image = file.parent_path() / map.image;
+  if (!std::filesystem::exists(image) || std::filesystem::is_directory(image)) refuse("image", "there is no file " + image.string());
+  map.image = image.string();
+  return map;
 }
 
 }  // namespace
@@ -79,36 +129,17 @@ void save_map(const std::filesystem::path& file, const OccupancyGrid& map) {
 }
 
 OccupancyGrid load_map(const std::filesystem::path& file) {
-  const YAML::Node document = load_document(file, {});
-  const auto number = [&](const char* key, const YAML::Node& node) {
-    double value = 0.0;
-    if (!node.IsDefined() || !node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value)) {
-      throw InputError(fmt::format("{}: {}: must be a number", file.string(), key));
-    }
-    return value;
-  };
-  GridGeometry geometry;
-  geometry.resolution_m = number("resolution", document["resolution"]);
-  if (geometry.resolution_m <= 0.0) throw InputError(file.string() + ": resolution: must be positive");
-  const YAML::Node origin = document["origin"];
-  if (!origin.IsDefined() || !origin.IsSequence() || origin.size() < 2) throw InputError(file.string() + ": origin: must be a list x, y, yaw");
-  geometry.origin_m = {number("origin", origin[0]), number("origin", origin[1])};
-  if (origin.size() > 2 && number("origin", origin[2]) != 0.0) throw InputError(file.string() + ": origin: a turned map (yaw other than 0) is not read");
-  if (!document["image"].IsDefined()) throw InputError(file.string() + ": image: is missing");
-
-  const Image image = load_pgm(file.parent_path() / document["image"].Scalar());
-  geometry.width = image.width;
-  geometry.height = image.height;
-  const bool negate = document["negate"].IsDefined() && document["negate"].Scalar() == "1";
-  const double occupied = document["occupied_thresh"].IsDefined() ? number("occupied_thresh", document["occupied_thresh"]) : kOccupiedThreshold;
-  const double free = document["free_thresh"].IsDefined() ? number("free_thresh", document["free_thresh"]) : kFreeThreshold;
-  OccupancyGrid map(geometry, kUnknown);
+  const MapFile about = load_map_file(file);
+  const Image image = load_pgm(about.image);
+  const bool negate = about.negate == "1" || about.negate == "true";
+  const Eigen::Vector2d origin_m(about.origin[0], about.origin[1]);
+  OccupancyGrid map({.resolution_m = about.resolution, .width = image.width, .height = image.height, .origin_m = origin_m}, kUnknown);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const double value = image.pixels[i];
-    const double p = negate ? value / 255.0 : (255.0 - value) / 255.0;
+    const double p = (negate ? value : kMostPixelValue - value) / kMostPixelValue;
     const int col = static_cast<int>(i) % image.width, row = image.height - 1 - static_cast<int>(i) / image.width;
-    if (p > occupied) map.at({col, row}) = kOccupied;
-    else if (p < free) map.at({col, row}) = kFree;
+    if (p > about.occupied_thresh) map.at({col, row}) = kOccupied;
+    else if (p < about.free_thresh) map.at({col, row}) = kFree;
   }
   return map;
 }

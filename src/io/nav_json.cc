@@ -31,11 +31,8 @@ MarkedGoal read_goal(const std::string& place, const Json& json) {
 
 std::vector<MarkedGoal> load_nav(const std::filesystem::path& file) {
   const std::string name = file.string();
-  const Json json = load_json(file);
+  const Json json = load_json(file, kMostGoals);
   if (!json.is_array() || json.empty()) throw InputError(name + ": must be a list of at least one goal");
-  if (json.size() > kMostGoals) {
-    throw InputError(fmt::format("{}: has {} goals: at most {} are taken", name, json.size(), kMostGoals));
-  }
   std::vector<MarkedGoal> goals;
   std::set<int> numbers;
   for (std::size_t i = 0; i < json.size(); ++i) {

@@ -1,5 +1,6 @@
 #include "io/remote_csv.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -15,21 +16,50 @@
 namespace patrol::io {
 namespace {
 
-constexpr const char* kHeader = "time_s,vx_mps,yaw_rate_radps,mark,hand_over";
-constexpr std::size_t kColumns = 5;
+constexpr std::array<const char*, 5> kColumns = {"time_s", "vx_mps", "yaw_rate_radps", "mark", "hand_over"};
+constexpr double kLongest_s = 86400.0;  // as a scenario's time limit
+constexpr double kFastest = 100.0;      // m/s, rad/s: what is beyond is a slip of the pen
 
-/// None unless the line is so many numbers with commas between.
-std::optional<std::array<double, kColumns>> numbers_of(const std::string& line) {
-  std::array<double, kColumns> values{};
-  const char *at = line.data(), *const end = line.data() + line.size();
-  for (std::size_t i = 0; i < kColumns; ++i) {
-    const auto [rest, error] = std::from_chars(at, end, values[i]);
-    const bool is_last = i + 1 == kColumns;
-    const bool ends_well = is_last ? rest == end : rest != end && *rest == ',';
-    if (error != std::errc() || !ends_well || !std::isfinite(values[i])) return std::nullopt;
-    if (!is_last) at = rest + 1;
+using Row = std::array<double, kColumns.size()>;
+
+std::string header() { return fmt::format("{}", fmt::join(kColumns, ",")); }
+
+/// One number for each column. `refuse` does not return.
+template <typename Refuse>
+Row read_row(const std::string& line, const Refuse& refuse) {
+  const auto num_cells = static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) + 1;
+  if (num_cells != kColumns.size()) refuse(fmt::format("must be {} numbers with commas between, {}", kColumns.size(), header()));
+  Row row{};
+  const char* cell = line.data();
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const char* const end = std::find(cell, line.data() + line.size(), ',');
+    const auto [rest, error] = std::from_chars(cell, end, row[i]);
+    if (error != std::errc() || rest != end || !std::isfinite(row[i])) {
+      refuse(fmt::format("{} = {}: must be a number", kColumns[i], std::string(cell, end)));
+    }
+    cell = end + 1;
   }
-  return values;
+  return row;
+}
+
+/// `since`: the command before.
+template <typename Refuse>
+RemoteCommand read_command(const std::string& line, std::optional<Time> since, const Refuse& refuse) {
+  const auto [time_s, vx_mps, yaw_rate_radps, mark, hand_over] = read_row(line, refuse);
+  if (time_s < 0.0 || time_s > kLongest_s) refuse(fmt::format("time_s = {}: must lie in 0 ... {}", time_s, kLongest_s));
+  const Time stamp = from_seconds(time_s);
+  if (since && stamp <= *since) refuse(fmt::format("time_s = {}: must be later than in the line before", time_s));
+  const auto check_speed = [&](const char* key, double value) {
+    if (std::abs(value) > kFastest) refuse(fmt::format("{} = {}: must lie in -{} ... {}", key, value, kFastest, kFastest));
+  };
+  const auto check_button = [&](const char* key, double value) {
+    if (value != 0.0 && value != 1.0) refuse(fmt::format("{} = {}: must be 0 or 1", key, value));
+  };
+  check_speed("vx_mps", vx_mps);
+  check_speed("yaw_rate_radps", yaw_rate_radps);
+  check_button("mark", mark);
+  check_button("hand_over", hand_over);
+  return {.stamp = stamp, .vx_mps = vx_mps, .yaw_rate_radps = yaw_rate_radps, .mark = mark == 1.0, .hand_over = hand_over == 1.0};
 }
 
 }  // namespace
@@ -37,30 +67,25 @@ std::optional<std::array<double, kColumns>> numbers_of(const std::string& line) 
 std::vector<RemoteCommand> load_remote(const std::filesystem::path& file) {
   std::istringstream lines(load_text(file));
   std::vector<RemoteCommand> commands;
+  std::optional<Time> since;
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
     if (line.ends_with('\r')) line.pop_back();
     const auto refuse = [&](const std::string& what) { throw input_error(file.string(), number, what); };
     if (number == 1) {
-      if (line != kHeader) refuse(fmt::format("the first line must be {}", kHeader));
+      if (line != header()) refuse("the first line must be " + header());
       continue;
     }
-    const auto values = numbers_of(line);
-    if (!values) refuse(fmt::format("must be {} numbers with commas between", kColumns));
-    const auto [time_s, vx_mps, yaw_rate_radps, mark, hand_over] = *values;
-    if ((mark != 0.0 && mark != 1.0) || (hand_over != 0.0 && hand_over != 1.0)) refuse("a button must be 0 or 1");
-    const Time stamp = from_seconds(time_s);
-    if (time_s < 0.0 || (!commands.empty() && stamp <= commands.back().stamp)) refuse("times must grow from 0");
-    commands.push_back({.stamp = stamp, .vx_mps = vx_mps, .yaw_rate_radps = yaw_rate_radps, .mark = mark == 1.0,
-                        .hand_over = hand_over == 1.0});
+    commands.push_back(read_command(line, since, refuse));
+    since = commands.back().stamp;
   }
   if (commands.empty()) throw InputError(file.string() + ": holds no command");
   return commands;
 }
 
 void save_remote(const std::filesystem::path& file, const std::vector<RemoteCommand>& commands) {
-  std::string text = std::string(kHeader) + "\n";
+  std::string text = header() + "\n";
   for (const RemoteCommand& command : commands) {
     text += fmt::format("{},{},{},{:d},{:d}\n", to_seconds(command.stamp), command.vx_mps, command.yaw_rate_radps, command.mark,
                         command.hand_over);

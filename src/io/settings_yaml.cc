@@ -9,9 +9,6 @@
 namespace patrol::io {
 namespace {
 
-/// yaml-cpp marks lines from 0; nodes made by an override have no mark.
-int line_of(const YAML::Node& node) { return node.Mark().is_null() ? 0 : node.Mark().line + 1; }
-
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);
@@ -76,6 +73,8 @@ void apply_override(YAML::Node root, const std::string& override) {
 }
 
 }  // namespace
+
+int line_of(const YAML::Node& node) { return node.Mark().is_null() ? 0 : node.Mark().line + 1; }  // yaml-cpp counts from 0
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
   std::string nearest;

@@ -148,6 +148,9 @@ class SettingsWriter {
 /// The file's document with the overrides ("a.b.0.c=value") put in. Throws InputError.
 YAML::Node load_document(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 
+/// Where it stands in its file, from 1; 0 for what an override made.
+int line_of(const YAML::Node& node);
+
 /// What the file says is put over what `settings` holds already.
 template <typename Settings>
 void read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides, Settings& settings) {

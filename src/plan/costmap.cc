@@ -384,13 +384,17 @@ void Costmap::refresh(const CellBox& changed) {
   }
 }
 
+Cost Costmap::unknown_cost() const {
+  return settings_.crosses_unknown ? static_cast<Cost>(std::lround(settings_.unknown_cost * kMaxPassableCost)) : kLethalCost;
+}
+
 /// Costs of `count` cells of a row.
 void Costmap::price(Cell first, int count) {
   const std::int16_t* squared = &squared_.at(first);
   const std::int8_t* occupancy = &map_.at(first);
   const float* keep_out_m = &keep_out_distance_m_.at(first);
   Cost* cost = &cost_.at(first);
-  const auto unknown = static_cast<Cost>(std::lround(settings_.unknown_cost * kMaxPassableCost));
+  const Cost unknown = unknown_cost();
   const auto margin_m = static_cast<float>(settings_.keep_out_margin_m);
   const auto reach_m = static_cast<float>(settings_.keep_out_margin_m + settings_.keep_out_inflation_m);
   for (int i = 0; i < count; ++i) {
@@ -408,7 +412,7 @@ void Costmap::price(Cell first, int count) {
 Cost Costmap::cost_at(const Eigen::Vector2d& p_map) const {
   const Cell cell = geometry().cell_at(p_map);
   if (cost_.contains(cell)) return cost_.at(cell);
-  return static_cast<Cost>(std::lround(settings_.unknown_cost * kMaxPassableCost));
+  return unknown_cost();
 }
 
 namespace {

@@ -23,6 +23,7 @@ struct CostmapSettings {
   double safety_margin_m = 0.05;        ///< kept from the robot's outline
   double route_margin_m = 0.0;          ///< kept by routes beyond that: the discs stick out, and a robot must be steered
   double unknown_cost = 0.15;           ///< of a cell nobody has seen, as a fraction of the highest passable cost
+  bool crosses_unknown = true;          ///< false: what the map does not know is no way; for a robot whose map is complete
   int occupied_percent = 65;            ///< map cells from here on are obstacles
   double obstacle_range_m = 8.0;        ///< live hits nearer than this are obstacles before the map knows them
   double obstacle_memory_s = 8.0;       ///< how long a live obstacle is believed without being seen again
@@ -39,6 +40,7 @@ struct CostmapSettings {
     visit("safety_margin_m", self.safety_margin_m, between(0.0, 0.5));
     visit("route_margin_m", self.route_margin_m, between(0.0, 0.5));
     visit("unknown_cost", self.unknown_cost, between(0.0, 1.0));
+    visit("crosses_unknown", self.crosses_unknown);
     visit("occupied_percent", self.occupied_percent, between(1, 100));
     visit("obstacle_range_m", self.obstacle_range_m, between(1.0, 30.0));
     visit("obstacle_memory_s", self.obstacle_memory_s, between(0.1, 600.0));
@@ -130,6 +132,7 @@ class Costmap {
   void apply_low_changes(CellBox& changed);
   bool is_occupied(Cell cell) const;
   void refresh(const CellBox& changed);
+  Cost unknown_cost() const;
   void price(Cell first, int count);
 
   CostmapSettings settings_;

@@ -12,6 +12,7 @@ using ::testing::Not;
 io::Metrics goal(const std::string& name, int arrivals) {
   return {{"name", name},
           {"arrivals", arrivals},
+          {"failed", 0},
           {"position_error_m", {{"mean", 0.0213}, {"std", 0.0045}}},
           {"heading_error_deg", {{"mean", 0.31}, {"std", 0.12}}}};
 }
@@ -28,6 +29,17 @@ TEST(GoalTable, AFourthGoalHasNoPublishedFigure) {
       goal_table({{"goals", {goal("goal_1", 1), goal("goal_2", 1), goal("goal_3", 1), goal("goal_4", 1)}}});
   EXPECT_THAT(table, HasSubstr("goal_4"));
   EXPECT_THAT(table.substr(table.find("goal_4")), Not(HasSubstr("18.")));
+}
+
+TEST(GoalTable, SaysHowOftenAGoalWasNotReached) {
+  io::Metrics sometimes = goal("goal_1", 7), never = goal("goal_2", 0);
+  sometimes["failed"] = 3;
+  never["failed"] = 10;
+  never["position_error_m"]["mean"] = nullptr;
+  const std::string table = goal_table({{"goals", {sometimes, never}}});
+  EXPECT_THAT(table, HasSubstr("goal_1          7     2.13"));
+  EXPECT_THAT(table, HasSubstr("  goal_1   not reached 3 of 10 times\n"));
+  EXPECT_THAT(table, HasSubstr("  goal_2   not reached 10 of 10 times\n"));
 }
 
 TEST(GoalTable, WithoutArrivalsThereIsNone) {

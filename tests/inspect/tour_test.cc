@@ -95,6 +95,7 @@ TEST(Tour, AGoalWithoutAWayIsReportedAndLeftOut) {
   robot.navigation = NavigationFeedback::kFailed;
   robot.run(100.0);
   EXPECT_EQ(robot.count("goal_failed"), 2);
+  EXPECT_EQ(robot.events.back().text, "2 things went wrong on the way.");
   EXPECT_EQ(robot.count("mission_failed"), 1);
   EXPECT_EQ(robot.count("mission_completed"), 0);
 }

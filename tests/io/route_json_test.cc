@@ -152,9 +152,9 @@ TEST(LoadRoute, StationsWithTheSameNameOrNumberAreRefused) {
             "r.json: stations[1]: number 1 stands there twice");
 }
 
-TEST(LoadRoute, WhatIsNotJsonIsNamedByItsByte) {
-  EXPECT_EQ(complaint_about_text("{\"version\": 1,"), "r.json: is not JSON at byte 15");
-  EXPECT_EQ(complaint_about_text(""), "r.json: is not JSON at byte 1");
+TEST(LoadRoute, WhatIsNotJsonIsNamedByItsLine) {
+  EXPECT_EQ(complaint_about_text("{\"version\": 1,"), "r.json:1: is not JSON: ends too early");
+  EXPECT_EQ(complaint_about_text(""), "r.json:1: is not JSON: ends too early");
   EXPECT_EQ(complaint_about_text("[]"), "r.json: must be an object");
   EXPECT_THROW(load_route("/nowhere/r.json"), InputError);
 }

@@ -86,6 +86,15 @@ TEST(Costmap, UnknownGroundCostsItsShare) {
   EXPECT_EQ(known.cost_at({1.0, 1.0}), kFreeCost);
 }
 
+TEST(Costmap, UnknownGroundIsNoWayForARobotThatKeepsToItsMap) {
+  OccupancyGrid map = make_free_map();
+  map.at(map.geometry().cell_at({2.05, 0.05})) = kUnknown;
+  const Costmap costmap = make_costmap(map, {.crosses_unknown = false});
+  EXPECT_EQ(costmap.cost_at({2.05, 0.05}), kLethalCost);
+  EXPECT_EQ(costmap.cost_at({2.15, 0.05}), kFreeCost) << "it is no obstacle: nothing is kept from it";
+  EXPECT_EQ(costmap.cost_at({900.0, 1.0}), kLethalCost) << "outside";
+}
+
 TEST(Costmap, AFinerMapLosesNoObstacle) {
   OccupancyGrid map = make_free_map(0.025);
   const RandomStream stream(4, "test/obstacles");
