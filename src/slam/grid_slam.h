@@ -24,7 +24,7 @@ struct GridSlamSettings {
   // When the map is written.
   double keyframe_distance_m = 0.5;
   double keyframe_angle_rad = 0.12;
-  double max_tilt_rad = 0.1;              ///< a scan tilted by more, on a ramp, is neither matched nor written: odometry carries on
+  double max_tilt_rad = 1.6;              ///< a scan tilted by more is neither matched nor written, as on a ramp between walls that lean
   int initial_keyframes = 25;             ///< so many first scans are all written: the heading of everything after hangs on them
   // What is believed; more particles cost time in proportion.
   int particles = 8;

@@ -300,7 +300,8 @@ TEST(MonteCarlo, ATiltedScanMovesOnlyARobotThatIsLost) {
     scan.tilt_rad = tilt_rad;
     const LocalizationUpdate update = tour.localizer.update(scan, tour.drive.T_odom_body());
     const double turned = update.estimate.T_map_body.yaw - yaw;
-    tilt_rad > 0.0 ? EXPECT_LT(std::abs(turned), 0.005) : EXPECT_GT(turned, 0.015);
+    EXPECT_EQ(turned > 0.015, tilt_rad == 0.0) << turned;
+    EXPECT_EQ(std::abs(turned) < 0.005, tilt_rad > 0.0) << turned;
     EXPECT_FALSE(update.trust.is_lost);
   }
   Tour lost(1, {4.0, 0.5, 0.2});
