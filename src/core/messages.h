@@ -200,6 +200,7 @@ struct LevelScan {
   };
   Time stamp{};
   Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();  ///< the lidar, in level
+  double tilt_rad = 0.0;  ///< of the lidar's plane at the stamp: tilted far, it cuts walls that lean elsewhere than a map has them
   std::vector<Beam> beams;
 };
 

@@ -53,7 +53,9 @@ std::optional<LevelScan> ScanLeveler::level(const LaserScan& scan, const PoseLoo
 
   LevelScan level;
   level.stamp = beam_time(scan, last_beam);
-  level.origin_m = (T_level_odom * *T_odom_body * T_body_lidar_).position.head<2>();
+  const Pose3 T_level_lidar = T_level_odom * *T_odom_body * T_body_lidar_;
+  level.origin_m = T_level_lidar.position.head<2>();
+  level.tilt_rad = std::acos(std::clamp(T_level_lidar.rotation.toRotationMatrix()(2, 2), -1.0, 1.0));
   level.beams.reserve(num_beams);
   const std::complex<double> step = std::polar(1.0, scan.angle_increment_rad);
   std::optional<Knot> before = knot_at(0);

@@ -20,13 +20,14 @@ GridSlam::GridSlam(const GridSlamSettings& settings, std::uint64_t seed, const P
 
 SlamUpdate GridSlam::update(const LevelScan& scan, const Pose2& T_odom_body) {
   if (keyframes_ == 0) T_odom_last_ = T_odom_keyframe_ = T_odom_body, keyframe_stamp_ = scan.stamp;
-  const std::vector<MatchPoint> points =
-      select_match_points(scan, settings_.matching.point_spacing_m, settings_.matching.max_points);
+  const bool is_level = scan.tilt_rad <= settings_.max_tilt_rad;
+  std::vector<MatchPoint> points;
+  if (is_level) points = select_match_points(scan, settings_.matching.point_spacing_m, settings_.matching.max_points);
 
   accept_ranges(T_odom_body, scan.stamp);
   Proposal best = track(points, T_odom_body, scan.stamp);
   SlamUpdate update;
-  update.is_keyframe = is_keyframe_due(best.posterior.mean);
+  update.is_keyframe = is_level && is_keyframe_due(best.posterior.mean);
   if (update.is_keyframe) {
     T_map_last_ = best.posterior.mean;
     const std::vector<Proposal> proposals = propose(points, T_odom_body, scan.stamp);

@@ -24,6 +24,7 @@ struct GridSlamSettings {
   // When the map is written.
   double keyframe_distance_m = 0.5;
   double keyframe_angle_rad = 0.12;
+  double max_tilt_rad = 1.6;              ///< a scan tilted by more is neither matched nor written, as on a ramp between walls that lean
   int initial_keyframes = 25;             ///< so many first scans are all written: the heading of everything after hangs on them
   // What is believed; more particles cost time in proportion.
   int particles = 8;
@@ -42,6 +43,7 @@ struct GridSlamSettings {
     visit("min_hit_share_occupied", self.min_hit_share_occupied, between(0.0, 1.0));
     visit("keyframe_distance_m", self.keyframe_distance_m, between(0.0, 10.0));
     visit("keyframe_angle_rad", self.keyframe_angle_rad, between(0.0, 3.2));
+    visit("max_tilt_rad", self.max_tilt_rad, between(0.0, 1.6));
     visit("initial_keyframes", self.initial_keyframes, between(1, 1000));
     visit("particles", self.particles, between(1, 10000));
     visit("likelihood_gain", self.likelihood_gain, between(0.0, 1.0));
@@ -64,7 +66,7 @@ struct SlamUpdate {
 
 /// Grid mapping with a Rao-Blackwellised particle filter and improved proposals (Grisetti, Stachniss, Burgard 2007).
 ///
-///   every scan     odometry -> match against the best particle's map -> pose
+///   every scan     odometry -> match against the best particle's map -> pose; tilted far, odometry alone
 ///   ranges         judged by the best particle's prediction; part of every particle's, until the next keyframe has used them
 ///   a keyframe     each particle: predict, match on its own map, draw, weigh -> resample -> write the scan into each map
 ///

@@ -288,6 +288,34 @@ TEST(MonteCarlo, AnEmptyScanLeavesThePoseToOdometry) {
   EXPECT_TRUE(update.estimate.covariance.allFinite());
 }
 
+// Walls that lean look turned to a lidar on a ramp; a robot that is lost takes what it can get.
+TEST(MonteCarlo, ATiltedScanMovesOnlyARobotThatIsLost) {
+  for (const double tilt_rad : {0.2, 0.0}) {
+    Tour tour(1, {6.0, 0.0, 0.0});
+    tour.localizer.start_at({6.0, 0.0, 0.0}, kNearly);
+    for (int i = 0; i < 5; ++i) tour.step(false);
+    const double yaw = tour.look(false).estimate.T_map_body.yaw;
+    tour.drive.kidnap_to(tour.drive.T_map_body() * Pose2{0.0, 0.0, 0.03});  // odometry does not see it
+    LevelScan scan = tour.drive.scan();
+    scan.tilt_rad = tilt_rad;
+    const LocalizationUpdate update = tour.localizer.update(scan, tour.drive.T_odom_body());
+    const double turned = update.estimate.T_map_body.yaw - yaw;
+    EXPECT_EQ(turned > 0.015, tilt_rad == 0.0) << turned;
+    EXPECT_EQ(std::abs(turned) < 0.005, tilt_rad > 0.0) << turned;
+    EXPECT_FALSE(update.trust.is_lost);
+  }
+  Tour lost(1, {4.0, 0.5, 0.2});
+  LocalizationUpdate update;
+  for (int i = 0; i < 10; ++i) {
+    lost.drive.step();
+    LevelScan scan = lost.drive.scan();
+    scan.tilt_rad = 0.2;
+    update = lost.localizer.update(scan, lost.drive.T_odom_body());
+  }
+  EXPECT_FALSE(update.trust.is_lost);
+  EXPECT_LT(lost.error_m(update), 0.15);
+}
+
 std::string complaint_about(const OccupancyGrid& map, const MonteCarloSettings& settings = {}) {
   try {
     MonteCarloLocalizer(settings, map, {}, {}, 1);

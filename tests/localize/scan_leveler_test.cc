@@ -149,6 +149,15 @@ TEST(ScanLeveler, BeamThatClimbsAboveTheBandIsFreeUpToThere) {
   EXPECT_NEAR(level->beams.at(0).end_m.x(), lidar.x() + (1.5 - 0.3 - lidar.z()) / std::tan(0.2), 1e-4);
 }
 
+TEST(ScanLeveler, SaysThatTheLidarIsTiltedBy12DegreesWhicheverWay) {
+  const LaserScan scan{.time_increment_s = 1e-4, .ranges_m = {1.0F, 2.0F}, .intensities = {}};
+  for (const double heading : {0.0, 2.0}) {
+    const PoseLookup on_a_ramp = [=](Time) { return Pose3{{1.0, 2.0, 0.5}, quaternion_from_rpy(0.12, -0.173, heading)}; };
+    const double tilt = std::acos(std::cos(0.12) * std::cos(0.173));
+    EXPECT_NEAR(ScanLeveler(kLidar, {}).level(scan, on_a_ramp, 0.3)->tilt_rad, tilt, 1e-9);
+  }
+}
+
 TEST(ScanLeveler, RangesFollowRep117) {
   const PoseLookup still = [](Time) { return Pose3{}; };
   const LaserScan scan{.angle_increment_rad = 0.1,

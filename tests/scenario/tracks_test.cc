@@ -111,6 +111,25 @@ TEST(Tracks, OnHalfTheFrictionTheTurningRatioIsTheSameToWithin2Percent) {
   EXPECT_NEAR(turned_over_kinematic(turn_around(robot, 0.4)), closed_form().ratio, 0.02 * closed_form().ratio);
 }
 
+// In a curve the two tracks' friction along x must cancel as well, so both slip alike, one ahead and one behind: k is that of the turn
+// on the spot, and the middle goes as fast as the mean of the belts. Centres of rotation that do not depend on the curve are what Mandow
+// et al. (IROS 2007) measure on real skid-steering vehicles. Left out is v w / (mu g), 2 % of the friction at most.
+TEST(Tracks, InCurvesOf1And2MetresTheScrubRatioIsThatOfATurnOnTheSpotTo3PercentAndTheMiddleSlipsByLessThan1Percent) {
+  for (const double radius_m : {1.0, 2.0}) {
+    TrackedRobot robot(make_flat_world(), {}, open_loop());
+    const double speed = 0.4, asked = speed / radius_m;
+    robot.drive(speed, asked, 2.0);
+    double way_m = 0.0, yaw_rad = 0.0, left_m = 0.0, right_m = 0.0;
+    for (int step = 0; step < 1000; ++step) {
+      const DriveReport report = robot.drive(speed, asked, 0.02);
+      way_m += report.moved.x, yaw_rad += report.moved.yaw;
+      left_m += report.left_belt_m, right_m += report.right_belt_m;
+    }
+    EXPECT_NEAR(yaw_rad / ((right_m - left_m) / kGauge_m), closed_form().ratio, 0.03 * closed_form().ratio) << radius_m;
+    EXPECT_NEAR(way_m, (left_m + right_m) / 2.0, 0.01 * way_m) << radius_m;
+  }
+}
+
 // mu N of five wheels along x, at the pitch line, and the gear's friction: 15.1 N m. Under a pyramidal cone sliding at an angle a
 // to its axes costs mu N max(|cos a|, |sin a|), which is 2 sqrt(2) / pi = 90 % of mu N on average over a turn: 13.7 N m.
 TEST(Tracks, TurningTakesTheTorqueOfTheScrubUnderThePyramidalConeToWithin6Percent) {
@@ -138,6 +157,19 @@ TEST(Tracks, WithItsGyroscopeItTurnsAsAskedToWithin2PercentOnTheFlatAnd5PercentO
   EXPECT_NEAR(on_flat.drive(0.0, 0.4, 10.0).moved.yaw, 4.0, 0.08);
   on_rubble.drive(0.0, 0.4, 3.0);
   EXPECT_NEAR(on_rubble.drive(0.0, 0.4, 10.0).moved.yaw, 4.0, 0.20);
+}
+
+// While the belts slide, mu g is all that moves the robot, whatever the belts do: they are at 0.5 m/s after 0.63 s, it after 1.02 s.
+TEST(Tracks, PullingAwayOnIceItIsSpedUpByCoulombFrictionTo3PercentWhileTheBeltsRunAheadAndThenSlipsNoMore) {
+  TrackedRobot robot(make_flat_world(), {}, open_loop(0.05));
+  const DriveReport first = robot.drive(0.5, 0.0, 0.2);
+  const double before_mps = robot.data().qvel[0];
+  const DriveReport sliding = robot.drive(0.5, 0.0, 0.6);
+  EXPECT_NEAR((robot.data().qvel[0] - before_mps) / 0.6, 0.05 * 9.81, 0.03 * 0.05 * 9.81);
+  EXPECT_GT(first.left_belt_m + sliding.left_belt_m, 1.4 * (first.moved.x + sliding.moved.x));
+  robot.drive(0.5, 0.0, 1.2);
+  const DriveReport after = robot.drive(0.5, 0.0, 5.0);
+  EXPECT_NEAR(after.moved.x / after.left_belt_m, 1.0, 0.01);
 }
 
 TEST(Tracks, OnIceAgainstAWallTheTicksRunOnWhileTheRobotStands) {

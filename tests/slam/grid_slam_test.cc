@@ -137,6 +137,28 @@ TEST(GridSlam, WithoutEchoesTheOdometryIsBelieved) {
   EXPECT_EQ(slam.map().values().size(), 0U);
 }
 
+// Walls that lean, as a tunnel's do, look turned by degrees to a lidar on a ramp.
+TEST(GridSlam, WhatALidarTiltedBy11DegreesSeesIsNeitherMatchedNorWritten) {
+  test::RoomWorld room;
+  room.add_box(-3.0, -2.0, 5.0, 4.0);
+  for (const double tilt_rad : {0.2, 0.0}) {
+    GridSlamSettings settings = with_particles(1);
+    settings.max_tilt_rad = 0.1;
+    GridSlam slam(settings, 1);
+    for (int i = 0; i < 30; ++i) slam.update(room.scan({}, {}), {});
+    SlamUpdate update;
+    for (int i = 1; i <= 6; ++i) {
+      const Pose2 T_odom_body{0.1 * i, 0.0, 0.0};
+      LevelScan scan = room.scan(T_odom_body * Pose2{0.0, 0.0, 3.0 * kDeg}, {});
+      scan.tilt_rad = tilt_rad;
+      update = slam.update(scan, T_odom_body);
+      EXPECT_FALSE(update.is_keyframe && tilt_rad > 0.0);
+    }
+    EXPECT_NEAR(update.T_map_body.yaw, tilt_rad > 0.0 ? 0.0 : 3.0 * kDeg, 1.0 * kDeg);
+    EXPECT_NEAR(update.T_map_body.x, 0.6, 0.02);
+  }
+}
+
 TEST(GridSlam, TheFirstScanIsTakenWhereTheStartIsSaidToBe) {
   test::RoomWorld room;
   room.add_box(-3.0, -2.0, 5.0, 4.0);

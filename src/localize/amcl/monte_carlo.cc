@@ -83,7 +83,9 @@ void MonteCarloLocalizer::start_anywhere() {
   last_search_.reset();
 }
 
-LocalizationUpdate MonteCarloLocalizer::update(const LevelScan& scan, const Pose2& T_odom_body) {
+LocalizationUpdate MonteCarloLocalizer::update(const LevelScan& seen, const Pose2& T_odom_body) {
+  const LevelScan blind{.stamp = seen.stamp, .origin_m = seen.origin_m, .tilt_rad = seen.tilt_rad, .beams = {}};
+  const LevelScan& scan = !is_lost_ && seen.tilt_rad > settings_.max_tilt_rad ? blind : seen;
   if (starts_anywhere_) start_from(scan, T_odom_body);
   const bool is_first = !T_odom_last_;
   if (is_first) T_odom_last_ = T_odom_body, last_weighing_ = last_scan_ = scan.stamp - kRangesBeforeStart;

@@ -36,6 +36,7 @@ struct MonteCarloSettings {
   double update_distance_m = 0.2;      ///< particles are weighed after so much way,
   double update_angle_rad = 0.05;      ///< or such a turn,
   double update_period_s = 1.0;        ///< or, as long as the robot is lost, after this time
+  double max_tilt_rad = 0.1;           ///< a scan tilted by more, on a ramp, says nothing to a robot that knows where it is
   double resample_threshold = 0.5;     ///< resample when the effective sample size falls below this share of the particles
   int min_particles_when_lost = 2000;  ///< few particles forget one possible place after the other by chance
   double range_memory_s = 2.0;         ///< ranges this old are still used to search with
@@ -59,6 +60,7 @@ struct MonteCarloSettings {
     visit("update_distance_m", self.update_distance_m, between(0.0, 10.0));
     visit("update_angle_rad", self.update_angle_rad, between(0.0, 3.2));
     visit("update_period_s", self.update_period_s, between(0.0, 1000.0));
+    visit("max_tilt_rad", self.max_tilt_rad, between(0.0, 1.6));
     visit("resample_threshold", self.resample_threshold, between(0.0, 1.0));
     visit("min_particles_when_lost", self.min_particles_when_lost, between(1, 1000000));
     visit("range_memory_s", self.range_memory_s, between(0.0, 100.0));
@@ -111,7 +113,7 @@ class MonteCarloLocalizer {
   /// not finite and positive. The newest of each anchor is weighed with the next scan that is.
   void add(const UwbRange& range, const Pose3& T_odom_body) { ranges_.add(range, T_odom_body); }
   /// `T_odom_body` at the scan's stamp.
-  LocalizationUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
+  LocalizationUpdate update(const LevelScan& seen, const Pose2& T_odom_body);
 
   const ParticleCloud& particles() const { return cloud_; }
 
