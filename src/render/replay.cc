@@ -58,7 +58,7 @@ class Film {
         rig_(std::move(rig)),
         video_(out_mp4, settings.width, settings.height, settings.frames_per_second) {
     for (int i = 0; i < std::max(1, settings.num_threads); ++i) {
-      painters_.push_back(std::make_unique<PaintThread>(view, settings.width, settings.height));
+      painters_.push_back(std::make_unique<PaintThread>(view, settings.width, settings.height, settings.dust.extinction_per_m()));
     }
   }
 
@@ -111,6 +111,7 @@ ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel 
   }
   const std::optional<Time> end = io::McapReader(log_mcap).last_time();
   set_replay_quality(*model.view);
+  set_light(*model.view, settings.light);
   RunFollower follower(*model.view, T_world_map);
   Film film(*model.view, settings, camera_on(follower, settings.camera), out_mp4);
   ReplaySummary summary;
@@ -129,6 +130,7 @@ ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel 
 void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, const Pose2& T_world_map,
            const ReplaySettings& settings, Time at, const std::filesystem::path& out_png) {
   set_replay_quality(*model.view);
+  set_light(*model.view, settings.light);
   RunFollower follower(*model.view, T_world_map);
   CameraRig rig = camera_on(follower, settings.camera);
   std::optional<View> view;
@@ -137,7 +139,7 @@ void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, con
   };
   io::read_run_log(log_mcap, handlers_for(follower, follow), Time::min(), at);
   if (!view) throw no_states(log_mcap);
-  PaintThread painter(*model.view, settings.width, settings.height);
+  PaintThread painter(*model.view, settings.width, settings.height, settings.dust.extinction_per_m());
   save_png(out_png, painter.paint(follower.snapshot(), *view).get());
 }
 

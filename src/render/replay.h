@@ -6,6 +6,8 @@
 #include "core/frames.h"
 #include "core/time.h"
 #include "render/camera.h"
+#include "render/light.h"
+#include "sim/dust.h"
 #include "sim/model_assembly.h"
 
 namespace patrol::render {
@@ -16,6 +18,8 @@ struct ReplaySettings {
   int width = 1280;
   int height = 720;
   double frames_per_second = 30.0;
+  sim::DustSettings dust = {};  ///< in the air of that run
+  LightSettings light = {};     ///< likewise
   int num_threads = 1;  ///< that draw, each a frame of its own; with two, OSMesa 22.3 has crashed once in 13 films
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -14,6 +15,11 @@ namespace patrol::render {
 namespace {
 
 Eigen::Vector3d to_eigen(const float v[3]) { return {v[0], v[1], v[2]}; }
+
+Color to_color(const float rgba[4]) {
+  const auto byte = [](float share) { return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(share, 0.0f, 1.0f))); };
+  return {byte(rgba[0]), byte(rgba[1]), byte(rgba[2])};
+}
 
 /// The sun, if the world has one: the first directional light that is not the headlight.
 mjvLight* find_sun(mjvScene& scene) {
@@ -47,10 +53,11 @@ void set_replay_quality(mjModel& view) {
   view.vis.map.shadowclip = static_cast<float>(kShadowReach_m / view.stat.extent);
 }
 
-ScenePainter::ScenePainter(const mjModel& view, int width, int height)
+ScenePainter::ScenePainter(const mjModel& view, int width, int height, double extinction_per_m)
     : model_(view),
       data_(sim::make_data(view)),
       offscreen_(view, width, height),
+      dust_{extinction_per_m, to_color(view.vis.rgba.fog)},
       shadow_reach_m_(static_cast<double>(view.vis.map.shadowclip) * view.stat.extent) {
   mjv_defaultOption(&options_);
   std::fill(std::begin(options_.geomgroup), std::end(options_.geomgroup), mjtByte{0});
@@ -95,6 +102,7 @@ void ScenePainter::draw(const View& view, Frame& frame, std::vector<float>& dept
   offscreen_.render(scene_);
   offscreen_.read(frame);
   offscreen_.read_depth(depth);
+  add_haze(frame, depth, view, dust_);
 }
 
 // The shadow map covers a square around the sun's own place: bring the sun to where one looks. Towards the

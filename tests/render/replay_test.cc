@@ -102,6 +102,25 @@ TEST_F(Replay, AStillShowsTheWorldAndTheOverlay) {
   EXPECT_GT(orange, 20) << "the estimated path";
 }
 
+/// Where the wall before the robot is, beside the robot.
+Color wall_color(const Frame& frame) { return frame.at(frame.width() * 2 / 5, frame.height() * 3 / 10); }
+
+TEST_F(Replay, ShowsTheDustAndTheDimLightOfTheRun) {
+  settings.width = 640;  // with room between figures and legend
+  settings.height = 360;
+  still(log, model(), {}, settings, 1s, folder / "clear.png");
+  settings.dust = {.enabled = true, .visibility_m = 0.5};
+  still(log, model(), {}, settings, 1s, folder / "dust.png");
+  settings.dust.enabled = false;
+  settings.light.brightness_share = 0.5;
+  still(log, model(), {}, settings, 1s, folder / "dim.png");
+  const Color clear = wall_color(load_png(folder / "clear.png")), dust = wall_color(load_png(folder / "dust.png")),
+              dim = wall_color(load_png(folder / "dim.png"));
+  EXPECT_EQ(dust, (Color{0, 0, 0})) << "this little world's fog";
+  EXPECT_GT(clear.r, 50);
+  EXPECT_NEAR(dim.r, 0.5 * clear.r, 2);
+}
+
 TEST_F(Replay, RefusesALogOfAnotherRobot) {
   write_log(log, 19);
   EXPECT_THROW(replay(log, model(), {}, settings, film), InputError);

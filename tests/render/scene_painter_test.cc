@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/error.h"
 #include "tests/render/small_scene.h"
 
@@ -114,6 +117,27 @@ TEST_F(ScenePainterTest, RefusesAStateOfAnotherModel) {
   state = reference_state(*model);
   state.mocap.clear();
   EXPECT_THROW(painter.set_state(state), InputError);
+}
+
+// Koschmieder: of the contrast to the fog's colour, exp(-0.2 d) is left after d metres.
+TEST(ScenePainterInDust, WhatIsFarTakesTheColourOfTheFogAndWhatIsNearDoesNot) {
+  const sim::ModelPtr model = small_scene(kYard);
+  constexpr float kFog = 0.6f;
+  std::fill(model->vis.rgba.fog, model->vis.rgba.fog + 3, kFog);
+  const View view = kFromBehind;
+  Frame clear, dusty;
+  std::vector<float> depth;
+  ScenePainter(*model, kWidth, kHeight).draw(view, clear, depth);
+  ScenePainter(*model, kWidth, kHeight, 0.2).draw(view, dusty, depth);
+  const Projector projector(view, kWidth, kHeight);
+  const auto expect_haze = [&](const Eigen::Vector3d& point_m) {
+    const Eigen::Vector2d pixel = projector.project(point_m)->pixel;
+    const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
+    const double left = std::exp(-0.2 * (point_m - view.eye).norm());
+    EXPECT_NEAR(dusty.at(x, y).r, 255.0 * kFog + left * (clear.at(x, y).r - 255.0 * kFog), 2.0) << point_m.transpose();
+  };
+  expect_haze({-0.3, 0.0, 0.3});   // the robot, 2.4 m away
+  expect_haze({7.5, 3.0, 0.5});    // the wall, 10.5 m away
 }
 
 TEST(OffscreenTest, RefusesASizeWithoutPixels) {
