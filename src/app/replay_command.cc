@@ -50,6 +50,7 @@ ExitCode replay_command(const ReplayOptions& options) {
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
   settings.dust = scenario.sensors.dust;
   settings.light = scenario.light;
+  settings.map = files.map;
   const RunRecord record = read_run_record(directory.log());
   if (!record.has_estimate()) throw InputError(fmt::format("{}: ended before the robot had an estimate", directory.log().string()));
   const Pose2 T_world_map =

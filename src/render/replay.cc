@@ -42,10 +42,12 @@ io::LogHandlers handlers_for(RunFollower& follower, std::function<void(Time)> on
 
 /// A camera that sees what the follower's world has in its way.
 CameraRig camera_on(const RunFollower& follower, CameraKind kind) {
-  return CameraRig(
-      kind, [&follower](const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m) {
-        return follower.free_distance_m(from_m, direction, max_m);
-      });
+  const FreeDistance free_distance = [&follower](const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction,
+                                                 double max_m) {
+    return follower.free_distance_m(from_m, direction, max_m);
+  };
+  const std::optional<Eigen::Vector3d> head_m = follower.head_m();
+  return head_m ? CameraRig(kind, free_distance, *head_m) : CameraRig(kind, free_distance);
 }
 
 /// Films what the follower sees, at even steps of the run's time.
@@ -113,6 +115,7 @@ ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel 
   set_replay_quality(*model.view);
   set_light(*model.view, settings.light);
   RunFollower follower(*model.view, T_world_map);
+  if (settings.map) follower.add(MapUpdate{.stamp = {}, .map = *settings.map});
   Film film(*model.view, settings, camera_on(follower, settings.camera), out_mp4);
   ReplaySummary summary;
   summary.log_is_complete = io::read_run_log(log_mcap, handlers_for(follower, [&](Time now) {
@@ -132,6 +135,7 @@ void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, con
   set_replay_quality(*model.view);
   set_light(*model.view, settings.light);
   RunFollower follower(*model.view, T_world_map);
+  if (settings.map) follower.add(MapUpdate{.stamp = {}, .map = *settings.map});
   CameraRig rig = camera_on(follower, settings.camera);
   std::optional<View> view;
   const auto follow = [&](Time) {

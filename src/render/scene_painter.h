@@ -38,6 +38,7 @@ class ScenePainter {
 
  private:
   void light_around(const View& view);
+  void let_nearest_lamp_throw_shadows(const View& view);
   void drop_unseen(const View& view);
 
   const mjModel& model_;

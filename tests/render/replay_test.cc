@@ -121,6 +121,20 @@ TEST_F(Replay, ShowsTheDustAndTheDimLightOfTheRun) {
   EXPECT_NEAR(dim.r, 0.5 * clear.r, 2);
 }
 
+TEST_F(Replay, ShowsTheMapThatTheRobotWasGiven) {
+  settings.width = 640;
+  settings.height = 360;
+  still(log, model(), {}, settings, 1s, folder / "without.png");
+  settings.map = OccupancyGrid({.resolution_m = 0.1, .width = 100, .height = 100, .origin_m = {0.0, 0.0}}, kFree);
+  still(log, model(), {}, settings, 1s, folder / "with.png");
+  const Frame without = load_png(folder / "without.png"), with = load_png(folder / "with.png");
+  int floor = 0;
+  for (int y = 180; y < 360; ++y) {
+    for (int x = 320; x < 640; ++x) floor += with.at(x, y) != without.at(x, y);
+  }
+  EXPECT_GT(floor, 90 * 90) << "10 m at a pixel a cell";
+}
+
 TEST_F(Replay, RefusesALogOfAnotherRobot) {
   write_log(log, 19);
   EXPECT_THROW(replay(log, model(), {}, settings, film), InputError);
