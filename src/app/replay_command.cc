@@ -44,10 +44,13 @@ render::ReplaySettings replay_settings(const ReplayOptions& options) {
 }  // namespace
 
 ExitCode replay_command(const ReplayOptions& options) {
-  const render::ReplaySettings settings = replay_settings(options);
+  render::ReplaySettings settings = replay_settings(options);
   const RunDirectory directory = open_run_directory(options.run);
   const Scenario scenario = load_scenario(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
+  settings.dust = scenario.sensors.dust;
+  settings.light = scenario.light;
+  settings.map = files.map;
   const RunRecord record = read_run_record(directory.log());
   if (!record.has_estimate()) throw InputError(fmt::format("{}: ended before the robot had an estimate", directory.log().string()));
   const Pose2 T_world_map =

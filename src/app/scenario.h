@@ -11,6 +11,7 @@
 #include "core/settings.h"
 #include "app/stack_settings.h"
 #include "io/expectations.h"
+#include "render/light.h"
 #include "sim/twin.h"
 
 namespace patrol::app {
@@ -94,6 +95,7 @@ struct Scenario {
   std::vector<sim::ActorSettings> actors;
   std::vector<sim::LeakSettings> leaks;
   sim::WindSettings wind;
+  render::LightSettings light;  ///< of the replay; for dust see sensors.dust
   std::vector<sim::FaultSettings> faults;
   std::vector<KidnapSettings> kidnaps;
   LogSettings log;
@@ -120,6 +122,7 @@ struct Scenario {
     visit("actors", self.actors);
     visit("leaks", self.leaks);
     visit("wind", self.wind);
+    visit("light", self.light);
     visit("faults", self.faults);
     visit("kidnaps", self.kidnaps);
     visit("log", self.log);

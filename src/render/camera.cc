@@ -65,26 +65,43 @@ View CameraRig::follow(const Pose3& T_world_body, double elapsed_s) {
   heading_rad_ += (1.0 - std::exp(-elapsed_s / kTurn_s)) * wrap_angle(heading - heading_rad_);
 
   switch (kind_) {
-    case CameraKind::kTop: {
-      constexpr double kHeight_m = 14.0;
-      return look_at(*focus_m_ + kHeight_m * Eigen::Vector3d::UnitZ(), *focus_m_);
-    }
-    case CameraKind::kOnboard: {
-      const Eigen::Vector3d head(0.33, 0.0, 0.12);  // before the trunk's front, m, in body
-      const Pose3 T_world_level{T_world_body.position, quaternion_from_yaw(heading)};
-      View view = look_at(T_world_level * head, T_world_level * (head + Eigen::Vector3d(4.0, 0.0, -0.25)));
-      view.field_of_view_rad = 1.1;
-      return view;
-    }
+    case CameraKind::kTop:
+      return from_top();
+    case CameraKind::kOnboard:
+      return on_board(T_world_body);
     case CameraKind::kChase:
       break;
   }
   return chase(elapsed_s);
 }
 
+std::optional<double> CameraRig::roof_height_m() const {
+  constexpr double kMastHeight_m = 0.6, kHighest_m = 12.0;
+  if (!free_distance_) return std::nullopt;
+  const double free_m =
+      free_distance_(*focus_m_ + kMastHeight_m * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ(), kHighest_m);
+  if (free_m >= kHighest_m) return std::nullopt;
+  return kMastHeight_m + free_m;
+}
+
+View CameraRig::from_top() const {
+  constexpr double kHeight_m = 14.0, kCut = 0.6;  // of the roof's height
+  View view = look_at(*focus_m_ + kHeight_m * Eigen::Vector3d::UnitZ(), *focus_m_);
+  if (const auto roof_m = roof_height_m()) view.near_m = kHeight_m - kCut * *roof_m;
+  return view;
+}
+
+View CameraRig::on_board(const Pose3& T_world_body) const {
+  const Pose3 T_world_level{T_world_body.position, quaternion_from_yaw(yaw_of(T_world_body.rotation))};
+  View view = look_at(T_world_level * head_m_, T_world_level * (head_m_ + Eigen::Vector3d(4.0, 0.0, -0.25)));
+  view.field_of_view_rad = 1.1;
+  return view;
+}
+
 View CameraRig::chase(double elapsed_s) {
-  constexpr double kReturn_s = 0.8;  // time constant; it comes near at once
+  constexpr double kReturn_s = 0.8, kLookUp_s = 1.5;  // time constants; it comes near at once
   constexpr double kClearance_m = 0.25;
+  constexpr double kUp_m = 0.5;  // looks higher by this, under a roof
   const Pose3 T_world_rig{*focus_m_, quaternion_from_yaw(heading_rad_)};
   const Eigen::Vector3d over_robot = T_world_rig * Eigen::Vector3d(0.0, 0.0, 0.4);
   const Eigen::Vector3d back = T_world_rig * Eigen::Vector3d(-2.4, 0.0, 1.15) - over_robot;
@@ -95,7 +112,8 @@ View CameraRig::chase(double elapsed_s) {
     reach = std::clamp((free_m - kClearance_m) / back.norm(), 0.2, 1.0);
   }
   reach_ = std::min(reach, reach_ + (1.0 - std::exp(-elapsed_s / kReturn_s)) * (reach - reach_));
-  return look_at(over_robot + reach_ * back, T_world_rig * Eigen::Vector3d(0.9, 0.0, 0.0));
+  roofed_ += (1.0 - std::exp(-elapsed_s / kLookUp_s)) * ((roof_height_m() ? 1.0 : 0.0) - roofed_);
+  return look_at(over_robot + reach_ * back, T_world_rig * Eigen::Vector3d(0.9, 0.0, kUp_m * roofed_));
 }
 
 }  // namespace patrol::render

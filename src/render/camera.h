@@ -14,7 +14,7 @@ namespace patrol::render {
 
 enum class CameraKind {
   kChase,    ///< behind and above the robot
-  kTop,      ///< straight down, north up
+  kTop,      ///< straight down, north up; a roof is cut away
   kOnboard,  ///< from the robot's head, looking ahead
 };
 
@@ -80,23 +80,32 @@ using FreeDistance =
     std::function<double(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m)>;
 
 /// Follows the robot. What moves with each step of the trot is smoothed away, in the time of the one who
-/// watches. The chasing camera comes nearer where something would stand between it and the robot.
+/// watches. The chasing camera comes nearer where something would stand between it and the robot, and looks
+/// up where there is a roof: that is what a tunnel is known by.
 class CameraRig {
  public:
-  explicit CameraRig(CameraKind kind, FreeDistance free_distance = {})
-      : kind_(kind), free_distance_(std::move(free_distance)) {}
+  /// `head_m` is where the onboard camera is, in the level body.
+  explicit CameraRig(CameraKind kind, FreeDistance free_distance = {},
+                     const Eigen::Vector3d& head_m = {0.33, 0.0, 0.12})
+      : kind_(kind), free_distance_(std::move(free_distance)), head_m_(head_m) {}
 
   /// `elapsed_s` since the last frame, as it will be watched.
   View follow(const Pose3& T_world_body, double elapsed_s);
 
  private:
   View chase(double elapsed_s);
+  View from_top() const;
+  View on_board(const Pose3& T_world_body) const;
+  /// Above the robot's body, m; none where there is nothing but the sky.
+  std::optional<double> roof_height_m() const;
 
   CameraKind kind_;
   FreeDistance free_distance_;
+  Eigen::Vector3d head_m_;
   std::optional<Eigen::Vector3d> focus_m_;  ///< smoothed
   double heading_rad_ = 0.0;                ///< smoothed
   double reach_ = 1.0;                      ///< smoothed; 1 where nothing is in the way
+  double roofed_ = 0.0;                     ///< smoothed; 1 under a roof
 };
 
 }  // namespace patrol::render

@@ -78,7 +78,8 @@ void MapInset::draw(Frame& frame, const RunSnapshot& snapshot) {
 
 // Every occupied cell blackens its pixel: a wall of one cell stays visible however small the picture is.
 void MapInset::lay_out(const Frame& frame, const RunSnapshot& snapshot) {
-  constexpr double kMaxWidth = 0.30, kMaxHeight = 0.62;  // of the frame
+  constexpr double kMaxWidth = 0.30, kMaxHeight = 0.62, kMaxStripWidth = 0.42;  // of the frame
+  constexpr double kStrip = 4.0;  // a map this many times as long as it is high leaves room above
   constexpr double kMargin_m = 1.0;
   map_ = snapshot.map;
   Eigen::AlignedBox2d shown = known_part(*map_, snapshot.T_world_map);
@@ -89,7 +90,8 @@ void MapInset::lay_out(const Frame& frame, const RunSnapshot& snapshot) {
   low_m_ = shown.min();
   high_m_ = shown.max();
   const Eigen::Vector2d size_m = shown.sizes();
-  px_per_m_ = std::min({kMaxWidth * frame.width() / size_m.x(), kMaxHeight * frame.height() / size_m.y(),
+  const double max_width = size_m.x() > kStrip * size_m.y() ? kMaxStripWidth : kMaxWidth;
+  px_per_m_ = std::min({max_width * frame.width() / size_m.x(), kMaxHeight * frame.height() / size_m.y(),
                         1.0 / map_->geometry().resolution_m});
   const int width = static_cast<int>(std::ceil(size_m.x() * px_per_m_));
   const int height = static_cast<int>(std::ceil(size_m.y() * px_per_m_));

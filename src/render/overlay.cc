@@ -44,9 +44,10 @@ void Overlay::draw_figures(Frame& frame, const RunSnapshot& snapshot) {
   const int line = words_.height_px() + margin;
   fill_rectangle(frame, 0, 0, frame.width(), figures_.height_px() + 2 * margin + line, {kPanelColor, 0.6});
   const std::string text =
-      fmt::format("{}    position error {:.3f} m    heading error {:.2f}°    walked {:.1f} m",
+      fmt::format("{}    position error {:.3f} m    heading error {:.2f}°    {} {:.1f} m",
                   clock_text(snapshot.state.stamp), snapshot.position_error_m,
-                  std::abs(snapshot.heading_error_rad) * 180.0 / std::numbers::pi, snapshot.walked_m);
+                  std::abs(snapshot.heading_error_rad) * 180.0 / std::numbers::pi,
+                  snapshot.is_driving ? "driven" : "walked", snapshot.travelled_m);
   const int baseline = margin + figures_.height_px();
   const int width = frame.width() - 4 * margin;
   figures_.draw(frame, 2 * margin, baseline, figures_.fitted(text, width), {kTextColor, 1.0});

@@ -9,11 +9,11 @@
 
 namespace patrol::render {
 
-PaintThread::PaintThread(const mjModel& view, int width, int height) {
+PaintThread::PaintThread(const mjModel& view, int width, int height, double extinction_per_m) {
   std::promise<void> is_ready;
   std::future<void> readiness = is_ready.get_future();
-  thread_ = std::thread([this, &view, width, height, ready = std::move(is_ready)]() mutable {
-    work(view, width, height, std::move(ready));
+  thread_ = std::thread([this, &view, width, height, extinction_per_m, ready = std::move(is_ready)]() mutable {
+    work(view, width, height, extinction_per_m, std::move(ready));
   });
   try {
     readiness.get();
@@ -52,11 +52,11 @@ bool PaintThread::take(Order& order) {
   return true;
 }
 
-void PaintThread::work(const mjModel& view, int width, int height, std::promise<void> is_ready) {
+void PaintThread::work(const mjModel& view, int width, int height, double extinction_per_m, std::promise<void> is_ready) {
   std::unique_ptr<ScenePainter> painter;
   std::unique_ptr<Overlay> overlay;
   try {
-    painter = std::make_unique<ScenePainter>(view, width, height);
+    painter = std::make_unique<ScenePainter>(view, width, height, extinction_per_m);
     overlay = std::make_unique<Overlay>(height);
   } catch (...) {
     is_ready.set_exception(std::current_exception());

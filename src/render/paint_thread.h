@@ -17,8 +17,9 @@ namespace patrol::render {
 /// so each has its own context. What it paints depends on nothing but what it is given.
 class PaintThread {
  public:
-  /// Waits until the thread has its OpenGL; throws what kept it from that. `view` must outlive the thread.
-  PaintThread(const mjModel& view, int width, int height);
+  /// Arguments as for ScenePainter. Waits until the thread has its OpenGL; throws what kept it from that. `view` must outlive
+  /// the thread.
+  PaintThread(const mjModel& view, int width, int height, double extinction_per_m);
   ~PaintThread();
   PaintThread(const PaintThread&) = delete;
   PaintThread& operator=(const PaintThread&) = delete;
@@ -31,7 +32,7 @@ class PaintThread {
     View view;
     std::promise<Frame> frame;
   };
-  void work(const mjModel& view, int width, int height, std::promise<void> is_ready);
+  void work(const mjModel& view, int width, int height, double extinction_per_m, std::promise<void> is_ready);
   /// False when there is nothing more to come.
   bool take(Order& order);
 

@@ -42,10 +42,12 @@ io::LogHandlers handlers_for(RunFollower& follower, std::function<void(Time)> on
 
 /// A camera that sees what the follower's world has in its way.
 CameraRig camera_on(const RunFollower& follower, CameraKind kind) {
-  return CameraRig(
-      kind, [&follower](const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m) {
-        return follower.free_distance_m(from_m, direction, max_m);
-      });
+  const FreeDistance free_distance = [&follower](const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction,
+                                                 double max_m) {
+    return follower.free_distance_m(from_m, direction, max_m);
+  };
+  const std::optional<Eigen::Vector3d> head_m = follower.head_m();
+  return head_m ? CameraRig(kind, free_distance, *head_m) : CameraRig(kind, free_distance);
 }
 
 /// Films what the follower sees, at even steps of the run's time.
@@ -58,7 +60,7 @@ class Film {
         rig_(std::move(rig)),
         video_(out_mp4, settings.width, settings.height, settings.frames_per_second) {
     for (int i = 0; i < std::max(1, settings.num_threads); ++i) {
-      painters_.push_back(std::make_unique<PaintThread>(view, settings.width, settings.height));
+      painters_.push_back(std::make_unique<PaintThread>(view, settings.width, settings.height, settings.dust.extinction_per_m()));
     }
   }
 
@@ -111,7 +113,9 @@ ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel 
   }
   const std::optional<Time> end = io::McapReader(log_mcap).last_time();
   set_replay_quality(*model.view);
+  set_light(*model.view, settings.light);
   RunFollower follower(*model.view, T_world_map);
+  if (settings.map) follower.add(MapUpdate{.stamp = {}, .map = *settings.map});
   Film film(*model.view, settings, camera_on(follower, settings.camera), out_mp4);
   ReplaySummary summary;
   summary.log_is_complete = io::read_run_log(log_mcap, handlers_for(follower, [&](Time now) {
@@ -129,7 +133,9 @@ ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel 
 void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, const Pose2& T_world_map,
            const ReplaySettings& settings, Time at, const std::filesystem::path& out_png) {
   set_replay_quality(*model.view);
+  set_light(*model.view, settings.light);
   RunFollower follower(*model.view, T_world_map);
+  if (settings.map) follower.add(MapUpdate{.stamp = {}, .map = *settings.map});
   CameraRig rig = camera_on(follower, settings.camera);
   std::optional<View> view;
   const auto follow = [&](Time) {
@@ -137,7 +143,7 @@ void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, con
   };
   io::read_run_log(log_mcap, handlers_for(follower, follow), Time::min(), at);
   if (!view) throw no_states(log_mcap);
-  PaintThread painter(*model.view, settings.width, settings.height);
+  PaintThread painter(*model.view, settings.width, settings.height, settings.dust.extinction_per_m());
   save_png(out_png, painter.paint(follower.snapshot(), *view).get());
 }
 

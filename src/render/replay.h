@@ -2,10 +2,14 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "core/frames.h"
+#include "core/grid.h"
 #include "core/time.h"
 #include "render/camera.h"
+#include "render/light.h"
+#include "sim/dust.h"
 #include "sim/model_assembly.h"
 
 namespace patrol::render {
@@ -16,6 +20,9 @@ struct ReplaySettings {
   int width = 1280;
   int height = 720;
   double frames_per_second = 30.0;
+  std::optional<OccupancyGrid> map = {};  ///< that the robot was given, in map; none: it makes its own
+  sim::DustSettings dust = {};  ///< in the air of that run
+  LightSettings light = {};     ///< likewise
   int num_threads = 1;  ///< that draw, each a frame of its own; with two, OSMesa 22.3 has crashed once in 13 films
 };
 

@@ -15,28 +15,38 @@ void extend(std::vector<Eigen::Vector3d>& path, const Eigen::Vector3d& point) {
   if (path.empty() || (point - path.back()).head<2>().norm() >= kPathStep_m) path.push_back(point);
 }
 
-/// The lidar's place on the trunk, from the site that the robot's model has for it.
-Pose3 lidar_on_body(const mjModel& model) {
-  const int site = mj_name2id(&model, mjOBJ_SITE, "lidar");
-  if (site < 0) throw InputError("the robot has no link `lidar`");
+/// A sensor's place on the trunk, from the site that the robot's model has for it.
+std::optional<Pose3> sensor_on_body(const mjModel& model, const char* name) {
+  const int site = mj_name2id(&model, mjOBJ_SITE, name);
+  if (site < 0) return std::nullopt;
   const sim::DataPtr data = sim::make_data(model);
   mj_kinematics(&model, data.get());
   const int body = mj_name2id(&model, mjOBJ_BODY, frame_id::kBody);
-  const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> R_world_lidar(data->site_xmat +
-                                                                                     9 * site);
+  const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> R_world_sensor(data->site_xmat +
+                                                                                      9 * site);
   const mjtNum* q = data->xquat + 4 * body;
   const Pose3 T_world_body{Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * body),
                            {q[0], q[1], q[2], q[3]}};
-  const Pose3 T_world_lidar{Eigen::Map<const Eigen::Vector3d>(data->site_xpos + 3 * site),
-                            Eigen::Quaterniond(Eigen::Matrix3d(R_world_lidar))};
-  return T_world_body.inverse() * T_world_lidar;
+  const Pose3 T_world_sensor{Eigen::Map<const Eigen::Vector3d>(data->site_xpos + 3 * site),
+                             Eigen::Quaterniond(Eigen::Matrix3d(R_world_sensor))};
+  return T_world_body.inverse() * T_world_sensor;
 }
+
+Pose3 lidar_on_body(const mjModel& model) {
+  const std::optional<Pose3> T_body_lidar = sensor_on_body(model, "lidar");
+  if (!T_body_lidar) throw InputError("the robot has no link `lidar`");
+  return *T_body_lidar;
+}
+
+bool has_tracks(const mjModel& model) { return mj_name2id(&model, mjOBJ_BODY, "left_sprocket") >= 0; }
 
 }  // namespace
 
 RunFollower::RunFollower(const mjModel& view, const Pose2& T_world_map)
     : scenery_(view), T_body_lidar_(lidar_on_body(view)) {
+  if (const auto T_body_camera = sensor_on_body(view, "depth_camera")) head_m_ = T_body_camera->position;
   snapshot_.T_world_map = T_world_map;
+  snapshot_.is_driving = has_tracks(view);
   // Whoever walks or drives is no ground to draw on.
   constexpr double kOutOfTheWay_m = -1000.0;
   const sim::DataPtr data = sim::make_data(view);
@@ -79,7 +89,7 @@ void RunFollower::add(const Event& event) {
 void RunFollower::add(const GroundTruth& truth) {
   if (!truth_.empty()) {
     if (truth.stamp <= truth_.back().stamp) return;
-    snapshot_.walked_m += (truth.T_world_body.position - truth_.back().pose.position).head<2>().norm();
+    snapshot_.travelled_m += (truth.T_world_body.position - truth_.back().pose.position).head<2>().norm();
   }
   truth_.push_back({truth.stamp, truth.T_world_body});
   snapshot_.T_world_body = truth.T_world_body;
@@ -93,11 +103,11 @@ double RunFollower::free_distance_m(const Eigen::Vector3d& from_m, const Eigen::
 }
 
 Eigen::Vector3d RunFollower::on_ground(const Eigen::Vector2d& p_world_m) const {
-  constexpr double kKneeHeight_m = 0.25, kReach_m = 2.0;
-  const Eigen::Vector3d knee(p_world_m.x(), p_world_m.y(), kKneeHeight_m);
-  const auto ground = scenery_.cast(knee, -Eigen::Vector3d::UnitZ(), kReach_m, sim::kRayScenery);
-  return {p_world_m.x(), p_world_m.y(),
-          kKneeHeight_m + kAboveGround_m - (ground ? ground->distance_m : kKneeHeight_m)};
+  constexpr double kOverBody_m = 0.5, kReach_m = 3.0;  // looks down on what the robot may climb
+  const double eye_z_m = snapshot_.T_world_body.position.z() + kOverBody_m;
+  const Eigen::Vector3d eye(p_world_m.x(), p_world_m.y(), eye_z_m);
+  const auto ground = scenery_.cast(eye, -Eigen::Vector3d::UnitZ(), kReach_m, sim::kRayScenery);
+  return {p_world_m.x(), p_world_m.y(), kAboveGround_m + (ground ? eye_z_m - ground->distance_m : 0.0)};
 }
 
 // Each beam from where the robot was when it was fired: the estimate says where the level body was at one

@@ -29,6 +29,8 @@ class RunFollower {
   void add(const SimState& state) { snapshot_.state = state; }
 
   const RunSnapshot& snapshot() const { return snapshot_; }
+  /// Where the robot looks from, in body; none if it has no camera.
+  const std::optional<Eigen::Vector3d>& head_m() const { return head_m_; }
   /// To the first thing that stands still, at most `max_m`.
   double free_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m) const;
 
@@ -38,6 +40,7 @@ class RunFollower {
 
   sim::LidarScene scenery_;
   Pose3 T_body_lidar_;
+  std::optional<Eigen::Vector3d> head_m_;
   Trajectory truth_;
   std::deque<StampedPose> odometry_;  ///< of late, body in odom
   std::optional<LaserScan> scan_;

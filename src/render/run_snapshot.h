@@ -26,7 +26,8 @@ struct RunSnapshot {
   std::shared_ptr<const OccupancyGrid> map;     ///< in map; null before the first
   double position_error_m = 0.0;                ///< of the newest estimate
   double heading_error_rad = 0.0;
-  double walked_m = 0.0;
+  double travelled_m = 0.0;
+  bool is_driving = false;  ///< on tracks, and not walking
   std::string event;      ///< the newest one's text
   bool is_alarm = false;  ///< that event is one
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <cstdint>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -14,6 +16,11 @@ namespace patrol::render {
 namespace {
 
 Eigen::Vector3d to_eigen(const float v[3]) { return {v[0], v[1], v[2]}; }
+
+Color to_color(const float rgba[4]) {
+  const auto byte = [](float share) { return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(share, 0.0f, 1.0f))); };
+  return {byte(rgba[0]), byte(rgba[1]), byte(rgba[2])};
+}
 
 /// The sun, if the world has one: the first directional light that is not the headlight.
 mjvLight* find_sun(mjvScene& scene) {
@@ -47,10 +54,11 @@ void set_replay_quality(mjModel& view) {
   view.vis.map.shadowclip = static_cast<float>(kShadowReach_m / view.stat.extent);
 }
 
-ScenePainter::ScenePainter(const mjModel& view, int width, int height)
+ScenePainter::ScenePainter(const mjModel& view, int width, int height, double extinction_per_m)
     : model_(view),
       data_(sim::make_data(view)),
       offscreen_(view, width, height),
+      dust_{extinction_per_m, to_color(view.vis.rgba.fog)},
       shadow_reach_m_(static_cast<double>(view.vis.map.shadowclip) * view.stat.extent) {
   mjv_defaultOption(&options_);
   std::fill(std::begin(options_.geomgroup), std::end(options_.geomgroup), mjtByte{0});
@@ -95,6 +103,7 @@ void ScenePainter::draw(const View& view, Frame& frame, std::vector<float>& dept
   offscreen_.render(scene_);
   offscreen_.read(frame);
   offscreen_.read_depth(depth);
+  add_haze(frame, depth, view, dust_);
 }
 
 // The shadow map covers a square around the sun's own place: bring the sun to where one looks. Towards the
@@ -103,12 +112,27 @@ void ScenePainter::draw(const View& view, Frame& frame, std::vector<float>& dept
 void ScenePainter::light_around(const View& view) {
   constexpr double kSunDistance_m = 25.0, kTowardsSun = 0.15;
   mjvLight* sun = find_sun(scene_);
-  if (sun == nullptr) return;
+  if (sun == nullptr) return let_nearest_lamp_throw_shadows(view);
   const Eigen::Vector3d rays = to_eigen(sun->dir);
   const Eigen::Vector3d on_ground(rays.x(), rays.y(), 0.0);
   const Eigen::Vector3d place =
       view.focus - kSunDistance_m * rays - kTowardsSun * shadow_reach_m_ * on_ground.normalized();
   for (int axis = 0; axis < 3; ++axis) sun->pos[axis] = static_cast<float>(place[axis]);
+}
+
+// Underground it is lamps that show what stands on the ground. One of them is what a frame can afford: the nearest, where
+// what one looks at is well inside the cone that its shadow map covers. Near the edge of that MuJoCo 3.17 draws speckles.
+void ScenePainter::let_nearest_lamp_throw_shadows(const View& view) {
+  constexpr double kEdge_deg = 5.0;
+  const auto away = [&](const mjvLight& light) {
+    return light.headlight ? std::numeric_limits<double>::infinity() : (to_eigen(light.pos) - view.focus).norm();
+  };
+  mjvLight* const end = scene_.lights + scene_.nlight;
+  mjvLight* const lamp = std::ranges::min_element(scene_.lights, end, {}, away);
+  if (lamp == end || lamp->headlight) return;
+  const double off_axis_rad = std::acos((view.focus - to_eigen(lamp->pos)).normalized().dot(to_eigen(lamp->dir).normalized()));
+  const double reach_deg = static_cast<double>(lamp->cutoff * model_.vis.map.shadowscale) - kEdge_deg;
+  if (off_axis_rad < reach_deg * std::numbers::pi / 180.0) lamp->castshadow = 1;
 }
 
 // Software vertex work is half of a frame: leave out what would be a speck, and what is neither in sight

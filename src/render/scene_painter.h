@@ -5,6 +5,7 @@
 #include "core/ground_truth.h"
 #include "render/camera.h"
 #include "render/frame.h"
+#include "render/haze.h"
 #include "render/offscreen.h"
 #include "sim/mujoco.h"
 
@@ -18,9 +19,9 @@ void set_replay_quality(mjModel& view);
 /// Draws the world and everything in it, as a state of the simulation has it.
 class ScenePainter {
  public:
-  /// `view` is a model for renders (sim/model_assembly.h) and must outlive the painter. Throws
-  /// std::runtime_error without OpenGL.
-  ScenePainter(const mjModel& view, int width, int height);
+  /// `view` is a model for renders (sim/model_assembly.h) and must outlive the painter. Dust that stops a share of light
+  /// per metre has the colour of the world's fog. Throws std::runtime_error without OpenGL.
+  ScenePainter(const mjModel& view, int width, int height, double extinction_per_m = 0.0);
   ~ScenePainter();
   ScenePainter(const ScenePainter&) = delete;
   ScenePainter& operator=(const ScenePainter&) = delete;
@@ -37,6 +38,7 @@ class ScenePainter {
 
  private:
   void light_around(const View& view);
+  void let_nearest_lamp_throw_shadows(const View& view);
   void drop_unseen(const View& view);
 
   const mjModel& model_;
@@ -44,6 +46,7 @@ class ScenePainter {
   Offscreen offscreen_;
   mjvScene scene_;
   mjvOption options_;
+  Haze dust_;
   double shadow_reach_m_;  ///< half the side of the square that the shadow map covers
 };
 

@@ -94,6 +94,14 @@ TEST(Scenario, ResolvedAndReadAgainIsTheSame) {
   EXPECT_EQ(test::read_bytes(folder / "a.yaml"), test::read_bytes(folder / "b.yaml"));
 }
 
+TEST(Scenario, TheLightIsAsTheWorldHasItUnlessOneDimsIt) {
+  const std::filesystem::path file = kSource / "worlds/tunnel/scenarios/docking.yaml";
+  EXPECT_EQ(load_scenario(file).light.brightness_share, 1.0);
+  EXPECT_EQ(load_scenario(file, {"light.brightness_share=0.4"}).light.brightness_share, 0.4);
+  EXPECT_THAT([&] { load_scenario(file, {"light.brightness_share=1.5"}); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("light.brightness_share"), HasSubstr("1.5"), HasSubstr("0 ... 1"))));
+}
+
 TEST(Scenario, AnOverrideOfAnUnknownKeyNamesTheNearest) {
   EXPECT_THAT([] { load_scenario(kSource / "worlds/street/scenarios/short.yaml", {"sed=3"}); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("sed"), HasSubstr("seed"))));

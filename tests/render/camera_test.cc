@@ -96,6 +96,29 @@ TEST(CameraRigTest, ComesNearerAtOnceWhereSomethingIsInTheWayAndLeavesSlowly) {
   EXPECT_NEAR(-rig.follow(robot, 10.0).eye.x(), usual_m, 1e-3);
 }
 
+/// Nothing in the way, but a roof so high above the ground.
+FreeDistance under_roof(double height_m) {
+  return [height_m](const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m) {
+    return direction.z() > 0.9 ? std::min(max_m, height_m - from_m.z()) : max_m;
+  };
+}
+
+// Half a metre up at 3.3 m ahead.
+TEST(CameraRigTest, LooksUpByMoreThanSevenDegreesWhereThereIsARoof) {
+  const Pose3 robot{{0.0, 0.0, 0.15}, Eigen::Quaterniond::Identity()};
+  CameraRig outdoors(CameraKind::kChase), indoors(CameraKind::kChase, under_roof(7.5));
+  const double gained_rad = std::asin(indoors.follow(robot, 10.0).forward.z()) - std::asin(outdoors.follow(robot, 10.0).forward.z());
+  EXPECT_GT(gained_rad, 7.0 * std::numbers::pi / 180.0);
+  EXPECT_LT(gained_rad, 9.0 * std::numbers::pi / 180.0);
+}
+
+// The eye is 14 m above the body at 0.15 m. The cut is 0.6 of the roof's 7.35 m above it: 14 - 4.41 m from the eye.
+TEST(CameraRigTest, FromTheTopARoofIsCutAway) {
+  const Pose3 robot{{0.0, 0.0, 0.15}, Eigen::Quaterniond::Identity()};
+  EXPECT_NEAR(CameraRig(CameraKind::kTop, under_roof(7.5)).follow(robot, 0.05).near_m, 9.59, 1e-9);
+  EXPECT_EQ(CameraRig(CameraKind::kTop, under_roof(100.0)).follow(robot, 0.05).near_m, View{}.near_m);
+}
+
 TEST(CameraRigTest, FromTheTopNorthIsUp) {
   const View view = CameraRig(CameraKind::kTop).follow({{3.0, 4.0, 0.3}, quaternion_from_yaw(1.0)}, 0.05);
   EXPECT_NEAR(view.forward.z(), -1.0, 1e-12);
@@ -106,6 +129,11 @@ TEST(CameraRigTest, FromTheTopNorthIsUp) {
 TEST(CameraRigTest, OnBoardLooksWhereTheRobotHeads) {
   const View view = CameraRig(CameraKind::kOnboard).follow({{3.0, 4.0, 0.3}, quaternion_from_yaw(1.0)}, 0.05);
   EXPECT_NEAR(std::atan2(view.forward.y(), view.forward.x()), 1.0, 1e-9);
+}
+
+TEST(CameraRigTest, OnBoardIsWhereTheRobotHasItsCamera) {
+  const View view = CameraRig(CameraKind::kOnboard, {}, {0.5, 0.0, 0.25}).follow({{3.0, 4.0, 0.3}, quaternion_from_yaw(0.0)}, 0.05);
+  EXPECT_NEAR((view.eye - Eigen::Vector3d(3.5, 4.0, 0.55)).norm(), 0.0, 1e-12);
 }
 
 TEST(CameraKindTest, AnUnknownNameIsRefusedWithTheOnesThatAre) {

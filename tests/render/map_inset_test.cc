@@ -58,6 +58,17 @@ TEST(MapInsetTest, ShowsTheKnownPartWithoutDistortion) {
   EXPECT_GT(floor.left, 320);  // in the right half
 }
 
+// 100 m x 10 m, with a metre of margin all round.
+TEST(MapInsetTest, ALongStripMayTakeFortyTwoHundredthsOfTheWidth) {
+  const OccupancyGrid map({.resolution_m = 0.05, .width = 2000, .height = 200, .origin_m = {0.0, 0.0}}, kFree);
+  RunSnapshot snapshot;
+  snapshot.map = std::make_shared<const OccupancyGrid>(map);
+  Frame frame(640, 360);
+  MapInset().draw(frame, snapshot);
+  const Extent floor = extent_of(frame, is_floor);
+  EXPECT_NEAR(floor.right - floor.left, 0.42 * 640 * 100.0 / 102.0, 3);
+}
+
 TEST(MapInsetTest, NorthIsUpWhateverTheMapsOwnAxesAre) {
   RunSnapshot snapshot = snapshot_with_map();
   Frame east(640, 360), north(640, 360);

@@ -102,6 +102,39 @@ TEST_F(Replay, AStillShowsTheWorldAndTheOverlay) {
   EXPECT_GT(orange, 20) << "the estimated path";
 }
 
+/// Where the wall before the robot is, beside the robot.
+Color wall_color(const Frame& frame) { return frame.at(frame.width() * 2 / 5, frame.height() * 3 / 10); }
+
+TEST_F(Replay, ShowsTheDustAndTheDimLightOfTheRun) {
+  settings.width = 640;  // with room between figures and legend
+  settings.height = 360;
+  still(log, model(), {}, settings, 1s, folder / "clear.png");
+  settings.dust = {.enabled = true, .visibility_m = 0.5};
+  still(log, model(), {}, settings, 1s, folder / "dust.png");
+  settings.dust.enabled = false;
+  settings.light.brightness_share = 0.5;
+  still(log, model(), {}, settings, 1s, folder / "dim.png");
+  const Color clear = wall_color(load_png(folder / "clear.png")), dust = wall_color(load_png(folder / "dust.png")),
+              dim = wall_color(load_png(folder / "dim.png"));
+  EXPECT_EQ(dust, (Color{0, 0, 0})) << "this little world's fog";
+  EXPECT_GT(clear.r, 50);
+  EXPECT_NEAR(dim.r, 0.5 * clear.r, 2);
+}
+
+TEST_F(Replay, ShowsTheMapThatTheRobotWasGiven) {
+  settings.width = 640;
+  settings.height = 360;
+  still(log, model(), {}, settings, 1s, folder / "without.png");
+  settings.map = OccupancyGrid({.resolution_m = 0.1, .width = 100, .height = 100, .origin_m = {0.0, 0.0}}, kFree);
+  still(log, model(), {}, settings, 1s, folder / "with.png");
+  const Frame without = load_png(folder / "without.png"), with = load_png(folder / "with.png");
+  int floor = 0;
+  for (int y = 180; y < 360; ++y) {
+    for (int x = 320; x < 640; ++x) floor += with.at(x, y) != without.at(x, y);
+  }
+  EXPECT_GT(floor, 90 * 90) << "10 m at a pixel a cell";
+}
+
 TEST_F(Replay, RefusesALogOfAnotherRobot) {
   write_log(log, 19);
   EXPECT_THROW(replay(log, model(), {}, settings, film), InputError);

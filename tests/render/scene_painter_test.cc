@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/error.h"
 #include "tests/render/small_scene.h"
 
@@ -114,6 +117,68 @@ TEST_F(ScenePainterTest, RefusesAStateOfAnotherModel) {
   state = reference_state(*model);
   state.mocap.clear();
   EXPECT_THROW(painter.set_state(state), InputError);
+}
+
+/// A post of 0.4 m between two lamps 4 m up, both in sight of it.
+constexpr const char* kPostBetweenLamps = R"(
+  <light pos="-2 0 4" dir="0 0 -1" cutoff="80" exponent="1" diffuse="0.6 0.6 0.6" castshadow="false"/>
+  <light pos="30 0 4" dir="0 0 -1" cutoff="80" exponent="1" diffuse="0.6 0.6 0.6" castshadow="false"/>
+  <geom type="plane" size="3 3 1" rgba="0.5 0.5 0.5 1"/>
+  <geom type="box" size="0.1 0.3 0.5" pos="0 0 0.5" rgba="0.5 0.1 0.1 1"/>)";
+
+// The lamp over x = -2 m, 4 m up, throws the shadow of the post's upper edge, 1 m up, to x = 0.8 m.
+TEST(ScenePainterUnderLamps, TheNearestOneThrowsShadows) {
+  const sim::ModelPtr model = small_scene(kPostBetweenLamps);
+  ScenePainter painter(*model, kWidth, kHeight);
+  const View above = look_at({0.0, 0.0, 5.0}, {0.0, 0.0, 0.0});
+  Frame frame;
+  std::vector<float> depth;
+  painter.draw(above, frame, depth);
+  const Projector projector(above, kWidth, kHeight);
+  const auto green_at = [&](double x, double y) {
+    const Eigen::Vector2d pixel = projector.project({x, y, 0.0})->pixel;
+    return static_cast<int>(frame.at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y())).g);
+  };
+  EXPECT_LT(green_at(0.45, 0.0), green_at(0.45, 1.2) - 20);
+  EXPECT_GT(green_at(-0.45, 0.0), green_at(0.45, 0.0) + 20);
+  EXPECT_NEAR(green_at(1.2, 0.0), green_at(1.2, 1.2), 10);  // the shadow ends
+}
+
+// 0.6 of the cutoff of 80 degrees is what a shadow map covers: over 10 m, seen from 4 m up, it is too far.
+TEST(ScenePainterUnderLamps, FarFromAllOfThemThereAreNoShadows) {
+  const sim::ModelPtr model = small_scene(kPostBetweenLamps);
+  ScenePainter painter(*model, kWidth, kHeight);
+  Frame frame;
+  std::vector<float> depth;
+  const auto num_casting = [&](double x_m) {
+    painter.draw(look_at({x_m, 0.0, 5.0}, {x_m, 0.0, 0.0}), frame, depth);
+    const mjvScene& scene = painter.scene();
+    return std::count_if(scene.lights, scene.lights + scene.nlight, [](const mjvLight& light) { return light.castshadow != 0 && !light.headlight; });
+  };
+  EXPECT_EQ(num_casting(0.0), 1);
+  EXPECT_EQ(num_casting(10.0), 0);
+  EXPECT_EQ(num_casting(29.0), 1);
+}
+
+// Koschmieder: of the contrast to the fog's colour, exp(-0.2 d) is left after d metres.
+TEST(ScenePainterInDust, WhatIsFarTakesTheColourOfTheFogAndWhatIsNearDoesNot) {
+  const sim::ModelPtr model = small_scene(kYard);
+  constexpr float kFog = 0.6f;
+  std::fill(model->vis.rgba.fog, model->vis.rgba.fog + 3, kFog);
+  const View view = kFromBehind;
+  Frame clear, dusty;
+  std::vector<float> depth;
+  ScenePainter(*model, kWidth, kHeight).draw(view, clear, depth);
+  ScenePainter(*model, kWidth, kHeight, 0.2).draw(view, dusty, depth);
+  const Projector projector(view, kWidth, kHeight);
+  const auto expect_haze = [&](const Eigen::Vector3d& point_m) {
+    const Eigen::Vector2d pixel = projector.project(point_m)->pixel;
+    const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
+    const double left = std::exp(-0.2 * (point_m - view.eye).norm());
+    EXPECT_NEAR(dusty.at(x, y).r, 255.0 * kFog + left * (clear.at(x, y).r - 255.0 * kFog), 2.0) << point_m.transpose();
+  };
+  expect_haze({-0.3, 0.0, 0.3});   // the robot, 2.4 m away
+  expect_haze({7.5, 3.0, 0.5});    // the wall, 10.5 m away
 }
 
 TEST(OffscreenTest, RefusesASizeWithoutPixels) {
