@@ -141,7 +141,7 @@ inline io::TransformSet sample_transforms() {
 inline auto all_samples() {
   return std::tuple(sample_scan(), sample_cloud(), sample_imu(), sample_joints(), sample_contacts(),
                     sample_gas(), sample_fix(), sample_ticks(), sample_uwb(),
-                    sample_ultrasonic(), sample_depth(), sample_remote(), sample_trust(), sample_odometry(), sample_estimate(), sample_particles(),
+                    sample_ultrasonic(), sample_depth(), sample_remote(), sample_trust(), sample_odometry(), sample_estimate(), RangePoseEstimate{sample_estimate()}, sample_particles(),
                     sample_map(), sample_path(), sample_command(), sample_event(), sample_truth(),
                     sample_state(), sample_collision(), sample_transforms());
 }
