@@ -76,6 +76,7 @@ TEST_F(RunLog, BringsEveryMessageToItsHandlerAtItsTime) {
                              .trust = count,
                              .odometry = count,
                              .pose = count,
+                             .range_pose = count,
                              .particles = count,
                              .map = count,
                              .path = count,
@@ -85,8 +86,8 @@ TEST_F(RunLog, BringsEveryMessageToItsHandlerAtItsTime) {
                              .state = count,
                              .collision = count};
   EXPECT_TRUE(read_run_log(file, handlers));
-  EXPECT_EQ(written, 23);
-  EXPECT_EQ(calls.size(), 23U);
+  EXPECT_EQ(written, 24);
+  EXPECT_EQ(calls.size(), 24U);
   for (const auto& [second, number] : calls) EXPECT_EQ(number, 1) << second;
 }
 
