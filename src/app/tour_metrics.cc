@@ -6,7 +6,7 @@
 
 namespace patrol::app {
 io::Metrics tour_metrics(const RunRecord& record, const Scenario& scenario, const ScenarioFiles& files, const Pose2& T_world_map) {
-  io::Metrics metrics;
+  io::Metrics metrics = io::Metrics::object();
   const std::vector<score::GoalError> goals = score::goal_errors(record.events, files.goals, T_world_map, record.T_world_body);
   if (!goals.empty()) metrics["goals"] = io::Metrics::array();
   for (const score::GoalError& goal : goals) metrics["goals"].push_back(to_json(goal));
