@@ -25,12 +25,13 @@ Eigen::Matrix3d moves_with_body(const Pose2& T_odom_body, const Pose2& T_odom_se
 
 void DockTrack::reset() { *this = DockTrack(settings_); }
 
-void DockTrack::drift(const Pose2& T_odom_body) {
+void DockTrack::drift(const Pose2& T_odom_body, double time_s) {
   const Pose2 motion = T_odom_before_.inverse() * T_odom_body;
   const double way_m = motion.position().norm(), turn_rad = std::abs(motion.yaw);
   const double way_std = settings_.way_std_m_per_m * way_m;
   const double side_std = std::hypot(way_std, settings_.side_std_m_per_rad * turn_rad);
-  const double turn_std = settings_.turn_std_rad_per_rad * turn_rad + settings_.turn_std_rad_per_m * way_m;
+  const double turn_std = std::hypot(settings_.turn_std_rad_per_rad * turn_rad + settings_.turn_std_rad_per_m * way_m,
+                                     settings_.turn_std_rad_per_sqrt_s * std::sqrt(time_s));
   const Eigen::Vector3d body_std(way_std, side_std, turn_std);
   const Eigen::Matrix3d J = moves_with_body(T_odom_body, *T_odom_docked_);
   covariance_ += J * body_std.cwiseAbs2().asDiagonal() * J.transpose();
@@ -48,7 +49,7 @@ void DockTrack::add(const DockSighting& sighting, const Pose2& T_odom_body) {
   const Eigen::Vector3d least(settings_.least_std_m, settings_.least_std_m, settings_.least_std_rad);
   seen_covariance += least.cwiseAbs2().asDiagonal();
 
-  if (T_odom_docked_) drift(T_odom_body);
+  if (T_odom_docked_) drift(T_odom_body, to_seconds(sighting.stamp - last_stamp_));
   T_odom_before_ = T_odom_body;
   last_stamp_ = sighting.stamp;
   if (!T_odom_docked_ || num_outliers_ >= kMaxOutliers) {

@@ -13,6 +13,7 @@ struct DockTrackSettings {
   double way_std_m_per_m = 0.03;      ///< how far odometry goes wrong between two looks
   double turn_std_rad_per_rad = 0.05;
   double turn_std_rad_per_m = 0.01;
+  double turn_std_rad_per_sqrt_s = 0.003;  ///< a gyro's bias turns it even at rest
   double side_std_m_per_rad = 0.03;   ///< a skidding turn moves the body aside
   double least_std_m = 0.002;         ///< of a look: what looks from one place have in common
   double least_std_rad = 0.002;
@@ -23,6 +24,7 @@ struct DockTrackSettings {
     visit("way_std_m_per_m", self.way_std_m_per_m, between(0.0, 1.0));
     visit("turn_std_rad_per_rad", self.turn_std_rad_per_rad, between(0.0, 1.0));
     visit("turn_std_rad_per_m", self.turn_std_rad_per_m, between(0.0, 1.0));
+    visit("turn_std_rad_per_sqrt_s", self.turn_std_rad_per_sqrt_s, between(0.0, 1.0));
     visit("side_std_m_per_rad", self.side_std_m_per_rad, between(0.0, 1.0));
     visit("least_std_m", self.least_std_m, between(1e-4, 0.1));
     visit("least_std_rad", self.least_std_rad, between(1e-4, 0.1));
@@ -32,7 +34,7 @@ struct DockTrackSettings {
 
 /// Where the dock is in `odom`: every sighting, fused. One look is good to a centimetre and a degree; the robot comes near by
 /// smooth odometry and some fifty of them. A Kalman filter of T_odom_docked, whose process noise is the odometry's drift
-/// since the last look: it moves the dock about the robot.
+/// since the last look, by way, turn and time: it moves the dock about the robot.
 class DockTrack {
  public:
   explicit DockTrack(const DockTrackSettings& settings) : settings_(settings) {}
@@ -47,7 +49,7 @@ class DockTrack {
   Time last_stamp() const { return last_stamp_; }
 
  private:
-  void drift(const Pose2& T_odom_body);
+  void drift(const Pose2& T_odom_body, double time_s);
 
   DockTrackSettings settings_;
   std::optional<Pose2> T_odom_docked_;

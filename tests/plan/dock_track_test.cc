@@ -27,7 +27,7 @@ TEST(DockTrack, TheFirstLookIsBelieved) {
 
 // From a standstill, without a floor to a look's spread: standard deviation 1 cm / sqrt(100).
 TEST(DockTrack, AHundredLooksFromOnePlaceAreTenTimesAsGoodAsOne) {
-  DockTrack track({.least_std_m = 1e-4, .least_std_rad = 1e-4});
+  DockTrack track({.turn_std_rad_per_sqrt_s = 0.0, .least_std_m = 1e-4, .least_std_rad = 1e-4});
   const RandomStream noise(7, "test/looks");
   for (std::uint64_t i = 0; i < 100; ++i) {
     const Pose2 seen{1.0 + 0.01 * noise.normal(i, 0), 0.01 * noise.normal(i, 1), 0.01 * noise.normal(i, 2)};
@@ -39,7 +39,8 @@ TEST(DockTrack, AHundredLooksFromOnePlaceAreTenTimesAsGoodAsOne) {
 
 // 1 m driven adds (3 cm)^2 along; a turn by 1 rad adds 0.05 rad, which at 1 m moves the dock aside by 5 cm, and 3 cm of skid.
 TEST(DockTrack, OdometryThatHasMovedIsTrustedLess) {
-  const DockTrackSettings settings;
+  DockTrackSettings settings;
+  settings.turn_std_rad_per_sqrt_s = 0.0;
   DockTrack moved(settings), turned(settings);
   const double least_var = 1e-4 + settings.least_std_m * settings.least_std_m;
   moved.add(see(0.0, {2.0, 0.0, 0.0}), {});
@@ -50,6 +51,16 @@ TEST(DockTrack, OdometryThatHasMovedIsTrustedLess) {
   EXPECT_NEAR(turned.covariance()(2, 2), least_var + 0.05 * 0.05, 1e-12);
   const double place_var = turned.covariance()(0, 0) + turned.covariance()(1, 1);
   EXPECT_NEAR(place_var, 2.0 * least_var + 0.05 * 0.05 + 0.03 * 0.03, 1e-12);
+}
+
+// Ten seconds at rest add (0.003 rad)^2 each.
+TEST(DockTrack, HeadingIsTrustedLessWithTimeEvenAtRest) {
+  const DockTrackSettings settings;
+  DockTrack track(settings);
+  track.add(see(0.0, {2.0, 0.0, 0.0}), {});
+  const double before = track.covariance()(2, 2);
+  track.add(see(10.0, {9.0, 0.0, 0.0}), {});  // an outlier: only the drift remains
+  EXPECT_NEAR(track.covariance()(2, 2) - before, 10.0 * 0.003 * 0.003, 1e-12);
 }
 
 TEST(DockTrack, AnOutlierIsPassedOverAndSixInARowAreBelieved) {
