@@ -7,8 +7,8 @@
 
 #include "tests/bench/ratio.h"
 #include "tests/sim/rubble.h"
-#include "tests/sim/tracked_robot.h"
-#include "tests/sim/walking_robot.h"
+#include "tests/support/tracked_twin.h"
+#include "tests/support/quadruped_twin.h"
 
 namespace patrol::bench {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tests/sim/walking_robot.h"
+#include "tests/support/quadruped_twin.h"
 
 /// The whole range of commands for ten minutes: -0.3 to 1.0 m/s, +-1 rad/s, starts, stops, turns in place.
 namespace patrol::sim {

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "tests/sim/rubble.h"
-#include "tests/sim/tracked_robot.h"
-#include "tests/sim/walking_robot.h"
+#include "tests/support/tracked_twin.h"
+#include "tests/support/quadruped_twin.h"
 
 namespace patrol::sim {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "io/urdf.h"
 #include "sim/sensors/sensor_suite.h"
-#include "tests/sim/walking_robot.h"
+#include "tests/support/quadruped_twin.h"
 
 namespace patrol::sim {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "tests/sim/small_world.h"
-#include "tests/sim/walking_robot.h"
+#include "tests/support/quadruped_twin.h"
 
 namespace patrol::sim {
 namespace {

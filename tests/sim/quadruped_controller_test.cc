@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/sim/walking_robot.h"
+#include "tests/support/quadruped_twin.h"
 
 namespace patrol::sim {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "sim/sensors/hall_sensors.h"
-#include "tests/sim/tracked_robot.h"
+#include "tests/support/tracked_twin.h"
 
 namespace patrol::sim {
 namespace {

@@ -6,8 +6,8 @@
 #include "core/error.h"
 #include "io/urdf.h"
 #include "tests/sim/rubble.h"
-#include "tests/sim/tracked_robot.h"
-#include "tests/sim/walking_robot.h"
+#include "tests/support/tracked_twin.h"
+#include "tests/support/quadruped_twin.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::sim {

@@ -1,4 +1,4 @@
-#include "tests/sim/walking_robot.h"
+#include "tests/support/quadruped_twin.h"
 
 #include <algorithm>
 #include <cmath>

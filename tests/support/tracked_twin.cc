@@ -1,4 +1,4 @@
-#include "tests/sim/tracked_robot.h"
+#include "tests/support/tracked_twin.h"
 
 #include <algorithm>
 #include <cmath>
