@@ -17,39 +17,88 @@
 namespace patrol::app {
 namespace {
 
-/// Builds the parser; `chosen` is filled with the command that was called.
-void add_commands(CLI::App& app, std::function<ExitCode()>& chosen, RunOptions& run, ScoreOptions& score,
-                  ReplayOptions& replay, std::filesystem::path& verify_run) {
+/// What every command was given, and which of them was called.
+struct Call {
+  RunOptions run;
+  ScoreOptions score;
+  ReplayOptions replay;
+  std::filesystem::path verify_run;
+  SweepOptions sweep;
+  std::filesystem::path collect_root;
+  std::vector<std::filesystem::path> collect_parts;
+  std::function<ExitCode()> chosen;
+};
+
+void add_run(CLI::App& app, Call& call) {
   CLI::App* command = app.add_subcommand("run", "Run a scenario headless and score it");
-  command->add_option("scenario", run.scenario, "Scenario file (YAML)")->required();
-  command->add_option("--set", run.overrides, "Override a setting: path=value; may be repeated")->take_all();
-  command->add_option("--seed", run.seed, "Seed of every random stream");
-  command->add_option("--out", run.out, "Run directory to leave");
-  command->callback([&] { chosen = [&] { return run_command(run); }; });
+  command->add_option("scenario", call.run.scenario, "Scenario file (YAML)")->required();
+  command->add_option("--set", call.run.overrides, "Override a setting: path=value; may be repeated")->take_all();
+  command->add_option("--seed", call.run.seed, "Seed of every random stream");
+  command->add_option("--out", call.run.out, "Run directory to leave");
+  command->callback([&] { call.chosen = [&] { return run_command(call.run); }; });
+}
 
-  command = app.add_subcommand("score", "Score a run, a trajectory or a map");
-  command->add_option("run", score.run, "Run directory");
-  command->add_option("--estimate", score.estimate, "Estimated trajectory (TUM)");
-  command->add_option("--reference", score.reference, "Reference trajectory (TUM)");
-  command->add_option("--map", score.map, "Built map (map_server YAML)");
-  command->add_option("--reference-map", score.reference_map, "Reference map (map_server YAML)");
-  command->callback([&] { chosen = [&] { return score_command(score); }; });
+void add_score(CLI::App& app, Call& call) {
+  CLI::App* command = app.add_subcommand("score", "Score a run, a trajectory or a map");
+  command->add_option("run", call.score.run, "Run directory");
+  command->add_option("--estimate", call.score.estimate, "Estimated trajectory (TUM)");
+  command->add_option("--reference", call.score.reference, "Reference trajectory (TUM)");
+  command->add_option("--map", call.score.map, "Built map (map_server YAML)");
+  command->add_option("--reference-map", call.score.reference_map, "Reference map (map_server YAML)");
+  command->callback([&] { call.chosen = [&] { return score_command(call.score); }; });
+}
 
-  command = app.add_subcommand("replay", "Render a run from its log");
-  command->add_option("run", replay.run, "Run directory")->required();
-  command->add_option("--camera", replay.camera, "chase, top or onboard")->capture_default_str();
-  command->add_option("--speed", replay.speed, "Simulated seconds per second of video")->capture_default_str();
-  command->add_option("--size", replay.size, "Width x height, pixels")->capture_default_str();
-  command->add_option("--still", replay.still_s, "One picture (PNG) of this instant instead, s");
-  command->add_option("--out", replay.out, "File to write");
-  command->callback([&] { chosen = [&] { return replay_command(replay); }; });
+void add_replay(CLI::App& app, Call& call) {
+  CLI::App* command = app.add_subcommand("replay", "Render a run from its log");
+  command->add_option("run", call.replay.run, "Run directory")->required();
+  command->add_option("--camera", call.replay.camera, "chase, top or onboard")->capture_default_str();
+  command->add_option("--speed", call.replay.speed, "Simulated seconds per second of video")->capture_default_str();
+  command->add_option("--size", call.replay.size, "Width x height, pixels")->capture_default_str();
+  command->add_option("--still", call.replay.still_s, "One picture (PNG) of this instant instead, s");
+  command->add_option("--out", call.replay.out, "File to write");
+  command->callback([&] { call.chosen = [&] { return replay_command(call.replay); }; });
+}
 
-  command = app.add_subcommand("verify", "Run a run again and name the first difference");
-  command->add_option("run", verify_run, "Run directory")->required();
-  command->callback([&] { chosen = [&] { return verify_command(verify_run); }; });
+void add_verify(CLI::App& app, Call& call) {
+  CLI::App* command = app.add_subcommand("verify", "Run a run again and name the first difference");
+  command->add_option("run", call.verify_run, "Run directory")->required();
+  command->callback([&] { call.chosen = [&] { return verify_command(call.verify_run); }; });
+}
 
-  command = app.add_subcommand("list", "Worlds, scenarios, robots, sensors, methods");
-  command->callback([&] { chosen = [] { return list_command(); }; });
+void add_sweep(CLI::App& app, Call& call) {
+  SweepOptions& sweep = call.sweep;
+  CLI::App* command = app.add_subcommand("sweep", "Run variants of a scenario with many seeds and compare them");
+  command->add_option("scenario", sweep.scenario, "Scenario file (YAML)")->required();
+  command->add_option("--set", sweep.overrides, "Override a setting in every run: path=value; may be repeated")->take_all();
+  command->add_option("--vary", sweep.vary,
+                      "path=a,b,c or path=range:FROM:TO:N, logrange:...: a variant for each; or uniform:LOW:HIGH, loguniform:LOW:HIGH, "
+                      "normal:MEAN:STD: a draw for each seed; may be repeated")->take_all();
+  command->add_option("--seeds", sweep.seeds, "N (seeds 1 ... N) or A..B")->capture_default_str();
+  command->add_option("--metric", sweep.metrics, "Figures to compare; may be repeated")->take_all()->capture_default_str();
+  command->add_flag("--stop-when-decided", sweep.stop_when_decided, "Leave off once the first metric is decided");
+  command->add_option("--margin", sweep.margin, "Differences of the first metric below this do not matter")->capture_default_str();
+  command->add_option("--jobs", sweep.jobs, "Runs at a time; 0: one for each core")->capture_default_str();
+  command->add_option("--run-limit-s", sweep.run_limit_s, "Wall time of a run after which it is given up, s")->capture_default_str();
+  command->add_option("--shard", sweep.shard, "i/n: do only this part of the runs");
+  command->add_option("--keep", sweep.keep, "Run directories that stay: none, failed, all")->capture_default_str();
+  command->add_option("--engine", sweep.engine, "local or slurm")->capture_default_str();
+  command->add_option("--slurm-tasks", sweep.slurm_tasks, "Tasks of the job array, each a shard")->capture_default_str();
+  command->add_option("--slurm-option", sweep.slurm_options, "Option for sbatch, --slurm-option=--partition=long; may be repeated")->take_all();
+  command->add_flag("--detach", sweep.detach, "Submit to Slurm and do not wait");
+  command->add_option("--out", sweep.out, "Directory of the sweep; results that lie there are not made again")->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return sweep_command(call.sweep); }; });
+}
+
+void add_collect(CLI::App& app, Call& call) {
+  CLI::App* command = app.add_subcommand("collect", "Put the shards of a sweep together");
+  command->add_option("sweep", call.collect_root, "Directory of the sweep")->required();
+  command->add_option("parts", call.collect_parts, "Directories of shards whose results to take over");
+  command->callback([&] { call.chosen = [&] { return collect_command(call.collect_root, call.collect_parts); }; });
+}
+
+void add_list(CLI::App& app, Call& call) {
+  CLI::App* command = app.add_subcommand("list", "Worlds, scenarios, robots, sensors, methods");
+  command->callback([&] { call.chosen = [] { return list_command(); }; });
 }
 
 /// CLI11 would only say that a command is required.
@@ -86,17 +135,13 @@ int run_command_line(int argc, const char* const* argv) {
   app.set_version_flag("--version", PATROL_VERSION);
   app.require_subcommand(1);
 
-  std::function<ExitCode()> chosen;
-  RunOptions run;
-  ScoreOptions score;
-  ReplayOptions replay;
-  std::filesystem::path verify_run;
-  add_commands(app, chosen, run, score, replay, verify_run);
+  Call call;
+  for (const auto add : {add_run, add_score, add_replay, add_verify, add_sweep, add_collect, add_list}) add(app, call);
 
   try {
     refuse_unknown_command(app, argc, argv);
     app.parse(argc, argv);
-    return static_cast<int>(chosen());
+    return static_cast<int>(call.chosen());
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     return report(error.what(), ExitCode::kWrongInput);

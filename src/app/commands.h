@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/exit_code.h"
+#include "app/sweep/sweep_options.h"
 
 /// One function per command of the program. They print results to standard output and talk to standard error.
 namespace patrol::app {
@@ -41,6 +42,12 @@ ExitCode replay_command(const ReplayOptions& options);
 
 /// Runs `run` again beside it and compares the logs.
 ExitCode verify_command(const std::filesystem::path& run);
+
+/// Runs every variant with every seed, or a shard of them, and compares the variants.
+ExitCode sweep_command(const SweepOptions& options);
+
+/// Puts the results of `parts`, of the same sweep, into `root`, and writes the tables when all are there.
+ExitCode collect_command(const std::filesystem::path& root, const std::vector<std::filesystem::path>& parts);
 
 ExitCode list_command();
 

@@ -36,6 +36,11 @@ void ProgressBar::show(const std::string& line) {
   has_drawn_ = true;
 }
 
+void ProgressBar::say(const std::string& line) {
+  fmt::print(stderr, "{}{}\n", has_drawn_ ? "\r\033[K" : "", line);
+  has_drawn_ = false;
+}
+
 InterruptGuard::InterruptGuard() {
   interrupts = 0;
   std::signal(SIGINT, count_interrupt);

@@ -15,6 +15,8 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(const std::string& line);
+  /// A line that stays, above it; said without a terminal too.
+  void say(const std::string& line);
 
  private:
   bool is_terminal_;

@@ -13,15 +13,15 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::array<std::string_view, 17> kOurFiles = {
+constexpr std::array<std::string_view, 16> kOurFiles = {
     "scenario.yaml", "log.mcap", "metrics.json", "junit.xml", "estimate.tum", "truth.tum",  "odometry.tum",
     "map.yaml",      "map.pgm",  "truth_map.yaml", "truth_map.pgm", "INCOMPLETE",   "report.html", "replay.mp4",
-    "replay.mp4.part", "nav.json", "remote.csv"};
+    "nav.json", "remote.csv"};
 
 bool is_ours(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
   return std::find(kOurFiles.begin(), kOurFiles.end(), name) != kOurFiles.end() ||
-         (name.starts_with("still_") && name.ends_with(".png"));
+         name.ends_with(".part") || (name.starts_with("still_") && name.ends_with(".png"));
 }
 
 void remove_earlier_run(const std::filesystem::path& root) {

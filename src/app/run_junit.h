@@ -1,22 +1,22 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "app/expectations.h"
-#include "app/run_directory.h"
-#include "app/run_loop.h"
+#include "app/run_verdict.h"
+#include "app/scenario.h"
+#include "io/junit.h"
 
 namespace patrol::app {
 
+/// What a reader of the report needs to run it again: world, robot, mission, seed, version.
+std::vector<std::pair<std::string, std::string>> junit_properties(const Scenario& scenario);
+
 /// The red report that stands there from before the run until its end.
-void write_unfinished_junit(const RunDirectory& directory, const Scenario& scenario, const std::string& name);
+io::JunitSuite unfinished_suite(const std::string& name, const std::vector<std::pair<std::string, std::string>>& properties);
 
-/// "imu freeze at 12 s".
-std::string describe(const sim::FaultSettings& fault);
-
-/// One case for how the run ended, one for each expectation, one for each declared fault (skipped if NOT EXECUTED).
-void write_junit(const RunDirectory& directory, const Scenario& scenario, const std::string& name, const RunOutcome& outcome,
-                 const std::vector<CheckedExpectation>& checks);
+/// One case for how the run ended, one for each expectation, one for each declared event (skipped if NOT EXECUTED).
+io::JunitSuite junit_suite(const std::string& name, const std::vector<std::pair<std::string, std::string>>& properties, const RunVerdict& verdict);
 
 }  // namespace patrol::app

@@ -1,5 +1,7 @@
 #include "io/atomic_file.h"
 
+#include <unistd.h>
+
 #include <fstream>
 #include <sstream>
 #include <system_error>
@@ -9,7 +11,8 @@
 namespace patrol::io {
 
 void save_text(const std::filesystem::path& file, std::string_view text) {
-  const std::filesystem::path temporary = file.string() + ".part";
+  // Of this process alone: others may write the same file.
+  const std::filesystem::path temporary = file.string() + "." + std::to_string(::getpid()) + ".part";
   std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
   out << text;
   out.close();

@@ -28,7 +28,29 @@ const Metrics* child_of(const Metrics& parent, const std::string& word) {
   return &parent[word];
 }
 
+void add_figures(const std::string& path, const Metrics& value, std::vector<std::pair<std::string, double>>& figures) {
+  const auto below = [&path](const std::string& word) { return path.empty() ? word : path + "." + word; };
+  if (value.is_object()) {
+    for (const auto& [key, child] : value.items()) add_figures(below(key), child, figures);
+  } else if (value.is_array()) {
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const bool is_named = value[i].is_object() && value[i].contains("name");
+      add_figures(below(is_named ? value[i]["name"].get<std::string>() : fmt::format("{}", i)), value[i], figures);
+    }
+  } else if (value.is_boolean()) {
+    figures.emplace_back(path, value.get<bool>() ? 1.0 : 0.0);
+  } else if (value.is_number() && std::isfinite(value.get<double>())) {
+    figures.emplace_back(path, value.get<double>());
+  }
+}
+
 }  // namespace
+
+std::vector<std::pair<std::string, double>> figures_of(const Metrics& metrics) {
+  std::vector<std::pair<std::string, double>> figures;
+  add_figures("", metrics, figures);
+  return figures;
+}
 
 void save_metrics(const std::filesystem::path& file, const Metrics& metrics) { save_text(file, metrics.dump(2) + "\n"); }
 

@@ -104,7 +104,7 @@ class SettingsReader {
   std::vector<std::string> known_;
 };
 
-/// Writes every field, defaults included, below a line of comment if there is one.
+/// Writes every field, defaults included.
 class SettingsWriter {
  public:
   explicit SettingsWriter(YAML::Emitter& out) : out_(out) {}
@@ -164,12 +164,18 @@ Settings load_settings(const std::filesystem::path& file, const std::vector<std:
   return settings;
 }
 
+/// Every field, defaults included, below a line of comment if there is one.
 template <typename Settings>
-void save_settings(const std::filesystem::path& file, const Settings& settings, const std::string& comment = "") {
+std::string to_yaml(const Settings& settings, const std::string& comment = "") {
   YAML::Emitter out;
   if (!comment.empty()) out << YAML::Comment(comment) << YAML::Newline;
   SettingsWriter::write_section(out, settings);
-  save_text(file, std::string(out.c_str()) + "\n");
+  return std::string(out.c_str()) + "\n";
+}
+
+template <typename Settings>
+void save_settings(const std::filesystem::path& file, const Settings& settings, const std::string& comment = "") {
+  save_text(file, to_yaml(settings, comment));
 }
 
 /// The known word nearest to `word` by edit distance; empty when none is near.

@@ -1,22 +1,17 @@
 #include "score/statistics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include <boost/math/distributions/students_t.hpp>
 
 namespace patrol::score {
 namespace {
 
-/// Two-sided 95 % quantile of Student's t. To 30 degrees of freedom the usual table; above, its expansion about the
-/// normal quantile (Abramowitz & Stegun 26.7.5), within 2e-4 there.
-double student_t_95(std::size_t degrees_of_freedom) {
-  constexpr std::array<double, 30> kTable = {
-      12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622, 2.2281,
-      2.2010,  2.1788, 2.1604, 2.1448, 2.1314, 2.1199, 2.1098, 2.1009, 2.0930, 2.0860,
-      2.0796,  2.0739, 2.0687, 2.0639, 2.0595, 2.0555, 2.0518, 2.0484, 2.0452, 2.0423};
-  if (degrees_of_freedom <= kTable.size()) return kTable[degrees_of_freedom - 1];
-  constexpr double kZ = 1.959964;
-  return kZ + (kZ * kZ * kZ + kZ) / (4.0 * static_cast<double>(degrees_of_freedom));
+/// Two-sided quantile of Student's t: the share `level` lies within plus and minus it.
+double student_t(std::size_t degrees_of_freedom, double level) {
+  const boost::math::students_t distribution(static_cast<double>(degrees_of_freedom));
+  return boost::math::quantile(boost::math::complement(distribution, (1.0 - level) / 2.0));
 }
 
 }  // namespace
@@ -57,8 +52,15 @@ double percentile(std::vector<double> values, double fraction) {
 }
 
 double confidence_95(const std::vector<double>& values) {
-  if (values.size() < 2) return 0.0;
-  return student_t_95(values.size() - 1) * std::sqrt(variance(values) / static_cast<double>(values.size()));
+  const std::optional<Interval> interval = mean_interval(values);
+  return interval ? interval->center - interval->low : 0.0;
+}
+
+std::optional<Interval> mean_interval(const std::vector<double>& values, double level) {
+  if (values.size() < 2) return std::nullopt;
+  const double center = mean(values);
+  const double half = student_t(values.size() - 1, level) * std::sqrt(variance(values) / static_cast<double>(values.size()));
+  return Interval{.center = center, .low = center - half, .high = center + half};
 }
 
 }  // namespace patrol::score

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 /// Small figures about a list of numbers. An empty list gives 0 throughout: there was nothing to be wrong about.
@@ -16,5 +17,16 @@ double percentile(std::vector<double> values, double fraction);
 
 /// Half width of the 95 % confidence interval of the mean, by Student's t; 0 for fewer than two values.
 double confidence_95(const std::vector<double>& values);
+
+struct Interval {
+  double center = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+
+  bool contains(double value) const { return low <= value && value <= high; }
+};
+
+/// Confidence interval of the mean, by Student's t; none for fewer than two values, which say nothing of their spread.
+std::optional<Interval> mean_interval(const std::vector<double>& values, double level = 0.95);
 
 }  // namespace patrol::score

@@ -35,19 +35,20 @@ RunOutcome ended(RunEnd end, double duration_s, double wall_s = 0.0) {
   return outcome;
 }
 
+std::string saved(const io::JunitSuite& suite) {
+  const TemporaryFolder folder;
+  io::save_junit(folder / "junit.xml", {suite});
+  return test::read_bytes(folder / "junit.xml");
+}
+
 /// The report of a run.
 std::string report(const RunOutcome& outcome, const std::vector<CheckedExpectation>& checks) {
-  const TemporaryFolder folder;
-  const RunDirectory directory{folder.path()};
-  write_junit(directory, make_scenario(), "short", outcome, checks);
-  return test::read_bytes(directory.junit());
+  const io::Metrics metrics = {{"performance", {{"wall_s", outcome.wall_s}}}};
+  return saved(junit_suite("short", junit_properties(make_scenario()), verdict_of(outcome, {}, metrics, checks)));
 }
 
 TEST(RunJunit, BeforeTheRunHasEndedItIsRed) {
-  const TemporaryFolder folder;
-  const RunDirectory directory{folder.path()};
-  write_unfinished_junit(directory, make_scenario(), "short");
-  const std::string xml = test::read_bytes(directory.junit());
+  const std::string xml = saved(unfinished_suite("short", junit_properties(make_scenario())));
   EXPECT_THAT(xml, HasSubstr("<testsuite name=\"short\""));
   EXPECT_THAT(xml, HasSubstr("errors=\"1\""));
   EXPECT_THAT(xml, HasSubstr("<error "));
@@ -98,12 +99,11 @@ TEST(RunJunit, NamesWhatIsNeededToRunItAgain) {
   EXPECT_THAT(xml, Not(HasSubstr("name=\"version\" value=\"\"")));
 }
 
-TEST(RunJunit, TheEndTakesThePlaceOfTheUnfinishedReport) {
-  const TemporaryFolder folder;
-  const RunDirectory directory{folder.path()};
-  write_unfinished_junit(directory, make_scenario(), "short");
-  write_junit(directory, make_scenario(), "short", {}, {make_check(true)});
-  EXPECT_THAT(test::read_bytes(directory.junit()), Not(HasSubstr("<error")));
+TEST(RunJunit, ARunThatCrashedIsAnErrorAndNotAFailure) {
+  const RunVerdict verdict{.end = "crashed", .code = ExitCode::kProgramFailed, .message = "signal 11", .metrics = {}, .checks = {}, .events = {}};
+  const std::string xml = saved(junit_suite("short", {}, verdict));
+  EXPECT_THAT(xml, HasSubstr("failures=\"0\" errors=\"1\""));
+  EXPECT_THAT(xml, HasSubstr("crashed: signal 11"));
 }
 
 }  // namespace

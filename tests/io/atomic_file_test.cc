@@ -1,5 +1,7 @@
 #include "io/atomic_file.h"
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,10 +26,13 @@ TEST(SaveText, ReplacesTheFileAndLeavesNothingBeside) {
   EXPECT_EQ(num_files(folder.path()), 1U);
 }
 
+/// Where the new file grows.
+std::filesystem::path part_of(const std::filesystem::path& file) { return file.string() + "." + std::to_string(::getpid()) + ".part"; }
+
 TEST(SaveText, WhenWritingFailsTheOldFileStandsUntouched) {
   const TemporaryFolder folder;
   save_text(folder / "a.txt", "old");
-  std::filesystem::create_directory(folder / "a.txt.part");  // where the new one would grow
+  std::filesystem::create_directory(part_of(folder / "a.txt"));
   EXPECT_THROW(save_text(folder / "a.txt", "new"), InputError);
   EXPECT_EQ(read_bytes(folder / "a.txt"), "old");
 }
@@ -47,7 +52,7 @@ TEST(SaveText, WhenTheNameIsTakenByAFolderNothingIsLeft) {
 TEST(SaveText, AFullDiskIsSaid) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   const TemporaryFolder folder;
-  std::filesystem::create_symlink("/dev/full", folder / "a.txt.part");
+  std::filesystem::create_symlink("/dev/full", part_of(folder / "a.txt"));
   EXPECT_THROW(save_text(folder / "a.txt", "new"), InputError);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
 }

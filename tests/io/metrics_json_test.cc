@@ -60,6 +60,15 @@ TEST(SaveMetrics, NotANumberBecomesNull) {
   EXPECT_EQ(test::read_bytes(folder / "metrics.json"), "{\n  \"x\": null\n}\n");
 }
 
+TEST(FiguresOf, GoThroughTheTreeAndNameEntriesOfLists) {
+  const Metrics metrics = {{"mission", {{"completed", true}, {"note", "word"}}},
+                           {"stations", {{{"name", "box"}, {"error_m", 0.5}}, {{"error_m", 0.25}}}},
+                           {"list", {1, nullptr}}};
+  const std::vector<std::pair<std::string, double>> expected = {
+      {"mission.completed", 1.0}, {"stations.box.error_m", 0.5}, {"stations.1.error_m", 0.25}, {"list.0", 1.0}};
+  EXPECT_EQ(figures_of(metrics), expected);
+}
+
 TEST(LoadMetrics, BrokenAndMissingFilesAreNamed) {
   const test::TemporaryFile file("metrics.json", "{\"a\": ");
   try {

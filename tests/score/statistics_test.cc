@@ -55,10 +55,22 @@ TEST(Confidence95, UsesStudentsQuantiles) {
   EXPECT_NEAR(quantile_used(2), 12.7062, 1e-4);
   EXPECT_NEAR(quantile_used(10), 2.2622, 1e-4);
   EXPECT_NEAR(quantile_used(31), 2.0423, 1e-4);
-  EXPECT_NEAR(quantile_used(41), 2.0211, 2e-3);
-  EXPECT_NEAR(quantile_used(61), 2.0003, 1e-3);
+  EXPECT_NEAR(quantile_used(41), 2.0211, 1e-4);
+  EXPECT_NEAR(quantile_used(61), 2.0003, 1e-4);
   EXPECT_NEAR(quantile_used(100'001), 1.9600, 1e-4);
 }
+
+TEST(MeanInterval, AtNinetyNinePercentIsWiderByTheQuantiles) {
+  // t(4) at 95 % is 2.7764, at 99 % 4.6041.
+  const std::vector<double> values = {1.0, 2.0, 3.0, 4.0, 5.0};
+  const Interval at_95 = mean_interval(values).value(), at_99 = mean_interval(values, 0.99).value();
+  EXPECT_DOUBLE_EQ(at_95.center, 3.0);
+  EXPECT_NEAR((at_99.high - at_99.center) / (at_95.high - at_95.center), 4.6041 / 2.7764, 1e-4);
+  EXPECT_TRUE(at_95.contains(3.5));
+  EXPECT_FALSE(at_95.contains(5.5));
+}
+
+TEST(MeanInterval, OneValueHasNone) { EXPECT_FALSE(mean_interval({1.0}).has_value()); }
 
 }  // namespace
 }  // namespace patrol::score

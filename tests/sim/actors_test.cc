@@ -103,7 +103,7 @@ TEST(Actors, TheFootThatStandsStaysWhereItIsAndOneFootAlwaysStands) {
 
 TEST(Actors, TheHipBobs6CentimetresOverAStepOf65) {
   Traffic traffic;
-  Moments height;
+  test::Moments height;
   run(traffic, walker({{.x_m = 0, .y_m = 0}, {.x_m = 9, .y_m = 0}}), 4.0, [&](double now) {
     if (now > 1.0) height.add(traffic.place_of("walker").z());
   });
@@ -122,7 +122,7 @@ TEST(Actors, KneesJoinThighAndShank) {
 
 TEST(Actors, TheHipRises10CentimetresOntoThePavementWithoutAJump) {
   Traffic traffic;
-  Moments before, after;
+  test::Moments before, after;
   double last = 0.86, highest_step = 0.0;
   run(traffic, walker({{.x_m = 7, .y_m = 0}, {.x_m = 13, .y_m = 0}}), 4.5, [&](double) {
     const Eigen::Vector3d hip = traffic.place_of("walker");
@@ -140,7 +140,7 @@ TEST(Actors, AWalkerClimbsARampOfGroundToADeckHigherThanTheKnee) {
   Traffic traffic(R"(<geom type="hfield" hfield="ramp" pos="-6.5 -10 0" group="2"/>
                      <geom type="box" pos="-3 -10 0.4" size="2 1 0.4"/>)",
                   R"(<hfield name="ramp" nrow="2" ncol="2" size="1.5 1 0.8 0.1" elevation="0 1 0 1"/>)");
-  Moments before, after;
+  test::Moments before, after;
   run(traffic, walker({{.x_m = -12, .y_m = -10}, {.x_m = -2, .y_m = -10}}), 10.0, [&](double now) {
     const Eigen::Vector3d hip = traffic.place_of("walker");
     if (now > 1.0 && hip.x() < -8.5) before.add(hip.z());

@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-#include "tests/sim/moments.h"
+#include "tests/support/moments.h"
 
 namespace patrol::sim {
 namespace {
@@ -59,8 +59,8 @@ int lost(const DepthImage& image) {
   return count;
 }
 
-Moments errors_m(const DepthImage& image, double depth_m) {
-  Moments errors;
+test::Moments errors_m(const DepthImage& image, double depth_m) {
+  test::Moments errors;
   for (const std::uint16_t depth_mm : image.depth_mm) {
     if (depth_mm != 0) errors.add(0.001 * depth_mm - depth_m);
   }
@@ -86,7 +86,7 @@ TEST(DepthCamera, NoiseIs1CentimetreAt2MetresAnd4At4) {
   DepthCameraSettings settings = ideal();
   settings.depth_noise_per_m = 0.0026;
   for (const auto& [depth_m, std_m] : {std::pair(2.0, 0.0104), std::pair(4.0, 0.0416)}) {
-    const Moments errors = errors_m(take(settings, wall(depth_m)), depth_m);
+    const test::Moments errors = errors_m(take(settings, wall(depth_m)), depth_m);
     EXPECT_EQ(errors.count, kPixels);
     EXPECT_NEAR(errors.mean(), 0.0, 4.0 * std_m / std::sqrt(kPixels));
     EXPECT_NEAR(errors.std(), std_m, 4.0 * std_m / std::sqrt(2.0 * kPixels));

@@ -48,7 +48,7 @@ TEST(FootContact, NoiseIs1NewtonOnEachFootApart) {
   FootContactSettings settings = ideal();
   settings.noise_n = 1.0;
   const FootContactSensor sensor(settings, *feet.model, two_legs(), 1);
-  Moments left, right;
+  test::Moments left, right;
   double together = 0.0;
   for (std::uint64_t tick = 0; tick < 10000; ++tick) {
     const FootContacts contacts = sensor.read(*feet.model, *feet.data, Time{}, tick);
@@ -66,7 +66,7 @@ TEST(FootContact, EachFootKeepsAnOffsetOf1NewtonForTheRun) {
   const TwoFeet feet;
   FootContactSettings settings = ideal();
   settings.offset_n = 1.0;
-  Moments offset;
+  test::Moments offset;
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
     const FootContactSensor sensor(settings, *feet.model, two_legs(), seed);
     const double first = sensor.read(*feet.model, *feet.data, Time{}, 0).force_n[1];

@@ -56,7 +56,7 @@ TEST(Gnss, WithoutNoiseItIsTheAntennaWithin2MillimetresOverTheBlock) {
 }
 
 struct Spread {
-  Moments east, north, up;
+  test::Moments east, north, up;
   double lag_1 = 0.0;  ///< autocorrelation of the east error, from reading to reading
 };
 

@@ -94,9 +94,9 @@ TEST(Imu, WithTheDefaultsNoiseRulesAt1SecondAndTheWalkCanBeSeenAt100) {
 }
 
 /// One figure of many sensors, each of its own seed.
-Moments over_seeds(const ImuSettings& settings, const std::function<double(ImuSensor&)>& figure) {
+test::Moments over_seeds(const ImuSettings& settings, const std::function<double(ImuSensor&)>& figure) {
   const SmallWorld world(kBox);
-  Moments moments;
+  test::Moments moments;
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
     ImuSensor imu(settings, *world.model, seed);
     moments.add(figure(imu));
@@ -109,9 +109,9 @@ TEST(Imu, TheConstantBiasOf2000SensorsSpreadsBy2MilliradiansAnd30MillimetresPerS
   settings.gyro_bias_radps = 0.002;
   settings.accel_bias_mps2 = 0.03;
   const auto rest = [](ImuSensor& imu) { return imu.corrupt({0, 0, 0}, {0, 0, 0}, Time{}, 0); };
-  const Moments gyro =
+  const test::Moments gyro =
       over_seeds(settings, [&](ImuSensor& imu) { return rest(imu).angular_velocity_radps.z(); });
-  const Moments accel =
+  const test::Moments accel =
       over_seeds(settings, [&](ImuSensor& imu) { return rest(imu).linear_acceleration_mps2.y(); });
   EXPECT_NEAR(gyro.std(), 0.002, 0.05 * 0.002);
   EXPECT_NEAR(gyro.mean(), 0.0, 4.0 * 0.002 / std::sqrt(2000.0));
@@ -123,9 +123,9 @@ TEST(Imu, ScaleSpreadsBy1PerMilleAndMisalignmentBy0_05Degrees) {
   settings.scale_error = 0.001;
   settings.misalignment_deg = 0.05;
   const auto turned = [](ImuSensor& imu) { return imu.corrupt({1, 0, 0}, {10, 0, 0}, Time{}, 0); };
-  const Moments scale =
+  const test::Moments scale =
       over_seeds(settings, [&](ImuSensor& imu) { return turned(imu).angular_velocity_radps.x() - 1.0; });
-  const Moments skew =
+  const test::Moments skew =
       over_seeds(settings, [&](ImuSensor& imu) { return turned(imu).linear_acceleration_mps2.z() / 10.0; });
   EXPECT_NEAR(scale.std(), 0.001, 0.05 * 0.001);
   EXPECT_NEAR(skew.std(), 0.05 * std::numbers::pi / 180.0, 0.05 * 0.05 * std::numbers::pi / 180.0);

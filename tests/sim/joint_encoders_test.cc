@@ -18,7 +18,7 @@ constexpr double kStep_rad = 2.0 * std::numbers::pi / 16384;
 TEST(JointEncoders, ReadWholeCountsOf16384WithAnErrorSpreadEvenlyOverOne) {
   SmallWorld world(kElbow);
   JointEncoders encoders({}, *world.model, {"elbow"});
-  Moments error;
+  test::Moments error;
   for (int i = 0; i < 20000; ++i) {
     world.data->qpos[1] = -1.0 + 1.00013e-4 * i;
     const double angle = encoders.read(*world.data, Time{}).position_rad[0];
@@ -47,7 +47,7 @@ TEST(JointEncoders, OneCountOfJitterReadsAsMost0_1RadiansPerSecond) {
   SmallWorld world(kElbow);
   JointEncoders encoders({}, *world.model, {"elbow"});
   encoders.read(*world.data, Time{});
-  Moments speed;
+  test::Moments speed;
   for (int tick = 0; tick < 1000; ++tick) {
     world.data->qpos[1] = (tick % 2 == 0 ? 0.6 : 0.4) * kStep_rad;
     speed.add(std::abs(encoders.read(*world.data, Time{}).velocity_radps[0]));

@@ -108,9 +108,9 @@ LidarSettings narrow() {
   return settings;
 }
 
-Moments range_errors(const SmallWorld& world, const LidarSettings& settings, double seconds,
+test::Moments range_errors(const SmallWorld& world, const LidarSettings& settings, double seconds,
                      double distance_m, std::uint64_t seed = 1) {
-  Moments errors;
+  test::Moments errors;
   for (const LaserScan& scan : scans_at_rest(world, settings, seconds, seed)) {
     for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
       if (std::isfinite(scan.ranges_m[beam]))
@@ -124,7 +124,7 @@ TEST(Lidar, RangeNoiseIs15MillimetresAndWithoutBias) {
   const SmallWorld world(kWallAt2m);
   LidarSettings settings = narrow();
   settings.range_noise_m = 0.015;
-  const Moments errors = range_errors(world, settings, 1.01, 2.0);
+  const test::Moments errors = range_errors(world, settings, 1.01, 2.0);
   EXPECT_GE(errors.count, 19000);
   EXPECT_NEAR(errors.std(), 0.015, 0.0003);
   EXPECT_NEAR(errors.mean(), 0.0, 0.0005);
@@ -138,7 +138,7 @@ TEST(Lidar, RangesAreWholeStepsOf13MillimetresAndTheErrorIsThatOfAnEvenSpread) {
   const LaserScan coarse = scans_at_rest(world, settings, 0.03).front();
   settings.range_resolution_m = 0.0;
   const LaserScan exact = scans_at_rest(world, settings, 0.03).front();
-  Moments errors;
+  test::Moments errors;
   for (std::size_t beam = 0; beam < coarse.ranges_m.size(); ++beam) {
     EXPECT_NEAR(std::remainder(static_cast<double>(coarse.ranges_m[beam]), 0.013), 0.0, 1e-6);
     errors.add(coarse.ranges_m[beam] - exact.ranges_m[beam]);
@@ -179,7 +179,7 @@ TEST(Lidar, AngularJitterOfATenthOfADegreeIsReadOffAWallMetAt60Degrees) {
   settings.angle_noise_deg = 0.1;
   Lidar lidar(settings, world.scene, {Eigen::Vector3d::Zero(), quaternion_from_yaw(60.0 * kDegree)},
               kRayLidar2d, 1, "lidar");
-  Moments errors;
+  test::Moments errors;
   for (Time now{}; now < from_seconds(0.5); now += kTick) {
     lidar.advance(now, now + kTick, {}, {});
     for (const LaserScan& scan : lidar.take_scans()) {
@@ -271,7 +271,7 @@ TEST(Lidar, RainOfOnePerCentAMetreShortensTheShareOfBeamsThatBeersLawSays) {
   const SmallWorld world(box("10.5 0 0", "0.5 20 5"));
   LidarSettings settings = narrow();
   settings.rain_rate = 0.01;
-  Moments drops;
+  test::Moments drops;
   int all = 0;
   for (const LaserScan& scan : scans_at_rest(world, settings, 1.01)) {
     for (const float range : scan.ranges_m) {

@@ -219,7 +219,7 @@ TEST(Fault, AClockOffsetOf50MillisecondsMovesStampsAndNotArrivals) {
 // |N(0, s)| has the mean s sqrt(2 / pi) and the standard deviation s sqrt(1 - 2 / pi); arrivals wait for the next tick: 1 ms.
 TEST(Fault, JitterOf20MillisecondsDelaysBy16OnAverage) {
   const auto ranges = stand(with_uwb(), 40.0, {fault("uwb", "jitter", 0.0, 50.0, 0.02)}).of<UwbRange>();
-  Moments delay_s;
+  test::Moments delay_s;
   for (const Arrival& range : ranges) delay_s.add(to_seconds(range.at - range.stamp()) - 0.01);
   EXPECT_GT(delay_s.count, 980);
   EXPECT_NEAR(delay_s.mean(), 0.02 * std::sqrt(2.0 / M_PI) + 0.001, 4.0 * 0.02 * 0.603 / std::sqrt(delay_s.count));

@@ -6,7 +6,7 @@
 
 #include "sim/lidar_scene.h"
 #include "sim/mujoco.h"
-#include "tests/sim/moments.h"
+#include "tests/support/moments.h"
 
 namespace patrol::sim {
 

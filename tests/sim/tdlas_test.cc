@@ -59,7 +59,7 @@ TEST(Tdlas, NoiseIs10ppm_mAnd5PercentOfTheColumn) {
   settings.resolution_ppm_m = 0.0;
   settings.background_ppm = 100.0;  // 1000 ppm m over 10 m
   const Tdlas tdlas(settings, 7);
-  Moments column;
+  test::Moments column;
   for (std::uint64_t tick = 0; tick < 20000; ++tick) {
     column.add(tdlas.read(world.scene, kNoGas, eye(), Time{}, tick).column_ppm_m);
   }

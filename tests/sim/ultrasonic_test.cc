@@ -43,7 +43,7 @@ std::string wall(double distance_m, double yaw_deg = 0.0, const char* name = "wa
 }
 
 struct Heard {
-  Moments range_m;
+  test::Moments range_m;
   int pings = 0, silent = 0, too_close = 0;
   double share_silent() const { return static_cast<double>(silent) / pings; }
 };

@@ -28,7 +28,7 @@ UwbSettings ideal() {
 }
 
 struct Ranges {
-  Moments error_m;
+  test::Moments error_m;
   int polls = 0;
   double lost() const { return 1.0 - static_cast<double>(error_m.count) / polls; }
 };

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "io/urdf.h"
-#include "tests/sim/moments.h"
+#include "tests/support/moments.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::sim {
@@ -73,7 +73,7 @@ WalkReport WalkingRobot::walk(double vx_mps, double vy_mps, double yaw_rate_radp
   const auto ticks = static_cast<int>(std::lround(duration_s / model_.physics->opt.timestep));
   WalkReport report;
   report.min_height_m = T_world_body().position.z();
-  Moments forward, sideways, turn, roll, pitch, slip, error_x, error_y;
+  test::Moments forward, sideways, turn, roll, pitch, slip, error_x, error_y;
   std::array<bool, kNumLegs> was_loaded{};
   double last_yaw = start.yaw;
   for (int tick = 0; tick < ticks; ++tick) {

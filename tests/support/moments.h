@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace patrol::sim {
+namespace patrol::test {
 
 /// Mean, spread and extremes of a stream of numbers.
 struct Moments {
@@ -25,4 +25,4 @@ struct Moments {
   double std() const { return std::sqrt(std::max(0.0, rms() * rms() - mean() * mean())); }
 };
 
-}  // namespace patrol::sim
+}  // namespace patrol::test

@@ -1,0 +1,29 @@
+#include "app/sweep/run_address.h"
+
+#include <fmt/format.h>
+#include <mujoco/mujoco.h>
+
+#include "io/digest.h"
+#include "io/settings_yaml.h"
+
+namespace patrol::app {
+
+RunAddresses::RunAddresses(std::filesystem::path data_root)
+    : data_root_(std::move(data_root)),
+      program_(fmt::format("patrol {} mujoco {}", io::sha256_of_file("/proc/self/exe"), mj_versionString())) {}
+
+const std::string& RunAddresses::digest_of(const std::filesystem::path& folder, const std::string& except) {
+  const auto known = digests_.find(folder);
+  if (known != digests_.end()) return known->second;
+  return digests_[folder] = io::sha256_of_folder(folder, except);
+}
+
+std::string RunAddresses::of(const Scenario& scenario) {
+  constexpr std::size_t kDigits = 20;
+  const std::string asked = fmt::format("{}\nworld {}\nrobot {}\n{}", program_,
+                                        digest_of(data_root_ / "worlds" / scenario.world, "scenarios"),
+                                        digest_of(data_root_ / "models" / scenario.robot, ""), io::to_yaml(scenario));
+  return io::sha256(asked).substr(0, kDigits);
+}
+
+}  // namespace patrol::app

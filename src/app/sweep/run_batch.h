@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/sweep/process_pool.h"
+#include "app/sweep/result_store.h"
+
+namespace patrol::app {
+
+/// One run that a sweep or a test wants done.
+struct BatchRun {
+  std::filesystem::path scenario;
+  std::vector<std::string> overrides;
+  std::string address;  ///< where its result goes
+  std::string label;    ///< for people
+};
+
+/// Whose run directories stay, as `runs/ADDRESS/`, once they are scored.
+enum class KeepRuns { kNone, kFailed, kAll };
+
+struct BatchSettings {
+  ProcessPoolSettings pool;
+  KeepRuns keep = KeepRuns::kNone;
+};
+
+/// `root/runs`: results, and the run directories that stay.
+std::filesystem::path runs_folder(const std::filesystem::path& root);
+
+/// Runs them, stores a verdict on each whatever becomes of it, and tells how far it is. A run that is killed from outside is tried once
+/// more. False when interrupted: what has ended is stored.
+bool run_batch(const std::vector<BatchRun>& runs, const BatchSettings& settings, const std::filesystem::path& root);
+
+}  // namespace patrol::app

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace patrol::app {
+
+/// Where runs lie while they run: `root/work/HOST-PID-ADDRESS`. Several processes, on several hosts, may work below one root; what
+/// processes of this host left that are gone is removed first, what this one leaves at the end.
+class WorkFolder {
+ public:
+  explicit WorkFolder(const std::filesystem::path& root);
+  ~WorkFolder();
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+
+  std::filesystem::path of(const std::string& address) const { return folder_ / (prefix_ + address); }
+
+ private:
+  std::filesystem::path folder_;
+  std::string prefix_;
+};
+
+}  // namespace patrol::app

@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+"""Sweeps as people run them: killed, resumed, shared out, merged. Whatever happened on the way, the tables are the same bytes.
+
+usage: sweep_test.py PATROL SOURCE_DIR
+"""
+import csv
+import json
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+STREET = SOURCE / "worlds/street"
+TABLES = ("runs.csv", "comparison.csv", "sweep.sqlite")
+VARY = ["--vary", "sensors.lidar.range_noise_m=0.0,0.05", "--seeds", "2"]
+
+
+def standing_still(folder):
+    """The shortest mission there is: to stand at home, where the robot starts."""
+    route = json.loads((STREET / "routes/short.json").read_text())
+    start = route["start"]
+    route["stations"] = [{"number": 1, "name": "home", "type": "home", "position": start["position"],
+                          "orientation": start["orientation"], "accuracy": 0.2, "target": start["position"]}]
+    (folder / "home.json").write_text(json.dumps(route))
+    file = folder / "home.yaml"
+    file.write_text(f"world: street\nmission: {folder / 'home.json'}\nexpect:\n  mission.completed: true\n")
+    return file
+
+
+def children_of(process):
+    return [int(pid) for pid in pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
+
+
+class Sweep(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.path = pathlib.Path(cls.folder.name)
+        cls.scenario = standing_still(cls.path)
+        cls.unbroken = cls.path / "unbroken"
+        done = cls.sweep(cls.unbroken, *VARY)
+        assert done.returncode == 0, done.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    @classmethod
+    def command(cls, out, *more):
+        return [str(PATROL), "sweep", str(cls.scenario), "--out", str(out), *more]
+
+    @classmethod
+    def sweep(cls, out, *more):
+        return subprocess.run(cls.command(out, *more), capture_output=True, text=True, timeout=280, cwd=SOURCE)
+
+    def start(self, out, *more):
+        return subprocess.Popen(self.command(out, *more), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=SOURCE)
+
+    def wait_for_a_child(self, process):
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline and process.poll() is None:
+            if found := children_of(process):
+                return found[0]
+            time.sleep(0.01)
+        self.fail("no run was started")
+
+    def assert_same_tables(self, out):
+        for name in TABLES:
+            self.assertEqual((out / name).read_bytes(), (self.unbroken / name).read_bytes(), name)
+        self.assertFalse((out / "INCOMPLETE").exists())
+
+    def rows(self, out):
+        with open(out / "runs.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_one_row_for_each_variant_and_seed_and_nothing_else_stays(self):
+        rows = self.rows(self.unbroken)
+        self.assertEqual(len(rows), 4)
+        self.assertEqual({row["end"] for row in rows}, {"done"})
+        self.assertEqual([row["seed"] for row in rows], ["1", "1", "2", "2"])
+        self.assertFalse((self.unbroken / "work").exists())
+        self.assertEqual(len(list((self.unbroken / "runs").iterdir())), 4)
+
+    def test_a_row_is_what_patrol_run_measures(self):
+        row = self.rows(self.unbroken)[3]
+        out = self.path / "one"
+        subprocess.run([PATROL, "run", self.scenario, "--seed", "2", "--set", "sensors.lidar.range_noise_m=0.05", "--out", out],
+                       check=True, capture_output=True, cwd=SOURCE)
+        metrics = json.loads((out / "metrics.json").read_text())
+        self.assertEqual(float(row["pose.ate_rmse_m"]), metrics["pose"]["ate_rmse_m"])
+        self.assertEqual(float(row["map.nearest_mean_m"]), metrics["map"]["nearest_mean_m"])
+
+    def test_killed_three_times_and_resumed_it_leaves_the_same_bytes(self):
+        out, chance = self.path / "killed", random.Random(4)
+        for _ in range(3):
+            process = self.start(out, *VARY)
+            time.sleep(chance.uniform(0.2, 2.5))
+            process.kill()
+            process.communicate()
+            self.assertTrue((out / "INCOMPLETE").exists() or (out / "runs.csv").exists() or not out.exists())
+        self.assertEqual(self.sweep(out, *VARY).returncode, 0)
+        self.assert_same_tables(out)
+        self.assertFalse((out / "work").exists())
+
+    def test_three_shards_collected_in_any_order_leave_the_same_bytes(self):
+        parts = []
+        for shard in ("3/3", "1/3", "2/3"):
+            parts.append(self.path / f"shard_{shard[0]}")
+            done = self.sweep(parts[-1], *VARY, "--shard", shard)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("of 4 runs are still to do", done.stdout)
+        out = self.path / "collected"
+        early = subprocess.run([PATROL, "collect", out, *parts[:2]], capture_output=True, text=True)
+        self.assertEqual(early.returncode, 2)
+        self.assertIn("1 of 4 runs have no result yet", early.stderr)
+        done = subprocess.run([PATROL, "collect", out, parts[2]], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_same_tables(out)
+
+    def test_a_run_that_crashes_is_a_row_and_one_killed_from_outside_is_tried_again(self):
+        out = self.path / "crashed"
+        process = self.start(out, *VARY, "--jobs", "1")
+        subprocess.run(["kill", "-SEGV", str(self.wait_for_a_child(process))], check=True)
+        _, said = process.communicate(timeout=280)
+        self.assertEqual(process.returncode, 3, said)
+        ends = [row["end"] for row in self.rows(out)]
+        self.assertEqual((ends.count("crashed"), ends.count("done")), (1, 3))
+        self.assertIn("signal 11", said)
+
+        out = self.path / "shot"
+        process = self.start(out, *VARY, "--jobs", "1")
+        subprocess.run(["kill", "-KILL", str(self.wait_for_a_child(process))], check=True)
+        _, said = process.communicate(timeout=280)
+        self.assertEqual(process.returncode, 0, said)
+        self.assert_same_tables(out)
+
+    def test_a_run_over_its_wall_time_is_a_row_and_4(self):
+        out = self.path / "late"
+        done = self.sweep(out, "--seeds", "1", "--run-limit-s", "0.2")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertEqual(self.rows(out)[0]["end"], "wall time limit")
+
+    def test_a_variant_whose_files_are_missing_is_a_row_and_2(self):
+        out = self.path / "missing"
+        done = self.sweep(out, "--seeds", "1", "--vary", f"mission={self.path / 'home.json'},routes/nowhere.json")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual([row["end"] for row in self.rows(out)], ["done", "wrong input"])
+
+    def test_interrupted_is_3_incomplete_and_goes_on(self):
+        out = self.path / "interrupted"
+        process = self.start(out, *VARY)
+        self.wait_for_a_child(process)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 3, said)
+        self.assertTrue((out / "INCOMPLETE").exists())
+        self.assertFalse((out / "runs.csv").exists())
+        self.assertEqual(self.sweep(out, *VARY).returncode, 0)
+        self.assert_same_tables(out)
+
+    def test_more_seeds_in_the_same_directory_run_only_what_is_new(self):
+        out = self.path / "longer"
+        shutil.copytree(self.unbroken, out)
+        begin = time.time()
+        self.assertEqual(self.sweep(out, *VARY[:-1], "3").returncode, 0)
+        self.assertEqual(len(self.rows(out)), 6)
+        made = [file for file in (out / "runs").iterdir() if file.stat().st_mtime >= begin]
+        self.assertEqual(len(made), 2)
+
+    def test_kept_runs_can_be_scored_again(self):
+        out = self.path / "kept"
+        self.assertEqual(self.sweep(out, "--seeds", "1", "--keep", "all").returncode, 0)
+        kept = [path for path in (out / "runs").iterdir() if path.is_dir()]
+        self.assertEqual([path.name for path in kept], [self.rows(out)[0]["address"]])
+        self.assertEqual(subprocess.run([PATROL, "score", kept[0]], capture_output=True).returncode, 0)
+
+    def test_a_wrong_call_is_2_in_one_line_and_writes_nothing(self):
+        out = self.path / "wrong"
+        for wrong in (["--seeds", "0"], ["--shard", "4/3"], ["--vary", "nothing"], ["--vary", "sensors.lidar.rang=1,2"],
+                      ["--keep", "some"], ["--engine", "cloud"], ["--jobs", "-1"], ["--run-limit-s", "0"],
+                      ["--stop-when-decided", "--shard", "1/2"], ["--margin", "-1"]):
+            done = self.sweep(out, *wrong)
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), (wrong, done.stderr))
+            self.assertFalse(out.exists())
+
+    def test_a_directory_with_other_things_in_it_is_refused(self):
+        out = self.path / "mine"
+        out.mkdir()
+        (out / "thesis.tex").write_text("years of work")
+        done = self.sweep(out, "--seeds", "1")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("thesis.tex", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], "-v"])
