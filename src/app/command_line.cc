@@ -26,6 +26,7 @@ struct Call {
   SweepOptions sweep;
   std::filesystem::path collect_root;
   std::vector<std::filesystem::path> collect_parts;
+  TestOptions test;
   std::function<ExitCode()> chosen;
 };
 
@@ -96,6 +97,18 @@ void add_collect(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [&] { return collect_command(call.collect_root, call.collect_parts); }; });
 }
 
+void add_test(CLI::App& app, Call& call) {
+  TestOptions& test = call.test;
+  CLI::App* command = app.add_subcommand("test", "Run every scenario of a folder and leave JUnit XML and a summary");
+  command->add_option("scenarios", test.scenarios, "Folder of scenarios, or one of them")->required();
+  command->add_option("--set", test.overrides, "Override a setting in every run: path=value; may be repeated")->take_all();
+  command->add_option("--jobs", test.jobs, "Runs at a time; 0: one for each core")->capture_default_str();
+  command->add_option("--run-limit-s", test.run_limit_s, "Wall time of a run after which it is given up, s")->capture_default_str();
+  command->add_option("--keep", test.keep, "Run directories that stay: none, failed, all")->capture_default_str();
+  command->add_option("--out", test.out, "Directory to leave")->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return test_command(call.test); }; });
+}
+
 void add_list(CLI::App& app, Call& call) {
   CLI::App* command = app.add_subcommand("list", "Worlds, scenarios, robots, sensors, methods");
   command->callback([&] { call.chosen = [] { return list_command(); }; });
@@ -136,7 +149,7 @@ int run_command_line(int argc, const char* const* argv) {
   app.require_subcommand(1);
 
   Call call;
-  for (const auto add : {add_run, add_score, add_replay, add_verify, add_sweep, add_collect, add_list}) add(app, call);
+  for (const auto add : {add_run, add_score, add_replay, add_verify, add_sweep, add_collect, add_test, add_list}) add(app, call);
 
   try {
     refuse_unknown_command(app, argc, argv);

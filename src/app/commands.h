@@ -8,6 +8,7 @@
 
 #include "app/exit_code.h"
 #include "app/sweep/sweep_options.h"
+#include "app/test/test_options.h"
 
 /// One function per command of the program. They print results to standard output and talk to standard error.
 namespace patrol::app {
@@ -48,6 +49,9 @@ ExitCode sweep_command(const SweepOptions& options);
 
 /// Puts the results of `parts`, of the same sweep, into `root`, and writes the tables when all are there.
 ExitCode collect_command(const std::filesystem::path& root, const std::vector<std::filesystem::path>& parts);
+
+/// Runs every scenario of a folder against what it expects.
+ExitCode test_command(const TestOptions& options);
 
 ExitCode list_command();
 

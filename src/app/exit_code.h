@@ -12,4 +12,18 @@ enum class ExitCode : int {
   kNothingExecuted = 5,
 };
 
+/// Of two runs' verdicts the one that matters more: the program's failure, a wrong input, a time limit, a missed expectation, in this order.
+inline ExitCode worse(ExitCode a, ExitCode b) {
+  const auto severity = [](ExitCode code) {
+    switch (code) {
+      case ExitCode::kProgramFailed: return 4;
+      case ExitCode::kWrongInput: return 3;
+      case ExitCode::kTimeLimit: return 2;
+      case ExitCode::kExpectationMissed: return 1;
+      default: return 0;
+    }
+  };
+  return severity(b) > severity(a) ? b : a;
+}
+
 }  // namespace patrol::app

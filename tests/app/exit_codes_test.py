@@ -13,8 +13,7 @@ import time
 import unittest
 import xml.etree.ElementTree
 
-PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-STREET = SOURCE / "worlds/street"
+from standing_still import PATROL, SOURCE, standing_still
 
 
 class ExitCodes(unittest.TestCase):
@@ -27,15 +26,7 @@ class ExitCodes(unittest.TestCase):
         self.folder.cleanup()
 
     def scenario(self, more):
-        """The shortest mission there is: to stand at home, where the robot starts."""
-        route = json.loads((STREET / "routes/short.json").read_text())
-        start = route["start"]
-        route["stations"] = [{"number": 1, "name": "home", "type": "home", "position": start["position"],
-                              "orientation": start["orientation"], "accuracy": 0.2, "target": start["position"]}]
-        (self.path / "home.json").write_text(json.dumps(route))
-        file = self.path / "home.yaml"
-        file.write_text(f"world: street\nmission: {self.path / 'home.json'}\n" + more)
-        return file
+        return standing_still(self.path, more)
 
     def run_patrol(self, more):
         command = [PATROL, "run", self.scenario(more), "--out", self.out]

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/sweep/manifest.h"
-#include "app/sweep/result_store.h"
+#include "app/batch/result_store.h"
 #include "score/statistics.h"
 
 namespace patrol::app {

@@ -8,9 +8,11 @@
 
 namespace patrol::app {
 
+std::string build_id() { return io::sha256_of_file("/proc/self/exe"); }
+
 RunAddresses::RunAddresses(std::filesystem::path data_root)
     : data_root_(std::move(data_root)),
-      program_(fmt::format("patrol {} mujoco {}", io::sha256_of_file("/proc/self/exe"), mj_versionString())) {}
+      program_(fmt::format("patrol {} mujoco {}", build_id(), mj_versionString())) {}
 
 const std::string& RunAddresses::digest_of(const std::filesystem::path& folder, const std::string& except) {
   const auto known = digests_.find(folder);

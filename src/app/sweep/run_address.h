@@ -8,6 +8,9 @@
 
 namespace patrol::app {
 
+/// SHA-256 of this program's file.
+std::string build_id();
+
 /// Names a run's result by everything that it depends on: the resolved scenario, the files of its world and its robot, this program and
 /// its MuJoCo. Two runs of one address give the same bytes; a new build asks for new addresses.
 class RunAddresses {

@@ -9,7 +9,7 @@
 
 #include "app/progress_bar.h"
 #include "app/sweep/finish_sweep.h"
-#include "app/sweep/program.h"
+#include "app/batch/program.h"
 #include "io/atomic_file.h"
 
 namespace patrol::app {

@@ -28,16 +28,6 @@ void refuse_foreign(const std::filesystem::path& root) {
   }
 }
 
-int severity(ExitCode code) {
-  switch (code) {
-    case ExitCode::kProgramFailed: return 4;
-    case ExitCode::kWrongInput: return 3;
-    case ExitCode::kTimeLimit: return 2;
-    case ExitCode::kExpectationMissed: return 1;
-    default: return 0;
-  }
-}
-
 }  // namespace
 
 SweepDirectory begin_sweep_directory(const std::filesystem::path& root, const SweepManifest& manifest) {
@@ -67,9 +57,7 @@ void complete_sweep_directory(const SweepDirectory& directory, const SweepManife
 ExitCode worst_of(const SweepRows& rows, const SweepProgress& progress) {
   if (progress.counted.empty()) return ExitCode::kNothingExecuted;
   ExitCode worst = ExitCode::kDone;
-  for (const std::size_t i : progress.counted) {
-    if (severity(rows[i]->code) > severity(worst)) worst = rows[i]->code;
-  }
+  for (const std::size_t i : progress.counted) worst = worse(worst, rows[i]->code);
   return worst;
 }
 

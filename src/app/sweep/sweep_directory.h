@@ -30,7 +30,7 @@ SweepDirectory begin_sweep_directory(const std::filesystem::path& root, const Sw
 void complete_sweep_directory(const SweepDirectory& directory, const SweepManifest& manifest, const SweepRows& rows,
                               const SweepProgress& progress);
 
-/// 0 when every run is as expected; else of the worst: a failure of the program, then a wrong input, a time limit, a missed expectation.
+/// Of the runs that count; 5 when there are none.
 ExitCode worst_of(const SweepRows& rows, const SweepProgress& progress);
 
 }  // namespace patrol::app

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/sweep/manifest.h"
-#include "app/sweep/run_batch.h"
+#include "app/batch/run_batch.h"
 
 namespace patrol::app {
 

@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/sweep/program.h"
-
 namespace patrol::app {
 namespace {
 
@@ -27,19 +25,6 @@ TEST(SlurmEngine, AShardsCommandIsTheCallWithItsOptions) {
   EXPECT_THAT(command, HasSubstr("--jobs 2"));
   EXPECT_THAT(command, HasSubstr("--shard 2/3"));
 }
-
-TEST(Program, SaysItsOutputAndExitStatus) {
-  const ProgramResult result = run_program({"sh", "-c", "echo hello; exit 3"});
-  EXPECT_EQ(result.output, "hello\n");
-  EXPECT_EQ(result.exit_code, 3);
-}
-
-TEST(Program, AQuotedWordComesBackFromTheShell) {
-  const std::string word = "it's \"$HOME\" `a` \\ b";
-  EXPECT_EQ(run_program({"sh", "-c", "printf %s " + shell_quoted(word)}).output, word);
-}
-
-TEST(Program, OneThatThereIsNotIsAnError) { EXPECT_THROW(run_program({"patrol-no-such-program"}), std::runtime_error); }
 
 }  // namespace
 }  // namespace patrol::app

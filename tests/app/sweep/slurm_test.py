@@ -14,7 +14,8 @@ import tempfile
 import time
 import unittest
 
-from sweep_test import SOURCE, PATROL, standing_still
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
+from standing_still import PATROL, SOURCE, standing_still  # noqa: E402
 
 TABLES = ("runs.csv", "comparison.csv", "sweep.sqlite")
 VARY = ["--vary", "sensors.lidar.range_noise_m=0.0,0.05", "--seeds", "3"]
@@ -99,7 +100,7 @@ class Slurm(unittest.TestCase):
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.path = pathlib.Path(cls.temporary.name)
-        cls.scenario = standing_still(cls.path)
+        cls.scenario = standing_still(cls.path, "expect:\n  mission.completed: true\n")
         cls.cluster = Cluster(cls.path / "cluster")
         cls.local = cls.path / "local"
         done = cls.sweep(cls.local, *VARY)

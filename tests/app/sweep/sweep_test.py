@@ -15,22 +15,11 @@ import tempfile
 import time
 import unittest
 
-PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-STREET = SOURCE / "worlds/street"
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
+from standing_still import PATROL, SOURCE, standing_still  # noqa: E402
+
 TABLES = ("runs.csv", "comparison.csv", "sweep.sqlite")
 VARY = ["--vary", "sensors.lidar.range_noise_m=0.0,0.05", "--seeds", "2"]
-
-
-def standing_still(folder):
-    """The shortest mission there is: to stand at home, where the robot starts."""
-    route = json.loads((STREET / "routes/short.json").read_text())
-    start = route["start"]
-    route["stations"] = [{"number": 1, "name": "home", "type": "home", "position": start["position"],
-                          "orientation": start["orientation"], "accuracy": 0.2, "target": start["position"]}]
-    (folder / "home.json").write_text(json.dumps(route))
-    file = folder / "home.yaml"
-    file.write_text(f"world: street\nmission: {folder / 'home.json'}\nexpect:\n  mission.completed: true\n")
-    return file
 
 
 def children_of(process):
@@ -42,7 +31,7 @@ class Sweep(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.path = pathlib.Path(cls.folder.name)
-        cls.scenario = standing_still(cls.path)
+        cls.scenario = standing_still(cls.path, "expect:\n  mission.completed: true\n")
         cls.unbroken = cls.path / "unbroken"
         done = cls.sweep(cls.unbroken, *VARY)
         assert done.returncode == 0, done.stderr

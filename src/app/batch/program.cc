@@ -1,4 +1,4 @@
-#include "app/sweep/program.h"
+#include "app/batch/program.h"
 
 #include <spawn.h>
 #include <sys/wait.h>

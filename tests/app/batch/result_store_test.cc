@@ -1,4 +1,4 @@
-#include "app/sweep/result_store.h"
+#include "app/batch/result_store.h"
 
 #include <gtest/gtest.h>
 

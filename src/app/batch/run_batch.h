@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "app/sweep/process_pool.h"
-#include "app/sweep/result_store.h"
+#include "app/batch/process_pool.h"
+#include "app/batch/result_store.h"
 
 namespace patrol::app {
 

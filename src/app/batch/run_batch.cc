@@ -1,4 +1,4 @@
-#include "app/sweep/run_batch.h"
+#include "app/batch/run_batch.h"
 
 #include <cmath>
 #include <chrono>
@@ -11,7 +11,7 @@
 
 #include "app/progress_bar.h"
 #include "app/run_once.h"
-#include "app/sweep/work_folder.h"
+#include "app/batch/work_folder.h"
 #include "core/error.h"
 
 namespace patrol::app {

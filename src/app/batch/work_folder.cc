@@ -1,4 +1,4 @@
-#include "app/sweep/work_folder.h"
+#include "app/batch/work_folder.h"
 
 #include <signal.h>
 #include <unistd.h>

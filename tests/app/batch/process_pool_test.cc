@@ -1,4 +1,4 @@
-#include "app/sweep/process_pool.h"
+#include "app/batch/process_pool.h"
 
 #include <dirent.h>
 #include <unistd.h>
