@@ -26,6 +26,7 @@ struct Call {
   SweepOptions sweep;
   std::filesystem::path collect_root;
   std::vector<std::filesystem::path> collect_parts;
+  BudgetOptions budget;
   TestOptions test;
   std::function<ExitCode()> chosen;
 };
@@ -97,6 +98,19 @@ void add_collect(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [&] { return collect_command(call.collect_root, call.collect_parts); }; });
 }
 
+void add_budget(CLI::App& app, Call& call) {
+  BudgetOptions& budget = call.budget;
+  CLI::App* command = app.add_subcommand("budget", "Who owns how much of the error: one imperfection made ideal at a time");
+  command->add_option("scenario", budget.scenario, "Scenario file (YAML)")->required();
+  command->add_option("--set", budget.overrides, "Override a setting in every run: path=value; may be repeated")->take_all();
+  command->add_option("--seeds", budget.seeds, "N (seeds 1 ... N) or A..B")->capture_default_str();
+  command->add_option("--metric", budget.metrics, "Figures to take apart; may be repeated")->take_all()->capture_default_str();
+  command->add_option("--jobs", budget.jobs, "Runs at a time; 0: one for each core")->capture_default_str();
+  command->add_option("--run-limit-s", budget.run_limit_s, "Wall time of a run after which it is given up, s")->capture_default_str();
+  command->add_option("--out", budget.out, "Directory of the budget; results that lie there are not made again")->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return budget_command(call.budget); }; });
+}
+
 void add_test(CLI::App& app, Call& call) {
   TestOptions& test = call.test;
   CLI::App* command = app.add_subcommand("test", "Run every scenario of a folder and leave JUnit XML and a summary");
@@ -149,7 +163,7 @@ int run_command_line(int argc, const char* const* argv) {
   app.require_subcommand(1);
 
   Call call;
-  for (const auto add : {add_run, add_score, add_replay, add_verify, add_sweep, add_collect, add_test, add_list}) add(app, call);
+  for (const auto add : {add_run, add_score, add_replay, add_verify, add_sweep, add_collect, add_budget, add_test, add_list}) add(app, call);
 
   try {
     refuse_unknown_command(app, argc, argv);

@@ -50,6 +50,9 @@ ExitCode sweep_command(const SweepOptions& options);
 /// Puts the results of `parts`, of the same sweep, into `root`, and writes the tables when all are there.
 ExitCode collect_command(const std::filesystem::path& root, const std::vector<std::filesystem::path>& parts);
 
+/// Takes one imperfection away at a time, and says how much of the errors each owns.
+ExitCode budget_command(const BudgetOptions& options);
+
 /// Runs every scenario of a folder against what it expects.
 ExitCode test_command(const TestOptions& options);
 

@@ -99,6 +99,9 @@ inline Pose3 to_spatial(const Pose2& T_a_b, double z_m = 0.0) {
   return {{T_a_b.x, T_a_b.y, z_m}, quaternion_from_yaw(T_a_b.yaw)};
 }
 
+/// The same place and heading without roll and pitch.
+inline Pose3 held_level(const Pose3& T_a_b) { return {T_a_b.position, quaternion_from_yaw(yaw_of(T_a_b.rotation))}; }
+
 /// Linear in position, spherical in rotation; fraction 0 gives a, 1 gives b.
 inline Pose3 interpolate(const Pose3& a, const Pose3& b, double fraction) {
   return {a.position + fraction * (b.position - a.position), a.rotation.slerp(fraction, b.rotation)};

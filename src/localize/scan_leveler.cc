@@ -43,17 +43,18 @@ std::optional<LevelScan> ScanLeveler::level(const LaserScan& scan, const PoseLoo
   const Pose3 T_level_odom =
       Pose3{T_odom_body->position, quaternion_from_yaw(yaw_of(T_odom_body->rotation))}.inverse();
 
+  const auto mounted = [this](const Pose3& T_level_lidar) { return settings_.stabilized ? held_level(T_level_lidar) : T_level_lidar; };
   const std::size_t num_segments = std::min(kNumKnots - 1, num_beams);
   const auto knot_at = [&](std::size_t beam) -> std::optional<Knot> {
     const std::optional<Pose3> T = T_odom_body_at(beam_time(scan, static_cast<double>(beam)));
     if (!T) return std::nullopt;
-    const Pose3 T_level_lidar = T_level_odom * *T * T_body_lidar_;
+    const Pose3 T_level_lidar = mounted(T_level_odom * *T * T_body_lidar_);
     return Knot{T_level_lidar.rotation.toRotationMatrix(), T_level_lidar.position};
   };
 
   LevelScan level;
   level.stamp = beam_time(scan, last_beam);
-  const Pose3 T_level_lidar = T_level_odom * *T_odom_body * T_body_lidar_;
+  const Pose3 T_level_lidar = mounted(T_level_odom * *T_odom_body * T_body_lidar_);
   level.origin_m = T_level_lidar.position.head<2>();
   level.tilt_rad = std::acos(std::clamp(T_level_lidar.rotation.toRotationMatrix()(2, 2), -1.0, 1.0));
   level.beams.reserve(num_beams);

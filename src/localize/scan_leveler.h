@@ -19,6 +19,7 @@ struct ScanLevelerSettings {
   double no_return_free_m =
       6.0;  ///< a beam that meets nothing is believed free so far (glass and black give none either)
   double max_range_m = 30.0;  ///< hits farther away are left out
+  bool stabilized = false;    ///< the lidar is held level by a gimbal: the body's tilt is not the scan's
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -28,6 +29,7 @@ struct ScanLevelerSettings {
     visit("self_radius_m", self.self_radius_m, between(0.0, 2.0));
     visit("no_return_free_m", self.no_return_free_m, between(0.0, 100.0));
     visit("max_range_m", self.max_range_m, between(0.1, 400.0));
+    visit("stabilized", self.stabilized);
   }
 };
 

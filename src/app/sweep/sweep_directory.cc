@@ -16,8 +16,8 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::array<std::string_view, 9> kOurFiles = {"sweep.json", "runs", "work", "runs.csv", "comparison.csv",
-                                                        "sweep.sqlite", "INCOMPLETE", "report.html", "slurm"};
+constexpr std::array<std::string_view, 10> kOurFiles = {"sweep.json", "runs", "work", "runs.csv", "comparison.csv",
+                                                        "sweep.sqlite", "INCOMPLETE", "report.html", "slurm", "budget.csv"};
 
 void refuse_foreign(const std::filesystem::path& root) {
   for (const auto& entry : std::filesystem::directory_iterator(root)) {
@@ -39,7 +39,7 @@ SweepDirectory begin_sweep_directory(const std::filesystem::path& root, const Sw
   std::ofstream marker(directory.incomplete_marker());
   marker << "Not every run of this sweep has ended: tables come at the end. The same command goes on.\n";
   if (!marker.flush()) throw InputError(fmt::format("{}: cannot be written to", root.string()));
-  for (const auto& table : {directory.runs_csv(), directory.comparison_csv(), directory.sqlite()}) std::filesystem::remove(table, error);
+  for (const auto& table : {directory.runs_csv(), directory.comparison_csv(), directory.sqlite(), directory.budget_csv()}) std::filesystem::remove(table, error);
   save_manifest(directory.manifest(), manifest);
   return directory;
 }

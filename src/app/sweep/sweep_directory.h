@@ -18,6 +18,7 @@ struct SweepDirectory {
   std::filesystem::path runs_csv() const { return root / "runs.csv"; }
   std::filesystem::path comparison_csv() const { return root / "comparison.csv"; }
   std::filesystem::path sqlite() const { return root / "sweep.sqlite"; }
+  std::filesystem::path budget_csv() const { return root / "budget.csv"; }  ///< of an error budget
   std::filesystem::path incomplete_marker() const { return root / "INCOMPLETE"; }
   ResultStore store() const { return ResultStore(runs()); }
 };

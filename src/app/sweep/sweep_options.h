@@ -31,6 +31,17 @@ struct SweepOptions {
   std::filesystem::path out = "out/sweep";
 };
 
+/// The call of `patrol budget`.
+struct BudgetOptions {
+  std::filesystem::path scenario;
+  std::vector<std::string> overrides;
+  std::string seeds = "5";
+  std::vector<std::string> metrics = {"pose.ate_rmse_m", "map.nearest_mean_m"};
+  int jobs = 0;
+  double run_limit_s = 3600.0;
+  std::filesystem::path out = "out/budget";
+};
+
 /// A part of the runs: those whose number leaves `index` when divided by `count`.
 struct Shard {
   std::size_t index = 0;  ///< from 0

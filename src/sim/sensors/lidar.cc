@@ -127,7 +127,8 @@ void Lidar::begin_revolution() {
 void Lidar::advance(Time from, Time to, const Pose3& T_world_body_from, const Pose3& T_world_body_to) {
   for (Time instant = instant_of(next_beam_); instant <= to; instant = instant_of(next_beam_)) {
     const double fraction = to_seconds(instant - from) / to_seconds(to - from);
-    const Pose3 T_world_lidar = move_between(T_world_body_from, T_world_body_to, fraction) * T_body_lidar_;
+    Pose3 T_world_lidar = move_between(T_world_body_from, T_world_body_to, fraction) * T_body_lidar_;
+    if (settings_.stabilized) T_world_lidar = held_level(T_world_lidar);
     const bool is_last = next_beam_ % settings_.beams == settings_.beams - 1;
     if (settings_.motion_distortion) {
       fire(next_beam_, T_world_lidar);

@@ -36,6 +36,7 @@ struct LidarSettings {
   double rain_rate = 0.0;      ///< chance per metre that a drop or a grain of dust reflects the beam
   double latency_s = 0.005;    ///< from the last beam to the message
   bool motion_distortion = true;  ///< false: the whole revolution is seen from where it ends
+  bool stabilized = false;        ///< true: held level whatever the body does, by an ideal gimbal; the stack must know (leveling.stabilized)
 
   /// From public data sheets: "rplidar_s2" (Slamtec RPLIDAR S2: 10 Hz, 32,000 samples/s, 0.05-30 m, 10 m on
   /// 10 %,
@@ -68,6 +69,7 @@ struct LidarSettings {
     visit("rain_rate", self.rain_rate, between(0.0, 1.0));
     visit("latency_s", self.latency_s, between(0.0, 10.0));
     visit("motion_distortion", self.motion_distortion);
+    visit("stabilized", self.stabilized);
   }
 };
 

@@ -1,0 +1,25 @@
+#include "app/sweep/run_sweep.h"
+
+#include <fmt/format.h>
+
+namespace patrol::app {
+
+bool run_sweep(const std::filesystem::path& scenario, const SweepManifest& manifest, const SweepDirectory& directory, const Shard& shard,
+               const BatchSettings& settings) {
+  while (true) {
+    const SweepProgress progress = progress_of(manifest, load_rows(manifest, directory.store()));
+    std::vector<BatchRun> runs;
+    for (const std::size_t i : progress.needed) {
+      const PlannedRun& run = manifest.runs[i];
+      if (!shard.holds(i)) continue;
+      runs.push_back({.scenario = scenario,
+                      .overrides = overrides_of(manifest, run),
+                      .address = run.address,
+                      .label = fmt::format("{}, seed {}", manifest.variants[run.variant].name, run.seed)});
+    }
+    if (runs.empty()) return true;
+    if (!run_batch(runs, settings, directory.root)) return false;
+  }
+}
+
+}  // namespace patrol::app
