@@ -38,9 +38,10 @@ Eigen::Vector3d ShotCamera::offset_m(const Eigen::Vector3d& p_world_body) const 
 }
 
 double ShotCamera::choose_bearing(const Pose3& T_world_body) const {
-  // Beside: from ahead rather than from behind, which is where the camera that follows is. Of two: across the line between them.
+  // Beside: from ahead rather than from behind, which is where the camera that follows is. Of two: across the line between them,
+  // on the robot's side of it, for it is the smaller of the two.
   static constexpr std::array kBeside_deg = {40.0, -40.0, 75.0, -75.0, 110.0, -110.0, 150.0, -150.0};
-  static constexpr std::array kOfTwo_deg = {90.0, -90.0, 120.0, -120.0, 60.0, -60.0, 150.0, -150.0};
+  static constexpr std::array kOfTwo_deg = {120.0, -120.0, 145.0, -145.0, 95.0, -95.0, 70.0, -70.0};
   double ahead_rad = yaw_of(shot_.T_world_body.rotation);
   if (shot_.p_world_subject) {
     const Eigen::Vector2d to_subject = *shot_.p_world_subject - shot_.T_world_body.position.head<2>();
