@@ -25,8 +25,9 @@ struct PaintSettings {
 };
 
 /// Paints finished replay frames, two at a time: one thread draws the world, another smooths its edges and lays the overlay on
-/// it. Only the first has OpenGL: contexts of several threads share one llvmpipe, and Mesa 22.3 crashed in that once in a while.
-/// What is painted depends on nothing but what is given.
+/// it. Only the first has OpenGL: with a context in each of two threads OSMesa 22.3 crashed in one of 13 films, nobody knows why,
+/// and they would share its rasteriser, which uses every core for one of them already. What is painted depends on nothing but what
+/// is given.
 class PaintThread {
  public:
   /// Waits until OpenGL and fonts are there; throws what kept them from that. `view` must outlive the threads.
