@@ -53,8 +53,11 @@ void add_score(CLI::App& app, Call& call) {
 void add_replay(CLI::App& app, Call& call) {
   CLI::App* command = app.add_subcommand("replay", "Render a run from its log");
   command->add_option("run", call.replay.run, "Run directory")->required();
+  command->add_option("--cut", call.replay.cut, "story (slow and near at the notable moments) or plain (even)")->capture_default_str();
   command->add_option("--camera", call.replay.camera, "chase, top or onboard")->capture_default_str();
   command->add_option("--speed", call.replay.speed, "Simulated seconds per second of video")->capture_default_str();
+  command->add_option("--slow", call.replay.slow, "Likewise, at the moments of a story")->capture_default_str();
+  command->add_option("--renderer", call.replay.renderer, "auto, egl or osmesa")->capture_default_str();
   command->add_option("--size", call.replay.size, "Width x height, pixels")->capture_default_str();
   command->add_option("--still", call.replay.still_s, "One picture (PNG) of this instant instead, s");
   command->add_option("--out", call.replay.out, "File to write");

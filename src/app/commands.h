@@ -33,8 +33,11 @@ ExitCode score_command(const ScoreOptions& options);
 
 struct ReplayOptions {
   std::filesystem::path run;
+  std::string cut = "story";
   std::string camera = "chase";
   double speed = 8.0;
+  double slow = 2.0;
+  std::string renderer = "auto";
   std::string size = "1280x720";
   std::optional<double> still_s;
   std::optional<std::filesystem::path> out;

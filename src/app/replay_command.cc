@@ -30,15 +30,31 @@ std::pair<int, int> parse_size(const std::string& text) {
   return {width, height};
 }
 
+double checked_speed(const char* option, double speed) {
+  if (!(speed > 0.0 && speed <= 1000.0)) throw InputError(fmt::format("{} {}: must lie in 0 ... 1000", option, speed));
+  return speed;
+}
+
 render::ReplaySettings replay_settings(const ReplayOptions& options) {
   render::ReplaySettings settings;
+  settings.cut = render::cut_named(options.cut);
   settings.camera = render::camera_kind(options.camera);
-  settings.speed = options.speed;
+  settings.renderer = render::renderer_named(options.renderer);
+  settings.speed.fast = checked_speed("--speed", options.speed);
+  settings.speed.slow = checked_speed("--slow", options.slow);
   std::tie(settings.width, settings.height) = parse_size(options.size);
-  if (!(options.speed > 0.0 && options.speed <= 1000.0)) {
-    throw InputError(fmt::format("--speed {}: must lie in 0 ... 1000", options.speed));
-  }
   return settings;
+}
+
+/// Faults are the twin's doing: the log does not tell when they begin.
+std::vector<render::Moment> fault_moments(const std::vector<sim::FaultSettings>& faults) {
+  std::vector<render::Moment> moments;
+  for (const sim::FaultSettings& fault : faults) {
+    moments.push_back({.at = from_seconds(fault.start_s),
+                       .kind = render::MomentKind::kFault,
+                       .title = fmt::format("Fault: {} of {} for {:g} s", fault.kind, fault.sensor, fault.duration_s)});
+  }
+  return moments;
 }
 
 }  // namespace
@@ -50,6 +66,9 @@ ExitCode replay_command(const ReplayOptions& options) {
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
   settings.dust = scenario.sensors.dust;
   settings.light = scenario.light;
+  settings.leaks = scenario.leaks;
+  settings.wind = scenario.wind;
+  settings.announced = fault_moments(scenario.faults);
   settings.map = files.map;
   const RunRecord record = read_run_record(directory.log());
   if (!record.has_estimate()) throw InputError(fmt::format("{}: ended before the robot had an estimate", directory.log().string()));
@@ -72,11 +91,17 @@ ExitCode replay_command(const ReplayOptions& options) {
   }
   const std::filesystem::path out = options.out.value_or(directory.root / "replay.mp4");
   ProgressBar bar;
-  const render::ReplaySummary summary =
-      render::replay(directory.log(), std::move(model), T_world_map, settings, out,
-                     [&](double done) { bar.show(fmt::format("replay  {:3.0f} %", 100.0 * done)); });
-  fmt::print("{}: {} frames, {:.1f} s of the run{}\n", out.string(), summary.num_frames, to_seconds(summary.end),
-             summary.log_is_complete ? "" : ", whose log was cut off");
+  const InterruptGuard interrupt;
+  const render::ReplaySummary summary = render::replay(directory.log(), std::move(model), T_world_map, settings, out, [&](double done) {
+    bar.show(fmt::format("replay  {:3.0f} %", 100.0 * done));
+    return !interrupt.is_interrupted();
+  });
+  if (summary.is_interrupted) {
+    fmt::print(stderr, "patrol: interrupted; no film is left\n");
+    return ExitCode::kProgramFailed;
+  }
+  fmt::print("{}: {} frames, {} chapters, {:.1f} s of the run{}\n", out.string(), summary.num_frames, summary.num_chapters,
+             to_seconds(summary.end), summary.log_is_complete ? "" : ", whose log was cut off");
   return ExitCode::kDone;
 }
 

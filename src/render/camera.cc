@@ -8,6 +8,19 @@
 
 namespace patrol::render {
 
+namespace {
+
+/// Above a robot's body, m; none where there is nothing but the sky.
+std::optional<double> roof_height_m(const Eigen::Vector3d& p_world_body, const FreeDistance& free_distance) {
+  constexpr double kMastHeight_m = 0.6, kHighest_m = 12.0;
+  if (!free_distance) return std::nullopt;
+  const double free_m = free_distance(p_world_body + kMastHeight_m * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ(), kHighest_m);
+  if (free_m >= kHighest_m) return std::nullopt;
+  return kMastHeight_m + free_m;
+}
+
+}  // namespace
+
 CameraKind camera_kind(const std::string& name) {
   if (name == "chase") return CameraKind::kChase;
   if (name == "top") return CameraKind::kTop;
@@ -21,6 +34,13 @@ View look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& focus) {
   const bool is_vertical = std::abs(view.forward.z()) > 0.999;
   const Eigen::Vector3d hint = is_vertical ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
   view.up = (hint - hint.dot(view.forward) * view.forward).normalized();
+  return view;
+}
+
+View look_down(const Eigen::Vector3d& focus, double height_m, const FreeDistance& free_distance) {
+  constexpr double kCut = 0.6;  // of the roof's height
+  View view = look_at(focus + height_m * Eigen::Vector3d::UnitZ(), focus);
+  if (const auto roof_m = roof_height_m(focus, free_distance)) view.near_m = height_m - kCut * *roof_m;
   return view;
 }
 
@@ -56,6 +76,7 @@ std::optional<Projected> Projector::project(const Eigen::Vector3d& point_m) cons
 
 View CameraRig::follow(const Pose3& T_world_body, double elapsed_s) {
   constexpr double kFollow_s = 0.25, kTurn_s = 0.6;  // time constants
+  constexpr double kTopHeight_m = 14.0;
   const double heading = yaw_of(T_world_body.rotation);
   if (!focus_m_) {
     focus_m_ = T_world_body.position;
@@ -66,29 +87,13 @@ View CameraRig::follow(const Pose3& T_world_body, double elapsed_s) {
 
   switch (kind_) {
     case CameraKind::kTop:
-      return from_top();
+      return look_down(*focus_m_, kTopHeight_m, free_distance_);
     case CameraKind::kOnboard:
       return on_board(T_world_body);
     case CameraKind::kChase:
       break;
   }
   return chase(elapsed_s);
-}
-
-std::optional<double> CameraRig::roof_height_m() const {
-  constexpr double kMastHeight_m = 0.6, kHighest_m = 12.0;
-  if (!free_distance_) return std::nullopt;
-  const double free_m =
-      free_distance_(*focus_m_ + kMastHeight_m * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ(), kHighest_m);
-  if (free_m >= kHighest_m) return std::nullopt;
-  return kMastHeight_m + free_m;
-}
-
-View CameraRig::from_top() const {
-  constexpr double kHeight_m = 14.0, kCut = 0.6;  // of the roof's height
-  View view = look_at(*focus_m_ + kHeight_m * Eigen::Vector3d::UnitZ(), *focus_m_);
-  if (const auto roof_m = roof_height_m()) view.near_m = kHeight_m - kCut * *roof_m;
-  return view;
 }
 
 View CameraRig::on_board(const Pose3& T_world_body) const {
@@ -112,7 +117,7 @@ View CameraRig::chase(double elapsed_s) {
     reach = std::clamp((free_m - kClearance_m) / back.norm(), 0.2, 1.0);
   }
   reach_ = std::min(reach, reach_ + (1.0 - std::exp(-elapsed_s / kReturn_s)) * (reach - reach_));
-  roofed_ += (1.0 - std::exp(-elapsed_s / kLookUp_s)) * ((roof_height_m() ? 1.0 : 0.0) - roofed_);
+  roofed_ += (1.0 - std::exp(-elapsed_s / kLookUp_s)) * ((roof_height_m(*focus_m_, free_distance_) ? 1.0 : 0.0) - roofed_);
   return look_at(over_robot + reach_ * back, T_world_rig * Eigen::Vector3d(0.9, 0.0, kUp_m * roofed_));
 }
 

@@ -79,6 +79,9 @@ class Projector {
 using FreeDistance =
     std::function<double(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m)>;
 
+/// Straight down on a place, north up, from `height_m` above it; a roof is cut away.
+View look_down(const Eigen::Vector3d& focus, double height_m, const FreeDistance& free_distance);
+
 /// Follows the robot. What moves with each step of the trot is smoothed away, in the time of the one who
 /// watches. The chasing camera comes nearer where something would stand between it and the robot, and looks
 /// up where there is a roof: that is what a tunnel is known by.
@@ -94,10 +97,7 @@ class CameraRig {
 
  private:
   View chase(double elapsed_s);
-  View from_top() const;
   View on_board(const Pose3& T_world_body) const;
-  /// Above the robot's body, m; none where there is nothing but the sky.
-  std::optional<double> roof_height_m() const;
 
   CameraKind kind_;
   FreeDistance free_distance_;

@@ -24,8 +24,9 @@ void dim_sky(mjModel& view, double share) {
 }  // namespace
 
 void set_light(mjModel& view, const LightSettings& light) {
-  const double share = light.brightness_share;
-  if (share == 1.0) return;
+  constexpr double kGamma = 2.2;
+  if (light.brightness_share == 1.0) return;
+  const double share = std::pow(light.brightness_share, 1.0 / kGamma);
   const auto num_lights = static_cast<std::size_t>(view.nlight);
   for (float* light_of : {view.light_ambient, view.light_diffuse, view.light_specular}) dim({light_of, 3 * num_lights}, share);
   for (float* light_of : {view.vis.headlight.ambient, view.vis.headlight.diffuse, view.vis.headlight.specular}) dim({light_of, 3}, share);

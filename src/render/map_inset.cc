@@ -46,13 +46,18 @@ void MapInset::draw(Frame& frame, const RunSnapshot& snapshot) {
   if (snapshot.map != map_) lay_out(frame, snapshot);
   if (picture_.width() == 0) return;
 
+  const double scale = frame.height() / 720.0;  // of lines
   Frame inset = picture_;
+  for (const Eigen::Vector3d& hit : snapshot.scan) {
+    const Eigen::Vector2d p = pixel_of(hit.head<2>());
+    draw_disc(inset, p, 0.8 * scale, {kScanColor, 0.9});
+  }
   const auto draw_path = [&](std::span<const Eigen::Vector3d> path, double width_px, Color color) {
     constexpr double kStep_px = 1.5;
     for (std::size_t from = 0, to = 1; to < path.size(); ++to) {
       const Eigen::Vector2d a = pixel_of(path[from].head<2>()), b = pixel_of(path[to].head<2>());
       if ((b - a).norm() < kStep_px && to + 1 < path.size()) continue;
-      draw_line(inset, a, b, width_px, {color, 1.0});
+      draw_line(inset, a, b, width_px * scale, {color, 1.0});
       from = to;
     }
   };
@@ -60,25 +65,26 @@ void MapInset::draw(Frame& frame, const RunSnapshot& snapshot) {
   draw_path(snapshot.true_path, 2.5, kTruthColor);
   draw_path(snapshot.estimated_path, 1.5, kEstimateColor);
   for (const Pose2& T_map_body : snapshot.particles) {
-    draw_disc(inset, pixel_of(snapshot.T_world_map * T_map_body.position()), 1.5, {kParticleColor, 0.7});
+    draw_disc(inset, pixel_of(snapshot.T_world_map * T_map_body.position()), 1.5 * scale, {kParticleColor, 0.7});
   }
-  const Pose2 T_world_estimate = snapshot.T_world_map * snapshot.T_map_body;
-  const Eigen::Vector2d robot = pixel_of(T_world_estimate.position());
-  const Eigen::Vector2d ahead(std::cos(T_world_estimate.yaw), -std::sin(T_world_estimate.yaw));
-  draw_line(inset, robot - 5.0 * ahead, robot + 10.0 * ahead, 3.0, {kRobotColor, 1.0});
-  draw_disc(inset, robot, 4.5, {kRobotColor, 1.0});
+  const auto draw_robot = [&](const Pose2& T_world_body, double size, Color color) {
+    const Eigen::Vector2d middle = pixel_of(T_world_body.position());
+    const Eigen::Vector2d ahead(std::cos(T_world_body.yaw), -std::sin(T_world_body.yaw));
+    draw_line(inset, middle - 5.0 * size * ahead, middle + 10.0 * size * ahead, 3.0 * size, {color, 1.0});
+    draw_disc(inset, middle, 4.5 * size, {color, 1.0});
+  };
+  draw_robot(to_planar(snapshot.T_world_body), 1.25 * scale, kTruthColor);
+  draw_robot(snapshot.T_world_map * snapshot.T_map_body, scale, kRobotColor);
 
-  constexpr int kMargin_px = 16, kBorder_px = 2;
-  const int left = frame.width() - inset.width() - kMargin_px,
-            top = frame.height() - inset.height() - kMargin_px;
-  fill_rectangle(frame, left - kBorder_px, top - kBorder_px, inset.width() + 2 * kBorder_px,
-                 inset.height() + 2 * kBorder_px, {kBorderColor, 0.8});
+  const int margin = static_cast<int>(std::lround(16 * scale)), border = std::max(1, static_cast<int>(std::lround(2 * scale)));
+  const int left = frame.width() - inset.width() - margin, top = frame.height() - inset.height() - margin;
+  fill_rectangle(frame, left - border, top - border, inset.width() + 2 * border, inset.height() + 2 * border, {kBorderColor, 0.8});
   paste(frame, left, top, inset);
 }
 
 // Every occupied cell blackens its pixel: a wall of one cell stays visible however small the picture is.
 void MapInset::lay_out(const Frame& frame, const RunSnapshot& snapshot) {
-  constexpr double kMaxWidth = 0.30, kMaxHeight = 0.62, kMaxStripWidth = 0.42;  // of the frame
+  constexpr double kMaxWidth = 0.28, kMaxHeight = 0.52, kMaxStripWidth = 0.42;  // of the frame
   constexpr double kStrip = 4.0;  // a map this many times as long as it is high leaves room above
   constexpr double kMargin_m = 1.0;
   map_ = snapshot.map;

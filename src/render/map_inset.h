@@ -7,8 +7,8 @@
 
 namespace patrol::render {
 
-/// The map as it is being built, north up, in the lower right corner of a frame, with paths, particles and
-/// robot.
+/// The map as it is being built, north up, in the lower right corner of a frame, with scan, paths, particles, and the robot
+/// where it believes to be, over where it is.
 class MapInset {
  public:
   void draw(Frame& frame, const RunSnapshot& snapshot);

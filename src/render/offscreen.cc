@@ -1,38 +1,14 @@
 #include "render/offscreen.h"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 
-#include <GL/osmesa.h>
 #include <fmt/format.h>
 
 namespace patrol::render {
 
-/// MuJoCo draws into a frame buffer object of its own; the buffer that OSMesa asks for is only there to be
-/// asked for.
-struct Offscreen::GlContext {
-  static constexpr int kSize = 16;
-
-  GlContext() : context(OSMesaCreateContextExt(OSMESA_RGBA, 24, 8, 0, nullptr)) {
-    if (context == nullptr) throw std::runtime_error("OSMesa gives no OpenGL context");
-  }
-  ~GlContext() { OSMesaDestroyContext(context); }
-  GlContext(const GlContext&) = delete;
-  GlContext& operator=(const GlContext&) = delete;
-
-  void make_current() {
-    if (OSMesaMakeCurrent(context, window.data(), GL_UNSIGNED_BYTE, kSize, kSize) != GL_TRUE) {
-      throw std::runtime_error("OSMesa does not let its OpenGL context be used");
-    }
-  }
-
-  OSMesaContext context;
-  std::array<unsigned char, 4 * kSize * kSize> window{};
-};
-
-Offscreen::Offscreen(const mjModel& model, int width, int height)
-    : gl_(std::make_unique<GlContext>()), viewport_{0, 0, width, height} {
+Offscreen::Offscreen(const mjModel& model, int width, int height, Renderer renderer)
+    : gl_(make_gl_context(renderer)), viewport_{0, 0, width, height} {
   if (width < 1 || height < 1)
     throw std::runtime_error(fmt::format("a frame of {}x{} has no pixels", width, height));
   gl_->make_current();

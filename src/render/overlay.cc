@@ -1,7 +1,6 @@
 #include "render/overlay.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -9,11 +8,14 @@
 #include <fmt/format.h>
 
 #include "core/time.h"
+#include "render/ghost.h"
 #include "render/palette.h"
 #include "render/world_ink.h"
 
 namespace patrol::render {
 namespace {
+
+constexpr double kDrift_mps = 0.35;  // of puffs of gas, as one watches
 
 std::string clock_text(Time time) {
   const double seconds = to_seconds(time);
@@ -21,57 +23,108 @@ std::string clock_text(Time time) {
   return fmt::format("{:d}:{:04.1f}", minutes, seconds - 60.0 * minutes);
 }
 
+std::string figures_text(const RunSnapshot& snapshot) {
+  return fmt::format("{}    position error {:.3f} m    heading error {:.2f}°    {} {:.1f} m",
+                                 clock_text(snapshot.state.stamp), snapshot.T_true_estimate.position().norm(),
+                                 std::abs(snapshot.T_true_estimate.yaw) * 180.0 / std::numbers::pi,
+                                 snapshot.is_driving ? "driven" : "walked", snapshot.travelled_m);
+}
+
+/// What the methane meter reads, and how fast the film runs.
+std::string beside_text(const RunSnapshot& snapshot, const std::optional<FilmNote>& note) {
+  std::string text;
+  if (snapshot.gas) text += fmt::format("methane {:.0f} ppm m", snapshot.gas->column_ppm_m);
+  if (note) text += fmt::format("    {:.0f}×", note->speed);
+  return text;
+}
+
 }  // namespace
 
-Overlay::Overlay(int frame_height)
-    : figures_(std::max(12, frame_height / 30), true), words_(std::max(11, frame_height / 40)) {}
+Overlay::Overlay(int frame_height, GasCloud gas)
+    : scale_(frame_height / 720.0),
+      figures_(std::max(12, frame_height / 30), true),
+      words_(std::max(11, frame_height / 40)),
+      title_(std::max(12, frame_height / 24), true),
+      gas_(std::move(gas)) {}
 
-void Overlay::draw(Frame& frame, const std::vector<float>& depth, const View& view,
-                   const RunSnapshot& snapshot) {
+void Overlay::draw(Frame& frame, const std::vector<float>& depth, const View& view, const RunSnapshot& snapshot,
+                   const std::optional<FilmNote>& note) {
   const Projector projector(view, frame.width(), frame.height());
+  draw_puffs(frame, depth, projector, gas_.puffs(to_seconds(snapshot.state.stamp), note ? kDrift_mps * note->film_s : 0.0));
   WorldInk ink(frame, depth, projector);
   ink.polyline(snapshot.planned_path, 0.03, {kPlanColor, 0.85});
   ink.polyline(snapshot.true_path, 0.06, {kTruthColor, 0.85});
   ink.polyline(snapshot.estimated_path, 0.03, {kEstimateColor, 0.95});
   ink.dots(snapshot.scan, 0.02, {kScanColor, 0.9});
   inset_.draw(frame, snapshot);
-  draw_figures(frame, snapshot);
-  draw_legend(frame);
+  draw_figures(frame, snapshot, note);
+  const int free_bottom = draw_legend(frame, snapshot);
+  if (!note) return;
+  draw_caption(frame, note->caption, free_bottom);
+  draw_timeline(frame, *note);
 }
 
-void Overlay::draw_figures(Frame& frame, const RunSnapshot& snapshot) {
+void Overlay::draw_figures(Frame& frame, const RunSnapshot& snapshot, const std::optional<FilmNote>& note) {
   const int margin = figures_.height_px() / 2;
   const int line = words_.height_px() + margin;
   fill_rectangle(frame, 0, 0, frame.width(), figures_.height_px() + 2 * margin + line, {kPanelColor, 0.6});
-  const std::string text =
-      fmt::format("{}    position error {:.3f} m    heading error {:.2f}°    {} {:.1f} m",
-                  clock_text(snapshot.state.stamp), snapshot.position_error_m,
-                  std::abs(snapshot.heading_error_rad) * 180.0 / std::numbers::pi,
-                  snapshot.is_driving ? "driven" : "walked", snapshot.travelled_m);
   const int baseline = margin + figures_.height_px();
   const int width = frame.width() - 4 * margin;
-  figures_.draw(frame, 2 * margin, baseline, figures_.fitted(text, width), {kTextColor, 1.0});
-  words_.draw(frame, 2 * margin, baseline + line, words_.fitted(snapshot.event, width),
+  figures_.draw(frame, 2 * margin, baseline, figures_.fitted(figures_text(snapshot), width), {kTextColor, 1.0});
+  const std::string beside = beside_text(snapshot, note);
+  const int beside_width = words_.width_px(beside);
+  words_.draw(frame, frame.width() - 2 * margin - beside_width, baseline + line, beside, {kTextColor, 1.0});
+  words_.draw(frame, 2 * margin, baseline + line, words_.fitted(snapshot.event, width - beside_width - 2 * margin),
               {snapshot.is_alarm ? kAlarmColor : kTextColor, 1.0});
 }
 
-void Overlay::draw_legend(Frame& frame) {
-  static constexpr std::array<std::pair<const char*, Color>, 4> kEntries = {
-      {{"true path", kTruthColor},
-       {"estimated path", kEstimateColor},
-       {"plan", kPlanColor},
-       {"scan", kScanColor}}};
+int Overlay::draw_legend(Frame& frame, const RunSnapshot& snapshot) {
+  std::vector<std::pair<const char*, Color>> entries = {
+      {"true path", kTruthColor}, {"estimated path", kEstimateColor}, {"plan", kPlanColor}, {"scan", kScanColor}};
+  if (!snapshot.particles.empty()) entries.emplace_back("particles", kParticleColor);
+  if (!gas_.is_empty()) entries.emplace_back("methane", kGasColor);
+  if (ghost_opacity(snapshot.T_true_estimate) > 0.0) entries.emplace_back("where it believes to be", kEstimateColor);
   const int line = words_.height_px() + words_.height_px() / 2;
-  int baseline = frame.height() - line / 2 - line * static_cast<int>(kEntries.size() - 1);
-  const int left = line;
-  fill_rectangle(frame, left / 2, baseline - line, 11 * words_.height_px(),
-                 line * static_cast<int>(kEntries.size()) + line / 2, {kPanelColor, 0.5});
-  for (const auto& [name, color] : kEntries) {
+  const int left = line, text_left = left + 2 * words_.height_px();
+  int width = 9 * words_.height_px();
+  for (const auto& [name, color] : entries) width = std::max(width, words_.width_px(name));
+  int baseline = frame.height() - line / 2 - line * static_cast<int>(entries.size() - 1);
+  const int top = baseline - line;
+  fill_rectangle(frame, left / 2, top, text_left + width, line * static_cast<int>(entries.size()) + line / 2, {kPanelColor, 0.5});
+  for (const auto& [name, color] : entries) {
     const double y = baseline - 0.35 * words_.height_px();
-    draw_line(frame, {left, y}, {left + 1.2 * words_.height_px(), y}, 4.0, {color, 1.0});
-    words_.draw(frame, left + 2 * words_.height_px(), baseline, name, {kTextColor, 1.0});
+    draw_line(frame, {left, y}, {left + 1.2 * words_.height_px(), y}, 4.0 * scale_, {color, 1.0});
+    words_.draw(frame, text_left, baseline, name, {kTextColor, 1.0});
     baseline += line;
   }
+  return top;
+}
+
+void Overlay::draw_caption(Frame& frame, const std::vector<std::string>& lines, int bottom) {
+  if (lines.empty()) return;
+  const int pad = title_.height_px() / 2, left = words_.height_px() * 3 / 4, bar = std::max(2, title_.height_px() / 5);
+  const int line = title_.height_px() * 5 / 4, height = line * static_cast<int>(lines.size()) + pad, top = bottom - height - pad;
+  int width = 0;
+  for (const std::string& text : lines) width = std::max(width, title_.width_px(text));
+  width = std::min(width, frame.width() - 2 * (left + bar + pad));
+  fill_rectangle(frame, left, top, bar + width + 2 * pad, height, {kPanelColor, 0.72});
+  fill_rectangle(frame, left, top, bar, height, {kEstimateColor, 1.0});
+  int baseline = top + pad / 2 + title_.height_px();
+  for (const std::string& text : lines) {
+    title_.draw(frame, left + bar + pad, baseline, title_.fitted(text, width), {kTextColor, 1.0});
+    baseline += line;
+  }
+}
+
+/// How far the film is, and where its moments are.
+void Overlay::draw_timeline(Frame& frame, const FilmNote& note) {
+  const int height = std::max(2, static_cast<int>(std::lround(4.0 * scale_))), top = frame.height() - height;
+  const auto at = [&](double film_s) {
+    return static_cast<int>(std::lround(frame.width() * std::clamp(film_s / std::max(note.length_s, 1e-9), 0.0, 1.0)));
+  };
+  fill_rectangle(frame, 0, top, frame.width(), height, {kPanelColor, 0.8});
+  fill_rectangle(frame, 0, top, at(note.film_s), height, {kTextColor, 0.8});
+  for (const double mark_s : note.marks_s) fill_rectangle(frame, at(mark_s) - height / 2, top - height / 2, height, 2 * height, {kEstimateColor, 1.0});
 }
 
 }  // namespace patrol::render

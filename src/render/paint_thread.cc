@@ -1,80 +1,86 @@
 #include "render/paint_thread.h"
 
+#include <memory>
 #include <utility>
-#include <vector>
 
 #include "render/antialias.h"
 #include "render/overlay.h"
 #include "render/scene_painter.h"
 
 namespace patrol::render {
+namespace {
 
-PaintThread::PaintThread(const mjModel& view, int width, int height, double extinction_per_m) {
-  std::promise<void> is_ready;
-  std::future<void> readiness = is_ready.get_future();
-  thread_ = std::thread([this, &view, width, height, extinction_per_m, ready = std::move(is_ready)]() mutable {
-    work(view, width, height, extinction_per_m, std::move(ready));
-  });
+/// Makes what a thread works with, and tells whether that went well; null where it did not.
+template <typename Make>
+auto made_or_told(std::promise<void>& is_ready, Make make) -> decltype(make()) {
   try {
-    readiness.get();
+    auto made = make();
+    is_ready.set_value();
+    return made;
   } catch (...) {
-    thread_.join();
+    is_ready.set_exception(std::current_exception());
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+PaintThread::PaintThread(const mjModel& view, const PaintSettings& settings) {
+  std::promise<void> can_draw, can_finish;
+  std::future<void> readiness[] = {can_draw.get_future(), can_finish.get_future()};
+  drawer_ = std::thread([this, &view, settings, ready = std::move(can_draw)]() mutable { draw_worlds(view, settings, std::move(ready)); });
+  finisher_ = std::thread([this, settings, ready = std::move(can_finish)]() mutable { finish_frames(settings, std::move(ready)); });
+  try {
+    for (std::future<void>& ready : readiness) ready.get();
+  } catch (...) {
+    stop();
     throw;
   }
 }
 
-PaintThread::~PaintThread() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_over_ = true;
-  }
-  wake_.notify_all();
-  thread_.join();
+PaintThread::~PaintThread() { stop(); }
+
+void PaintThread::stop() {
+  ordered_.close();
+  drawn_.close();
+  drawer_.join();
+  finisher_.join();
 }
 
-std::future<Frame> PaintThread::paint(RunSnapshot snapshot, const View& view) {
-  Order order{.snapshot = std::move(snapshot), .view = view, .frame = {}};
-  std::future<Frame> frame = order.frame.get_future();
-  {
-    const std::lock_guard lock(mutex_);
-    orders_.push_back(std::move(order));
-  }
-  wake_.notify_all();
+std::future<Frame> PaintThread::paint(RunSnapshot snapshot, const View& view, std::optional<FilmNote> note) {
+  Order order{.snapshot = std::move(snapshot), .view = view, .note = std::move(note), .frame = {}, .depth = {}, .result = {}};
+  std::future<Frame> frame = order.result.get_future();
+  ordered_.put(std::move(order));
   return frame;
 }
 
-bool PaintThread::take(Order& order) {
-  std::unique_lock lock(mutex_);
-  wake_.wait(lock, [this] { return is_over_ || !orders_.empty(); });
-  if (orders_.empty() || is_over_) return false;
-  order = std::move(orders_.front());
-  orders_.pop_front();
-  return true;
+void PaintThread::draw_worlds(const mjModel& view, const PaintSettings& settings, std::promise<void> is_ready) {
+  const auto painter = made_or_told(is_ready, [&] {
+    return std::make_unique<ScenePainter>(view, settings.width, settings.height, settings.extinction_per_m, settings.renderer);
+  });
+  if (!painter) return;
+  while (std::optional<Order> order = ordered_.take()) {
+    try {
+      painter->set_state(order->snapshot.state);
+      painter->set_estimate(order->snapshot.T_true_estimate);
+      painter->draw(order->view, order->frame, order->depth);
+      drawn_.put(std::move(*order));
+    } catch (...) {
+      order->result.set_exception(std::current_exception());
+    }
+  }
 }
 
-void PaintThread::work(const mjModel& view, int width, int height, double extinction_per_m, std::promise<void> is_ready) {
-  std::unique_ptr<ScenePainter> painter;
-  std::unique_ptr<Overlay> overlay;
-  try {
-    painter = std::make_unique<ScenePainter>(view, width, height, extinction_per_m);
-    overlay = std::make_unique<Overlay>(height);
-  } catch (...) {
-    is_ready.set_exception(std::current_exception());
-    return;
-  }
-  is_ready.set_value();
-
-  std::vector<float> depth;
-  for (Order order; take(order);) {
+void PaintThread::finish_frames(const PaintSettings& settings, std::promise<void> is_ready) {
+  const auto overlay = made_or_told(is_ready, [&] { return std::make_unique<Overlay>(settings.height, settings.gas); });
+  if (!overlay) return;
+  while (std::optional<Order> order = drawn_.take()) {
     try {
-      Frame frame;
-      painter->set_state(order.snapshot.state);
-      painter->draw(order.view, frame, depth);
-      smooth_edges(frame);
-      overlay->draw(frame, depth, order.view, order.snapshot);
-      order.frame.set_value(std::move(frame));
+      smooth_edges(order->frame);
+      overlay->draw(order->frame, order->depth, order->view, order->snapshot, order->note);
+      order->result.set_value(std::move(order->frame));
     } catch (...) {
-      order.frame.set_exception(std::current_exception());
+      order->result.set_exception(std::current_exception());
     }
   }
 }

@@ -1,46 +1,59 @@
 #pragma once
 
-#include <condition_variable>
-#include <deque>
 #include <future>
-#include <mutex>
+#include <optional>
 #include <thread>
 
 #include "render/camera.h"
+#include "render/film/film_note.h"
 #include "render/frame.h"
+#include "render/gas_puffs.h"
+#include "render/gl_context.h"
 #include "render/run_snapshot.h"
+#include "render/work_queue.h"
 #include "sim/mujoco.h"
 
 namespace patrol::render {
 
-/// A thread that paints finished replay frames: world, smoothed edges, overlay. OpenGL belongs to one thread,
-/// so each has its own context. What it paints depends on nothing but what it is given.
+/// What a picture of a run is painted with, whatever it shows.
+struct PaintSettings {
+  int width = 1280;
+  int height = 720;
+  double extinction_per_m = 0.0;  ///< of dust
+  GasCloud gas = {};
+  Renderer renderer = Renderer::kAuto;
+};
+
+/// Paints finished replay frames, two at a time: one thread draws the world, another smooths its edges and lays the overlay on
+/// it. Only the first has OpenGL: with a context in each of two threads OSMesa 22.3 crashed in one of 13 films, nobody knows why,
+/// and they would share its rasteriser, which uses every core for one of them already. What is painted depends on nothing but what
+/// is given.
 class PaintThread {
  public:
-  /// Arguments as for ScenePainter. Waits until the thread has its OpenGL; throws what kept it from that. `view` must outlive
-  /// the thread.
-  PaintThread(const mjModel& view, int width, int height, double extinction_per_m);
+  /// Waits until OpenGL and fonts are there; throws what kept them from that. `view` must outlive the threads.
+  PaintThread(const mjModel& view, const PaintSettings& settings);
   ~PaintThread();
   PaintThread(const PaintThread&) = delete;
   PaintThread& operator=(const PaintThread&) = delete;
 
-  std::future<Frame> paint(RunSnapshot snapshot, const View& view);
+  /// `note` as for Overlay.
+  std::future<Frame> paint(RunSnapshot snapshot, const View& view, std::optional<FilmNote> note = {});
 
  private:
   struct Order {
     RunSnapshot snapshot;
     View view;
-    std::promise<Frame> frame;
+    std::optional<FilmNote> note;
+    Frame frame;
+    std::vector<float> depth;
+    std::promise<Frame> result;
   };
-  void work(const mjModel& view, int width, int height, double extinction_per_m, std::promise<void> is_ready);
-  /// False when there is nothing more to come.
-  bool take(Order& order);
+  void draw_worlds(const mjModel& view, const PaintSettings& settings, std::promise<void> is_ready);
+  void finish_frames(const PaintSettings& settings, std::promise<void> is_ready);
+  void stop();
 
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  std::deque<Order> orders_;
-  bool is_over_ = false;
-  std::thread thread_;
+  WorkQueue<Order> ordered_, drawn_;
+  std::thread drawer_, finisher_;
 };
 
 }  // namespace patrol::render

@@ -8,35 +8,45 @@
 #include "core/grid.h"
 #include "core/time.h"
 #include "render/camera.h"
+#include "render/film/moment.h"
+#include "render/film/shot_plan.h"
+#include "render/gl_context.h"
 #include "render/light.h"
 #include "sim/dust.h"
+#include "sim/gas_plume.h"
 #include "sim/model_assembly.h"
 
 namespace patrol::render {
 
 struct ReplaySettings {
-  CameraKind camera = CameraKind::kChase;
-  double speed = 8.0;  ///< seconds of the run in a second of video
+  Cut cut = Cut::kStory;
+  CameraKind camera = CameraKind::kChase;  ///< that follows the robot where the cut has no other
+  SpeedSettings speed = {};
   int width = 1280;
   int height = 720;
   double frames_per_second = 30.0;
+  Renderer renderer = Renderer::kAuto;
   std::optional<OccupancyGrid> map = {};  ///< that the robot was given, in map; none: it makes its own
   sim::DustSettings dust = {};  ///< in the air of that run
-  LightSettings light = {};     ///< likewise
-  int num_threads = 1;  ///< that draw, each a frame of its own; with two, OSMesa 22.3 has crashed once in 13 films
+  std::vector<sim::LeakSettings> leaks = {};  ///< likewise
+  sim::WindSettings wind = {};
+  LightSettings light = {};
+  std::vector<Moment> announced = {};  ///< what is notable and only the scenario knows, e.g. the faults that it switched on
 };
 
-/// Called with the share that is done, 0 ... 1; never for a log that was cut off, whose end nobody knows.
-using ReplayProgress = std::function<void(double done)>;
+/// Called with the share that is done, 0 ... 1; false: no more.
+using ReplayProgress = std::function<bool(double done)>;
 
 struct ReplaySummary {
   int num_frames = 0;
   Time end{};  ///< of the run, as logged
+  int num_chapters = 0;
   bool log_is_complete = true;
+  bool is_interrupted = false;  ///< by the one who is told the progress: there is no film
 };
 
-/// Films a logged run. `T_world_map` is the start pose: map and world are joined there. The model's render
-/// quality is set to what a replay can afford. Throws InputError when the log cannot be read, has no states
+/// Films a logged run, read twice: once for its moments, once for the film. `T_world_map` is the start pose: map and world are
+/// joined there. The model's render quality is set to what a replay can afford. Throws InputError when the log cannot be read, has no states
 /// or is of another world.
 ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel model,
                      const Pose2& T_world_map, const ReplaySettings& settings,

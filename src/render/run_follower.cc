@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kPathStep_m = 0.05;  // between the points of a drawn path
 constexpr double kAboveGround_m = 0.01;
+constexpr double kCarried_m = 0.5;  // from one truth to the next: not on the robot's own feet
 
 void extend(std::vector<Eigen::Vector3d>& path, const Eigen::Vector3d& point) {
   if (path.empty() || (point - path.back()).head<2>().norm() >= kPathStep_m) path.push_back(point);
@@ -67,9 +68,7 @@ void RunFollower::add(const PoseEstimate& estimate) {
   const Pose2 T_world_estimate = snapshot_.T_world_map * estimate.T_map_body;
   extend(snapshot_.estimated_path, on_ground(T_world_estimate.position()));
   if (const std::optional<Pose3> truth = pose_at(truth_, estimate.stamp)) {
-    const Pose2 error = to_planar(*truth).inverse() * T_world_estimate;
-    snapshot_.position_error_m = error.position().norm();
-    snapshot_.heading_error_rad = error.yaw;
+    snapshot_.T_true_estimate = to_planar(*truth).inverse() * T_world_estimate;
   }
   if (scan_) place_scan(estimate);
 }
@@ -89,7 +88,8 @@ void RunFollower::add(const Event& event) {
 void RunFollower::add(const GroundTruth& truth) {
   if (!truth_.empty()) {
     if (truth.stamp <= truth_.back().stamp) return;
-    snapshot_.travelled_m += (truth.T_world_body.position - truth_.back().pose.position).head<2>().norm();
+    const double step_m = (truth.T_world_body.position - truth_.back().pose.position).head<2>().norm();
+    if (step_m < kCarried_m) snapshot_.travelled_m += step_m;
   }
   truth_.push_back({truth.stamp, truth.T_world_body});
   snapshot_.T_world_body = truth.T_world_body;

@@ -25,6 +25,7 @@ class RunFollower {
   void add(const MapUpdate& update) { snapshot_.map = std::make_shared<const OccupancyGrid>(update.map); }
   void add(const Path& plan);
   void add(const Event& event);
+  void add(const GasReading& reading) { snapshot_.gas = reading; }
   void add(const GroundTruth& truth);
   void add(const SimState& state) { snapshot_.state = state; }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,9 @@ struct RunSnapshot {
   std::vector<Eigen::Vector3d> scan;            ///< hits, from where the robot believed to be
   std::vector<Pose2> particles;                 ///< in map
   std::shared_ptr<const OccupancyGrid> map;     ///< in map; null before the first
-  double position_error_m = 0.0;                ///< of the newest estimate
-  double heading_error_rad = 0.0;
+  Pose2 T_true_estimate;                        ///< the newest estimate of the level body, in the true one of that instant
   double travelled_m = 0.0;
+  std::optional<GasReading> gas;                ///< the newest; none without a methane meter
   bool is_driving = false;  ///< on tracks, and not walking
   std::string event;      ///< the newest one's text
   bool is_alarm = false;  ///< that event is one

@@ -7,9 +7,8 @@
 #include <cstdint>
 #include <numbers>
 
-#include <fmt/format.h>
-
-#include "core/error.h"
+#include "render/ghost.h"
+#include "render/model_state.h"
 #include "sim/robot_model.h"
 
 namespace patrol::render {
@@ -43,6 +42,27 @@ std::array<Eigen::Vector3d, 4> sides_of(const View& view, double aspect) {
           side(-view.up, half_height)};
 }
 
+/// 0 at `x` <= from, 1 at `x` >= to, smooth between.
+double smooth_step(double from, double to, double x) {
+  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+/// How dark a lamp's shadows are at the focus: not where its shadow map ends (`reach_rad` off its axis; near the edge of that
+/// MuJoCo 3.17 draws speckles), and not where another lamp is as near and would take over.
+double shadow_share(const mjvLight& lamp, const Eigen::Vector3d& focus, double reach_rad, double second_nearest_m) {
+  constexpr double kEdge_rad = 0.09, kFade_rad = 0.22, kFade_m = 2.0;
+  const Eigen::Vector3d ray = focus - to_eigen(lamp.pos);
+  const double off_axis_rad = std::acos(std::clamp(ray.normalized().dot(to_eigen(lamp.dir).normalized()), -1.0, 1.0));
+  return smooth_step(kEdge_rad, kEdge_rad + kFade_rad, reach_rad - off_axis_rad) * smooth_step(0.0, kFade_m, second_nearest_m - ray.norm());
+}
+
+void scale_light(mjvLight& light, double share) {
+  for (float* color : {light.ambient, light.diffuse, light.specular}) {
+    for (int i = 0; i < 3; ++i) color[i] *= static_cast<float>(share);
+  }
+}
+
 }  // namespace
 
 void set_replay_quality(mjModel& view) {
@@ -54,10 +74,10 @@ void set_replay_quality(mjModel& view) {
   view.vis.map.shadowclip = static_cast<float>(kShadowReach_m / view.stat.extent);
 }
 
-ScenePainter::ScenePainter(const mjModel& view, int width, int height, double extinction_per_m)
+ScenePainter::ScenePainter(const mjModel& view, int width, int height, double extinction_per_m, Renderer renderer)
     : model_(view),
       data_(sim::make_data(view)),
-      offscreen_(view, width, height),
+      offscreen_(view, width, height, renderer),
       dust_{extinction_per_m, to_color(view.vis.rgba.fog)},
       shadow_reach_m_(static_cast<double>(view.vis.map.shadowclip) * view.stat.extent) {
   mjv_defaultOption(&options_);
@@ -66,7 +86,7 @@ ScenePainter::ScenePainter(const mjModel& view, int width, int height, double ex
     options_.geomgroup[group] = 1;
   std::fill(std::begin(options_.sitegroup), std::end(options_.sitegroup), mjtByte{0});
   mjv_defaultScene(&scene_);
-  mjv_makeScene(&view, &scene_, static_cast<int>(view.ngeom) + 100);
+  mjv_makeScene(&view, &scene_, 2 * static_cast<int>(view.ngeom) + 100);  // the robot may be there twice
   scene_.flags[mjRND_REFLECTION] = 0;
   scene_.flags[mjRND_HAZE] = 0;
   scene_.flags[mjRND_FOG] = 1;
@@ -76,21 +96,7 @@ ScenePainter::ScenePainter(const mjModel& view, int width, int height, double ex
 ScenePainter::~ScenePainter() { mjv_freeScene(&scene_); }
 
 void ScenePainter::set_state(const SimState& state) {
-  const auto num_qpos = static_cast<std::size_t>(model_.nq),
-             num_mocap = static_cast<std::size_t>(model_.nmocap);
-  if (state.qpos.size() != num_qpos || state.mocap.size() != 7 * num_mocap) {
-    throw InputError(fmt::format(
-        "a state of {} coordinates and {} poses was logged, the model has {} and {}: the log is of another "
-        "world or robot",
-        state.qpos.size(), state.mocap.size() / 7, num_qpos, num_mocap));
-  }
-  std::copy(state.qpos.begin(), state.qpos.end(), data_->qpos);
-  for (std::size_t body = 0; body < num_mocap; ++body) {
-    const auto pose = state.mocap.begin() + static_cast<std::ptrdiff_t>(7 * body);
-    std::copy(pose, pose + 3, data_->mocap_pos + 3 * body);
-    std::copy(pose + 3, pose + 7, data_->mocap_quat + 4 * body);
-  }
-  mj_kinematics(&model_, data_.get());
+  put_state(model_, state, *data_);
   mj_comPos(&model_, data_.get());
   mj_camlight(&model_, data_.get());
 }
@@ -98,6 +104,7 @@ void ScenePainter::set_state(const SimState& state) {
 void ScenePainter::draw(const View& view, Frame& frame, std::vector<float>& depth) {
   scene_.camera[0] = scene_.camera[1] = gl_camera(view);
   mjv_updateScene(&model_, data_.get(), &options_, nullptr, nullptr, mjCAT_ALL, &scene_);
+  add_ghost(scene_, model_, *data_, T_true_estimate_);
   light_around(view);
   drop_unseen(view);
   offscreen_.render(scene_);
@@ -120,26 +127,50 @@ void ScenePainter::light_around(const View& view) {
   for (int axis = 0; axis < 3; ++axis) sun->pos[axis] = static_cast<float>(place[axis]);
 }
 
-// Underground it is lamps that show what stands on the ground. One of them is what a frame can afford: the nearest, where
-// what one looks at is well inside the cone that its shadow map covers. Near the edge of that MuJoCo 3.17 draws speckles.
+// Underground it is lamps that show what stands on the ground. One of them is what a frame can afford: the nearest. It throws
+// shadows as dark as `shadow_share` says: of two lamps in one place, one without shadows and one with, their light shared out.
 void ScenePainter::let_nearest_lamp_throw_shadows(const View& view) {
-  constexpr double kEdge_deg = 5.0;
-  const auto away = [&](const mjvLight& light) {
+  constexpr int kMostLights = 8;  // of OpenGL's fixed functions
+  const auto away_m = [&](const mjvLight& light) {
     return light.headlight ? std::numeric_limits<double>::infinity() : (to_eigen(light.pos) - view.focus).norm();
   };
   mjvLight* const end = scene_.lights + scene_.nlight;
-  mjvLight* const lamp = std::ranges::min_element(scene_.lights, end, {}, away);
+  mjvLight* const lamp = std::ranges::min_element(scene_.lights, end, {}, away_m);
+  has_shadow_lamp_ = false;
   if (lamp == end || lamp->headlight) return;
-  const double off_axis_rad = std::acos((view.focus - to_eigen(lamp->pos)).normalized().dot(to_eigen(lamp->dir).normalized()));
-  const double reach_deg = static_cast<double>(lamp->cutoff * model_.vis.map.shadowscale) - kEdge_deg;
-  if (off_axis_rad < reach_deg * std::numbers::pi / 180.0) lamp->castshadow = 1;
+  double second_m = std::numeric_limits<double>::infinity();
+  for (const mjvLight* other = scene_.lights; other != end; ++other) {
+    if (other != lamp) second_m = std::min(second_m, away_m(*other));
+  }
+  const double reach_deg = static_cast<double>(lamp->cutoff * model_.vis.map.shadowscale);
+  double share = shadow_share(*lamp, view.focus, reach_deg * std::numbers::pi / 180.0, second_m);
+  const bool has_room = scene_.nlight < kMostLights;
+  if (!has_room) share = std::round(share);
+  if (share == 0.0) return;
+  has_shadow_lamp_ = true;
+  if (share < 1.0) {
+    mjvLight& rest = scene_.lights[scene_.nlight++];
+    rest = *lamp;
+    scale_light(rest, 1.0 - share);
+    scale_light(*lamp, share);
+  }
+  lamp->castshadow = 1;
+}
+
+/// Whether something there could throw a shadow to where one looks.
+bool ScenePainter::may_shade(const View& view, const Eigen::Vector3d& center, double radius) {
+  constexpr double kLampShadow_m = 5.0;  // farther from what one looks at, lamps throw none into the picture that one would miss
+  if (has_shadow_lamp_) return (center - view.focus).norm() < kLampShadow_m + radius;
+  const mjvLight* sun = find_sun(scene_);
+  if (sun == nullptr || scene_.flags[mjRND_SHADOW] == 0) return false;
+  const double off_axis = (center - view.focus).cross(to_eigen(sun->dir).normalized()).norm();
+  return off_axis < std::numbers::sqrt2 * shadow_reach_m_ + radius;
 }
 
 // Software vertex work is half of a frame: leave out what would be a speck, and what is neither in sight
 // nor casts a shadow that could be.
 void ScenePainter::drop_unseen(const View& view) {
   const auto sides = sides_of(view, static_cast<double>(offscreen_.width()) / offscreen_.height());
-  const mjvLight* sun = find_sun(scene_);
   const auto is_in_sight = [&](const Eigen::Vector3d& center, double radius) {
     return std::ranges::all_of(sides,
                                [&](const Eigen::Vector3d& n) { return n.dot(center - view.eye) > -radius; });
@@ -149,16 +180,11 @@ void ScenePainter::drop_unseen(const View& view) {
   const auto is_speck = [&](const Eigen::Vector3d& center, double radius) {
     return focal_px * radius < kTooSmall_px * (center - view.eye).norm();
   };
-  const auto may_shade = [&](const Eigen::Vector3d& center, double radius) {
-    if (sun == nullptr || scene_.flags[mjRND_SHADOW] == 0) return false;
-    const double off_axis = (center - view.focus).cross(to_eigen(sun->dir).normalized()).norm();
-    return off_axis < std::numbers::sqrt2 * shadow_reach_m_ + radius;
-  };
   mjvGeom* const last = std::remove_if(scene_.geoms, scene_.geoms + scene_.ngeom, [&](const mjvGeom& geom) {
     if (geom.type == mjGEOM_PLANE || geom.type == mjGEOM_HFIELD || geom.modelrbound <= 0.0f) return false;
     const Eigen::Vector3d center = to_eigen(geom.pos);
     if (is_speck(center, geom.modelrbound)) return true;
-    return !is_in_sight(center, geom.modelrbound) && !may_shade(center, geom.modelrbound);
+    return !is_in_sight(center, geom.modelrbound) && !may_shade(view, center, geom.modelrbound);
   });
   scene_.ngeom = static_cast<int>(last - scene_.geoms);
 }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/frames.h"
 #include "core/ground_truth.h"
 #include "render/camera.h"
 #include "render/frame.h"
@@ -21,13 +22,15 @@ class ScenePainter {
  public:
   /// `view` is a model for renders (sim/model_assembly.h) and must outlive the painter. Dust that stops a share of light
   /// per metre has the colour of the world's fog. Throws std::runtime_error without OpenGL.
-  ScenePainter(const mjModel& view, int width, int height, double extinction_per_m = 0.0);
+  ScenePainter(const mjModel& view, int width, int height, double extinction_per_m = 0.0, Renderer renderer = software_renderer());
   ~ScenePainter();
   ScenePainter(const ScenePainter&) = delete;
   ScenePainter& operator=(const ScenePainter&) = delete;
 
   /// Moves robot and actors. Throws InputError when the state is not one of this model.
   void set_state(const SimState& state);
+  /// Where the robot believes to be, seen from where it is: there stands a ghost (render/ghost.h). Not before the first call.
+  void set_estimate(const Pose2& T_true_estimate) { T_true_estimate_ = T_true_estimate; }
   /// Draws and reads back; `depth` as in Offscreen::read_depth.
   void draw(const View& view, Frame& frame, std::vector<float>& depth);
 
@@ -39,6 +42,7 @@ class ScenePainter {
  private:
   void light_around(const View& view);
   void let_nearest_lamp_throw_shadows(const View& view);
+  bool may_shade(const View& view, const Eigen::Vector3d& center, double radius);
   void drop_unseen(const View& view);
 
   const mjModel& model_;
@@ -47,6 +51,8 @@ class ScenePainter {
   mjvScene scene_;
   mjvOption options_;
   Haze dust_;
+  Pose2 T_true_estimate_;
+  bool has_shadow_lamp_ = false;  ///< in the last scene
   double shadow_reach_m_;  ///< half the side of the square that the shadow map covers
 };
 

@@ -1,6 +1,8 @@
 #include "render/video.h"
 
+#include <cmath>
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -37,6 +39,37 @@ Pointer* made(Pointer* pointer, const char* what) {
   return pointer;
 }
 
+constexpr AVRational kMillisecond{1, 1000};
+
+/// As libav frees them with the container.
+void add_chapters(AVFormatContext& container, const std::vector<Chapter>& chapters) {
+  if (chapters.empty()) return;
+  container.chapters = made(static_cast<AVChapter**>(av_calloc(chapters.size(), sizeof(AVChapter*))), "memory for chapters");
+  for (const Chapter& chapter : chapters) {
+    AVChapter* mark = made(static_cast<AVChapter*>(av_mallocz(sizeof(AVChapter))), "memory for a chapter");
+    container.chapters[container.nb_chapters++] = mark;
+    mark->id = container.nb_chapters;
+    mark->time_base = kMillisecond;
+    mark->start = std::llround(1e3 * chapter.begin_s);
+    mark->end = std::llround(1e3 * chapter.end_s);
+    av_dict_set(&mark->metadata, "title", chapter.title.c_str(), 0);
+  }
+}
+
+/// Of high definition, whatever the size: a player that is not told would guess by the size.
+void use_bt709(AVCodecContext& codec) {
+  codec.colorspace = AVCOL_SPC_BT709;
+  codec.color_primaries = AVCOL_PRI_BT709;
+  codec.color_trc = AVCOL_TRC_BT709;
+  codec.color_range = AVCOL_RANGE_MPEG;
+}
+
+void use_bt709(SwsContext* scaler) {
+  constexpr int kFullRange = 1, kVideoRange = 0, kUnchanged = 1 << 16;
+  sws_setColorspaceDetails(scaler, sws_getCoefficients(SWS_CS_DEFAULT), kFullRange, sws_getCoefficients(SWS_CS_ITU709), kVideoRange,
+                           0, kUnchanged, kUnchanged);
+}
+
 }  // namespace
 
 struct VideoWriter::Encoder {
@@ -57,7 +90,7 @@ struct VideoWriter::Encoder {
   Encoder(const Encoder&) = delete;
   Encoder& operator=(const Encoder&) = delete;
 
-  void open(int width, int height, double frames_per_second);
+  void open(int width, int height, double frames_per_second, const std::vector<Chapter>& chapters);
   void encode(const AVFrame* frame);
 
   std::filesystem::path file;
@@ -71,7 +104,7 @@ struct VideoWriter::Encoder {
   std::int64_t num_frames = 0;
 };
 
-void VideoWriter::Encoder::open(int width, int height, double frames_per_second) {
+void VideoWriter::Encoder::open(int width, int height, double frames_per_second, const std::vector<Chapter>& chapters) {
   checked(avformat_alloc_output_context2(&container, nullptr, "mp4", temporary.c_str()), "no MP4 writer");
   container->flags |= AVFMT_FLAG_BITEXACT;
   const AVCodec* kind = avcodec_find_encoder_by_name("libx264");
@@ -83,6 +116,7 @@ void VideoWriter::Encoder::open(int width, int height, double frames_per_second)
   codec->framerate = av_d2q(frames_per_second, 100000);
   codec->time_base = av_inv_q(codec->framerate);
   codec->pix_fmt = AV_PIX_FMT_YUV420P;
+  use_bt709(*codec);
   codec->gop_size = 60;
   codec->thread_count = 1;  // rate control of several threads depends on how many there are
   av_log_set_level(AV_LOG_ERROR);
@@ -104,6 +138,7 @@ void VideoWriter::Encoder::open(int width, int height, double frames_per_second)
   if (avio_open(&container->pb, temporary.c_str(), AVIO_FLAG_WRITE) < 0) {
     throw InputError(file.string() + ": cannot be written");
   }
+  add_chapters(*container, chapters);
   AVDictionary* options = nullptr;
   av_dict_set(&options, "movflags", "+faststart", 0);
   const int code = avformat_write_header(container, &options);
@@ -113,6 +148,7 @@ void VideoWriter::Encoder::open(int width, int height, double frames_per_second)
   scaler = made(sws_getContext(width, height, AV_PIX_FMT_RGB24, width, height, AV_PIX_FMT_YUV420P,
                                SWS_POINT | SWS_ACCURATE_RND | SWS_BITEXACT, nullptr, nullptr, nullptr),
                 "colour conversion");
+  use_bt709(scaler);
   picture = made(av_frame_alloc(), "picture");
   picture->format = AV_PIX_FMT_YUV420P;
   picture->width = width;
@@ -134,12 +170,13 @@ void VideoWriter::Encoder::encode(const AVFrame* frame) {
   }
 }
 
-VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int height, double frames_per_second)
+VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int height, double frames_per_second,
+                         const std::vector<Chapter>& chapters)
     : encoder_(std::make_unique<Encoder>(file)) {
   if (width < 2 || height < 2 || width % 2 != 0 || height % 2 != 0) {
     throw InputError(fmt::format("size = {}x{}: a video's width and height must be even", width, height));
   }
-  encoder_->open(width, height, frames_per_second);
+  encoder_->open(width, height, frames_per_second, chapters);
 }
 
 VideoWriter::~VideoWriter() = default;
@@ -181,7 +218,15 @@ VideoInfo inspect_video(const std::filesystem::path& file) {
   const AVStream* stream = opened->streams[index];
   VideoInfo info{.width = stream->codecpar->width,
                  .height = stream->codecpar->height,
-                 .duration_s = static_cast<double>(opened->duration) / AV_TIME_BASE};
+                 .duration_s = static_cast<double>(opened->duration) / AV_TIME_BASE,
+                 .chapters = {}};
+  for (const AVChapter* mark : std::span(opened->chapters, opened->nb_chapters)) {
+    const AVDictionaryEntry* title = av_dict_get(mark->metadata, "title", nullptr, 0);
+    const double unit_s = av_q2d(mark->time_base);
+    info.chapters.push_back({.begin_s = unit_s * static_cast<double>(mark->start),
+                             .end_s = unit_s * static_cast<double>(mark->end),
+                             .title = title != nullptr ? title->value : ""});
+  }
   const auto free_packet = [](AVPacket* packet) { av_packet_free(&packet); };
   const std::unique_ptr<AVPacket, decltype(free_packet)> packet(made(av_packet_alloc(), "packet"),
                                                                 free_packet);

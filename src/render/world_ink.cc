@@ -6,7 +6,7 @@
 namespace patrol::render {
 namespace {
 
-constexpr double kMinWidth_px = 1.6;
+constexpr double kMinWidth = 1.6 / 720.0;  // of the frame's height
 
 }  // namespace
 
@@ -44,7 +44,7 @@ void WorldInk::stroke(const Eigen::Vector3d& from_in_camera, const Eigen::Vector
   if (b.z() < near_m) b = a + (a.z() - near_m) / (a.z() - b.z()) * (b - a);
   const Projected from = projector_.project_camera(a), to = projector_.project_camera(b);
   const auto half_width = [&](double distance_m) {
-    return 0.5 * std::max(kMinWidth_px, projector_.focal_px() * width_m / distance_m);
+    return 0.5 * std::max(kMinWidth * frame_.height(), projector_.focal_px() * width_m / distance_m);
   };
   cover({.from = from.pixel,
          .to = to.pixel,

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/error.h"
 #include "io/settings_yaml.h"
 #include "render/scene_painter.h"
@@ -30,8 +32,9 @@ Frame draw_at(double brightness_share) {
 }
 
 // Sky, lamp, what it lights and what has only the headlight: nothing here is so bright that a byte cannot hold it.
-TEST(Light, AtHalfTheBrightnessEveryPixelHasHalfOfIt) {
-  const Frame full = draw_at(1.0), half = draw_at(0.5);
+// To the eye, and in a picture, a share s of the light is s^(1/2.2) of the brightness: 0.2176 of the light is half of it.
+TEST(Light, AtAFifthOfTheLightEveryPixelIsHalfAsBright) {
+  const Frame full = draw_at(1.0), half = draw_at(std::pow(0.5, 2.2));
   constexpr double kRoundingTol = 1.51;  // a byte for the texture, one for the vertex, half of one for the picture
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/error.h"
 #include "io/run_log.h"
 #include "render/palette.h"
@@ -42,7 +44,7 @@ class Replay : public ::testing::Test {
   test::TemporaryFolder folder;
   const std::filesystem::path log = folder / "log.mcap";
   const std::filesystem::path film = folder / "replay.mp4";
-  ReplaySettings settings{.speed = 1.0, .width = 160, .height = 90, .frames_per_second = 10.0};
+  ReplaySettings settings{.cut = Cut::kPlain, .speed = {.fast = 1.0}, .width = 160, .height = 90, .frames_per_second = 10.0};
 };
 
 TEST_F(Replay, FilmsTheRunAtTheRateThatWasAsked) {
@@ -57,17 +59,36 @@ TEST_F(Replay, FilmsTheRunAtTheRateThatWasAsked) {
 }
 
 TEST_F(Replay, FourTimesTheSpeedIsAQuarterOfTheFrames) {
-  settings.speed = 4.0;
+  settings.speed.fast = 4.0;
   EXPECT_EQ(replay(log, model(), {}, settings, film).num_frames, 5);
 }
 
-TEST_F(Replay, IsTheSameFilmHoweverManyThreadsDraw) {
-  settings.speed = 2.0;
-  settings.num_threads = 1;
+TEST_F(Replay, IsTheSameFilmEachTime) {
+  settings.cut = Cut::kStory;
+  settings.speed.fast = 2.0;
   replay(log, model(), {}, settings, folder / "one.mp4");
-  settings.num_threads = 3;
-  replay(log, model(), {}, settings, folder / "three.mp4");
-  EXPECT_EQ(test::read_bytes(folder / "one.mp4"), test::read_bytes(folder / "three.mp4"));
+  replay(log, model(), {}, settings, folder / "again.mp4");
+  EXPECT_EQ(test::read_bytes(folder / "one.mp4"), test::read_bytes(folder / "again.mp4"));
+}
+
+// 1.98 s at 8 would be 0.2475 s of film. The fault's scene reaches over the whole run: 1.98 / 2 = 0.99 s, frames at 0 ... 0.9 s.
+TEST_F(Replay, OfAStoryIsSlowAtItsMomentsAndHasThemForChapters) {
+  settings.cut = Cut::kStory;
+  settings.speed = {.fast = 8.0, .slow = 2.0};
+  settings.announced = {{1s, MomentKind::kFault, "Fault: silence of lidar"}};
+  const ReplaySummary summary = replay(log, model(), {}, settings, film);
+  EXPECT_EQ(summary.num_frames, 10);
+  const VideoInfo info = inspect_video(film);
+  ASSERT_EQ(info.chapters.size(), 1u);
+  EXPECT_EQ(info.chapters[0].title, "Largest position error: 0.050 m; Fault: silence of lidar");
+  settings.cut = Cut::kPlain;
+  EXPECT_EQ(replay(log, model(), {}, settings, film).num_frames, 3);
+}
+
+TEST_F(Replay, LeavesNothingWhenItIsInterrupted) {
+  EXPECT_TRUE(replay(log, model(), {}, settings, film, [](double) { return false; }).is_interrupted);
+  EXPECT_FALSE(std::filesystem::exists(film));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "the log, and no part of a film";
 }
 
 TEST_F(Replay, TellsHowFarItIs) {
@@ -75,6 +96,7 @@ TEST_F(Replay, TellsHowFarItIs) {
   replay(log, model(), {}, settings, film, [&](double done) {
     EXPECT_GE(done, last);
     last = done;
+    return true;
   });
   EXPECT_DOUBLE_EQ(last, 1.0);
 }
@@ -118,7 +140,7 @@ TEST_F(Replay, ShowsTheDustAndTheDimLightOfTheRun) {
               dim = wall_color(load_png(folder / "dim.png"));
   EXPECT_EQ(dust, (Color{0, 0, 0})) << "this little world's fog";
   EXPECT_GT(clear.r, 50);
-  EXPECT_NEAR(dim.r, 0.5 * clear.r, 2);
+  EXPECT_NEAR(dim.r, std::pow(0.5, 1.0 / 2.2) * clear.r, 2);
 }
 
 TEST_F(Replay, ShowsTheMapThatTheRobotWasGiven) {
@@ -150,7 +172,7 @@ TEST_F(Replay, RefusesALogWithoutStates) {
 }
 
 TEST_F(Replay, RefusesASpeedOfNothing) {
-  settings.speed = 0.0;
+  settings.speed.fast = 0.0;
   EXPECT_THROW(replay(log, model(), {}, settings, film), InputError);
 }
 

@@ -47,8 +47,8 @@ TEST_F(RunFollowerTest, ErrorsAreThoseOfTheEstimatesOwnInstant) {
   // At 1 s the truth was 1 m north; the estimate says 1.03 m north, 0.04 m west (map's y), and 0.1 rad less
   // heading.
   follower.add(estimate_at(1s, {1.03, 0.04, 1.5 - std::numbers::pi / 2.0}));
-  EXPECT_NEAR(follower.snapshot().position_error_m, 0.05, 1e-9);
-  EXPECT_NEAR(follower.snapshot().heading_error_rad, -0.1, 1e-9);
+  EXPECT_NEAR(follower.snapshot().T_true_estimate.position().norm(), 0.05, 1e-9);
+  EXPECT_NEAR(follower.snapshot().T_true_estimate.yaw, -0.1, 1e-9);
 }
 
 TEST_F(RunFollowerTest, AddsUpTheWayWalked) {

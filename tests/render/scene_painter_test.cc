@@ -160,6 +160,33 @@ TEST(ScenePainterUnderLamps, FarFromAllOfThemThereAreNoShadows) {
   EXPECT_EQ(num_casting(29.0), 1);
 }
 
+// Along the way from one lamp to the other, the brightness of a place behind a post never jumps: shadows fade in and out.
+TEST(ScenePainterUnderLamps, ShadowsDoNotPop) {
+  const sim::ModelPtr model = small_scene(R"(
+  <light pos="0 0 4" dir="0 0 -1" cutoff="80" exponent="1" diffuse="0.6 0.6 0.6" castshadow="false"/>
+  <light pos="8 0 4" dir="0 0 -1" cutoff="80" exponent="1" diffuse="0.6 0.6 0.6" castshadow="false"/>
+  <geom type="plane" size="30 30 1" rgba="0.5 0.5 0.5 1"/>
+  <geom type="box" size="0.1 0.3 0.5" pos="2 0 0.5" rgba="0.5 0.1 0.1 1"/>)");
+  ScenePainter painter(*model, kWidth, kHeight);
+  Frame frame;
+  std::vector<float> depth;
+  int last = -1, brightest = 0, darkest = 255;
+  for (double focus_x = 0.0; focus_x <= 8.0; focus_x += 0.05) {
+    View above = look_at({2.0, 0.0, 6.0}, {2.0, 0.0, 0.0});  // the eye stays: only what the light is chosen by moves
+    above.focus = {focus_x, 0.0, 0.0};
+    painter.draw(above, frame, depth);
+    const Eigen::Vector2d pixel = Projector(above, kWidth, kHeight).project({2.4, 0.0, 0.0})->pixel;  // in the first lamp's shadow
+    const int bright = frame.at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y())).g;
+    if (last >= 0) {
+      EXPECT_LE(std::abs(bright - last), 12) << "at " << focus_x;
+    }
+    last = bright;
+    brightest = std::max(brightest, bright);
+    darkest = std::min(darkest, bright);
+  }
+  EXPECT_GT(brightest, darkest + 20) << "there was a shadow, and there was none";
+}
+
 // Koschmieder: of the contrast to the fog's colour, exp(-0.2 d) is left after d metres.
 TEST(ScenePainterInDust, WhatIsFarTakesTheColourOfTheFogAndWhatIsNearDoesNot) {
   const sim::ModelPtr model = small_scene(kYard);

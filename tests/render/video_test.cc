@@ -56,6 +56,19 @@ TEST(Video, LeavesNothingBehindWhenItIsNotFinished) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+TEST(Video, KeepsItsChapters) {
+  const test::TemporaryFolder folder;
+  VideoWriter video(folder / "film.mp4", 160, 90, 25.0, {{0.0, 0.4, "Start"}, {0.4, 1.0, "Leak at box 2: 4070 ppm m"}});
+  for (int i = 0; i < 25; ++i) video.add(Frame(160, 90));
+  video.finish();
+  const VideoInfo info = inspect_video(folder / "film.mp4");
+  EXPECT_EQ(info.num_frames, 25);
+  ASSERT_EQ(info.chapters.size(), 2u);
+  EXPECT_NEAR(info.chapters[1].begin_s, 0.4, 1e-3);  // kept in milliseconds
+  EXPECT_NEAR(info.chapters[1].end_s, 1.0, 1e-3);
+  EXPECT_EQ(info.chapters[1].title, "Leak at box 2: 4070 ppm m");
+}
+
 TEST(Video, RefusesAnOddSize) {
   const test::TemporaryFolder folder;
   EXPECT_THROW(VideoWriter(folder / "film.mp4", 161, 90, 25.0), InputError);

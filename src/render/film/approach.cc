@@ -1,0 +1,54 @@
+#include "render/film/approach.h"
+
+#include <string_view>
+
+#include "core/frames.h"
+#include "render/model_state.h"
+
+namespace patrol::render {
+namespace {
+
+std::string_view name_of(const mjModel& model, int body) { return mj_id2name(&model, mjOBJ_BODY, body); }
+
+/// People are several mocap bodies: "pedestrian_1", "pedestrian_1_thigh_left", ...
+int whole_of(const mjModel& model, int part) {
+  const std::string_view name = name_of(model, part);
+  for (int body = 0; body < model.nbody; ++body) {
+    if (model.body_mocapid[body] >= 0 && name.starts_with(std::string(name_of(model, body)) + "_")) return body;
+  }
+  return part;
+}
+
+Eigen::Vector3d place_of(const mjData& data, int geom) { return Eigen::Vector3d(data.geom_xpos + 3 * geom); }
+
+}  // namespace
+
+ApproachFinder::ApproachFinder(const mjModel& view) : model_(view), data_(sim::make_data(view)) {
+  const int robot = mj_name2id(&view, mjOBJ_BODY, frame_id::kBody);
+  for (int geom = 0; geom < view.ngeom; ++geom) {
+    const int body = view.geom_bodyid[geom];
+    if (robot >= 0 && view.body_rootid[body] == view.body_rootid[robot]) robot_.push_back(geom);
+    if (view.body_mocapid[body] >= 0) actors_.push_back({geom, whole_of(view, body)});
+  }
+}
+
+std::optional<Approach> ApproachFinder::nearest(const SimState& state) {
+  put_state(model_, state, *data_);
+  double nearest_m = kFarthest_m;
+  const Part* who = nullptr;
+  for (const Part& part : actors_) {
+    for (const int geom : robot_) {
+      const double least_m = (place_of(*data_, part.geom) - place_of(*data_, geom)).norm() - model_.geom_rbound[part.geom] - model_.geom_rbound[geom];
+      if (least_m >= nearest_m) continue;
+      const double clearance_m = mj_geomDistance(&model_, data_.get(), geom, part.geom, nearest_m, nullptr);
+      if (clearance_m >= nearest_m) continue;
+      nearest_m = clearance_m;
+      who = &part;
+    }
+  }
+  if (who == nullptr) return std::nullopt;
+  const double* place = data_->xpos + 3 * who->actor;
+  return Approach{.at = state.stamp, .actor = std::string(name_of(model_, who->actor)), .clearance_m = nearest_m, .p_world_actor = {place[0], place[1]}};
+}
+
+}  // namespace patrol::render

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <future>
+
+#include "render/film/director.h"
+#include "render/paint_thread.h"
+#include "render/run_snapshot.h"
+#include "render/video.h"
+
+namespace patrol::render {
+
+/// Films what a run's snapshots show, as its director has it: a frame for every instant of the film, of the first state that is
+/// not before it.
+class Film {
+ public:
+  /// `view` must outlive the film.
+  Film(const mjModel& view, const PaintSettings& settings, double frames_per_second, Director director,
+       const std::filesystem::path& out_mp4);
+
+  /// In order of the run; takes the frames that are due.
+  void shoot(const RunSnapshot& snapshot);
+  void finish();
+
+  int num_frames() const { return num_frames_; }
+  double length_s() const { return num_frames_ / frames_per_second_; }
+
+ private:
+  void develop();
+
+  double frames_per_second_;
+  Director director_;
+  VideoWriter video_;
+  PaintThread painter_;
+  std::deque<std::future<Frame>> in_work_;  ///< in the order of the film
+  int num_frames_ = 0;
+};
+
+}  // namespace patrol::render

@@ -1,0 +1,151 @@
+#include "render/film/find_moments.h"
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace patrol::render {
+namespace {
+
+using Moments = std::vector<Moment>;
+
+std::string spoken(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+std::string without_full_stop(std::string sentence) {
+  if (sentence.ends_with('.')) sentence.pop_back();
+  return spoken(std::move(sentence));
+}
+
+/// Of the events worth a look.
+std::optional<MomentKind> kind_of(const std::string& event) {
+  static constexpr std::pair<std::string_view, MomentKind> kKinds[] = {
+      {"fall", MomentKind::kFall},
+      {"lost", MomentKind::kLost},
+      {"cannot_localize", MomentKind::kLost},
+      {"relocalized", MomentKind::kRelocalized},
+      {"alarm", MomentKind::kAlarm},
+      {"station_failed", MomentKind::kFailure},
+      {"goal_failed", MomentKind::kFailure},
+      {"dock_failed", MomentKind::kFailure},
+      {"mission_failed", MomentKind::kFailure},
+      {"docked", MomentKind::kDocking},
+      {"station_reached", MomentKind::kGoal},
+      {"goal_reached", MomentKind::kGoal},
+      {"mapping_done", MomentKind::kMission},
+      {"navigation_started", MomentKind::kMission},
+      {"mission_completed", MomentKind::kMission},
+  };
+  for (const auto& [name, kind] : kKinds) {
+    if (event == name) return kind;
+  }
+  return std::nullopt;
+}
+
+std::string title_of(const Event& event) {
+  if (event.kind == "alarm") return fmt::format("Leak at {}: {:.0f} ppm m of methane", spoken(event.subject), event.value);
+  if (event.kind == "relocalized") return fmt::format("Knows where it is again, after {:.1f} s", event.value);
+  if (event.kind == "lost") return "Does not know where it is";
+  return without_full_stop(event.text);
+}
+
+void add_events(const RunHistory& history, const Pose2& T_world_map, Moments& moments) {
+  for (const Event& event : history.events) {
+    const std::optional<MomentKind> kind = kind_of(event.kind);
+    if (!kind) continue;
+    Moment moment{.at = event.stamp, .kind = *kind, .title = title_of(event)};
+    if (*kind == MomentKind::kAlarm) moment.p_world_subject = T_world_map * event.p_map_target;
+    moments.push_back(std::move(moment));
+  }
+}
+
+/// What is touched twice within seconds is one collision.
+void add_collisions(const RunHistory& history, Moments& moments) {
+  constexpr Time kOneCollision = std::chrono::seconds(3);
+  std::optional<Time> last;
+  for (const Collision& collision : history.collisions) {
+    if (!last || collision.stamp > *last + kOneCollision) {
+      moments.push_back({collision.stamp, MomentKind::kCollision, "Collision with " + spoken(collision.second)});
+    }
+    last = collision.stamp;
+  }
+}
+
+/// The nearest instant of each time that somebody was near.
+std::vector<Approach> encounters(const std::vector<Approach>& approaches, double near_m) {
+  constexpr Time kOneEncounter = std::chrono::seconds(5);
+  std::vector<Approach> met;
+  std::optional<Time> last;
+  for (const Approach& approach : approaches) {
+    if (approach.clearance_m >= near_m) continue;
+    const bool is_same = last && approach.at <= *last + kOneEncounter && met.back().actor == approach.actor;
+    if (!is_same) met.push_back(approach);
+    else if (approach.clearance_m < met.back().clearance_m) met.back() = approach;
+    last = approach.at;
+  }
+  return met;
+}
+
+void add_near_misses(const RunHistory& history, const MomentSettings& settings, Moments& moments) {
+  std::vector<Approach> met = encounters(history.approaches, settings.near_miss_m);
+  std::ranges::stable_sort(met, {}, &Approach::clearance_m);
+  if (met.size() > static_cast<std::size_t>(settings.most_near_misses)) met.resize(static_cast<std::size_t>(settings.most_near_misses));
+  for (const Approach& approach : met) {
+    moments.push_back({approach.at, MomentKind::kNearMiss, fmt::format("{:.2f} m from {}", approach.clearance_m, spoken(approach.actor)),
+                       approach.p_world_actor});
+  }
+}
+
+void add_largest_error(const RunHistory& history, const MomentSettings& settings, Moments& moments) {
+  const auto size_m = [](const EstimateError& error) { return error.error_in_world_m.norm(); };
+  const auto largest = std::ranges::max_element(history.errors, {}, size_m);
+  if (largest == history.errors.end() || size_m(*largest) < settings.least_error_m) return;
+  moments.push_back({largest->at, MomentKind::kLargestError, fmt::format("Largest position error: {:.3f} m", size_m(*largest))});
+}
+
+/// The truth makes a leap: somebody carries the robot away.
+void add_kidnaps(const RunHistory& history, const MomentSettings& settings, Moments& moments) {
+  for (std::size_t i = 1; i < history.T_world_body.size(); ++i) {
+    const double leap_m = (history.T_world_body[i].pose.position - history.T_world_body[i - 1].pose.position).norm();
+    if (leap_m >= settings.kidnap_m) {
+      moments.push_back({history.T_world_body[i].stamp, MomentKind::kKidnap, fmt::format("Lifted {:.0f} m away, and nobody tells it", leap_m)});
+    }
+  }
+}
+
+/// The error makes a leap, but not because the truth does.
+void add_corrections(const RunHistory& history, const MomentSettings& settings, Moments& moments) {
+  constexpr Time kAround = std::chrono::milliseconds(500);
+  const Moments before = moments;
+  const auto is_kidnap_near = [&](Time at) {
+    return std::ranges::any_of(before, [&](const Moment& m) { return m.kind == MomentKind::kKidnap && m.at <= at + kAround && at <= m.at + kAround; });
+  };
+  for (std::size_t i = 1; i < history.errors.size(); ++i) {
+    const double jump_m = (history.errors[i].error_in_world_m - history.errors[i - 1].error_in_world_m).norm();
+    if (jump_m < settings.correction_m || is_kidnap_near(history.errors[i].at)) continue;
+    moments.push_back({history.errors[i].at, MomentKind::kCorrection, fmt::format("The estimate jumps by {:.2f} m", jump_m)});
+  }
+}
+
+}  // namespace
+
+std::vector<Moment> find_moments(const RunHistory& history, const Pose2& T_world_map, std::vector<Moment> announced,
+                                 const MomentSettings& settings) {
+  Moments moments = std::move(announced);
+  add_events(history, T_world_map, moments);
+  add_collisions(history, moments);
+  add_near_misses(history, settings, moments);
+  add_largest_error(history, settings, moments);
+  add_kidnaps(history, settings, moments);
+  add_corrections(history, settings, moments);
+  std::erase_if(moments, [&](const Moment& moment) { return moment.at < history.begin || moment.at > history.end; });
+  std::ranges::stable_sort(moments, {}, &Moment::at);
+  return moments;
+}
+
+}  // namespace patrol::render

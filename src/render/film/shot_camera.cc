@@ -1,0 +1,97 @@
+#include "render/film/shot_camera.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace patrol::render {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kClearance_m = 0.25;  // between eye and wall
+constexpr double kFollow_s = 0.12;     // time constant
+
+}  // namespace
+
+ShotCamera::ShotCamera(const Shot& shot, FreeDistance free_distance, const Pose3& T_world_body)
+    : shot_(shot),
+      free_distance_(std::move(free_distance)),
+      focus_m_(focus_of(T_world_body)),
+      bearing_rad_(choose_bearing(T_world_body)) {}
+
+/// What the picture is about: the robot, or a place between it and what it meets.
+Eigen::Vector3d ShotCamera::focus_of(const Pose3& T_world_body) const {
+  constexpr double kTowardsSubject = 0.4;
+  Eigen::Vector3d focus = T_world_body.position;
+  if (shot_.p_world_subject) focus.head<2>() += kTowardsSubject * (*shot_.p_world_subject - focus.head<2>());
+  return focus;
+}
+
+/// From the focus to the eye, for a bearing of zero.
+Eigen::Vector3d ShotCamera::offset_m(const Eigen::Vector3d& p_world_body) const {
+  if (!shot_.p_world_subject) return {1.8, 0.0, 0.55};
+  const double apart_m = (*shot_.p_world_subject - p_world_body.head<2>()).norm();
+  const double away_m = std::clamp(1.7 + 0.9 * apart_m, 2.2, 6.5);
+  return {away_m, 0.0, 0.4 + 0.25 * away_m};
+}
+
+double ShotCamera::choose_bearing(const Pose3& T_world_body) const {
+  // Beside: from ahead rather than from behind, which is where the camera that follows is. Of two: across the line between them,
+  // on the robot's side of it, for it is the smaller of the two.
+  static constexpr std::array kBeside_deg = {40.0, -40.0, 75.0, -75.0, 110.0, -110.0, 150.0, -150.0};
+  static constexpr std::array kOfTwo_deg = {120.0, -120.0, 145.0, -145.0, 95.0, -95.0, 70.0, -70.0};
+  double ahead_rad = yaw_of(shot_.T_world_body.rotation);
+  if (shot_.p_world_subject) {
+    const Eigen::Vector2d to_subject = *shot_.p_world_subject - shot_.T_world_body.position.head<2>();
+    ahead_rad = std::atan2(to_subject.y(), to_subject.x());
+  }
+  const auto& bearings_deg = shot_.p_world_subject ? kOfTwo_deg : kBeside_deg;
+  const auto share_free = [&](const Pose3& at, double bearing_rad) {
+    const Eigen::Vector3d offset = quaternion_from_yaw(bearing_rad) * offset_m(at.position);
+    const double wanted_m = offset.norm() + kClearance_m;
+    return free_distance_ ? free_distance_(focus_of(at), offset.normalized(), wanted_m) / wanted_m : 1.0;
+  };
+  double best_rad = ahead_rad + bearings_deg[0] * kDegree, best_share = 0.0;
+  for (const double bearing_deg : bearings_deg) {
+    const double bearing_rad = ahead_rad + bearing_deg * kDegree;
+    const double share = std::min(share_free(shot_.T_world_body, bearing_rad), share_free(T_world_body, bearing_rad));
+    if (share <= best_share) continue;
+    best_share = share;
+    best_rad = bearing_rad;
+  }
+  return best_rad;
+}
+
+View ShotCamera::from_above(const Pose3& T_world_body, const Eigen::Vector2d& p_world_estimate, double elapsed_s) {
+  constexpr double kLowest_m = 10.0, kHighest_m = 30.0, kHeightPerApart = 0.8;
+  const Eigen::Vector2d apart_m = p_world_estimate - T_world_body.position.head<2>();
+  Eigen::Vector3d between = T_world_body.position;
+  between.head<2>() += 0.5 * apart_m;
+  const double share = 1.0 - std::exp(-elapsed_s / kFollow_s);
+  focus_m_ += share * (between - focus_m_);
+  height_m_ += share * (std::clamp(kHeightPerApart * apart_m.norm(), kLowest_m, kHighest_m) - height_m_);
+  return look_down(focus_m_, height_m_, free_distance_);
+}
+
+View ShotCamera::follow(const Pose3& T_world_body, const Eigen::Vector2d& p_world_estimate, double elapsed_s) {
+  constexpr double kReturn_s = 0.8;  // time constant; it comes near at once
+  constexpr double kSwing_radps = 3.0 * kDegree;
+  constexpr double kAside = 0.07, kBelow = 0.08;  // of the distance
+  if (shot_.kind == ShotKind::kOverhead) return from_above(T_world_body, p_world_estimate, elapsed_s);
+  focus_m_ += (1.0 - std::exp(-elapsed_s / kFollow_s)) * (focus_of(T_world_body) - focus_m_);
+  bearing_rad_ += kSwing_radps * elapsed_s;
+  const Eigen::Vector3d offset = quaternion_from_yaw(bearing_rad_) * offset_m(T_world_body.position);
+  double reach = 1.0;
+  if (free_distance_) {
+    const double free_m = free_distance_(focus_m_, offset.normalized(), offset.norm() + kClearance_m);
+    reach = std::clamp((free_m - kClearance_m) / offset.norm(), 0.3, 1.0);
+  }
+  reach_ = std::min(reach, reach_ + (1.0 - std::exp(-elapsed_s / kReturn_s)) * (reach - reach_));
+  // A little to the right and below: there the map lies over the picture, and the caption.
+  const Eigen::Vector3d to_right = Eigen::Vector3d::UnitZ().cross(offset), down = -offset.norm() * Eigen::Vector3d::UnitZ();
+  return look_at(focus_m_ + reach_ * offset, focus_m_ + reach_ * (kAside * to_right + kBelow * down));
+}
+
+}  // namespace patrol::render

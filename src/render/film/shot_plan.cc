@@ -1,0 +1,120 @@
+#include "render/film/shot_plan.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace patrol::render {
+namespace {
+
+/// Moments that follow so closely on each other that they are one picture.
+struct Scene {
+  TimeSpan span;          ///< of the run
+  std::vector<std::string> titles;
+  Moment most_notable;
+};
+
+/// A scene of moments in order of time; `from` ... `to` of `moments`.
+Scene scene_of(std::vector<Moment>::const_iterator from, std::vector<Moment>::const_iterator to, const StorySettings& settings) {
+  constexpr std::size_t kMostTitles = 3;
+  Scene scene{.span = {from->at - from_seconds(settings.lead_s), (to - 1)->at + from_seconds(settings.hold_s)},
+              .titles = {},
+              .most_notable = *std::min_element(from, to, [](const Moment& a, const Moment& b) { return a.kind < b.kind; })};
+  std::vector<Moment> told(from, to);
+  std::ranges::stable_sort(told, {}, &Moment::kind);
+  if (told.size() > kMostTitles) told.resize(kMostTitles);
+  std::ranges::stable_sort(told, {}, &Moment::at);
+  for (const Moment& moment : told) scene.titles.push_back(moment.title);
+  return scene;
+}
+
+/// In order. Where two would overlap, the one gives way to the other in the middle.
+std::vector<Scene> scenes_of(const std::vector<Moment>& moments, TimeSpan run, const StorySettings& settings) {
+  std::vector<Scene> scenes;
+  for (auto from = moments.begin(), to = from; from != moments.end(); from = to) {
+    for (++to; to != moments.end() && to->at - (to - 1)->at < from_seconds(settings.same_scene_s);) ++to;
+    Scene scene = scene_of(from, to, settings);
+    scene.span = {std::max(scene.span.from, run.from), std::min(scene.span.to, run.to)};
+    if (!scenes.empty() && scenes.back().span.to > scene.span.from) {
+      const Time middle = (scenes.back().span.to + scene.span.from) / 2;
+      scenes.back().span.to = scene.span.from = middle;
+    }
+    scenes.push_back(std::move(scene));
+  }
+  return scenes;
+}
+
+ShotKind shot_kind(const Moment& moment) {
+  if (moment.p_world_subject) return ShotKind::kTwoShot;
+  switch (moment.kind) {
+    case MomentKind::kKidnap:
+    case MomentKind::kLost:
+    case MomentKind::kRelocalized:
+    case MomentKind::kCorrection:
+      return ShotKind::kOverhead;
+    default:
+      return ShotKind::kBeside;
+  }
+}
+
+/// The most notable scenes, in order of time.
+std::vector<Shot> shots_of(std::vector<Scene> scenes, const Trajectory& T_world_body, int most_shots) {
+  const auto kind = [](const Scene& scene) { return scene.most_notable.kind; };
+  std::erase_if(scenes, [&](const Scene& scene) { return kind(scene) == MomentKind::kMission || scene.span.to <= scene.span.from; });
+  std::ranges::stable_sort(scenes, {}, kind);
+  if (scenes.size() > static_cast<std::size_t>(most_shots)) scenes.resize(static_cast<std::size_t>(most_shots));
+  std::ranges::sort(scenes, {}, [](const Scene& scene) { return scene.span.from; });
+  const Pose3 last = T_world_body.empty() ? Pose3{} : T_world_body.back().pose;
+  std::vector<Shot> shots;
+  for (const Scene& scene : scenes) {
+    const Moment& moment = scene.most_notable;
+    shots.push_back({.span = scene.span,
+                     .kind = shot_kind(moment),
+                     .caption = scene.titles,
+                     .T_world_body = pose_at(T_world_body, moment.at).value_or(last),
+                     .p_world_subject = moment.p_world_subject});
+  }
+  return shots;
+}
+
+std::vector<Chapter> chapters_of(const std::vector<Scene>& scenes, const SpeedPlan& speed) {
+  constexpr double kShortest_s = 0.2;
+  constexpr const char* kStart = "Start";
+  std::vector<Chapter> chapters = {{.begin_s = 0.0, .end_s = speed.length_s(), .title = kStart}};
+  for (const Scene& scene : scenes) {
+    const double begin_s = speed.film_s(scene.span.from);
+    const std::string title = fmt::format("{}", fmt::join(scene.titles, "; "));
+    if (begin_s - chapters.back().begin_s < kShortest_s) {
+      std::string& earlier = chapters.back().title;
+      earlier = earlier == kStart ? title : earlier + "; " + title;
+      continue;
+    }
+    chapters.back().end_s = begin_s;
+    chapters.push_back({.begin_s = begin_s, .end_s = speed.length_s(), .title = title});
+  }
+  return chapters;
+}
+
+}  // namespace
+
+Cut cut_named(const std::string& name) {
+  if (name == "story") return Cut::kStory;
+  if (name == "plain") return Cut::kPlain;
+  throw InputError("cut = " + name + ": must be one of story, plain");
+}
+
+ShotPlan plan_shots(const RunHistory& history, const std::vector<Moment>& moments, Cut cut, const SpeedSettings& speed,
+                    const StorySettings& settings) {
+  const TimeSpan run{history.begin, history.end};
+  const std::vector<Scene> scenes = scenes_of(moments, run, settings);
+  std::vector<Shot> shots;
+  if (cut == Cut::kStory) shots = shots_of(scenes, history.T_world_body, settings.most_shots);
+  std::vector<TimeSpan> slow_spans;
+  for (const Shot& shot : shots) slow_spans.push_back(shot.span);
+  const SpeedPlan speed_plan(run, slow_spans, speed);
+  return {.cut = cut, .speed = speed_plan, .shots = std::move(shots), .chapters = chapters_of(scenes, speed_plan)};
+}
+
+}  // namespace patrol::render

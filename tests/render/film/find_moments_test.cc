@@ -1,0 +1,121 @@
+#include "render/film/find_moments.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace patrol::render {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+/// A minute of standing at the origin, without errors.
+RunHistory quiet_minute() {
+  RunHistory history{.num_states = 601, .begin = 0s, .end = 60s, .T_world_body = {}, .errors = {}, .approaches = {}, .events = {}, .collisions = {}};
+  for (Time now = 0s; now <= 60s; now += 100ms) {
+    history.T_world_body.push_back({now, {}});
+    history.errors.push_back({now, Eigen::Vector2d::Zero()});
+  }
+  return history;
+}
+
+std::vector<Time> instants(const std::vector<Moment>& moments, MomentKind kind) {
+  std::vector<Time> at;
+  for (const Moment& moment : moments) {
+    if (moment.kind == kind) at.push_back(moment.at);
+  }
+  return at;
+}
+
+std::vector<Moment> moments_of(const RunHistory& history, std::vector<Moment> announced = {}) {
+  return find_moments(history, {}, std::move(announced));
+}
+
+TEST(FindMoments, AQuietRunHasNone) { EXPECT_THAT(moments_of(quiet_minute()), IsEmpty()); }
+
+TEST(FindMoments, TheLargestErrorIsOne) {
+  RunHistory history = quiet_minute();
+  history.errors[120].error_in_world_m = {0.0, 0.05};
+  history.errors[300].error_in_world_m = {0.06, 0.08};
+  const std::vector<Moment> moments = moments_of(history);
+  ASSERT_THAT(instants(moments, MomentKind::kLargestError), ElementsAre(30s));
+  EXPECT_EQ(moments[0].title, "Largest position error: 0.100 m");
+}
+
+TEST(FindMoments, AnErrorThatNobodyWouldSeeIsNone) {
+  RunHistory history = quiet_minute();
+  history.errors[120].error_in_world_m = {0.02, 0.0};
+  EXPECT_THAT(moments_of(history), IsEmpty());
+}
+
+TEST(FindMoments, OfEachEncounterTheNearestInstantCounts) {
+  RunHistory history = quiet_minute();
+  const auto meet = [&](Time at, const char* actor, double clearance_m) { history.approaches.push_back({at, actor, clearance_m, {1.0, 2.0}}); };
+  for (int i = -5; i <= 5; ++i) meet(20s + i * 200ms, "pedestrian_1", 0.4 + 0.05 * std::abs(i));
+  meet(40s, "car_1", 0.7);
+  meet(50s, "car_1", 1.2);  // not near
+  const std::vector<Moment> moments = moments_of(history);
+  ASSERT_THAT(instants(moments, MomentKind::kNearMiss), ElementsAre(20s, 40s));
+  EXPECT_EQ(moments[0].title, "0.40 m from pedestrian 1");
+  EXPECT_EQ(*moments[0].p_world_subject, Eigen::Vector2d(1.0, 2.0));
+}
+
+TEST(FindMoments, OnlyTheNearestEncountersAreShown) {
+  RunHistory history = quiet_minute();
+  for (int i = 1; i <= 5; ++i) history.approaches.push_back({i * 10s, "pedestrian_1", 0.9 - 0.1 * i, {}});
+  EXPECT_THAT(instants(moments_of(history), MomentKind::kNearMiss), ElementsAre(30s, 40s, 50s));
+}
+
+TEST(FindMoments, TouchesWithinSecondsAreOneCollision) {
+  RunHistory history = quiet_minute();
+  for (const Time at : {Time(10s), Time(11s), Time(13s), Time(30s)}) history.collisions.push_back({at, "trunk", "barrier_3"});
+  const std::vector<Moment> moments = moments_of(history);
+  ASSERT_THAT(instants(moments, MomentKind::kCollision), ElementsAre(10s, 30s));
+  EXPECT_EQ(moments[0].title, "Collision with barrier 3");
+}
+
+TEST(FindMoments, ALeapOfTheTruthIsAKidnapAndNotACorrection) {
+  RunHistory history = quiet_minute();
+  for (std::size_t i = 250; i < history.T_world_body.size(); ++i) {
+    history.T_world_body[i].pose.position.x() = 22.0;
+    history.errors[i].error_in_world_m = {i < 290 ? -22.0 : 0.0, 0.0};
+  }
+  const std::vector<Moment> moments = moments_of(history);
+  ASSERT_THAT(instants(moments, MomentKind::kKidnap), ElementsAre(25s));
+  ASSERT_THAT(instants(moments, MomentKind::kCorrection), ElementsAre(29s)) << "the robot finds back";
+  EXPECT_EQ(moments.back().title, "The estimate jumps by 22.00 m");
+}
+
+TEST(FindMoments, EventsComeWithTheirOwnWords) {
+  RunHistory history = quiet_minute();
+  const auto say = [&](Time at, const char* kind, const char* subject, const char* text, double value) {
+    history.events.push_back({.stamp = at, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = {}, .p_map_target = {3.0, 1.0}});
+  };
+  say(10s, "goal_reached", "goal_1", "At goal_1.", 1.0);
+  say(20s, "alarm", "box_2", "Leak at box_2: 4070 ppm m.", 4070.2);
+  say(25s, "replan", "", "Something stands on the path.", 0.0);
+  say(30s, "docked", "", "Docked at the charging post.", 1.0);
+  say(40s, "lost", "", "The robot does not know where it is.", 0.0);
+  const std::vector<Moment> moments = find_moments(history, {10.0, 0.0, 0.0});
+  std::vector<std::string> titles;
+  for (const Moment& moment : moments) titles.push_back(moment.title);
+  EXPECT_THAT(titles, ElementsAre("At goal 1", "Leak at box 2: 4070 ppm m of methane", "Docked at the charging post", "Does not know where it is"));
+  EXPECT_EQ(*moments[1].p_world_subject, Eigen::Vector2d(13.0, 1.0)) << "a place in the map, brought to world";
+}
+
+TEST(FindMoments, WhatIsAnnouncedTakesItsPlaceInTime) {
+  RunHistory history = quiet_minute();
+  history.collisions.push_back({10s, "trunk", "wall"});
+  const std::vector<Moment> moments =
+      moments_of(history, {{20s, MomentKind::kFault, "Fault: silence of lidar"}, {5s, MomentKind::kFault, "early"}, {99s, MomentKind::kFault, "after the end"}});
+  ASSERT_EQ(moments.size(), 3u);
+  EXPECT_EQ(moments[0].title, "early");
+  EXPECT_EQ(moments[1].kind, MomentKind::kCollision);
+  EXPECT_EQ(moments[2].at, Time(20s));
+}
+
+}  // namespace
+}  // namespace patrol::render

@@ -1,0 +1,97 @@
+#include "render/film/shot_plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+
+namespace patrol::render {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+const SpeedSettings kSpeeds{};
+const StorySettings kStory{.lead_s = 5.0, .hold_s = 4.0, .same_scene_s = 4.0, .most_shots = 3};
+
+/// Two minutes along x at 1 m/s.
+RunHistory two_minutes() {
+  RunHistory history{.num_states = 2, .begin = 0s, .end = 120s, .T_world_body = {}, .errors = {}, .approaches = {}, .events = {}, .collisions = {}};
+  for (const Time at : {Time(0s), Time(120s)}) history.T_world_body.push_back({at, {{to_seconds(at), 0.0, 0.3}, Eigen::Quaterniond::Identity()}});
+  return history;
+}
+
+ShotPlan plan(const std::vector<Moment>& moments, Cut cut = Cut::kStory) { return plan_shots(two_minutes(), moments, cut, kSpeeds, kStory); }
+
+TEST(ShotPlan, ASceneBeginsBeforeItsMomentAndEndsAfterIt) {
+  const ShotPlan one = plan({{60s, MomentKind::kAlarm, "Leak", Eigen::Vector2d(61.0, 2.0)}});
+  ASSERT_EQ(one.shots.size(), 1u);
+  EXPECT_EQ(one.shots[0].span.from, Time(55s));
+  EXPECT_EQ(one.shots[0].span.to, Time(64s));
+  EXPECT_EQ(one.shots[0].kind, ShotKind::kTwoShot);
+  EXPECT_NEAR(one.shots[0].T_world_body.position.x(), 60.0, 1e-9);
+  EXPECT_NEAR(one.speed.speed(60s), 2.0, 1e-9);
+  EXPECT_NEAR(one.speed.speed(20s), 8.0, 1e-9);
+}
+
+TEST(ShotPlan, MomentsCloseToEachOtherAreOneSceneToldInOrder) {
+  const ShotPlan one = plan({{60s, MomentKind::kKidnap, "Lifted"}, {61s, MomentKind::kLost, "Lost"}, {64s, MomentKind::kRelocalized, "Found"}});
+  ASSERT_EQ(one.shots.size(), 1u);
+  EXPECT_THAT(one.shots[0].caption, ElementsAre("Lifted", "Lost", "Found"));
+  EXPECT_EQ(one.shots[0].kind, ShotKind::kOverhead);
+  EXPECT_EQ(one.shots[0].span.to, Time(68s));
+}
+
+TEST(ShotPlan, OfTooManyMomentsInOneSceneTheLeastNotableIsNotTold) {
+  const ShotPlan one = plan({{60s, MomentKind::kLargestError, "Error"}, {60s, MomentKind::kKidnap, "Lifted"}, {61s, MomentKind::kLost, "Lost"}, {62s, MomentKind::kRelocalized, "Found"}});
+  EXPECT_THAT(one.shots[0].caption, ElementsAre("Lifted", "Lost", "Found"));
+}
+
+TEST(ShotPlan, ScenesThatWouldOverlapMeetInTheMiddle) {
+  const ShotPlan two = plan({{60s, MomentKind::kNearMiss, "Near"}, {66s, MomentKind::kDocking, "Docked"}});
+  ASSERT_EQ(two.shots.size(), 2u);
+  EXPECT_EQ(two.shots[0].span.to, Time(62500ms));  // of 61 s and 64 s
+  EXPECT_EQ(two.shots[1].span.from, Time(62500ms));
+}
+
+TEST(ShotPlan, TheLessNotableScenesAreChaptersOnly) {
+  std::vector<Moment> moments;
+  for (int i = 1; i <= 5; ++i) moments.push_back({i * 20s, i % 2 == 0 ? MomentKind::kCollision : MomentKind::kGoal, "moment " + std::to_string(i)});
+  const ShotPlan some = plan(moments);
+  ASSERT_EQ(some.shots.size(), 3u);  // both collisions, and the first of the goals
+  EXPECT_EQ(some.shots[0].caption[0], "moment 1");
+  EXPECT_EQ(some.shots[1].caption[0], "moment 2");
+  EXPECT_EQ(some.shots[2].caption[0], "moment 4");
+  EXPECT_EQ(some.chapters.size(), 6u);
+}
+
+TEST(ShotPlan, ChaptersFollowEachOtherFromTheBeginToTheEndOfTheFilm) {
+  const ShotPlan some = plan({{1s, MomentKind::kMission, "Mission begins"}, {60s, MomentKind::kGoal, "Goal"}, {100s, MomentKind::kAlarm, "Leak"}});
+  ASSERT_EQ(some.chapters.size(), 3u);
+  EXPECT_EQ(some.chapters[0].title, "Mission begins") << "nothing comes before it";
+  EXPECT_EQ(some.chapters[0].begin_s, 0.0);
+  for (std::size_t i = 1; i < some.chapters.size(); ++i) EXPECT_EQ(some.chapters[i].begin_s, some.chapters[i - 1].end_s);
+  EXPECT_NEAR(some.chapters[1].begin_s, some.speed.film_s(55s), 1e-9);
+  EXPECT_NEAR(some.chapters.back().end_s, some.speed.length_s(), 1e-9);
+}
+
+TEST(ShotPlan, APlainCutIsEvenAndHasChaptersAllTheSame) {
+  const ShotPlan even = plan({{60s, MomentKind::kAlarm, "Leak"}}, Cut::kPlain);
+  EXPECT_THAT(even.shots, IsEmpty());
+  EXPECT_NEAR(even.speed.length_s(), 120.0 / 8.0, 1e-9);
+  EXPECT_EQ(even.chapters.size(), 2u);
+}
+
+TEST(ShotPlan, KnowsTheNamesOfItsCuts) {
+  EXPECT_EQ(cut_named("plain"), Cut::kPlain);
+  try {
+    cut_named("fast");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "cut = fast: must be one of story, plain");
+  }
+}
+
+}  // namespace
+}  // namespace patrol::render
