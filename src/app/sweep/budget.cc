@@ -110,15 +110,19 @@ std::string budget_text(const Budget& budget) {
 io::Table budget_table(const std::vector<Budget>& budgets) {
   io::Table table{.name = "budget", .columns = {"metric", "row", "pairs", "value", "low", "high"}, .rows = {}};
   for (const Budget& budget : budgets) {
-    const auto add = [&](const std::string& row, io::Cell pairs, const std::optional<score::Interval>& interval) {
+    const auto add = [&](const std::string& row, std::optional<std::size_t> pairs, const std::optional<score::Interval>& interval) {
       std::vector<io::Cell>& cells = table.rows.emplace_back();
-      cells = {budget.metric, row, std::move(pairs)};
-      for (const double score::Interval::* part : {&score::Interval::center, &score::Interval::low, &score::Interval::high}) {
-        cells.push_back(interval ? io::Cell{(*interval).*part} : io::Cell{});
-      }
+      cells.emplace_back(budget.metric);
+      cells.emplace_back(row);
+      cells.resize(table.columns.size());
+      if (pairs) cells[2] = static_cast<std::int64_t>(*pairs);
+      if (!interval) return;
+      cells[3] = interval->center;
+      cells[4] = interval->low;
+      cells[5] = interval->high;
     };
     add("as it is", {}, budget.as_it_is);
-    for (const BudgetShare& share : budget.shares) add(share.name, static_cast<std::int64_t>(share.num_pairs), share.share);
+    for (const BudgetShare& share : budget.shares) add(share.name, share.num_pairs, share.share);
     add("sum", {}, budget.sum);
     add("interaction", {}, budget.interaction);
     add("all ideal", {}, budget.ideal);
