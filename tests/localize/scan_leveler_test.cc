@@ -95,6 +95,14 @@ TEST(ScanLeveler, WithoutTheMotionTheSameWallsAreHalfAMetreOff) {
   EXPECT_GT(worst_wall_error(*frozen), 0.3);
 }
 
+TEST(ScanLeveler, ScansOfAStabilizedLidarAreExactOnceItIsKnown) {
+  // What a lidar on a gimbal sees: from where the wobbling body carries it, but level.
+  const auto level_lidar = [](Time stamp) { return std::optional(held_level(wobbling(stamp) * kLidar) * kLidar.inverse()); };
+  const LaserScan scan = scan_room(level_lidar, Time{0}, 3200, -10.0);
+  EXPECT_LT(worst_wall_error(*ScanLeveler(kLidar, {.stabilized = true}).level(scan, PoseLookup(wobbling), 0.3)), 0.001);
+  EXPECT_GT(worst_wall_error(*ScanLeveler(kLidar, {}).level(scan, PoseLookup(wobbling), 0.3)), 0.001);
+}
+
 TEST(ScanLeveler, StampIsThatOfTheLastBeamAndOriginIsTheLidarThen) {
   const LaserScan scan = scan_room(wobbling, Time{0}, 1000, -10.0);
   const auto level = ScanLeveler(kLidar, {}).level(scan, PoseLookup(wobbling), 0.3);

@@ -226,6 +226,23 @@ TEST(Lidar, OnARobotWalkingAt1MetrePerSecondTheWallAheadComesNearerByOneMillimet
   }
 }
 
+TEST(Lidar, StabilizedItMeasuresTheLevelRoomWhateverTheBodyDoes) {
+  const SmallWorld world(kSquareRoom);
+  const auto wobbling = [](double t) { return Pose3{{}, quaternion_from_rpy(0.05 * std::sin(20.0 * t), 0.05 * std::sin(30.0 * t), 0.0)}; };
+  LidarSettings settings = ideal();
+  const auto worst_error_m = [&] {
+    const LaserScan scan = scans_along(world, settings, 0.11, wobbling).front();
+    double worst = 0.0;
+    for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
+      worst = std::max(worst, std::abs(scan.ranges_m[beam] - room_range(angle_of(scan, beam))));
+    }
+    return worst;
+  };
+  EXPECT_GT(worst_error_m(), 0.003);  // a wall 3 m off at 0.05 rad: 3 (1 / cos 0.05 - 1) = 3.8 mm
+  settings.stabilized = true;
+  EXPECT_LT(worst_error_m(), 1e-3);
+}
+
 TEST(Lidar, GrazingBeamsBeyond85DegreesAreLost) {
   const SmallWorld world(R"(<geom type="plane" size="100 100 1" rgba="1 1 1 1"/>)");
   LidarSettings settings = narrow();
