@@ -10,6 +10,7 @@ namespace patrol::render {
 namespace {
 
 const Color kPaper{255, 255, 255};
+constexpr double kStepTol = 5.0;  // half a step of the palette is 2.6 mm, and the red grows by 1.7 a millimetre
 
 Frame pixels_of(const MapPicture::Sheet& sheet) {
   const test::TemporaryFolder folder;
@@ -36,9 +37,9 @@ TEST(MapPicture, ShowsAnOccupiedCellInTheColourOfItsError) {
   for (const float error_m : {0.0F, 0.1F, 0.2F, 5.0F}) {
     const MapPicture picture = map_picture(small_map(error_m), {});
     const Color shown = color_at(picture, pixels_of(picture), 3.05, 1.05), wanted = map_error_color(error_m);
-    EXPECT_NEAR(shown.r, wanted.r, 3) << error_m;  // the palette has steps of 5 mm
-    EXPECT_NEAR(shown.g, wanted.g, 3) << error_m;
-    EXPECT_NEAR(shown.b, wanted.b, 3) << error_m;
+    EXPECT_NEAR(shown.r, wanted.r, kStepTol) << error_m;
+    EXPECT_NEAR(shown.g, wanted.g, kStepTol) << error_m;
+    EXPECT_NEAR(shown.b, wanted.b, kStepTol) << error_m;
   }
 }
 

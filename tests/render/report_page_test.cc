@@ -62,7 +62,8 @@ TEST(ReportPage, NoTextOfARunBecomesMarkup) {
   const std::string hostile = to_html(page_of_everything(kHostile)), harmless = to_html(page_of_everything("x"));
   EXPECT_THAT(hostile, Not(HasSubstr("<img")));
   EXPECT_EQ(count(hostile, "</script>"), count(harmless, "</script>"));
-  EXPECT_EQ(count(hostile, "<"), count(harmless, "<"));
+  // Tables let long names break: that markup is ours.
+  EXPECT_EQ(count(hostile, "<") - count(hostile, "<wbr>"), count(harmless, "<"));
 }
 
 TEST(ReportPage, IsTheSameBytesTwice) {

@@ -91,8 +91,7 @@ std::vector<render::Block> error_blocks(const RunContents& run) {
   blocks.emplace_back(plots.lines("Heading error", "°", {heading_curve("estimate", Ink::kEstimate, estimate), bound_curve("its own 2σ", record, heading_std_deg)}));
   if (!record.trusts.empty()) blocks.emplace_back(trust_plot(plots, record.trusts));
   blocks.emplace_back(render::TextBlock{"Map and world are joined at the start; nothing is fitted afterwards. 2σ: of the position, twice the root of the sum of both "
-                                        "variances. Lines: troubles, recoveries, relocalisations; shaded: faults, and where the robot says that it is lost. "
-                                        "Drag over a stretch of time to zoom all plots, double-click for the whole."});
+                                        "variances. Lines: troubles, recoveries, relocalisations; shaded: faults, and where the robot says that it is lost."});
   return blocks;
 }
 

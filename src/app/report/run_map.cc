@@ -86,7 +86,7 @@ std::vector<render::Block> map_blocks(const RunContents& run) {
   std::string note = "World frame, x to the right, y up; paths to a centimetre.";
   if (run.truth_map) note += " True surfaces: those that could be seen on this run, at the lidar's height; errors are to any surface.";
   if (!map.picture.has_errors) note += " The run left no map_errors.pgm (patrol score makes it): the map is drawn in one colour.";
-  return {map, render::TextBlock{note + " Hold Ctrl and turn the wheel, or pinch, to zoom; drag to move."}};
+  return {map, render::TextBlock{note}};
 }
 
 }  // namespace patrol::app

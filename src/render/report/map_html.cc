@@ -69,7 +69,7 @@ std::string to_html(const MapBlock& block) {
   html += sheet_html("overview", block.picture.overview) + sheet_html("detail", block.picture.detail);
   for (const MapPath& path : block.paths) html += path_html(path, block.picture);
   for (const MapMark& mark : block.marks) html += mark_html(mark, block.picture);
-  return html + fmt::format("</svg></div><figcaption>{}</figcaption></figure>\n", legend_html(block));
+  return html + fmt::format("</svg></div><figcaption>{}<span class=\"hint\">Ctrl and wheel, or two fingers: zoom; drag: move</span></figcaption></figure>\n", legend_html(block));
 }
 
 }  // namespace patrol::render

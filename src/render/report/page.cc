@@ -12,6 +12,8 @@
 namespace patrol::render {
 namespace {
 
+constexpr const char* kGridEnd =
+    "</div>\n<p class=\"note hint\">Drag over a stretch of a plot to zoom all of them, double-click for the whole.</p>\n";
 constexpr const char* kPolicy =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; media-src data:";
 
@@ -44,11 +46,11 @@ std::string blocks_html(const std::vector<Block>& blocks) {
   bool is_in_grid = false;
   for (const Block& block : blocks) {
     const bool is_line_plot = std::holds_alternative<LinePlot>(block);
-    if (is_line_plot != is_in_grid) html += is_line_plot ? "<div class=\"grid\">\n" : "</div>\n";
+    if (is_line_plot != is_in_grid) html += is_line_plot ? "<div class=\"grid\">\n" : kGridEnd;
     is_in_grid = is_line_plot;
     html += block_html(block);
   }
-  return html + (is_in_grid ? "</div>\n" : "");
+  return html + (is_in_grid ? kGridEnd : "");
 }
 
 std::string section_html(const Section& section) {

@@ -4,7 +4,7 @@
   const style = getComputedStyle(document.documentElement);
   const color = (ink) => style.getPropertyValue('--' + ink).trim();
   const axisFont = '12px ' + style.getPropertyValue('--font');
-  const kLaneHeight = 20, kAxisHeight = 44, kPlotHeight = 210, kPrintWidth = 690;
+  const kLaneHeight = 20, kAxisHeight = 44, kPlotHeight = 210, kPaperWidth = 688, kPaperMapHeight = 620;
 
   // ---- Plots ----
 
@@ -201,25 +201,30 @@
       }
       pointers.set(event.pointerId, event);
     });
-    return show;
+    return (paper) => {
+      Object.assign(view.style, paper ? { width: kPaperWidth + 'px', minHeight: 0, maxHeight: kPaperMapHeight + 'px' } : { width: '', minHeight: '', maxHeight: '' });
+      show();
+    };
   }
 
   const maps = [...document.querySelectorAll('.view')].map(zoomableMap);
 
   // ---- The page's size, on screen and on paper ----
 
-  const layOut = () => { fit(); maps.forEach((show) => show()); };
-  layOut();
-  addEventListener('resize', layOut);
+  const layOut = (paper) => {
+    fit(paper && kPaperWidth);
+    maps.forEach((layOutMap) => layOutMap(paper));
+  };
+  layOut(false);
+  addEventListener('resize', () => layOut(false));
   let opened = [];
   addEventListener('beforeprint', () => {
     opened = [...document.querySelectorAll('details:not([open])')];
     opened.forEach((details) => { details.open = true; });
-    fit(kPrintWidth);
-    maps.forEach((show) => show());
+    layOut(true);
   });
   addEventListener('afterprint', () => {
     opened.forEach((details) => { details.open = false; });
-    layOut();
+    layOut(false);
   });
 })();
