@@ -115,11 +115,11 @@ std::vector<render::Block> goal_blocks(const io::Metrics& metrics) {
   for (const io::Metrics& goal : metrics["goals"]) table.rows.push_back(goal_row(goal.value("name", ""), goal));
   if (metrics.contains("docking")) table.rows.push_back(goal_row("dock", metrics["docking"]));
   std::vector<render::Block> blocks = {table};
-  for (const Spread& spread : {Spread{"position_error_m", "Position error on arrival: box from quartile to quartile, line from least to greatest, every arrival a dot; median at the right", "cm", 100.0},
-                               Spread{"heading_error_deg", "Heading error on arrival", "°", 1.0}}) {
+  for (const Spread& spread : {Spread{"position_error_m", "Position error on arrival", "cm", 100.0}, Spread{"heading_error_deg", "Heading error on arrival", "°", 1.0}}) {
     render::BoxPlot plot = box_plot(metrics, spread);
     if (!plot.boxes.empty()) blocks.emplace_back(std::move(plot));
   }
+  if (blocks.size() > 1) blocks.emplace_back(render::TextBlock{"Box: from quartile to quartile; line: from least to greatest; dots: every arrival; at the right the median."});
   return blocks;
 }
 

@@ -35,7 +35,7 @@ io::Metrics goal(const std::string& name, const std::vector<double>& each_m, int
 TEST(GoalBlocks, AreATableInCentimetresAndABoxOfEveryArrival) {
   const io::Metrics metrics = {{"goals", {goal("goal_1", {0.01, 0.02, 0.05}, 0), goal("goal_2", {0.03}, 1)}}};
   const std::vector<render::Block> blocks = goal_blocks(metrics);
-  ASSERT_EQ(blocks.size(), 3u);
+  ASSERT_EQ(blocks.size(), 4u);  // and what the boxes mean
   const auto& table = std::get<TableBlock>(blocks[0]);
   EXPECT_EQ(table.rows[0][3].text, "2.00");
   EXPECT_EQ(table.rows[1][2].tone, render::Tone::kBad);
