@@ -82,7 +82,7 @@ std::vector<render::Block> error_blocks(const RunContents& run) {
   const Plots plots(run);
   std::vector<render::Block> blocks;
   if (!record.events.empty() || !record.collisions.empty()) blocks.emplace_back(plots.lanes(run));
-  if (record.T_map_body.empty() || record.T_odom_body.empty()) return blocks;
+  if (!overlap(record.T_map_body, record.T_world_body) || !overlap(record.T_odom_body, record.T_world_body)) return blocks;
   const std::vector<score::MatchedPose> estimate = score::match_poses(record.T_map_body, run.T_world_map, record.T_world_body);
   const auto position_std_m = [](const Eigen::Matrix3d& covariance) { return std::sqrt(covariance(0, 0) + covariance(1, 1)); };
   const auto heading_std_deg = [](const Eigen::Matrix3d& covariance) { return kDegPerRad * std::sqrt(covariance(2, 2)); };

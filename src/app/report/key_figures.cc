@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "app/metric_lines.h"
 #include "app/report/metric_blocks.h"
 #include "app/report/quantity.h"
 

@@ -1,7 +1,6 @@
 #include "app/report/metric_blocks.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/report/verdict.h"
-#include "app/run_junit.h"
+#include "app/run_verdict.h"
 
 namespace patrol::app {
 namespace {
@@ -64,7 +64,7 @@ std::vector<render::PlotSpan> spans_of(const RunContents& run) {
   std::vector<render::PlotSpan> spans;
   for (const sim::FaultSettings& fault : run.scenario.faults) {
     const double end_s = std::min(fault.start_s + fault.duration_s, run.end_s());
-    if (fault.start_s < end_s) spans.push_back({.from = fault.start_s, .to = end_s, .text = "fault " + describe(fault)});
+    if (fault.start_s < end_s) spans.push_back({.from = fault.start_s, .to = end_s, .text = name_of(fault)});
   }
   const std::vector<LocalizationTrust>& trusts = run.record.trusts;
   for (std::size_t i = 0; i + 1 < trusts.size(); ++i) {

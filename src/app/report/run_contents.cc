@@ -17,7 +17,7 @@ std::string comment_of(const std::filesystem::path& scenario) {
 }
 
 void read_junit(RunContents& run) {
-  run.name = run.scenario.mission;
+  run.name = "run";
   if (!std::filesystem::exists(run.directory.junit())) return;
   const std::vector<io::JunitSuite> suites = io::load_junit(run.directory.junit());
   if (suites.empty()) return;
@@ -33,10 +33,15 @@ Pose2 map_in_world(const RunContents& run) {
   const auto figure = [&](const char* name) { return io::metric_at(run.metrics, fmt::format("map.origin_in_world.{}", name)); };
   const auto x_m = figure("x_m"), y_m = figure("y_m"), yaw_rad = figure("yaw_rad");
   if (x_m && y_m && yaw_rad) return {*x_m, *y_m, *yaw_rad};
-  return run.record.T_map_body.empty() ? Pose2{} : score::join_at_start(run.record.T_map_body, run.record.T_world_body);
+  if (!overlap(run.record.T_map_body, run.record.T_world_body)) return {};
+  return score::join_at_start(run.record.T_map_body, run.record.T_world_body);
 }
 
 }  // namespace
+
+bool overlap(const Trajectory& estimate, const Trajectory& truth) {
+  return !estimate.empty() && !truth.empty() && estimate.front().stamp <= truth.back().stamp;
+}
 
 RunContents read_run_contents(const std::filesystem::path& root) {
   RunContents run;

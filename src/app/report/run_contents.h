@@ -30,6 +30,9 @@ struct RunContents {
   double end_s() const { return to_seconds(record.T_world_body.back().stamp); }
 };
 
+/// Whether the truth, which begins with the run, has lasted until the estimate's first pose.
+bool overlap(const Trajectory& estimate, const Trajectory& truth);
+
 /// Throws InputError when it is no run directory, or what lies there cannot be read.
 RunContents read_run_contents(const std::filesystem::path& root);
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/expectations.h"
-#include "app/run_junit.h"
+#include "app/run_verdict.h"
 
 namespace patrol::app {
 namespace {
@@ -32,37 +32,36 @@ std::vector<Cell> expectation_row(const CheckedExpectation& check, bool is_compl
 }
 
 std::vector<Cell> fault_row(const RunContents& run, const sim::FaultSettings& fault) {
-  const std::string name = "fault " + describe(fault);
+  const std::string name = name_of(fault);
   const io::JunitCase* test = case_named(run, name);
   const Cell result = test == nullptr ? Cell{"not known", Tone::kFaint} : executed_cell(test->result == io::JunitResult::kPassed);
   return {{name}, {fmt::format("{} s long", fault.duration_s)}, {test == nullptr ? "" : test->message}, result};
 }
 
-std::vector<Cell> kidnap_row(const RunContents& run, std::size_t index) {
-  const KidnapSettings& kidnap = run.scenario.kidnaps[index];
-  return {{fmt::format("kidnap {} at {} s", index + 1, kidnap.at_s)},
+std::vector<Cell> kidnap_row(const RunContents& run, const KidnapSettings& kidnap) {
+  return {{name_of(kidnap)},
           {fmt::format("to ({}, {}) m", kidnap.x_m, kidnap.y_m)},
           {},
           executed_cell(is_executed(kidnap, run.record.T_world_body))};
 }
 
 std::string missed_text(const std::vector<CheckedExpectation>& checks) {
-  std::vector<std::string> missed;
+  std::vector<std::string> texts;
   for (const CheckedExpectation& check : checks) {
-    if (!check.is_met) missed.push_back(fmt::format("{} is {}, expected {}", check.metric, check.got, check.wanted));
+    if (!check.is_met) texts.push_back(missed(check));
   }
-  if (missed.empty()) return "";
-  return fmt::format("{} of {} expectations missed: {}.", missed.size(), checks.size(), fmt::join(missed, "; "));
+  if (texts.empty()) return "";
+  return fmt::format("{} of {} expectations missed: {}.", texts.size(), checks.size(), fmt::join(texts, "; "));
 }
 
 /// Word, tone and reason of a run that is complete.
 void judge(const RunContents& run, const std::vector<CheckedExpectation>& checks, render::VerdictBlock& verdict) {
-  const std::string end = early_end(run), missed = missed_text(checks);
-  const bool is_passed = end.empty() && missed.empty();
+  const std::string end = early_end(run), misses = missed_text(checks);
+  const bool is_passed = end.empty() && misses.empty();
   verdict.word = is_passed ? "Passed" : "Missed";
   verdict.tone = is_passed ? Tone::kGood : Tone::kBad;
   if (!end.empty()) verdict.reason = fmt::format("The run ended early: {}.", end);
-  if (!missed.empty()) verdict.reason += (verdict.reason.empty() ? "" : " ") + missed;
+  if (!misses.empty()) verdict.reason += (verdict.reason.empty() ? "" : " ") + misses;
   if (!is_passed) return;
   verdict.reason = checks.empty()       ? "The run came to its end; the scenario expects nothing of it."
                    : checks.size() == 1 ? "The run came to its end, and met its one expectation."
@@ -90,7 +89,7 @@ render::VerdictBlock verdict_of(const RunContents& run) {
   const std::vector<CheckedExpectation> checks = check_expectations(run.scenario.expect, run.metrics);
   for (const CheckedExpectation& check : checks) verdict.checks.rows.push_back(expectation_row(check, run.is_complete));
   for (const sim::FaultSettings& fault : run.scenario.faults) verdict.checks.rows.push_back(fault_row(run, fault));
-  for (std::size_t i = 0; i < run.scenario.kidnaps.size(); ++i) verdict.checks.rows.push_back(kidnap_row(run, i));
+  for (const KidnapSettings& kidnap : run.scenario.kidnaps) verdict.checks.rows.push_back(kidnap_row(run, kidnap));
   if (run.is_complete) {
     judge(run, checks, verdict);
   } else {

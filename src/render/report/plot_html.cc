@@ -78,7 +78,7 @@ std::string plot_html(const char* kind, const std::string& title, const std::str
 
 std::string to_html(const LinePlot& block) {
   const bool is_log = !block.max && std::any_of(block.curves.begin(), block.curves.end(), has_far_peak);
-  Json data = {{"label", block.axis.label}, {"end", block.axis.max}, {"unit", block.unit}, {"log", is_log}, {"curves", Json::array()}};
+  Json data = {{"label", block.axis.label}, {"end", block.axis.max}, {"log", is_log}, {"curves", Json::array()}};
   if (block.max) data["max"] = *block.max;
   for (const Curve& curve : block.curves) data["curves"].push_back(curve_json(curve));
   data["marks"] = marks_json(block.marks);

@@ -69,6 +69,13 @@ TEST(RunPage, OfARunThatWasCutOffBeforeAnyEstimateStillTellsItsPath) {
   EXPECT_THAT(render::to_html(run_page(run, "report.html")), HasSubstr("INCOMPLETE"));
 }
 
+TEST(RunPage, OfARunThatWasCutOffRightAfterItsFirstEstimateHasNoErrors) {
+  RunContents run = small_run();
+  run.record.T_world_body.resize(1);
+  run.record.T_map_body.erase(run.record.T_map_body.begin());
+  EXPECT_TRUE(blocks_of<render::LinePlot>(error_blocks(run)).empty());
+}
+
 TEST(RunPage, PutsASmallReplayInAndLinksALargeOneThatLiesBeside) {
   const test::TemporaryFolder folder;
   RunContents run = small_run();
