@@ -22,6 +22,7 @@ struct Call {
   RunOptions run;
   ScoreOptions score;
   ReplayOptions replay;
+  ReportOptions report;
   std::filesystem::path verify_run;
   SweepOptions sweep;
   std::filesystem::path collect_root;
@@ -62,6 +63,13 @@ void add_replay(CLI::App& app, Call& call) {
   command->add_option("--still", call.replay.still_s, "One picture (PNG) of this instant instead, s");
   command->add_option("--out", call.replay.out, "File to write");
   command->callback([&] { call.chosen = [&] { return replay_command(call.replay); }; });
+}
+
+void add_report(CLI::App& app, Call& call) {
+  CLI::App* command = app.add_subcommand("report", "One HTML page that tells all of a run and fetches nothing");
+  command->add_option("directory", call.report.directory, "Run directory")->required();
+  command->add_option("--out", call.report.out, "File to write (default: report.html in the directory)");
+  command->callback([&] { call.chosen = [&] { return report_command(call.report); }; });
 }
 
 void add_verify(CLI::App& app, Call& call) {
@@ -166,7 +174,7 @@ int run_command_line(int argc, const char* const* argv) {
   app.require_subcommand(1);
 
   Call call;
-  for (const auto add : {add_run, add_score, add_replay, add_verify, add_sweep, add_collect, add_budget, add_test, add_list}) add(app, call);
+  for (const auto add : {add_run, add_score, add_replay, add_report, add_verify, add_sweep, add_collect, add_budget, add_test, add_list}) add(app, call);
 
   try {
     refuse_unknown_command(app, argc, argv);

@@ -44,6 +44,12 @@ struct ReplayOptions {
 };
 ExitCode replay_command(const ReplayOptions& options);
 
+struct ReportOptions {
+  std::filesystem::path directory;  ///< of a run
+  std::optional<std::filesystem::path> out;
+};
+ExitCode report_command(const ReportOptions& options);
+
 /// Runs `run` again beside it and compares the logs.
 ExitCode verify_command(const std::filesystem::path& run);
 

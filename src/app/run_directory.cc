@@ -13,10 +13,10 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::array<std::string_view, 16> kOurFiles = {
+constexpr std::array<std::string_view, 17> kOurFiles = {
     "scenario.yaml", "log.mcap", "metrics.json", "junit.xml", "estimate.tum", "truth.tum",  "odometry.tum",
     "map.yaml",      "map.pgm",  "truth_map.yaml", "truth_map.pgm", "INCOMPLETE",   "report.html", "replay.mp4",
-    "nav.json", "remote.csv"};
+    "nav.json", "remote.csv", "map_errors.pgm"};
 
 bool is_ours(const std::filesystem::path& file) {
   const std::string name = file.filename().string();

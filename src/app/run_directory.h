@@ -19,6 +19,7 @@ struct RunDirectory {
   std::filesystem::path truth() const { return root / "truth.tum"; }
   std::filesystem::path odometry() const { return root / "odometry.tum"; }
   std::filesystem::path map() const { return root / "map.yaml"; }
+  std::filesystem::path map_errors() const { return root / "map_errors.pgm"; }
   std::filesystem::path truth_map() const { return root / "truth_map.yaml"; }
   /// Stands there from the first moment until everything else is written.
   std::filesystem::path incomplete_marker() const { return root / "INCOMPLETE"; }

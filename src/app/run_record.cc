@@ -32,7 +32,10 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   handlers.range_pose = [&](Time, const RangePoseEstimate& pose) {
     append(record.T_map_body_by_ranges, pose.stamp, to_spatial(pose.T_map_body));
   };
-  handlers.pose = [&](Time, const PoseEstimate& pose) { append(record.T_map_body, pose.stamp, to_spatial(pose.T_map_body)); };
+  handlers.pose = [&](Time, const PoseEstimate& pose) {
+    append(record.T_map_body, pose.stamp, to_spatial(pose.T_map_body));
+    if (record.covariances.size() < record.T_map_body.size()) record.covariances.push_back(pose.covariance);
+  };
   handlers.odometry = [&](Time, const OdometryEstimate& odometry) {
     append(record.T_odom_body, odometry.stamp, odometry.T_odom_body);
   };

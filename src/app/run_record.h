@@ -12,6 +12,7 @@ namespace patrol::app {
 /// What a run's log says that its score is made of.
 struct RunRecord {
   Trajectory T_map_body;    ///< the stack's estimate
+  std::vector<Eigen::Matrix3d> covariances;  ///< its own, [pose of T_map_body]: of x, y, yaw in map; m, m, rad
   Trajectory T_map_body_by_ranges;  ///< its second opinion, if it has one
   Trajectory T_odom_body;
   Trajectory T_world_body;  ///< the truth

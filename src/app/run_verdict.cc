@@ -8,16 +8,18 @@ namespace {
 std::vector<DeclaredEvent> events_of(const RunOutcome& outcome, const std::vector<KidnapSettings>& kidnaps) {
   std::vector<DeclaredEvent> events;
   for (const sim::FaultReport& report : outcome.faults) {
-    const sim::FaultSettings& fault = report.fault;
-    events.push_back({.what = fmt::format("fault {} {} at {} s", fault.sensor, fault.kind, fault.start_s), .is_executed = report.is_executed});
+    events.push_back({.what = name_of(report.fault), .is_executed = report.is_executed});
   }
   for (std::size_t i = 0; i < kidnaps.size(); ++i) {
-    events.push_back({.what = fmt::format("kidnap at {} s", kidnaps[i].at_s), .is_executed = i < outcome.num_kidnaps});
+    events.push_back({.what = name_of(kidnaps[i]), .is_executed = i < outcome.num_kidnaps});
   }
   return events;
 }
 
 }  // namespace
+
+std::string name_of(const sim::FaultSettings& fault) { return fmt::format("fault {} {} at {} s", fault.sensor, fault.kind, fault.start_s); }
+std::string name_of(const KidnapSettings& kidnap) { return fmt::format("kidnap at {} s", kidnap.at_s); }
 
 RunVerdict verdict_of(const RunOutcome& outcome, const std::vector<KidnapSettings>& kidnaps, io::Metrics metrics,
                       std::vector<CheckedExpectation> checks) {

@@ -27,6 +27,10 @@ struct RunVerdict {
   std::vector<DeclaredEvent> events;
 };
 
+/// How junit.xml names what was declared: "fault imu freeze at 12 s".
+std::string name_of(const sim::FaultSettings& fault);
+std::string name_of(const KidnapSettings& kidnap);
+
 /// Of a run that came to its end. `kidnaps` are those declared.
 RunVerdict verdict_of(const RunOutcome& outcome, const std::vector<KidnapSettings>& kidnaps, io::Metrics metrics,
                       std::vector<CheckedExpectation> checks);

@@ -44,10 +44,9 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
 
 }  // namespace
 
-Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  const std::string robot = io::load_settings<Scenario>(file, overrides).robot;
+Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root) {
   Scenario scenario;
-  const std::filesystem::path profile_file = find_data_root(file) / "models" / robot / (robot + ".yaml");
+  const std::filesystem::path profile_file = data_root / "models" / robot / (robot + ".yaml");
   if (std::filesystem::exists(profile_file)) {
     const auto profile = io::load_settings<RobotProfile>(profile_file, {});
     scenario.sensors = profile.sensors;
@@ -55,6 +54,12 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<std:
     scenario.track_drive = profile.track_drive;
     scenario.stack = profile.stack;
   }
+  return scenario;
+}
+
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  const std::string robot = io::load_settings<Scenario>(file, overrides).robot;
+  Scenario scenario = default_scenario(robot, find_data_root(file));
   io::read_settings(file, overrides, scenario);
   return scenario;
 }

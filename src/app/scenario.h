@@ -146,6 +146,9 @@ struct RobotProfile {
   }
 };
 
+/// What a scenario of this robot says where it says nothing: the defaults, under the robot's own file if it has one.
+Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root);
+
 /// A scenario file with "path=value" overrides, over its robot's profile, over the defaults. Throws InputError with file,
 /// line and key.
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});

@@ -13,6 +13,7 @@ io::Metrics spread_of(const std::vector<double>& values) {
   metrics["mean"] = values.empty() ? io::Metrics() : io::Metrics(score::mean(values));
   metrics["std"] = values.empty() ? io::Metrics() : io::Metrics(std::sqrt(score::variance(values)));
   metrics["max"] = values.empty() ? io::Metrics() : io::Metrics(score::maximum(values));
+  metrics["each"] = values;
   return metrics;
 }
 

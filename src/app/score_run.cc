@@ -16,6 +16,11 @@ namespace {
 
 constexpr double kReferenceResolution_m = 0.025;
 
+/// In world; the report draws by it.
+io::Metrics pose_json(const Pose2& T_world_map) {
+  return {{"x_m", T_world_map.x}, {"y_m", T_world_map.y}, {"yaw_rad", T_world_map.yaw}};
+}
+
 io::Metrics mission_metrics(const RunRecord& record) {
   io::Metrics metrics;
   metrics["completed"] = record.has_event("mission_completed");
@@ -84,7 +89,10 @@ io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, c
   metrics["pose"] = to_json(score::trajectory_error(record.T_map_body, T_world_map, record.T_world_body));
   metrics["pose"]["aligned"] = to_json(score::aligned_error(record.T_map_body, record.T_world_body));
   metrics["odometry"] = to_json(score::trajectory_error(record.T_odom_body, T_world_odom, record.T_world_body));
-  metrics["map"] = to_json(score::map_error(record.map, T_world_map, reference));
+  const score::MapError map_error = score::map_error(record.map, T_world_map, reference);
+  io::save_map_errors(directory.map_errors(), map_error.cells_m);
+  metrics["map"] = to_json(map_error);
+  metrics["map"]["origin_in_world"] = pose_json(T_world_map);
   metrics["map"]["reference_agreement"] = truth.check.share_agreeing();  // of its render with rays
   metrics["stations"] = to_json(score::station_errors(files.route, record.events, T_world_map, record.T_world_body, record.map,
                                                       reference));

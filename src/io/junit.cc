@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <tinyxml2.h>
 
+#include "core/error.h"
 #include "io/atomic_file.h"
 
 namespace patrol::io {
@@ -65,7 +67,53 @@ std::string to_xml(const JunitSuite& suite) {
   return xml + "  </testsuite>\n";
 }
 
+std::string text_of(const tinyxml2::XMLElement& element, const char* attribute) {
+  const char* text = element.Attribute(attribute);
+  return text == nullptr ? "" : text;
+}
+
+JunitCase case_of(const tinyxml2::XMLElement& element) {
+  JunitCase test{.class_name = text_of(element, "classname"), .name = text_of(element, "name"), .time_s = element.DoubleAttribute("time"),
+                 .result = JunitResult::kPassed, .message = "", .details = ""};
+  for (const auto& [name, result] : {std::pair("failure", JunitResult::kFailure), {"error", JunitResult::kError}, {"skipped", JunitResult::kSkipped}}) {
+    const tinyxml2::XMLElement* outcome = element.FirstChildElement(name);
+    if (outcome == nullptr) continue;
+    test.result = result;
+    test.message = text_of(*outcome, "message");
+    test.details = outcome->GetText() == nullptr ? "" : outcome->GetText();
+  }
+  return test;
+}
+
+JunitSuite suite_of(const tinyxml2::XMLElement& element) {
+  JunitSuite suite{.name = text_of(element, "name"), .time_s = element.DoubleAttribute("time"), .properties = {}, .cases = {}};
+  if (const tinyxml2::XMLElement* list = element.FirstChildElement("properties")) {
+    for (const auto* property = list->FirstChildElement("property"); property != nullptr; property = property->NextSiblingElement("property")) {
+      suite.properties.emplace_back(text_of(*property, "name"), text_of(*property, "value"));
+    }
+  }
+  for (const auto* test = element.FirstChildElement("testcase"); test != nullptr; test = test->NextSiblingElement("testcase")) {
+    suite.cases.push_back(case_of(*test));
+  }
+  return suite;
+}
+
 }  // namespace
+
+std::vector<JunitSuite> load_junit(const std::filesystem::path& file) {
+  const std::string text = load_text(file);
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    throw input_error(file.string(), document.ErrorLineNum(), "is not XML");
+  }
+  const tinyxml2::XMLElement* root = document.FirstChildElement("testsuites");
+  if (root == nullptr) throw InputError(file.string() + ": is not JUnit XML: it has no testsuites");
+  std::vector<JunitSuite> suites;
+  for (const auto* suite = root->FirstChildElement("testsuite"); suite != nullptr; suite = suite->NextSiblingElement("testsuite")) {
+    suites.push_back(suite_of(*suite));
+  }
+  return suites;
+}
 
 void save_junit(const std::filesystem::path& file, const std::vector<JunitSuite>& suites) {
   std::vector<JunitCase> all;

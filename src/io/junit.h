@@ -29,6 +29,9 @@ struct JunitSuite {
 /// Writes JUnit XML as the common CI servers read it (testsuites, testsuite, testcase), whole or not at all.
 void save_junit(const std::filesystem::path& file, const std::vector<JunitSuite>& suites);
 
+/// What `save_junit` wrote. Throws InputError when it is not that.
+std::vector<JunitSuite> load_junit(const std::filesystem::path& file);
+
 /// The report that stands there from before the run until its end: red, so that a killed run never looks green.
 JunitSuite unfinished_junit(const std::string& suite);
 

@@ -1,5 +1,7 @@
 #include "io/map_server.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 #include <vector>
@@ -19,10 +21,27 @@ constexpr double kOccupiedThreshold = 0.65, kFreeThreshold = 0.196;
 constexpr int kMostPixelValue = 255;
 constexpr std::size_t kMostPixels = 100'000'000;
 constexpr unsigned char kOccupiedPixel = 0, kFreePixel = 254, kUnknownPixel = 205;
+constexpr unsigned char kLargestError = 254, kNoError = 255;  // mm
 
 unsigned char pixel_of(std::int8_t occupancy) {
   if (occupancy < 0) return kUnknownPixel;
   return occupancy >= 100.0 * kOccupiedThreshold ? kOccupiedPixel : occupancy <= 100.0 * kFreeThreshold ? kFreePixel : kUnknownPixel;
+}
+
+unsigned char error_pixel(float error_m) {
+  if (std::isnan(error_m)) return kNoError;
+  return static_cast<unsigned char>(std::min<double>(kLargestError, std::round(1e3 * error_m)));
+}
+
+/// Binary PGM of a grid; an image's rows run from the top.
+template <typename Value, typename PixelOf>
+std::string to_pgm(const Grid<Value>& grid, const PixelOf& pixel_of_value) {
+  const GridGeometry& geometry = grid.geometry();
+  std::string image = fmt::format("P5\n{} {}\n255\n", geometry.width, geometry.height);
+  for (int row = geometry.height - 1; row >= 0; --row) {
+    for (int col = 0; col < geometry.width; ++col) image += static_cast<char>(pixel_of_value(grid.at({col, row})));
+  }
+  return image;
 }
 
 /// An 8-bit grey image: [row from the top * width + column].
@@ -116,12 +135,8 @@ MapFile load_map_file(const std::filesystem::path& file) {
 
 void save_map(const std::filesystem::path& file, const OccupancyGrid& map) {
   const GridGeometry& geometry = map.geometry();
-  std::string image = fmt::format("P5\n{} {}\n255\n", geometry.width, geometry.height);
-  for (int row = geometry.height - 1; row >= 0; --row) {
-    for (int col = 0; col < geometry.width; ++col) image += static_cast<char>(pixel_of(map.at({col, row})));
-  }
   const std::filesystem::path image_file = std::filesystem::path(file).replace_extension(".pgm");
-  save_text(image_file, image);
+  save_text(image_file, to_pgm(map, pixel_of));
   save_text(file, fmt::format("image: {}\nmode: trinary\nresolution: {}\norigin: [{}, {}, 0.0]\nnegate: 0\n"
                               "occupied_thresh: {}\nfree_thresh: {}\n",
                               image_file.filename().string(), geometry.resolution_m, geometry.origin_m.x(), geometry.origin_m.y(),
@@ -142,6 +157,23 @@ OccupancyGrid load_map(const std::filesystem::path& file) {
     else if (p < about.free_thresh) map.at({col, row}) = kFree;
   }
   return map;
+}
+
+void save_map_errors(const std::filesystem::path& file_pgm, const Grid<float>& errors_m) { save_text(file_pgm, to_pgm(errors_m, error_pixel)); }
+
+Grid<float> load_map_errors(const std::filesystem::path& file_pgm, const GridGeometry& geometry) {
+  const Image image = load_pgm(file_pgm);
+  if (image.width != geometry.width || image.height != geometry.height) {
+    throw InputError(fmt::format("{}: is {} x {} pixels, its map {} x {}", file_pgm.string(), image.width, image.height, geometry.width, geometry.height));
+  }
+  Grid<float> errors_m(geometry, std::numeric_limits<float>::quiet_NaN());
+  for (int row = 0; row < image.height; ++row) {
+    for (int col = 0; col < image.width; ++col) {
+      const unsigned char pixel = image.pixels[static_cast<std::size_t>(image.height - 1 - row) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(col)];
+      if (pixel != kNoError) errors_m.at({col, row}) = 1e-3F * static_cast<float>(pixel);
+    }
+  }
+  return errors_m;
 }
 
 }  // namespace patrol::io

@@ -12,4 +12,9 @@ namespace patrol::io {
 void save_map(const std::filesystem::path& file, const OccupancyGrid& map);
 OccupancyGrid load_map(const std::filesystem::path& file);
 
+/// Errors of a map's occupied cells, on its own cells: a PGM, in millimetres, 254 for that and more, 255 where nothing is occupied (NaN in
+/// memory). Throws InputError when the image is not of the map's size.
+void save_map_errors(const std::filesystem::path& file_pgm, const Grid<float>& errors_m);
+Grid<float> load_map_errors(const std::filesystem::path& file_pgm, const GridGeometry& geometry);
+
 }  // namespace patrol::io

@@ -1,5 +1,7 @@
 #include "score/map_error.h"
 
+#include <limits>
+
 #include "core/error.h"
 #include "score/distance_field.h"
 #include "score/statistics.h"
@@ -26,6 +28,16 @@ std::vector<double> distances_m(const DistanceField& field, const Pose2& T_field
   distances.reserve(points.size());
   for (const Eigen::Vector2d& p : points) distances.push_back(field.distance_m(T_field_points * p));
   return distances;
+}
+
+/// The distances as a grid, on the cells that are marked, in the order of `centers_of`.
+Grid<float> on_cells(const Grid<std::uint8_t>& marked, const std::vector<double>& distances) {
+  Grid<float> cells(marked.geometry(), std::numeric_limits<float>::quiet_NaN());
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < marked.values().size(); ++i) {
+    if (marked.values()[i] != 0) cells.values()[i] = static_cast<float>(distances[next++]);
+  }
+  return cells;
 }
 
 double share_within(const std::vector<double>& values, double limit) {
@@ -72,7 +84,8 @@ MapError map_error(const OccupancyGrid& built, const Pose2& T_world_map, const R
           .nearest_var_m2 = variance(nearest_m),
           .nearest_p95_m = percentile(nearest_m, 0.95),
           .coverage = share_within(missed_m, kCoveredWithin_m),
-          .iou = intersection_over_union(built_occupied, T_map_world, seeable_points)};
+          .iou = intersection_over_union(built_occupied, T_map_world, seeable_points),
+          .cells_m = on_cells(built_occupied, nearest_m)};
 }
 
 }  // namespace patrol::score

@@ -27,6 +27,7 @@ struct MapError {
   double nearest_p95_m = 0.0;
   double coverage = 0.0;
   double iou = 0.0;
+  Grid<float> cells_m;  ///< what `nearest_*` is made of, on the built map's cells; NaN where it is not occupied
 };
 
 /// `built` lies in map. Throws InputError when one of the maps has no occupied cell.

@@ -101,6 +101,15 @@ class BadInput(unittest.TestCase):
     def test_score_of_a_directory_without_a_log(self):
         self.refuse("score", self.folder.name, says=[self.folder.name])
 
+    def test_report_of_a_directory_without_a_log(self):
+        self.refuse("report", self.folder.name, says=[self.folder.name, "log.mcap"])
+
+    def test_report_of_a_log_that_cannot_be_read(self):
+        shutil.copy(SHORT, pathlib.Path(self.folder.name) / "scenario.yaml")
+        (pathlib.Path(self.folder.name) / "log.mcap").write_bytes(b"no log")
+        self.refuse("report", self.folder.name, says=["log.mcap"])
+        self.assertFalse((pathlib.Path(self.folder.name) / "report.html").exists())
+
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], "-v"])

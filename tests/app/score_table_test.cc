@@ -69,5 +69,11 @@ TEST(ScoreTable, GroupsStandApart) {
 
 TEST(ScoreTable, OfNothingIsEmpty) { EXPECT_EQ(score_table(io::Metrics::object(), {}), ""); }
 
+TEST(ScoreTable, LeavesOutListsOfPlainNumbers) {
+  const std::string table = score_table(io::Metrics::parse(R"({"docking": {"position_error_m": {"mean": 0.02, "each": [0.01, 0.03]}}})"), {});
+  EXPECT_EQ(line_of(table, "docking.position_error_m.mean"), (Words{"docking.position_error_m.mean", "0.02"}));
+  EXPECT_EQ(table.find("each"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace patrol::app

@@ -72,6 +72,12 @@ class KilledRun(unittest.TestCase):
         self.assertNotEqual(done.returncode, 0)
         self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
 
+    def test_its_report_says_incomplete_first(self):
+        page = pathlib.Path(self.folder.name) / "report.html"
+        done = subprocess.run([PATROL, "report", str(self.run_directory), "--out", str(page)], capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn('<p class="word">INCOMPLETE</p>', page.read_text())
+
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], "-v"])

@@ -78,5 +78,37 @@ TEST(SaveJunit, AFolderThatIsNotThereIsAnInputError) {
   EXPECT_THROW(save_junit("/nowhere/at/all/junit.xml", {}), InputError);
 }
 
+TEST(LoadJunit, ReadsBackWhatWasSaved) {
+  const test::TemporaryFolder folder;
+  JunitCase failed = make_case("pose.ate_rmse_m <= 0.1", JunitResult::kFailure, "is 0.2, \"expected\" <= 0.1 & less");
+  failed.details = "at 12 s";
+  save_junit(folder / "junit.xml", {{.name = "a<b", .time_s = 3.0, .properties = {{"seed", "7"}, {"version", "0.1.0"}},
+                                     .cases = {make_case("run", JunitResult::kPassed), failed, make_case("fault", JunitResult::kSkipped, "NOT EXECUTED")}}});
+  const std::vector<JunitSuite> suites = load_junit(folder / "junit.xml");
+  ASSERT_EQ(suites.size(), 1u);
+  EXPECT_EQ(suites[0].name, "a<b");
+  EXPECT_EQ(suites[0].properties, (std::vector<std::pair<std::string, std::string>>{{"seed", "7"}, {"version", "0.1.0"}}));
+  ASSERT_EQ(suites[0].cases.size(), 3u);
+  EXPECT_EQ(suites[0].cases[0].result, JunitResult::kPassed);
+  EXPECT_EQ(suites[0].cases[0].time_s, 1.5);
+  EXPECT_EQ(suites[0].cases[1].result, JunitResult::kFailure);
+  EXPECT_EQ(suites[0].cases[1].message, failed.message);
+  EXPECT_EQ(suites[0].cases[1].details, "at 12 s");
+  EXPECT_EQ(suites[0].cases[2].result, JunitResult::kSkipped);
+}
+
+TEST(LoadJunit, AnUnfinishedRunIsAnError) {
+  const test::TemporaryFolder folder;
+  save_junit(folder / "junit.xml", {unfinished_junit("short")});
+  EXPECT_EQ(load_junit(folder / "junit.xml").at(0).cases.at(0).result, JunitResult::kError);
+}
+
+TEST(LoadJunit, RefusesWhatIsNotJunitAndNamesTheFile) {
+  const test::TemporaryFile broken("junit.xml", "<testsuites>\n<testsuite"), other("junit.xml", "<html/>"), empty("junit.xml", "");
+  for (const auto* file : {&broken, &other, &empty}) {
+    EXPECT_THAT([&] { load_junit(file->path()); }, ::testing::ThrowsMessage<InputError>(HasSubstr("junit.xml")));
+  }
+}
+
 }  // namespace
 }  // namespace patrol::io

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
@@ -139,6 +142,26 @@ TEST_F(MapServer, WrongKeysAreNamedWithTheirLine) {
 TEST_F(MapServer, AMissingPictureIsNamedWithTheLineThatNamesIt) {
   EXPECT_THAT(complaint_about("resolution: 1\nimage: n.pgm\norigin: [0, 0, 0]\n", ""),
               AllOf(HasSubstr("m.yaml:2: image: there is no file "), EndsWith("n.pgm")));
+}
+
+TEST(MapErrors, ComeBackToAMillimetreUpTo254) {
+  const test::TemporaryFolder folder;
+  Grid<float> errors_m({.resolution_m = 0.05, .width = 3, .height = 2, .origin_m = {1.0, 2.0}}, std::numeric_limits<float>::quiet_NaN());
+  errors_m.at({0, 0}) = 0.0F;
+  errors_m.at({2, 0}) = 0.0237F;
+  errors_m.at({1, 1}) = 7.0F;
+  save_map_errors(folder / "map_errors.pgm", errors_m);
+  const Grid<float> loaded_m = load_map_errors(folder / "map_errors.pgm", errors_m.geometry());
+  EXPECT_EQ(loaded_m.at({0, 0}), 0.0F);
+  EXPECT_NEAR(loaded_m.at({2, 0}), 0.024, 1e-6);
+  EXPECT_NEAR(loaded_m.at({1, 1}), 0.254, 1e-6);
+  EXPECT_TRUE(std::isnan(loaded_m.at({0, 1})));
+}
+
+TEST(MapErrors, OfAnotherMapsSizeAreRefused) {
+  const test::TemporaryFolder folder;
+  save_map_errors(folder / "map_errors.pgm", Grid<float>({.resolution_m = 0.05, .width = 3, .height = 2, .origin_m = {0.0, 0.0}}));
+  EXPECT_THROW(load_map_errors(folder / "map_errors.pgm", {.resolution_m = 0.05, .width = 2, .height = 3, .origin_m = {0.0, 0.0}}), InputError);
 }
 
 }  // namespace

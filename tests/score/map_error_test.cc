@@ -42,6 +42,16 @@ TEST(MapError, OfThePerfectMapIsNone) {
 }
 
 // One wall of 10 m, moved across: every cell is as far away as it was moved.
+TEST(MapError, SaysOfEachOccupiedCellHowFarItIs) {
+  OccupancyGrid built({.resolution_m = 0.1, .width = 4, .height = 1, .origin_m = {0.0, 0.0}}, kFree), truth = built;
+  built.at({0, 0}) = built.at({3, 0}) = kOccupied;
+  truth.at({1, 0}) = kOccupied;
+  const Grid<float> cells_m = map_error(built, {}, all_seeable(truth)).cells_m;
+  EXPECT_NEAR(cells_m.at({0, 0}), 0.1, 1e-6);
+  EXPECT_NEAR(cells_m.at({3, 0}), 0.2, 1e-6);
+  EXPECT_TRUE(std::isnan(cells_m.at({1, 0})));
+}
+
 TEST(MapError, OfAWallMovedFiveCentimetresIsFive) {
   OccupancyGrid wall({.resolution_m = 0.05, .width = 200, .height = 40}, kFree);
   for (int col = 0; col < 200; ++col) wall.at({col, 20}) = kOccupied;

@@ -9,7 +9,7 @@ namespace patrol::app {
 namespace {
 
 RunVerdict sample_row() {
-  return {.end = "time limit", .code = ExitCode::kTimeLimit, .message = "after 9 s simulated", .metrics = {{"pose", {{"ate_rmse_m", 0.25}}}}};
+  return {.end = "time limit", .code = ExitCode::kTimeLimit, .message = "after 9 s simulated", .metrics = {{"pose", {{"ate_rmse_m", 0.25}}}}, .checks = {}, .events = {}};
 }
 
 TEST(ResultStore, ARowComesBack) {

@@ -1,0 +1,98 @@
+#include "app/report/error_plots.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "app/report/occasions.h"
+#include "score/trajectory_error.h"
+
+namespace patrol::app {
+namespace {
+
+using render::Curve;
+using render::Ink;
+using render::LinePlot;
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+Curve position_curve(const std::string& name, Ink ink, const std::vector<score::MatchedPose>& poses) {
+  Curve curve{.name = name, .ink = ink, .points = {}};
+  for (const score::MatchedPose& pose : poses) curve.points.emplace_back(to_seconds(pose.stamp), pose.position_error_m());
+  return curve;
+}
+
+Curve heading_curve(const std::string& name, Ink ink, const std::vector<score::MatchedPose>& poses) {
+  Curve curve{.name = name, .ink = ink, .points = {}};
+  for (const score::MatchedPose& pose : poses) curve.points.emplace_back(to_seconds(pose.stamp), kDegPerRad * std::abs(pose.heading_error_rad()));
+  return curve;
+}
+
+/// Twice the standard deviation that the estimate gives itself: of the position, the root of the sum of both variances (2 DRMS), which
+/// hold 95 to 98 of 100 errors if they are Gaussian.
+template <typename Deviation>
+Curve bound_curve(const std::string& name, const RunRecord& record, const Deviation& deviation) {
+  Curve curve{.name = name, .ink = Ink::kBound, .is_dashed = true, .points = {}};
+  for (std::size_t i = 0; i < record.covariances.size(); ++i) {
+    curve.points.emplace_back(to_seconds(record.T_map_body[i].stamp), 2.0 * deviation(record.covariances[i]));
+  }
+  return curve;
+}
+
+/// The plots' common part.
+class Plots {
+ public:
+  explicit Plots(const RunContents& run) : axis_{.label = "time, s", .max = run.end_s()}, marks_(marks_of(run)), spans_(spans_of(run)) {}
+
+  render::LanePlot lanes(const RunContents& run) const {
+    return {.title = "Events", .axis = axis_, .lanes = lanes_of(run), .spans = spans_};
+  }
+  LinePlot lines(const std::string& title, const std::string& unit, std::vector<Curve> curves) const {
+    return {.title = title, .unit = unit, .axis = axis_, .max = {}, .curves = std::move(curves), .marks = marks_, .spans = spans_};
+  }
+
+ private:
+  render::PlotAxis axis_;
+  std::vector<render::PlotMark> marks_;
+  std::vector<render::PlotSpan> spans_;
+};
+
+LinePlot trust_plot(const Plots& plots, const std::vector<LocalizationTrust>& trusts) {
+  Curve trust{.name = "0 lost, 1 sure", .ink = Ink::kTrust, .points = {}};
+  for (const LocalizationTrust& one : trusts) trust.points.emplace_back(to_seconds(one.stamp), one.trust);
+  LinePlot plot = plots.lines("Localisation's trust in itself", "", {trust});
+  plot.max = 1.05;
+  return plot;
+}
+
+LinePlot unaided_plot(const Plots& plots, const RunContents& run) {
+  const RunRecord& record = run.record;
+  const Pose2 T_world_odom = score::join_at_start(record.T_odom_body, record.T_world_body);
+  std::vector<Curve> curves = {position_curve("odometry", Ink::kOdometry, score::match_poses(record.T_odom_body, T_world_odom, record.T_world_body))};
+  if (!record.T_map_body_by_ranges.empty()) {
+    curves.push_back(position_curve("odometry and UWB ranges", Ink::kRanges,
+                                    score::match_poses(record.T_map_body_by_ranges, run.T_world_map, record.T_world_body)));
+  }
+  return plots.lines("Without map and lidar", "m", std::move(curves));
+}
+
+}  // namespace
+
+std::vector<render::Block> error_blocks(const RunContents& run) {
+  const RunRecord& record = run.record;
+  const Plots plots(run);
+  std::vector<render::Block> blocks;
+  if (!record.events.empty() || !record.collisions.empty()) blocks.emplace_back(plots.lanes(run));
+  if (!overlap(record.T_map_body, record.T_world_body) || !overlap(record.T_odom_body, record.T_world_body)) return blocks;
+  const std::vector<score::MatchedPose> estimate = score::match_poses(record.T_map_body, run.T_world_map, record.T_world_body);
+  const auto position_std_m = [](const Eigen::Matrix3d& covariance) { return std::sqrt(covariance(0, 0) + covariance(1, 1)); };
+  const auto heading_std_deg = [](const Eigen::Matrix3d& covariance) { return kDegPerRad * std::sqrt(covariance(2, 2)); };
+  blocks.emplace_back(plots.lines("Position error", "m", {position_curve("estimate", Ink::kEstimate, estimate), bound_curve("its own 2σ", record, position_std_m)}));
+  blocks.emplace_back(unaided_plot(plots, run));
+  blocks.emplace_back(plots.lines("Heading error", "°", {heading_curve("estimate", Ink::kEstimate, estimate), bound_curve("its own 2σ", record, heading_std_deg)}));
+  if (!record.trusts.empty()) blocks.emplace_back(trust_plot(plots, record.trusts));
+  blocks.emplace_back(render::TextBlock{"Map and world are joined at the start; nothing is fitted afterwards. 2σ: of the position, twice the root of the sum of both "
+                                        "variances. Lines: troubles, recoveries, relocalisations; shaded: faults, and where the robot says that it is lost."});
+  return blocks;
+}
+
+}  // namespace patrol::app

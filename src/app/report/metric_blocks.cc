@@ -1,0 +1,162 @@
+#include "app/report/metric_blocks.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "app/metric_lines.h"
+#include "app/report/quantity.h"
+#include "score/statistics.h"
+
+namespace patrol::app {
+namespace {
+
+using render::Cell;
+using render::Tone;
+
+/// A figure of an entry in fixed decimals, so that a column's points stand below each other.
+Cell figure_cell(const io::Metrics& entry, const std::string& path, int decimals, double factor = 1.0) {
+  const std::optional<double> value = io::metric_at(entry, path);
+  return value ? Cell{fmt::format("{:.{}f}", factor * *value, decimals)} : Cell{"–", Tone::kFaint};
+}
+
+Cell checked_cell(const std::string& path, const std::vector<CheckedExpectation>& checks) {
+  const auto check = std::find_if(checks.begin(), checks.end(), [&](const CheckedExpectation& one) { return one.metric == path; });
+  if (check == checks.end()) return {};
+  return {check->wanted + (check->is_met ? " met" : " MISSED"), check->is_met ? Tone::kGood : Tone::kBad};
+}
+
+std::vector<double> numbers_of(const io::Metrics& list) {
+  std::vector<double> numbers;
+  for (const io::Metrics& value : list) numbers.push_back(value.get<double>());
+  return numbers;
+}
+
+struct Spread {
+  std::string path;
+  std::string caption;
+  std::string unit;
+  double factor;  ///< from the metric's unit
+};
+
+render::Box box_of(const std::string& label, const io::Metrics& entry, const Spread& spread) {
+  render::Box box{.label = label, .values = {}, .text = ""};
+  if (!entry.contains(spread.path) || !entry[spread.path].contains("each")) return box;
+  for (const double value : numbers_of(entry[spread.path]["each"])) box.values.push_back(spread.factor * value);
+  if (box.values.empty()) return box;
+  box.lower_quartile = score::percentile(box.values, 0.25);
+  box.median = score::percentile(box.values, 0.5);
+  box.upper_quartile = score::percentile(box.values, 0.75);
+  box.text = fmt::format("{:.2f} {}", box.median, spread.unit);
+  return box;
+}
+
+/// Every arrival of a tour as a dot; nothing when no place was reached more than once.
+render::BoxPlot box_plot(const io::Metrics& metrics, const Spread& spread) {
+  render::BoxPlot plot{.caption = spread.caption, .unit = spread.unit, .boxes = {}};
+  for (const io::Metrics& goal : metrics["goals"]) plot.boxes.push_back(box_of(goal.value("name", ""), goal, spread));
+  if (metrics.contains("docking")) plot.boxes.push_back(box_of("dock", metrics["docking"], spread));
+  const auto is_single = [](const render::Box& box) { return box.values.size() < 2; };
+  if (std::all_of(plot.boxes.begin(), plot.boxes.end(), is_single)) plot.boxes.clear();
+  return plot;
+}
+
+std::vector<Cell> goal_row(const std::string& name, const io::Metrics& goal) {
+  std::vector<Cell> row = {{name}, figure_cell(goal, "arrivals", 0), figure_cell(goal, "failed", 0)};
+  if (goal.value("failed", 0) > 0) row.back().tone = Tone::kBad;
+  for (const char* statistic : {"mean", "std", "max"}) row.push_back(figure_cell(goal, fmt::format("position_error_m.{}", statistic), 2, 100.0));
+  for (const char* statistic : {"mean", "std", "max"}) row.push_back(figure_cell(goal, fmt::format("heading_error_deg.{}", statistic), 2));
+  return row;
+}
+
+bool is_list(const io::Metrics& metrics, const char* key) { return metrics.contains(key) && metrics[key].is_array() && !metrics[key].empty(); }
+
+}  // namespace
+
+render::FoldedTables all_metrics(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks) {
+  const std::vector<MetricLine> lines = metric_lines(metrics);
+  render::FoldedTables folded{.summary = fmt::format("All {} figures", lines.size()), .tables = {}};
+  for (const MetricLine& line : lines) {
+    const std::size_t dot = line.path.find('.');
+    const std::string group = line.path.substr(0, dot);
+    if (folded.tables.empty() || folded.tables.back().caption != group) {
+      folded.tables.push_back({.caption = group, .columns = {{""}, {"", true}, {""}}, .rows = {}});
+    }
+    folded.tables.back().rows.push_back({{dot == std::string::npos ? group : line.path.substr(dot + 1)}, {line.text}, checked_cell(line.path, checks)});
+  }
+  return folded;
+}
+
+std::vector<render::Block> station_blocks(const io::Metrics& metrics) {
+  if (!is_list(metrics, "stations")) return {};
+  render::TableBlock table{.caption = "",
+                           .columns = {{"station"}, {"reached"}, {"believed to be off, cm", true}, {"heading, °", true}, {"stood off, cm", true}, {"in the map off, cm", true}},
+                           .rows = {}};
+  for (const io::Metrics& station : metrics["stations"]) {
+    const bool is_reached = station.value("reached", false);
+    table.rows.push_back({{station.value("name", "")},
+                          is_reached ? Cell{"yes", Tone::kGood} : Cell{"NO", Tone::kBad},
+                          figure_cell(station, "position_error_m", 1, 100.0),
+                          figure_cell(station, "heading_error_deg", 2),
+                          figure_cell(station, "stand_error_m", 1, 100.0),
+                          figure_cell(station, "map_error_m", 1, 100.0)});
+  }
+  return {table, render::TextBlock{"On arrival: error of the robot's own pose and heading; where it truly stood, from where the survey wants it; "
+                                   "how far the map's surroundings have to be moved to fit the world."}};
+}
+
+std::vector<render::Block> goal_blocks(const io::Metrics& metrics) {
+  if (!is_list(metrics, "goals")) return {};
+  render::TableBlock table{.caption = "",
+                           .columns = {{"goal"}, {"reached", true}, {"failed", true}, {"position, cm: mean", true}, {"std", true}, {"max", true},
+                                       {"heading, °: mean", true}, {"std", true}, {"max", true}},
+                           .rows = {}};
+  for (const io::Metrics& goal : metrics["goals"]) table.rows.push_back(goal_row(goal.value("name", ""), goal));
+  if (metrics.contains("docking")) table.rows.push_back(goal_row("dock", metrics["docking"]));
+  std::vector<render::Block> blocks = {table};
+  for (const Spread& spread : {Spread{"position_error_m", "Position error on arrival", "cm", 100.0}, Spread{"heading_error_deg", "Heading error on arrival", "°", 1.0}}) {
+    render::BoxPlot plot = box_plot(metrics, spread);
+    if (!plot.boxes.empty()) blocks.emplace_back(std::move(plot));
+  }
+  if (blocks.size() > 1) blocks.emplace_back(render::TextBlock{"Box: from quartile to quartile; line: from least to greatest; dots: every arrival; at the right the median."});
+  return blocks;
+}
+
+std::vector<render::Block> inspection_blocks(const io::Metrics& metrics) {
+  const bool has_findings = metrics.contains("inspection") && is_list(metrics["inspection"], "findings");
+  if (!has_findings && io::metric_at(metrics, "inspection.leaks").value_or(0.0) == 0.0) return {};
+  if (!has_findings) return {render::TextBlock{fmt::format("{:.0f} leaks in the world, nothing found.", *io::metric_at(metrics, "inspection.leaks"))}};
+  render::TableBlock table{.caption = "",
+                           .columns = {{"finding at"}, {"column, ppm m", true}, {"x, m", true}, {"y, m", true}, {"leak"}, {"off by, cm", true}},
+                           .rows = {}};
+  for (const io::Metrics& finding : metrics["inspection"]["findings"]) {
+    const bool is_leak = finding.contains("leak") && finding["leak"].is_string();
+    table.rows.push_back({{finding.value("station", "")},
+                          figure_cell(finding, "column_ppm_m", 0),
+                          figure_cell(finding, "x_m", 2),
+                          figure_cell(finding, "y_m", 2),
+                          is_leak ? Cell{finding["leak"].get<std::string>(), Tone::kGood} : Cell{"false alarm", Tone::kBad},
+                          figure_cell(finding, "position_error_m", 1, 100.0)});
+  }
+  return {table};
+}
+
+std::vector<render::Block> performance_blocks(const io::Metrics& metrics) {
+  if (!metrics.contains("performance") || !metrics["performance"].contains("parts_s")) return {};
+  const io::Metrics& performance = metrics["performance"];
+  const auto figure = [&](const char* name) { return io::metric_at(performance, name).value_or(0.0); };
+  render::BarBlock bars{.caption = fmt::format("Wall time by part: {:.1f} s in all, {:.1f} s of processor time, {:.1f} simulated s per s, {:.0f} MB at most",
+                                               figure("wall_s"), figure("cpu_s"), figure("real_time_factor"), figure("peak_memory_mb")),
+                        .bars = {}};
+  double rest_s = figure("wall_s");
+  for (const auto& [part, seconds] : performance["parts_s"].items()) {
+    const double part_s = seconds.get<double>();
+    rest_s -= part_s;
+    bars.bars.push_back({.label = part, .value = part_s, .text = fmt::format("{:.2f} s", part_s)});
+  }
+  std::stable_sort(bars.bars.begin(), bars.bars.end(), [](const render::Bar& a, const render::Bar& b) { return a.value > b.value; });
+  if (rest_s > 0.0) bars.bars.push_back({.label = "the rest", .value = rest_s, .text = fmt::format("{:.2f} s", rest_s)});
+  return {bars};
+}
+
+}  // namespace patrol::app

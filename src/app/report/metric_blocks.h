@@ -1,0 +1,22 @@
+#pragma once
+
+#include "app/expectations.h"
+#include "io/metrics_json.h"
+#include "render/report/blocks.h"
+
+/// Blocks of a page from metrics.json alone.
+namespace patrol::app {
+
+/// The few figures that most readers come for; those that the run did not measure are left out.
+render::KeyFigures key_figures(const io::Metrics& metrics);
+
+/// Every figure, one table for each group.
+render::FoldedTables all_metrics(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks);
+
+/// Empty when there is nothing to tell.
+std::vector<render::Block> station_blocks(const io::Metrics& metrics);
+std::vector<render::Block> goal_blocks(const io::Metrics& metrics);
+std::vector<render::Block> inspection_blocks(const io::Metrics& metrics);
+std::vector<render::Block> performance_blocks(const io::Metrics& metrics);
+
+}  // namespace patrol::app

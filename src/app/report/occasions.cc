@@ -1,0 +1,88 @@
+#include "app/report/occasions.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "app/report/verdict.h"
+#include "app/run_verdict.h"
+
+namespace patrol::app {
+namespace {
+
+using render::Ink;
+using render::PlotMark;
+
+const std::string kLostText = "The robot says that it is lost.";
+
+Ink ink_of(const std::string& kind) { return is_trouble(kind) ? Ink::kAlarm : Ink::kEvent; }
+
+bool is_for_curves(const std::string& kind) { return is_trouble(kind) || kind == "recovery" || kind == "relocalized"; }
+
+render::LanePlot::Lane& lane_named(std::vector<render::LanePlot::Lane>& lanes, const std::string& name) {
+  const auto found = std::find_if(lanes.begin(), lanes.end(), [&](const auto& lane) { return lane.name == name; });
+  if (found != lanes.end()) return *found;
+  return lanes.emplace_back(render::LanePlot::Lane{.name = name, .marks = {}});
+}
+
+std::string text_of(const Event& event) { return event.text.empty() ? event.kind : event.text; }
+
+}  // namespace
+
+bool is_trouble(const std::string& event_kind) {
+  static constexpr std::array<std::string_view, 6> kTroubles = {"alarm", "fall", "lost", "cannot_localize", "collision", "kidnap"};
+  return event_kind.ends_with("_failed") || std::find(kTroubles.begin(), kTroubles.end(), event_kind) != kTroubles.end();
+}
+
+std::vector<render::LanePlot::Lane> lanes_of(const RunContents& run) {
+  std::vector<render::LanePlot::Lane> lanes;
+  const auto add = [&](const std::string& kind, double at_s, const std::string& text) {
+    lane_named(lanes, kind).marks.push_back({.x = at_s, .text = text, .ink = ink_of(kind)});
+  };
+  for (const Event& event : run.record.events) add(event.kind, to_seconds(event.stamp), text_of(event));
+  for (const Collision& collision : run.record.collisions) {
+    add("collision", to_seconds(collision.stamp), fmt::format("{} touched {}.", collision.first, collision.second));
+  }
+  for (const KidnapSettings& kidnap : run.scenario.kidnaps) {
+    if (!is_executed(kidnap, run.record.T_world_body)) continue;
+    add("kidnap", kidnap.at_s, fmt::format("The robot is lifted to ({:.1f}, {:.1f}) m.", kidnap.x_m, kidnap.y_m));
+  }
+  return lanes;
+}
+
+std::vector<PlotMark> marks_of(const RunContents& run) {
+  std::vector<PlotMark> marks;
+  for (const render::LanePlot::Lane& lane : lanes_of(run)) {
+    if (is_for_curves(lane.name)) marks.insert(marks.end(), lane.marks.begin(), lane.marks.end());
+  }
+  return marks;
+}
+
+std::vector<render::PlotSpan> spans_of(const RunContents& run) {
+  std::vector<render::PlotSpan> spans;
+  for (const sim::FaultSettings& fault : run.scenario.faults) {
+    const double end_s = std::min(fault.start_s + fault.duration_s, run.end_s());
+    if (fault.start_s < end_s) spans.push_back({.from = fault.start_s, .to = end_s, .text = name_of(fault)});
+  }
+  const std::vector<LocalizationTrust>& trusts = run.record.trusts;
+  for (std::size_t i = 0; i + 1 < trusts.size(); ++i) {
+    if (!trusts[i].is_lost) continue;
+    const std::size_t first = i;
+    while (i + 1 < trusts.size() && trusts[i].is_lost) ++i;
+    spans.push_back({.from = to_seconds(trusts[first].stamp), .to = to_seconds(trusts[i].stamp), .text = kLostText});
+  }
+  return spans;
+}
+
+render::FoldedTables event_table(const RunContents& run) {
+  render::TableBlock table{.caption = "", .columns = {{"s", true}, {"event"}, {"about"}, {"text"}}, .rows = {}};
+  for (const Event& event : run.record.events) {
+    const render::Tone tone = is_trouble(event.kind) ? render::Tone::kBad : render::Tone::kPlain;
+    table.rows.push_back({{fmt::format("{:.1f}", to_seconds(event.stamp))}, {event.kind, tone}, {event.subject}, {event.text}});
+  }
+  return {.summary = fmt::format("All {} events", table.rows.size()), .tables = {table}};
+}
+
+}  // namespace patrol::app

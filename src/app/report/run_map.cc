@@ -1,0 +1,92 @@
+#include "app/report/run_map.h"
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+
+#include "app/report/occasions.h"
+#include "app/report/verdict.h"
+
+namespace patrol::app {
+namespace {
+
+using render::Ink;
+using render::MapMark;
+
+/// Polylines that end where the robot, or what it believes, jumps.
+std::vector<std::vector<Eigen::Vector2d>> pieces_of(const Trajectory& T_frame_body, const Pose2& T_world_frame) {
+  constexpr double kJump_m = 0.5;  // between neighbours of a tenth of a second at most
+  std::vector<std::vector<Eigen::Vector2d>> pieces;
+  for (const StampedPose& entry : T_frame_body) {
+    const Eigen::Vector2d p_world = T_world_frame * to_planar(entry.pose).position();
+    if (pieces.empty() || (p_world - pieces.back().back()).norm() > kJump_m) pieces.emplace_back();
+    pieces.back().push_back(p_world);
+  }
+  return pieces;
+}
+
+Eigen::AlignedBox2d extent_of(const std::vector<render::MapPath>& paths) {
+  Eigen::AlignedBox2d extent;
+  for (const render::MapPath& path : paths) {
+    for (const std::vector<Eigen::Vector2d>& piece : path.pieces_m) {
+      for (const Eigen::Vector2d& p_world : piece) extent.extend(p_world);
+    }
+  }
+  return extent;
+}
+
+/// Marks, of which those that would lie on each other share a label.
+class Marks {
+ public:
+  void add(const std::string& label, Ink ink, const Eigen::Vector2d& p_world) {
+    constexpr double kShared_m = 1.5;
+    if (!num_by_label_.emplace(label, 0).second && ink != Ink::kAlarm) return;  // goals are reached again and again
+    const auto near = std::find_if(marks_.begin(), marks_.end(), [&](const MapMark& mark) { return mark.ink == ink && (mark.p_m - p_world).norm() < kShared_m; });
+    if (near == marks_.end()) marks_.push_back({.label = label, .ink = ink, .p_m = p_world});
+    else if (near->label.find(label) == std::string::npos) near->label += ", " + label;
+  }
+  std::vector<MapMark> take() { return std::move(marks_); }
+
+ private:
+  std::map<std::string, int> num_by_label_;
+  std::vector<MapMark> marks_;
+};
+
+std::vector<MapMark> marks_on_map(const RunContents& run) {
+  Marks marks;
+  const auto truth_at = [&](Time stamp) {
+    const std::optional<Pose3> truth = pose_at(run.record.T_world_body, stamp);
+    return truth ? to_planar(*truth).position() : to_planar(run.record.T_world_body.back().pose).position();
+  };
+  marks.add("start", Ink::kEvent, to_planar(run.record.T_world_body.front().pose).position());
+  for (const Event& event : run.record.events) {
+    const std::string_view kind = event.kind;
+    if (kind == "station_reached" || kind == "goal_marked" || kind == "goal_reached") marks.add(event.subject, Ink::kEvent, truth_at(event.stamp));
+    if (kind == "docked") marks.add("dock", Ink::kEvent, truth_at(event.stamp));
+    if (kind == "alarm") marks.add("alarm", Ink::kAlarm, run.T_world_map * event.p_map_target);
+    if (kind.ends_with("_failed")) marks.add(event.subject + " failed", Ink::kAlarm, truth_at(event.stamp));
+    if (kind == "fall") marks.add("fall", Ink::kAlarm, truth_at(event.stamp));
+  }
+  for (const Collision& collision : run.record.collisions) marks.add("collision", Ink::kAlarm, truth_at(collision.stamp));
+  for (const KidnapSettings& kidnap : run.scenario.kidnaps) {
+    if (is_executed(kidnap, run.record.T_world_body)) marks.add("put here", Ink::kAlarm, {kidnap.x_m, kidnap.y_m});
+  }
+  return marks.take();
+}
+
+}  // namespace
+
+std::vector<render::Block> map_blocks(const RunContents& run) {
+  const RunRecord& record = run.record;
+  if (record.map.values().empty()) return {};
+  const render::MapLayers layers{.built = record.map, .T_world_map = run.T_world_map, .truth = run.truth_map, .error_m = run.map_errors_m};
+  const std::vector<render::MapPath> paths = {{"true path", Ink::kTruth, pieces_of(record.T_world_body, {})},
+                                              {"estimated path", Ink::kEstimate, pieces_of(record.T_map_body, run.T_world_map)}};
+  const render::MapBlock map{.picture = render::map_picture(layers, extent_of(paths)), .paths = paths, .marks = marks_on_map(run)};
+  std::string note = "World frame, x to the right, y up; paths to a centimetre.";
+  if (run.truth_map) note += " True surfaces: those that could be seen on this run, at the lidar's height; errors are to any surface.";
+  if (!map.picture.has_errors) note += " The run left no map_errors.pgm (patrol score makes it): the map is drawn in one colour.";
+  return {map, render::TextBlock{note}};
+}
+
+}  // namespace patrol::app

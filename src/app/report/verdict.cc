@@ -1,0 +1,104 @@
+#include "app/report/verdict.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "app/expectations.h"
+#include "app/run_verdict.h"
+
+namespace patrol::app {
+namespace {
+
+using render::Cell;
+using render::Tone;
+
+const io::JunitCase* case_named(const RunContents& run, const std::string& name) {
+  const auto found = std::find_if(run.cases.begin(), run.cases.end(), [&](const io::JunitCase& test) { return test.name == name; });
+  return found == run.cases.end() ? nullptr : &*found;
+}
+
+/// Why the run ended before the mission was over; empty if it did not.
+std::string early_end(const RunContents& run) {
+  const io::JunitCase* end = case_named(run, "run");
+  return end == nullptr || end->result == io::JunitResult::kPassed ? "" : end->message;
+}
+
+Cell executed_cell(bool is_executed) { return is_executed ? Cell{"executed", Tone::kGood} : Cell{"NOT EXECUTED", Tone::kWarning}; }
+
+std::vector<Cell> expectation_row(const CheckedExpectation& check, bool is_complete) {
+  const Cell judged = check.is_met ? Cell{"met", Tone::kGood} : Cell{"MISSED", Tone::kBad};
+  return {{check.metric}, {check.wanted}, {check.got}, is_complete ? judged : Cell{"not known", Tone::kFaint}};
+}
+
+std::vector<Cell> fault_row(const RunContents& run, const sim::FaultSettings& fault) {
+  const std::string name = name_of(fault);
+  const io::JunitCase* test = case_named(run, name);
+  const Cell result = test == nullptr ? Cell{"not known", Tone::kFaint} : executed_cell(test->result == io::JunitResult::kPassed);
+  return {{name}, {fmt::format("{} s long", fault.duration_s)}, {test == nullptr ? "" : test->message}, result};
+}
+
+std::vector<Cell> kidnap_row(const RunContents& run, const KidnapSettings& kidnap) {
+  return {{name_of(kidnap)},
+          {fmt::format("to ({}, {}) m", kidnap.x_m, kidnap.y_m)},
+          {},
+          executed_cell(is_executed(kidnap, run.record.T_world_body))};
+}
+
+std::string missed_text(const std::vector<CheckedExpectation>& checks) {
+  std::vector<std::string> texts;
+  for (const CheckedExpectation& check : checks) {
+    if (!check.is_met) texts.push_back(missed(check));
+  }
+  if (texts.empty()) return "";
+  return fmt::format("{} of {} expectations missed: {}.", texts.size(), checks.size(), fmt::join(texts, "; "));
+}
+
+/// Word, tone and reason of a run that is complete.
+void judge(const RunContents& run, const std::vector<CheckedExpectation>& checks, render::VerdictBlock& verdict) {
+  const std::string end = early_end(run), misses = missed_text(checks);
+  const bool is_passed = end.empty() && misses.empty();
+  verdict.word = is_passed ? "Passed" : "Missed";
+  verdict.tone = is_passed ? Tone::kGood : Tone::kBad;
+  if (!end.empty()) verdict.reason = fmt::format("The run ended early: {}.", end);
+  if (!misses.empty()) verdict.reason += (verdict.reason.empty() ? "" : " ") + misses;
+  if (!is_passed) return;
+  verdict.reason = checks.empty()       ? "The run came to its end; the scenario expects nothing of it."
+                   : checks.size() == 1 ? "The run came to its end, and met its one expectation."
+                                        : fmt::format("The run came to its end, and met all {} expectations.", checks.size());
+}
+
+void add_unexecuted(render::VerdictBlock& verdict) {
+  const auto is_unexecuted = [](const std::vector<Cell>& row) { return row.back().tone == Tone::kWarning; };
+  const auto num = std::count_if(verdict.checks.rows.begin(), verdict.checks.rows.end(), is_unexecuted);
+  if (num > 0) verdict.reason += fmt::format(" {} declared, but NOT EXECUTED.", num == 1 ? "One fault or kidnap was" : fmt::format("{} faults and kidnaps were", num));
+}
+
+}  // namespace
+
+bool is_executed(const KidnapSettings& kidnap, const Trajectory& T_world_body) {
+  constexpr double kNear_m = 0.5;             // it may fall or roll a little
+  constexpr Time kAfter = std::chrono::milliseconds(50);  // a few truths
+  const std::optional<Pose3> truth = pose_at(T_world_body, from_seconds(kidnap.at_s) + kAfter);
+  return truth && (truth->position.head<2>() - Eigen::Vector2d(kidnap.x_m, kidnap.y_m)).norm() < kNear_m;
+}
+
+render::VerdictBlock verdict_of(const RunContents& run) {
+  render::VerdictBlock verdict;
+  verdict.checks.columns = {{"declared"}, {"wanted", true}, {"got", true}, {"result"}};
+  const std::vector<CheckedExpectation> checks = check_expectations(run.scenario.expect, run.metrics);
+  for (const CheckedExpectation& check : checks) verdict.checks.rows.push_back(expectation_row(check, run.is_complete));
+  for (const sim::FaultSettings& fault : run.scenario.faults) verdict.checks.rows.push_back(fault_row(run, fault));
+  for (const KidnapSettings& kidnap : run.scenario.kidnaps) verdict.checks.rows.push_back(kidnap_row(run, kidnap));
+  if (run.is_complete) {
+    judge(run, checks, verdict);
+  } else {
+    verdict.word = "INCOMPLETE";
+    verdict.tone = Tone::kBad;
+    verdict.reason = fmt::format("The run was cut off: its log ends after {:.1f} s. What follows is what the log holds, and not a result.", run.end_s());
+  }
+  add_unexecuted(verdict);
+  return verdict;
+}
+
+}  // namespace patrol::app

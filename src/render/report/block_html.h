@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "render/report/blocks.h"
+
+/// Blocks as HTML. What needs a script carries its data with it; report.js draws it.
+namespace patrol::render {
+
+std::string block_html(const Block& block);
+
+std::string to_html(const TextBlock& block);
+std::string to_html(const VerdictBlock& block);
+std::string to_html(const KeyFigures& block);
+std::string to_html(const TableBlock& block);
+std::string to_html(const FoldedTables& block);
+std::string to_html(const BarBlock& block);
+std::string to_html(const BoxPlot& block);
+std::string to_html(const LinePlot& block);
+std::string to_html(const LanePlot& block);
+std::string to_html(const MapBlock& block);
+std::string to_html(const VideoBlock& block);
+
+/// The class that report.css gives it.
+const char* css_class(Tone tone);
+const char* css_class(Ink ink);
+
+}  // namespace patrol::render

@@ -1,0 +1,97 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "render/report/block_html.h"
+#include "render/report/decimation.h"
+#include "render/report/html.h"
+
+/// Plots as data that report.js draws with uPlot.
+namespace patrol::render {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kNumStretches = 600;  // of a curve; more than a screen has pixels for
+constexpr double kLogFrom = 50.0;           // a curve whose peak is this many times its median is drawn over a logarithmic axis
+
+/// Four digits are more than a plot shows.
+double shortened(double value) { return std::strtod(fmt::format("{:.4g}", value).c_str(), nullptr); }
+double shortened_x(double x) { return std::round(1e3 * x) / 1e3; }
+
+Json curve_json(const Curve& curve) {
+  Json json = {{"name", curve.name}, {"ink", css_class(curve.ink)}, {"dashed", curve.is_dashed}, {"x", Json::array()}, {"y", Json::array()}};
+  for (const Eigen::Vector2d& point : decimated(curve.points, kNumStretches)) {
+    json["x"].push_back(shortened_x(point.x()));
+    json["y"].push_back(shortened(point.y()));
+  }
+  return json;
+}
+
+Json marks_json(const std::vector<PlotMark>& marks) {
+  Json json = Json::array();
+  for (const PlotMark& mark : marks) json.push_back({{"x", shortened_x(mark.x)}, {"text", mark.text}, {"ink", css_class(mark.ink)}});
+  return json;
+}
+
+Json spans_json(const std::vector<PlotSpan>& spans) {
+  Json json = Json::array();
+  for (const PlotSpan& span : spans) json.push_back({{"from", span.from}, {"to", span.to}, {"text", span.text}});
+  return json;
+}
+
+bool has_far_peak(const Curve& curve) {
+  std::vector<double> values;
+  for (const Eigen::Vector2d& point : curve.points) values.push_back(point.y());
+  if (values.empty()) return false;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle > 0.0 && *std::max_element(middle, values.end()) > kLogFrom * *middle;
+}
+
+std::string legend_html(const std::vector<Curve>& curves) {
+  std::string html;
+  for (const Curve& curve : curves) {
+    html += fmt::format("<span class=\"key {} {}\">{}</span>", css_class(curve.ink), curve.is_dashed ? "dashed" : "", escaped_html(curve.name));
+  }
+  return html;
+}
+
+/// What the drawing leaves out, if it does.
+std::string thinning_note(const std::vector<Curve>& curves) {
+  std::size_t most = 0;
+  for (const Curve& curve : curves) most = std::max(most, curve.points.size());
+  if (most <= 2 * kNumStretches) return "";
+  return fmt::format("<span class=\"thinned\" title=\"Least and greatest value of each of {} stretches: peaks stay\">min/max of {} samples</span>",
+                     kNumStretches, most);
+}
+
+std::string plot_html(const char* kind, const std::string& title, const std::string& legend, const Json& data) {
+  return fmt::format("<figure class=\"plot {}\"><figcaption><b>{}</b>{}</figcaption><div class=\"drawing\"></div>"
+                     "<script type=\"application/json\">{}</script></figure>\n",
+                     kind, escaped_html(title), legend, script_json(data));
+}
+
+}  // namespace
+
+std::string to_html(const LinePlot& block) {
+  const bool is_log = !block.max && std::any_of(block.curves.begin(), block.curves.end(), has_far_peak);
+  Json data = {{"label", block.axis.label}, {"end", block.axis.max}, {"log", is_log}, {"curves", Json::array()}};
+  if (block.max) data["max"] = *block.max;
+  for (const Curve& curve : block.curves) data["curves"].push_back(curve_json(curve));
+  data["marks"] = marks_json(block.marks);
+  data["spans"] = spans_json(block.spans);
+  const std::string title = block.title + (block.unit.empty() ? "" : ", " + block.unit) + (is_log ? " (log)" : "");
+  return plot_html("lines", title, legend_html(block.curves) + thinning_note(block.curves), data);
+}
+
+std::string to_html(const LanePlot& block) {
+  Json data = {{"label", block.axis.label}, {"end", block.axis.max}, {"lanes", Json::array()}};
+  for (const LanePlot::Lane& lane : block.lanes) data["lanes"].push_back({{"name", lane.name}, {"marks", marks_json(lane.marks)}});
+  data["spans"] = spans_json(block.spans);
+  return plot_html("lanes", block.title, "<output></output>", data);
+}
+
+}  // namespace patrol::render

@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "render/report/block_html.h"
+#include "render/report/html.h"
+
+/// Tables, and the figures that are tables with a bar or a box in each row: they need no script.
+namespace patrol::render {
+namespace {
+
+/// Text in which a long name may be broken: after '_' and '/', and between the parts of a path.
+std::string breakable_html(const std::string& text) {
+  std::string html;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    html += escaped_html(std::string_view(text).substr(i, 1));
+    const bool is_part = text[i] == '.' && i + 1 < text.size() && std::isalpha(static_cast<unsigned char>(text[i + 1])) != 0;
+    if (text[i] == '_' || text[i] == '/' || is_part) html += "<wbr>";
+  }
+  return html;
+}
+
+std::string cell_html(const Cell& cell, const Column& column) {
+  const std::string classes = fmt::format("{}{}", column.is_number ? "number " : "", css_class(cell.tone));
+  return fmt::format("<td class=\"{}\">{}</td>", classes, column.is_number ? escaped_html(cell.text) : breakable_html(cell.text));
+}
+
+std::string head_html(const std::vector<Column>& columns) {
+  if (std::all_of(columns.begin(), columns.end(), [](const Column& column) { return column.title.empty(); })) return "";
+  std::string html = "<thead><tr>";
+  for (const Column& column : columns) {
+    html += fmt::format("<th{}>{}</th>", column.is_number ? " class=\"number\"" : "", escaped_html(column.title));
+  }
+  return html + "</tr></thead>";
+}
+
+/// The least of 1, 2 or 5 times a power of ten that takes at most `max_steps` steps to `end`.
+double round_step(double end, int max_steps) {
+  const double least = end / max_steps, power = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= least * (1.0 - 1e-9)) return factor * power;
+  }
+  return 10.0 * power;
+}
+
+/// From 0 to beyond `max`, with round ticks.
+struct Scale {
+  double step = 0.2;
+  double end = 1.0;
+
+  explicit Scale(double max) {
+    if (!(max > 0.0)) return;
+    step = round_step(max, 5);
+    end = step * std::ceil(max / step * (1.0 - 1e-9));
+  }
+  double percent(double value) const { return 100.0 * value / end; }
+};
+
+std::string ticks_html(const Scale& scale, const std::string& unit) {
+  std::string html;
+  const int num_steps = static_cast<int>(std::lround(scale.end / scale.step));
+  for (int i = 0; i <= num_steps; ++i) {
+    const std::string text = fmt::format("{:.6g}{}", i * scale.step, i == num_steps ? " " + unit : "");
+    html += fmt::format("<i style=\"left:{:.3f}%\">{}</i>", scale.percent(i * scale.step), escaped_html(text));
+  }
+  return fmt::format("<tr class=\"ticks\"><th></th><td><div class=\"track\">{}</div></td><td></td></tr>\n", html);
+}
+
+std::string box_html(const Box& box, const Scale& scale) {
+  const auto [least, greatest] = std::minmax_element(box.values.begin(), box.values.end());
+  const auto span = [&](const char* name, double from, double to) {
+    return fmt::format("<i class=\"{}\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>", name, scale.percent(from), scale.percent(to - from));
+  };
+  std::string html = span("whisker", *least, *greatest) + span("box", box.lower_quartile, box.upper_quartile);
+  for (const double value : box.values) html += fmt::format("<i class=\"dot\" style=\"left:{:.3f}%\"></i>", scale.percent(value));
+  return html + fmt::format("<i class=\"median\" style=\"left:{:.3f}%\"></i>", scale.percent(box.median));
+}
+
+}  // namespace
+
+std::string to_html(const TableBlock& block) {
+  std::string html = "<div class=\"table\"><table>";
+  if (!block.caption.empty()) html += fmt::format("<caption>{}</caption>", escaped_html(block.caption));
+  html += head_html(block.columns) + "<tbody>\n";
+  for (const std::vector<Cell>& row : block.rows) {
+    html += "<tr>";
+    for (std::size_t i = 0; i < row.size() && i < block.columns.size(); ++i) html += cell_html(row[i], block.columns[i]);
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+std::string to_html(const FoldedTables& block) {
+  std::string html = fmt::format("<details><summary>{}</summary>\n<div class=\"{}\">\n", escaped_html(block.summary),
+                                 block.tables.size() > 1 ? "columns" : "single");
+  for (const TableBlock& table : block.tables) html += to_html(table);
+  return html + "</div></details>\n";
+}
+
+std::string to_html(const BarBlock& block) {
+  double greatest = 0.0;
+  for (const Bar& bar : block.bars) greatest = std::max(greatest, bar.value);
+  std::string html = fmt::format("<table class=\"chart bars\"><caption>{}</caption><tbody>\n", escaped_html(block.caption));
+  for (const Bar& bar : block.bars) {
+    const double percent = greatest > 0.0 ? 100.0 * std::max(bar.value, 0.0) / greatest : 0.0;
+    html += fmt::format("<tr><th>{}</th><td><i class=\"bar\" style=\"width:{:.3f}%\"></i></td><td class=\"number\">{}</td></tr>\n",
+                        escaped_html(bar.label), percent, escaped_html(bar.text));
+  }
+  return html + "</tbody></table>\n";
+}
+
+std::string to_html(const BoxPlot& block) {
+  double greatest = 0.0;
+  for (const Box& box : block.boxes) {
+    for (const double value : box.values) greatest = std::max(greatest, value);
+  }
+  const Scale scale(greatest);
+  std::string html = fmt::format("<table class=\"chart boxes\"><caption>{}</caption><tbody>\n", escaped_html(block.caption));
+  for (const Box& box : block.boxes) {
+    if (box.values.empty()) continue;
+    html += fmt::format("<tr><th>{}</th><td><div class=\"track\">{}</div></td><td class=\"number\">{}</td></tr>\n", escaped_html(box.label),
+                        box_html(box, scale), escaped_html(box.text));
+  }
+  return html + ticks_html(scale, block.unit) + "</tbody></table>\n";
+}
+
+}  // namespace patrol::render
