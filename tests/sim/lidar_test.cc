@@ -228,7 +228,7 @@ TEST(Lidar, OnARobotWalkingAt1MetrePerSecondTheWallAheadComesNearerByOneMillimet
 
 TEST(Lidar, StabilizedItMeasuresTheLevelRoomWhateverTheBodyDoes) {
   const SmallWorld world(kSquareRoom);
-  const auto wobbling = [](double t) { return Pose3{{}, quaternion_from_rpy(0.05 * std::sin(20.0 * t), 0.05 * std::sin(30.0 * t), 0.0)}; };
+  const auto wobbling = [](double t) { return Pose3{Eigen::Vector3d::Zero(), quaternion_from_rpy(0.05 * std::sin(20.0 * t), 0.05 * std::sin(30.0 * t), 0.0)}; };
   LidarSettings settings = ideal();
   const auto worst_error_m = [&] {
     const LaserScan scan = scans_along(world, settings, 0.11, wobbling).front();
