@@ -4,9 +4,9 @@
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
-#include "app/run_directory.h"
-#include "app/run_loop.h"
-#include "app/run_record.h"
+#include "app/run/run_directory.h"
+#include "app/run/run_loop.h"
+#include "app/run/run_record.h"
 #include "core/error.h"
 #include "render/replay.h"
 #include "score/trajectory_error.h"

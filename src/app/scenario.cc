@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "app/known_map.h"
+#include "app/stack/known_map.h"
 #include "core/error.h"
 #include "io/drive_json.h"
 #include "io/map_server.h"

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "app/stack/stack_settings.h"
 #include "core/remote_drive.h"
 #include "core/route.h"
 #include "core/settings.h"
-#include "app/stack_settings.h"
 #include "io/expectations.h"
 #include "render/light.h"
 #include "sim/twin.h"

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include <fmt/format.h>
+
 namespace patrol::io {
 namespace {
 
@@ -116,7 +118,7 @@ void append_used(const std::string& type, std::set<std::string>& done, std::stri
     if (line.starts_with('#')) continue;
     const std::string used = used_type(line.substr(0, line.find(' ')));
     if (used.empty() || !done.insert(used).second) continue;
-    text += std::string(80, '=') + "\nMSG: " + used + "\n" + std::string(fields_of(used));
+    text += fmt::format("{:=<80}\nMSG: {}\n{}", "", used, fields_of(used));
     append_used(used, done, text);
   }
 }

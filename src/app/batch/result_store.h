@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "app/run_verdict.h"
+#include "app/run/run_verdict.h"
 
 namespace patrol::app {
 

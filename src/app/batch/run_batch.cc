@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "app/progress_bar.h"
-#include "app/run_once.h"
 #include "app/batch/work_folder.h"
+#include "app/progress_bar.h"
+#include "app/run/run_once.h"
 #include "core/error.h"
 
 namespace patrol::app {

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "app/metric_lines.h"
 #include "app/report/quantity.h"
+#include "app/scoring/metric_lines.h"
 #include "score/statistics.h"
 
 namespace patrol::app {

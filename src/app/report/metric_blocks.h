@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/expectations.h"
+#include "app/scoring/expectations.h"
 #include "io/metrics_json.h"
 #include "render/report/blocks.h"
 

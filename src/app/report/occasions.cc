@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/report/verdict.h"
-#include "app/run_verdict.h"
+#include "app/run/run_verdict.h"
 
 namespace patrol::app {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "app/run_directory.h"
-#include "app/run_record.h"
+#include "app/run/run_directory.h"
+#include "app/run/run_record.h"
 #include "app/scenario.h"
 #include "io/junit.h"
 #include "io/metrics_json.h"

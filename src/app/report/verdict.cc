@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "app/expectations.h"
-#include "app/run_verdict.h"
+#include "app/run/run_verdict.h"
+#include "app/scoring/expectations.h"
 
 namespace patrol::app {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "app/run_junit.h"
+#include "app/run/run_junit.h"
 #include "app/scenario.h"
 #include "app/sweep/run_address.h"
 #include "core/error.h"

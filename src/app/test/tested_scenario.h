@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/run_verdict.h"
+#include "app/run/run_verdict.h"
 #include "io/table.h"
 
 namespace patrol::app {

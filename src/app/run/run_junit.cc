@@ -1,0 +1,61 @@
+#include "app/run/run_junit.h"
+
+#include <fmt/format.h>
+
+namespace patrol::app {
+namespace {
+
+io::JunitCase end_case(const std::string& name, const RunVerdict& verdict, double time_s) {
+  io::JunitCase test{.class_name = name, .name = "run", .time_s = time_s, .result = io::JunitResult::kPassed,
+                     .message = "", .details = ""};
+  if (verdict.end == "done" || verdict.end == "expectation missed") return test;  // expectations are cases of their own
+  const bool came_to_a_score = !verdict.metrics.empty();
+  test.result = came_to_a_score ? io::JunitResult::kFailure : io::JunitResult::kError;
+  test.message = came_to_a_score ? verdict.message : fmt::format("{}: {}", verdict.end, verdict.message);
+  return test;
+}
+
+io::JunitCase expectation_case(const std::string& name, const CheckedExpectation& check) {
+  return {.class_name = name,
+          .name = fmt::format("{} {}", check.metric, check.wanted),
+          .time_s = 0.0,
+          .result = check.is_met ? io::JunitResult::kPassed : io::JunitResult::kFailure,
+          .message = check.is_met ? "" : missed(check),
+          .details = ""};
+}
+
+io::JunitCase event_case(const std::string& name, const DeclaredEvent& event) {
+  return {.class_name = name,
+          .name = event.what,
+          .time_s = 0.0,
+          .result = event.is_executed ? io::JunitResult::kPassed : io::JunitResult::kSkipped,
+          .message = event.is_executed ? "" : "NOT EXECUTED",
+          .details = ""};
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> junit_properties(const Scenario& scenario) {
+  return {{"world", scenario.world},
+          {"robot", scenario.robot},
+          {"mission", scenario.mission},
+          {"seed", fmt::format("{}", scenario.seed)},
+          {"version", PATROL_VERSION}};
+}
+
+io::JunitSuite unfinished_suite(const std::string& name, const std::vector<std::pair<std::string, std::string>>& properties) {
+  io::JunitSuite suite = io::unfinished_junit(name);
+  suite.properties = properties;
+  return suite;
+}
+
+io::JunitSuite junit_suite(const std::string& name, const std::vector<std::pair<std::string, std::string>>& properties, const RunVerdict& verdict) {
+  const double wall_s = io::metric_at(verdict.metrics, "performance.wall_s").value_or(0.0);
+  io::JunitSuite suite{.name = name, .time_s = wall_s, .properties = properties, .cases = {}};
+  suite.cases.push_back(end_case(name, verdict, wall_s));
+  for (const CheckedExpectation& check : verdict.checks) suite.cases.push_back(expectation_case(name, check));
+  for (const DeclaredEvent& event : verdict.events) suite.cases.push_back(event_case(name, event));
+  return suite;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,164 @@
+#include "app/run/run_loop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <numbers>
+#include <utility>
+
+#include "app/stack/patrol_stack.h"
+#include "app/stack/tour_stack.h"
+#include "inspect/route_frame.h"
+#include "io/run_log.h"
+#include "render/depth_renderer.h"
+#include "render/depth_renderer.h"
+
+namespace patrol::app {
+namespace {
+
+/// True once every `period`, starting at once.
+class Schedule {
+ public:
+  explicit Schedule(double rate_hz) : period_(from_seconds(1.0 / rate_hz)) {}
+  bool is_due(Time now) {
+    if (now < next_) return false;
+    next_ += period_;
+    return true;
+  }
+
+ private:
+  Time period_;
+  Time next_{};
+};
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& files) {
+  return {.world_xml = files.world_xml.string(),
+          .robot_urdf = files.robot_urdf.string(),
+          .T_world_start = start_in_world(scenario, files),
+          .sensors = scenario.sensors,
+          .locomotion = scenario.locomotion,
+          .track_drive = scenario.track_drive,
+          .props = props_of(scenario),
+          .actors = scenario.actors,
+          .leaks = scenario.leaks,
+          .wind = scenario.wind,
+          .faults = scenario.faults,
+          .drive = files.drive,
+          .driver = scenario.remote.driver,
+          .recorded = files.recorded};
+}
+
+}  // namespace
+
+Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files) {
+  return files.T_site_start * Pose2{scenario.start.ahead_m, scenario.start.left_m,
+                                    scenario.start.turn_deg * std::numbers::pi / 180.0};
+}
+
+std::vector<sim::PropSettings> props_of(const Scenario& scenario) {
+  std::vector<sim::PropSettings> props = scenario.props;
+  const std::vector<sim::PropSettings> scattered = sim::scatter_low_obstacles(scenario.low_obstacles, scenario.seed);
+  props.insert(props.end(), scattered.begin(), scattered.end());
+  return props;
+}
+
+sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files) {
+  return sim::Twin(twin_settings(scenario, files), files.robot, scenario.seed, render::make_depth_renderer);
+}
+
+std::unique_ptr<RobotStack> make_stack(const Scenario& scenario, const ScenarioFiles& files) {
+  const Route route_in_map = inspect::to_map(files.route, files.T_site_start);
+  if (files.robot.tracks) {
+    return std::make_unique<TourStack>(scenario.stack, files.robot, route_in_map,
+                                       TourStart{.map = files.map, .goals = files.goals, .has_remote = files.has_remote()},
+                                       scenario.log.map_period_s, scenario.seed);
+  }
+  return std::make_unique<PatrolStack>(scenario.stack, files.robot, route_in_map, scenario.log.map_period_s, scenario.seed);
+}
+
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin, RobotStack& stack,
+                    const std::filesystem::path& log_mcap, const ProgressCallback& progress) {
+  const auto wall_start = std::chrono::steady_clock::now();
+  const double cpu_start = cpu_seconds();
+
+  io::RunLogWriter log(log_mcap, files.robot);
+  PartClock clock;
+
+  Schedule truth_due(scenario.log.truth_rate_hz), state_due(scenario.log.state_rate_hz);
+  Schedule progress_due(2.0);
+  const Time limit = from_seconds(scenario.time_limit_s);
+  double distance_m = 0.0;
+  Eigen::Vector3d last_position = twin.truth().T_world_body.position;
+  RunOutcome outcome;
+  std::vector<KidnapSettings> kidnaps = scenario.kidnaps;
+  std::stable_sort(kidnaps.begin(), kidnaps.end(), [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
+
+  const auto write_stack_messages = [&](Time now) {
+    for (const StackMessage& message : stack.take_messages()) {
+      const auto lap = clock.lap("log");
+      std::visit([&](const auto& content) { log.write(now, content); }, message);
+    }
+  };
+
+  for (bool running = true; running;) {
+    const Time now = twin.now();
+    for (const SensorMessage& message : twin.take_messages()) {
+      {
+        const auto lap = clock.lap("log");
+        log.write(now, message);
+      }
+      stack.handle(message);
+    }
+    if (twin.has_fallen()) {
+      stack.handle_fall(now);
+      outcome.end = RunEnd::kFall;
+    }
+    stack.step(now);
+    write_stack_messages(now);
+    twin.set_command(stack.command());
+
+    const auto is_kidnapped = [&](const KidnapSettings& kidnap) { return from_seconds(kidnap.at_s) <= now; };
+    while (outcome.num_kidnaps < kidnaps.size() && is_kidnapped(kidnaps[outcome.num_kidnaps])) {
+      const KidnapSettings& kidnap = kidnaps[outcome.num_kidnaps++];
+      twin.put_at({kidnap.x_m, kidnap.y_m, kidnap.heading_deg * std::numbers::pi / 180.0});
+    }
+    const GroundTruth truth = twin.truth();
+    for (const Collision& collision : twin.take_collisions()) log.write(now, collision);
+    if (truth_due.is_due(now)) {
+      distance_m += (truth.T_world_body.position - last_position).head<2>().norm();
+      last_position = truth.T_world_body.position;
+      log.write(now, truth);
+    }
+    if (state_due.is_due(now)) log.write(now, twin.state());
+
+    running = !stack.mission_is_over() && now < limit;
+    if (now >= limit) outcome.end = RunEnd::kTimeLimit;
+    if (progress_due.is_due(now) && !progress(now, distance_m)) {
+      outcome.end = RunEnd::kInterrupted;
+      running = false;
+    }
+    if (running) twin.step();
+  }
+
+  log.write(twin.now(), stack.final_map(twin.now()));
+  log.close();
+  outcome.duration = twin.now();
+  outcome.faults = twin.sensors().faults();
+  outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
+  outcome.cpu_s = cpu_seconds() - cpu_start;
+  for (const PartClock* part : {&twin.clock(), &stack.clock(), &std::as_const(clock)}) {
+    for (const auto& [name, seconds] : part->seconds()) outcome.seconds_by_part[name] += seconds;
+  }
+  // The lidar is one of the sensors, and the dearest by far: a part of its own.
+  outcome.seconds_by_part["lidar"] = twin.sensors().lidar_seconds();
+  outcome.seconds_by_part["sensors"] -= twin.sensors().lidar_seconds();
+  if (const double seconds = twin.sensors().depth_camera_seconds(); seconds > 0.0) {
+    outcome.seconds_by_part["depth_camera"] = seconds;
+    outcome.seconds_by_part["sensors"] -= seconds;
+  }
+  return outcome;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,59 @@
+#include "app/run/run_once.h"
+
+#include <sys/resource.h>
+
+#include <fmt/format.h>
+#include <mujoco/mujoco.h>
+
+#include "app/run/run_directory.h"
+#include "app/run/run_junit.h"
+#include "app/scoring/score_run.h"
+
+namespace patrol::app {
+namespace {
+
+/// What a resolved scenario says about its making.
+std::string made_by(const std::string& name) {
+  return fmt::format("{}, every default written out, by patrol {} with MuJoCo {}", name, PATROL_VERSION, mj_versionString());
+}
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+io::Metrics performance_of(const RunOutcome& outcome) {
+  io::Metrics performance;
+  performance["real_time_factor"] = to_seconds(outcome.duration) / outcome.wall_s;
+  performance["wall_s"] = outcome.wall_s;
+  performance["cpu_s"] = outcome.cpu_s;
+  performance["peak_memory_mb"] = peak_memory_mb();
+  for (const auto& [part, seconds] : outcome.seconds_by_part) performance["parts_s"][part] = seconds;
+  return performance;
+}
+
+}  // namespace
+
+std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name, const std::filesystem::path& data_root,
+                                  const std::filesystem::path& root, const ProgressCallback& progress) {
+  const ScenarioFiles files = load_scenario_files(scenario, data_root);
+  sim::Twin twin = make_twin(scenario, files);  // these refuse bad input before anything is written
+  const std::unique_ptr<RobotStack> stack = make_stack(scenario, files);
+  const RunDirectory directory = begin_run_directory(root);
+  io::save_junit(directory.junit(), {unfinished_suite(name, junit_properties(scenario))});
+  save_scenario(directory.scenario(), scenario, made_by(name));
+
+  const RunOutcome outcome = run_loop(scenario, files, twin, *stack, directory.log(), progress);
+  if (outcome.end == RunEnd::kInterrupted) return std::nullopt;
+
+  io::Metrics metrics = score_run(directory, scenario, files);
+  metrics["performance"] = performance_of(outcome);
+  io::save_metrics(directory.metrics(), metrics);
+  RunVerdict verdict = verdict_of(outcome, scenario.kidnaps, metrics, check_expectations(scenario.expect, metrics));
+  io::save_junit(directory.junit(), {junit_suite(name, junit_properties(scenario), verdict)});
+  complete_run_directory(directory);
+  return verdict;
+}
+
+}  // namespace patrol::app

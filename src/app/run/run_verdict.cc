@@ -1,0 +1,91 @@
+#include "app/run/run_verdict.h"
+
+#include <fmt/format.h>
+
+namespace patrol::app {
+namespace {
+
+std::vector<DeclaredEvent> events_of(const RunOutcome& outcome, const std::vector<KidnapSettings>& kidnaps) {
+  std::vector<DeclaredEvent> events;
+  for (const sim::FaultReport& report : outcome.faults) {
+    events.push_back({.what = name_of(report.fault), .is_executed = report.is_executed});
+  }
+  for (std::size_t i = 0; i < kidnaps.size(); ++i) {
+    events.push_back({.what = name_of(kidnaps[i]), .is_executed = i < outcome.num_kidnaps});
+  }
+  return events;
+}
+
+}  // namespace
+
+std::string name_of(const sim::FaultSettings& fault) { return fmt::format("fault {} {} at {} s", fault.sensor, fault.kind, fault.start_s); }
+std::string name_of(const KidnapSettings& kidnap) { return fmt::format("kidnap at {} s", kidnap.at_s); }
+
+RunVerdict verdict_of(const RunOutcome& outcome, const std::vector<KidnapSettings>& kidnaps, io::Metrics metrics,
+                      std::vector<CheckedExpectation> checks) {
+  RunVerdict verdict{.end = "done", .code = ExitCode::kDone, .message = "", .metrics = std::move(metrics), .checks = std::move(checks),
+                     .events = events_of(outcome, kidnaps)};
+  for (const CheckedExpectation& check : verdict.checks) {
+    if (!check.is_met) verdict.message += (verdict.message.empty() ? "" : "; ") + missed(check);
+  }
+  if (!verdict.message.empty()) {
+    verdict.end = "expectation missed";
+    verdict.code = ExitCode::kExpectationMissed;
+  }
+  if (outcome.end == RunEnd::kFall) {
+    verdict.end = "fall";
+    verdict.code = ExitCode::kExpectationMissed;
+    verdict.message = fmt::format("the robot fell at {:.2f} s", to_seconds(outcome.duration));
+  } else if (outcome.end == RunEnd::kTimeLimit) {
+    verdict.end = "time limit";
+    verdict.code = ExitCode::kTimeLimit;
+    verdict.message = fmt::format("time limit: {:.0f} s", to_seconds(outcome.duration));
+  }
+  return verdict;
+}
+
+std::string missed(const CheckedExpectation& check) {
+  return fmt::format("{} is {}, expected {}", check.metric, check.got, check.wanted);
+}
+
+io::Metrics to_json(const RunVerdict& verdict) {
+  io::Metrics json{{"end", verdict.end},
+                   {"exit_code", static_cast<int>(verdict.code)},
+                   {"message", verdict.message},
+                   {"expectations", io::Metrics::array()},
+                   {"events", io::Metrics::array()},
+                   {"metrics", verdict.metrics}};
+  for (const CheckedExpectation& check : verdict.checks) {
+    json["expectations"].push_back({{"metric", check.metric},
+                                    {"wanted", check.wanted},
+                                    {"got", check.got},
+                                    {"is_measured", check.is_measured},
+                                    {"is_met", check.is_met}});
+  }
+  for (const DeclaredEvent& event : verdict.events) {
+    json["events"].push_back({{"what", event.what}, {"is_executed", event.is_executed}});
+  }
+  return json;
+}
+
+RunVerdict verdict_from_json(const io::Metrics& json) {
+  RunVerdict verdict{.end = json.at("end"),
+                     .code = static_cast<ExitCode>(json.at("exit_code").get<int>()),
+                     .message = json.at("message"),
+                     .metrics = json.at("metrics"),
+                     .checks = {},
+                     .events = {}};
+  for (const io::Metrics& check : json.at("expectations")) {
+    verdict.checks.push_back({.metric = check.at("metric"),
+                              .wanted = check.at("wanted"),
+                              .got = check.at("got"),
+                              .is_measured = check.at("is_measured"),
+                              .is_met = check.at("is_met")});
+  }
+  for (const io::Metrics& event : json.at("events")) {
+    verdict.events.push_back({.what = event.at("what"), .is_executed = event.at("is_executed")});
+  }
+  return verdict;
+}
+
+}  // namespace patrol::app

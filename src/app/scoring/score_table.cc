@@ -1,0 +1,58 @@
+#include "app/scoring/score_table.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "app/scoring/metric_lines.h"
+
+namespace patrol::app {
+namespace {
+
+/// One line a figure: "  pose.ate_rmse_m            0.0712  <= 0.15  met".
+class Table {
+ public:
+  explicit Table(const std::vector<CheckedExpectation>& checks) : checks_(checks) {}
+
+  void add(const MetricLine& figure) {
+    const auto check = std::find_if(checks_.begin(), checks_.end(),
+                                    [&](const CheckedExpectation& candidate) { return candidate.metric == figure.path; });
+    text_ += line(figure.path, figure.text, check == checks_.end() ? nullptr : &*check);
+    shown_.insert(figure.path);
+  }
+
+  /// What was expected of figures that have no line yet: not measured, or named by their place in a list.
+  void add_rest() {
+    for (const CheckedExpectation& check : checks_) {
+      if (!shown_.contains(check.metric)) text_ += line(check.metric, check.got, &check);
+    }
+  }
+
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string line(const std::string& path, const std::string& value, const CheckedExpectation* check) {
+    const std::string group = path.substr(0, path.find('.'));
+    const std::string gap = group == group_ ? "" : "\n";
+    group_ = group;
+    const std::string verdict = check == nullptr ? "" : fmt::format("  {:<14} {}", check->wanted, check->is_met ? "met" : "MISSED");
+    return fmt::format("{}  {:<44} {:>12}{}\n", gap, path, value, verdict);
+  }
+
+  const std::vector<CheckedExpectation>& checks_;
+  std::string text_;
+  std::string group_;
+  std::set<std::string> shown_;  ///< paths
+};
+
+}  // namespace
+
+std::string score_table(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks) {
+  Table table(checks);
+  for (const MetricLine& figure : metric_lines(metrics)) table.add(figure);
+  table.add_rest();
+  return table.text();
+}
+
+}  // namespace patrol::app

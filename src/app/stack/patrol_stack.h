@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+
+#include "app/stack/robot_stack.h"
+
+namespace patrol::app {
+
+/// The quadruped's: it maps while it patrols. Leg odometry, levelling, SLAM, navigation, gas mission.
+class PatrolStack final : public RobotStack {
+ public:
+  /// `route` in map, whose origin is the level body pose at the start. Throws InputError when settings, robot and route do
+  /// not go together.
+  PatrolStack(const StackSettings& settings, const RobotDescription& robot, const Route& route_in_map, double map_period_s,
+              std::uint64_t seed);
+
+  void handle(const SensorMessage& message) override;
+  void handle_fall(Time now) override;
+  bool mission_is_over() const override { return mission_.is_over(); }
+
+ private:
+  std::optional<OdometryEstimate> odometry() const override { return odometry_.estimate(); }
+  OccupancyGrid map() const override { return slam_.map(); }
+  bool is_mapping() const override { return true; }
+  VelocityCommand control(Time now, const OdometryEstimate& odometry) override;
+  void handle_scan(const LaserScan& scan);
+
+  localize::BodyEstimator odometry_;
+  localize::ScanLeveler leveler_;
+  slam::GridSlam slam_;
+  inspect::Mission mission_;
+  std::optional<GasReading> newest_gas_;
+};
+
+}  // namespace patrol::app

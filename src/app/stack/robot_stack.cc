@@ -1,0 +1,78 @@
+#include "app/stack/robot_stack.h"
+
+namespace patrol::app {
+namespace {
+
+constexpr Time kControlPeriod = std::chrono::milliseconds(50);
+constexpr Time kOdometryPeriod = std::chrono::milliseconds(20);
+
+}  // namespace
+
+RobotStack::RobotStack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
+                       double map_period_s)
+    : navigator_(settings.navigation, robot, site_in_map.keep_out_lines),
+      settle_(from_seconds(settings.settle_s)),
+      map_period_(from_seconds(map_period_s)) {}
+
+void RobotStack::step(Time now) {
+  const std::optional<OdometryEstimate> odometry = this->odometry();
+  if (!odometry) return;
+  if (!first_odometry_) first_odometry_ = odometry->stamp;
+  if (now >= next_odometry_) {
+    next_odometry_ += kOdometryPeriod;
+    say(*odometry);
+  }
+  if (is_mapping() && now >= next_map_) {
+    next_map_ += map_period_;
+    publish_map(now);
+  }
+  if (now < next_control_) return;
+  next_control_ += kControlPeriod;
+  const auto lap = clock_.lap("planning");
+  command_ = control(now, *odometry);
+  command_.stamp = now;
+  say(command_);
+}
+
+void RobotStack::map_scan(slam::GridSlam& slam, const LevelScan& scan, const Pose2& T_odom_body) {
+  const auto lap = clock_.lap("slam");
+  const slam::SlamUpdate update = slam.update(scan, T_odom_body);
+  tracker_.correct(scan.stamp, T_odom_body, update.T_map_body, update.covariance);
+  say(PoseEstimate{scan.stamp, update.T_map_body, update.covariance});
+  if (update.is_keyframe) say(slam.particles());
+}
+
+plan::NavigationStep RobotStack::navigate(Time now, const PoseEstimate& pose) {
+  plan::NavigationStep step = navigator_.step(now, pose.T_map_body);
+  if (step.replanned) say(Path{now, step.path});
+  if (step.is_detour) note(now, pose, "replan", "Something stands on the path: a new one is planned.");
+  if (!step.text.empty()) note(now, pose, "navigation", step.text);
+  if (!step.recovery.empty()) note(now, pose, "recovery", step.recovery);
+  navigation_ = step.status;
+  return step;
+}
+
+inspect::NavigationFeedback RobotStack::navigation_feedback() const {
+  switch (navigation_) {
+    case plan::NavigationStatus::kArrived:
+      return inspect::NavigationFeedback::kArrived;
+    case plan::NavigationStatus::kFailed:
+      return inspect::NavigationFeedback::kFailed;
+    default:
+      return inspect::NavigationFeedback::kDriving;
+  }
+}
+
+void RobotStack::note(Time now, const PoseEstimate& pose, const char* kind, const std::string& text) {
+  say(Event{.stamp = now, .kind = kind, .subject = "", .text = text, .value = 0.0, .T_map_body = pose.T_map_body,
+            .p_map_target = pose.T_map_body.position()});
+}
+
+void RobotStack::publish_map(Time now) {
+  const auto lap = clock_.lap("slam");
+  MapUpdate update{now, map()};
+  navigator_.set_map(update.map);
+  say(std::move(update));
+}
+
+}  // namespace patrol::app

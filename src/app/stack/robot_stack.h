@@ -1,0 +1,90 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "app/stack/stack_settings.h"
+#include "core/messages.h"
+#include "core/part_clock.h"
+#include "core/robot_description.h"
+#include "core/route.h"
+#include "inspect/navigation_feedback.h"
+#include "localize/map_pose_tracker.h"
+#include "plan/navigator.h"
+#include "slam/grid_slam.h"
+
+namespace patrol::app {
+
+/// What the stack says.
+using StackMessage =
+    std::variant<OdometryEstimate, PoseEstimate, RangePoseEstimate, LocalizationTrust, ParticleSet, MapUpdate, Path, VelocityCommand, Event>;
+
+/// The robot's own software, put together. It sees sensor messages and nothing else; a recorded log can take the twin's place.
+/// Here is what every robot's has: the rhythm of odometry, map and control, the pose in map, and the navigator.
+class RobotStack {
+ public:
+  virtual ~RobotStack() = default;
+
+  virtual void handle(const SensorMessage& message) = 0;
+  /// The robot's firmware reports a fall.
+  virtual void handle_fall(Time now) = 0;
+  virtual bool mission_is_over() const = 0;
+
+  /// Mission, planning and control, once a control period; call at every tick.
+  void step(Time now);
+
+  const VelocityCommand& command() const { return command_; }
+  MapUpdate final_map(Time now) const { return {now, map()}; }
+  /// What was said since the last call, in order.
+  std::vector<StackMessage> take_messages() { return std::exchange(messages_, {}); }
+  const PartClock& clock() const { return clock_; }
+
+ protected:
+  RobotStack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, double map_period_s);
+
+  virtual std::optional<OdometryEstimate> odometry() const = 0;
+  virtual OccupancyGrid map() const = 0;
+  virtual bool is_mapping() const = 0;
+  /// Once a control period: what to do now.
+  virtual VelocityCommand control(Time now, const OdometryEstimate& odometry) = 0;
+
+  /// The first scan, which makes the map's origin, waits until odometry has settled.
+  bool has_settled(Time stamp) const { return first_odometry_ && stamp >= *first_odometry_ + settle_; }
+  /// Matches a scan, corrects the pose in map, and says both.
+  void map_scan(slam::GridSlam& slam, const LevelScan& scan, const Pose2& T_odom_body);
+  /// A step of the navigator, with what is to be told of it.
+  plan::NavigationStep navigate(Time now, const PoseEstimate& pose);
+  inspect::NavigationFeedback navigation_feedback() const;
+  void publish_map(Time now);
+  template <typename Message>
+  void say(Message&& message) {
+    messages_.emplace_back(std::forward<Message>(message));
+  }
+  void note(Time now, const PoseEstimate& pose, const char* kind, const std::string& text);
+
+  localize::MapPoseTracker tracker_;
+  plan::Navigator navigator_;
+  plan::NavigationStatus navigation_ = plan::NavigationStatus::kIdle;  ///< a control period ago
+  PartClock clock_;
+
+ private:
+  Time settle_;
+  Time map_period_;
+  std::optional<Time> first_odometry_;
+  Time next_control_{};
+  Time next_odometry_{};
+  Time next_map_{};
+  VelocityCommand command_;
+  std::vector<StackMessage> messages_;
+};
+
+/// For std::visit.
+template <typename... Handlers>
+struct Overloaded : Handlers... {
+  using Handlers::operator()...;
+};
+
+}  // namespace patrol::app

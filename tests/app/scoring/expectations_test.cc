@@ -1,0 +1,101 @@
+#include "app/scoring/expectations.h"
+
+#include <gtest/gtest.h>
+
+namespace patrol::app {
+namespace {
+
+io::Metrics make_metrics() {
+  return io::Metrics::parse(R"({
+    "mission": {"completed": true, "collisions": 2},
+    "pose": {"ate_rmse_m": 0.0712345, "drift_percent": null},
+    "stations": [{"name": "box", "map_error_m": 0.04}, {"name": "well", "map_error_m": 0.09}]
+  })");
+}
+
+io::Expectation at_most(double max) {
+  io::Expectation expectation;
+  expectation.max = max;
+  return expectation;
+}
+
+io::Expectation at_least(double min) {
+  io::Expectation expectation;
+  expectation.min = min;
+  return expectation;
+}
+
+io::Expectation band(double min, double max) { return {.min = min, .max = max}; }
+
+io::Expectation boolean(bool value) {
+  return {.min = value ? 1.0 : 0.0, .max = value ? 1.0 : 0.0, .is_boolean = true};
+}
+
+CheckedExpectation check(const std::string& metric, const io::Expectation& expectation) {
+  const std::vector<CheckedExpectation> checks = check_expectations({{metric, expectation}}, make_metrics());
+  EXPECT_EQ(checks.size(), 1u);
+  return checks.at(0);
+}
+
+TEST(Expectations, AnUpperBoundIsMetUpToItself) {
+  EXPECT_TRUE(check("pose.ate_rmse_m", at_most(0.08)).is_met);
+  EXPECT_TRUE(check("pose.ate_rmse_m", at_most(0.0712345)).is_met);
+  EXPECT_FALSE(check("pose.ate_rmse_m", at_most(0.0712344)).is_met);
+}
+
+TEST(Expectations, ALowerBoundIsMetDownToItself) {
+  EXPECT_TRUE(check("mission.collisions", at_least(2.0)).is_met);
+  EXPECT_FALSE(check("mission.collisions", at_least(2.001)).is_met);
+}
+
+// Better than the band is as wrong as worse: then nobody understands the result.
+TEST(Expectations, ABandRefusesBothSides) {
+  EXPECT_TRUE(check("pose.ate_rmse_m", band(0.05, 0.10)).is_met);
+  EXPECT_FALSE(check("pose.ate_rmse_m", band(0.08, 0.10)).is_met);
+  EXPECT_FALSE(check("pose.ate_rmse_m", band(0.05, 0.07)).is_met);
+}
+
+TEST(Expectations, ANumberAloneMustBeEqual) {
+  EXPECT_TRUE(check("mission.collisions", band(2.0, 2.0)).is_met);
+  EXPECT_FALSE(check("mission.collisions", band(0.0, 0.0)).is_met);
+}
+
+TEST(Expectations, BooleansMustBeThatValue) {
+  EXPECT_TRUE(check("mission.completed", boolean(true)).is_met);
+  EXPECT_FALSE(check("mission.completed", boolean(false)).is_met);
+}
+
+TEST(Expectations, WhatWasNotMeasuredIsNotMet) {
+  for (const char* metric :
+       {"pose.absent_m", "pose.drift_percent", "nothing", "stations.7.map_error_m", "pose"}) {
+    const CheckedExpectation missing = check(metric, band(-1e9, 1e9));
+    EXPECT_FALSE(missing.is_measured) << metric;
+    EXPECT_FALSE(missing.is_met) << metric;
+    EXPECT_EQ(missing.got, "not measured") << metric;
+  }
+}
+
+TEST(Expectations, StationsGoByNameOrPlace) {
+  EXPECT_EQ(check("stations.well.map_error_m", at_most(1.0)).got, "0.09");
+  EXPECT_EQ(check("stations.0.map_error_m", at_most(1.0)).got, "0.04");
+}
+
+TEST(Expectations, SaysWhatIsWantedAndWhatItGot) {
+  EXPECT_EQ(check("pose.ate_rmse_m", at_most(0.15)).wanted, "<= 0.15");
+  EXPECT_EQ(check("pose.ate_rmse_m", at_least(0.01)).wanted, ">= 0.01");
+  EXPECT_EQ(check("pose.ate_rmse_m", band(0.01, 0.15)).wanted, "0.01 ... 0.15");
+  EXPECT_EQ(check("mission.collisions", band(0.0, 0.0)).wanted, "= 0");
+  EXPECT_EQ(check("mission.completed", boolean(false)).wanted, "false");
+  EXPECT_EQ(check("mission.completed", boolean(false)).got, "true");
+  EXPECT_EQ(check("pose.ate_rmse_m", at_most(0.15)).got, "0.07123");
+}
+
+TEST(Expectations, OneMissedOfManyIsNotAllMet) {
+  EXPECT_TRUE(all_met({}));
+  EXPECT_TRUE(all_met(check_expectations({{"mission.completed", boolean(true)}}, make_metrics())));
+  EXPECT_FALSE(all_met(check_expectations(
+      {{"mission.completed", boolean(true)}, {"mission.collisions", band(0.0, 0.0)}}, make_metrics())));
+}
+
+}  // namespace
+}  // namespace patrol::app
