@@ -21,6 +21,7 @@ namespace {
 struct Call {
   RunOptions run;
   ScoreOptions score;
+  LocalizabilityOptions localizability;
   ReplayOptions replay;
   ReportOptions report;
   std::filesystem::path verify_run;
@@ -28,6 +29,7 @@ struct Call {
   std::filesystem::path collect_root;
   std::vector<std::filesystem::path> collect_parts;
   BudgetOptions budget;
+  FaultsOptions faults;
   TestOptions test;
   std::function<ExitCode()> chosen;
 };
@@ -37,6 +39,7 @@ void add_run(CLI::App& app, Call& call) {
   command->add_option("scenario", call.run.scenario, "Scenario file (YAML)")->required();
   command->add_option("--set", call.run.overrides, "Override a setting: path=value; may be repeated")->take_all();
   command->add_option("--seed", call.run.seed, "Seed of every random stream");
+  command->add_flag("--watch", call.run.watch, "Show the run on the terminal while it goes: map, robot, figures, events");
   command->add_option("--out", call.run.out, "Run directory to leave");
   command->callback([&] { call.chosen = [&] { return run_command(call.run); }; });
 }
@@ -49,6 +52,15 @@ void add_score(CLI::App& app, Call& call) {
   command->add_option("--map", call.score.map, "Built map (map_server YAML)");
   command->add_option("--reference-map", call.score.reference_map, "Reference map (map_server YAML)");
   command->callback([&] { call.chosen = [&] { return score_command(call.score); }; });
+}
+
+void add_localizability(CLI::App& app, Call& call) {
+  CLI::App* command = app.add_subcommand("localizability", "Where a world's surfaces tell a lidar its place, and where they do not: a heat map");
+  command->add_option("scenario", call.localizability.scenario, "Scenario file (YAML)")->required();
+  command->add_option("--set", call.localizability.overrides, "Override a setting: path=value; may be repeated")->take_all();
+  command->add_option("--step-m", call.localizability.step_m, "From place to place, m")->capture_default_str();
+  command->add_option("--out", call.localizability.out, "Directory to leave")->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return localizability_command(call.localizability); }; });
 }
 
 void add_replay(CLI::App& app, Call& call) {
@@ -66,8 +78,8 @@ void add_replay(CLI::App& app, Call& call) {
 }
 
 void add_report(CLI::App& app, Call& call) {
-  CLI::App* command = app.add_subcommand("report", "One HTML page that tells all of a run and fetches nothing");
-  command->add_option("directory", call.report.directory, "Run directory")->required();
+  CLI::App* command = app.add_subcommand("report", "One HTML page that tells all of a run, a sweep, a budget or a fault matrix, and fetches nothing");
+  command->add_option("directory", call.report.directory, "Directory of a run or of a sweep")->required();
   command->add_option("--out", call.report.out, "File to write (default: report.html in the directory)");
   command->callback([&] { call.chosen = [&] { return report_command(call.report); }; });
 }
@@ -76,6 +88,12 @@ void add_verify(CLI::App& app, Call& call) {
   CLI::App* command = app.add_subcommand("verify", "Run a run again and name the first difference");
   command->add_option("run", call.verify_run, "Run directory")->required();
   command->callback([&] { call.chosen = [&] { return verify_command(call.verify_run); }; });
+}
+
+void add_batch(CLI::App& command, BatchOptions& batch) {
+  command.add_option("--jobs", batch.jobs, "Runs at a time; 0: one for each core")->capture_default_str();
+  command.add_option("--run-limit-s", batch.run_limit_s, "Wall time of a run after which it is given up, s")->capture_default_str();
+  command.add_option("--keep", batch.keep, "Run directories that stay: none, failed, all")->capture_default_str();
 }
 
 void add_sweep(CLI::App& app, Call& call) {
@@ -90,10 +108,8 @@ void add_sweep(CLI::App& app, Call& call) {
   command->add_option("--metric", sweep.metrics, "Figures to compare; may be repeated")->take_all()->capture_default_str();
   command->add_flag("--stop-when-decided", sweep.stop_when_decided, "Leave off once the first metric is decided");
   command->add_option("--margin", sweep.margin, "Differences of the first metric below this do not matter")->capture_default_str();
-  command->add_option("--jobs", sweep.jobs, "Runs at a time; 0: one for each core")->capture_default_str();
-  command->add_option("--run-limit-s", sweep.run_limit_s, "Wall time of a run after which it is given up, s")->capture_default_str();
+  add_batch(*command, sweep.batch);
   command->add_option("--shard", sweep.shard, "i/n: do only this part of the runs");
-  command->add_option("--keep", sweep.keep, "Run directories that stay: none, failed, all")->capture_default_str();
   command->add_option("--engine", sweep.engine, "local or slurm")->capture_default_str();
   command->add_option("--slurm-tasks", sweep.slurm_tasks, "Tasks of the job array, each a shard")->capture_default_str();
   command->add_option("--slurm-option", sweep.slurm_options, "Option for sbatch, --slurm-option=--partition=long; may be repeated")->take_all();
@@ -116,10 +132,23 @@ void add_budget(CLI::App& app, Call& call) {
   command->add_option("--set", budget.overrides, "Override a setting in every run: path=value; may be repeated")->take_all();
   command->add_option("--seeds", budget.seeds, "N (seeds 1 ... N) or A..B")->capture_default_str();
   command->add_option("--metric", budget.metrics, "Figures to take apart; may be repeated")->take_all()->capture_default_str();
-  command->add_option("--jobs", budget.jobs, "Runs at a time; 0: one for each core")->capture_default_str();
-  command->add_option("--run-limit-s", budget.run_limit_s, "Wall time of a run after which it is given up, s")->capture_default_str();
+  add_batch(*command, budget.batch);
   command->add_option("--out", budget.out, "Directory of the budget; results that lie there are not made again")->capture_default_str();
   command->callback([&] { call.chosen = [&] { return budget_command(call.budget); }; });
+}
+
+void add_faults(CLI::App& app, Call& call) {
+  FaultsOptions& faults = call.faults;
+  CLI::App* command = app.add_subcommand("faults", "What each fault of each sensor leads to: survived, stopped, unsafe");
+  command->add_option("scenario", faults.scenario, "Scenario file (YAML)")->required();
+  command->add_option("--set", faults.overrides, "Override a setting in every run: path=value; may be repeated")->take_all();
+  command->add_option("--seeds", faults.seeds, "N (seeds 1 ... N) or A..B")->capture_default_str();
+  command->add_option("--metric", faults.metrics, "Figures to set beside those without a fault; may be repeated")->take_all()->capture_default_str();
+  command->add_option("--start-s", faults.start_s, "When each fault begins, s")->capture_default_str();
+  command->add_option("--duration-s", faults.duration_s, "How long it lasts, s")->capture_default_str();
+  add_batch(*command, faults.batch);
+  command->add_option("--out", faults.out, "Directory of the results; those that lie there are not made again")->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return faults_command(call.faults); }; });
 }
 
 void add_test(CLI::App& app, Call& call) {
@@ -127,9 +156,7 @@ void add_test(CLI::App& app, Call& call) {
   CLI::App* command = app.add_subcommand("test", "Run every scenario of a folder and leave JUnit XML and a summary");
   command->add_option("scenarios", test.scenarios, "Folder of scenarios, or one of them")->required();
   command->add_option("--set", test.overrides, "Override a setting in every run: path=value; may be repeated")->take_all();
-  command->add_option("--jobs", test.jobs, "Runs at a time; 0: one for each core")->capture_default_str();
-  command->add_option("--run-limit-s", test.run_limit_s, "Wall time of a run after which it is given up, s")->capture_default_str();
-  command->add_option("--keep", test.keep, "Run directories that stay: none, failed, all")->capture_default_str();
+  add_batch(*command, test.batch);
   command->add_option("--out", test.out, "Directory to leave")->capture_default_str();
   command->callback([&] { call.chosen = [&] { return test_command(call.test); }; });
 }
@@ -174,7 +201,10 @@ int run_command_line(int argc, const char* const* argv) {
   app.require_subcommand(1);
 
   Call call;
-  for (const auto add : {add_run, add_score, add_replay, add_report, add_verify, add_sweep, add_collect, add_budget, add_test, add_list}) add(app, call);
+  for (const auto add : {add_run, add_score, add_localizability, add_replay, add_report, add_verify, add_sweep, add_collect, add_budget, add_faults,
+                         add_test, add_list}) {
+    add(app, call);
+  }
 
   try {
     refuse_unknown_command(app, argc, argv);

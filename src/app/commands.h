@@ -17,6 +17,7 @@ struct RunOptions {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;  ///< "path=value"
   std::optional<std::uint64_t> seed;
+  bool watch = false;  ///< show it on the terminal while it goes
   std::optional<std::filesystem::path> out;
 };
 ExitCode run_command(const RunOptions& options);
@@ -30,6 +31,15 @@ struct ScoreOptions {
   std::filesystem::path reference_map;
 };
 ExitCode score_command(const ScoreOptions& options);
+
+struct LocalizabilityOptions {
+  std::filesystem::path scenario;
+  std::vector<std::string> overrides;
+  double step_m = 0.5;
+  std::filesystem::path out = "out/localizability";
+};
+/// What one scan can tell, everywhere in a scenario's world.
+ExitCode localizability_command(const LocalizabilityOptions& options);
 
 struct ReplayOptions {
   std::filesystem::path run;
@@ -45,7 +55,7 @@ struct ReplayOptions {
 ExitCode replay_command(const ReplayOptions& options);
 
 struct ReportOptions {
-  std::filesystem::path directory;  ///< of a run
+  std::filesystem::path directory;  ///< of a run, a sweep, a budget or a fault matrix
   std::optional<std::filesystem::path> out;
 };
 ExitCode report_command(const ReportOptions& options);
@@ -61,6 +71,9 @@ ExitCode collect_command(const std::filesystem::path& root, const std::vector<st
 
 /// Takes one imperfection away at a time, and says how much of the errors each owns.
 ExitCode budget_command(const BudgetOptions& options);
+
+/// Runs a scenario with every fault that its robot's sensors can have, and says what each led to.
+ExitCode faults_command(const FaultsOptions& options);
 
 /// Runs every scenario of a folder against what it expects.
 ExitCode test_command(const TestOptions& options);

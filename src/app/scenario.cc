@@ -1,6 +1,7 @@
 #include "app/scenario.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -42,6 +43,14 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
   return file;
 }
 
+/// A file below the world's folder that a key names.
+std::filesystem::path find_named_file(const std::filesystem::path& world, const char* key, const std::string& name) {
+  const std::filesystem::path file = world / name;
+  if (!std::filesystem::exists(file)) throw InputError(fmt::format("{} = {}: there is no {}", key, name, file.string()));
+  if (std::filesystem::is_directory(file)) throw InputError(fmt::format("{} = {}: {} is a folder", key, name, file.string()));
+  return file;
+}
+
 }  // namespace
 
 Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root) {
@@ -77,18 +86,24 @@ std::filesystem::path find_data_root(const std::filesystem::path& scenario) {
   return PATROL_SOURCE_DIR;
 }
 
+std::vector<std::filesystem::path> named_files(const Scenario& scenario, const std::filesystem::path& data_root) {
+  const std::filesystem::path world = data_root / "worlds" / scenario.world;
+  const std::pair<const char*, const std::string&> named[] = {{"mission", scenario.mission}, {"map", scenario.map}, {"goals", scenario.goals},
+                                                              {"remote.drive", scenario.remote.drive}, {"remote.recorded", scenario.remote.recorded}};
+  std::vector<std::filesystem::path> files;
+  for (const auto& [key, name] : named) {
+    if (!name.empty()) files.push_back(find_named_file(world, key, name));
+  }
+  if (!scenario.map.empty()) files.push_back(io::map_image(find_named_file(world, "map", scenario.map)));
+  return files;
+}
+
 ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root) {
   ScenarioFiles files;
   files.world_xml = find_definition(data_root, "worlds", "world", scenario.world, ".xml");
   files.robot_urdf = find_definition(data_root, "models", "robot", scenario.robot, ".urdf");
   files.robot = io::load_robot_description(files.robot_urdf.string());
-  /// A file below the world's folder that a key names.
-  const auto named_file = [&](const char* key, const std::string& name) {
-    const std::filesystem::path file = files.world_xml.parent_path() / name;
-    if (!std::filesystem::exists(file)) throw InputError(fmt::format("{} = {}: there is no {}", key, name, file.string()));
-    if (std::filesystem::is_directory(file)) throw InputError(fmt::format("{} = {}: {} is a folder", key, name, file.string()));
-    return file;
-  };
+  const auto named_file = [&](const char* key, const std::string& name) { return find_named_file(files.world_xml.parent_path(), key, name); };
   const io::RouteFile route = io::load_route(named_file("mission", scenario.mission));
   files.route = route.route;
   files.T_site_start = route.T_site_start;

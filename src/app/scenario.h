@@ -160,6 +160,10 @@ void save_scenario(const std::filesystem::path& file, const Scenario& scenario, 
 /// working directory, else the source tree that the program was built from.
 std::filesystem::path find_data_root(const std::filesystem::path& scenario);
 
+/// Where the files lie that a scenario names: mission, map and its image, goals, remote control. Throws InputError, naming file and key,
+/// when one is missing.
+std::vector<std::filesystem::path> named_files(const Scenario& scenario, const std::filesystem::path& data_root);
+
 /// The files that a scenario names, found and read.
 struct ScenarioFiles {
   std::filesystem::path world_xml;

@@ -7,26 +7,10 @@
 
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "io/markup_text.h"
 
 namespace patrol::io {
 namespace {
-
-/// Text for XML 1.0, attributes included; control characters have no place in it.
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\n': out += "&#10;"; break;
-      case '\t': out += "&#9;"; break;
-      default: out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return out;
-}
 
 auto count(const std::vector<JunitCase>& cases, JunitResult result) {
   return std::count_if(cases.begin(), cases.end(), [&](const JunitCase& c) { return c.result == result; });
@@ -43,23 +27,23 @@ std::string outcome(const JunitCase& test) {
   const char* element = test.result == JunitResult::kFailure ? "failure"
                         : test.result == JunitResult::kError ? "error"
                                                              : "skipped";
-  if (test.details.empty()) return fmt::format("      <{} message=\"{}\"/>\n", element, escaped(test.message));
-  return fmt::format("      <{0} message=\"{1}\">{2}</{0}>\n", element, escaped(test.message), escaped(test.details));
+  if (test.details.empty()) return fmt::format("      <{} message=\"{}\"/>\n", element, escaped_markup(test.message));
+  return fmt::format("      <{0} message=\"{1}\">{2}</{0}>\n", element, escaped_markup(test.message), escaped_markup(test.details));
 }
 
 std::string to_xml(const JunitCase& test) {
   const std::string head = fmt::format(R"(    <testcase classname="{}" name="{}" time="{:.3f}")",
-                                       escaped(test.class_name), escaped(test.name), test.time_s);
+                                       escaped_markup(test.class_name), escaped_markup(test.name), test.time_s);
   if (test.result == JunitResult::kPassed) return head + "/>\n";
   return head + ">\n" + outcome(test) + "    </testcase>\n";
 }
 
 std::string to_xml(const JunitSuite& suite) {
-  std::string xml = fmt::format("  <testsuite name=\"{}\" {}>\n", escaped(suite.name), tally(suite.cases, suite.time_s));
+  std::string xml = fmt::format("  <testsuite name=\"{}\" {}>\n", escaped_markup(suite.name), tally(suite.cases, suite.time_s));
   if (!suite.properties.empty()) {
     xml += "    <properties>\n";
     for (const auto& [name, value] : suite.properties) {
-      xml += fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", escaped(name), escaped(value));
+      xml += fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", escaped_markup(name), escaped_markup(value));
     }
     xml += "    </properties>\n";
   }

@@ -143,6 +143,8 @@ void save_map(const std::filesystem::path& file, const OccupancyGrid& map) {
                               kOccupiedThreshold, kFreeThreshold));
 }
 
+std::filesystem::path map_image(const std::filesystem::path& file) { return load_map_file(file).image; }
+
 OccupancyGrid load_map(const std::filesystem::path& file) {
   const MapFile about = load_map_file(file);
   const Image image = load_pgm(about.image);

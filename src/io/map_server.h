@@ -11,6 +11,8 @@ namespace patrol::io {
 /// not turned, nor of another mode. Throws InputError with the file, the line and the key.
 void save_map(const std::filesystem::path& file, const OccupancyGrid& map);
 OccupancyGrid load_map(const std::filesystem::path& file);
+/// The image that a map's YAML names. Throws likewise.
+std::filesystem::path map_image(const std::filesystem::path& file);
 
 /// Errors of a map's occupied cells, on its own cells: a PGM, in millimetres, 254 for that and more, 255 where nothing is occupied (NaN in
 /// memory). Throws InputError when the image is not of the map's size.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <boost/math/distributions/students_t.hpp>
 
@@ -12,6 +13,21 @@ namespace {
 double student_t(std::size_t degrees_of_freedom, double level) {
   const boost::math::students_t distribution(static_cast<double>(degrees_of_freedom));
   return boost::math::quantile(boost::math::complement(distribution, (1.0 - level) / 2.0));
+}
+
+/// [value] from 1; equal values share the mean of their ranks.
+std::vector<double> ranks_of(const std::vector<double>& values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::vector<double> ranks(values.size());
+  for (std::size_t first = 0; first < order.size();) {
+    std::size_t end = first;
+    while (end < order.size() && values[order[end]] == values[order[first]]) ++end;
+    for (std::size_t i = first; i < end; ++i) ranks[order[i]] = 0.5 * static_cast<double>(first + 1 + end);
+    first = end;
+  }
+  return ranks;
 }
 
 }  // namespace
@@ -61,6 +77,29 @@ std::optional<Interval> mean_interval(const std::vector<double>& values, double 
   const double center = mean(values);
   const double half = student_t(values.size() - 1, level) * std::sqrt(variance(values) / static_cast<double>(values.size()));
   return Interval{.center = center, .low = center - half, .high = center + half};
+}
+
+std::optional<double> rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  const std::vector<double> ranks_a = ranks_of(a), ranks_b = ranks_of(b);
+  const double spread = std::sqrt(variance(ranks_a) * variance(ranks_b));
+  if (!(spread > 0.0)) return std::nullopt;
+  const double mean_a = mean(ranks_a), mean_b = mean(ranks_b);
+  double covariance = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) covariance += (ranks_a[i] - mean_a) * (ranks_b[i] - mean_b);
+  return covariance / static_cast<double>(a.size() - 1) / spread;
+}
+
+std::optional<double> chance_of_order(const std::vector<double>& values, const std::vector<bool>& is_marked) {
+  const std::vector<double> ranks = ranks_of(values);
+  double sum = 0.0, num_marked = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!is_marked[i]) continue;
+    sum += ranks[i];
+    num_marked += 1.0;
+  }
+  const double num_others = static_cast<double>(values.size()) - num_marked;
+  if (num_marked == 0.0 || num_others == 0.0) return std::nullopt;
+  return (sum - 0.5 * num_marked * (num_marked + 1.0)) / (num_marked * num_others);
 }
 
 }  // namespace patrol::score

@@ -29,4 +29,11 @@ struct Interval {
 /// Confidence interval of the mean, by Student's t; none for fewer than two values, which say nothing of their spread.
 std::optional<Interval> mean_interval(const std::vector<double>& values, double level = 0.95);
 
+/// Spearman's rank correlation, ties sharing their mean rank, -1 ... 1; none when either list does not vary.
+std::optional<double> rank_correlation(const std::vector<double>& a, const std::vector<double>& b);
+
+/// Chance that a value of a marked one is greater than a value of an unmarked one, ties counting half (area under the ROC curve,
+/// Mann-Whitney U / n m); none without both kinds.
+std::optional<double> chance_of_order(const std::vector<double>& values, const std::vector<bool>& is_marked);
+
 }  // namespace patrol::score

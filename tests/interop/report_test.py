@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Chromium opens the report of a run: nothing is fetched, nothing complains, nothing overflows, everything is drawn, and it prints.
+"""Chromium opens the reports of a run, a sweep and a test: nothing is fetched, nothing complains, nothing overflows, everything is drawn, and it prints.
 
-usage: report_test.py PATROL RUN_DIRECTORY
+usage: report_test.py PATROL SOURCE_DIR RUN_DIRECTORY
 """
 import base64
 import json
@@ -14,7 +14,10 @@ import unittest
 
 from selenium import webdriver
 
-PATROL, RUN = sys.argv[1], sys.argv[2]
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "app"))
+from standing_still import PATROL, SOURCE, standing_still  # noqa: E402
+
+RUN = sys.argv[3]
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 
 # Share of a canvas's pixels that are not transparent; a drawing has axes, a grid and a curve.
@@ -35,13 +38,15 @@ def open_browser():
     return webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
 
 
-class Report(unittest.TestCase):
+class PageCase:
+    """What holds for every page."""
+
     @classmethod
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
-        cls.page = pathlib.Path(folder.name) / "report.html"
-        subprocess.run([PATROL, "report", RUN, "--out", str(cls.page)], check=True, capture_output=True, timeout=120)
+        cls.path = pathlib.Path(folder.name)
+        cls.page = cls.make_page()
         cls.browser = open_browser()
         cls.addClassCleanup(cls.browser.quit)
 
@@ -70,6 +75,27 @@ class Report(unittest.TestCase):
                 self.run_script("document.querySelectorAll('details').forEach((one) => { one.open = true; });")
                 self.assertLessEqual(self.run_script("return document.documentElement.scrollWidth;"), width, "unfolded")
 
+    def test_the_verdict_comes_first(self):
+        self.show(400)
+        self.assertLess(self.run_script("return document.querySelector('main .word').getBoundingClientRect().bottom;"), 500)
+
+    def test_it_prints(self):
+        self.show(1280)
+        pdf = base64.b64decode(self.browser.print_page())
+        self.assertTrue(pdf.startswith(b"%PDF"))
+        self.assertGreater(len(pdf), 20_000)
+
+
+def report(directory, page):
+    subprocess.run([PATROL, "report", directory, "--out", page], check=True, capture_output=True, timeout=120)
+    return page
+
+
+class RunReport(PageCase, unittest.TestCase):
+    @classmethod
+    def make_page(cls):
+        return report(RUN, cls.path / "report.html")
+
     def test_every_plot_is_drawn(self):
         for width in (400, 1280):
             self.show(width)
@@ -89,21 +115,41 @@ class Report(unittest.TestCase):
         self.run_script("document.querySelector('.controls button').click();")
         self.assertAlmostEqual(self.run_script(shown), whole / 2, delta=0.01)
 
-    def test_the_verdict_comes_first(self):
+    def test_the_run_passed(self):
         self.show(400)
         self.assertEqual(self.run_script("return document.querySelector('main .word').textContent;"), "Passed")
-        self.assertLess(self.run_script("return document.querySelector('.word').getBoundingClientRect().bottom;"), 500)
-
-    def test_it_prints(self):
-        self.show(1280)
-        pdf = base64.b64decode(self.browser.print_page())
-        self.assertTrue(pdf.startswith(b"%PDF"))
-        self.assertGreater(len(pdf), 50_000)
 
     def test_the_same_run_gives_the_same_bytes(self):
-        again = self.page.with_name("again.html")
-        subprocess.run([PATROL, "report", RUN, "--out", str(again)], check=True, capture_output=True, timeout=120)
-        self.assertEqual(again.read_bytes(), self.page.read_bytes())
+        self.assertEqual(report(RUN, self.path / "again.html").read_bytes(), self.page.read_bytes())
+
+
+class SweepReport(PageCase, unittest.TestCase):
+    @classmethod
+    def make_page(cls):
+        scenario = standing_still(cls.path)
+        sweep = cls.path / "sweep"
+        subprocess.run([PATROL, "sweep", scenario, "--vary", "sensors.lidar.range_noise_m=0.0,0.05", "--seeds", "2", "--out", sweep], check=True,
+                       capture_output=True, timeout=120, cwd=SOURCE)
+        return report(sweep, cls.path / "report.html")
+
+    def test_each_metric_has_its_boxes_and_its_table(self):
+        self.show(1280)
+        self.assertEqual(self.run_script("return document.querySelectorAll('section').length;"), 1 + 4 + 1)
+        self.assertGreaterEqual(self.run_script("return document.querySelectorAll('.boxes .median').length;"), 4 * 2)
+        self.assertGreaterEqual(self.run_script("return document.querySelectorAll('.spans .span').length;"), 1)
+
+
+class TestReport(PageCase, unittest.TestCase):
+    @classmethod
+    def make_page(cls):
+        standing_still(cls.path, "expect:\n  mission.completed: true\n")
+        out = cls.path / "out"
+        subprocess.run([PATROL, "test", cls.path, "--out", out], check=True, capture_output=True, timeout=120, cwd=SOURCE)
+        return out / "report.html"
+
+    def test_it_passed(self):
+        self.show(1280)
+        self.assertEqual(self.run_script("return document.querySelector('main .word').textContent;"), "Passed")
 
 
 if __name__ == "__main__":

@@ -72,5 +72,21 @@ TEST(MeanInterval, AtNinetyNinePercentIsWiderByTheQuantiles) {
 
 TEST(MeanInterval, OneValueHasNone) { EXPECT_FALSE(mean_interval({1.0}).has_value()); }
 
+TEST(RankCorrelation, IsOneForAnyGrowingRelationAndMinusOneForAFallingOne) {
+  EXPECT_DOUBLE_EQ(*rank_correlation({1, 2, 3, 4}, {1, 8, 27, 64}), 1.0);
+  EXPECT_DOUBLE_EQ(*rank_correlation({1, 2, 3, 4}, {9, 5, 2, -7}), -1.0);
+  EXPECT_FALSE(rank_correlation({1, 2, 3}, {5, 5, 5}));
+}
+
+// Ranks 1, 2.5, 2.5, 4 and 1, 2, 3, 4: 4.5 / sqrt(4.5 * 5).
+TEST(RankCorrelation, TiesShareTheirMeanRank) { EXPECT_NEAR(*rank_correlation({10, 20, 20, 30}, {1, 2, 3, 4}), 4.5 / std::sqrt(22.5), 1e-12); }
+
+TEST(ChanceOfOrder, CountsPairsAndTiesHalf) {
+  EXPECT_DOUBLE_EQ(*chance_of_order({1, 2, 3, 4}, {false, false, true, true}), 1.0);
+  EXPECT_DOUBLE_EQ(*chance_of_order({1, 3, 2, 4}, {false, false, true, true}), 0.75);
+  EXPECT_DOUBLE_EQ(*chance_of_order({7, 7}, {false, true}), 0.5);
+  EXPECT_FALSE(chance_of_order({1, 2}, {true, true}));
+}
+
 }  // namespace
 }  // namespace patrol::score

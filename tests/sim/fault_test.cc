@@ -198,5 +198,13 @@ TEST(Fault, OneThatNeverComesIsReportedAsNotExecuted) {
   EXPECT_FALSE(reports[1].is_executed);  // that lidar is switched off
 }
 
+TEST(Fault, AFreezeBeforeTheFirstReadingHasNothingToRepeatAndIsNotExecuted) {
+  SensorSuiteSettings settings;
+  settings.gnss.rate_hz = 1.0;
+  std::vector<FaultReport> reports;
+  HeldRobot().run(settings, {fault("gnss", "freeze", 0.0, 0.5)}, 0.6, &reports);
+  EXPECT_FALSE(reports[0].is_executed);
+}
+
 }  // namespace
 }  // namespace patrol::sim

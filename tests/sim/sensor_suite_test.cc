@@ -191,7 +191,7 @@ TEST(SensorSuite, AnEnabledSensorWithoutItsFrameIsRefusedByName) {
 TEST(SensorSuite, EveryFaultOfUwbIsExecutedAndOneOfASilentSensorIsNot) {
   const Ride ride = stand(with_uwb(), 2.0,
                           {fault("uwb", "silence", 0.5, 0.1), fault("uwb", "drift", 1.0, 0.5), fault("hall", "silence", 0.0, 9.0),
-                           fault("uwb", "spikes", 1.5, 0.2), fault("remote", "silence", 0.0, 9.0)});
+                           fault("uwb", "spikes", 1.0, 1.0), fault("remote", "silence", 0.0, 9.0)});
   ASSERT_EQ(ride.faults.size(), 5u);
   const std::vector<bool> executed = {true, true, false, true, false};
   for (std::size_t i = 0; i < executed.size(); ++i) EXPECT_EQ(ride.faults[i].is_executed, executed[i]) << i;

@@ -20,7 +20,8 @@ namespace {
 RunVerdict verdict_of_run(const BatchRun& run, const std::filesystem::path& work) {
   try {
     const Scenario scenario = load_scenario(run.scenario, run.overrides);
-    return run_once(scenario, run.scenario.stem().string(), find_data_root(run.scenario), work, [](Time, double) { return true; }).value();
+    Unobserved nobody;
+    return run_once(scenario, run.scenario.stem().string(), find_data_root(run.scenario), work, nobody).value();
   } catch (const InputError& error) {
     return {.end = "wrong input", .code = ExitCode::kWrongInput, .message = error.what(), .metrics = {}, .checks = {}, .events = {}};
   } catch (const std::exception& error) {

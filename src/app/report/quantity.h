@@ -22,6 +22,19 @@ inline Quantity length(double length_m) {
   return {fmt::format("{:.{}f}", length_m, size_m < 100.0 ? 1 : 0), "m"};
 }
 
+/// What people read a metric in, by the unit in its name.
+struct Unit {
+  double factor = 1.0;
+  std::string name;
+};
+
+inline Unit unit_of(const std::string& metric) {
+  if (metric.ends_with("_m")) return {100.0, "cm"};
+  if (metric.ends_with("_deg")) return {1.0, "°"};
+  if (metric.ends_with("_s")) return {1.0, "s"};
+  return {};
+}
+
 inline Quantity angle(double angle_deg) { return {fmt::format("{:.{}f}", angle_deg, std::abs(angle_deg) < 10.0 ? 2 : 1), "°"}; }
 
 }  // namespace patrol::app

@@ -2,17 +2,33 @@
 
 #include "app/commands.h"
 #include "app/report/run_page.h"
+#include "app/report/sweep_page.h"
+#include "app/sweep/sweep_directory.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "render/report/page.h"
 
 namespace patrol::app {
+namespace {
+
+
+render::Page page_of(const std::filesystem::path& root, const std::filesystem::path& page_file) {
+  if (!std::filesystem::exists(SweepDirectory{root}.manifest())) return run_page(read_run_contents(root), page_file);
+  const SweepDirectory directory = open_sweep_directory(root);
+  const SweepManifest manifest = load_manifest(directory.manifest());
+  const SweepRows rows = load_rows(manifest, directory.store());
+  const SweepProgress progress = progress_of(manifest, rows);
+  if (progress.needed.empty()) return sweep_page(manifest, rows, progress);
+  throw InputError(fmt::format("{}: {} of {} runs have no result yet: there is nothing to report", root.string(), progress.needed.size(), progress.counted.size()));
+}
+
+}  // namespace
 
 ExitCode report_command(const ReportOptions& options) {
   const std::filesystem::path out = options.out.value_or(options.directory / "report.html");
   std::string html;
   try {
-    html = render::to_html(run_page(read_run_contents(options.directory), out));
+    html = render::to_html(page_of(options.directory, out));
   } catch (const io::Metrics::exception& error) {
     throw InputError(fmt::format("{}: metrics.json is not as a run leaves it: {}", options.directory.string(), error.what()));
   }

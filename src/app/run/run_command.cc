@@ -1,8 +1,11 @@
+#include <memory>
+
 #include <fmt/format.h>
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
 #include "app/run/run_once.h"
+#include "app/run/terminal_watch.h"
 #include "app/scoring/goal_table.h"
 #include "app/scoring/score_table.h"
 
@@ -20,6 +23,27 @@ Scenario scenario_of(const RunOptions& options) {
   return load_scenario(options.scenario, overrides);
 }
 
+/// One line that tells how far the run is.
+class ProgressLine final : public RunObserver {
+ public:
+  explicit ProgressLine(const std::string& name) : name_(name) {}
+
+  bool go_on(Time now, double distance_m) override {
+    bar_.show(fmt::format("{}  {:6.1f} s simulated  {:6.1f} m walked", name_, to_seconds(now), distance_m));
+    return !interrupt_.is_interrupted();
+  }
+
+ private:
+  std::string name_;
+  ProgressBar bar_;
+  InterruptGuard interrupt_;
+};
+
+std::unique_ptr<RunObserver> observer_of(const RunOptions& options, const std::string& name) {
+  if (options.watch) return std::make_unique<TerminalWatch>(name);
+  return std::make_unique<ProgressLine>(name);
+}
+
 }  // namespace
 
 ExitCode run_command(const RunOptions& options) {
@@ -27,13 +51,9 @@ ExitCode run_command(const RunOptions& options) {
   const std::string name = options.scenario.stem().string();
   const std::filesystem::path root = options.out.value_or(default_directory(options, scenario));
 
-  ProgressBar bar;
-  const InterruptGuard interrupt;
-  const std::optional<RunVerdict> verdict =
-      run_once(scenario, name, find_data_root(options.scenario), root, [&](Time now, double distance_m) {
-        bar.show(fmt::format("{}  {:6.1f} s simulated  {:6.1f} m walked", name, to_seconds(now), distance_m));
-        return !interrupt.is_interrupted();
-      });
+  std::unique_ptr<RunObserver> observer = observer_of(options, name);
+  const std::optional<RunVerdict> verdict = run_once(scenario, name, find_data_root(options.scenario), root, *observer);
+  observer.reset();  // gives the screen back
   if (!verdict) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", root.string());
     return ExitCode::kProgramFailed;

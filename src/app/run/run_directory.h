@@ -20,19 +20,14 @@ struct RunDirectory {
   std::filesystem::path odometry() const { return root / "odometry.tum"; }
   std::filesystem::path map() const { return root / "map.yaml"; }
   std::filesystem::path map_errors() const { return root / "map_errors.pgm"; }
+  std::filesystem::path localizability() const { return root / "localizability.csv"; }
   std::filesystem::path truth_map() const { return root / "truth_map.yaml"; }
-  /// Stands there from the first moment until everything else is written.
-  std::filesystem::path incomplete_marker() const { return root / "INCOMPLETE"; }
 
   bool is_complete() const;
 };
 
-/// Makes the directory and marks it incomplete. An earlier run's files in it are removed; a directory that holds
-/// anything else is refused. Throws InputError when it cannot be written.
+/// Makes the directory and marks it incomplete (output_directory.h). An earlier run's files in it are removed.
 RunDirectory begin_run_directory(const std::filesystem::path& root);
-
-/// Takes the mark away: everything is written.
-void complete_run_directory(const RunDirectory& directory);
 
 /// An existing run's directory. Throws InputError when there is no log in it.
 RunDirectory open_run_directory(const std::filesystem::path& root);

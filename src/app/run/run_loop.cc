@@ -79,7 +79,7 @@ std::unique_ptr<RobotStack> make_stack(const Scenario& scenario, const ScenarioF
 }
 
 RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin, RobotStack& stack,
-                    const std::filesystem::path& log_mcap, const ProgressCallback& progress) {
+                    const std::filesystem::path& log_mcap, RunObserver& observer) {
   const auto wall_start = std::chrono::steady_clock::now();
   const double cpu_start = cpu_seconds();
 
@@ -99,9 +99,11 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
     for (const StackMessage& message : stack.take_messages()) {
       const auto lap = clock.lap("log");
       std::visit([&](const auto& content) { log.write(now, content); }, message);
+      observer.see(message);
     }
   };
 
+  observer.begin(files);
   for (bool running = true; running;) {
     const Time now = twin.now();
     for (const SensorMessage& message : twin.take_messages()) {
@@ -130,12 +132,13 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
       distance_m += (truth.T_world_body.position - last_position).head<2>().norm();
       last_position = truth.T_world_body.position;
       log.write(now, truth);
+      observer.see(truth);
     }
     if (state_due.is_due(now)) log.write(now, twin.state());
 
     running = !stack.mission_is_over() && now < limit;
     if (now >= limit) outcome.end = RunEnd::kTimeLimit;
-    if (progress_due.is_due(now) && !progress(now, distance_m)) {
+    if (progress_due.is_due(now) && !observer.go_on(now, distance_m)) {
       outcome.end = RunEnd::kInterrupted;
       running = false;
     }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -26,8 +25,23 @@ struct RunOutcome {
   std::size_t num_kidnaps = 0;                       ///< of those declared, in order, that were executed
 };
 
-/// Called twice a simulated second; true to go on, false to stop.
-using ProgressCallback = std::function<bool(Time now, double distance_m)>;
+/// Looks on while a run goes; nothing of it comes back into the run.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+
+  virtual void begin(const ScenarioFiles&) {}
+  virtual void see(const StackMessage&) {}
+  virtual void see(const GroundTruth&) {}
+  /// Twice a simulated second; false stops the run.
+  virtual bool go_on(Time now, double distance_m) = 0;
+};
+
+/// Nobody looks on.
+class Unobserved final : public RunObserver {
+ public:
+  bool go_on(Time, double) override { return true; }
+};
 
 /// Where the robot is put down, in world.
 Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files);
@@ -41,6 +55,6 @@ std::unique_ptr<RobotStack> make_stack(const Scenario& scenario, const ScenarioF
 
 /// Runs twin and stack against each other until the mission is over, and writes everything to `log_mcap`.
 RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin, RobotStack& stack,
-                    const std::filesystem::path& log_mcap, const ProgressCallback& progress);
+                    const std::filesystem::path& log_mcap, RunObserver& observer);
 
 }  // namespace patrol::app

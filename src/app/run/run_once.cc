@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
+#include "app/output_directory.h"
 #include "app/run/run_directory.h"
 #include "app/run/run_junit.h"
 #include "app/scoring/score_run.h"
@@ -36,7 +37,7 @@ io::Metrics performance_of(const RunOutcome& outcome) {
 }  // namespace
 
 std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name, const std::filesystem::path& data_root,
-                                  const std::filesystem::path& root, const ProgressCallback& progress) {
+                                  const std::filesystem::path& root, RunObserver& observer) {
   const ScenarioFiles files = load_scenario_files(scenario, data_root);
   sim::Twin twin = make_twin(scenario, files);  // these refuse bad input before anything is written
   const std::unique_ptr<RobotStack> stack = make_stack(scenario, files);
@@ -44,7 +45,7 @@ std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& 
   io::save_junit(directory.junit(), {unfinished_suite(name, junit_properties(scenario))});
   save_scenario(directory.scenario(), scenario, made_by(name));
 
-  const RunOutcome outcome = run_loop(scenario, files, twin, *stack, directory.log(), progress);
+  const RunOutcome outcome = run_loop(scenario, files, twin, *stack, directory.log(), observer);
   if (outcome.end == RunEnd::kInterrupted) return std::nullopt;
 
   io::Metrics metrics = score_run(directory, scenario, files);
@@ -52,7 +53,7 @@ std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& 
   io::save_metrics(directory.metrics(), metrics);
   RunVerdict verdict = verdict_of(outcome, scenario.kidnaps, metrics, check_expectations(scenario.expect, metrics));
   io::save_junit(directory.junit(), {junit_suite(name, junit_properties(scenario), verdict)});
-  complete_run_directory(directory);
+  complete_output(directory.root);
   return verdict;
 }
 

@@ -17,8 +17,8 @@ void append(Trajectory& trajectory, Time stamp, const Pose3& pose) {
 
 }  // namespace
 
-bool RunRecord::has_event(const char* kind) const {
-  return std::any_of(events.begin(), events.end(), [&](const Event& event) { return event.kind == kind; });
+std::size_t RunRecord::num_events(const char* kind) const {
+  return static_cast<std::size_t>(std::count_if(events.begin(), events.end(), [&](const Event& event) { return event.kind == kind; }));
 }
 
 bool RunRecord::has_estimate() const {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "app/output_directory.h"
 #include "app/scoring/score_run.h"
 #include "app/scoring/score_table.h"
 #include "core/error.h"
@@ -12,7 +13,7 @@ namespace {
 
 ExitCode score_directory(const std::filesystem::path& root) {
   const RunDirectory directory = open_run_directory(root);
-  if (std::filesystem::exists(directory.incomplete_marker())) {
+  if (std::filesystem::exists(incomplete_marker(directory.root))) {
     throw InputError(fmt::format("{}: is incomplete: the run was cut off, there is nothing to score", directory.root.string()));
   }
   const Scenario scenario = load_scenario(directory.scenario());

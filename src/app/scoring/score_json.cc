@@ -109,6 +109,20 @@ io::Metrics to_json(const score::LocalizationScore& score) {
   return metrics;
 }
 
+io::Metrics to_json(const score::LocalizabilityScore& score) {
+  io::Metrics metrics;
+  metrics["poses"] = score.num_poses;
+  metrics["weak_std_median_m"] = score.weak_std_median_m;
+  metrics["weak_std_max_m"] = score.weak_std_max_m;
+  metrics["degenerate_share"] = score.degenerate_share;
+  metrics["covariance_rank_correlation"] = optional_json(score.covariance_rank_correlation);
+  metrics["covariance_detection"] = optional_json(score.covariance_detection);
+  metrics["trust_rank_correlation"] = optional_json(score.trust_rank_correlation);
+  metrics["trust_detection"] = optional_json(score.trust_detection);
+  metrics["weak_direction_error_deg"] = optional_json(score.weak_direction_error_deg);
+  return metrics;
+}
+
 io::Metrics to_json(const score::RelocalizationScore& score) {
   io::Metrics metrics;
   metrics["at_s"] = score.at_s;

@@ -5,6 +5,7 @@
 #include "io/metrics_json.h"
 #include "score/goal_error.h"
 #include "score/inspection_score.h"
+#include "score/localizability.h"
 #include "score/localization_score.h"
 #include "score/map_error.h"
 #include "score/station_error.h"
@@ -20,6 +21,7 @@ io::Metrics to_json(const std::vector<score::StationError>& errors);
 io::Metrics to_json(const score::InspectionScore& score);
 io::Metrics to_json(const score::GoalError& error);
 io::Metrics to_json(const score::LocalizationScore& score);
+io::Metrics to_json(const score::LocalizabilityScore& score);
 io::Metrics to_json(const score::RelocalizationScore& score);
 
 }  // namespace patrol::app

@@ -2,6 +2,7 @@
 
 #include "app/run/run_loop.h"
 #include "app/run/run_record.h"
+#include "app/scoring/localizability_track.h"
 #include "app/scoring/score_json.h"
 #include "app/scoring/tour_metrics.h"
 #include "inspect/route_frame.h"
@@ -26,17 +27,16 @@ io::Metrics mission_metrics(const RunRecord& record) {
   metrics["completed"] = record.has_event("mission_completed");
   metrics["fell"] = record.has_event("fall");
   metrics["collisions"] = record.collisions.size();
+  metrics["sensor_faults_noticed"] = record.num_events("sensor_fault");
   metrics["duration_s"] = to_seconds(record.T_world_body.back().stamp);
   metrics["distance_m"] = planar_length_m(record.T_world_body);
   return metrics;
 }
 
-/// The world at the lidar's mean height on this run.
-render::ReferenceMap world_map(const RunRecord& record, const ScenarioFiles& files, const mjModel& world) {
+double mean_lidar_height_m(const RunRecord& record, const ScenarioFiles& files) {
   double height_m = 0.0;
   for (const StampedPose& entry : record.T_world_body) height_m += entry.pose.position.z();
-  height_m = height_m / static_cast<double>(record.T_world_body.size()) + files.robot.T_body("lidar").position.z();
-  return render::reference_map(world, {.height_m = height_m, .resolution_m = kReferenceResolution_m});
+  return height_m / static_cast<double>(record.T_world_body.size()) + files.robot.T_body("lidar").position.z();
 }
 
 std::vector<score::TrueLeak> true_leaks(const Scenario& scenario, const mjModel& world) {
@@ -76,7 +76,8 @@ io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, c
   save_drive(directory, record);
   const sim::SpecPtr spec = sim::load_spec(files.world_xml.string());
   const sim::ModelPtr world = sim::compile(*spec, files.world_xml.string());
-  const render::ReferenceMap truth = world_map(record, files, *world);
+  const double lidar_height_m = mean_lidar_height_m(record, files);
+  const render::ReferenceMap truth = render::reference_map(*world, {.height_m = lidar_height_m, .resolution_m = kReferenceResolution_m});
   const score::ReferenceMap reference =
       score::mark_seeable(truth.map, record.T_world_body, scenario.sensors.lidar.range_max_m);
   io::save_map(directory.map(), record.map);
@@ -94,6 +95,10 @@ io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, c
   metrics["map"] = to_json(map_error);
   metrics["map"]["origin_in_world"] = pose_json(T_world_map);
   metrics["map"]["reference_agreement"] = truth.check.share_agreeing();  // of its render with rays
+  const std::vector<TrackedLocalizability> localizability =
+      track_localizability(record, T_world_map, LocalizabilityOracle(*world, scenario.sensors.lidar, lidar_height_m));
+  save_localizability(directory.localizability(), localizability);
+  metrics["localizability"] = to_json(score_of(localizability));
   metrics["stations"] = to_json(score::station_errors(files.route, record.events, T_world_map, record.T_world_body, record.map,
                                                       reference));
   metrics.update(tour_metrics(record, scenario, files, T_world_map));

@@ -12,7 +12,7 @@ PatrolStack::PatrolStack(const StackSettings& settings, const RobotDescription& 
   navigator_.set_map(slam_.map());  // empty yet, but its resolution must suit the costmap's
 }
 
-void PatrolStack::handle(const SensorMessage& message) {
+void PatrolStack::use(const SensorMessage& message) {
   std::visit(Overloaded{
                  [&](const LaserScan& scan) { handle_scan(scan); },
                  [&](const GasReading& reading) { newest_gas_ = reading; },
@@ -49,7 +49,7 @@ void PatrolStack::handle_scan(const LaserScan& raw) {
 }
 
 void PatrolStack::handle_fall(Time now) {
-  if (!mission_.is_over()) say(mission_.abort(now, "fall", "The robot fell."));
+  if (!mission_.is_over()) abort(now, "fall", "The robot fell.");
 }
 
 VelocityCommand PatrolStack::control(Time now, const OdometryEstimate& odometry) {

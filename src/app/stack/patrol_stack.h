@@ -14,11 +14,12 @@ class PatrolStack final : public RobotStack {
   PatrolStack(const StackSettings& settings, const RobotDescription& robot, const Route& route_in_map, double map_period_s,
               std::uint64_t seed);
 
-  void handle(const SensorMessage& message) override;
   void handle_fall(Time now) override;
   bool mission_is_over() const override { return mission_.is_over(); }
 
  private:
+  void use(const SensorMessage& message) override;
+  void abort(Time now, const char* kind, const std::string& text) override { say(mission_.abort(now, kind, text)); }
   std::optional<OdometryEstimate> odometry() const override { return odometry_.estimate(); }
   OccupancyGrid map() const override { return slam_.map(); }
   bool is_mapping() const override { return true; }

@@ -11,10 +11,16 @@ constexpr Time kOdometryPeriod = std::chrono::milliseconds(20);
 RobotStack::RobotStack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
                        double map_period_s)
     : navigator_(settings.navigation, robot, site_in_map.keep_out_lines),
+      sensor_watch_(settings.sensor_watch),
       settle_(from_seconds(settings.settle_s)),
       map_period_(from_seconds(map_period_s)) {}
 
+void RobotStack::handle(const SensorMessage& message) {
+  if (sensor_watch_.hear(message, now_)) use(message);
+}
+
 void RobotStack::step(Time now) {
+  now_ = now;
   const std::optional<OdometryEstimate> odometry = this->odometry();
   if (!odometry) return;
   if (!first_odometry_) first_odometry_ = odometry->stamp;
@@ -29,9 +35,20 @@ void RobotStack::step(Time now) {
   if (now < next_control_) return;
   next_control_ += kControlPeriod;
   const auto lap = clock_.lap("planning");
+  const Pose2 T_odom_body = to_planar(odometry->T_odom_body);
+  watch_sensors(now, T_odom_body);
   command_ = control(now, *odometry);
+  if (!sensor_watch_.can_drive() && drives_itself()) command_ = {};
   command_.stamp = now;
   say(command_);
+}
+
+void RobotStack::watch_sensors(Time now, const Pose2& T_odom_body) {
+  const PoseEstimate pose = tracker_.at(now, T_odom_body);
+  for (const plan::SensorChange& change : sensor_watch_.step(now, T_odom_body, command_)) {
+    note(now, pose, change.is_back ? "sensor_back" : "sensor_fault", change.text, change.sensor);
+  }
+  if (sensor_watch_.has_given_up(now) && !mission_is_over()) abort(now, "sensor_lost", "A sensor that driving needs did not come back: the mission is over.");
 }
 
 void RobotStack::map_scan(slam::GridSlam& slam, const LevelScan& scan, const Pose2& T_odom_body) {
@@ -63,8 +80,8 @@ inspect::NavigationFeedback RobotStack::navigation_feedback() const {
   }
 }
 
-void RobotStack::note(Time now, const PoseEstimate& pose, const char* kind, const std::string& text) {
-  say(Event{.stamp = now, .kind = kind, .subject = "", .text = text, .value = 0.0, .T_map_body = pose.T_map_body,
+void RobotStack::note(Time now, const PoseEstimate& pose, const char* kind, const std::string& text, const std::string& subject) {
+  say(Event{.stamp = now, .kind = kind, .subject = subject, .text = text, .value = 0.0, .T_map_body = pose.T_map_body,
             .p_map_target = pose.T_map_body.position()});
 }
 

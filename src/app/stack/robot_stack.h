@@ -14,6 +14,7 @@
 #include "inspect/navigation_feedback.h"
 #include "localize/map_pose_tracker.h"
 #include "plan/navigator.h"
+#include "plan/sensor_watch.h"
 #include "slam/grid_slam.h"
 
 namespace patrol::app {
@@ -28,7 +29,7 @@ class RobotStack {
  public:
   virtual ~RobotStack() = default;
 
-  virtual void handle(const SensorMessage& message) = 0;
+  void handle(const SensorMessage& message);
   /// The robot's firmware reports a fall.
   virtual void handle_fall(Time now) = 0;
   virtual bool mission_is_over() const = 0;
@@ -45,6 +46,11 @@ class RobotStack {
  protected:
   RobotStack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, double map_period_s);
 
+  virtual void use(const SensorMessage& message) = 0;
+  /// Ends the mission with an event of this kind.
+  virtual void abort(Time now, const char* kind, const std::string& text) = 0;
+  /// Nobody holds the remote control.
+  virtual bool drives_itself() const { return true; }
   virtual std::optional<OdometryEstimate> odometry() const = 0;
   virtual OccupancyGrid map() const = 0;
   virtual bool is_mapping() const = 0;
@@ -63,14 +69,18 @@ class RobotStack {
   void say(Message&& message) {
     messages_.emplace_back(std::forward<Message>(message));
   }
-  void note(Time now, const PoseEstimate& pose, const char* kind, const std::string& text);
+  void note(Time now, const PoseEstimate& pose, const char* kind, const std::string& text, const std::string& subject = "");
 
   localize::MapPoseTracker tracker_;
   plan::Navigator navigator_;
+  plan::SensorWatch sensor_watch_;
   plan::NavigationStatus navigation_ = plan::NavigationStatus::kIdle;  ///< a control period ago
   PartClock clock_;
 
  private:
+  void watch_sensors(Time now, const Pose2& T_odom_body);
+
+  Time now_{};
   Time settle_;
   Time map_period_;
   std::optional<Time> first_odometry_;

@@ -11,6 +11,7 @@
 #include "localize/track_odometry.h"
 #include "plan/docking.h"
 #include "plan/navigator.h"
+#include "plan/sensor_watch.h"
 #include "slam/grid_slam.h"
 
 namespace patrol::app {
@@ -25,6 +26,7 @@ struct StackSettings {
   localize::MonteCarloSettings localization;  ///< on a map that is known
   localize::RangeFilterSettings range_filter;  ///< of a robot with tracks and UWB: a second opinion
   plan::NavigatorSettings navigation;
+  plan::SensorWatchSettings sensor_watch;
   localize::DockDetectorSettings dock_detector;
   plan::DockingSettings docking;
   inspect::MissionSettings mission;
@@ -40,6 +42,7 @@ struct StackSettings {
     visit("localization", self.localization);
     visit("range_filter", self.range_filter);
     visit("navigation", self.navigation);
+    visit("sensor_watch", self.sensor_watch);
     visit("dock_detector", self.dock_detector);
     visit("docking", self.docking);
     visit("mission", self.mission);

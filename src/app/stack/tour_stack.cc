@@ -49,7 +49,7 @@ TourStack::TourStack(const StackSettings& settings, const RobotDescription& robo
   }
 }
 
-void TourStack::handle(const SensorMessage& message) {
+void TourStack::use(const SensorMessage& message) {
   std::visit(Overloaded{
                  [&](const LaserScan& scan) { handle_scan(scan); },
                  [&](const UwbRange& range) { handle_range(range); },
@@ -155,7 +155,7 @@ std::optional<TourStack::Place> TourStack::place_at(Time stamp) const {
 }
 
 void TourStack::handle_fall(Time now) {
-  if (!tour_.is_over()) say(tour_.abort(now, "fall", "The robot has rolled over."));
+  if (!tour_.is_over()) abort(now, "fall", "The robot has rolled over.");
 }
 
 VelocityCommand TourStack::control(Time now, const OdometryEstimate& odometry) {

@@ -25,11 +25,13 @@ class TourStack final : public RobotStack {
   TourStack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, TourStart start,
             double map_period_s, std::uint64_t seed);
 
-  void handle(const SensorMessage& message) override;
   void handle_fall(Time now) override;
   bool mission_is_over() const override { return tour_.is_over(); }
 
  private:
+  void use(const SensorMessage& message) override;
+  void abort(Time now, const char* kind, const std::string& text) override { say(tour_.abort(now, kind, text)); }
+  bool drives_itself() const override { return mode_ != inspect::TourMode::kRemote; }
   std::optional<OdometryEstimate> odometry() const override { return odometry_.estimate(); }
   OccupancyGrid map() const override { return slam_ ? slam_->map() : *map_; }
   bool is_mapping() const override { return slam_.has_value(); }

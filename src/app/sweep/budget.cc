@@ -11,14 +11,6 @@ namespace {
 /// [seed][variant]
 using Figures = std::vector<std::vector<std::optional<double>>>;
 
-Figures figures_by_seed(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric) {
-  Figures figures(manifest.seeds.size(), std::vector<std::optional<double>>(manifest.variants.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i]) figures[i / manifest.variants.size()][manifest.runs[i].variant] = io::metric_at(rows[i]->metrics, metric);
-  }
-  return figures;
-}
-
 std::vector<double> column(const Figures& figures, std::size_t variant) {
   std::vector<double> values;
   for (const auto& of_seed : figures) {
@@ -69,8 +61,14 @@ std::string line(const std::string& name, const std::optional<score::Interval>& 
 
 }  // namespace
 
+std::vector<Budget> make_budgets(const SweepManifest& manifest, const SweepRows& rows) {
+  std::vector<Budget> budgets;
+  for (const std::string& metric : manifest.metrics) budgets.push_back(make_budget(manifest, rows, metric));
+  return budgets;
+}
+
 Budget make_budget(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric) {
-  const Figures figures = figures_by_seed(manifest, rows, metric);
+  const Figures figures = figures_of(manifest, rows, metric);
   Budget budget{.metric = metric,
                 .as_it_is = score::mean_interval(column(figures, 0)),
                 .ideal = score::mean_interval(column(figures, manifest.variants.size() - 1)),

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/sweep/comparison.h"
+#include "app/sweep/sweep_rows.h"
 #include "io/table.h"
 #include "score/statistics.h"
 
@@ -28,6 +28,8 @@ struct Budget {
   std::optional<score::Interval> interaction;  ///< what all take away together beyond the sum: imperfections that hide or feed each other
 };
 
+/// Of each of the manifest's metrics.
+std::vector<Budget> make_budgets(const SweepManifest& manifest, const SweepRows& rows);
 Budget make_budget(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric);
 
 /// A waterfall for a screen: from the figure as it is, share by share, to the ideal one.

@@ -8,20 +8,7 @@ namespace {
 
 constexpr double kError = 0.05;  ///< chance of finding a difference where there is none
 
-/// [variant][seed]
-using Figures = std::vector<std::vector<std::optional<double>>>;
-
 std::size_t seed_index(const SweepManifest& manifest, std::size_t run) { return run / manifest.variants.size(); }
-
-Figures figures_of(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric, std::size_t num_seeds) {
-  Figures figures(manifest.variants.size(), std::vector<std::optional<double>>(num_seeds));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i] && seed_index(manifest, i) < num_seeds) {
-      figures[manifest.runs[i].variant][seed_index(manifest, i)] = io::metric_at(rows[i]->metrics, metric);
-    }
-  }
-  return figures;
-}
 
 std::string verdict_of(const std::optional<score::Interval>& difference) {
   if (!difference) return "too few pairs";
@@ -47,22 +34,16 @@ void add_needed(const SweepManifest& manifest, const SweepRows& rows, const std:
 
 }  // namespace
 
-SweepRows load_rows(const SweepManifest& manifest, const ResultStore& store) {
-  SweepRows rows;
-  for (const PlannedRun& run : manifest.runs) rows.push_back(store.load(run.address));
-  return rows;
-}
-
 std::vector<VariantFigure> compare(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric,
                                    std::size_t num_seeds, double level) {
-  const Figures figures = figures_of(manifest, rows, metric, num_seeds);
+  const auto figures = figures_of(manifest, rows, metric);
   std::vector<VariantFigure> compared;
-  for (std::size_t variant = 0; variant < figures.size(); ++variant) {
+  for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
     std::vector<double> values, differences;
     for (std::size_t seed = 0; seed < num_seeds; ++seed) {
-      const std::optional<double>& value = figures[variant][seed];
+      const std::optional<double>& value = figures[seed][variant];
       if (value) values.push_back(*value);
-      if (value && figures.front()[seed]) differences.push_back(*value - *figures.front()[seed]);
+      if (value && figures[seed].front()) differences.push_back(*value - *figures[seed].front());
     }
     VariantFigure figure{.variant = variant,
                          .num_runs = values.size(),
@@ -87,6 +68,10 @@ std::vector<std::size_t> looks_of(std::size_t num_seeds) {
   return looks;
 }
 
+double level_of(const SweepManifest& manifest) {
+  return 1.0 - kError / (manifest.stop.when_decided ? static_cast<double>(looks_of(manifest.seeds.size()).size()) : 1.0);
+}
+
 SweepProgress progress_of(const SweepManifest& manifest, const SweepRows& rows) {
   SweepProgress progress;
   const std::size_t all = manifest.seeds.size();
@@ -95,17 +80,15 @@ SweepProgress progress_of(const SweepManifest& manifest, const SweepRows& rows) 
     add_needed(manifest, rows, num_seeds, progress);
     return progress;
   }
-  const std::vector<std::size_t> looks = looks_of(all);
-  const double level = 1.0 - kError / static_cast<double>(looks.size());
   std::vector<bool> is_open(manifest.variants.size(), true);
-  for (const std::size_t look : looks) {
+  for (const std::size_t look : looks_of(all)) {
     for (std::size_t variant = 0; variant < num_seeds.size(); ++variant) {
       if (is_open[variant]) num_seeds[variant] = look;
     }
     progress = {};
     add_needed(manifest, rows, num_seeds, progress);
     if (!progress.needed.empty()) return progress;
-    for (const VariantFigure& figure : compare(manifest, rows, manifest.metrics.front(), look, level)) {
+    for (const VariantFigure& figure : compare(manifest, rows, manifest.metrics.front(), look, level_of(manifest))) {
       if (figure.variant > 0 && is_decided(figure, manifest.stop.margin)) is_open[figure.variant] = false;
     }
     if (std::none_of(is_open.begin() + 1, is_open.end(), [](bool open) { return open; })) return progress;

@@ -1,21 +1,14 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "app/sweep/manifest.h"
-#include "app/batch/result_store.h"
+#include "app/sweep/sweep_rows.h"
 #include "score/statistics.h"
 
 namespace patrol::app {
-
-/// Rows of a sweep's runs, in the manifest's order; none for what has not been run.
-using SweepRows = std::vector<std::optional<RunVerdict>>;
-
-SweepRows load_rows(const SweepManifest& manifest, const ResultStore& store);
 
 /// One variant's figure over the seeds, and how it differs from the first variant's.
 struct VariantFigure {
@@ -46,6 +39,9 @@ struct SweepProgress {
 /// often, each of the k looks takes an interval of level 1 - 0.05 / k (Bonferroni). What is decided depends on the rows alone, never on
 /// who ran them or when.
 SweepProgress progress_of(const SweepManifest& manifest, const SweepRows& rows);
+
+/// Of the intervals of a sweep's differences: 0.95, or with early stopping that of each look.
+double level_of(const SweepManifest& manifest);
 
 /// Numbers of seeds after which a sweep looks.
 std::vector<std::size_t> looks_of(std::size_t num_seeds);

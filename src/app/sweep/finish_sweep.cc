@@ -2,9 +2,49 @@
 
 #include <fmt/format.h>
 
+#include "app/sweep/budget.h"
+#include "app/sweep/comparison.h"
+#include "app/sweep/fault_matrix.h"
 #include "app/sweep/sweep_tables.h"
 
 namespace patrol::app {
+namespace {
+
+/// What the runs come to: for files, and for the screen.
+struct Findings {
+  std::vector<io::Table> tables;
+  std::string text;
+};
+
+Findings findings_of(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
+  Findings findings{.tables = {runs_table(manifest, rows, progress), comparison_table(manifest, rows, progress)}, .text = ""};
+  switch (manifest.kind) {
+    case SweepKind::kSweep:
+      findings.text = comparison_text(manifest, rows, progress);
+      break;
+    case SweepKind::kBudget: {
+      const std::vector<Budget> budgets = make_budgets(manifest, rows);
+      findings.tables.push_back(budget_table(budgets));
+      for (const Budget& budget : budgets) findings.text += budget_text(budget) + "\n";
+      break;
+    }
+    case SweepKind::kFaults:
+      findings.tables.push_back(faults_table(manifest, rows));
+      findings.text = faults_text(manifest, rows);
+      break;
+  }
+  return findings;
+}
+
+/// Of the runs that count; 5 when there are none.
+ExitCode worst_of(const SweepRows& rows, const SweepProgress& progress) {
+  if (progress.counted.empty()) return ExitCode::kNothingExecuted;
+  ExitCode worst = ExitCode::kDone;
+  for (const std::size_t i : progress.counted) worst = worse(worst, rows[i]->code);
+  return worst;
+}
+
+}  // namespace
 
 ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& manifest) {
   const SweepRows rows = load_rows(manifest, directory.store());
@@ -14,9 +54,9 @@ ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& mani
                progress.needed.size(), progress.counted.size());
     return ExitCode::kDone;
   }
-  complete_sweep_directory(directory, manifest, rows, progress);
-  fmt::print("{}", comparison_text(manifest, rows, progress));
-  fmt::print("{} runs: {}\n", progress.counted.size(), directory.runs_csv().string());
+  const Findings findings = findings_of(manifest, rows, progress);
+  complete_sweep_directory(directory, findings.tables);
+  fmt::print("{}{} runs: {}\n", findings.text, progress.counted.size(), directory.table(findings.tables.back().name).string());
   return worst_of(rows, progress);
 }
 

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "app/scenario.h"
+
 namespace patrol::app {
 
 /// Something that keeps a run from being perfect, and the settings that take it away and leave all else as it is: every random number is
@@ -10,6 +12,8 @@ namespace patrol::app {
 struct Imperfection {
   std::string name;
   std::vector<std::string> overrides;  ///< "path=value"
+  /// Whether the scenario has it at all: a sensor that is switched off has no noise.
+  bool (*is_there)(const Scenario&, const ScenarioFiles&) = [](const Scenario&, const ScenarioFiles&) { return true; };
 };
 
 /// All that the twin has, and two of the stack's own making. A scenario in which one of them is away already is not changed by its overrides.

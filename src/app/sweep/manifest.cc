@@ -1,5 +1,9 @@
 #include "app/sweep/manifest.h"
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -12,9 +16,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
+constexpr std::array<std::string_view, 3> kKinds = {"sweep", "budget", "faults"};
 
 Json json_of(const SweepManifest& manifest) {
   Json json{{"version", kVersion},
+            {"kind", kKinds.at(static_cast<std::size_t>(manifest.kind))},
             {"scenario", manifest.scenario},
             {"overrides", manifest.overrides},
             {"paths", manifest.paths},
@@ -36,6 +42,9 @@ Json json_of(const SweepManifest& manifest) {
 
 SweepManifest manifest_of(const Json& json) {
   SweepManifest manifest;
+  const auto kind = std::find(kKinds.begin(), kKinds.end(), json.at("kind").get<std::string>());
+  if (kind == kKinds.end()) throw InputError("kind: must be sweep, budget or faults");
+  manifest.kind = static_cast<SweepKind>(kind - kKinds.begin());
   json.at("scenario").get_to(manifest.scenario);
   json.at("overrides").get_to(manifest.overrides);
   json.at("paths").get_to(manifest.paths);

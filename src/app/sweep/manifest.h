@@ -24,8 +24,13 @@ struct EarlyStop {
   double margin = 0.0;  ///< of the first metric: two variants closer than this are as good as equal
 };
 
+/// Which command made it, and what its variants are: of a budget the first is the scenario as it is, the last has every imperfection taken
+/// away; of a fault matrix the first has no fault.
+enum class SweepKind { kSweep, kBudget, kFaults };
+
 /// What a sweep was asked for: sweep.json. A run is independent of all others, so that any number of processes can share them out.
 struct SweepManifest {
+  SweepKind kind = SweepKind::kSweep;
   std::string scenario;                ///< its file's name, for people
   std::vector<std::string> overrides;  ///< common to all
   std::vector<std::string> paths;      ///< that are varied or drawn

@@ -1,10 +1,14 @@
 #include "app/sweep/run_sweep.h"
 
+#include <stdexcept>
+
 #include <fmt/format.h>
+
+#include "app/sweep/comparison.h"
 
 namespace patrol::app {
 
-bool run_sweep(const std::filesystem::path& scenario, const SweepManifest& manifest, const SweepDirectory& directory, const Shard& shard,
+void run_sweep(const std::filesystem::path& scenario, const SweepManifest& manifest, const SweepDirectory& directory, const Shard& shard,
                const BatchSettings& settings) {
   while (true) {
     const SweepProgress progress = progress_of(manifest, load_rows(manifest, directory.store()));
@@ -17,8 +21,10 @@ bool run_sweep(const std::filesystem::path& scenario, const SweepManifest& manif
                       .address = run.address,
                       .label = fmt::format("{}, seed {}", manifest.variants[run.variant].name, run.seed)});
     }
-    if (runs.empty()) return true;
-    if (!run_batch(runs, settings, directory.root)) return false;
+    if (runs.empty()) return;
+    if (!run_batch(runs, settings, directory.root)) {
+      throw std::runtime_error(fmt::format("interrupted; {} is incomplete, the same command goes on", directory.root.string()));
+    }
   }
 }
 

@@ -7,9 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "app/progress_bar.h"
-#include "app/sweep/finish_sweep.h"
 #include "app/batch/program.h"
+#include "app/progress_bar.h"
+#include "app/sweep/comparison.h"
+#include "app/sweep/finish_sweep.h"
 #include "io/atomic_file.h"
 
 namespace patrol::app {
@@ -38,7 +39,7 @@ class SlurmJob {
                                               fmt::format("\"$SLURM_ARRAY_TASK_ID\"/{}", options.slurm_tasks));
     io::save_text(script(), fmt::format("#!/bin/sh\n#SBATCH --job-name=patrol-sweep\nexec {}\n", command));
     std::vector<std::string> words = {"sbatch", "--parsable", "--array=" + shards,
-                                      fmt::format("--cpus-per-task={}", std::max(1, options.jobs)),
+                                      fmt::format("--cpus-per-task={}", std::max(1, options.batch.jobs)),
                                       fmt::format("--output={}", (folder_ / "%A_%a.txt").string()), "--open-mode=append"};
     words.insert(words.end(), options.slurm_options.begin(), options.slurm_options.end());
     words.push_back(script().string());
@@ -63,7 +64,7 @@ class SlurmJob {
 std::string shard_command(const SweepOptions& options, const std::filesystem::path& program, const std::string& shard) {
   std::string command = fmt::format("{} sweep {} --seeds {} --jobs {} --keep {} --run-limit-s {} --out {} --shard {}",
                                     shell_quoted(program.string()), shell_quoted(std::filesystem::absolute(options.scenario).string()),
-                                    shell_quoted(options.seeds), std::max(1, options.jobs), options.keep, options.run_limit_s,
+                                    shell_quoted(options.seeds), std::max(1, options.batch.jobs), options.batch.keep, options.batch.run_limit_s,
                                     shell_quoted(std::filesystem::absolute(options.out).string()), shard);
   const auto add = [&command](const char* option, const std::vector<std::string>& values) {
     for (const std::string& value : values) command += fmt::format(" {} {}", option, shell_quoted(value));

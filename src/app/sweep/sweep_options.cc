@@ -2,11 +2,11 @@
 
 #include <charconv>
 #include <numeric>
-#include <thread>
+#include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 
-#include "app/sweep/run_address.h"
 #include "core/error.h"
 
 namespace patrol::app {
@@ -43,45 +43,6 @@ Shard parse_shard(const std::string& text) {
   const std::size_t count = slash == std::string::npos ? 0 : whole_number<std::size_t>(text.substr(slash + 1)).value_or(0);
   if (index < 1 || index > count) throw InputError(fmt::format("--shard {}: must be i/n with 1 <= i <= n", text));
   return {.index = index - 1, .count = count};
-}
-
-KeepRuns parse_keep(const std::string& text) {
-  if (text == "none") return KeepRuns::kNone;
-  if (text == "failed") return KeepRuns::kFailed;
-  if (text == "all") return KeepRuns::kAll;
-  throw InputError(fmt::format("--keep {}: must be none, failed or all", text));
-}
-
-int parse_jobs(int jobs) {
-  if (jobs < 0 || jobs > 1024) throw InputError(fmt::format("--jobs {}: must lie in 0 ... 1024; 0: one for each core", jobs));
-  return jobs > 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
-
-SweepManifest plan_sweep(const SweepOptions& options) {
-  std::vector<Axis> axes;
-  for (const std::string& text : options.vary) axes.push_back(parse_axis(text));
-  SweepManifest manifest{.scenario = options.scenario.filename().string(),
-                         .overrides = options.overrides,
-                         .paths = {},
-                         .variants = cross(axes),
-                         .seeds = parse_seeds(options.seeds),
-                         .metrics = options.metrics,
-                         .stop = {.when_decided = options.stop_when_decided, .margin = options.margin},
-                         .runs = {}};
-  for (const Axis& axis : axes) manifest.paths.push_back(axis.path);
-
-  RunAddresses addresses(find_data_root(options.scenario));
-  for (const std::uint64_t seed : manifest.seeds) {
-    for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
-      PlannedRun run{.variant = variant, .seed = seed, .overrides = manifest.variants[variant].overrides, .address = ""};
-      for (const Axis& axis : axes) {
-        if (axis.is_drawn()) run.overrides.push_back(axis.draw(seed));
-      }
-      run.address = addresses.of(load_scenario(options.scenario, overrides_of(manifest, run)));
-      manifest.runs.push_back(run);
-    }
-  }
-  return manifest;
 }
 
 }  // namespace patrol::app

@@ -36,13 +36,11 @@ std::vector<std::string> paths_of(const SweepRows& rows, const std::vector<std::
 
 /// [metric][variant]; each variant over the seeds that were run for it.
 std::vector<std::vector<VariantFigure>> comparisons(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
-  const std::size_t num_looks = manifest.stop.when_decided ? looks_of(manifest.seeds.size()).size() : 1;
-  const double level = 1.0 - 0.05 / static_cast<double>(num_looks);
   std::vector<std::vector<VariantFigure>> all;
   for (const std::string& metric : manifest.metrics) {
     std::vector<VariantFigure>& figures = all.emplace_back();
     for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
-      figures.push_back(compare(manifest, rows, metric, progress.num_seeds[variant], level)[variant]);
+      figures.push_back(compare(manifest, rows, metric, progress.num_seeds[variant], level_of(manifest))[variant]);
     }
   }
   return all;

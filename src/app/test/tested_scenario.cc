@@ -6,7 +6,7 @@
 
 #include "app/run/run_junit.h"
 #include "app/scenario.h"
-#include "app/sweep/run_address.h"
+#include "app/batch/run_address.h"
 #include "core/error.h"
 
 namespace patrol::app {
@@ -44,8 +44,6 @@ std::string address_of(std::size_t index, std::string name) {
   return fmt::format("{:04}_{}", index + 1, name);
 }
 
-bool is_passed(const TestedScenario& tested) { return tested.verdict && tested.verdict->code == ExitCode::kDone; }
-
 std::string in_a_cell(const std::string& text) {
   std::string cell;
   for (const char c : text) {
@@ -63,6 +61,8 @@ std::string line_of(const TestedScenario& tested) {
 }
 
 }  // namespace
+
+bool is_passed(const TestedScenario& tested) { return tested.verdict && tested.verdict->code == ExitCode::kDone; }
 
 std::vector<TestedScenario> find_scenarios(const std::filesystem::path& scenarios, const std::vector<std::string>& overrides) {
   const std::string build = build_id();

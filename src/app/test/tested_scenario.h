@@ -20,6 +20,8 @@ struct TestedScenario {
   std::optional<RunVerdict> verdict;  ///< none before it has run
 };
 
+bool is_passed(const TestedScenario& tested);
+
 /// Every *.yaml file in the folder and those below it, by name, or the one file. Throws InputError when there is nothing of that name.
 std::vector<TestedScenario> find_scenarios(const std::filesystem::path& scenarios, const std::vector<std::string>& overrides);
 

@@ -1,12 +1,13 @@
 #include "localize/amcl/pose_refinement.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "core/symmetric_axes.h"
 
 namespace patrol::localize {
 namespace {
@@ -55,7 +56,7 @@ struct NormalEquations {
 Eigen::Vector2d weak_axis(const std::vector<Residual>& residuals) {
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (const Residual& residual : residuals) sum += residual.weight * residual.normal * residual.normal.transpose();
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(sum).eigenvectors().col(0);
+  return SymmetricAxes::along(symmetric_axes(sum).small_direction_rad());
 }
 
 NormalEquations equations_of(const std::vector<Residual>& residuals, const PoseRefinementSettings& settings) {

@@ -1,9 +1,9 @@
 #include "localize/amcl/trust.h"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
+
+#include "core/symmetric_axes.h"
 
 namespace patrol::localize {
 namespace {
@@ -18,10 +18,8 @@ double ramp(double value, double low, double high) {
 
 LocalizationTrust assess_trust(Time stamp, const BeliefEvidence& evidence, bool was_lost, const TrustSettings& settings) {
   if (!evidence.covariance.allFinite()) return {.stamp = stamp, .is_lost = true};
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(Eigen::Matrix2d(evidence.covariance.topLeftCorner<2, 2>()));
-  const Eigen::Vector2d weak = axes.eigenvectors().col(1);
-  LocalizationTrust trust{.stamp = stamp, .weak_std_m = std::sqrt(std::max(0.0, axes.eigenvalues()[1]))};
-  trust.weak_direction_rad = weak.x() != 0.0 ? std::atan(weak.y() / weak.x()) : std::acos(0.0);
+  const SymmetricAxes axes = symmetric_axes(evidence.covariance.topLeftCorner<2, 2>());
+  LocalizationTrust trust{.stamp = stamp, .weak_std_m = std::sqrt(std::max(0.0, axes.large)), .weak_direction_rad = axes.large_direction_rad};
   const double narrow = 1.0 - 0.5 * ramp(trust.weak_std_m, settings.sure_std_m, settings.doubtful_std_m) -
                         0.5 * ramp(trust.weak_std_m, settings.doubtful_std_m, settings.hopeless_std_m);
   const double decided = ramp(evidence.clump_weight, settings.undecided_weight, settings.decided_weight);

@@ -29,6 +29,7 @@ std::optional<MomentKind> kind_of(const std::string& event) {
       {"lost", MomentKind::kLost},
       {"cannot_localize", MomentKind::kLost},
       {"relocalized", MomentKind::kRelocalized},
+      {"sensor_lost", MomentKind::kFailure},
       {"alarm", MomentKind::kAlarm},
       {"station_failed", MomentKind::kFailure},
       {"goal_failed", MomentKind::kFailure},

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "io/markup_text.h"
 #include "render/report/html.h"
 
 namespace patrol::render {
@@ -10,27 +11,27 @@ std::string block_html(const Block& block) {
   return std::visit([](const auto& content) { return to_html(content); }, block);
 }
 
-std::string to_html(const TextBlock& block) { return fmt::format("<p class=\"note\">{}</p>\n", escaped_html(block.text)); }
+std::string to_html(const TextBlock& block) { return fmt::format("<p class=\"note\">{}</p>\n", io::escaped_markup(block.text)); }
 
 std::string to_html(const VerdictBlock& block) {
   return fmt::format("<div class=\"verdict {}\">\n<p class=\"word\">{}</p>\n<p class=\"reason\">{}</p>\n{}</div>\n", css_class(block.tone),
-                     escaped_html(block.word), escaped_html(block.reason), block.checks.rows.empty() ? "" : to_html(block.checks));
+                     io::escaped_markup(block.word), io::escaped_markup(block.reason), block.checks.rows.empty() ? "" : to_html(block.checks));
 }
 
 std::string to_html(const KeyFigures& block) {
   std::string html = "<dl class=\"figures\">\n";
   for (const KeyFigure& figure : block.figures) {
-    html += fmt::format("<div><dt>{}</dt><dd><b>{}</b> <span>{}</span></dd><dd class=\"note\">{}</dd></div>\n", escaped_html(figure.label),
-                        escaped_html(figure.value), escaped_html(figure.unit), escaped_html(figure.note));
+    html += fmt::format("<div><dt>{}</dt><dd><b>{}</b> <span>{}</span></dd><dd class=\"note\">{}</dd></div>\n", io::escaped_markup(figure.label),
+                        io::escaped_markup(figure.value), io::escaped_markup(figure.unit), io::escaped_markup(figure.note));
   }
   return html + "</dl>\n";
 }
 
 std::string to_html(const VideoBlock& block) {
-  const std::string caption = fmt::format("<figcaption>{}</figcaption>", escaped_html(block.caption));
+  const std::string caption = fmt::format("<figcaption>{}</figcaption>", io::escaped_markup(block.caption));
   if (block.mp4.empty()) {
-    return fmt::format("<p class=\"note\"><a href=\"{}\">{}</a>: {}</p>\n", escaped_html(block.address), escaped_html(block.address),
-                       escaped_html(block.caption));
+    return fmt::format("<p class=\"note\"><a href=\"{}\">{}</a>: {}</p>\n", io::escaped_markup(block.address), io::escaped_markup(block.address),
+                       io::escaped_markup(block.caption));
   }
   return fmt::format("<figure class=\"video\"><video controls preload=\"metadata\" src=\"{}\"></video>{}</figure>\n",
                      data_uri("video/mp4", block.mp4), caption);

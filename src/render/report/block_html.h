@@ -16,6 +16,7 @@ std::string to_html(const TableBlock& block);
 std::string to_html(const FoldedTables& block);
 std::string to_html(const BarBlock& block);
 std::string to_html(const BoxPlot& block);
+std::string to_html(const SpanChart& block);
 std::string to_html(const LinePlot& block);
 std::string to_html(const LanePlot& block);
 std::string to_html(const MapBlock& block);

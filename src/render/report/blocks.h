@@ -86,6 +86,21 @@ struct BoxPlot {
   std::vector<Box> boxes;
 };
 
+/// A stretch of a scale, with an interval about its end: a step of a waterfall, or a difference from zero.
+struct Span {
+  std::string label;
+  double from = 0.0, to = 0.0;
+  std::optional<std::pair<double, double>> interval{};
+  Tone tone = Tone::kPlain;
+  std::string text;  ///< the figure as it is to be read
+};
+/// One below the other, on one scale, zero marked.
+struct SpanChart {
+  std::string caption;
+  std::string unit;
+  std::vector<Span> spans;
+};
+
 struct Curve {
   std::string name;
   Ink ink = Ink::kEstimate;
@@ -152,7 +167,7 @@ struct VideoBlock {
   std::string caption;
 };
 
-using Block = std::variant<TextBlock, VerdictBlock, KeyFigures, TableBlock, FoldedTables, BarBlock, BoxPlot, LinePlot, LanePlot,
+using Block = std::variant<TextBlock, VerdictBlock, KeyFigures, TableBlock, FoldedTables, BarBlock, BoxPlot, SpanChart, LinePlot, LanePlot,
                            MapBlock, VideoBlock>;
 
 /// Line plots that follow each other stand beside each other where there is room.

@@ -23,22 +23,6 @@ std::string base64(std::string_view bytes) {
 
 }  // namespace
 
-std::string escaped_html(std::string_view text) {
-  std::string out;
-  out.reserve(text.size());
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
-      default: out += static_cast<unsigned char>(c) < 0x20 && c != '\n' ? ' ' : c;
-    }
-  }
-  return out;
-}
-
 std::string script_json(const nlohmann::ordered_json& value) {
   const std::string json = value.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
   std::string out;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "io/markup_text.h"
 #include "render/report/block_html.h"
 #include "render/report/decimation.h"
 #include "render/report/html.h"
@@ -31,7 +32,7 @@ std::string path_html(const MapPath& path, const MapPicture& picture) {
 std::string mark_html(const MapMark& mark, const MapPicture& picture) {
   const double x = mark.p_m.x() - picture.low_m.x(), y = picture.high_m.y() - mark.p_m.y();
   return fmt::format("<g class=\"{0}\"><path d=\"M{1:.2f} {2:.2f}h0\"/><text x=\"{1:.2f}\" y=\"{2:.2f}\">{3}</text></g>\n",
-                     css_class(mark.ink), x, y, escaped_html(mark.label));
+                     css_class(mark.ink), x, y, io::escaped_markup(mark.label));
 }
 
 std::string sheet_html(const char* name, const MapPicture::Sheet& sheet) {
@@ -54,7 +55,7 @@ std::string error_key() {
 std::string legend_html(const MapBlock& block) {
   std::string html = block.picture.has_errors ? error_key() : "";
   for (const MapPath& path : block.paths) {
-    html += fmt::format("<span class=\"key {}\">{}</span>", css_class(path.ink), escaped_html(path.name));
+    html += fmt::format("<span class=\"key {}\">{}</span>", css_class(path.ink), io::escaped_markup(path.name));
   }
   return html;
 }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "io/markup_text.h"
 #include "render/report/assets.h"
 #include "render/report/block_html.h"
 #include "render/report/html.h"
@@ -25,9 +26,9 @@ std::string anchor_of(const std::string& title) {
 }
 
 std::string header_html(const Page& page) {
-  std::string html = fmt::format("<header><p class=\"kind\">Patrol: {}</p><h1>{}</h1>\n<dl class=\"facts\">", escaped_html(page.kind), escaped_html(page.title));
+  std::string html = fmt::format("<header><p class=\"kind\">Patrol: {}</p><h1>{}</h1>\n<dl class=\"facts\">", io::escaped_markup(page.kind), io::escaped_markup(page.title));
   for (const auto& [label, value] : page.facts) {
-    html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", escaped_html(label), escaped_html(value));
+    html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", io::escaped_markup(label), io::escaped_markup(value));
   }
   return html + "</dl></header>\n";
 }
@@ -35,7 +36,7 @@ std::string header_html(const Page& page) {
 std::string navigation_html(const Page& page) {
   std::string html = "<nav>";
   for (const Section& section : page.sections) {
-    if (!section.title.empty()) html += fmt::format("<a href=\"#{}\">{}</a>", anchor_of(section.title), escaped_html(section.title));
+    if (!section.title.empty()) html += fmt::format("<a href=\"#{}\">{}</a>", anchor_of(section.title), io::escaped_markup(section.title));
   }
   return html + "</nav>\n";
 }
@@ -55,7 +56,7 @@ std::string blocks_html(const std::vector<Block>& blocks) {
 
 std::string section_html(const Section& section) {
   if (section.title.empty()) return fmt::format("<section>\n{}</section>\n", blocks_html(section.blocks));
-  return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", anchor_of(section.title), escaped_html(section.title),
+  return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", anchor_of(section.title), io::escaped_markup(section.title),
                      blocks_html(section.blocks));
 }
 
@@ -73,10 +74,10 @@ std::string to_html(const Page& page) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n<link rel=\"icon\" href=\"data:,\">\n"
       "<title>{}</title>\n<style>\n{}\n{}</style></head>\n<body>\n",
-      kPolicy, escaped_html(page.title), kPlotStyle, kReportStyle);
+      kPolicy, io::escaped_markup(page.title), kPlotStyle, kReportStyle);
   html += header_html(page) + navigation_html(page) + "<main>\n";
   for (const Section& section : page.sections) html += section_html(section);
-  html += fmt::format("</main>\n<footer>{}</footer>\n<noscript><p class=\"note\">The plots need JavaScript.</p></noscript>\n", escaped_html(page.colophon));
+  html += fmt::format("</main>\n<footer>{}</footer>\n<noscript><p class=\"note\">The plots need JavaScript.</p></noscript>\n", io::escaped_markup(page.colophon));
   return html + scripts_html() + "</body></html>\n";
 }
 

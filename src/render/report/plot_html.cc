@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "io/markup_text.h"
 #include "render/report/block_html.h"
 #include "render/report/decimation.h"
 #include "render/report/html.h"
@@ -54,7 +55,7 @@ bool has_far_peak(const Curve& curve) {
 std::string legend_html(const std::vector<Curve>& curves) {
   std::string html;
   for (const Curve& curve : curves) {
-    html += fmt::format("<span class=\"key {} {}\">{}</span>", css_class(curve.ink), curve.is_dashed ? "dashed" : "", escaped_html(curve.name));
+    html += fmt::format("<span class=\"key {} {}\">{}</span>", css_class(curve.ink), curve.is_dashed ? "dashed" : "", io::escaped_markup(curve.name));
   }
   return html;
 }
@@ -71,7 +72,7 @@ std::string thinning_note(const std::vector<Curve>& curves) {
 std::string plot_html(const char* kind, const std::string& title, const std::string& legend, const Json& data) {
   return fmt::format("<figure class=\"plot {}\"><figcaption><b>{}</b>{}</figcaption><div class=\"drawing\"></div>"
                      "<script type=\"application/json\">{}</script></figure>\n",
-                     kind, escaped_html(title), legend, script_json(data));
+                     kind, io::escaped_markup(title), legend, script_json(data));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "io/markup_text.h"
 #include "render/report/block_html.h"
 #include "render/report/html.h"
 
@@ -15,7 +16,7 @@ namespace {
 std::string breakable_html(const std::string& text) {
   std::string html;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    html += escaped_html(std::string_view(text).substr(i, 1));
+    html += io::escaped_markup(std::string_view(text).substr(i, 1));
     const bool is_part = text[i] == '.' && i + 1 < text.size() && std::isalpha(static_cast<unsigned char>(text[i + 1])) != 0;
     if (text[i] == '_' || text[i] == '/' || is_part) html += "<wbr>";
   }
@@ -24,14 +25,14 @@ std::string breakable_html(const std::string& text) {
 
 std::string cell_html(const Cell& cell, const Column& column) {
   const std::string classes = fmt::format("{}{}", column.is_number ? "number " : "", css_class(cell.tone));
-  return fmt::format("<td class=\"{}\">{}</td>", classes, column.is_number ? escaped_html(cell.text) : breakable_html(cell.text));
+  return fmt::format("<td class=\"{}\">{}</td>", classes, column.is_number ? io::escaped_markup(cell.text) : breakable_html(cell.text));
 }
 
 std::string head_html(const std::vector<Column>& columns) {
   if (std::all_of(columns.begin(), columns.end(), [](const Column& column) { return column.title.empty(); })) return "";
   std::string html = "<thead><tr>";
   for (const Column& column : columns) {
-    html += fmt::format("<th{}>{}</th>", column.is_number ? " class=\"number\"" : "", escaped_html(column.title));
+    html += fmt::format("<th{}>{}</th>", column.is_number ? " class=\"number\"" : "", io::escaped_markup(column.title));
   }
   return html + "</tr></thead>";
 }
@@ -45,25 +46,31 @@ double round_step(double end, int max_steps) {
   return 10.0 * power;
 }
 
-/// From 0 to beyond `max`, with round ticks.
+/// Round ticks, from at or below `min` to at or beyond `max`; zero is one of them.
 struct Scale {
   double step = 0.2;
+  double begin = 0.0;
   double end = 1.0;
 
-  explicit Scale(double max) {
-    if (!(max > 0.0)) return;
-    step = round_step(max, 5);
+  Scale(double min, double max) {
+    min = std::min(min, 0.0);
+    max = std::max(max, 0.0);
+    if (!(max - min > 0.0)) return;
+    step = round_step(max - min, 5);
+    begin = step * std::floor(min / step * (1.0 - 1e-9));
     end = step * std::ceil(max / step * (1.0 - 1e-9));
   }
-  double percent(double value) const { return 100.0 * value / end; }
+  double percent(double value) const { return 100.0 * (value - begin) / (end - begin); }
+  double width(double from, double to) const { return 100.0 * (to - from) / (end - begin); }
 };
 
 std::string ticks_html(const Scale& scale, const std::string& unit) {
   std::string html;
-  const int num_steps = static_cast<int>(std::lround(scale.end / scale.step));
-  for (int i = 0; i <= num_steps; ++i) {
-    const std::string text = fmt::format("{:.6g}{}", i * scale.step, i == num_steps ? " " + unit : "");
-    html += fmt::format("<i style=\"left:{:.3f}%\">{}</i>", scale.percent(i * scale.step), escaped_html(text));
+  const long first = std::lround(scale.begin / scale.step), last = std::lround(scale.end / scale.step);
+  for (long i = first; i <= last; ++i) {
+    const double value = static_cast<double>(i) * scale.step;
+    const std::string text = fmt::format("{:.6g}{}", value, i == last ? " " + unit : "");
+    html += fmt::format("<i style=\"left:{:.3f}%\">{}</i>", scale.percent(value), io::escaped_markup(text));
   }
   return fmt::format("<tr class=\"ticks\"><th></th><td><div class=\"track\">{}</div></td><td></td></tr>\n", html);
 }
@@ -71,18 +78,27 @@ std::string ticks_html(const Scale& scale, const std::string& unit) {
 std::string box_html(const Box& box, const Scale& scale) {
   const auto [least, greatest] = std::minmax_element(box.values.begin(), box.values.end());
   const auto span = [&](const char* name, double from, double to) {
-    return fmt::format("<i class=\"{}\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>", name, scale.percent(from), scale.percent(to - from));
+    return fmt::format("<i class=\"{}\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>", name, scale.percent(from), scale.width(from, to));
   };
   std::string html = span("whisker", *least, *greatest) + span("box", box.lower_quartile, box.upper_quartile);
   for (const double value : box.values) html += fmt::format("<i class=\"dot\" style=\"left:{:.3f}%\"></i>", scale.percent(value));
   return html + fmt::format("<i class=\"median\" style=\"left:{:.3f}%\"></i>", scale.percent(box.median));
 }
 
+std::string span_html(const Span& span, const Scale& scale) {
+  const double low = std::min(span.from, span.to), high = std::max(span.from, span.to);
+  std::string html = fmt::format("<i class=\"zero\" style=\"left:{:.3f}%\"></i><i class=\"span {}\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>", scale.percent(0.0),
+                                 css_class(span.tone), scale.percent(low), scale.width(low, high));
+  if (!span.interval) return html;
+  return html + fmt::format("<i class=\"whisker\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>", scale.percent(span.interval->first),
+                            scale.width(span.interval->first, span.interval->second));
+}
+
 }  // namespace
 
 std::string to_html(const TableBlock& block) {
   std::string html = "<div class=\"table\"><table>";
-  if (!block.caption.empty()) html += fmt::format("<caption>{}</caption>", escaped_html(block.caption));
+  if (!block.caption.empty()) html += fmt::format("<caption>{}</caption>", io::escaped_markup(block.caption));
   html += head_html(block.columns) + "<tbody>\n";
   for (const std::vector<Cell>& row : block.rows) {
     html += "<tr>";
@@ -93,7 +109,7 @@ std::string to_html(const TableBlock& block) {
 }
 
 std::string to_html(const FoldedTables& block) {
-  std::string html = fmt::format("<details><summary>{}</summary>\n<div class=\"{}\">\n", escaped_html(block.summary),
+  std::string html = fmt::format("<details><summary>{}</summary>\n<div class=\"{}\">\n", io::escaped_markup(block.summary),
                                  block.tables.size() > 1 ? "columns" : "single");
   for (const TableBlock& table : block.tables) html += to_html(table);
   return html + "</div></details>\n";
@@ -102,26 +118,42 @@ std::string to_html(const FoldedTables& block) {
 std::string to_html(const BarBlock& block) {
   double greatest = 0.0;
   for (const Bar& bar : block.bars) greatest = std::max(greatest, bar.value);
-  std::string html = fmt::format("<table class=\"chart bars\"><caption>{}</caption><tbody>\n", escaped_html(block.caption));
+  std::string html = fmt::format("<table class=\"chart bars\"><caption>{}</caption><tbody>\n", io::escaped_markup(block.caption));
   for (const Bar& bar : block.bars) {
     const double percent = greatest > 0.0 ? 100.0 * std::max(bar.value, 0.0) / greatest : 0.0;
     html += fmt::format("<tr><th>{}</th><td><i class=\"bar\" style=\"width:{:.3f}%\"></i></td><td class=\"number\">{}</td></tr>\n",
-                        escaped_html(bar.label), percent, escaped_html(bar.text));
+                        io::escaped_markup(bar.label), percent, io::escaped_markup(bar.text));
   }
   return html + "</tbody></table>\n";
 }
 
-std::string to_html(const BoxPlot& block) {
-  double greatest = 0.0;
-  for (const Box& box : block.boxes) {
-    for (const double value : box.values) greatest = std::max(greatest, value);
+std::string to_html(const SpanChart& block) {
+  double least = 0.0, greatest = 0.0;
+  for (const Span& span : block.spans) {
+    const auto [low, high] = span.interval.value_or(std::pair(span.to, span.to));
+    least = std::min({least, span.from, span.to, low});
+    greatest = std::max({greatest, span.from, span.to, high});
   }
-  const Scale scale(greatest);
-  std::string html = fmt::format("<table class=\"chart boxes\"><caption>{}</caption><tbody>\n", escaped_html(block.caption));
+  const Scale scale(least, greatest);
+  std::string html = fmt::format("<table class=\"chart spans\"><caption>{}</caption><tbody>\n", io::escaped_markup(block.caption));
+  for (const Span& span : block.spans) {
+    html += fmt::format("<tr><th>{}</th><td><div class=\"track\">{}</div></td><td class=\"number\">{}</td></tr>\n", io::escaped_markup(span.label),
+                        span_html(span, scale), io::escaped_markup(span.text));
+  }
+  return html + ticks_html(scale, block.unit) + "</tbody></table>\n";
+}
+
+std::string to_html(const BoxPlot& block) {
+  double least = 0.0, greatest = 0.0;
+  for (const Box& box : block.boxes) {
+    for (const double value : box.values) least = std::min(least, value), greatest = std::max(greatest, value);
+  }
+  const Scale scale(least, greatest);
+  std::string html = fmt::format("<table class=\"chart boxes\"><caption>{}</caption><tbody>\n", io::escaped_markup(block.caption));
   for (const Box& box : block.boxes) {
     if (box.values.empty()) continue;
-    html += fmt::format("<tr><th>{}</th><td><div class=\"track\">{}</div></td><td class=\"number\">{}</td></tr>\n", escaped_html(box.label),
-                        box_html(box, scale), escaped_html(box.text));
+    html += fmt::format("<tr><th>{}</th><td><div class=\"track\">{}</div></td><td class=\"number\">{}</td></tr>\n", io::escaped_markup(box.label),
+                        box_html(box, scale), io::escaped_markup(box.text));
   }
   return html + ticks_html(scale, block.unit) + "</tbody></table>\n";
 }

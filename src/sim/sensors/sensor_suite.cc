@@ -44,6 +44,8 @@ std::optional<DepthCamera> make_depth_camera(const SensorSuiteSettings& settings
   return DepthCamera(camera, settings.dust, make_imager(view, lens_of(camera), kNear_m, 1.1 * camera.range_max_m), seed);
 }
 
+constexpr double kSpikeProbability = 0.1;  // of a message, while the fault lasts
+
 /// Adds `offset` to the message's main reading, as drift and spikes do.
 struct OffsetBy {
   double offset;
@@ -190,14 +192,16 @@ bool SensorSuite::apply_faults(const char* sensor, Time ready, Time& due, Sensor
   for (FaultReport& report : faults_) {
     const FaultSettings& fault = report.fault;
     if (fault.sensor != sensor || !fault.is_active(ready)) continue;
-    report.is_executed = true;
+    const bool is_spiked = fault.kind == "spikes" && spikes_.uniform(spike_count_++) < kSpikeProbability;
+    const bool can_freeze = good != last_good_.end();
+    report.is_executed |= (fault.kind != "spikes" || is_spiked) && (fault.kind != "freeze" || can_freeze);
     if (fault.kind == "silence") return false;
     if (fault.kind == "delay") due += from_seconds(fault.magnitude);
     if (fault.kind == "jitter") due += from_seconds(std::abs(fault.magnitude * jitter_.normal(jitter_count_++)));
     if (fault.kind == "clock_offset") std::visit([&](auto& content) { content.stamp += from_seconds(fault.magnitude); }, message);
     if (fault.kind == "drift") std::visit(OffsetBy{fault.magnitude * (to_seconds(ready) - fault.start_s)}, message);
-    if (fault.kind == "spikes" && spikes_.uniform(spike_count_++) < 0.1) std::visit(OffsetBy{fault.magnitude}, message);
-    if (fault.kind == "freeze" && good != last_good_.end()) {
+    if (is_spiked) std::visit(OffsetBy{fault.magnitude}, message);
+    if (fault.kind == "freeze" && can_freeze) {
       const Time stamp = std::visit([](const auto& content) { return content.stamp; }, message);
       message = good->second;
       std::visit([&](auto& content) { content.stamp = stamp; }, message);

@@ -1,5 +1,7 @@
 #include "app/run/run_directory.h"
 
+#include "app/output_directory.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +19,7 @@ TEST(RunDirectory, IsMadeWithItsParentsAndMarkedIncomplete) {
   const TemporaryFolder folder;
   const RunDirectory directory = begin_run_directory(folder / "runs/today/first");
   EXPECT_TRUE(std::filesystem::is_directory(directory.root));
-  EXPECT_TRUE(std::filesystem::exists(directory.incomplete_marker()));
+  EXPECT_TRUE(std::filesystem::exists(incomplete_marker(directory.root)));
   EXPECT_FALSE(directory.is_complete());
 }
 
@@ -26,7 +28,7 @@ TEST(RunDirectory, IsCompleteWhenTheMarkIsGoneAndMetricsAreThere) {
   const RunDirectory directory = begin_run_directory(folder / "run");
   test::write_bytes(directory.metrics(), "{}\n");
   EXPECT_FALSE(directory.is_complete());
-  complete_run_directory(directory);
+  complete_output(directory.root);
   EXPECT_TRUE(directory.is_complete());
   std::filesystem::remove(directory.metrics());
   EXPECT_FALSE(directory.is_complete());
@@ -40,7 +42,7 @@ TEST(RunDirectory, AnEarlierRunsFilesAreRemoved) {
     test::write_bytes(file, "old");
   }
   test::write_bytes(first.root / "still_12.5.png", "old");
-  complete_run_directory(first);
+  complete_output(first.root);
 
   const RunDirectory second = begin_run_directory(folder / "run");
   EXPECT_FALSE(second.is_complete());

@@ -52,7 +52,7 @@ TEST(Manifest, WhatIsNotOneIsRefusedByName) {
   EXPECT_THAT(message_of("{"), HasSubstr("sweep.json"));
   EXPECT_THAT(message_of("{}"), HasSubstr("version"));
   EXPECT_THAT(message_of("{\"version\": 2}"), HasSubstr("must be 1"));
-  EXPECT_THAT(message_of("{\"version\": 1}"), HasSubstr("scenario"));
+  EXPECT_THAT(message_of("{\"version\": 1}"), HasSubstr("kind"));
 }
 
 }  // namespace

@@ -10,15 +10,11 @@ import shutil
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
-from standing_still import PATROL, SOURCE, standing_still  # noqa: E402
+from sweeping import PATROL, SOURCE, SweepCase
 
-TABLES = ("runs.csv", "comparison.csv", "sweep.sqlite")
-VARY = ["--vary", "sensors.lidar.range_noise_m=0.0,0.05", "--seeds", "2"]
 SSHD = shutil.which("sshd", path=os.environ["PATH"] + ":/usr/sbin:/sbin")
 
 
@@ -54,32 +50,26 @@ class SshHosts:
         self.daemon.wait()
 
 
-class Parallel(unittest.TestCase):
+class Parallel(SweepCase):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.path = pathlib.Path(cls.temporary.name)
+        super().setUpClass()
         cls.hosts = SshHosts(cls.path / "ssh")
-        cls.scenario = standing_still(cls.path)
 
     @classmethod
     def tearDownClass(cls):
         cls.hosts.stop()
-        cls.temporary.cleanup()
-
-    def sweep(self, out):
-        return [str(PATROL), "sweep", str(self.scenario), *VARY, "--out", str(out)]
+        super().tearDownClass()
 
     def test_four_shards_on_two_hosts_leave_the_bytes_of_a_local_sweep(self):
-        local, out = self.path / "local", self.path / "over_ssh"
-        subprocess.run(self.sweep(local), check=True, capture_output=True, cwd=SOURCE)
+        out = self.path / "over_ssh"
         done = subprocess.run(["parallel", "--will-cite", "--ssh", f"ssh -F {self.hosts.client}", "-S", "1/patrol1,1/patrol2", "--workdir", str(SOURCE),
-                               *self.sweep(out), "--jobs", "1", "--shard", "{}/4", ":::", "1", "2", "3", "4"], capture_output=True, text=True, timeout=280)
+                               *self.command(out, *self.vary), "--jobs", "1", "--shard", "{}/4", ":::", "1", "2", "3", "4"],
+                              capture_output=True, text=True, timeout=280)
         self.assertEqual(done.returncode, 0, done.stderr)
         collected = subprocess.run([PATROL, "collect", out], capture_output=True, text=True)
         self.assertEqual(collected.returncode, 0, collected.stderr)
-        for name in TABLES:
-            self.assertEqual((out / name).read_bytes(), (local / name).read_bytes(), name)
+        self.assert_same_tables(out)
 
 
 if __name__ == "__main__":

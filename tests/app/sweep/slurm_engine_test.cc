@@ -17,7 +17,7 @@ TEST(SlurmEngine, AShardsCommandIsTheCallWithItsOptions) {
   SweepOptions options;
   options.scenario = "/s/it's.yaml";
   options.vary = {"a=[1, 2],3"};
-  options.jobs = 2;
+  options.batch.jobs = 2;
   options.out = "/o";
   const std::string command = shard_command(options, "/bin/patrol", "2/3");
   EXPECT_THAT(command, HasSubstr("'/bin/patrol' sweep '/s/it'\\''s.yaml'"));

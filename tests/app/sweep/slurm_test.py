@@ -10,15 +10,11 @@ import shutil
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
-from standing_still import PATROL, SOURCE, standing_still  # noqa: E402
+from sweeping import SweepCase
 
-TABLES = ("runs.csv", "comparison.csv", "sweep.sqlite")
-VARY = ["--vary", "sensors.lidar.range_noise_m=0.0,0.05", "--seeds", "3"]
 HOST = socket.gethostname().split(".")[0]
 CONFIGURATION = """\
 ClusterName=patrol
@@ -95,46 +91,29 @@ class Cluster:
                 daemon.kill()
 
 
-class Slurm(unittest.TestCase):
+class Slurm(SweepCase):
+    vary = (*SweepCase.vary[:-1], "3")
+
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.path = pathlib.Path(cls.temporary.name)
-        cls.scenario = standing_still(cls.path, "expect:\n  mission.completed: true\n")
+        super().setUpClass()
         cls.cluster = Cluster(cls.path / "cluster")
-        cls.local = cls.path / "local"
-        done = cls.sweep(cls.local, *VARY)
-        assert done.returncode == 0, done.stderr
 
     @classmethod
     def tearDownClass(cls):
         cls.cluster.stop()
-        cls.temporary.cleanup()
-
-    @classmethod
-    def command(cls, out, *more):
-        return [str(PATROL), "sweep", str(cls.scenario), "--out", str(out), *more]
-
-    @classmethod
-    def sweep(cls, out, *more):
-        return subprocess.run(cls.command(out, *more), capture_output=True, text=True, timeout=280, cwd=SOURCE)
-
-    def assert_same_tables(self, out):
-        for name in TABLES:
-            self.assertEqual((out / name).read_bytes(), (self.local / name).read_bytes(), name)
-        self.assertFalse((out / "INCOMPLETE").exists())
+        super().tearDownClass()
 
     def test_three_shards_on_two_nodes_leave_the_bytes_of_a_local_sweep(self):
         out = self.path / "cluster_sweep"
-        done = self.sweep(out, *VARY, "--engine", "slurm", "--slurm-tasks", "3")
+        done = self.sweep(out, *self.vary, "--engine", "slurm", "--slurm-tasks", "3")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assert_same_tables(out)
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)  # one submission
 
     def test_a_task_killed_midway_is_submitted_again(self):
         out = self.path / "killed_task"
-        process = subprocess.Popen(self.command(out, *VARY, "--engine", "slurm", "--slurm-tasks", "2"), stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True, cwd=SOURCE)
+        process = self.start(out, *self.vary, "--engine", "slurm", "--slurm-tasks", "2")
         deadline = time.monotonic() + 60
         while not list((out / "runs").glob("*.json")) and time.monotonic() < deadline:
             time.sleep(0.05)
@@ -147,7 +126,7 @@ class Slurm(unittest.TestCase):
 
     def test_detached_it_returns_and_the_same_call_collects(self):
         out = self.path / "detached"
-        call = (*VARY, "--engine", "slurm", "--slurm-tasks", "2")
+        call = (*self.vary, "--engine", "slurm", "--slurm-tasks", "2")
         done = self.sweep(out, *call, "--detach")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("goes on", done.stdout)
@@ -156,7 +135,7 @@ class Slurm(unittest.TestCase):
         self.assert_same_tables(out)
 
     def test_what_sbatch_refuses_is_3(self):
-        done = self.sweep(self.path / "refused", *VARY, "--engine", "slurm", "--slurm-option=--partition=none")
+        done = self.sweep(self.path / "refused", *self.vary, "--engine", "slurm", "--slurm-option=--partition=none")
         self.assertEqual(done.returncode, 3)
         self.assertIn("sbatch failed", done.stderr)
 

@@ -11,46 +11,17 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
-from standing_still import PATROL, SOURCE, standing_still  # noqa: E402
-
-TABLES = ("runs.csv", "comparison.csv", "sweep.sqlite")
-VARY = ["--vary", "sensors.lidar.range_noise_m=0.0,0.05", "--seeds", "2"]
+from sweeping import PATROL, SOURCE, SweepCase
 
 
 def children_of(process):
     return [int(pid) for pid in pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
 
 
-class Sweep(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.path = pathlib.Path(cls.folder.name)
-        cls.scenario = standing_still(cls.path, "expect:\n  mission.completed: true\n")
-        cls.unbroken = cls.path / "unbroken"
-        done = cls.sweep(cls.unbroken, *VARY)
-        assert done.returncode == 0, done.stderr
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
-
-    @classmethod
-    def command(cls, out, *more):
-        return [str(PATROL), "sweep", str(cls.scenario), "--out", str(out), *more]
-
-    @classmethod
-    def sweep(cls, out, *more):
-        return subprocess.run(cls.command(out, *more), capture_output=True, text=True, timeout=280, cwd=SOURCE)
-
-    def start(self, out, *more):
-        return subprocess.Popen(self.command(out, *more), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=SOURCE)
-
+class Sweep(SweepCase):
     def wait_for_a_child(self, process):
         deadline = time.monotonic() + 60
         while time.monotonic() < deadline and process.poll() is None:
@@ -58,11 +29,6 @@ class Sweep(unittest.TestCase):
                 return found[0]
             time.sleep(0.01)
         self.fail("no run was started")
-
-    def assert_same_tables(self, out):
-        for name in TABLES:
-            self.assertEqual((out / name).read_bytes(), (self.unbroken / name).read_bytes(), name)
-        self.assertFalse((out / "INCOMPLETE").exists())
 
     def rows(self, out):
         with open(out / "runs.csv", newline="") as file:
@@ -88,12 +54,12 @@ class Sweep(unittest.TestCase):
     def test_killed_three_times_and_resumed_it_leaves_the_same_bytes(self):
         out, chance = self.path / "killed", random.Random(4)
         for _ in range(3):
-            process = self.start(out, *VARY)
+            process = self.start(out, *self.vary)
             time.sleep(chance.uniform(0.2, 2.5))
             process.kill()
             process.communicate()
             self.assertTrue((out / "INCOMPLETE").exists() or (out / "runs.csv").exists() or not out.exists())
-        self.assertEqual(self.sweep(out, *VARY).returncode, 0)
+        self.assertEqual(self.sweep(out, *self.vary).returncode, 0)
         self.assert_same_tables(out)
         self.assertFalse((out / "work").exists())
 
@@ -101,7 +67,7 @@ class Sweep(unittest.TestCase):
         parts = []
         for shard in ("3/3", "1/3", "2/3"):
             parts.append(self.path / f"shard_{shard[0]}")
-            done = self.sweep(parts[-1], *VARY, "--shard", shard)
+            done = self.sweep(parts[-1], *self.vary, "--shard", shard)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("of 4 runs are still to do", done.stdout)
         out = self.path / "collected"
@@ -114,7 +80,7 @@ class Sweep(unittest.TestCase):
 
     def test_a_run_that_crashes_is_a_row_and_one_killed_from_outside_is_tried_again(self):
         out = self.path / "crashed"
-        process = self.start(out, *VARY, "--jobs", "1")
+        process = self.start(out, *self.vary, "--jobs", "1")
         subprocess.run(["kill", "-SEGV", str(self.wait_for_a_child(process))], check=True)
         _, said = process.communicate(timeout=280)
         self.assertEqual(process.returncode, 3, said)
@@ -123,7 +89,7 @@ class Sweep(unittest.TestCase):
         self.assertIn("signal 11", said)
 
         out = self.path / "shot"
-        process = self.start(out, *VARY, "--jobs", "1")
+        process = self.start(out, *self.vary, "--jobs", "1")
         subprocess.run(["kill", "-KILL", str(self.wait_for_a_child(process))], check=True)
         _, said = process.communicate(timeout=280)
         self.assertEqual(process.returncode, 0, said)
@@ -135,29 +101,30 @@ class Sweep(unittest.TestCase):
         self.assertEqual(done.returncode, 4, done.stderr)
         self.assertEqual(self.rows(out)[0]["end"], "wall time limit")
 
-    def test_a_variant_whose_files_are_missing_is_a_row_and_2(self):
-        out = self.path / "missing"
-        done = self.sweep(out, "--seeds", "1", "--vary", f"mission={self.path / 'home.json'},routes/nowhere.json")
+    def test_a_variant_whose_files_are_wrong_is_a_row_and_2(self):
+        out, broken = self.path / "wrong_file", self.path / "broken.json"
+        broken.write_text("{}")
+        done = self.sweep(out, "--seeds", "1", "--vary", f"mission={self.path / 'home.json'},{broken}")
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual([row["end"] for row in self.rows(out)], ["done", "wrong input"])
 
     def test_interrupted_is_3_incomplete_and_goes_on(self):
         out = self.path / "interrupted"
-        process = self.start(out, *VARY)
+        process = self.start(out, *self.vary)
         self.wait_for_a_child(process)
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 3, said)
         self.assertTrue((out / "INCOMPLETE").exists())
         self.assertFalse((out / "runs.csv").exists())
-        self.assertEqual(self.sweep(out, *VARY).returncode, 0)
+        self.assertEqual(self.sweep(out, *self.vary).returncode, 0)
         self.assert_same_tables(out)
 
     def test_more_seeds_in_the_same_directory_run_only_what_is_new(self):
         out = self.path / "longer"
         shutil.copytree(self.unbroken, out)
         begin = time.time()
-        self.assertEqual(self.sweep(out, *VARY[:-1], "3").returncode, 0)
+        self.assertEqual(self.sweep(out, *self.vary[:-1], "3").returncode, 0)
         self.assertEqual(len(self.rows(out)), 6)
         made = [file for file in (out / "runs").iterdir() if file.stat().st_mtime >= begin]
         self.assertEqual(len(made), 2)

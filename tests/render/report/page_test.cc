@@ -34,6 +34,7 @@ Page page_of_everything(const std::string& text) {
                        {.title = text,
                         .blocks = {TextBlock{text}, KeyFigures{{{text, text, text, text}}}, table, FoldedTables{text, {table}},
                                    BarBlock{text, {{text, 1.0, text}}}, BoxPlot{text, text, {{text, {1.0, 2.0, 4.0}, 1.5, 2.0, 3.0, text}}},
+                                   SpanChart{text, text, {{text, -1.0, 2.0, std::pair(1.5, 2.5), Tone::kBad, text}}},
                                    LinePlot{text, text, axis, {}, {curve}, {mark}, {span}}, LanePlot{text, axis, {{text, {mark}}}, {span}},
                                    MapBlock{map_picture({}, {}), {{text, Ink::kTruth, {{{0, 0}, {1, 1}}}}}, {{text, Ink::kEvent, {0, 0}}}},
                                    VideoBlock{text, "", text}, VideoBlock{"", text, text}}}},
@@ -120,6 +121,16 @@ TEST(BoxPlot, StandsOnAScaleOfRoundTicks) {
   EXPECT_THAT(html, HasSubstr("class=\"box\" style=\"left:37.500%;width:33.750%\""));
   EXPECT_THAT(html, HasSubstr("class=\"whisker\" style=\"left:25.000%;width:67.500%\""));
   EXPECT_EQ(count(html, "class=\"dot\""), 3u);
+}
+
+TEST(SpanChart, HasAScaleWithZeroAndNegativeValuesInIt) {
+  const std::string html = html_of(SpanChart{"", "cm", {{.label = "a", .from = 0.0, .to = -2.0, .interval = std::pair(-3.0, -1.0), .text = ""},
+                                                         {.label = "b", .from = 0.0, .to = 1.0, .text = ""}}});
+  // -3 ... 1 in steps of 1: zero at three quarters; a from -2 to 0, its interval from -3 to -1.
+  EXPECT_THAT(html, HasSubstr("zero\" style=\"left:75.000%"));
+  EXPECT_THAT(html, HasSubstr("span plain\" style=\"left:25.000%;width:50.000%"));
+  EXPECT_THAT(html, HasSubstr("whisker\" style=\"left:0.000%;width:50.000%"));
+  EXPECT_THAT(html, HasSubstr(">1 cm<"));
 }
 
 }  // namespace

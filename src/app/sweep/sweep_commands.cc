@@ -2,9 +2,9 @@
 
 #include "app/commands.h"
 #include "app/sweep/finish_sweep.h"
+#include "app/sweep/plan.h"
 #include "app/sweep/run_sweep.h"
 #include "app/sweep/slurm_engine.h"
-#include "app/sweep/sweep_directory.h"
 #include "core/error.h"
 
 namespace patrol::app {
@@ -18,9 +18,15 @@ void check(const SweepOptions& options) {
   }
   if (options.engine == "slurm" && !options.shard.empty()) throw InputError("--shard: the engine slurm makes the shards itself (--slurm-tasks)");
   if (options.metrics.empty()) throw InputError("--metric: at least one is compared");
-  if (!(options.run_limit_s > 0.0)) throw InputError("--run-limit-s: must be greater than 0");
   if (!(options.margin >= 0.0)) throw InputError("--margin: must not be negative");
   if (options.slurm_tasks < 1 || options.slurm_tasks > 100'000) throw InputError("--slurm-tasks: must lie in 1 ... 100000");
+}
+
+ExitCode perform(const std::filesystem::path& scenario, const SweepManifest& manifest, const Shard& shard, const BatchSettings& settings,
+                 const std::filesystem::path& out) {
+  const SweepDirectory directory = begin_sweep_directory(out, manifest);
+  run_sweep(scenario, manifest, directory, shard, settings);
+  return finish_sweep(directory, manifest);
 }
 
 }  // namespace
@@ -28,19 +34,20 @@ void check(const SweepOptions& options) {
 ExitCode sweep_command(const SweepOptions& options) {
   check(options);
   const Shard shard = parse_shard(options.shard);
-  parse_keep(options.keep);
-  parse_jobs(options.jobs);
+  const BatchSettings settings = batch_settings(options.batch);
   const SweepManifest manifest = plan_sweep(options);
-  const SweepDirectory directory = begin_sweep_directory(options.out, manifest);
-  if (options.engine == "slurm") return sweep_on_slurm(options, directory, manifest);
+  if (options.engine == "slurm") return sweep_on_slurm(options, begin_sweep_directory(options.out, manifest), manifest);
+  return perform(options.scenario, manifest, shard, settings, options.out);
+}
 
-  const BatchSettings settings{.pool = {.num_processes = parse_jobs(options.jobs), .limit_s = options.run_limit_s},
-                               .keep = parse_keep(options.keep)};
-  if (!run_sweep(options.scenario, manifest, directory, shard, settings)) {
-    fmt::print(stderr, "patrol: interrupted; {} is incomplete, the same command goes on\n", directory.root.string());
-    return ExitCode::kProgramFailed;
-  }
-  return finish_sweep(directory, manifest);
+ExitCode budget_command(const BudgetOptions& options) {
+  const BatchSettings settings = batch_settings(options.batch);
+  return perform(options.scenario, plan_budget(options), {}, settings, options.out);
+}
+
+ExitCode faults_command(const FaultsOptions& options) {
+  const BatchSettings settings = batch_settings(options.batch);
+  return perform(options.scenario, plan_faults(options), {}, settings, options.out);
 }
 
 }  // namespace patrol::app

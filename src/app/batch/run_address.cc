@@ -1,4 +1,4 @@
-#include "app/sweep/run_address.h"
+#include "app/batch/run_address.h"
 
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
@@ -20,11 +20,18 @@ const std::string& RunAddresses::digest_of(const std::filesystem::path& folder, 
   return digests_[folder] = io::sha256_of_folder(folder, except);
 }
 
+const std::string& RunAddresses::digest_of_file(const std::filesystem::path& file) {
+  const auto known = digests_.find(file);
+  if (known != digests_.end()) return known->second;
+  return digests_[file] = io::sha256_of_file(file);
+}
+
 std::string RunAddresses::of(const Scenario& scenario) {
   constexpr std::size_t kDigits = 20;
-  const std::string asked = fmt::format("{}\nworld {}\nrobot {}\n{}", program_,
-                                        digest_of(data_root_ / "worlds" / scenario.world, "scenarios"),
-                                        digest_of(data_root_ / "models" / scenario.robot, ""), io::to_yaml(scenario));
+  std::string asked = fmt::format("{}\nworld {}\nrobot {}\n", program_, digest_of(data_root_ / "worlds" / scenario.world, "scenarios"),
+                                  digest_of(data_root_ / "models" / scenario.robot, ""));
+  for (const std::filesystem::path& file : named_files(scenario, data_root_)) asked += fmt::format("file {}\n", digest_of_file(file));
+  asked += io::to_yaml(scenario);
   return io::sha256(asked).substr(0, kDigits);
 }
 

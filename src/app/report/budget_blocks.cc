@@ -1,0 +1,86 @@
+#include "app/report/budget_blocks.h"
+
+#include <fmt/format.h>
+
+#include "app/report/quantity.h"
+
+namespace patrol::app {
+namespace {
+
+using render::Tone;
+
+/// Steps of a waterfall, in the metric's unit for people.
+class Waterfall {
+ public:
+  explicit Waterfall(const Budget& budget) : unit_(unit_of(budget.metric)), level_(budget.as_it_is->center) {}
+
+  /// From zero.
+  void total(const std::string& label, const score::Interval& value) {
+    add(label, 0.0, value.center, value, Tone::kPlain, fmt::format("{:.3g} {}", unit_.factor * value.center, unit_.name));
+  }
+  /// Down from where the last step ended.
+  void step(const std::string& label, const score::Interval& share) {
+    const double next = level_ - share.center;
+    const Tone tone = share.contains(0.0) ? Tone::kFaint : share.center > 0.0 ? Tone::kBad : Tone::kGood;
+    add(label, level_, next, {.center = next, .low = level_ - share.high, .high = level_ - share.low}, tone,
+        fmt::format("{:+.3g} {}", -unit_.factor * share.center, unit_.name));
+    level_ = next;
+  }
+  render::SpanChart chart() && { return std::move(chart_); }
+
+ private:
+  void add(const std::string& label, double from, double to, const score::Interval& about, Tone tone, const std::string& text) {
+    chart_.spans.push_back({.label = label,
+                            .from = unit_.factor * from,
+                            .to = unit_.factor * to,
+                            .interval = std::pair(unit_.factor * about.low, unit_.factor * about.high),
+                            .tone = tone,
+                            .text = text});
+    chart_.unit = unit_.name;
+  }
+
+  Unit unit_;
+  double level_;
+  render::SpanChart chart_;
+};
+
+bool is_whole(const Budget& budget) { return budget.as_it_is && budget.ideal && budget.sum && budget.interaction; }
+
+std::string with_interval(const score::Interval& value, const Unit& unit) {
+  return fmt::format("{:+.3g} [{:+.3g}, {:+.3g}]", unit.factor * value.center, unit.factor * value.low, unit.factor * value.high);
+}
+
+}  // namespace
+
+std::vector<render::Block> budget_blocks(const Budget& budget) {
+  if (!is_whole(budget)) return {render::TextBlock{"Too few runs gave this figure."}};
+  const Unit unit = unit_of(budget.metric);
+  Waterfall waterfall(budget);
+  waterfall.total("as it is", *budget.as_it_is);
+  render::TableBlock table{.caption = "", .columns = {{"imperfection"}, {"seeds", true}, {fmt::format("share, {}", unit.name), true}, {""}}, .rows = {}};
+  for (const BudgetShare& share : budget.shares) {
+    if (!share.share) continue;
+    waterfall.step(share.name, *share.share);
+    const bool is_clear = !share.share->contains(0.0);
+    table.rows.push_back({{share.name}, {std::to_string(share.num_pairs)}, {with_interval(*share.share, unit)},
+                          {is_clear ? "" : "interval holds zero", Tone::kFaint}});
+  }
+  waterfall.step("interaction", *budget.interaction);
+  waterfall.total("all ideal", *budget.ideal);
+  table.rows.push_back({{"sum of the shares"}, {""}, {with_interval(*budget.sum, unit)}, {""}});
+  table.rows.push_back({{"interaction"}, {""}, {with_interval(*budget.interaction, unit)}, {""}});
+  return {std::move(waterfall).chart(), table,
+          render::TextBlock{"A share is the figure with all imperfections less the figure without this one, paired by seed, with its 95 % interval. Interaction: "
+                            "what all take away together, less the sum of the shares; imperfections that hide or feed each other."}};
+}
+
+std::string budget_finding(const Budget& budget) {
+  if (!is_whole(budget) || budget.shares.empty() || !budget.shares.front().share) return fmt::format("{}: too few runs gave it.", budget.metric);
+  const Unit unit = unit_of(budget.metric);
+  const BudgetShare& first = budget.shares.front();
+  const std::string whole = fmt::format("{:.3g} {}", unit.factor * budget.as_it_is->center, unit.name);
+  if (first.share->contains(0.0)) return fmt::format("{}: of {}, no imperfection owns a share whose interval leaves out zero.", budget.metric, whole);
+  return fmt::format("{}: of {}, {} owns {:.3g} {}.", budget.metric, whole, first.name, unit.factor * first.share->center, unit.name);
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,92 @@
+#include "app/report/comparison_blocks.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "app/report/quantity.h"
+
+namespace patrol::app {
+namespace {
+
+using render::Cell;
+using render::Tone;
+
+render::Box box_of(const std::string& label, std::vector<double> values, const Unit& unit) {
+  render::Box box{.label = label, .values = std::move(values), .text = ""};
+  for (double& value : box.values) value *= unit.factor;
+  box.lower_quartile = score::percentile(box.values, 0.25);
+  box.median = score::percentile(box.values, 0.5);
+  box.upper_quartile = score::percentile(box.values, 0.75);
+  box.text = fmt::format("{:.4g} {}", box.median, unit.name);
+  return box;
+}
+
+Cell verdict_cell(const VariantFigure& figure) {
+  const bool is_difference = figure.verdict == "lower" || figure.verdict == "higher";
+  return {figure.verdict, is_difference ? Tone::kPlain : Tone::kFaint};
+}
+
+std::string interval_text(const std::optional<score::Interval>& interval, const Unit& unit, const char* sign) {
+  if (!interval) return "–";
+  const auto number = [&](double value) { return fmt::format(fmt::runtime(fmt::format("{{:{}.4g}}", sign)), unit.factor * value); };
+  return fmt::format("{} [{}, {}]", number(interval->center), number(interval->low), number(interval->high));
+}
+
+}  // namespace
+
+std::vector<render::Block> comparison_blocks(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, const std::string& metric) {
+  const Unit unit = unit_of(metric);
+  const auto figures = figures_of(manifest, rows, metric);
+  render::BoxPlot boxes{.caption = "Every run, median and quartiles", .unit = unit.name, .boxes = {}};
+  render::SpanChart differences{.caption = fmt::format("Difference from {}, paired by seed, {:g} % intervals", manifest.variants.front().name, 100.0 * level_of(manifest)),
+                                .unit = unit.name,
+                                .spans = {}};
+  render::TableBlock table{.caption = "",
+                           .columns = {{"variant"}, {"runs", true}, {"mean, " + unit.name, true}, {"difference, " + unit.name, true}, {""}},
+                           .rows = {}};
+  for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
+    const std::string& name = manifest.variants[variant].name;
+    const VariantFigure figure = compare(manifest, rows, metric, progress.num_seeds[variant], level_of(manifest))[variant];
+    std::vector<double> values;
+    for (std::size_t seed = 0; seed < progress.num_seeds[variant]; ++seed) {
+      if (figures[seed][variant]) values.push_back(*figures[seed][variant]);
+    }
+    if (!values.empty()) boxes.boxes.push_back(box_of(name, values, unit));
+    if (figure.difference) {
+      differences.spans.push_back({.label = name,
+                                   .from = 0.0,
+                                   .to = unit.factor * figure.difference->center,
+                                   .interval = std::pair(unit.factor * figure.difference->low, unit.factor * figure.difference->high),
+                                   .tone = figure.difference->contains(0.0) ? Tone::kFaint : Tone::kPlain,
+                                   .text = figure.verdict});
+    }
+    table.rows.push_back({{name},
+                          {std::to_string(figure.num_runs)},
+                          {interval_text(figure.interval, unit, "")},
+                          {variant == 0 ? "" : interval_text(figure.difference, unit, "+")},
+                          verdict_cell(figure)});
+  }
+  std::vector<render::Block> blocks;
+  if (!boxes.boxes.empty()) blocks.emplace_back(boxes);
+  if (!differences.spans.empty()) blocks.emplace_back(differences);
+  blocks.emplace_back(table);
+  return blocks;
+}
+
+render::FoldedTables run_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
+  render::TableBlock table{.caption = "", .columns = {{"variant"}, {"seed", true}, {"end"}, {"exit code", true}, {"why"}}, .rows = {}};
+  std::vector<std::size_t> order = progress.counted;
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return rows[i]->code != ExitCode::kDone; });
+  for (const std::size_t i : order) {
+    const RunVerdict& verdict = *rows[i];
+    table.rows.push_back({{manifest.variants[manifest.runs[i].variant].name},
+                          {std::to_string(manifest.runs[i].seed)},
+                          {verdict.end, verdict.code == ExitCode::kDone ? Tone::kGood : Tone::kBad},
+                          {std::to_string(static_cast<int>(verdict.code))},
+                          {verdict.message}});
+  }
+  return {.summary = fmt::format("All {} runs", order.size()), .tables = {table}};
+}
+
+}  // namespace patrol::app

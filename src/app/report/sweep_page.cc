@@ -1,0 +1,138 @@
+#include "app/report/sweep_page.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "app/report/budget_blocks.h"
+#include "app/report/comparison_blocks.h"
+#include "app/sweep/fault_matrix.h"
+
+namespace patrol::app {
+namespace {
+
+using render::Tone;
+
+std::string not_done(const SweepRows& rows, const SweepProgress& progress) {
+  const auto num = std::count_if(progress.counted.begin(), progress.counted.end(), [&](std::size_t i) { return rows[i]->code != ExitCode::kDone; });
+  return num == 0 ? fmt::format(" All {} runs came to their end as expected.", progress.counted.size())
+                  : fmt::format(" {} of {} runs did not end as expected.", num, progress.counted.size());
+}
+
+render::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
+  const std::string& metric = manifest.metrics.front();
+  std::vector<std::string> better, worse;
+  for (std::size_t variant = 1; variant < manifest.variants.size(); ++variant) {
+    const VariantFigure figure = compare(manifest, rows, metric, progress.num_seeds[variant], level_of(manifest))[variant];
+    if (figure.verdict == "lower") better.push_back(manifest.variants[variant].name);
+    if (figure.verdict == "higher") worse.push_back(manifest.variants[variant].name);
+  }
+  render::VerdictBlock verdict;
+  if (manifest.variants.size() == 1) {
+    verdict.word = "One variant";
+    verdict.reason = "Nothing is compared.";
+  } else if (better.empty() && worse.empty()) {
+    verdict.word = "No difference";
+    verdict.tone = Tone::kFaint;
+    verdict.reason = fmt::format("{}: every variant's interval of the paired difference from {} holds zero.", metric, manifest.variants.front().name);
+  } else {
+    verdict.word = fmt::format("{} of {} differ", better.size() + worse.size(), manifest.variants.size() - 1);
+    verdict.reason = fmt::format("{}, against {}:", metric, manifest.variants.front().name);
+    if (!better.empty()) verdict.reason += fmt::format(" lower with {}.", fmt::join(better, "; "));
+    if (!worse.empty()) verdict.reason += fmt::format(" higher with {}.", fmt::join(worse, "; "));
+  }
+  verdict.reason += not_done(rows, progress);
+  return verdict;
+}
+
+render::VerdictBlock budget_verdict(const std::vector<Budget>& budgets, const SweepRows& rows, const SweepProgress& progress) {
+  render::VerdictBlock verdict;
+  const bool has_owner = !budgets.empty() && !budgets.front().shares.empty() && budgets.front().shares.front().share && !budgets.front().shares.front().share->contains(0.0);
+  verdict.word = has_owner ? budgets.front().shares.front().name : "No single owner";
+  for (const Budget& budget : budgets) verdict.reason += budget_finding(budget) + " ";
+  verdict.reason += not_done(rows, progress);
+  return verdict;
+}
+
+Tone tone_of(FaultOutcome outcome) {
+  switch (outcome) {
+    case FaultOutcome::kSurvived: return Tone::kGood;
+    case FaultOutcome::kDegraded:
+    case FaultOutcome::kStopped: return Tone::kWarning;
+    default: return Tone::kBad;
+  }
+}
+
+/// The table as it stands in faults.csv, by fault.
+render::TableBlock fault_table(const SweepManifest& manifest, const SweepRows& rows) {
+  render::TableBlock table{.caption = "", .columns = {{"fault"}, {"seed", true}, {"executed"}, {"outcome"}, {"noticed", true}, {"end"}}, .rows = {}};
+  for (const std::string& metric : manifest.metrics) table.columns.push_back({metric, true});
+  for (const FaultRow& row : fault_rows(manifest, rows)) {
+    std::vector<render::Cell> cells = {{row.fault},
+                                       {std::to_string(row.seed)},
+                                       {row.executed, row.executed == "NOT EXECUTED" ? Tone::kWarning : Tone::kPlain},
+                                       {std::string(text_of(row.outcome)), tone_of(row.outcome)},
+                                       {row.num_noticed ? fmt::format("{:.0f}", *row.num_noticed) : "–"},
+                                       {row.end}};
+    for (const auto& figure : row.figures) cells.push_back({figure ? fmt::format("{:.4g}", *figure) : "–"});
+    table.rows.push_back(cells);
+  }
+  return table;
+}
+
+render::VerdictBlock faults_verdict(const SweepManifest& manifest, const SweepRows& rows) {
+  const std::vector<FaultRow> all = fault_rows(manifest, rows);
+  const auto count = [&](FaultOutcome outcome) { return std::count_if(all.begin(), all.end(), [&](const FaultRow& row) { return row.outcome == outcome; }); };
+  const auto num_bad = count(FaultOutcome::kUnsafe) + count(FaultOutcome::kNoResult);
+  render::VerdictBlock verdict;
+  verdict.word = num_bad == 0 ? "No fault was unsafe" : fmt::format("{} of {} runs unsafe", num_bad, all.size());
+  verdict.tone = num_bad == 0 ? Tone::kGood : Tone::kBad;
+  verdict.reason = faults_summary(manifest, rows);
+  return verdict;
+}
+
+const char* kind_of(SweepKind kind) {
+  switch (kind) {
+    case SweepKind::kBudget: return "error budget";
+    case SweepKind::kFaults: return "fault matrix";
+    default: return "sweep";
+  }
+}
+
+void add_comparisons(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, render::Page& page) {
+  for (const std::string& metric : manifest.metrics) page.sections.push_back({metric, comparison_blocks(manifest, rows, progress, metric)});
+}
+
+}  // namespace
+
+render::Page sweep_page(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
+  const std::string scenario = manifest.scenario.substr(0, manifest.scenario.rfind('.'));
+  render::Page page{.kind = fmt::format("report of {} {}", manifest.kind == SweepKind::kBudget ? "an" : "a", kind_of(manifest.kind)),
+                    .title = scenario,
+                    .facts = {{"variants", std::to_string(manifest.variants.size())},
+                              {"seeds", fmt::format("{} … {}", manifest.seeds.front(), manifest.seeds.back())},
+                              {"runs", std::to_string(progress.counted.size())}},
+                    .sections = {},
+                    .colophon = fmt::format("Made by patrol report {} from sweep.json and the results in runs/.", PATROL_VERSION)};
+  if (!manifest.overrides.empty()) page.facts.emplace_back("set in every run", fmt::format("{}", fmt::join(manifest.overrides, ", ")));
+  switch (manifest.kind) {
+    case SweepKind::kSweep:
+      page.sections.push_back({"", {sweep_verdict(manifest, rows, progress)}});
+      add_comparisons(manifest, rows, progress, page);
+      break;
+    case SweepKind::kBudget: {
+      const std::vector<Budget> budgets = make_budgets(manifest, rows);
+      page.sections.push_back({"", {budget_verdict(budgets, rows, progress)}});
+      for (const Budget& budget : budgets) page.sections.push_back({budget.metric, budget_blocks(budget)});
+      break;
+    }
+    case SweepKind::kFaults:
+      page.sections.push_back({"", {faults_verdict(manifest, rows)}});
+      page.sections.push_back({"Faults", {fault_table(manifest, rows), render::TextBlock{fault_legend()}}});
+      break;
+  }
+  page.sections.push_back({"Runs", {run_table(manifest, rows, progress)}});
+  return page;
+}
+
+}  // namespace patrol::app

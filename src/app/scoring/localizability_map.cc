@@ -1,0 +1,61 @@
+#include "app/scoring/localizability_map.h"
+
+#include <algorithm>
+#include <deque>
+#include <set>
+#include <utility>
+
+#include "app/scoring/localizability_oracle.h"
+#include "core/error.h"
+#include "render/reference_map.h"
+#include "score/distance_field.h"
+#include "sim/model_assembly.h"
+
+namespace patrol::app {
+namespace {
+
+constexpr double kClearance_m = 0.4;
+constexpr double kSurfaceCell_m = 0.05;
+
+/// Of the robot standing at the start.
+double lidar_height_m(const ScenarioFiles& files) {
+  const sim::AssembledModel assembled = sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), files.T_site_start);
+  const sim::DataPtr data = sim::make_data(*assembled.physics);
+  std::copy(assembled.start_qpos.begin(), assembled.start_qpos.end(), data->qpos);
+  mj_kinematics(assembled.physics.get(), data.get());
+  const int body = mj_name2id(assembled.physics.get(), mjOBJ_BODY, frame_id::kBody);
+  return data->xpos[3 * body + 2] + files.robot.T_body("lidar").position.z();
+}
+
+}  // namespace
+
+LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFiles& files, double step_m) {
+  const sim::SpecPtr spec = sim::load_spec(files.world_xml.string());
+  const sim::ModelPtr world = sim::compile(*spec, files.world_xml.string());
+  const double height_m = lidar_height_m(files);
+  LocalizabilityMap map{.surfaces = render::reference_map(*world, {.height_m = height_m, .resolution_m = kSurfaceCell_m, .margin_m = 0.0}).map,
+                        .step_m = step_m,
+                        .places = {}};
+  const score::DistanceField clearance(score::occupied_cells(map.surfaces));
+  const LocalizabilityOracle oracle(*world, scenario.sensors.lidar, height_m);
+  const Eigen::Vector2d start = files.T_site_start.position();
+  const auto place_at = [&](const std::pair<int, int>& node) { return Eigen::Vector2d(start + step_m * Eigen::Vector2d(node.first, node.second)); };
+  const auto can_stand = [&](const Eigen::Vector2d& p_world_m) {
+    const Cell cell = map.surfaces.geometry().cell_at(p_world_m);
+    return map.surfaces.contains(cell) && map.surfaces.at(cell) == kFree && clearance.distance_m(p_world_m) >= kClearance_m;
+  };
+
+  std::set<std::pair<int, int>> seen = {{0, 0}};
+  for (std::deque<std::pair<int, int>> open = {{0, 0}}; !open.empty(); open.pop_front()) {
+    const auto [i, j] = open.front();
+    if (!can_stand(place_at({i, j}))) continue;
+    map.places.push_back({.p_world_m = place_at({i, j}), .truth = oracle.at(place_at({i, j}))});
+    for (const auto& next : {std::pair(i + 1, j), std::pair(i - 1, j), std::pair(i, j + 1), std::pair(i, j - 1)}) {
+      if (seen.insert(next).second) open.push_back(next);
+    }
+  }
+  if (map.places.empty()) throw InputError("the start lies nearer than 0.4 m to a surface: there is no place to look from");
+  return map;
+}
+
+}  // namespace patrol::app

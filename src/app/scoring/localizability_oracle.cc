@@ -1,0 +1,32 @@
+#include "app/scoring/localizability_oracle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace patrol::app {
+namespace {
+
+/// One of n rays stands for the information of as many beams as the lidar has for it.
+score::BeamNoise noise_of(const sim::LidarSettings& lidar, int num_rays) {
+  constexpr double kLeast_m = 0.001;
+  const double quantum_m = lidar.range_resolution_m;
+  const double range_std_m = std::sqrt(lidar.range_noise_m * lidar.range_noise_m + quantum_m * quantum_m / 12.0);
+  const double beams_per_ray = lidar.beams * 360.0 / lidar.fov_deg / num_rays;
+  return {.range_std_m = std::max(range_std_m, kLeast_m) / std::sqrt(beams_per_ray),
+          .direction_std_rad = lidar.angle_noise_deg * std::numbers::pi / 180.0 / std::sqrt(beams_per_ray)};
+}
+
+}  // namespace
+
+LocalizabilityOracle::LocalizabilityOracle(const mjModel& world, const sim::LidarSettings& lidar, double height_m)
+    : scene_(world),
+      height_m_(height_m),
+      scan_{.range_max_m = lidar.range_max_m, .grazing_deg = lidar.grazing_deg},
+      noise_(noise_of(lidar, scan_.beams)) {}
+
+score::Localizability LocalizabilityOracle::at(const Eigen::Vector2d& p_world_m) const {
+  return score::localizability(sim::ideal_scan(scene_, {p_world_m.x(), p_world_m.y(), height_m_}, scan_), noise_);
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,95 @@
+#include "app/sweep/plan.h"
+
+#include "app/batch/run_address.h"
+#include "app/sweep/axis.h"
+#include "app/sweep/fault_matrix.h"
+#include "app/sweep/imperfections.h"
+#include "core/error.h"
+#include "io/settings_yaml.h"
+
+namespace patrol::app {
+namespace {
+
+/// Seed by seed, in each all variants.
+void plan_runs(const std::filesystem::path& scenario, const std::vector<Axis>& axes, SweepManifest& manifest) {
+  RunAddresses addresses(find_data_root(scenario));
+  for (const std::uint64_t seed : manifest.seeds) {
+    for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
+      PlannedRun run{.variant = variant, .seed = seed, .overrides = manifest.variants[variant].overrides, .address = ""};
+      for (const Axis& axis : axes) {
+        if (axis.is_drawn()) run.overrides.push_back(axis.draw(seed));
+      }
+      run.address = addresses.of(load_scenario(scenario, overrides_of(manifest, run)));
+      manifest.runs.push_back(run);
+    }
+  }
+}
+
+}  // namespace
+
+SweepManifest plan_sweep(const SweepOptions& options) {
+  std::vector<Axis> axes;
+  for (const std::string& text : options.vary) axes.push_back(parse_axis(text));
+  SweepManifest manifest{.kind = SweepKind::kSweep,
+                         .scenario = options.scenario.filename().string(),
+                         .overrides = options.overrides,
+                         .paths = {},
+                         .variants = cross(axes),
+                         .seeds = parse_seeds(options.seeds),
+                         .metrics = options.metrics,
+                         .stop = {.when_decided = options.stop_when_decided, .margin = options.margin},
+                         .runs = {}};
+  for (const Axis& axis : axes) manifest.paths.push_back(axis.path);
+  plan_runs(options.scenario, axes, manifest);
+  return manifest;
+}
+
+SweepManifest plan_budget(const BudgetOptions& options) {
+  SweepManifest manifest{.kind = SweepKind::kBudget,
+                         .scenario = options.scenario.filename().string(),
+                         .overrides = options.overrides,
+                         .paths = {},
+                         .variants = {{.name = "as it is", .overrides = {}}},
+                         .seeds = parse_seeds(options.seeds),
+                         .metrics = options.metrics,
+                         .stop = {},
+                         .runs = {}};
+  if (manifest.seeds.size() < 2) throw InputError("--seeds: a budget needs two at least: one says nothing of the spread");
+  const Scenario scenario = load_scenario(options.scenario, options.overrides);
+  const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
+  const auto changes_it = [&](const Imperfection& imperfection) {
+    std::vector<std::string> overrides = options.overrides;
+    overrides.insert(overrides.end(), imperfection.overrides.begin(), imperfection.overrides.end());
+    return io::to_yaml(load_scenario(options.scenario, overrides)) != io::to_yaml(scenario);
+  };
+  Variant ideal{.name = "all ideal", .overrides = {}};
+  for (const Imperfection& imperfection : imperfections()) {
+    if (!imperfection.is_there(scenario, files) || !changes_it(imperfection)) continue;
+    manifest.variants.push_back({.name = imperfection.name, .overrides = imperfection.overrides});
+    ideal.overrides.insert(ideal.overrides.end(), imperfection.overrides.begin(), imperfection.overrides.end());
+  }
+  manifest.variants.push_back(ideal);
+  plan_runs(options.scenario, {}, manifest);
+  return manifest;
+}
+
+SweepManifest plan_faults(const FaultsOptions& options) {
+  SweepManifest manifest{.kind = SweepKind::kFaults,
+                         .scenario = options.scenario.filename().string(),
+                         .overrides = options.overrides,
+                         .paths = {"faults"},
+                         .variants = {{.name = "no fault", .overrides = {"faults=[]"}}},
+                         .seeds = parse_seeds(options.seeds),
+                         .metrics = options.metrics,
+                         .stop = {},
+                         .runs = {}};
+  const Scenario scenario = load_scenario(options.scenario, options.overrides);
+  const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
+  for (const sim::FaultSettings& fault : fault_matrix(scenario, files, options.start_s, options.duration_s)) {
+    manifest.variants.push_back({.name = variant_name(fault), .overrides = {fault_override(fault)}});
+  }
+  plan_runs(options.scenario, {}, manifest);
+  return manifest;
+}
+
+}  // namespace patrol::app

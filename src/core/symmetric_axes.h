@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <numbers>
+
+namespace patrol {
+
+/// The axes of an ellipse that a symmetric 2 x 2 matrix describes: a covariance's, or an information's.
+struct SymmetricAxes {
+  double large = 0.0;            ///< eigenvalues
+  double small = 0.0;
+  double large_direction_rad = 0.0;  ///< -pi/2 ... pi/2
+
+  double small_direction_rad() const { return std::remainder(large_direction_rad + std::numbers::pi / 2.0, std::numbers::pi); }
+  static Eigen::Vector2d along(double direction_rad) { return {std::cos(direction_rad), std::sin(direction_rad)}; }
+};
+
+inline SymmetricAxes symmetric_axes(const Eigen::Matrix2d& matrix) {
+  const double middle = 0.5 * (matrix(0, 0) + matrix(1, 1)), half = 0.5 * (matrix(0, 0) - matrix(1, 1));
+  const double reach = std::hypot(half, matrix(0, 1));
+  const double large = middle + reach;
+  // The small one from the determinant: middle - reach would lose its digits when it is much smaller.
+  const double determinant = matrix(0, 0) * matrix(1, 1) - matrix(0, 1) * matrix(0, 1);
+  return {.large = large,
+          .small = middle > 0.0 && large > 0.0 ? determinant / large : middle - reach,
+          .large_direction_rad = 0.5 * std::atan2(matrix(0, 1), half)};
+}
+
+}  // namespace patrol

@@ -1,0 +1,21 @@
+#include "sim/ideal_scan.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace patrol::sim {
+
+std::vector<SurfaceReturn> ideal_scan(const LidarScene& scene, const Eigen::Vector3d& p_world_m, const IdealScanSettings& settings) {
+  const double least_cosine = std::cos(settings.grazing_deg * std::numbers::pi / 180.0);
+  std::vector<SurfaceReturn> returns;
+  for (int beam = 0; beam < settings.beams; ++beam) {
+    const double angle = 2.0 * std::numbers::pi * beam / settings.beams;
+    const Eigen::Vector3d direction(std::cos(angle), std::sin(angle), 0.0);
+    const std::optional<RayHit> hit = scene.cast(p_world_m, direction, settings.range_max_m, kRayScenery);
+    if (!hit || -hit->normal.dot(direction) < least_cosine) continue;
+    returns.push_back({.direction = direction.head<2>(), .range_m = hit->distance_m, .normal = hit->normal});
+  }
+  return returns;
+}
+
+}  // namespace patrol::sim

@@ -1,0 +1,100 @@
+#include "app/report/sweep_page.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace patrol::app {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Ten seeds of two variants; the second is `shift_m` worse, with a little noise of its own.
+struct SmallSweep {
+  explicit SmallSweep(double shift_m, SweepKind kind = SweepKind::kSweep) {
+    manifest.kind = kind;
+    manifest.scenario = "walk.yaml";
+    manifest.variants = {{.name = "first", .overrides = {}}, {.name = "second", .overrides = {}}};
+    manifest.metrics = {"pose.ate_rmse_m"};
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      manifest.seeds.push_back(seed);
+      for (std::size_t variant = 0; variant < 2; ++variant) {
+        manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .address = ""});
+        const double noise_m = 0.001 * static_cast<double>(seed % 2 == 0 ? 1 : -1) * static_cast<double>(variant);
+        const double error_m = 0.05 + 0.01 * static_cast<double>(seed) + noise_m + shift_m * static_cast<double>(variant);
+        rows.push_back(RunVerdict{.end = "done",
+                                  .code = ExitCode::kDone,
+                                  .message = "",
+                                  .metrics = {{"pose", {{"ate_rmse_m", error_m}}}, {"mission", {{"completed", true}, {"collisions", 0}}}},
+                                  .checks = {},
+                                  .events = {}});
+      }
+    }
+  }
+  render::Page page() const { return sweep_page(manifest, rows, progress_of(manifest, rows)); }
+  render::VerdictBlock verdict() const { return std::get<render::VerdictBlock>(page().sections.front().blocks.front()); }
+
+  SweepManifest manifest;
+  SweepRows rows;
+};
+
+TEST(SweepPage, ADifferenceIsSaidInTheVerdictWithItsDirection) {
+  EXPECT_EQ(SmallSweep(0.02).verdict().word, "1 of 1 differ");
+  EXPECT_THAT(SmallSweep(0.02).verdict().reason, HasSubstr("higher with second"));
+  EXPECT_THAT(SmallSweep(-0.02).verdict().reason, HasSubstr("lower with second"));
+}
+
+TEST(SweepPage, AnIntervalThatHoldsZeroIsNoDifference) { EXPECT_EQ(SmallSweep(0.0).verdict().word, "No difference"); }
+
+TEST(SweepPage, RunsThatFailedAreSaidAndStandFirst) {
+  SmallSweep sweep(0.0);
+  sweep.rows[7]->end = "crashed";
+  sweep.rows[7]->code = ExitCode::kProgramFailed;
+  EXPECT_THAT(sweep.verdict().reason, HasSubstr("1 of 20 runs did not end as expected"));
+  const render::Page page = sweep.page();
+  const auto& runs = std::get<render::FoldedTables>(page.sections.back().blocks.front());
+  EXPECT_EQ(runs.tables.front().rows.front()[2].text, "crashed");
+}
+
+TEST(SweepPage, LengthsAreInCentimetresAndEveryRunIsADot) {
+  const render::Page page = SmallSweep(0.02).page();
+  const auto& blocks = page.sections[1].blocks;
+  const auto& boxes = std::get<render::BoxPlot>(blocks[0]);
+  EXPECT_EQ(boxes.unit, "cm");
+  EXPECT_EQ(boxes.boxes[0].values.size(), 10u);
+  EXPECT_NEAR(boxes.boxes[0].median, 10.5, 1e-9);
+  EXPECT_NEAR(std::get<render::SpanChart>(blocks[1]).spans[0].to, 2.0, 1e-9);
+}
+
+TEST(SweepPage, AFaultMatrixSaysHowManyWereUnsafe) {
+  SmallSweep faults(0.0, SweepKind::kFaults);
+  EXPECT_EQ(faults.verdict().word, "No fault was unsafe");
+  faults.rows[1]->metrics["mission"]["collisions"] = 2;
+  EXPECT_EQ(faults.verdict().word, "1 of 20 runs unsafe");
+  EXPECT_THAT(faults.verdict().reason, HasSubstr("1 UNSAFE"));
+}
+
+TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
+  SmallSweep budget(0.0, SweepKind::kBudget);
+  budget.manifest.variants = {{.name = "as it is", .overrides = {}}, {.name = "lidar: range noise", .overrides = {}}, {.name = "all ideal", .overrides = {}}};
+  budget.manifest.runs.clear();
+  budget.rows.clear();
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    for (std::size_t variant = 0; variant < 3; ++variant) {
+      budget.manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .address = ""});
+      const double error_m = std::array{0.10, 0.04, 0.03}[variant] + 0.001 * static_cast<double>(seed * (variant + 1) % 3);
+      budget.rows.push_back(RunVerdict{.end = "done", .code = ExitCode::kDone, .message = "", .metrics = {{"pose", {{"ate_rmse_m", error_m}}}}, .checks = {}, .events = {}});
+    }
+  }
+  EXPECT_EQ(budget.verdict().word, "lidar: range noise");
+  const render::Page page = budget.page();
+  const auto& spans = std::get<render::SpanChart>(page.sections[1].blocks[0]).spans;
+  ASSERT_EQ(spans.size(), 4u);  // as it is, the share, the interaction, all ideal
+  EXPECT_NEAR(spans[1].from, spans[0].to, 1e-9);
+  EXPECT_NEAR(spans[2].from, spans[1].to, 1e-9);
+  EXPECT_NEAR(spans[2].to, spans[3].to, 1e-9);
+}
+
+}  // namespace
+}  // namespace patrol::app
