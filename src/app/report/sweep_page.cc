@@ -110,7 +110,7 @@ render::Page sweep_page(const SweepManifest& manifest, const SweepRows& rows, co
   render::Page page{.kind = fmt::format("report of {} {}", manifest.kind == SweepKind::kBudget ? "an" : "a", kind_of(manifest.kind)),
                     .title = scenario,
                     .facts = {{"variants", std::to_string(manifest.variants.size())},
-                              {"seeds", fmt::format("{} … {}", manifest.seeds.front(), manifest.seeds.back())},
+                              {"seeds", manifest.seeds.size() == 1 ? std::to_string(manifest.seeds.front()) : fmt::format("{} … {}", manifest.seeds.front(), manifest.seeds.back())},
                               {"runs", std::to_string(progress.counted.size())}},
                     .sections = {},
                     .colophon = fmt::format("Made by patrol report {} from sweep.json and the results in runs/.", PATROL_VERSION)};

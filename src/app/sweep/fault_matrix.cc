@@ -4,8 +4,11 @@
 #include <array>
 #include <map>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "score/statistics.h"
 
 namespace patrol::app {
 namespace {
@@ -133,6 +136,52 @@ std::string faults_text(const SweepManifest& manifest, const SweepRows& rows) {
     text += "\n";
   }
   return text + faults_summary(manifest, rows) + "\n";
+}
+
+std::string faults_markdown(const SweepManifest& manifest, const SweepRows& rows) {
+  struct Cell {
+    FaultOutcome worst = FaultOutcome::kSurvived;
+    bool is_executed = true, is_noticed = true;
+    std::vector<double> figures;
+  };
+  std::vector<std::string> sensors, kinds;
+  std::map<std::pair<std::string, std::string>, Cell> cells;
+  const auto note = [](std::vector<std::string>& names, const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const FaultRow& row : fault_rows(manifest, rows)) {
+    const std::size_t colon = row.fault.find(": ");
+    const std::string sensor = row.fault.substr(0, colon), kind = colon == std::string::npos ? "" : row.fault.substr(colon + 2);
+    note(sensors, sensor);
+    if (!kind.empty()) note(kinds, kind);
+    Cell& cell = cells[{sensor, kind}];
+    cell.worst = std::max(cell.worst, row.outcome);
+    cell.is_executed &= row.executed != "NOT EXECUTED";
+    cell.is_noticed &= row.num_noticed.value_or(0.0) > 0.0;
+    if (!row.figures.empty() && row.figures.front()) cell.figures.push_back(*row.figures.front());
+  }
+  const auto text = [](const Cell& cell) {
+    std::string text = cell.worst == FaultOutcome::kSurvived ? std::string(text_of(cell.worst)) : fmt::format("**{}**", text_of(cell.worst));
+    if (!cell.figures.empty()) text += fmt::format(" {:.3g}", score::mean(cell.figures));
+    if (cell.is_noticed) text += ", noticed";
+    return cell.is_executed ? text : text + ", NOT EXECUTED";
+  };
+  std::string page = fmt::format("| {} | {} |\n| --- |", manifest.metrics.front(), fmt::join(kinds, " | "));
+  for (std::size_t i = 0; i < kinds.size(); ++i) page += " --- |";
+  page += "\n";
+  for (const std::string& sensor : sensors) {
+    if (const auto without = cells.find({sensor, ""}); without != cells.end()) {
+      page += fmt::format("| {}: {} |\n", sensor, text(without->second));
+      continue;
+    }
+    page += fmt::format("| {} |", sensor);
+    for (const std::string& kind : kinds) {
+      const auto cell = cells.find({sensor, kind});
+      page += cell == cells.end() ? "  |" : fmt::format(" {} |", text(cell->second));
+    }
+    page += "\n";
+  }
+  return page + "\n" + faults_summary(manifest, rows) + " " + fault_legend() + "\n";
 }
 
 std::string faults_summary(const SweepManifest& manifest, const SweepRows& rows) {

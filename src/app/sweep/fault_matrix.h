@@ -53,6 +53,10 @@ io::Table faults_table(const SweepManifest& manifest, const SweepRows& rows);
 /// For a screen.
 std::string faults_text(const SweepManifest& manifest, const SweepRows& rows);
 
+/// For documents, in Markdown: sensors down, kinds of fault across; in each the worst outcome of the seeds, the first metric (the mean of the
+/// seeds that gave it), and whether the robot noticed.
+std::string faults_markdown(const SweepManifest& manifest, const SweepRows& rows);
+
 /// How many survived, stopped and were unsafe, in a sentence.
 std::string faults_summary(const SweepManifest& manifest, const SweepRows& rows);
 

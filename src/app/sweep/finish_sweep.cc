@@ -6,6 +6,7 @@
 #include "app/sweep/comparison.h"
 #include "app/sweep/fault_matrix.h"
 #include "app/sweep/sweep_tables.h"
+#include "io/atomic_file.h"
 
 namespace patrol::app {
 namespace {
@@ -14,10 +15,11 @@ namespace {
 struct Findings {
   std::vector<io::Table> tables;
   std::string text;
+  std::string markdown;  ///< for documents, if there is such a form
 };
 
 Findings findings_of(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
-  Findings findings{.tables = {runs_table(manifest, rows, progress), comparison_table(manifest, rows, progress)}, .text = ""};
+  Findings findings{.tables = {runs_table(manifest, rows, progress), comparison_table(manifest, rows, progress)}, .text = "", .markdown = ""};
   switch (manifest.kind) {
     case SweepKind::kSweep:
       findings.text = comparison_text(manifest, rows, progress);
@@ -31,6 +33,7 @@ Findings findings_of(const SweepManifest& manifest, const SweepRows& rows, const
     case SweepKind::kFaults:
       findings.tables.push_back(faults_table(manifest, rows));
       findings.text = faults_text(manifest, rows);
+      findings.markdown = faults_markdown(manifest, rows);
       break;
   }
   return findings;
@@ -55,6 +58,7 @@ ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& mani
     return ExitCode::kDone;
   }
   const Findings findings = findings_of(manifest, rows, progress);
+  if (!findings.markdown.empty()) io::save_text(directory.root / "faults.md", findings.markdown);
   complete_sweep_directory(directory, findings.tables);
   fmt::print("{}{} runs: {}\n", findings.text, progress.counted.size(), directory.table(findings.tables.back().name).string());
   return worst_of(rows, progress);

@@ -13,7 +13,7 @@ namespace {
 // Several processes may share one: what another is writing (*.part) stays.
 const OutputKind kSweep = {.name = "sweep",
                            .unfinished = "Not every run of this sweep has ended: tables come at the end. The same command goes on.",
-                           .made = {"runs.csv", "comparison.csv", "budget.csv", "faults.csv", "sweep.sqlite", "report.html"},
+                           .made = {"runs.csv", "comparison.csv", "budget.csv", "faults.csv", "faults.md", "sweep.sqlite", "report.html"},
                            .kept = {"sweep.json", "runs", "work", "slurm", "*.part"}};
 
 }  // namespace

@@ -51,5 +51,23 @@ TEST(FaultMatrix, SaysWhatBecameOfEachFaultAndWhatItCost) {
   EXPECT_THAT(faults_text(manifest, rows), HasSubstr("3 runs: 2 survived, 1 stopped; 1 faults NOT EXECUTED."));
 }
 
+TEST(FaultMatrix, ADocumentHasSensorsDownKindsAcrossAndTheWorstOfTheSeeds) {
+  SweepManifest manifest;
+  manifest.variants = {{.name = "no fault", .overrides = {}}, {.name = "imu: drift", .overrides = {}}, {.name = "imu: freeze", .overrides = {}}};
+  manifest.seeds = {1, 2};
+  manifest.metrics = {"pose.ate_rmse_m"};
+  SweepRows rows;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    for (std::size_t variant = 0; variant < 3; ++variant) {
+      manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .address = ""});
+      rows.push_back(verdict("done", true, 0));
+    }
+  }
+  rows[4] = verdict("time limit", false, 0);
+  rows[4]->metrics["pose"]["ate_rmse_m"] = 0.3;
+  EXPECT_THAT(faults_markdown(manifest, rows), HasSubstr("| pose.ate_rmse_m | drift | freeze |\n| --- | --- | --- |\n| no fault: survived 0.1, noticed |\n"
+                                                         "| imu | **stopped** 0.2, noticed | survived 0.1, noticed |\n"));
+}
+
 }  // namespace
 }  // namespace patrol::app
