@@ -161,10 +161,10 @@ std::string faults_markdown(const SweepManifest& manifest, const SweepRows& rows
     if (!row.figures.empty() && row.figures.front()) cell.figures.push_back(*row.figures.front());
   }
   const auto text = [](const Cell& cell) {
-    std::string text = cell.worst == FaultOutcome::kSurvived ? std::string(text_of(cell.worst)) : fmt::format("**{}**", text_of(cell.worst));
-    if (!cell.figures.empty()) text += fmt::format(" {:.3g}", score::mean(cell.figures));
-    if (cell.is_noticed) text += ", noticed";
-    return cell.is_executed ? text : text + ", NOT EXECUTED";
+    std::string said = cell.worst == FaultOutcome::kSurvived ? std::string(text_of(cell.worst)) : fmt::format("**{}**", text_of(cell.worst));
+    if (!cell.figures.empty()) said += fmt::format(" {:.3g}", score::mean(cell.figures));
+    if (cell.is_noticed) said += ", noticed";
+    return cell.is_executed ? said : said + ", NOT EXECUTED";
   };
   std::string page = fmt::format("| {} | {} |\n| --- |", manifest.metrics.front(), fmt::join(kinds, " | "));
   for (std::size_t i = 0; i < kinds.size(); ++i) page += " --- |";
