@@ -1,6 +1,8 @@
 #include "app/report/comparison_blocks.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -35,18 +37,38 @@ std::string interval_text(const std::optional<score::Interval>& interval, const 
 
 }  // namespace
 
+std::vector<std::string> short_names(const SweepManifest& manifest) {
+  std::map<std::string, std::string> short_paths;  // by path
+  std::set<std::string> taken;
+  for (const std::string& path : manifest.paths) taken.insert(short_paths[path] = path.substr(path.rfind('.') + 1));
+  const bool are_unique = taken.size() == manifest.paths.size();
+  std::vector<std::string> names;
+  for (const Variant& variant : manifest.variants) {
+    std::vector<std::string> parts;
+    for (const std::string& override : variant.overrides) {
+      const std::size_t equals = override.find('=');
+      const auto known = short_paths.find(override.substr(0, equals));
+      if (known != short_paths.end()) parts.push_back(known->second + override.substr(equals));
+    }
+    const bool is_told = manifest.kind == SweepKind::kSweep && are_unique && !parts.empty();
+    names.push_back(is_told ? fmt::format("{}", fmt::join(parts, ", ")) : variant.name);
+  }
+  return names;
+}
+
 std::vector<render::Block> comparison_blocks(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, const std::string& metric) {
   const Unit unit = unit_of(metric);
   const auto figures = figures_of(manifest, rows, metric);
+  const std::vector<std::string> names = short_names(manifest);
   render::BoxPlot boxes{.caption = "Every run, median and quartiles", .unit = unit.name, .boxes = {}};
-  render::SpanChart differences{.caption = fmt::format("Difference from {}, paired by seed, {:g} % intervals", manifest.variants.front().name, 100.0 * level_of(manifest)),
+  render::SpanChart differences{.caption = fmt::format("Difference from {}, paired by seed, {:g} % intervals", names.front(), 100.0 * level_of(manifest)),
                                 .unit = unit.name,
                                 .spans = {}};
   render::TableBlock table{.caption = "",
                            .columns = {{"variant"}, {"runs", true}, {"mean, " + unit.name, true}, {"difference, " + unit.name, true}, {""}},
                            .rows = {}};
   for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
-    const std::string& name = manifest.variants[variant].name;
+    const std::string& name = names[variant];
     const VariantFigure figure = compare(manifest, rows, metric, progress.num_seeds[variant], level_of(manifest))[variant];
     std::vector<double> values;
     for (std::size_t seed = 0; seed < progress.num_seeds[variant]; ++seed) {
@@ -75,12 +97,13 @@ std::vector<render::Block> comparison_blocks(const SweepManifest& manifest, cons
 }
 
 render::FoldedTables run_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
+  const std::vector<std::string> names = short_names(manifest);
   render::TableBlock table{.caption = "", .columns = {{"variant"}, {"seed", true}, {"end"}, {"exit code", true}, {"why"}}, .rows = {}};
   std::vector<std::size_t> order = progress.counted;
   std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return rows[i]->code != ExitCode::kDone; });
   for (const std::size_t i : order) {
     const RunVerdict& verdict = *rows[i];
-    table.rows.push_back({{manifest.variants[manifest.runs[i].variant].name},
+    table.rows.push_back({{names[manifest.runs[i].variant]},
                           {std::to_string(manifest.runs[i].seed)},
                           {verdict.end, verdict.code == ExitCode::kDone ? Tone::kGood : Tone::kBad},
                           {std::to_string(static_cast<int>(verdict.code))},

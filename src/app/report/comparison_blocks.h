@@ -5,6 +5,9 @@
 
 namespace patrol::app {
 
+/// [variant] as a page names it: of each key the last part only ("range_noise_m=0.03"), where those differ.
+std::vector<std::string> short_names(const SweepManifest& manifest);
+
 /// Every value of one metric by variant, the differences from the first variant, and both in figures.
 std::vector<render::Block> comparison_blocks(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, const std::string& metric);
 

@@ -21,11 +21,12 @@ std::string not_done(const SweepRows& rows, const SweepProgress& progress) {
 
 render::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
   const std::string& metric = manifest.metrics.front();
+  const std::vector<std::string> names = short_names(manifest);
   std::vector<std::string> better, worse;
   for (std::size_t variant = 1; variant < manifest.variants.size(); ++variant) {
     const VariantFigure figure = compare(manifest, rows, metric, progress.num_seeds[variant], level_of(manifest))[variant];
-    if (figure.verdict == "lower") better.push_back(manifest.variants[variant].name);
-    if (figure.verdict == "higher") worse.push_back(manifest.variants[variant].name);
+    if (figure.verdict == "lower") better.push_back(names[variant]);
+    if (figure.verdict == "higher") worse.push_back(names[variant]);
   }
   render::VerdictBlock verdict;
   if (manifest.variants.size() == 1) {
@@ -34,10 +35,10 @@ render::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRow
   } else if (better.empty() && worse.empty()) {
     verdict.word = "No difference";
     verdict.tone = Tone::kFaint;
-    verdict.reason = fmt::format("{}: every variant's interval of the paired difference from {} holds zero.", metric, manifest.variants.front().name);
+    verdict.reason = fmt::format("{}: every variant's interval of the paired difference from {} holds zero.", metric, names.front());
   } else {
     verdict.word = fmt::format("{} of {} differ", better.size() + worse.size(), manifest.variants.size() - 1);
-    verdict.reason = fmt::format("{}, against {}:", metric, manifest.variants.front().name);
+    verdict.reason = fmt::format("{}, against {}:", metric, names.front());
     if (!better.empty()) verdict.reason += fmt::format(" lower with {}.", fmt::join(better, "; "));
     if (!worse.empty()) verdict.reason += fmt::format(" higher with {}.", fmt::join(worse, "; "));
   }

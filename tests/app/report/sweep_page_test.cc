@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include "app/report/comparison_blocks.h"
+
 namespace patrol::app {
 namespace {
 
@@ -94,6 +96,16 @@ TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
   EXPECT_NEAR(spans[1].from, spans[0].to, 1e-9);
   EXPECT_NEAR(spans[2].from, spans[1].to, 1e-9);
   EXPECT_NEAR(spans[2].to, spans[3].to, 1e-9);
+}
+
+TEST(SweepPage, VariantsAreNamedByTheLastPartOfTheirKeysUnlessTwoAreAlike) {
+  SweepManifest manifest;
+  manifest.paths = {"sensors.lidar.range_noise_m", "stack.slam.particles"};
+  manifest.variants = {{.name = "long", .overrides = {"sensors.lidar.range_noise_m=0.01", "stack.slam.particles=20"}}};
+  EXPECT_EQ(short_names(manifest).front(), "range_noise_m=0.01, particles=20");
+  manifest.paths = {"sensors.lidar.rate_hz", "sensors.imu.rate_hz"};
+  manifest.variants = {{.name = "long", .overrides = {"sensors.lidar.rate_hz=5", "sensors.imu.rate_hz=100"}}};
+  EXPECT_EQ(short_names(manifest).front(), "long");
 }
 
 }  // namespace
