@@ -67,11 +67,11 @@ struct Repeats {
 bool SensorWatch::hear(const SensorMessage& message, Time now) {
   const std::size_t kind = message.index();
   Sensor& sensor = sensors_[kind];
-  const bool is_first = sensor.stamp == Time{};
   sensor.stamp = std::visit([](const auto& reading) { return reading.stamp; }, message);
   sensor.is_ahead = sensor.stamp > now + from_seconds(settings_.future_s);
   if (kWatched[kind].freezes == Freezes::kNot || sensor.is_ahead) return !sensor.is_ahead;
-  if (!is_first && std::visit(Repeats{sensor.reading}, message)) {
+  const bool has_reading = sensor.reading.index() == kind;  // a laser scan that was never heard has no returns, and is repeated by none
+  if (has_reading && std::visit(Repeats{sensor.reading}, message)) {
     ++sensor.num_repeats;
     return true;
   }

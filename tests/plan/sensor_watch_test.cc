@@ -121,6 +121,15 @@ TEST(SensorWatch, WhatComesFromTheFutureIsNotToBeUsed) {
   EXPECT_TRUE(watch.can_drive());
 }
 
+TEST(SensorWatch, ASensorWhoseFirstMessageCameFromTheFutureIsHeardLikeAnyOther) {
+  SensorWatch watch{{}};
+  Imu imu;
+  imu.stamp = from_seconds(1.0);
+  EXPECT_FALSE(watch.hear(imu, from_seconds(0.5)));
+  EXPECT_TRUE(watch.hear(imu, from_seconds(1.0)));
+  EXPECT_TRUE(watch.hear(imu, from_seconds(1.0)));
+}
+
 // Frozen encoders say that the robot stands, and odometry believes them: that it should move is known from the command alone.
 TEST(SensorWatch, EncodersThatRepeatThemselvesHaltTheRobotOnceItShouldHaveMoved) {
   SensorWatch watch{{}};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -61,6 +62,10 @@ SweepManifest manifest_of(const Json& json) {
                              .overrides = run.at("overrides"),
                              .address = run.at("address")});
     if (manifest.runs.back().variant >= manifest.variants.size()) throw InputError("a run names a variant that there is not");
+  }
+  for (const auto& [key, is_empty] : {std::pair("metrics", manifest.metrics.empty()), std::pair("seeds", manifest.seeds.empty()),
+                                      std::pair("variants", manifest.variants.empty())}) {
+    if (is_empty) throw InputError(fmt::format("{}: is empty", key));
   }
   if (manifest.runs.size() != manifest.variants.size() * manifest.seeds.size()) throw InputError("runs: must be one of each variant and seed");
   return manifest;

@@ -55,5 +55,18 @@ TEST(Manifest, WhatIsNotOneIsRefusedByName) {
   EXPECT_THAT(message_of("{\"version\": 1}"), HasSubstr("kind"));
 }
 
+TEST(Manifest, OneWithNothingToCompareIsRefused) {
+  const test::TemporaryFolder folder;
+  SweepManifest manifest = small_manifest();
+  manifest.metrics.clear();
+  save_manifest(folder / "a.json", manifest);
+  EXPECT_THROW(load_manifest(folder / "a.json"), InputError);
+  manifest = small_manifest();
+  manifest.seeds.clear();
+  manifest.runs.clear();
+  save_manifest(folder / "a.json", manifest);
+  EXPECT_THROW(load_manifest(folder / "a.json"), InputError);
+}
+
 }  // namespace
 }  // namespace patrol::app
