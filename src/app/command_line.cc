@@ -96,25 +96,31 @@ void add_batch(CLI::App& command, BatchOptions& batch) {
   command.add_option("--keep", batch.keep, "Run directories that stay: none, failed, all")->capture_default_str();
 }
 
+/// What sweep, budget and faults have in common. `metrics`, `out`: what the two options are for.
+template <typename Options>
+void add_variants(CLI::App& command, Options& options, const char* metrics, const char* out) {
+  command.add_option("scenario", options.scenario, "Scenario file (YAML)")->required();
+  command.add_option("--set", options.overrides, "Override a setting in every run: path=value; may be repeated")->take_all();
+  command.add_option("--seeds", options.seeds, "N (seeds 1 ... N) or A..B")->capture_default_str();
+  command.add_option("--metric", options.metrics, metrics)->take_all()->capture_default_str();
+  add_batch(command, options.batch);
+  command.add_option("--out", options.out, out)->capture_default_str();
+}
+
 void add_sweep(CLI::App& app, Call& call) {
   SweepOptions& sweep = call.sweep;
   CLI::App* command = app.add_subcommand("sweep", "Run variants of a scenario with many seeds and compare them");
-  command->add_option("scenario", sweep.scenario, "Scenario file (YAML)")->required();
-  command->add_option("--set", sweep.overrides, "Override a setting in every run: path=value; may be repeated")->take_all();
+  add_variants(*command, sweep, "Figures to compare; may be repeated", "Directory of the sweep; results that lie there are not made again");
   command->add_option("--vary", sweep.vary,
                       "path=a,b,c or path=range:FROM:TO:N, logrange:...: a variant for each; or uniform:LOW:HIGH, loguniform:LOW:HIGH, "
                       "normal:MEAN:STD: a draw for each seed; may be repeated")->take_all();
-  command->add_option("--seeds", sweep.seeds, "N (seeds 1 ... N) or A..B")->capture_default_str();
-  command->add_option("--metric", sweep.metrics, "Figures to compare; may be repeated")->take_all()->capture_default_str();
   command->add_flag("--stop-when-decided", sweep.stop_when_decided, "Leave off once the first metric is decided");
   command->add_option("--margin", sweep.margin, "Differences of the first metric below this do not matter")->capture_default_str();
-  add_batch(*command, sweep.batch);
   command->add_option("--shard", sweep.shard, "i/n: do only this part of the runs");
   command->add_option("--engine", sweep.engine, "local or slurm")->capture_default_str();
   command->add_option("--slurm-tasks", sweep.slurm_tasks, "Tasks of the job array, each a shard")->capture_default_str();
   command->add_option("--slurm-option", sweep.slurm_options, "Option for sbatch, --slurm-option=--partition=long; may be repeated")->take_all();
   command->add_flag("--detach", sweep.detach, "Submit to Slurm and do not wait");
-  command->add_option("--out", sweep.out, "Directory of the sweep; results that lie there are not made again")->capture_default_str();
   command->callback([&] { call.chosen = [&] { return sweep_command(call.sweep); }; });
 }
 
@@ -128,26 +134,17 @@ void add_collect(CLI::App& app, Call& call) {
 void add_budget(CLI::App& app, Call& call) {
   BudgetOptions& budget = call.budget;
   CLI::App* command = app.add_subcommand("budget", "Who owns how much of the error: one imperfection made ideal at a time");
-  command->add_option("scenario", budget.scenario, "Scenario file (YAML)")->required();
-  command->add_option("--set", budget.overrides, "Override a setting in every run: path=value; may be repeated")->take_all();
-  command->add_option("--seeds", budget.seeds, "N (seeds 1 ... N) or A..B")->capture_default_str();
-  command->add_option("--metric", budget.metrics, "Figures to take apart; may be repeated")->take_all()->capture_default_str();
-  add_batch(*command, budget.batch);
-  command->add_option("--out", budget.out, "Directory of the budget; results that lie there are not made again")->capture_default_str();
+  add_variants(*command, budget, "Figures to take apart; may be repeated", "Directory of the budget; results that lie there are not made again");
   command->callback([&] { call.chosen = [&] { return budget_command(call.budget); }; });
 }
 
 void add_faults(CLI::App& app, Call& call) {
   FaultsOptions& faults = call.faults;
   CLI::App* command = app.add_subcommand("faults", "What each fault of each sensor leads to: survived, stopped, unsafe");
-  command->add_option("scenario", faults.scenario, "Scenario file (YAML)")->required();
-  command->add_option("--set", faults.overrides, "Override a setting in every run: path=value; may be repeated")->take_all();
-  command->add_option("--seeds", faults.seeds, "N (seeds 1 ... N) or A..B")->capture_default_str();
-  command->add_option("--metric", faults.metrics, "Figures to set beside those without a fault; may be repeated")->take_all()->capture_default_str();
+  add_variants(*command, faults, "Figures to set beside those without a fault; may be repeated",
+               "Directory of the results; those that lie there are not made again");
   command->add_option("--start-s", faults.start_s, "When each fault begins, s")->capture_default_str();
   command->add_option("--duration-s", faults.duration_s, "How long it lasts, s")->capture_default_str();
-  add_batch(*command, faults.batch);
-  command->add_option("--out", faults.out, "Directory of the results; those that lie there are not made again")->capture_default_str();
   command->callback([&] { call.chosen = [&] { return faults_command(call.faults); }; });
 }
 

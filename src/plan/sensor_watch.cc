@@ -3,6 +3,7 @@
 #include <cmath>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -33,7 +34,8 @@ constexpr std::array<Watched, std::variant_size_v<SensorMessage>> kWatched = {
      {"ultrasonic", Pace::kInstrument, Freezes::kNot, false},
      {"depth_camera", Pace::kLidar, Freezes::kNot, false},
      {"remote", Pace::kUnwatched, Freezes::kNot, false}}};  // a person may let go of it
-static_assert(std::is_same_v<std::variant_alternative_t<0, SensorMessage>, LaserScan>);
+static_assert(std::is_same_v<SensorMessage, std::variant<LaserScan, PointCloud, Imu, JointState, FootContacts, GasReading, GnssFix, TrackTicks, UwbRange,
+                                                         UltrasonicRange, DepthImage, RemoteCommand>>);
 
 /// Whether a reading says the same as the one before, to the last bit; only of sensors whose readings cannot, while the robot moves.
 struct Repeats {

@@ -92,6 +92,30 @@ class BadInput(unittest.TestCase):
         urdf.write_text(urdf.read_text().replace('"tdlas"', '"sniffer"'))
         self.refuse_run(root / "worlds/street/scenarios/short.yaml", says=["quadruped", "tdlas"])
 
+    def refuse_variants(self, command, *more, says):
+        self.refuse(command, SHORT, "--out", self.out, *more, says=says)
+
+    def test_fault_matrix_of_a_missing_scenario(self):
+        self.refuse("faults", "absent.yaml", "--out", self.out, says=["absent.yaml"])
+
+    def test_faults_before_the_start(self):
+        self.refuse_variants("faults", "--start-s", -1, says=["start_s", "-1"])
+
+    def test_budget_of_one_seed(self):
+        self.refuse_variants("budget", "--seeds", 1, says=["--seeds", "two"])
+
+    def test_sweep_over_an_unknown_key(self):
+        self.refuse_variants("sweep", "--vary", "sensors.lidar.range_nois_m=0.1,0.2", says=["range_nois_m", "range_noise_m"])
+
+    def test_places_that_are_no_distance_apart(self):
+        self.refuse_variants("localizability", "--step-m", 0, says=["--step-m 0"])
+
+    def test_report_of_a_sweep_that_is_not_finished(self):
+        (pathlib.Path(self.folder.name) / "INCOMPLETE").touch()
+        (pathlib.Path(self.folder.name) / "sweep.json").write_text("{}")
+        self.refuse("report", self.folder.name, says=[self.folder.name])
+        self.assertFalse((pathlib.Path(self.folder.name) / "report.html").exists())
+
     def test_unwritable_output(self):
         self.refuse("run", SHORT, "--out", "/proc/patrol", says=["/proc/patrol"])
 

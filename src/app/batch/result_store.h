@@ -8,6 +8,9 @@
 
 namespace patrol::app {
 
+/// `root/runs`: results, and the run directories that stay.
+inline std::filesystem::path runs_folder(const std::filesystem::path& root) { return root / "runs"; }
+
 /// Results by the address of what was asked: one file each, `ADDRESS.json`, there whole or not at all.
 class ResultStore {
  public:

@@ -128,8 +128,6 @@ class Batch {
 
 }  // namespace
 
-std::filesystem::path runs_folder(const std::filesystem::path& root) { return root / "runs"; }
-
 bool run_batch(const std::vector<BatchRun>& runs, const BatchSettings& settings, const std::filesystem::path& root) {
   return Batch(runs, settings, root).run();
 }

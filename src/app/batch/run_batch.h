@@ -25,9 +25,6 @@ struct BatchSettings {
   KeepRuns keep = KeepRuns::kNone;
 };
 
-/// `root/runs`: results, and the run directories that stay.
-std::filesystem::path runs_folder(const std::filesystem::path& root);
-
 /// Runs them, stores a verdict on each whatever becomes of it, and tells how far it is. A run that is killed from outside is tried once
 /// more. False when interrupted: what has ended is stored.
 bool run_batch(const std::vector<BatchRun>& runs, const BatchSettings& settings, const std::filesystem::path& root);

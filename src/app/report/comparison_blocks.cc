@@ -6,23 +6,13 @@
 
 #include <fmt/format.h>
 
-#include "app/report/quantity.h"
+#include "app/report/boxes.h"
 
 namespace patrol::app {
 namespace {
 
 using render::Cell;
 using render::Tone;
-
-render::Box box_of(const std::string& label, std::vector<double> values, const Unit& unit) {
-  render::Box box{.label = label, .values = std::move(values), .text = ""};
-  for (double& value : box.values) value *= unit.factor;
-  box.lower_quartile = score::percentile(box.values, 0.25);
-  box.median = score::percentile(box.values, 0.5);
-  box.upper_quartile = score::percentile(box.values, 0.75);
-  box.text = fmt::format("{:.4g} {}", box.median, unit.name);
-  return box;
-}
 
 Cell verdict_cell(const VariantFigure& figure) {
   const bool is_difference = figure.verdict == "lower" || figure.verdict == "higher";

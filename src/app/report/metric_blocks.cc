@@ -1,12 +1,12 @@
 #include "app/report/metric_blocks.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "app/report/quantity.h"
+#include "app/report/boxes.h"
 #include "app/scoring/metric_lines.h"
-#include "score/statistics.h"
 
 namespace patrol::app {
 namespace {
@@ -26,36 +26,20 @@ Cell checked_cell(const std::string& path, const std::vector<CheckedExpectation>
   return {check->wanted + (check->is_met ? " met" : " MISSED"), check->is_met ? Tone::kGood : Tone::kBad};
 }
 
-std::vector<double> numbers_of(const io::Metrics& list) {
-  std::vector<double> numbers;
-  for (const io::Metrics& value : list) numbers.push_back(value.get<double>());
-  return numbers;
-}
-
-struct Spread {
-  std::string path;
-  std::string caption;
-  std::string unit;
-  double factor;  ///< from the metric's unit
-};
-
-render::Box box_of(const std::string& label, const io::Metrics& entry, const Spread& spread) {
-  render::Box box{.label = label, .values = {}, .text = ""};
-  if (!entry.contains(spread.path) || !entry[spread.path].contains("each")) return box;
-  for (const double value : numbers_of(entry[spread.path]["each"])) box.values.push_back(spread.factor * value);
-  if (box.values.empty()) return box;
-  box.lower_quartile = score::percentile(box.values, 0.25);
-  box.median = score::percentile(box.values, 0.5);
-  box.upper_quartile = score::percentile(box.values, 0.75);
-  box.text = fmt::format("{:.2f} {}", box.median, spread.unit);
-  return box;
+/// One value each arrival; none when the place was never reached.
+std::vector<double> each_of(const io::Metrics& goal, const std::string& metric) {
+  std::vector<double> values;
+  if (!goal.contains(metric) || !goal[metric].contains("each")) return values;
+  for (const io::Metrics& value : goal[metric]["each"]) values.push_back(value.get<double>());
+  return values;
 }
 
 /// Every arrival of a tour as a dot; nothing when no place was reached more than once.
-render::BoxPlot box_plot(const io::Metrics& metrics, const Spread& spread) {
-  render::BoxPlot plot{.caption = spread.caption, .unit = spread.unit, .boxes = {}};
-  for (const io::Metrics& goal : metrics["goals"]) plot.boxes.push_back(box_of(goal.value("name", ""), goal, spread));
-  if (metrics.contains("docking")) plot.boxes.push_back(box_of("dock", metrics["docking"], spread));
+render::BoxPlot box_plot(const io::Metrics& metrics, const std::string& metric, const std::string& caption) {
+  const Unit unit = unit_of(metric);
+  render::BoxPlot plot{.caption = caption, .unit = unit.name, .boxes = {}};
+  for (const io::Metrics& goal : metrics["goals"]) plot.boxes.push_back(box_of(goal.value("name", ""), each_of(goal, metric), unit));
+  if (metrics.contains("docking")) plot.boxes.push_back(box_of("dock", each_of(metrics["docking"], metric), unit));
   const auto is_single = [](const render::Box& box) { return box.values.size() < 2; };
   if (std::all_of(plot.boxes.begin(), plot.boxes.end(), is_single)) plot.boxes.clear();
   return plot;
@@ -114,8 +98,8 @@ std::vector<render::Block> goal_blocks(const io::Metrics& metrics) {
   for (const io::Metrics& goal : metrics["goals"]) table.rows.push_back(goal_row(goal.value("name", ""), goal));
   if (metrics.contains("docking")) table.rows.push_back(goal_row("dock", metrics["docking"]));
   std::vector<render::Block> blocks = {table};
-  for (const Spread& spread : {Spread{"position_error_m", "Position error on arrival", "cm", 100.0}, Spread{"heading_error_deg", "Heading error on arrival", "°", 1.0}}) {
-    render::BoxPlot plot = box_plot(metrics, spread);
+  for (const auto& [metric, caption] : {std::pair("position_error_m", "Position error on arrival"), std::pair("heading_error_deg", "Heading error on arrival")}) {
+    render::BoxPlot plot = box_plot(metrics, metric, caption);
     if (!plot.boxes.empty()) blocks.emplace_back(std::move(plot));
   }
   if (blocks.size() > 1) blocks.emplace_back(render::TextBlock{"Box: from quartile to quartile; line: from least to greatest; dots: every arrival; at the right the median."});

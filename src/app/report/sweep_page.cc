@@ -6,7 +6,7 @@
 
 #include "app/report/budget_blocks.h"
 #include "app/report/comparison_blocks.h"
-#include "app/sweep/fault_matrix.h"
+#include "app/sweep/fault_outcomes.h"
 
 namespace patrol::app {
 namespace {
@@ -65,13 +65,13 @@ Tone tone_of(FaultOutcome outcome) {
 }
 
 /// The table as it stands in faults.csv, by fault.
-render::TableBlock fault_table(const SweepManifest& manifest, const SweepRows& rows) {
+render::TableBlock fault_table(const SweepManifest& manifest, const std::vector<FaultRow>& rows) {
   render::TableBlock table{.caption = "", .columns = {{"fault"}, {"seed", true}, {"executed"}, {"outcome"}, {"noticed", true}, {"end"}}, .rows = {}};
   for (const std::string& metric : manifest.metrics) table.columns.push_back({metric, true});
-  for (const FaultRow& row : fault_rows(manifest, rows)) {
-    std::vector<render::Cell> cells = {{row.fault},
+  for (const FaultRow& row : rows) {
+    std::vector<render::Cell> cells = {{row.name},
                                        {std::to_string(row.seed)},
-                                       {row.executed, row.executed == "NOT EXECUTED" ? Tone::kWarning : Tone::kPlain},
+                                       {executed_text(row), row.is_not_executed() ? Tone::kWarning : Tone::kPlain},
                                        {std::string(text_of(row.outcome)), tone_of(row.outcome)},
                                        {row.num_noticed ? fmt::format("{:.0f}", *row.num_noticed) : "–"},
                                        {row.end}};
@@ -81,14 +81,13 @@ render::TableBlock fault_table(const SweepManifest& manifest, const SweepRows& r
   return table;
 }
 
-render::VerdictBlock faults_verdict(const SweepManifest& manifest, const SweepRows& rows) {
-  const std::vector<FaultRow> all = fault_rows(manifest, rows);
-  const auto count = [&](FaultOutcome outcome) { return std::count_if(all.begin(), all.end(), [&](const FaultRow& row) { return row.outcome == outcome; }); };
+render::VerdictBlock faults_verdict(const std::vector<FaultRow>& rows) {
+  const auto count = [&](FaultOutcome outcome) { return std::count_if(rows.begin(), rows.end(), [&](const FaultRow& row) { return row.outcome == outcome; }); };
   const auto num_bad = count(FaultOutcome::kUnsafe) + count(FaultOutcome::kNoResult);
   render::VerdictBlock verdict;
-  verdict.word = num_bad == 0 ? "No fault was unsafe" : fmt::format("{} of {} runs unsafe", num_bad, all.size());
+  verdict.word = num_bad == 0 ? "No fault was unsafe" : fmt::format("{} of {} runs unsafe", num_bad, rows.size());
   verdict.tone = num_bad == 0 ? Tone::kGood : Tone::kBad;
-  verdict.reason = faults_summary(manifest, rows);
+  verdict.reason = faults_summary(rows);
   return verdict;
 }
 
@@ -127,10 +126,12 @@ render::Page sweep_page(const SweepManifest& manifest, const SweepRows& rows, co
       for (const Budget& budget : budgets) page.sections.push_back({budget.metric, budget_blocks(budget)});
       break;
     }
-    case SweepKind::kFaults:
-      page.sections.push_back({"", {faults_verdict(manifest, rows)}});
-      page.sections.push_back({"Faults", {fault_table(manifest, rows), render::TextBlock{fault_legend()}}});
+    case SweepKind::kFaults: {
+      const std::vector<FaultRow> faults = fault_rows(manifest, rows);
+      page.sections.push_back({"", {faults_verdict(faults)}});
+      page.sections.push_back({"Faults", {fault_table(manifest, faults), render::TextBlock{fault_legend()}}});
       break;
+    }
   }
   page.sections.push_back({"Runs", {run_table(manifest, rows, progress)}});
   return page;

@@ -37,7 +37,8 @@ render::Frame picture_of(const LocalizabilityMap& map, const std::string& where)
                        .step_m = map.step_m,
                        .places = {},
                        .title = fmt::format("{}: what one scan leaves unknown", where),
-                       .note = "standard deviation along the weak direction; strokes: that direction, where it is more than 10 cm",
+                       .note = fmt::format("standard deviation along the weak direction; strokes: that direction, where it is more than {:g} cm",
+                                           100.0 * score::Localizability::kDegenerate_m),
                        .scale = {{0.0, "0.1 mm"}, {0.25, "1 mm"}, {0.5, "1 cm"}, {0.75, "10 cm"}, {1.0, "1 m, more"}}};
   for (const LocalizablePlace& place : map.places) {
     heat.places.push_back({.p_m = place.p_world_m,

@@ -21,8 +21,7 @@ struct LocalizabilityMap {
 };
 
 /// Every place on a grid of `step_m` from the surveyed start on that can be reached between the world's outermost surfaces without coming
-/// nearer than 0.4 m to one. Throws
-/// InputError when that is none.
+/// nearer than 0.4 m to one. Throws InputError when that is none.
 LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFiles& files, double step_m);
 
 }  // namespace patrol::app

@@ -4,7 +4,7 @@
 
 #include "app/sweep/budget.h"
 #include "app/sweep/comparison.h"
-#include "app/sweep/fault_matrix.h"
+#include "app/sweep/fault_tables.h"
 #include "app/sweep/sweep_tables.h"
 #include "io/atomic_file.h"
 

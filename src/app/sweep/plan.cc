@@ -10,6 +10,20 @@
 namespace patrol::app {
 namespace {
 
+/// What all kinds of call have in common; variants and runs follow.
+template <typename Options>
+SweepManifest begin_manifest(SweepKind kind, const Options& options) {
+  return {.kind = kind,
+          .scenario = options.scenario.filename().string(),
+          .overrides = options.overrides,
+          .paths = {},
+          .variants = {},
+          .seeds = parse_seeds(options.seeds),
+          .metrics = options.metrics,
+          .stop = {},
+          .runs = {}};
+}
+
 /// Seed by seed, in each all variants.
 void plan_runs(const std::filesystem::path& scenario, const std::vector<Axis>& axes, SweepManifest& manifest) {
   RunAddresses addresses(find_data_root(scenario));
@@ -30,30 +44,17 @@ void plan_runs(const std::filesystem::path& scenario, const std::vector<Axis>& a
 SweepManifest plan_sweep(const SweepOptions& options) {
   std::vector<Axis> axes;
   for (const std::string& text : options.vary) axes.push_back(parse_axis(text));
-  SweepManifest manifest{.kind = SweepKind::kSweep,
-                         .scenario = options.scenario.filename().string(),
-                         .overrides = options.overrides,
-                         .paths = {},
-                         .variants = cross(axes),
-                         .seeds = parse_seeds(options.seeds),
-                         .metrics = options.metrics,
-                         .stop = {.when_decided = options.stop_when_decided, .margin = options.margin},
-                         .runs = {}};
+  SweepManifest manifest = begin_manifest(SweepKind::kSweep, options);
+  manifest.variants = cross(axes);
+  manifest.stop = {.when_decided = options.stop_when_decided, .margin = options.margin};
   for (const Axis& axis : axes) manifest.paths.push_back(axis.path);
   plan_runs(options.scenario, axes, manifest);
   return manifest;
 }
 
 SweepManifest plan_budget(const BudgetOptions& options) {
-  SweepManifest manifest{.kind = SweepKind::kBudget,
-                         .scenario = options.scenario.filename().string(),
-                         .overrides = options.overrides,
-                         .paths = {},
-                         .variants = {{.name = "as it is", .overrides = {}}},
-                         .seeds = parse_seeds(options.seeds),
-                         .metrics = options.metrics,
-                         .stop = {},
-                         .runs = {}};
+  SweepManifest manifest = begin_manifest(SweepKind::kBudget, options);
+  manifest.variants.push_back({.name = "as it is", .overrides = {}});
   if (manifest.seeds.size() < 2) throw InputError("--seeds: a budget needs two at least: one says nothing of the spread");
   const Scenario scenario = load_scenario(options.scenario, options.overrides);
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
@@ -74,15 +75,9 @@ SweepManifest plan_budget(const BudgetOptions& options) {
 }
 
 SweepManifest plan_faults(const FaultsOptions& options) {
-  SweepManifest manifest{.kind = SweepKind::kFaults,
-                         .scenario = options.scenario.filename().string(),
-                         .overrides = options.overrides,
-                         .paths = {"faults"},
-                         .variants = {{.name = "no fault", .overrides = {"faults=[]"}}},
-                         .seeds = parse_seeds(options.seeds),
-                         .metrics = options.metrics,
-                         .stop = {},
-                         .runs = {}};
+  SweepManifest manifest = begin_manifest(SweepKind::kFaults, options);
+  manifest.paths = {"faults"};
+  manifest.variants.push_back({.name = "no fault", .overrides = {"faults=[]"}});
   const Scenario scenario = load_scenario(options.scenario, options.overrides);
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
   for (const sim::FaultSettings& fault : fault_matrix(scenario, files, options.start_s, options.duration_s)) {

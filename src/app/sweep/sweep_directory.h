@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/batch/run_batch.h"
+#include "app/batch/result_store.h"
 #include "app/sweep/manifest.h"
 #include "io/table.h"
 

@@ -1,72 +1,20 @@
 #include "app/sweep/fault_matrix.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace patrol::app {
 namespace {
-
-using ::testing::HasSubstr;
-
-RunVerdict verdict(const char* end, bool is_completed, int collisions, bool is_executed = true) {
-  return {.end = end,
-          .code = ExitCode::kDone,
-          .message = "",
-          .metrics = {{"mission", {{"completed", is_completed}, {"collisions", collisions}, {"sensor_faults_noticed", 1}}}, {"pose", {{"ate_rmse_m", 0.1}}}},
-          .checks = {},
-          .events = {{.what = "fault", .is_executed = is_executed}}};
-}
-
-TEST(FaultOutcome, IsTheWorstThatHappened) {
-  EXPECT_EQ(outcome_of(verdict("done", true, 0)), FaultOutcome::kSurvived);
-  RunVerdict missed = verdict("expectation missed", true, 0);
-  missed.code = ExitCode::kExpectationMissed;
-  EXPECT_EQ(outcome_of(missed), FaultOutcome::kDegraded);
-  EXPECT_EQ(outcome_of(verdict("time limit", false, 0)), FaultOutcome::kStopped);
-  EXPECT_EQ(outcome_of(verdict("done", true, 1)), FaultOutcome::kUnsafe);
-  EXPECT_EQ(outcome_of(verdict("fall", false, 0)), FaultOutcome::kUnsafe);
-  EXPECT_EQ(outcome_of({.end = "crashed", .code = ExitCode::kProgramFailed, .message = "", .metrics = {}, .checks = {}, .events = {}}),
-            FaultOutcome::kNoResult);
-}
 
 TEST(FaultMatrix, AFaultBecomesTheSettingThatDeclaresIt) {
   EXPECT_EQ(fault_override({.sensor = "imu", .kind = "drift", .start_s = 12.0, .duration_s = 8.0, .magnitude = 0.005}),
             "faults=[{sensor: imu, kind: drift, start_s: 12, duration_s: 8, magnitude: 0.005}]");
 }
 
-TEST(FaultMatrix, SaysWhatBecameOfEachFaultAndWhatItCost) {
-  SweepManifest manifest;
-  manifest.variants = {{.name = "no fault", .overrides = {}}, {.name = "imu: drift", .overrides = {}}, {.name = "uwb: freeze", .overrides = {}}};
-  manifest.seeds = {1};
-  manifest.metrics = {"pose.ate_rmse_m"};
-  for (std::size_t i = 0; i < 3; ++i) manifest.runs.push_back({.variant = i, .seed = 1, .overrides = {}, .address = ""});
-  SweepRows rows = {verdict("done", true, 0), verdict("time limit", false, 0), verdict("done", true, 0, false)};
-  rows[0]->events.clear();
-  rows[1]->metrics["pose"]["ate_rmse_m"] = 0.3;
-
-  const io::Table table = faults_table(manifest, rows);
-  EXPECT_EQ(table.rows[1][3], io::Cell("stopped"));
-  EXPECT_EQ(table.rows[2][2], io::Cell("NOT EXECUTED"));
-  EXPECT_NEAR(std::get<double>(table.rows[1].back()), 0.2, 1e-12);
-  EXPECT_THAT(faults_text(manifest, rows), HasSubstr("3 runs: 2 survived, 1 stopped; 1 faults NOT EXECUTED."));
-}
-
-TEST(FaultMatrix, ADocumentHasSensorsDownKindsAcrossAndTheWorstOfTheSeeds) {
-  SweepManifest manifest;
-  manifest.variants = {{.name = "no fault", .overrides = {}}, {.name = "imu: drift", .overrides = {}}, {.name = "imu: freeze", .overrides = {}}};
-  manifest.seeds = {1, 2};
-  manifest.metrics = {"pose.ate_rmse_m"};
-  SweepRows rows;
-  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-    for (std::size_t variant = 0; variant < 3; ++variant) {
-      manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .address = ""});
-      rows.push_back(verdict("done", true, 0));
-    }
-  }
-  rows[4] = verdict("time limit", false, 0);
-  rows[4]->metrics["pose"]["ate_rmse_m"] = 0.3;
-  EXPECT_THAT(faults_markdown(manifest, rows), HasSubstr("| pose.ate_rmse_m | drift | freeze |\n| --- | --- | --- |\n| no fault: survived 0.1, noticed |\n"
-                                                         "| imu | **stopped** 0.2, noticed | survived 0.1, noticed |\n"));
+TEST(FaultMatrix, AVariantsNameIsReadBackAsSensorAndKind) {
+  const FaultVariant fault = fault_of(variant_name({.sensor = "joint_encoders", .kind = "clock_offset", .start_s = 12.0, .duration_s = 8.0, .magnitude = 0.2}));
+  EXPECT_EQ(fault.sensor, "joint_encoders");
+  EXPECT_EQ(fault.kind, "clock_offset");
+  EXPECT_EQ(fault_of("no fault").kind, "");
 }
 
 }  // namespace

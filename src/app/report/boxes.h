@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/report/quantity.h"
+#include "render/report/blocks.h"
+#include "score/statistics.h"
+
+namespace patrol::app {
+
+/// Values of one metric in the unit that people read it in, their quartiles, the median in words; without values only its label.
+inline render::Box box_of(const std::string& label, std::vector<double> values, const Unit& unit) {
+  render::Box box{.label = label, .values = std::move(values), .text = ""};
+  if (box.values.empty()) return box;
+  for (double& value : box.values) value *= unit.factor;
+  box.lower_quartile = score::percentile(box.values, 0.25);
+  box.median = score::percentile(box.values, 0.5);
+  box.upper_quartile = score::percentile(box.values, 0.75);
+  box.text = fmt::format("{:.3g} {}", box.median, unit.name);
+  return box;
+}
+
+}  // namespace patrol::app
