@@ -1,5 +1,6 @@
 #include "core/random.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -42,6 +43,11 @@ double RandomStream::normal(std::uint64_t tick, std::uint64_t index) const {
   return std::sqrt(-2.0 * std::log(to_unit(bits[0]))) * std::cos(2.0 * std::numbers::pi * to_unit(bits[1]));
 }
 
+std::array<double, 4> RandomStream::uniforms(std::uint64_t tick, std::uint64_t index) const {
+  const auto bits = bits_at(seed_, stream_, tick, index);
+  return {to_unit(bits[0]), to_unit(bits[1]), to_unit(bits[2]), to_unit(bits[3])};
+}
+
 std::array<double, 4> RandomStream::normals(std::uint64_t tick, std::uint64_t index) const {
   const auto bits = bits_at(seed_, stream_, tick, index);
   std::array<double, 4> drawn{};
@@ -51,6 +57,25 @@ std::array<double, 4> RandomStream::normals(std::uint64_t tick, std::uint64_t in
     drawn[pair] = radius * std::cos(angle), drawn[pair + 1] = radius * std::sin(angle);
   }
   return drawn;
+}
+
+// Uniforms stand at even indices, normals at odd ones: neither moves the other.
+double RandomSequence::uniform() {
+  const std::uint64_t n = next_uniform_++;
+  if (n % 4 == 0) uniforms_ = stream_.uniforms(tick_, n / 2);
+  return uniforms_[n % 4];
+}
+
+double RandomSequence::normal() {
+  const std::uint64_t n = next_normal_++;
+  if (n % 4 == 0) normals_ = stream_.normals(tick_, n / 2 + 1);
+  return normals_[n % 4];
+}
+
+double RandomSequence::cauchy() { return std::tan(std::numbers::pi * (uniform() - 0.5)); }
+
+std::size_t RandomSequence::index(std::size_t count) {
+  return std::min(static_cast<std::size_t>(uniform() * static_cast<double>(count)), count - 1);
 }
 
 }  // namespace patrol

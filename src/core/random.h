@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -21,12 +22,36 @@ class RandomStream {
   /// Standard normal (Box-Muller).
   double normal(std::uint64_t tick, std::uint64_t index = 0) const;
 
+  /// Four of one address, for the price of one. The first is uniform(tick, index).
+  std::array<double, 4> uniforms(std::uint64_t tick, std::uint64_t index = 0) const;
+
   /// Four standard normals of one address, for about the price of two. The first is normal(tick, index).
   std::array<double, 4> normals(std::uint64_t tick, std::uint64_t index = 0) const;
 
  private:
   std::uint64_t seed_;
   std::uint64_t stream_;
+};
+
+/// Draws one after the other, where how many are needed depends on what they were: all of one tick of a stream.
+class RandomSequence {
+ public:
+  RandomSequence(const RandomStream& stream, std::uint64_t tick) : stream_(stream), tick_(tick) {}
+
+  /// Uniform in the open interval (0, 1).
+  double uniform();
+  /// Standard normal.
+  double normal();
+  /// Standard Cauchy.
+  double cauchy();
+  /// 0 ... count - 1, each alike.
+  std::size_t index(std::size_t count);
+
+ private:
+  RandomStream stream_;
+  std::uint64_t tick_;
+  std::uint64_t next_uniform_ = 0, next_normal_ = 0;
+  std::array<double, 4> uniforms_{}, normals_{};
 };
 
 }  // namespace patrol

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/frames.h"
+
+namespace patrol::slam {
+
+/// How a vehicle turns what it is told into a path.
+enum class Steering {
+  kYawRate,    ///< a quadruped or a pair of tracks: speed, and yaw rate, rad/s
+  kAckermann,  ///< a car: speed of the front wheel, and its steering angle, rad
+};
+
+/// Motion as measured: (speed in m/s, yaw rate in rad/s or steering angle in rad), for one step.
+using Control = Eigen::Vector2d;
+
+struct ControlMotion {
+  Steering steering = Steering::kYawRate;
+  double wheelbase_m = 2.0;                          ///< of a car
+  double step_s = 0.1;
+  Eigen::Vector2d std = Eigen::Vector2d(0.1, 0.087);  ///< of each control's error, in its unit
+
+  Pose2 move(const Pose2& T_map_body, const Control& control) const;
+  /// `increment`: the control's error in standard deviations.
+  Pose2 move_off(const Pose2& T_map_body, const Control& control, const Eigen::Vector2d& increment) const {
+    return move(T_map_body, control + std.cwiseProduct(increment));
+  }
+};
+
+/// Derivatives of (x, y, yaw) after a step.
+struct ControlMotionJacobian {
+  Eigen::Matrix3d pose = Eigen::Matrix3d::Identity();                            ///< by (x, y, yaw) before it
+  Eigen::Matrix<double, 3, 2> control = Eigen::Matrix<double, 3, 2>::Zero();     ///< by the control
+};
+
+ControlMotionJacobian jacobian_of(const ControlMotion& motion, const Pose2& T_map_body, const Control& control);
+
+}  // namespace patrol::slam

@@ -1,0 +1,180 @@
+#include "slam/landmarks/fast_slam.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "slam/particle_filter.h"
+
+namespace patrol::slam {
+
+/// The particles at one step, as the filter sees them (ParticleProblem).
+class FastSlam::Step {
+ public:
+  Step(FastSlam& slam, const Control& control, const std::vector<RangeBearing>& seen) : slam_(slam), control_(control), seen_(seen) {
+    for (Particle& particle : slam_.particles_) {
+      particle.T_map_before = particle.T_map_body;
+      const Pose2 expected = slam_.motion_.move_off(particle.T_map_before, control_, particle.bias.mean);
+      matches_.push_back(associate(particle.map, expected, seen_, slam_.noise_, slam_.settings_.association));
+      if (slam_.settings_.draws_from_observation) proposals_.push_back(slam_.propose(particle, control_, seen_, matches_.back()));
+    }
+  }
+
+  std::size_t size() const { return slam_.particles_.size(); }
+
+  Position draw(std::size_t i, RandomSequence& random) const {
+    const double first = random.normal();
+    const Eigen::Vector2d unit(first, random.normal());
+    if (slam_.settings_.draws_from_observation) return proposals_[i].mean + proposals_[i].root * unit;
+    const OdometryBias& bias = slam_.particles_[i].bias;
+    return bias.mean + bias.increment_covariance().llt().matrixL() * unit;
+  }
+
+  double log_fitness(std::size_t i, const Position& position) const {
+    const Particle& particle = slam_.particles_[i];
+    const double likelihood = slam_.log_likelihood(particle, pose_at(particle, position), seen_, matches_[i]);
+    return slam_.settings_.prior_share > 0.0 ? likelihood + slam_.settings_.prior_share * log_prior(particle, position) : likelihood;
+  }
+
+  double settle(std::size_t i, const Position& position) {
+    Particle& particle = slam_.particles_[i];
+    particle.T_map_body = pose_at(particle, position);
+    particle.increment = position;
+    double log_weight = slam_.log_likelihood(particle, particle.T_map_body, seen_, matches_[i]);
+    if (slam_.settings_.draws_from_observation) {
+      const Eigen::Vector2d unit = proposals_[i].root.triangularView<Eigen::Lower>().solve(position - proposals_[i].mean);
+      log_weight += log_prior(particle, position) - (proposals_[i].log_normalizer - 0.5 * unit.squaredNorm());
+    }
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      if (matches_[i][k] != kUnmatched) particle.map.update(matches_[i][k], particle.T_map_body, seen_[k], slam_.noise_);
+    }
+    if (slam_.settings_.bias.std > 0.0) particle.bias.learn(position, slam_.settings_.bias);
+    return log_weight;
+  }
+
+  void reproduce(const std::vector<Offspring>& offspring) { slam_.reproduce(control_, offspring); }
+
+ private:
+  Pose2 pose_at(const Particle& particle, const Position& position) const { return slam_.motion_.move_off(particle.T_map_before, control_, position); }
+
+  static double log_prior(const Particle& particle, const Position& position) {
+    const Eigen::Matrix2d covariance = particle.bias.increment_covariance();
+    const Eigen::Vector2d offset = position - particle.bias.mean;
+    return -0.5 * (offset.dot(covariance.inverse() * offset) + std::log(covariance.determinant()));
+  }
+
+  FastSlam& slam_;
+  const Control& control_;
+  const std::vector<RangeBearing>& seen_;
+  std::vector<std::vector<int>> matches_;  ///< [particle][sight]
+  std::vector<Proposal> proposals_;        ///< [particle], for 2.0
+};
+
+FastSlam::FastSlam(const FastSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise, ParticleFilterParts parts,
+                   std::uint64_t seed)
+    : settings_(settings), motion_(motion), noise_(noise), parts_(std::move(parts)), draws_(seed, "slam/landmarks/particles") {
+  motion_.std *= settings_.noise_scale;
+  const auto num = static_cast<std::size_t>(settings_.particles);
+  particles_.assign(num, {.T_map_body = {}, .T_map_before = {}, .increment = Eigen::Vector2d::Zero(), .bias = OdometryBias(settings_.bias), .map = {}});
+  log_weights_.assign(num, 0.0);
+}
+
+LandmarkSlamEstimate FastSlam::step(const Control& control, const std::vector<RangeBearing>& seen) {
+  RandomSequence random(draws_, steps_++);
+  Step problem(*this, control, seen);
+  advance_particles(problem, parts_, random, log_weights_);
+  weights_ = normalized_weights(log_weights_);
+  poses_.clear();
+  for (const Particle& particle : particles_) poses_.push_back(particle.T_map_body);
+  LandmarkSlamEstimate estimate = summary();
+  estimate.is_resampled = renew_particles(problem, parts_, weights_, random, log_weights_);
+  return estimate;
+}
+
+double FastSlam::log_likelihood(const Particle& particle, const Pose2& T_map_body, const std::vector<RangeBearing>& seen,
+                                const std::vector<int>& matches) const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    if (matches[k] != kUnmatched && particle.map.has(matches[k])) sum += fit_sight(T_map_body, particle.map.at(matches[k]), seen[k], noise_).log_density;
+  }
+  return sum;
+}
+
+// Gauss-Newton from what odometry says; landmarks that are seen for the first time say nothing of the pose.
+FastSlam::Proposal FastSlam::propose(const Particle& particle, const Control& control, const std::vector<RangeBearing>& seen,
+                                     const std::vector<int>& matches) const {
+  constexpr int kIterations = 2;
+  const Eigen::Matrix2d prior_information = particle.bias.increment_covariance().inverse();
+  Eigen::Vector2d mean = particle.bias.mean;
+  Eigen::Matrix2d information = prior_information;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const Control corrected = control + motion_.std.cwiseProduct(mean);
+    const Pose2 pose = motion_.move(particle.T_map_before, corrected);
+    const Eigen::Matrix<double, 3, 2> by_increment = jacobian_of(motion_, particle.T_map_before, corrected).control * motion_.std.asDiagonal();
+    information = prior_information;
+    Eigen::Vector2d gradient = prior_information * (particle.bias.mean - mean);
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      if (matches[k] == kUnmatched || !particle.map.has(matches[k])) continue;
+      const SightFit fit = fit_sight(pose, particle.map.at(matches[k]), seen[k], noise_);
+      const Eigen::Matrix2d J = fit.predicted.by_pose * by_increment;
+      information += J.transpose() * fit.S_inverse * J;
+      gradient += J.transpose() * fit.S_inverse * fit.innovation;
+    }
+    mean += information.inverse() * gradient;
+  }
+  const Eigen::Matrix2d root = Eigen::Matrix2d(information.inverse()).llt().matrixL();
+  return {.mean = mean, .root = root, .log_normalizer = -std::log(root(0, 0) * root(1, 1))};
+}
+
+// A particle that is drawn towards another takes its way and its map, and a share of its last increment: maps cannot be mixed.
+void FastSlam::reproduce(const Control& control, const std::vector<Offspring>& offspring) {
+  std::vector<Particle> children;
+  children.reserve(offspring.size());
+  for (const Offspring& child : offspring) {
+    const bool is_drawn = child.share > 0.0;
+    Particle& particle = children.emplace_back(particles_[is_drawn ? child.toward : child.parent]);
+    if (!is_drawn && child.mutation == 0.0) continue;
+    const Position own = particles_[child.parent].increment;
+    particle.increment = (1.0 + child.mutation) * (own + child.share * (particle.increment - own));
+    particle.T_map_body = motion_.move_off(particle.T_map_before, control, particle.increment);
+  }
+  particles_ = std::move(children);
+}
+
+LandmarkSlamEstimate FastSlam::summary() const {
+  LandmarkSlamEstimate estimate;
+  Eigen::Vector2d position = Eigen::Vector2d::Zero(), direction = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const Pose2& pose = particles_[i].T_map_body;
+    position += weights_[i] * pose.position();
+    direction += weights_[i] * Eigen::Vector2d(std::cos(pose.yaw), std::sin(pose.yaw));
+  }
+  estimate.T_map_body = {position.x(), position.y(), std::atan2(direction.y(), direction.x())};
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    Eigen::Vector3d offset = particles_[i].T_map_body.vector() - estimate.T_map_body.vector();
+    offset.z() = wrap_angle(offset.z());
+    estimate.covariance += weights_[i] * offset * offset.transpose();
+  }
+  estimate.effective_sample_size = effective_sample_size(weights_);
+  return estimate;
+}
+
+// Where the association is known, landmark i is the same in all particles: their weighted mean. Else the heaviest particle's.
+std::vector<std::optional<Eigen::Vector2d>> FastSlam::landmarks() const {
+  const std::vector<double> weights = normalized_weights(log_weights_);
+  const std::size_t best = static_cast<std::size_t>(std::max_element(weights.begin(), weights.end()) - weights.begin());
+  std::vector<std::optional<Eigen::Vector2d>> means(particles_[best].map.landmarks().size());
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    if (!particles_[best].map.has(static_cast<int>(i))) continue;
+    means[i] = particles_[best].map.landmarks()[i].mean_m;
+    if (!settings_.association.is_known) continue;
+    means[i]->setZero();
+    for (std::size_t p = 0; p < particles_.size(); ++p) *means[i] += weights[p] * particles_[p].map.landmarks()[i].mean_m;
+  }
+  return means;
+}
+
+}  // namespace patrol::slam

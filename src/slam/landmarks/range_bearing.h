@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <vector>
+
+#include "core/frames.h"
+
+namespace patrol::slam {
+
+/// A landmark as seen from the body.
+struct RangeBearing {
+  int landmark = 0;  ///< which one it is; used where the association is known
+  double range_m = 0.0;
+  double bearing_rad = 0.0;
+
+  Eigen::Vector2d vector() const { return {range_m, bearing_rad}; }
+};
+
+struct RangeBearingNoise {
+  double range_std_m = 0.5;
+  double bearing_std_rad = 0.0873;  ///< 5 degrees
+
+  Eigen::Matrix2d covariance() const { return Eigen::Vector2d(range_std_m * range_std_m, bearing_std_rad * bearing_std_rad).asDiagonal(); }
+};
+
+/// What would be seen of a landmark at `p_map`, and the derivatives.
+struct PredictedSight {
+  Eigen::Vector2d sight;                 ///< range, bearing
+  Eigen::Matrix2d by_landmark;           ///< by the landmark's x, y
+  Eigen::Matrix<double, 2, 3> by_pose;   ///< by the body's x, y, yaw
+};
+
+inline PredictedSight predict_sight(const Pose2& T_map_body, const Eigen::Vector2d& p_map) {
+  const double dx = p_map.x() - T_map_body.x, dy = p_map.y() - T_map_body.y;
+  const double q = std::max(dx * dx + dy * dy, 1e-12), r = std::sqrt(q);
+  PredictedSight predicted;
+  predicted.sight = {r, wrap_angle(std::atan2(dy, dx) - T_map_body.yaw)};
+  predicted.by_landmark << dx / r, dy / r, -dy / q, dx / q;
+  predicted.by_pose.leftCols<2>() = -predicted.by_landmark;
+  predicted.by_pose.col(2) = Eigen::Vector2d(0.0, -1.0);
+  return predicted;
+}
+
+/// Seen minus predicted, the bearing wrapped.
+inline Eigen::Vector2d innovation_of(const RangeBearing& seen, const PredictedSight& predicted) {
+  return {seen.range_m - predicted.sight.x(), wrap_angle(seen.bearing_rad - predicted.sight.y())};
+}
+
+/// Where a sight says that the landmark is.
+inline Eigen::Vector2d landmark_of(const Pose2& T_map_body, const RangeBearing& seen) {
+  const double direction = T_map_body.yaw + seen.bearing_rad;
+  return {T_map_body.x + seen.range_m * std::cos(direction), T_map_body.y + seen.range_m * std::sin(direction)};
+}
+
+}  // namespace patrol::slam

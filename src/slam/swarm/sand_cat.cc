@@ -1,0 +1,53 @@
+#include "slam/swarm/sand_cat.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace patrol::slam {
+namespace {
+
+/// Eq. 1 of paper 000, coordinate by coordinate.
+Position mutated(Position position, RandomSequence& random) {
+  for (double& coordinate : position) coordinate += coordinate * random.cauchy();
+  return position;
+}
+
+}  // namespace
+
+void SandCatOptimizer::move(Swarm& swarm, const Fitness& judge, RandomSequence& random) const {
+  for (int iteration = 0; iteration < iterations_; ++iteration) {
+    const Swarm before = swarm;
+    hunt(iteration, swarm, judge, random);
+    if (!is_improved_) continue;
+    const std::size_t best = swarm.best();
+    swarm.accept(best, mutated(swarm.positions[best], random), judge);
+    inherit(iteration + 1, before, swarm, judge);
+  }
+}
+
+void SandCatOptimizer::hunt(int iteration, Swarm& swarm, const Fitness& judge, RandomSequence& random) const {
+  const double reach = 2.0 - 2.0 * iteration / iterations_;  // r_G
+  const Position best = swarm.positions[swarm.best()];
+  for (std::size_t i = 0; i < swarm.size(); ++i) {
+    const Position& cat = swarm.positions[i];
+    const double r = reach * random.uniform();
+    const double R = 2.0 * reach * random.uniform() - reach;
+    Position candidate;
+    if (std::abs(R) <= 1.0) {
+      const Position distance = (random.uniform() * best - cat).cwiseAbs();
+      candidate = best - r * std::cos(2.0 * std::numbers::pi * random.uniform()) * distance;
+    } else {
+      candidate = r * (best - random.uniform() * cat);
+    }
+    swarm.accept(i, candidate, judge);
+  }
+}
+
+void SandCatOptimizer::inherit(int iteration, const Swarm& before, Swarm& swarm, const Fitness& judge) const {
+  const double share = std::sin(std::numbers::pi * iteration / (2.0 * iterations_));
+  const auto num_kept = static_cast<std::size_t>(std::ceil(static_cast<double>(swarm.size() - 1) * share));
+  const std::vector<std::size_t> old_ranking = before.ranking(), ranking = swarm.ranking();
+  for (std::size_t i = 0; i < num_kept; ++i) swarm.accept(ranking[ranking.size() - 1 - i], before.positions[old_ranking[i]], judge);
+}
+
+}  // namespace patrol::slam
