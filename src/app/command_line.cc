@@ -30,6 +30,7 @@ struct Call {
   std::vector<std::filesystem::path> collect_parts;
   BudgetOptions budget;
   FaultsOptions faults;
+  StudyOptions study;
   TestOptions test;
   std::function<ExitCode()> chosen;
 };
@@ -148,6 +149,16 @@ void add_faults(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [&] { return faults_command(call.faults); }; });
 }
 
+void add_study(CLI::App& app, Call& call) {
+  StudyOptions& study = call.study;
+  CLI::App* command = app.add_subcommand("study", "A paper's experiment: its published figures beside ours");
+  command->add_option("name", study.name, "Which one (patrol list)")->required();
+  command->add_option("--seeds", study.seeds, "N (the first N that nothing was tuned on) or A..B");
+  command->add_option("--jobs", study.jobs, "Seeds at a time; 0: one for each core")->capture_default_str();
+  command->add_option("--out", study.out, "Directory to leave; seeds that lie there are not run again")->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return study_command(call.study); }; });
+}
+
 void add_test(CLI::App& app, Call& call) {
   TestOptions& test = call.test;
   CLI::App* command = app.add_subcommand("test", "Run every scenario of a folder and leave JUnit XML and a summary");
@@ -199,7 +210,7 @@ int run_command_line(int argc, const char* const* argv) {
 
   Call call;
   for (const auto add : {add_run, add_score, add_localizability, add_replay, add_report, add_verify, add_sweep, add_collect, add_budget, add_faults,
-                         add_test, add_list}) {
+                         add_study, add_test, add_list}) {
     add(app, call);
   }
 

@@ -75,6 +75,16 @@ ExitCode budget_command(const BudgetOptions& options);
 /// Runs a scenario with every fault that its robot's sensors can have, and says what each led to.
 ExitCode faults_command(const FaultsOptions& options);
 
+struct StudyOptions {
+  std::string name;
+  std::optional<std::string> seeds;  ///< "N": 1001 ... 1000 + N, on which nothing was tuned; or "A..B"
+  int jobs = 0;                      ///< seeds at a time; 0: one for each core
+  double seed_limit_s = 3600.0;      ///< wall time of a seed
+  std::filesystem::path out = "out/study";
+};
+/// A paper's experiment, its published figures beside ours.
+ExitCode study_command(const StudyOptions& options);
+
 /// Runs every scenario of a folder against what it expects.
 ExitCode test_command(const TestOptions& options);
 

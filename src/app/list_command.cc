@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "app/scenario.h"
+#include "app/study/study.h"
 
 namespace patrol::app {
 namespace {
@@ -62,6 +63,7 @@ ExitCode list_command() {
   print("sensor models of localisation", allowed<localize::MonteCarloSettings>("sensor_model"));
   print("global planners", {"A* (stack.navigation.global)"});
   print("local planners", allowed<plan::NavigatorSettings>("local_planner"));
+  print("studies", study_names());
   return ExitCode::kDone;
 }
 

@@ -8,7 +8,7 @@ namespace patrol::slam {
 
 struct EkfSlamSettings {
   double noise_scale = 1.0;       ///< of odometry's stated deviations
-  OdometryBiasSettings bias;      ///< a part of the state; off by default
+  OdometryBiasSettings bias{};    ///< a part of the state; off by default
   bool is_invariant = false;
 };
 

@@ -16,9 +16,9 @@ struct FastSlamSettings {
   int particles = 10;
   double noise_scale = 1.0;          ///< of odometry's stated deviations: more stands in for what is not modelled
   bool draws_from_observation = false;  ///< FastSLAM 2.0, else 1.0
-  OdometryBiasSettings bias;         ///< learnt by each particle; off by default
+  OdometryBiasSettings bias{};       ///< learnt by each particle; off by default
   double prior_share = 0.0;          ///< lambda: how much an optimiser minds going far from what odometry says (1: as Bayes would)
-  AssociationSettings association;
+  AssociationSettings association{};
 };
 
 /// FastSLAM: particles are paths, and on each landmarks are independent, with Kalman filters of their own.

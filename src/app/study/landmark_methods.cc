@@ -1,0 +1,53 @@
+#include "app/study/landmark_methods.h"
+
+#include <cctype>
+
+#include <fmt/format.h>
+
+#include "slam/landmarks/ekf_slam.h"
+
+namespace patrol::app {
+namespace {
+
+LandmarkMethod particle_method(const std::string& name, const slam::FastSlamSettings& settings, const slam::ParticleFilterSettings& filter) {
+  return {.name = name, .particles = settings.particles, .make = [=](const LandmarkWorld& world, std::uint64_t seed) {
+            return std::make_unique<slam::FastSlam>(settings, world.motion, world.noise, slam::make_parts(filter), seed);
+          }};
+}
+
+LandmarkMethod gaussian_method(const std::string& name, const slam::EkfSlamSettings& settings) {
+  return {.name = name, .particles = 0, .make = [=](const LandmarkWorld& world, std::uint64_t) {
+            return std::make_unique<slam::EkfSlam>(settings, world.motion, world.noise);
+          }};
+}
+
+/// What is known of a lasting error before anything is seen: it is about as large as half of the noise of one step. Tuned on seeds below 1001.
+constexpr slam::OdometryBiasSettings kBias = {.std = 0.4, .walk_std = 0.0};
+
+}  // namespace
+
+LandmarkMethod fast_slam_1(int particles, double noise_scale) {
+  const std::string name = noise_scale == 1.0 ? "FastSLAM" : fmt::format("FastSLAM, noise x {:g}", noise_scale);
+  return particle_method(name, {.particles = particles, .noise_scale = noise_scale}, {});
+}
+
+LandmarkMethod fast_slam_2(int particles) { return particle_method("FastSLAM 2", {.particles = particles, .draws_from_observation = true}, {}); }
+
+LandmarkMethod swarm_slam(const std::string& optimizer, int particles) {
+  slam::ParticleFilterSettings filter{.optimizer = optimizer};
+  if (optimizer == "iscso") filter.resampler = "low_weight";
+  if (optimizer == "ifa") filter.resampler = "stepwise";
+  std::string name;
+  for (const char c : optimizer) name += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return particle_method(name, {.particles = particles}, filter);
+}
+
+LandmarkMethod learning_sand_cats(int particles) {
+  return particle_method("ISCSO, bias learnt", {.particles = particles, .bias = {.std = 0.2}, .prior_share = 0.05}, {.optimizer = "iscso"});
+}
+
+LandmarkMethod ekf_slam() { return gaussian_method("EKF-SLAM", {}); }
+
+LandmarkMethod invariant_slam() { return gaussian_method("invariant EKF, bias learnt", {.bias = kBias, .is_invariant = true}); }
+
+}  // namespace patrol::app

@@ -1,0 +1,73 @@
+#include "app/study/landmark_pictures.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "app/study/landmark_track.h"
+
+namespace patrol::app {
+namespace {
+
+using render::Ink;
+
+std::string label_of(const LandmarkMethod& method) { return method.particles > 0 ? fmt::format("{} ({})", method.name, method.particles) : method.name; }
+
+std::vector<Eigen::Vector2d> positions(const std::vector<Pose2>& poses) {
+  std::vector<Eigen::Vector2d> positions;
+  for (const Pose2& pose : poses) positions.push_back(pose.position());
+  return positions;
+}
+
+render::Curve error_curve(const LandmarkMethod& method, const LandmarkTrack& track, const LandmarkRun& run, double step_s, Ink ink) {
+  render::Curve curve{.name = label_of(method), .ink = ink, .is_dashed = false, .points = {}};
+  for (std::size_t k = 0; k < run.truth.size(); ++k) {
+    const double error_m = (track.estimates[k].T_map_body.position() - run.truth[k].position()).norm();
+    curve.points.emplace_back(step_s * static_cast<double>(k + 1), error_m);
+  }
+  return curve;
+}
+
+render::MapBlock map_of(const LandmarkWorld& world, const LandmarkRun& run, const LandmarkTrack& track) {
+  const std::vector<render::MapPath> paths = {{"true path", Ink::kTruth, {positions(run.truth)}}, {"estimated path", Ink::kEstimate, {positions(track.poses())}}};
+  std::vector<render::MapMark> marks;
+  Eigen::AlignedBox2d shown;
+  for (const Eigen::Vector2d& p_m : world.landmarks_m) {
+    marks.push_back({.label = "", .ink = Ink::kTruth, .p_m = p_m});
+    shown.extend(p_m);
+  }
+  for (const auto& p_m : track.landmarks) {
+    if (p_m) marks.push_back({.label = "", .ink = Ink::kEstimate, .p_m = *p_m});
+  }
+  for (const render::MapPath& path : paths) {
+    for (const Eigen::Vector2d& p_m : path.pieces_m.front()) shown.extend(p_m);
+  }
+  return {.picture = render::map_picture({.built = OccupancyGrid(GridGeometry{}), .T_world_map = {}, .truth = {}, .error_m = {}}, shown), .paths = paths, .marks = marks};
+}
+
+}  // namespace
+
+std::vector<render::Section> landmark_sections(const LandmarkWorld& world, const std::vector<LandmarkMethod>& methods, std::uint64_t seed) {
+  constexpr std::array kInks = {Ink::kOdometry, Ink::kRanges, Ink::kTrust, Ink::kEvent, Ink::kAlarm, Ink::kBound};
+  const LandmarkRun run = simulate(world, seed);
+  const double end_s = world.motion.step_s * static_cast<double>(run.truth.size());
+  const int particles = methods.front().particles;
+  render::LinePlot errors{.title = fmt::format("Position error over time, world {}, seed {}", world.name, seed), .unit = "m",
+                          .axis = {.label = "s", .max = end_s}, .max = {}, .curves = {}, .marks = {}, .spans = {}};
+  std::vector<render::Section> maps;
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    const bool is_last = i + 1 == methods.size();
+    if (methods[i].particles != particles && !is_last) continue;
+    const LandmarkTrack track = follow(methods[i], world, run, seed);
+    if (errors.curves.size() < kInks.size() || is_last) {
+      errors.curves.push_back(error_curve(methods[i], track, run, world.motion.step_s, is_last ? Ink::kEstimate : kInks[errors.curves.size()]));
+    }
+    maps.push_back({label_of(methods[i]), {map_of(world, run, track)}});
+  }
+  std::vector<render::Section> sections = {{"Errors over time", {errors}}};
+  for (render::Section& map : maps) sections.push_back(std::move(map));
+  return sections;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,23 @@
+#include "app/study/landmark_track.h"
+
+#include "app/study/thread_clock.h"
+
+namespace patrol::app {
+
+std::vector<Pose2> LandmarkTrack::poses() const {
+  std::vector<Pose2> poses;
+  for (const slam::LandmarkSlamEstimate& estimate : estimates) poses.push_back(estimate.T_map_body);
+  return poses;
+}
+
+LandmarkTrack follow(const LandmarkMethod& method, const LandmarkWorld& world, const LandmarkRun& run, std::uint64_t seed) {
+  const std::unique_ptr<slam::LandmarkSlam> slam = method.make(world, seed);
+  LandmarkTrack track;
+  const double start_s = thread_seconds();
+  for (std::size_t k = 0; k < run.odometry.size(); ++k) track.estimates.push_back(slam->step(run.odometry[k], run.seen[k]));
+  track.landmarks = slam->landmarks();
+  track.seconds = thread_seconds() - start_s;
+  return track;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,212 @@
+#include "app/study/study_results.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "app/report/boxes.h"
+
+namespace patrol::app {
+namespace {
+
+io::Cell number(const std::optional<double>& value) { return value ? io::Cell{*value} : io::Cell{}; }
+
+std::optional<double> published(const StudyVariant& variant, std::size_t figure) {
+  return figure < variant.published.size() ? variant.published[figure] : std::nullopt;
+}
+
+/// With the mean's own digits for people: four.
+std::string with_interval(const std::optional<score::Interval>& interval, double mean, const char* sign) {
+  const auto text = [&](double value) { return fmt::format(fmt::runtime(fmt::format("{{:{}.3g}}", sign)), value); };
+  return interval ? fmt::format("{} [{}, {}]", text(mean), text(interval->low), text(interval->high)) : text(mean);
+}
+
+std::string title_of(const StudyFigure& figure) { return figure.unit.empty() ? figure.name : fmt::format("{}, {}", figure.name, figure.unit); }
+
+/// [row][column] of words, the first row being the titles; numbers are set flush right.
+struct WordTable {
+  std::vector<render::Column> columns;
+  std::vector<std::vector<render::Cell>> rows;
+};
+
+WordTable words_of(const Study& study, const StudyResults& results, const std::string& world) {
+  WordTable table{.columns = {{"method"}, {"N", true}}, .rows = {}};
+  for (const StudyFigure& figure : study.figures) {
+    if (figure.is_compared) table.columns.push_back({figure.name + " published", true});
+    table.columns.push_back({title_of(figure), true});
+    if (figure.is_compared) table.columns.push_back({"against the first of its N", true});
+  }
+  for (std::size_t v = 0; v < study.variants.size(); ++v) {
+    const StudyVariant& variant = study.variants[v];
+    if (variant.world != world) continue;
+    std::vector<render::Cell>& row = table.rows.emplace_back();
+    row.push_back({variant.method});
+    row.push_back({variant.particles > 0 ? std::to_string(variant.particles) : ""});
+    for (std::size_t f = 0; f < study.figures.size(); ++f) {
+      const StudyResult& result = results[v][f];
+      const bool is_there = result.num_seeds > 0;
+      if (!study.figures[f].is_compared) {
+        row.push_back({is_there ? fmt::format("{:.3g}", result.mean) : "–"});
+        continue;
+      }
+      const auto paper = published(variant, f);
+      row.push_back({paper ? fmt::format("{:.4g}", *paper) : "–", render::Tone::kFaint});
+      row.push_back({is_there ? with_interval(result.interval, result.mean, "") : "–"});
+      row.push_back({result.difference ? with_interval(result.difference, result.difference->center, "+") : "",
+                     verdict_of(result) == "no difference" ? render::Tone::kFaint : render::Tone::kPlain});
+    }
+  }
+  return table;
+}
+
+std::vector<std::string> worlds_of(const Study& study) {
+  std::vector<std::string> worlds;
+  for (const StudyVariant& variant : study.variants) {
+    if (std::find(worlds.begin(), worlds.end(), variant.world) == worlds.end()) worlds.push_back(variant.world);
+  }
+  return worlds;
+}
+
+std::string label_of(const StudyVariant& variant) {
+  return variant.particles > 0 ? fmt::format("{} ({})", variant.method, variant.particles) : variant.method;
+}
+
+/// How wide a text is on a screen; the few characters beyond ASCII that are used here take one column each.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+}  // namespace
+
+StudyResults summarize(const Study& study, const std::vector<StudySample>& samples) {
+  StudyResults results(study.variants.size(), std::vector<StudyResult>(study.figures.size()));
+  for (std::size_t v = 0; v < study.variants.size(); ++v) {
+    for (std::size_t f = 0; f < study.figures.size(); ++f) {
+      std::vector<double> values, differences;
+      for (const StudySample& sample : samples) {
+        const double value = sample[v][f], reference = sample[study.variants[v].reference][f];
+        if (std::isfinite(value)) values.push_back(value);
+        if (std::isfinite(value) && std::isfinite(reference)) differences.push_back(value - reference);
+      }
+      StudyResult& result = results[v][f];
+      result = {.mean = score::mean(values), .interval = score::mean_interval(values), .difference = {}, .num_seeds = values.size()};
+      if (study.figures[f].is_compared && study.variants[v].reference != v) result.difference = score::mean_interval(differences);
+    }
+  }
+  return results;
+}
+
+std::string verdict_of(const StudyResult& result) {
+  if (!result.difference) return "";
+  if (result.difference->contains(0.0)) return "no difference";
+  return result.difference->center < 0.0 ? "lower" : "higher";
+}
+
+io::Table results_table(const Study& study, const StudyResults& results) {
+  io::Table table{.name = "results",
+                  .columns = {"world", "method", "particles", "figure", "unit", "published", "seeds", "mean", "mean_low", "mean_high", "difference",
+                              "difference_low", "difference_high", "verdict"},
+                  .rows = {}};
+  for (std::size_t v = 0; v < study.variants.size(); ++v) {
+    const StudyVariant& variant = study.variants[v];
+    for (std::size_t f = 0; f < study.figures.size(); ++f) {
+      const StudyResult& result = results[v][f];
+      if (study.figures[f].is_of_the_clock || result.num_seeds == 0) continue;
+      const auto part = [](const std::optional<score::Interval>& interval, double score::Interval::* end) {
+        return interval ? io::Cell{(*interval).*end} : io::Cell{};
+      };
+      table.rows.push_back({variant.world, variant.method, static_cast<std::int64_t>(variant.particles), study.figures[f].name, study.figures[f].unit,
+                            number(published(variant, f)), static_cast<std::int64_t>(result.num_seeds), result.mean,
+                            part(result.interval, &score::Interval::low), part(result.interval, &score::Interval::high),
+                            part(result.difference, &score::Interval::center), part(result.difference, &score::Interval::low),
+                            part(result.difference, &score::Interval::high), verdict_of(result)});
+    }
+  }
+  return table;
+}
+
+io::Table performance_table(const Study& study, const StudyResults& results) {
+  io::Table table{.name = "performance", .columns = {"world", "method", "particles", "figure", "unit", "mean"}, .rows = {}};
+  for (std::size_t v = 0; v < study.variants.size(); ++v) {
+    for (std::size_t f = 0; f < study.figures.size(); ++f) {
+      if (!study.figures[f].is_of_the_clock || results[v][f].num_seeds == 0) continue;
+      table.rows.push_back({study.variants[v].world, study.variants[v].method, static_cast<std::int64_t>(study.variants[v].particles),
+                            study.figures[f].name, study.figures[f].unit, results[v][f].mean});
+    }
+  }
+  return table;
+}
+
+io::Table samples_table(const Study& study, const std::vector<std::uint64_t>& seeds, const std::vector<StudySample>& samples) {
+  io::Table table{.name = "runs", .columns = {"seed", "world", "method", "particles"}, .rows = {}};
+  for (const StudyFigure& figure : study.figures) {
+    if (!figure.is_of_the_clock) table.columns.push_back(title_of(figure));
+  }
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    for (std::size_t v = 0; v < study.variants.size(); ++v) {
+      std::vector<io::Cell>& row = table.rows.emplace_back();
+      row.push_back(static_cast<std::int64_t>(seeds[s]));
+      row.emplace_back(study.variants[v].world);
+      row.emplace_back(study.variants[v].method);
+      row.push_back(static_cast<std::int64_t>(study.variants[v].particles));
+      for (std::size_t f = 0; f < study.figures.size(); ++f) {
+        if (study.figures[f].is_of_the_clock) continue;
+        row.push_back(std::isfinite(samples[s][v][f]) ? io::Cell{samples[s][v][f]} : io::Cell{});
+      }
+    }
+  }
+  return table;
+}
+
+std::string results_text(const Study& study, const StudyResults& results) {
+  std::string text;
+  for (const std::string& world : worlds_of(study)) {
+    const WordTable table = words_of(study, results, world);
+    std::vector<std::size_t> widths;
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      widths.push_back(width_of(table.columns[c].title));
+      for (const auto& row : table.rows) widths[c] = std::max(widths[c], width_of(row[c].text));
+    }
+    const auto add = [&](std::size_t c, const std::string& word) {
+      const std::string space(widths[c] - width_of(word), ' ');
+      text += (c > 0 ? "  " : "") + (table.columns[c].is_number ? space + word : word + space);
+    };
+    text += fmt::format("{}\n", world);
+    for (std::size_t c = 0; c < table.columns.size(); ++c) add(c, table.columns[c].title);
+    text += "\n";
+    for (const auto& row : table.rows) {
+      for (std::size_t c = 0; c < row.size(); ++c) add(c, row[c].text);
+      text += "\n";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+render::Page study_page(const Study& study, const std::vector<std::uint64_t>& seeds, const std::vector<StudySample>& samples, const StudyResults& results) {
+  render::Page page{.kind = "report of a study",
+                    .title = study.title,
+                    .facts = {{"after", study.source}, {"seeds", fmt::format("{} … {}", seeds.front(), seeds.back())}},
+                    .sections = {},
+                    .colophon = fmt::format("Made by patrol study {} {}.", study.name, PATROL_VERSION)};
+  page.sections.push_back({"", {render::TextBlock{study.conditions}}});
+  for (const std::string& world : worlds_of(study)) {
+    const WordTable table = words_of(study, results, world);
+    const StudyFigure& first = study.figures.front();
+    render::BoxPlot boxes{.caption = fmt::format("{}: every seed, median and quartiles", first.name), .unit = first.unit, .boxes = {}};
+    for (std::size_t v = 0; v < study.variants.size(); ++v) {
+      if (study.variants[v].world != world) continue;
+      std::vector<double> values;
+      for (const StudySample& sample : samples) {
+        if (std::isfinite(sample[v].front())) values.push_back(sample[v].front());
+      }
+      if (!values.empty()) boxes.boxes.push_back(box_of(label_of(study.variants[v]), values, {.factor = 1.0, .name = first.unit}));
+    }
+    page.sections.push_back({world, {render::TableBlock{.caption = "", .columns = table.columns, .rows = table.rows}, boxes}});
+  }
+  for (render::Section& section : study.illustrate(seeds.front())) page.sections.push_back(std::move(section));
+  return page;
+}
+
+}  // namespace patrol::app
