@@ -102,10 +102,10 @@ void EkfSlam::add_landmark(const RangeBearing& sight) {
 
   const Eigen::Matrix2d by_sight = predict_sight(T_map_body_, landmarks_.back()).by_landmark.inverse();
   const Eigen::Index n = P_.rows();
-  Eigen::MatrixXd by_state = Eigen::MatrixXd::Zero(2, n);  // of the new landmark's error
+  Eigen::Matrix2Xd by_state = Eigen::Matrix2Xd::Zero(2, n);  // of the new landmark's error
   by_state.middleCols<2>(kPosition).setIdentity();
   if (!settings_.is_invariant) by_state.col(kYaw) = kTurn * (landmarks_.back() - T_map_body_.position());
-  const Eigen::MatrixXd cross = by_state * P_;
+  const Eigen::Matrix2Xd cross = by_state * P_;
   const Eigen::Matrix2d own = cross * by_state.transpose() + by_sight * noise_.covariance() * by_sight.transpose();
   P_.conservativeResize(n + 2, n + 2);
   P_.bottomLeftCorner(2, n) = cross;
