@@ -8,34 +8,29 @@
 namespace patrol::slam {
 namespace {
 
-/// Three residuals for two errors: sideways slip, which these vehicles do not have, is held to a tenth of a millimetre.
-constexpr double kSlipStd_m = 1e-4;
+/// How far a pose may lie from where the corrected control takes the one before: nothing, but that would have no derivative.
+constexpr double kTight = 1e-4;  // m, rad
 
 template <typename Scalar>
 Scalar wrapped(const Scalar& angle) {
   return atan2(sin(angle), cos(angle));
 }
 
-/// Errors of a control that would take one pose to the next.
-struct ControlCost {
+/// `error`: of the control, in standard deviations.
+struct MotionCost {
   ControlMotion motion;
   Control control;
 
   template <typename Scalar>
-  bool operator()(const Scalar* before, const Scalar* after, Scalar* residual) const {
-    const Scalar dx = after[0] - before[0], dy = after[1] - before[1], turn = wrapped(Scalar(after[2] - before[2]));
-    if (motion.steering == Steering::kAckermann) {  // the step goes where the wheel points, and turns the car by its sideways part
-      const Scalar c = cos(before[2]), s = sin(before[2]);
-      const Scalar along = c * dx + s * dy, across = -s * dx + c * dy;
-      residual[0] = (sqrt(along * along + across * across + 1e-12) / motion.step_s - control.x()) / motion.std.x();
-      residual[1] = (atan2(across, along) - control.y()) / motion.std.y();
-      residual[2] = (turn * motion.wheelbase_m - across) / kSlipStd_m;
-      return true;
-    }
-    const Scalar c = cos(before[2] + 0.5 * turn), s = sin(before[2] + 0.5 * turn);
-    residual[0] = ((c * dx + s * dy) / motion.step_s - control.x()) / motion.std.x();
-    residual[1] = (turn / motion.step_s - control.y()) / motion.std.y();
-    residual[2] = (-s * dx + c * dy) / kSlipStd_m;
+  bool operator()(const Scalar* before, const Scalar* error, const Scalar* after, Scalar* residual) const {
+    const Scalar corrected[2] = {control.x() + motion.std.x() * error[0], control.y() + motion.std.y() * error[1]};
+    Scalar pose[3] = {before[0], before[1], before[2]};
+    move_in_place(motion, corrected, pose);
+    residual[0] = (after[0] - pose[0]) / kTight;
+    residual[1] = (after[1] - pose[1]) / kTight;
+    residual[2] = wrapped(Scalar(after[2] - pose[2])) / kTight;
+    residual[3] = error[0];
+    residual[4] = error[1];
     return true;
   }
 };
@@ -62,12 +57,14 @@ BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& 
   std::vector<std::array<double, 2>> landmarks;
   for (const auto& landmark : guess.landmarks) landmarks.push_back(landmark ? std::array{landmark->x(), landmark->y()} : std::array{0.0, 0.0});
 
+  std::vector<std::array<double, 2>> errors(controls.size(), {0.0, 0.0});
+
   ceres::Problem problem;
   problem.AddParameterBlock(poses[0].data(), 3);
   problem.SetParameterBlockConstant(poses[0].data());
   for (std::size_t k = 0; k < controls.size(); ++k) {
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ControlCost, 3, 3, 3>(new ControlCost{motion, controls[k]}), nullptr, poses[k].data(),
-                             poses[k + 1].data());
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<MotionCost, 5, 3, 2, 3>(new MotionCost{motion, controls[k]}), nullptr, poses[k].data(),
+                             errors[k].data(), poses[k + 1].data());
     for (const RangeBearing& sight : seen[k]) {
       problem.AddResidualBlock(new ceres::AutoDiffCostFunction<SightCost, 2, 3, 2>(new SightCost{sight, noise}), nullptr, poses[k + 1].data(),
                                landmarks[static_cast<std::size_t>(sight.landmark)].data());

@@ -15,7 +15,7 @@ struct BatchSolution {
 };
 
 /// The most probable way and landmarks given all controls and sights, those of the future included: what no filter can beat on the average of a run.
-/// Unknowns are the errors of the controls, in standard deviations, and the landmarks; start is the map's origin. Gauss-Newton by Ceres from
+/// Unknowns are the poses, the errors of the controls and the landmarks; start is the map's origin. Gauss-Newton by Ceres from
 /// `guess`. `controls` [step], `seen` [step][sight], association known.
 BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& noise, const std::vector<Control>& controls,
                           const std::vector<std::vector<RangeBearing>>& seen, const BatchSolution& guess);

@@ -17,9 +17,10 @@ using Control = Eigen::Vector2d;
 
 struct ControlMotion {
   Steering steering = Steering::kYawRate;
-  double wheelbase_m = 2.0;                          ///< of a car
+  double wheelbase_m = 2.0;                           ///< of a car
   double step_s = 0.1;
-  Eigen::Vector2d std = Eigen::Vector2d(0.1, 0.087);  ///< of each control's error, in its unit
+  int parts = 1;                                      ///< that a step is reckoned in: a car that turns does not go straight for long
+  Eigen::Vector2d std = Eigen::Vector2d(0.1, 0.087);  ///< of each control's error in a step, in its unit
 
   Pose2 move(const Pose2& T_map_body, const Control& control) const;
   /// `increment`: the control's error in standard deviations.
@@ -28,10 +29,26 @@ struct ControlMotion {
   }
 };
 
+/// One step of `pose` (x, y, yaw), for numbers of any kind; the yaw is not wrapped.
+template <typename Scalar>
+void move_in_place(const ControlMotion& motion, const Scalar* control, Scalar* pose) {
+  using std::cos, std::sin;
+  const Scalar length_m = control[0] * (motion.step_s / motion.parts);
+  const bool is_car = motion.steering == Steering::kAckermann;
+  const Scalar turn_rad = is_car ? Scalar(length_m * sin(control[1]) / motion.wheelbase_m) : Scalar(control[1] * (motion.step_s / motion.parts));
+  const Scalar bend_rad = is_car ? control[1] : Scalar(0.5 * turn_rad);
+  for (int part = 0; part < motion.parts; ++part) {
+    const Scalar direction = pose[2] + bend_rad;
+    pose[0] += length_m * cos(direction);
+    pose[1] += length_m * sin(direction);
+    pose[2] += turn_rad;
+  }
+}
+
 /// Derivatives of (x, y, yaw) after a step.
 struct ControlMotionJacobian {
-  Eigen::Matrix3d pose = Eigen::Matrix3d::Identity();                            ///< by (x, y, yaw) before it
-  Eigen::Matrix<double, 3, 2> control = Eigen::Matrix<double, 3, 2>::Zero();     ///< by the control
+  Eigen::Matrix3d pose = Eigen::Matrix3d::Identity();                         ///< by (x, y, yaw) before it
+  Eigen::Matrix<double, 3, 2> control = Eigen::Matrix<double, 3, 2>::Zero();  ///< by the control
 };
 
 ControlMotionJacobian jacobian_of(const ControlMotion& motion, const Pose2& T_map_body, const Control& control);
