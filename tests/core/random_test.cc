@@ -127,5 +127,85 @@ TEST(RandomStream, NeighbouringStreamsTicksAndIndexesAreUncorrelated) {
   EXPECT_NEAR(indexes, 0.0, bound);
 }
 
+TEST(RandomStream, FourUniformsAreTheFourWordsOfOneAddress) {
+  const RandomStream stream(42, "foobar");
+  const Block bits = philox({7, 5, 0, 0}, {42, 0x85944171f73967e8ULL});
+  const std::array<double, 4> drawn = stream.uniforms(7, 5);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(drawn[i], unit(bits[i])) << i;
+  EXPECT_EQ(drawn[0], stream.uniform(7, 5));
+}
+
+RandomSequence sequence(std::uint64_t tick = 1) { return {RandomStream(3, "test/sequence"), tick}; }
+
+TEST(RandomSequence, SixUniformsStandAtTheAddressesZeroAndTwoAndSixNormalsAtOneAndThree) {
+  const RandomStream stream(3, "test/sequence");
+  RandomSequence drawn = sequence();
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(drawn.uniform(), stream.uniforms(1, i < 4 ? 0 : 2)[i % 4]) << i;
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(drawn.normal(), stream.normals(1, i < 4 ? 1 : 3)[i % 4]) << i;
+}
+
+TEST(RandomSequence, UniformsAndNormalsDoNotMoveEachOther) {
+  RandomSequence uniforms = sequence(), normals = sequence(), mixed = sequence();
+  for (int i = 0; i < 50; ++i) {
+    for (int k = 0; k < i % 3; ++k) EXPECT_EQ(mixed.uniform(), uniforms.uniform()) << i;
+    for (int k = 0; k < i % 4; ++k) EXPECT_EQ(mixed.normal(), normals.normal()) << i;
+  }
+}
+
+TEST(RandomSequence, SameTickSameDrawsAndAnotherTickOthers) {
+  RandomSequence first = sequence(), again = sequence(), other = sequence(2);
+  for (int i = 0; i < 20; ++i) {
+    const double drawn = first.uniform();
+    EXPECT_EQ(again.uniform(), drawn) << i;
+    EXPECT_NE(other.uniform(), drawn) << i;
+  }
+}
+
+TEST(RandomSequence, TwoHundredThousandDrawsHaveTheMomentsOfTheirDistributions) {
+  RandomSequence drawn = sequence();
+  const Moments uniform = moments_of([&](std::uint64_t) { return drawn.uniform(); });
+  EXPECT_NEAR(uniform.mean, 0.5, 4.0 * std::sqrt(1.0 / 12.0 / kDraws));
+  EXPECT_NEAR(uniform.variance, 1.0 / 12.0, 4.0 * std::sqrt((1.0 / 80.0 - 1.0 / 144.0) / kDraws));
+  const Moments normal = moments_of([&](std::uint64_t) { return drawn.normal(); });
+  EXPECT_NEAR(normal.mean, 0.0, 4.0 / std::sqrt(kDraws));
+  EXPECT_NEAR(normal.variance, 1.0, 4.0 * std::sqrt(2.0 / kDraws));
+  EXPECT_NEAR(normal.fourth, 3.0, 4.0 * std::sqrt(96.0 / kDraws));
+}
+
+TEST(RandomSequence, NeighbouringDrawsAreUncorrelated) {
+  RandomSequence drawn = sequence();
+  double before = drawn.normal(), sum = 0.0;
+  for (int i = 0; i < kDraws; ++i) {
+    const double next = drawn.normal();
+    sum += before * next / kDraws;
+    before = next;
+  }
+  EXPECT_NEAR(sum, 0.0, 4.0 / std::sqrt(kDraws));
+}
+
+// 22.46: the 99.9 % quantile of chi^2 with 6 degrees of freedom.
+TEST(RandomSequence, IndexTakesEachOfSevenValuesAlike) {
+  RandomSequence drawn = sequence();
+  std::array<int, 7> counts{};
+  for (int i = 0; i < 70'000; ++i) ++counts.at(drawn.index(7));
+  double chi_squared = 0.0;
+  for (const int count : counts) chi_squared += (count - 10'000.0) * (count - 10'000.0) / 10'000.0;
+  EXPECT_LT(chi_squared, 22.46);
+  EXPECT_EQ(drawn.index(1), 0U);
+}
+
+TEST(RandomSequence, CauchyHasItsQuartilesAtMinusOneZeroAndOne) {
+  RandomSequence drawn = sequence();
+  std::array<double, 3> below{};
+  for (int i = 0; i < kDraws; ++i) {
+    const double x = drawn.cauchy();
+    for (std::size_t k = 0; k < 3; ++k) below[k] += x < static_cast<double>(k) - 1.0 ? 1.0 / kDraws : 0.0;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double p = 0.25 * static_cast<double>(k + 1);
+    EXPECT_NEAR(below[k], p, 4.0 * std::sqrt(p * (1.0 - p) / kDraws)) << k;
+  }
+}
+
 }  // namespace
 }  // namespace patrol
