@@ -9,6 +9,9 @@
 namespace patrol::slam {
 namespace {
 
+/// Of the averages of stepwise resampling: of equal weights, all stay.
+constexpr double kRounding = 1e-12;
+
 std::size_t drawn_from(const std::vector<double>& weights, double uniform) {
   double cumulative = 0.0;
   const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
@@ -76,13 +79,13 @@ std::vector<Offspring> resample_stepwise(const std::vector<double>& weights, Ran
     power *= settings.averaging;
     sum += average / (1.0 - power);
   }
-  const double delta = sum / static_cast<double>(weights.size());
+  const double delta = sum / static_cast<double>(weights.size()) * (1.0 - kRounding);
   std::vector<std::size_t> survivors;
   std::vector<Offspring> children;
   for (const std::size_t i : order) {
     if (!(weights[i] >= delta)) break;
     survivors.push_back(i);
-    for (int copies = static_cast<int>(std::ceil(weights[i] / delta)); copies > 0 && children.size() < weights.size(); --copies) {
+    for (int copies = static_cast<int>(std::ceil(weights[i] / delta - 2.0 * kRounding)); copies > 0 && children.size() < weights.size(); --copies) {
       children.push_back({.parent = i});
     }
   }

@@ -72,7 +72,7 @@ BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& 
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = 50;
+  options.max_num_iterations = 200;  // from a guess that is metres off it needs 55
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
 

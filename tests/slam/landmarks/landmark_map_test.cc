@@ -1,0 +1,75 @@
+#include "slam/landmarks/landmark_map.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/pose_near.h"
+
+namespace patrol::slam {
+namespace {
+
+using test::VectorNear;
+
+constexpr double kExactTol = 1e-12;
+const RangeBearingNoise kNoise{.range_std_m = 0.5, .bearing_std_rad = 0.1};
+
+Eigen::Matrix2d diagonal(double x, double y) { return Eigen::Vector2d(x, y).asDiagonal(); }
+
+// 4 m away: 0.5 m along the line of sight, 4 x 0.1 = 0.4 m across.
+TEST(LandmarkMap, FirstSightHasTheSensorsVarianceAlongAndAcross) {
+  LandmarkMap map;
+  map.update(0, {}, {.range_m = 4.0, .bearing_rad = 0.0}, kNoise);
+  EXPECT_THAT(map.at(0).mean_m, VectorNear(Eigen::Vector2d(4.0, 0.0), kExactTol));
+  EXPECT_LT((map.at(0).covariance - diagonal(0.25, 0.16)).norm(), kExactTol);
+  map.update(1, {1.0, 2.0, 0.5 * std::numbers::pi}, {.range_m = 4.0, .bearing_rad = 0.0}, kNoise);
+  EXPECT_THAT(map.at(1).mean_m, VectorNear(Eigen::Vector2d(1.0, 6.0), kExactTol));
+  EXPECT_LT((map.at(1).covariance - diagonal(0.16, 0.25)).norm(), kExactTol);
+}
+
+// The same sight again and again: the mean stays, and the filter is the mean of n.
+TEST(LandmarkMap, VarianceFallsAsOneOverN) {
+  LandmarkMap map;
+  for (int n = 1; n <= 100; ++n) {
+    map.update(0, {}, {.range_m = 4.0, .bearing_rad = 0.0}, kNoise);
+    EXPECT_LT((n * map.at(0).covariance - diagonal(0.25, 0.16)).norm(), n * kExactTol) << n;
+  }
+  EXPECT_THAT(map.at(0).mean_m, VectorNear(Eigen::Vector2d(4.0, 0.0), kExactTol));
+}
+
+// Along the line of sight the filter is linear: 4.0 and 4.6 make 4.3, and 4.9 a third of the way on, 4.5.
+TEST(LandmarkMap, MeanOfThreeRangesIsTheirAverage) {
+  LandmarkMap map;
+  for (const double range_m : {4.0, 4.6, 4.9}) map.update(0, {}, {.range_m = range_m, .bearing_rad = 0.0}, kNoise);
+  EXPECT_NEAR(map.at(0).mean_m.x(), 4.5, kExactTol);
+}
+
+TEST(LandmarkMap, ANumberBeyondAllLeavesTheOnesBetweenUnseen) {
+  LandmarkMap map;
+  EXPECT_FALSE(map.has(0));
+  map.update(2, {}, {.range_m = 4.0, .bearing_rad = 0.0}, kNoise);
+  EXPECT_EQ(map.landmarks().size(), 3U);
+  EXPECT_FALSE(map.has(0) || map.has(1));
+  EXPECT_TRUE(map.has(2));
+  EXPECT_FALSE(map.has(3));
+}
+
+// A landmark that is known for certain, 5 m ahead, seen 1 m too far and 0.2 rad to the left: (1 / 0.5)^2 + (0.2 / 0.1)^2 = 8, and S = R.
+TEST(FitSight, OfACertainLandmarkTwoDeviationsOffInBothIsEight) {
+  const Landmark landmark{.mean_m = {5.0, 0.0}, .covariance = Eigen::Matrix2d::Zero(), .is_seen = true};
+  const SightFit fit = fit_sight({}, landmark, {.range_m = 6.0, .bearing_rad = 0.2}, kNoise);
+  EXPECT_NEAR(fit.squared_distance, 8.0, kExactTol);
+  EXPECT_NEAR(fit.log_density, -4.0 - std::log(0.5 * 0.1), kExactTol);
+}
+
+// An uncertain one: S = 0.75 + 0.25 = 1 along, and (0.48 + 0.16) / 16 = 0.04 across, at 4 m.
+TEST(FitSight, AddsTheLandmarksVarianceToTheSensors) {
+  const Landmark landmark{.mean_m = {4.0, 0.0}, .covariance = diagonal(0.75, 0.48), .is_seen = true};
+  const SightFit fit = fit_sight({}, landmark, {.range_m = 6.0, .bearing_rad = 0.2}, kNoise);
+  EXPECT_NEAR(fit.squared_distance, 4.0 + 1.0, kExactTol);
+  EXPECT_NEAR(fit.log_density, -2.5 - 0.5 * std::log(0.04), kExactTol);
+}
+
+}  // namespace
+}  // namespace patrol::slam
