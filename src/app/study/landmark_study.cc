@@ -177,4 +177,32 @@ Study noncircular_study() {
                         std::move(trials), {}, 0);
 }
 
+Study campus_study() {
+  constexpr int kParticles = 20;
+  constexpr double kWay_m = 600.0, kStep_s = 0.025;
+  const std::vector<LandmarkMethod> of_the_paper = {fast_slam_1(kParticles), swarm_slam("ba", kParticles), swarm_slam("fa", kParticles),
+                                                    swarm_slam("ifa", kParticles)};
+  std::vector<Trial> trials;
+  for (const bool is_biased : {true, false}) {
+    trials.push_back({.world = campus_world(is_biased, 3.0, 8000), .methods = of_the_paper});
+    trials.back().methods.push_back(swarm_slam("iscso", kParticles));
+    add_references(kParticles, trials.back().methods);
+  }
+  for (const double speed_mps : {2.0, 5.0}) {
+    Trial& trial = trials.emplace_back(Trial{.world = campus_world(true, speed_mps, static_cast<int>(kWay_m / speed_mps / kStep_s)), .methods = of_the_paper});
+    trial.world.name += fmt::format(", {:g} m/s", speed_mps);
+    trial.methods.push_back(invariant_slam());
+  }
+  const Published published = {{{"FastSLAM", kParticles}, {2.2418}}, {{"BA", kParticles}, {1.2234}}, {{"FA", kParticles}, {1.1313}}, {{"IFA", kParticles}, {0.4160}}};
+  return landmark_study({.name = "landmarks-100x80",
+                         .title = "FastSLAM and its swarms, driving round a campus",
+                         .source = "paper 001, table 3 and figures 5 to 7 (20 runs there)",
+                         .conditions = "The paper states 100 m x 80 m, 15 waypoints, 31 landmarks, 3 m/s, 8000 steps of 0.025 s, the errors of range (0.3 m), speed (0.5 m/s) and steering "
+                                       "(5 degrees), but neither layout, particles, the bearing's error nor the sensor's reach. Here: 20 particles; bearings err by 1 degree; landmarks are seen "
+                                       "in the front half up to 30 m, at every eighth step. Matched: odometry errs as the methods are told. Biased: besides, it says 0.3 m/s and 2 degrees "
+                                       "too much, of which no method is told; only so does FastSLAM come to the paper's 2.24 m. Other speeds: 600 m each.",
+                         .default_seeds = 20},
+                        std::move(trials), published, 0);
+}
+
 }  // namespace patrol::app

@@ -1,5 +1,7 @@
 #include "app/study/landmark_world.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -41,6 +43,50 @@ std::vector<Pose2> lap(double step_m, bool is_circle) {
   return poses;
 }
 
+/// The way through 100 m x 80 m, clockwise from the middle, m.
+const std::array<Eigen::Vector2d, 15> kCampusWaypoints_m = {{{0, 0}, {-40, 9}, {-34, 24}, {-19, 34}, {2, 35}, {19, 27}, {33, 19}, {46, 8},
+                                                             {49, -8}, {36, -20}, {19, -27}, {2, -32}, {-18, -33}, {-36, -25}, {-43, -10}}};
+
+/// At the first waypoint, facing the second.
+Pose2 campus_start() {
+  const Eigen::Vector2d forward = kCampusWaypoints_m[1] - kCampusWaypoints_m[0];
+  return {kCampusWaypoints_m[0].x(), kCampusWaypoints_m[0].y(), std::atan2(forward.y(), forward.x())};
+}
+
+/// Of each stretch between waypoints one 7 m to the left of its middle and one 9 m to the right of its first quarter; and one more.
+std::vector<Eigen::Vector2d> campus_landmarks() {
+  std::vector<Eigen::Vector2d> landmarks_m = {{5.0, 8.0}};
+  for (std::size_t i = 0; i < kCampusWaypoints_m.size(); ++i) {
+    const Eigen::Vector2d from = kCampusWaypoints_m[i], way = kCampusWaypoints_m[(i + 1) % kCampusWaypoints_m.size()] - from;
+    const Eigen::Vector2d left = Eigen::Vector2d(-way.y(), way.x()).normalized();
+    landmarks_m.push_back(from + 0.5 * way + 7.0 * left);
+    landmarks_m.push_back(from + 0.25 * way - 9.0 * left);
+  }
+  return landmarks_m;
+}
+
+/// Controls of a car that steers for one waypoint after the other, round and round, at most 30 degrees and 20 deg/s; a waypoint is passed within 1 m,
+/// or where the car can turn no sharper to meet it. The start is the origin; [step].
+std::vector<slam::Control> drive_round(const std::vector<Eigen::Vector2d>& waypoints_m, double speed_mps, const slam::ControlMotion& motion, int num_steps) {
+  constexpr double kMaxSteering_rad = 30.0 * kDegree, kMaxRate_radps = 20.0 * kDegree;
+  std::vector<slam::Control> controls;
+  Pose2 T_map_body;
+  double steering_rad = 0.0;
+  std::size_t next = 1;
+  for (int k = 0; k < num_steps; ++k) {
+    const Eigen::Vector2d to_next = waypoints_m[next] - T_map_body.position();
+    const double within_m = 0.5 * speed_mps;
+    if (to_next.norm() < std::max(1.0, within_m)) next = (next + 1) % waypoints_m.size();
+    const Eigen::Vector2d aim = waypoints_m[next] - T_map_body.position();
+    const double wanted_rad = std::clamp(wrap_angle(std::atan2(aim.y(), aim.x()) - T_map_body.yaw), -kMaxSteering_rad, kMaxSteering_rad);
+    const double most_rad = kMaxRate_radps * motion.step_s;
+    steering_rad += std::clamp(wanted_rad - steering_rad, -most_rad, most_rad);
+    controls.emplace_back(speed_mps, steering_rad);
+    T_map_body = motion.move(T_map_body, controls.back());
+  }
+  return controls;
+}
+
 }  // namespace
 
 LandmarkWorld garden_world(const std::string& odometry, bool is_circle) {
@@ -64,17 +110,45 @@ LandmarkWorld garden_world(const std::string& odometry, bool is_circle) {
   return world;
 }
 
+LandmarkWorld campus_world(bool is_biased, double speed_mps, int num_steps) {
+  constexpr double kFine_s = 0.025, kWheelbase_m = 2.0;
+  LandmarkWorld world;
+  world.name = is_biased ? "biased odometry" : "matched odometry";
+  constexpr int kParts = 8;
+  const Eigen::Vector2d fine_std(0.5, 5.0 * kDegree);  // of the mean over the parts of a step
+  world.motion = {.steering = slam::Steering::kAckermann, .wheelbase_m = kWheelbase_m, .step_s = kFine_s * kParts, .parts = kParts,
+                  .std = fine_std / std::sqrt(static_cast<double>(kParts))};
+  if (is_biased) world.odometry_bias = {0.3, 2.0 * kDegree};
+  world.noise = {.range_std_m = 0.3, .bearing_std_rad = 1.0 * kDegree};
+  world.max_range_m = 30.0;
+  world.field_of_view_rad = std::numbers::pi;
+  const Pose2 T_start_site = campus_start().inverse();
+  std::vector<Eigen::Vector2d> waypoints_m;
+  for (const Eigen::Vector2d& p_site : kCampusWaypoints_m) waypoints_m.push_back(T_start_site * p_site);
+  for (const Eigen::Vector2d& p_site : campus_landmarks()) world.landmarks_m.push_back(T_start_site * p_site);
+  const slam::ControlMotion fine = {.steering = slam::Steering::kAckermann, .wheelbase_m = kWheelbase_m, .step_s = kFine_s};
+  world.controls = drive_round(waypoints_m, speed_mps, fine, num_steps);
+  return world;
+}
+
 LandmarkRun simulate(const LandmarkWorld& world, std::uint64_t seed) {
   const RandomStream odometry(seed, "study/odometry"), sights(seed, "study/sights");
+  const auto parts = static_cast<std::size_t>(world.motion.parts);
+  slam::ControlMotion part = world.motion;
+  part.step_s /= world.motion.parts;
+  part.parts = 1;
   LandmarkRun run;
   Pose2 T_map_body;
-  for (std::size_t k = 0; k < world.controls.size(); ++k) {
-    T_map_body = world.motion.move(T_map_body, world.controls[k]);
+  for (std::size_t k = 0; k < world.controls.size() / parts; ++k) {
+    slam::Control mean = slam::Control::Zero();
+    for (std::size_t i = k * parts; i < (k + 1) * parts; ++i) {
+      T_map_body = part.move(T_map_body, world.controls[i]);
+      mean += world.controls[i] / static_cast<double>(parts);
+    }
     run.truth.push_back(T_map_body);
     const auto unit = odometry.normals(k);
-    run.odometry.push_back(world.controls[k] + world.odometry_bias + world.motion.std.cwiseProduct(Eigen::Vector2d(unit[0], unit[1])));
+    run.odometry.push_back(mean + world.odometry_bias + world.motion.std.cwiseProduct(Eigen::Vector2d(unit[0], unit[1])));
     std::vector<slam::RangeBearing>& seen = run.seen.emplace_back();
-    if ((k + 1) % static_cast<std::size_t>(world.steps_per_sight) != 0) continue;
     for (std::size_t i = 0; i < world.landmarks_m.size(); ++i) {
       const slam::PredictedSight sight = slam::predict_sight(T_map_body, world.landmarks_m[i]);
       if (sight.sight.x() > world.max_range_m || std::abs(sight.sight.y()) > 0.5 * world.field_of_view_rad) continue;

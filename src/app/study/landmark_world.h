@@ -20,9 +20,8 @@ struct LandmarkWorld {
   slam::RangeBearingNoise noise;
   double max_range_m = 10.0;
   double field_of_view_rad = 6.3;                ///< about straight ahead
-  int steps_per_sight = 1;
   std::vector<Eigen::Vector2d> landmarks_m;      ///< in map: the robot starts at its origin, along x
-  std::vector<slam::Control> controls;           ///< [step], true
+  std::vector<slam::Control> controls;           ///< [step's part], true
 };
 
 /// What one run gives the robot, and the truth beside it.
@@ -42,5 +41,12 @@ LandmarkRun simulate(const LandmarkWorld& world, std::uint64_t seed);
 ///   "S5"  0.1 m/s and 5 deg/s, and a bias of 2 deg/s that no filter is told of
 ///   "S3"  0.1 m/s and 3 deg/s, and the same bias
 LandmarkWorld garden_world(const std::string& odometry, bool is_circle);
+
+/// Paper 001's 100 m x 80 m: a car of 2 m wheelbase drives clockwise from the middle round 15 waypoints among 31 landmarks, with 30 degrees and 20 deg/s of
+/// steering at most, in steps of 0.025 s. Ranges err by 0.3 m, speed by 0.5 m/s, steering by 5 degrees. What the paper leaves open: layout; bearings err by
+/// 1 degree, landmarks are seen in the front half up to 30 m at every eighth step (defaults of Bailey's FastSLAM simulator). Odometry between two sights is
+/// one step of eight parts, whose controls are the mean of what was measured. `is_biased`: odometry says 0.3 m/s and 2 degrees too much, which no filter
+/// is told.
+LandmarkWorld campus_world(bool is_biased, double speed_mps, int num_steps);
 
 }  // namespace patrol::app

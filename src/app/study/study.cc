@@ -11,7 +11,9 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::array<std::pair<const char*, Study (*)()>, 2> kStudies = {{{"landmarks-circle", circle_study}, {"landmarks-noncircular", noncircular_study}}};
+constexpr std::array<std::pair<const char*, Study (*)()>, 3> kStudies = {{{"landmarks-circle", circle_study},
+                                                                         {"landmarks-noncircular", noncircular_study},
+                                                                         {"landmarks-100x80", campus_study}}};
 
 }  // namespace
 
