@@ -1,0 +1,71 @@
+#include "slam/univariate/growth_filter.h"
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "slam/particle_filter.h"
+
+namespace patrol::slam {
+
+/// The particles at one step, as the core sees them (ParticleProblem).
+class GrowthFilter::Step {
+ public:
+  Step(GrowthFilter& filter, double observation)
+      : filter_(filter), observation_(observation), forcing_(filter.model_.forcing(filter.steps_)),
+        process_std_(std::sqrt(filter.model_.settings().process_var)) {}
+
+  std::size_t size() const { return filter_.particles_.size(); }
+
+  Position draw(std::size_t i, RandomSequence& random) const {
+    return Position::Constant(1, filter_.model_.drift(filter_.particles_[i]) + forcing_ + process_std_ * random.normal());
+  }
+
+  double log_fitness(std::size_t, const Position& position) const { return filter_.model_.log_likelihood(observation_, position[0]); }
+
+  double settle(std::size_t i, const Position& position) {
+    filter_.particles_[i] = position[0];
+    return filter_.model_.log_likelihood(observation_, position[0]);
+  }
+
+  void reproduce(const std::vector<Offspring>& offspring) {
+    std::vector<double> children;
+    children.reserve(offspring.size());
+    for (const Offspring& child : offspring) {
+      const double own = filter_.particles_[child.parent], other = filter_.particles_[child.toward];
+      children.push_back((1.0 + child.mutation) * (own + child.share * (other - own)));
+    }
+    filter_.particles_ = std::move(children);
+  }
+
+ private:
+  GrowthFilter& filter_;
+  double observation_, forcing_, process_std_;
+};
+
+GrowthFilter::GrowthFilter(int particles, const GrowthModel& model, ParticleFilterParts parts, std::uint64_t seed)
+    : model_(model), parts_(std::move(parts)), draws_(seed, "slam/univariate/particles") {
+  if (particles < 1) throw InputError(fmt::format("growth_filter.particles is {}, but must be at least 1", particles));
+  particles_.assign(static_cast<std::size_t>(particles), model.settings().initial_state);
+  log_weights_.assign(particles_.size(), 0.0);
+}
+
+UnivariateEstimate GrowthFilter::step(double observation) {
+  ++steps_;
+  RandomSequence random(draws_, static_cast<std::uint64_t>(steps_));
+  Step problem(*this, observation);
+  advance_particles(problem, parts_, random, log_weights_);
+  weights_ = normalized_weights(log_weights_);
+  states_ = particles_;
+  renew_particles(problem, parts_, weights_, random, log_weights_);
+  return summarize(states_, weights_);
+}
+
+ParticleFilterSettings ifa_settings_of_paper() {
+  return {.optimizer = "ifa", .optimizer_iterations = 1, .firefly_absorption = 1.0, .resampler = "stepwise", .resample_threshold = 1.0};
+}
+
+}  // namespace patrol::slam
