@@ -43,13 +43,13 @@ class FastSlam::Step {
     Particle& particle = slam_.particles_[i];
     particle.T_map_body = pose_at(particle, position);
     particle.increment = position;
-    double log_weight = slam_.log_likelihood(particle, particle.T_map_body, seen_, matches_[i]);
+    double log_weight = 0.0;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      if (matches_[i][k] != kUnmatched) log_weight += particle.map.update(matches_[i][k], particle.T_map_body, seen_[k], slam_.noise_);
+    }
     if (slam_.settings_.draws_from_observation) {
       const Eigen::Vector2d unit = proposals_[i].root.triangularView<Eigen::Lower>().solve(position - proposals_[i].mean);
       log_weight += log_prior(particle, position) - (proposals_[i].log_normalizer - 0.5 * unit.squaredNorm());
-    }
-    for (std::size_t k = 0; k < seen_.size(); ++k) {
-      if (matches_[i][k] != kUnmatched) particle.map.update(matches_[i][k], particle.T_map_body, seen_[k], slam_.noise_);
     }
     if (slam_.settings_.bias.std > 0.0) particle.bias.learn(position, slam_.settings_.bias);
     return log_weight;

@@ -16,7 +16,7 @@ SightFit fit_sight(const Pose2& T_map_body, const Landmark& landmark, const Rang
   return fit;
 }
 
-void LandmarkMap::update(int index, const Pose2& T_map_body, const RangeBearing& seen, const RangeBearingNoise& noise) {
+double LandmarkMap::update(int index, const Pose2& T_map_body, const RangeBearing& seen, const RangeBearingNoise& noise) {
   if (static_cast<std::size_t>(index) >= landmarks_.size()) landmarks_.resize(static_cast<std::size_t>(index) + 1);
   Landmark& landmark = landmarks_[static_cast<std::size_t>(index)];
   if (!landmark.is_seen) {
@@ -24,7 +24,7 @@ void LandmarkMap::update(int index, const Pose2& T_map_body, const RangeBearing&
     const Eigen::Matrix2d H_inverse = predict_sight(T_map_body, landmark.mean_m).by_landmark.inverse();
     landmark.covariance = H_inverse * noise.covariance() * H_inverse.transpose();
     landmark.is_seen = true;
-    return;
+    return 0.0;
   }
   const SightFit fit = fit_sight(T_map_body, landmark, seen, noise);
   const Eigen::Matrix2d PHt = landmark.covariance * fit.predicted.by_landmark.transpose();
@@ -32,6 +32,7 @@ void LandmarkMap::update(int index, const Pose2& T_map_body, const RangeBearing&
   landmark.mean_m += K * fit.innovation;
   const Eigen::Matrix2d P = landmark.covariance - K * PHt.transpose();
   landmark.covariance = 0.5 * (P + P.transpose());
+  return fit.log_density;
 }
 
 }  // namespace patrol::slam

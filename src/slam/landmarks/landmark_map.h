@@ -35,8 +35,9 @@ class LandmarkMap {
   bool has(int index) const { return static_cast<std::size_t>(index) < landmarks_.size() && landmarks_[static_cast<std::size_t>(index)].is_seen; }
   const Landmark& at(int index) const { return landmarks_[static_cast<std::size_t>(index)]; }
 
-  /// Takes the sight in: a new landmark begins where it was seen. `index` may be one beyond all.
-  void update(int index, const Pose2& T_map_body, const RangeBearing& seen, const RangeBearingNoise& noise);
+  /// Takes the sight in: a new landmark begins where it was seen. `index` may be one beyond all. The logarithm of the sight's density, without
+  /// log 2 pi; zero for a new landmark's, which says nothing of the pose.
+  double update(int index, const Pose2& T_map_body, const RangeBearing& seen, const RangeBearingNoise& noise);
 
  private:
   std::vector<Landmark> landmarks_;
