@@ -69,29 +69,30 @@ std::vector<double> batch_figures(const LandmarkWorld& world, const LandmarkRun&
   return {position_rmse_m(batch.T_map_body, run.truth), landmark_rmse_m(batch.landmarks, world), kNothing, kNothing, thread_seconds() - start_s};
 }
 
+/// [method's name, particles] -> position, landmarks.
+using Published = std::map<std::pair<std::string, int>, std::vector<std::optional<double>>>;
+
 /// A world, and the methods that are tried in it. Batch least squares comes last, from the last method's result.
 struct Trial {
   LandmarkWorld world;
   std::vector<LandmarkMethod> methods;
+  Published published{};
 };
 
-/// [method's name][particles] -> position, landmarks.
-using Published = std::map<std::pair<std::string, int>, std::vector<std::optional<double>>>;
-
 /// Each method is compared with the first one of as many particles, or else with the first of all.
-std::vector<StudyVariant> variants_of(const std::vector<Trial>& trials, const Published& published) {
+std::vector<StudyVariant> variants_of(const std::vector<Trial>& trials) {
   std::vector<StudyVariant> variants;
   for (const Trial& trial : trials) {
     const std::size_t first = variants.size();
     std::map<int, std::size_t> first_of_particles;
     for (const LandmarkMethod& method : trial.methods) {
       const std::size_t reference = method.particles > 0 ? first_of_particles.emplace(method.particles, variants.size()).first->second : first;
-      const auto paper = published.find({method.name, method.particles});
+      const auto paper = trial.published.find({method.name, method.particles});
       variants.push_back({.world = trial.world.name,
                           .method = method.name,
                           .particles = method.particles,
                           .reference = reference,
-                          .published = paper == published.end() ? std::vector<std::optional<double>>{} : paper->second});
+                          .published = paper == trial.published.end() ? std::vector<std::optional<double>>{} : paper->second});
     }
     variants.push_back({.world = trial.world.name, .method = "batch least squares (all of the run at once)", .particles = 0, .reference = first});
   }
@@ -112,10 +113,11 @@ StudySample run_trials(const std::vector<Trial>& trials, std::uint64_t seed) {
   return sample;
 }
 
-Study landmark_study(Study study, std::vector<Trial> trials, const Published& published, std::size_t shown_trial) {
+/// The first trial is the one that pictures are made of.
+Study landmark_study(Study study, std::vector<Trial> trials) {
   study.figures = kFigures;
-  study.variants = variants_of(trials, published);
-  study.illustrate = [trial = trials[shown_trial]](std::uint64_t seed) { return landmark_sections(trial.world, trial.methods, seed); };
+  study.variants = variants_of(trials);
+  study.illustrate = [trial = trials.front()](std::uint64_t seed) { return landmark_sections(trial.world, trial.methods, seed); };
   study.run = [trials = std::move(trials)](std::uint64_t seed) { return run_trials(trials, seed); };
   return study;
 }
@@ -152,7 +154,7 @@ Study circle_study() {
     }
     add_references(10, trial.methods);
   }
-  const Published published = {{{"FastSLAM", 10}, {0.6406, 0.6771}}, {{"WOA", 10}, {0.3491, 0.3411}}, {{"SCSO", 10}, {0.3142, 0.2987}}, {{"ISCSO", 10}, {0.2088, 0.1921}},
+  trials.front().published = {{{"FastSLAM", 10}, {0.6406, 0.6771}}, {{"WOA", 10}, {0.3491, 0.3411}}, {{"SCSO", 10}, {0.3142, 0.2987}}, {{"ISCSO", 10}, {0.2088, 0.1921}},
                                {{"FastSLAM", 50}, {0.4791, 0.5387}}, {{"WOA", 50}, {0.2319, 0.2429}}, {{"SCSO", 50}, {0.2122, 0.2369}}, {{"ISCSO", 50}, {0.1917, 0.1731}},
                                {{"FastSLAM", 100}, {0.3773, 0.4276}}, {{"WOA", 100}, {0.2127, 0.2205}}, {{"SCSO", 100}, {0.1916, 0.2103}}, {{"ISCSO", 100}, {0.1764, 0.1691}}};
   return landmark_study({.name = "landmarks-circle",
@@ -160,7 +162,7 @@ Study circle_study() {
                          .source = "paper 000, table 1 and figures 2 to 4 (20 runs there)",
                          .conditions = kGardenConditions,
                          .default_seeds = 200},
-                        std::move(trials), published, 0);
+                        std::move(trials));
 }
 
 Study noncircular_study() {
@@ -174,7 +176,7 @@ Study noncircular_study() {
                          .source = "paper 000, figures 5 to 7 (20 particles; no table)",
                          .conditions = kGardenConditions,
                          .default_seeds = 50},
-                        std::move(trials), {}, 0);
+                        std::move(trials));
 }
 
 Study campus_study() {
@@ -182,9 +184,10 @@ Study campus_study() {
   constexpr double kWay_m = 600.0, kStep_s = 0.025;
   const std::vector<LandmarkMethod> of_the_paper = {fast_slam_1(kParticles), swarm_slam("ba", kParticles), swarm_slam("fa", kParticles),
                                                     swarm_slam("ifa", kParticles)};
+  const Published published = {{{"FastSLAM", kParticles}, {2.2418}}, {{"BA", kParticles}, {1.2234}}, {{"FA", kParticles}, {1.1313}}, {{"IFA", kParticles}, {0.4160}}};
   std::vector<Trial> trials;
   for (const bool is_biased : {true, false}) {
-    trials.push_back({.world = campus_world(is_biased, 3.0, 8000), .methods = of_the_paper});
+    trials.push_back({.world = campus_world(is_biased, 3.0, 8000), .methods = of_the_paper, .published = published});
     trials.back().methods.push_back(swarm_slam("iscso", kParticles));
     add_references(kParticles, trials.back().methods);
   }
@@ -193,7 +196,6 @@ Study campus_study() {
     trial.world.name += fmt::format(", {:g} m/s", speed_mps);
     trial.methods.push_back(invariant_slam());
   }
-  const Published published = {{{"FastSLAM", kParticles}, {2.2418}}, {{"BA", kParticles}, {1.2234}}, {{"FA", kParticles}, {1.1313}}, {{"IFA", kParticles}, {0.4160}}};
   return landmark_study({.name = "landmarks-100x80",
                          .title = "FastSLAM and its swarms, driving round a campus",
                          .source = "paper 001, table 3 and figures 5 to 7 (20 runs there)",
@@ -202,7 +204,7 @@ Study campus_study() {
                                        "in the front half up to 30 m, at every eighth step. Matched: odometry errs as the methods are told. Biased: besides, it says 0.3 m/s and 2 degrees "
                                        "too much, of which no method is told; only so does FastSLAM come to the paper's 2.24 m. Other speeds: 600 m each.",
                          .default_seeds = 20},
-                        std::move(trials), published, 0);
+                        std::move(trials));
 }
 
 }  // namespace patrol::app

@@ -31,6 +31,7 @@ LandmarkSlamEstimate EkfSlam::step(const Control& control, const std::vector<Ran
     const auto number = static_cast<std::size_t>(sight.landmark);
     if (number < order_.size() && order_[number] != kUnmatched) correct(sight);
   }
+  P_ = 0.5 * (P_ + P_.transpose()).eval();
   for (const RangeBearing& sight : seen) {
     const auto number = static_cast<std::size_t>(sight.landmark);
     if (number >= order_.size() || order_[number] == kUnmatched) add_landmark(sight);
@@ -78,8 +79,7 @@ void EkfSlam::correct(const RangeBearing& sight) {
   if (!settings_.is_invariant) S += predicted.by_pose.col(2) * PHt.row(kYaw);
   const Eigen::MatrixXd K = PHt * S.inverse();
   apply(K * innovation_of(sight, predicted));
-  P_ -= K * PHt.transpose();
-  P_ = 0.5 * (P_ + P_.transpose()).eval();
+  P_.noalias() -= K * PHt.transpose();
 }
 
 void EkfSlam::apply(const Eigen::VectorXd& error) {

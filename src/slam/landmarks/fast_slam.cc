@@ -96,11 +96,11 @@ LandmarkSlamEstimate FastSlam::step(const Control& control, const std::vector<Ra
 
 double FastSlam::log_likelihood(const Particle& particle, const Pose2& T_map_body, const std::vector<RangeBearing>& seen,
                                 const std::vector<int>& matches) const {
-  double sum = 0.0;
+  SightLikelihood likelihood(T_map_body, noise_);
   for (std::size_t k = 0; k < seen.size(); ++k) {
-    if (matches[k] != kUnmatched && particle.map.has(matches[k])) sum += fit_sight(T_map_body, particle.map.at(matches[k]), seen[k], noise_).log_density;
+    if (matches[k] != kUnmatched && particle.map.has(matches[k])) likelihood.add(particle.map.at(matches[k]), seen[k]);
   }
-  return sum;
+  return likelihood.log_density();
 }
 
 // Gauss-Newton from what odometry says; landmarks that are seen for the first time say nothing of the pose.

@@ -2,7 +2,9 @@
 
 #include <Eigen/Core>
 
-#include <limits>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "slam/landmarks/range_bearing.h"
@@ -23,6 +25,43 @@ struct SightFit {
   Eigen::Matrix2d S_inverse;
   double squared_distance = 0.0;  ///< Mahalanobis
   double log_density = 0.0;       ///< without log 2 pi
+};
+
+/// How probable sights are together, and nothing else: the innermost loop of a swarm, in closed form and with one logarithm for all.
+class SightLikelihood {
+ public:
+  SightLikelihood(const Pose2& T_map_body, const RangeBearingNoise& noise)
+      : T_map_body_(T_map_body), range_variance_(noise.range_std_m * noise.range_std_m), bearing_variance_(noise.bearing_std_rad * noise.bearing_std_rad) {}
+
+  void add(const Landmark& landmark, const RangeBearing& seen) {
+    const double dx = landmark.mean_m.x() - T_map_body_.x, dy = landmark.mean_m.y() - T_map_body_.y;
+    const double q = std::max(dx * dx + dy * dy, 1e-12), r = std::sqrt(q), u = dx / r, v = dy / r;
+    const double a = landmark.covariance(0, 0), b = landmark.covariance(0, 1), c = landmark.covariance(1, 1);
+    const double S11 = u * u * a + 2.0 * u * v * b + v * v * c + range_variance_;
+    const double S12 = (u * v * (c - a) + (u * u - v * v) * b) / r;
+    const double S22 = (v * v * a - 2.0 * u * v * b + u * u * c) / q + bearing_variance_;
+    const double det = S11 * S22 - S12 * S12;
+    const double range = seen.range_m - r, bearing = wrapped(seen.bearing_rad + T_map_body_.yaw - std::atan2(dy, dx));
+    squared_distance_ += (S22 * range * range - 2.0 * S12 * range * bearing + S11 * bearing * bearing) / det;
+    determinants_ *= det;
+    if (determinants_ < 1e-200) flush();
+  }
+
+  /// -1/2 sum (nu^T S^-1 nu + log |S|)
+  double log_density() const { return -0.5 * (squared_distance_ + log_determinants_ + std::log(determinants_)); }
+
+ private:
+  /// wrap_angle, whose remainder costs more than the rest; angles here are seldom more than one turn off.
+  static double wrapped(double angle_rad) { return std::abs(angle_rad) < std::numbers::pi ? angle_rad : wrap_angle(angle_rad); }
+
+  void flush() {
+    log_determinants_ += std::log(determinants_);
+    determinants_ = 1.0;
+  }
+
+  Pose2 T_map_body_;
+  double range_variance_, bearing_variance_;
+  double squared_distance_ = 0.0, determinants_ = 1.0, log_determinants_ = 0.0;
 };
 
 SightFit fit_sight(const Pose2& T_map_body, const Landmark& landmark, const RangeBearing& seen, const RangeBearingNoise& noise);
