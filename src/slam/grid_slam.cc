@@ -4,13 +4,26 @@
 #include <cmath>
 #include <utility>
 
+#include "slam/grid_step.h"
 #include "slam/map_rendering.h"
+#include "slam/particle_filter.h"
 #include "slam/resampling.h"
 
 namespace patrol::slam {
+namespace {
+
+ParticleFilterSettings parts_of(const GridSlamSettings& settings) {
+  ParticleFilterSettings parts{.optimizer = settings.optimizer, .resample_threshold = settings.resample_threshold};
+  if (settings.optimizer == "iscso") parts.resampler = "low_weight";
+  if (settings.optimizer == "ifa") parts.resampler = "stepwise";
+  return parts;
+}
+
+}  // namespace
 
 GridSlam::GridSlam(const GridSlamSettings& settings, std::uint64_t seed, const Pose2& T_map_start)
     : settings_(settings),
+      parts_(make_parts(parts_of(settings))),
       proposal_noise_(seed, "slam/proposal"),
       resampling_noise_(seed, "slam/resampling"),
       T_map_last_(T_map_start) {
@@ -30,11 +43,8 @@ SlamUpdate GridSlam::update(const LevelScan& scan, const Pose2& T_odom_body) {
   update.is_keyframe = is_level && is_keyframe_due(best.posterior.mean);
   if (update.is_keyframe) {
     T_map_last_ = best.posterior.mean;
-    const std::vector<Proposal> proposals = propose(points, T_odom_body, scan.stamp);
-    move_particles(proposals);
-    update.effective_sample_size = choose_best();
-    best = proposals[best_];
-    update.resampled = resample_if_needed(update.effective_sample_size);
+    const bool is_by_match = settings_.proposal == "scan_match" || particles_.size() == 1;
+    best = is_by_match ? move_by_scan_match(points, T_odom_body, scan.stamp, update) : move_by_odometry(points, T_odom_body, scan.stamp, update);
     integrate(scan);
     T_odom_keyframe_ = T_odom_body, keyframe_stamp_ = scan.stamp;
     ranges_.clear();
@@ -45,6 +55,40 @@ SlamUpdate GridSlam::update(const LevelScan& scan, const Pose2& T_odom_body) {
   update.covariance = best.posterior.covariance;
   update.match_score = best.matched_share;
   return update;
+}
+
+Proposal GridSlam::move_by_scan_match(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp, SlamUpdate& update) {
+  const std::vector<Proposal> proposals = propose(points, T_odom_body, stamp);
+  move_particles(proposals);
+  update.effective_sample_size = choose_best();
+  const Proposal best = proposals[best_];
+  update.resampled = resample_if_needed(update.effective_sample_size);
+  return best;
+}
+
+Proposal GridSlam::move_by_odometry(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp, SlamUpdate& update) {
+  std::vector<PoseGaussian> predictions;
+  std::vector<double> log_weights;
+  for (const Particle& particle : particles_) {
+    const Prediction prediction = predict(particle, T_odom_body, stamp);
+    predictions.push_back(prediction.pose);
+    log_weights.push_back(particle.log_weight + prediction.log_density);
+  }
+  RandomSequence random(proposal_noise_, keyframes_);
+  GridStep step(particles_, predictions, points, settings_.likelihood_gain, settings_.matching);
+  advance_particles(step, parts_, random, log_weights);
+  for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].log_weight = log_weights[i];
+
+  update.effective_sample_size = choose_best();
+  const Proposal best{.posterior = {.mean = particles_[best_].T_map_body, .covariance = predictions[best_].covariance}, .matched_share = 1.0};
+  update.resampled = renew_particles(step, parts_, particles().weights, random, log_weights);
+  for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].log_weight = log_weights[i];
+  if (update.resampled) {  // whatever the resampler made of it, the best particle's way goes on in the one that stands nearest
+    const auto distance_m = [&](const Particle& particle) { return (particle.T_map_body.position() - best.posterior.mean.position()).norm(); };
+    best_ = static_cast<std::size_t>(std::min_element(particles_.begin(), particles_.end(), [&](const Particle& a, const Particle& b) { return distance_m(a) < distance_m(b); }) -
+                                     particles_.begin());
+  }
+  return best;
 }
 
 GridSlam::Prediction GridSlam::predict(const Particle& particle, const Pose2& T_odom_body, Time stamp) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/messages.h"
@@ -8,6 +9,7 @@
 #include "core/settings.h"
 #include "slam/motion_model.h"
 #include "slam/particle.h"
+#include "slam/particle_filter_parts.h"
 #include "slam/proposal.h"
 #include "slam/range_update.h"
 #include "slam/scan_integration.h"
@@ -29,6 +31,8 @@ struct GridSlamSettings {
   // What is believed; more particles cost time in proportion.
   int particles = 8;
   double likelihood_gain = 0.2;           ///< share of the points that err independently (proposal.h)
+  std::string proposal = "scan_match";    ///< motion: FastSLAM's, drawn from odometry alone
+  std::string optimizer = "none";         ///< that moves what was drawn from odometry: the swarms of papers 000 and 001 (ParticleFilterSettings)
   double resample_threshold = 0.5;        ///< resample when the effective sample size falls below this share of the particles
   MotionModelSettings motion;
   RangeUpdateSettings ranges;
@@ -47,6 +51,8 @@ struct GridSlamSettings {
     visit("initial_keyframes", self.initial_keyframes, between(1, 1000));
     visit("particles", self.particles, between(1, 10000));
     visit("likelihood_gain", self.likelihood_gain, between(0.0, 1.0));
+    visit("proposal", self.proposal, one_of({"scan_match", "motion"}));
+    visit("optimizer", self.optimizer, one_of({"none", "woa", "ba", "fa", "ifa", "scso", "iscso"}));
     visit("resample_threshold", self.resample_threshold, between(0.0, 1.0));
     visit("motion", self.motion);
     visit("ranges", self.ranges);
@@ -74,6 +80,9 @@ struct SlamUpdate {
 /// always fresh, and the cost of the particles is paid twice a metre. Matching is to lines through the cells' mean hits
 /// (scan_matcher.h), the proposal is Laplace's (proposal.h). No separate rejection of moving things: a cell known to be
 /// free is believed to be surface only after many hits (GridCell), so a walker never becomes something to match with.
+///
+/// With `proposal: motion` it is FastSLAM on grids as papers 000 and 001 start from: particles are drawn from odometry and weighed by the scan, an
+/// optimiser may move them in between, and ISCSO and IFA resample as their papers say (grid_step.h).
 class GridSlam {
  public:
   /// Throws InputError if a setting breaks its rule. `T_map_start` is where the first scan is taken.
@@ -104,12 +113,15 @@ class GridSlam {
   bool is_keyframe_due(const Pose2& T_map_body) const;
   std::vector<Proposal> propose(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp) const;
   void move_particles(const std::vector<Proposal>& proposals);
+  Proposal move_by_scan_match(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp, SlamUpdate& update);
+  Proposal move_by_odometry(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp, SlamUpdate& update);
   double choose_best();
   bool resample_if_needed(double num_effective);
   void integrate(const LevelScan& scan);
   Prediction predict(const Particle& particle, const Pose2& T_odom_body, Time stamp) const;
 
   GridSlamSettings settings_;
+  ParticleFilterParts parts_;  ///< of what is drawn from odometry
   RandomStream proposal_noise_, resampling_noise_;
   std::vector<Particle> particles_;  ///< one until the start is mapped, then as many as asked
   std::size_t best_ = 0;             ///< the particle of the largest weight

@@ -101,6 +101,14 @@ std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<Matc
   return result;
 }
 
+double scan_log_likelihood(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body, const ScanMatcherSettings& settings) {
+  const NormalEquations sum = linearize(map, points, T_map_body, settings);
+  const double kernel_var = squared(settings.kernel_m);
+  const double outlier_loss = std::log1p(squared(settings.surface_radius_cells * map.resolution_m()) / kernel_var);
+  const double num_unknown = static_cast<double>(points.size()) - sum.num_known;
+  return sum.log_likelihood - 0.5 * num_unknown * kernel_var / squared(settings.point_std_m) * outlier_loss;
+}
+
 Pose2 search_pose(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_center,
                   const ScanMatcherSettings& settings) {
   const std::size_t stride = std::max<std::size_t>(1, points.size() / static_cast<std::size_t>(settings.search_points));

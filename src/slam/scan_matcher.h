@@ -66,6 +66,10 @@ struct MatchResult {
 std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_start,
                                       const std::optional<PoseGaussian>& prior, const ScanMatcherSettings& settings);
 
+/// Log likelihood of a scan at a pose, up to a constant; unlike a match's, points on cells of which nothing is known count as far from all surfaces, or
+/// else a search would do best to leave the map.
+double scan_log_likelihood(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body, const ScanMatcherSettings& settings);
+
 /// The pose in the window around `T_map_center` that puts most points on a surface cell or beside one: correlative matching
 /// (Olson, "Real-time correlative scan matching", ICRA 2009) on one level. For when odometry has slipped; ends within
 /// reach of match_scan.

@@ -5,13 +5,15 @@
 
 #include <fmt/format.h>
 
+#include "app/study/growth_study.h"
 #include "app/study/landmark_study.h"
 #include "core/error.h"
 
 namespace patrol::app {
 namespace {
 
-constexpr std::array<std::pair<const char*, Study (*)()>, 3> kStudies = {{{"landmarks-circle", circle_study},
+constexpr std::array<std::pair<const char*, Study (*)()>, 4> kStudies = {{{"ungm", growth_study},
+                                                                         {"landmarks-circle", circle_study},
                                                                          {"landmarks-noncircular", noncircular_study},
                                                                          {"landmarks-100x80", campus_study}}};
 

@@ -35,7 +35,7 @@ WordTable words_of(const Study& study, const StudyResults& results, const std::s
   for (const StudyFigure& figure : study.figures) {
     if (figure.is_compared) table.columns.push_back({figure.name + " published", true});
     table.columns.push_back({title_of(figure), true});
-    if (figure.is_compared) table.columns.push_back({"against the first of its N", true});
+    if (figure.is_compared) table.columns.push_back({"against " + study.compared_with, true});
   }
   for (std::size_t v = 0; v < study.variants.size(); ++v) {
     const StudyVariant& variant = study.variants[v];
