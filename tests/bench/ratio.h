@@ -2,16 +2,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include <ctime>
+#include "core/thread_clock.h"
 
 namespace patrol::bench {
-
-/// Time that this thread has computed, s: other programs' load does not count.
-inline double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// Times a subject against a reference, in turns within one process, so that both see the same machine in the
 /// same mood.

@@ -5,17 +5,15 @@
 #include "app/scoring/localizability_track.h"
 #include "app/scoring/score_json.h"
 #include "app/scoring/tour_metrics.h"
+#include "app/scoring/true_map.h"
 #include "inspect/route_frame.h"
 #include "io/map_server.h"
 #include "io/nav_json.h"
 #include "io/remote_csv.h"
 #include "io/tum.h"
-#include "render/reference_map.h"
 
 namespace patrol::app {
 namespace {
-
-constexpr double kReferenceResolution_m = 0.025;
 
 /// In world; the report draws by it.
 io::Metrics pose_json(const Pose2& T_world_map) {
@@ -31,12 +29,6 @@ io::Metrics mission_metrics(const RunRecord& record) {
   metrics["duration_s"] = to_seconds(record.T_world_body.back().stamp);
   metrics["distance_m"] = planar_length_m(record.T_world_body);
   return metrics;
-}
-
-double mean_lidar_height_m(const RunRecord& record, const ScenarioFiles& files) {
-  double height_m = 0.0;
-  for (const StampedPose& entry : record.T_world_body) height_m += entry.pose.position.z();
-  return height_m / static_cast<double>(record.T_world_body.size()) + files.robot.T_body("lidar").position.z();
 }
 
 std::vector<score::TrueLeak> true_leaks(const Scenario& scenario, const mjModel& world) {
@@ -74,14 +66,9 @@ io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, c
   if (!record.has_estimate()) return metrics;
   save_trajectories(directory, record);
   save_drive(directory, record);
-  const sim::SpecPtr spec = sim::load_spec(files.world_xml.string());
-  const sim::ModelPtr world = sim::compile(*spec, files.world_xml.string());
-  const double lidar_height_m = mean_lidar_height_m(record, files);
-  const render::ReferenceMap truth = render::reference_map(*world, {.height_m = lidar_height_m, .resolution_m = kReferenceResolution_m});
-  const score::ReferenceMap reference =
-      score::mark_seeable(truth.map, record.T_world_body, scenario.sensors.lidar.range_max_m);
+  const TrueMap truth = true_map(record, scenario, files);
   io::save_map(directory.map(), record.map);
-  io::save_map(directory.truth_map(), score::seeable_part(reference));
+  io::save_map(directory.truth_map(), score::seeable_part(truth.reference));
 
   // A map that was there before has its origin where the survey says; one that the robot makes, where the robot truly started.
   const Pose2 T_world_map =
@@ -90,19 +77,19 @@ io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, c
   metrics["pose"] = to_json(score::trajectory_error(record.T_map_body, T_world_map, record.T_world_body));
   metrics["pose"]["aligned"] = to_json(score::aligned_error(record.T_map_body, record.T_world_body));
   metrics["odometry"] = to_json(score::trajectory_error(record.T_odom_body, T_world_odom, record.T_world_body));
-  const score::MapError map_error = score::map_error(record.map, T_world_map, reference);
+  const score::MapError map_error = score::map_error(record.map, T_world_map, truth.reference);
   io::save_map_errors(directory.map_errors(), map_error.cells_m);
   metrics["map"] = to_json(map_error);
   metrics["map"]["origin_in_world"] = pose_json(T_world_map);
-  metrics["map"]["reference_agreement"] = truth.check.share_agreeing();  // of its render with rays
+  metrics["map"]["reference_agreement"] = truth.reference_agreement;  // of its render with rays
   const std::vector<TrackedLocalizability> localizability =
-      track_localizability(record, T_world_map, LocalizabilityOracle(*world, scenario.sensors.lidar, lidar_height_m));
+      track_localizability(record, T_world_map, LocalizabilityOracle(*truth.world, scenario.sensors.lidar, truth.lidar_height_m));
   save_localizability(directory.localizability(), localizability);
   metrics["localizability"] = to_json(score_of(localizability));
   metrics["stations"] = to_json(score::station_errors(files.route, record.events, T_world_map, record.T_world_body, record.map,
-                                                      reference));
+                                                      truth.reference));
   metrics.update(tour_metrics(record, scenario, files, T_world_map));
-  metrics["inspection"] = to_json(score::inspection_score(record.events, T_world_map, true_leaks(scenario, *world)));
+  metrics["inspection"] = to_json(score::inspection_score(record.events, T_world_map, true_leaks(scenario, *truth.world)));
   return metrics;
 }
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "app/report/boxes.h"
-#include "app/study/thread_clock.h"
+#include "core/thread_clock.h"
 #include "slam/univariate/exact_filter.h"
 #include "slam/univariate/growth_filter.h"
 #include "slam/univariate/quasi_filter.h"

@@ -14,7 +14,7 @@
 #include "app/study/landmark_pictures.h"
 #include "app/study/landmark_track.h"
 #include "app/study/landmark_world.h"
-#include "app/study/thread_clock.h"
+#include "core/thread_clock.h"
 #include "slam/landmarks/batch_least_squares.h"
 
 namespace patrol::app {

@@ -1,6 +1,6 @@
 #include "app/study/landmark_track.h"
 
-#include "app/study/thread_clock.h"
+#include "core/thread_clock.h"
 
 namespace patrol::app {
 

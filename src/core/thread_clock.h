@@ -2,7 +2,7 @@
 
 #include <ctime>
 
-namespace patrol::app {
+namespace patrol {
 
 /// Time that this thread has computed, s: what else the machine does is not in it.
 inline double thread_seconds() {
@@ -11,4 +11,4 @@ inline double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-}  // namespace patrol::app
+}  // namespace patrol

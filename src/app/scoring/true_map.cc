@@ -1,0 +1,29 @@
+#include "app/scoring/true_map.h"
+
+#include <utility>
+
+#include "sim/mujoco.h"
+
+namespace patrol::app {
+namespace {
+
+constexpr double kReferenceResolution_m = 0.025;
+
+double mean_lidar_height_m(const RunRecord& record, const ScenarioFiles& files) {
+  double height_m = 0.0;
+  for (const StampedPose& entry : record.T_world_body) height_m += entry.pose.position.z();
+  return height_m / static_cast<double>(record.T_world_body.size()) + files.robot.T_body("lidar").position.z();
+}
+
+}  // namespace
+
+TrueMap true_map(const RunRecord& record, const Scenario& scenario, const ScenarioFiles& files) {
+  const sim::SpecPtr spec = sim::load_spec(files.world_xml.string());
+  TrueMap truth{.world = sim::compile(*spec, files.world_xml.string()), .lidar_height_m = mean_lidar_height_m(record, files), .reference = {}};
+  const render::ReferenceMap map = render::reference_map(*truth.world, {.height_m = truth.lidar_height_m, .resolution_m = kReferenceResolution_m});
+  truth.reference_agreement = map.check.share_agreeing();
+  truth.reference = score::mark_seeable(map.map, record.T_world_body, scenario.sensors.lidar.range_max_m);
+  return truth;
+}
+
+}  // namespace patrol::app

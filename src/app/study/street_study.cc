@@ -1,0 +1,180 @@
+#include "app/study/street_study.h"
+
+#include <malloc.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/run/run_directory.h"
+#include "app/run/run_once.h"
+#include "app/run/run_record.h"
+#include "app/scenario.h"
+#include "app/scoring/true_map.h"
+#include "app/stack/log_mapper.h"
+#include "render/report/map_picture.h"
+#include "score/map_error.h"
+#include "score/station_error.h"
+#include "score/trajectory_error.h"
+
+namespace patrol::app {
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr int kSwarmParticles = 30;
+constexpr const char* kScenario = "worlds/street/scenarios/patrol.yaml";
+
+/// A way to move the particles at a keyframe.
+struct GridMethod {
+  std::string name;
+  int particles = 0;
+  std::string proposal, optimizer;
+  std::vector<std::optional<double>> published{};  ///< box 1, box 2, well 3; m
+};
+
+const std::vector<GridMethod> kMethods = {{.name = "FastSLAM", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "none", .published = {1.05, 1.31, 1.58}},
+                                          {.name = "WOA", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "woa", .published = {1.01, 1.23, 1.24}},
+                                          {.name = "SCSO", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "scso"},
+                                          {.name = "ISCSO", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "iscso", .published = {0.92, 1.17, 1.18}},
+                                          {.name = "IFA", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "ifa"},
+                                          {.name = "scan matching (ours, the default)", .particles = 8, .proposal = "scan_match", .optimizer = "none"}};
+
+const std::vector<StudyFigure> kFigures = {{.name = "box 1", .unit = "m", .is_compared = true},
+                                           {.name = "box 2", .unit = "m", .is_compared = true},
+                                           {.name = "well 3", .unit = "m", .is_compared = true},
+                                           {.name = "map to nearest surface", .unit = "m"},
+                                           {.name = "pose RMSE", .unit = "m"},
+                                           {.name = "time", .unit = "s", .is_of_the_clock = true},
+                                           {.name = "memory", .unit = "MB", .is_of_the_clock = true}};
+
+/// A folder that is gone when this is.
+class ScratchFolder {
+ public:
+  explicit ScratchFolder(std::uint64_t seed) : path_(std::filesystem::temp_directory_path() / fmt::format("patrol-study-{}-{}", ::getpid(), seed)) {}
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A patrol that was run, and its truth.
+struct Patrol {
+  Scenario scenario;
+  ScenarioFiles files;
+  std::filesystem::path log;
+  RunRecord record;
+  TrueMap truth;
+};
+
+Patrol patrol_the_street(std::uint64_t seed, const std::filesystem::path& folder) {
+  const std::filesystem::path root = find_data_root("");
+  Patrol patrol{.scenario = load_scenario(root / kScenario, {fmt::format("seed={}", seed)}), .files = {}, .log = {}, .record = {}, .truth = {}};
+  patrol.files = load_scenario_files(patrol.scenario, root);
+  Unobserved nobody;
+  run_once(patrol.scenario, "patrol", root, folder, nobody);
+  patrol.log = RunDirectory{folder}.log();
+  patrol.record = read_run_record(patrol.log);
+  patrol.truth = true_map(patrol.record, patrol.scenario, patrol.files);
+  return patrol;
+}
+
+double heap_mb() {
+  const struct mallinfo2 info = ::mallinfo2();
+  return 1e-6 * static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+struct Mapped {
+  Trajectory T_map_body;
+  OccupancyGrid map;
+  double seconds = 0.0, memory_mb = 0.0;
+};
+
+Mapped map_by(const GridMethod& method, const Patrol& patrol) {
+  StackSettings settings = patrol.scenario.stack;
+  settings.slam.proposal = method.proposal;
+  settings.slam.optimizer = method.optimizer;
+  settings.slam.particles = method.particles;
+  const double before_mb = heap_mb();
+  LogMapper mapper(settings, patrol.files.robot, patrol.scenario.seed);
+  mapper.map(patrol.log);
+  return {.T_map_body = mapper.T_map_body(), .map = mapper.map(), .seconds = mapper.seconds(), .memory_mb = heap_mb() - before_mb};
+}
+
+std::vector<double> figures_of(const Mapped& mapped, const Patrol& patrol) {
+  const Pose2 T_world_map = score::join_at_start(mapped.T_map_body, patrol.record.T_world_body);
+  std::vector<double> figures;
+  for (const score::StationError& station : score::station_errors(patrol.files.route, patrol.record.events, T_world_map, patrol.record.T_world_body, mapped.map, patrol.truth.reference)) {
+    figures.push_back(station.map_error_m.value_or(kNothing));
+  }
+  figures.resize(3, kNothing);
+  figures.push_back(score::map_error(mapped.map, T_world_map, patrol.truth.reference).nearest_mean_m);
+  figures.push_back(score::trajectory_error(mapped.T_map_body, T_world_map, patrol.record.T_world_body).ate_rmse_m);
+  figures.push_back(mapped.seconds);
+  figures.push_back(mapped.memory_mb);
+  return figures;
+}
+
+StudySample run(std::uint64_t seed) {
+  const ScratchFolder folder(seed);
+  const Patrol patrol = patrol_the_street(seed, folder.path());
+  StudySample sample;
+  for (const GridMethod& method : kMethods) sample.push_back(figures_of(map_by(method, patrol), patrol));
+  return sample;
+}
+
+std::vector<Eigen::Vector2d> positions_of(const Trajectory& trajectory, const Pose2& T_world_frame) {
+  std::vector<Eigen::Vector2d> positions;
+  for (const StampedPose& entry : trajectory) positions.push_back(T_world_frame * to_planar(entry.pose).position());
+  return positions;
+}
+
+/// The maps of all methods, each in the colours of its errors.
+std::vector<render::Section> illustrate(std::uint64_t seed) {
+  const ScratchFolder folder(seed);
+  const Patrol patrol = patrol_the_street(seed, folder.path());
+  std::vector<render::Section> sections;
+  for (const GridMethod& method : kMethods) {
+    const Mapped mapped = map_by(method, patrol);
+    const Pose2 T_world_map = score::join_at_start(mapped.T_map_body, patrol.record.T_world_body);
+    const std::vector<render::MapPath> paths = {{"true path", render::Ink::kTruth, {positions_of(patrol.record.T_world_body, {})}},
+                                                {"estimated path", render::Ink::kEstimate, {positions_of(mapped.T_map_body, T_world_map)}}};
+    Eigen::AlignedBox2d shown;
+    for (const Eigen::Vector2d& p_m : paths.front().pieces_m.front()) shown.extend(p_m);
+    const render::MapLayers layers{.built = mapped.map, .T_world_map = T_world_map, .truth = score::seeable_part(patrol.truth.reference),
+                                   .error_m = score::map_error(mapped.map, T_world_map, patrol.truth.reference).cells_m};
+    sections.push_back({method.name, {render::MapBlock{.picture = render::map_picture(layers, shown), .paths = paths, .marks = {}}}});
+  }
+  return sections;
+}
+
+}  // namespace
+
+Study street_study() {
+  Study study{.name = "street-map",
+              .title = "The street, mapped with one proposal or another",
+              .source = "paper 000, table 2",
+              .conditions = "Each seed is one patrol in the twin (worlds/street/scenarios/patrol.yaml); its log is then mapped by every method, so that all hear the same. The paper's figures "
+                            "are of its own street, quadruped and lidar, and of one walk. box 1, box 2, well 3: how far the built map has the place from where it is.",
+              .default_seeds = 5,
+              .compared_with = "FastSLAM"};
+  study.figures = kFigures;
+  for (const GridMethod& method : kMethods) {
+    study.variants.push_back({.world = "street", .method = method.name, .particles = method.particles, .reference = 0, .published = method.published});
+  }
+  study.run = run;
+  study.illustrate = illustrate;
+  return study;
+}
+
+}  // namespace patrol::app
