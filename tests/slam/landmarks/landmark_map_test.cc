@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/random.h"
 #include "tests/support/pose_near.h"
 
 namespace patrol::slam {
@@ -69,6 +70,33 @@ TEST(FitSight, AddsTheLandmarksVarianceToTheSensors) {
   const SightFit fit = fit_sight({}, landmark, {.range_m = 6.0, .bearing_rad = 0.2}, kNoise);
   EXPECT_NEAR(fit.squared_distance, 4.0 + 1.0, kExactTol);
   EXPECT_NEAR(fit.log_density, -2.5 - 0.5 * std::log(0.04), kExactTol);
+}
+
+TEST(LandmarkMap, UpdateGivesTheSightsLogDensityAndZeroForANewLandmark) {
+  LandmarkMap map;
+  EXPECT_EQ(map.update(0, {}, {.range_m = 4.0, .bearing_rad = 0.0}, kNoise), 0.0);
+  const RangeBearing again{.range_m = 4.6, .bearing_rad = -0.1};
+  const double expected = fit_sight({}, map.at(0), again, kNoise).log_density;
+  EXPECT_EQ(map.update(0, {}, again, kNoise), expected);
+}
+
+// Sharp enough that the product of 1,000 determinants, 1e-6 each or less, is under what a double can be.
+TEST(SightLikelihood, OfAThousandSightsIsTheSumOfTheFits) {
+  const RandomStream stream(1, "test/sights");
+  const RangeBearingNoise noise{.range_std_m = 0.02, .bearing_std_rad = 0.01};
+  const Pose2 pose{0.5, -0.3, 3.0};
+  SightLikelihood likelihood(pose, noise);
+  double sum = 0.0;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    const auto place = stream.normals(i, 0), shape = stream.normals(i, 1), error = stream.normals(i, 2);
+    const Eigen::Matrix2d root = (Eigen::Matrix2d() << 0.03 * shape[0], 0.02 * shape[1], 0.02 * shape[2], 0.03 * shape[3]).finished();
+    const Landmark landmark{.mean_m = {5.0 * place[0], 5.0 * place[1]}, .covariance = root * root.transpose(), .is_seen = true};
+    const Eigen::Vector2d sight = predict_sight(pose, landmark.mean_m).sight;  // in all directions, across the wrap too
+    const RangeBearing seen{.range_m = sight.x() + 0.05 * error[0], .bearing_rad = wrap_angle(sight.y() + 0.02 * error[1])};
+    likelihood.add(landmark, seen);
+    sum += fit_sight(pose, landmark, seen, noise).log_density;
+  }
+  EXPECT_NEAR(likelihood.log_density(), sum, 1e-10 * std::abs(sum));
 }
 
 }  // namespace
