@@ -43,11 +43,11 @@ LandmarkMethod swarm_slam(const std::string& optimizer, int particles) {
 }
 
 LandmarkMethod learning_sand_cats(int particles) {
-  return particle_method("ISCSO, bias learnt", {.particles = particles, .bias = {.std = 0.2}, .prior_share = 0.05}, {.optimizer = "iscso"});
+  return particle_method("ISCSO+", {.particles = particles, .bias = {.std = 0.2}, .prior_share = 0.05}, {.optimizer = "iscso"});
 }
 
 LandmarkMethod ekf_slam() { return gaussian_method("EKF-SLAM", {}); }
 
-LandmarkMethod invariant_slam() { return gaussian_method("invariant EKF, bias learnt", {.bias = kBias, .is_invariant = true}); }
+LandmarkMethod invariant_slam() { return gaussian_method("invariant EKF", {.bias = kBias, .is_invariant = true}); }
 
 }  // namespace patrol::app

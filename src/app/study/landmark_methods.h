@@ -26,7 +26,7 @@ LandmarkMethod fast_slam_2(int particles);
 /// FastSLAM 1.0 whose increments an optimiser moves, with the resampler that its paper gives it: ISCSO low-weight optimisation, IFA stepwise.
 LandmarkMethod swarm_slam(const std::string& optimizer, int particles);
 
-/// Our best with sampled poses: the improved sand cats, held to odometry by a prior with a learnt bias, and resampled without bias.
+/// ISCSO+, our best with sampled poses: the improved sand cats, held to odometry by a prior with a learnt bias, and resampled without bias.
 LandmarkMethod learning_sand_cats(int particles);
 
 LandmarkMethod ekf_slam();

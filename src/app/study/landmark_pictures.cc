@@ -50,6 +50,7 @@ render::MapBlock map_of(const LandmarkWorld& world, const LandmarkRun& run, cons
 
 std::vector<render::Section> landmark_sections(const LandmarkWorld& world, const std::vector<LandmarkMethod>& methods, std::uint64_t seed) {
   constexpr std::array kInks = {Ink::kOdometry, Ink::kRanges, Ink::kTrust, Ink::kEvent, Ink::kAlarm, Ink::kBound};
+  constexpr std::size_t kMaps = 4;
   const LandmarkRun run = simulate(world, seed);
   const double end_s = world.motion.step_s * static_cast<double>(run.truth.size());
   const int particles = methods.front().particles;
@@ -63,7 +64,7 @@ std::vector<render::Section> landmark_sections(const LandmarkWorld& world, const
     if (errors.curves.size() < kInks.size() || is_last) {
       errors.curves.push_back(error_curve(methods[i], track, run, world.motion.step_s, is_last ? Ink::kEstimate : kInks[errors.curves.size()]));
     }
-    maps.push_back({label_of(methods[i]), {map_of(world, run, track)}});
+    if (i < kMaps || is_last) maps.push_back({label_of(methods[i]), {map_of(world, run, track)}});
   }
   std::vector<render::Section> sections = {{"Errors over time", {errors}}};
   for (render::Section& map : maps) sections.push_back(std::move(map));

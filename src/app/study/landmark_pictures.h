@@ -8,8 +8,8 @@
 
 namespace patrol::app {
 
-/// One seed in pictures: position error over time of all methods, and of the first, the last with particles and the last of all the path and the
-/// landmarks beside the true ones.
+/// One seed in pictures: position error over time, and of the first four methods and the last one path and landmarks beside the true ones. Of methods with
+/// particles those with as many as the first.
 std::vector<render::Section> landmark_sections(const LandmarkWorld& world, const std::vector<LandmarkMethod>& methods, std::uint64_t seed);
 
 }  // namespace patrol::app

@@ -94,7 +94,7 @@ std::vector<StudyVariant> variants_of(const std::vector<Trial>& trials) {
                           .reference = reference,
                           .published = paper == trial.published.end() ? std::vector<std::optional<double>>{} : paper->second});
     }
-    variants.push_back({.world = trial.world.name, .method = "batch least squares (all of the run at once)", .particles = 0, .reference = first});
+    variants.push_back({.world = trial.world.name, .method = "batch least squares", .particles = 0, .reference = first});
   }
   return variants;
 }
@@ -139,7 +139,7 @@ const char* const kGardenConditions =
     "Paper 000 states speed (0.5 m/s), time step (0.1 s), range (10 m) and the sensor's noise (0.5 m; \"5 rad\" can only be 5 degrees), but neither layout nor odometry's errors. "
     "Here: one lap of about 7 m radius, 24 landmarks in turn 2 m inside and outside of the way, seen all round; every method knows the start and is told the stated noise. "
     "M: odometry errs by 0.2 m/s and 10 deg/s. S5: by 0.1 m/s and 5 deg/s, and lastingly by 2 deg/s, of which no method is told. S3: the same with 3 deg/s. "
-    "NEES: squared error of the position over the covariance that the method claims; 2 is right, more is overconfidence.";
+    "NEES: squared error of the position over the covariance that the method claims; 2 is right, more is overconfidence. Batch least squares has all of the run at once.";
 
 }  // namespace
 

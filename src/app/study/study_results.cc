@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -24,40 +25,37 @@ std::string with_interval(const std::optional<score::Interval>& interval, double
 
 std::string title_of(const StudyFigure& figure) { return figure.unit.empty() ? figure.name : fmt::format("{}, {}", figure.name, figure.unit); }
 
-/// [row][column] of words, the first row being the titles; numbers are set flush right.
-struct WordTable {
-  std::vector<render::Column> columns;
-  std::vector<std::vector<render::Cell>> rows;
-};
-
-WordTable words_of(const Study& study, const StudyResults& results, const std::string& world) {
-  WordTable table{.columns = {{"method"}, {"N", true}}, .rows = {}};
-  for (const StudyFigure& figure : study.figures) {
-    if (figure.is_compared) table.columns.push_back({figure.name + " published", true});
-    table.columns.push_back({title_of(figure), true});
-    if (figure.is_compared) table.columns.push_back({"against " + study.compared_with, true});
-  }
-  for (std::size_t v = 0; v < study.variants.size(); ++v) {
-    const StudyVariant& variant = study.variants[v];
-    if (variant.world != world) continue;
-    std::vector<render::Cell>& row = table.rows.emplace_back();
-    row.push_back({variant.method});
-    row.push_back({variant.particles > 0 ? std::to_string(variant.particles) : ""});
-    for (std::size_t f = 0; f < study.figures.size(); ++f) {
+/// Of one world: a table for each figure that is compared, the first with all that are not.
+std::vector<render::TableBlock> tables_of(const Study& study, const StudyResults& results, const std::string& world) {
+  std::vector<render::TableBlock> tables;
+  for (std::size_t f = 0; f < study.figures.size(); ++f) {
+    if (!study.figures[f].is_compared) continue;
+    render::TableBlock& table = tables.emplace_back(render::TableBlock{.caption = title_of(study.figures[f]),
+                                                                       .columns = {{"method"}, {"N", true}, {"published", true}, {"ours", true}, {"against " + study.compared_with, true}},
+                                                                       .rows = {}});
+    const bool is_first = tables.size() == 1;
+    for (const StudyFigure& figure : study.figures) {
+      if (is_first && !figure.is_compared) table.columns.push_back({title_of(figure), true});
+    }
+    for (std::size_t v = 0; v < study.variants.size(); ++v) {
+      const StudyVariant& variant = study.variants[v];
+      if (variant.world != world) continue;
       const StudyResult& result = results[v][f];
-      const bool is_there = result.num_seeds > 0;
-      if (!study.figures[f].is_compared) {
-        row.push_back({is_there ? fmt::format("{:.3g}", result.mean) : "–"});
-        continue;
-      }
       const auto paper = published(variant, f);
+      std::vector<render::Cell>& row = table.rows.emplace_back();
+      row.push_back({variant.method});
+      row.push_back({variant.particles > 0 ? std::to_string(variant.particles) : ""});
       row.push_back({paper ? fmt::format("{:.4g}", *paper) : "–", render::Tone::kFaint});
-      row.push_back({is_there ? with_interval(result.interval, result.mean, "") : "–"});
+      row.push_back({result.num_seeds > 0 ? with_interval(result.interval, result.mean, "") : "–"});
       row.push_back({result.difference ? with_interval(result.difference, result.difference->center, "+") : "",
                      verdict_of(result) == "no difference" ? render::Tone::kFaint : render::Tone::kPlain});
+      for (std::size_t other = 0; is_first && other < study.figures.size(); ++other) {
+        if (study.figures[other].is_compared) continue;
+        row.push_back({results[v][other].num_seeds > 0 ? fmt::format("{:.3g}", results[v][other].mean) : "–"});
+      }
     }
   }
-  return table;
+  return tables;
 }
 
 std::vector<std::string> worlds_of(const Study& study) {
@@ -75,6 +73,26 @@ std::string label_of(const StudyVariant& variant) {
 /// How wide a text is on a screen; the few characters beyond ASCII that are used here take one column each.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+/// Columns below each other, numbers flush right.
+std::string aligned(const render::TableBlock& table) {
+  std::vector<std::size_t> widths;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    widths.push_back(width_of(table.columns[c].title));
+    for (const auto& row : table.rows) widths[c] = std::max(widths[c], width_of(row[c].text));
+  }
+  std::string text;
+  const auto add = [&](std::size_t c, const std::string& word) {
+    const std::string space(widths[c] - width_of(word), ' ');
+    text += (c > 0 ? "  " : "") + (table.columns[c].is_number ? space + word : word + space);
+  };
+  for (std::size_t c = 0; c < table.columns.size(); ++c) add(c, table.columns[c].title);
+  for (const auto& row : table.rows) {
+    text += "\n";
+    for (std::size_t c = 0; c < row.size(); ++c) add(c, row[c].text);
+  }
+  return text + "\n";
 }
 
 }  // namespace
@@ -162,24 +180,7 @@ io::Table samples_table(const Study& study, const std::vector<std::uint64_t>& se
 std::string results_text(const Study& study, const StudyResults& results) {
   std::string text;
   for (const std::string& world : worlds_of(study)) {
-    const WordTable table = words_of(study, results, world);
-    std::vector<std::size_t> widths;
-    for (std::size_t c = 0; c < table.columns.size(); ++c) {
-      widths.push_back(width_of(table.columns[c].title));
-      for (const auto& row : table.rows) widths[c] = std::max(widths[c], width_of(row[c].text));
-    }
-    const auto add = [&](std::size_t c, const std::string& word) {
-      const std::string space(widths[c] - width_of(word), ' ');
-      text += (c > 0 ? "  " : "") + (table.columns[c].is_number ? space + word : word + space);
-    };
-    text += fmt::format("{}\n", world);
-    for (std::size_t c = 0; c < table.columns.size(); ++c) add(c, table.columns[c].title);
-    text += "\n";
-    for (const auto& row : table.rows) {
-      for (std::size_t c = 0; c < row.size(); ++c) add(c, row[c].text);
-      text += "\n";
-    }
-    text += "\n";
+    for (const render::TableBlock& table : tables_of(study, results, world)) text += fmt::format("{}: {}\n{}\n", world, table.caption, aligned(table));
   }
   return text;
 }
@@ -192,7 +193,8 @@ render::Page study_page(const Study& study, const std::vector<std::uint64_t>& se
                     .colophon = fmt::format("Made by patrol study {} {}.", study.name, PATROL_VERSION)};
   page.sections.push_back({"", {render::TextBlock{study.conditions}}});
   for (const std::string& world : worlds_of(study)) {
-    const WordTable table = words_of(study, results, world);
+    render::Section section{world, {}};
+    for (render::TableBlock& table : tables_of(study, results, world)) section.blocks.emplace_back(std::move(table));
     const StudyFigure& first = study.figures.front();
     render::BoxPlot boxes{.caption = fmt::format("{}: every seed, median and quartiles", first.name), .unit = first.unit, .boxes = {}};
     for (std::size_t v = 0; v < study.variants.size(); ++v) {
@@ -203,7 +205,8 @@ render::Page study_page(const Study& study, const std::vector<std::uint64_t>& se
       }
       if (!values.empty()) boxes.boxes.push_back(box_of(label_of(study.variants[v]), values, {.factor = 1.0, .name = first.unit}));
     }
-    page.sections.push_back({world, {render::TableBlock{.caption = "", .columns = table.columns, .rows = table.rows}, boxes}});
+    section.blocks.emplace_back(std::move(boxes));
+    page.sections.push_back(std::move(section));
   }
   for (render::Section& section : study.illustrate(seeds.front())) page.sections.push_back(std::move(section));
   return page;

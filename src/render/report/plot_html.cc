@@ -43,6 +43,11 @@ Json spans_json(const std::vector<PlotSpan>& spans) {
   return json;
 }
 
+/// A state goes below zero; an error does not.
+bool has_sign(const Curve& curve) {
+  return std::any_of(curve.points.begin(), curve.points.end(), [](const Eigen::Vector2d& point) { return point.y() < 0.0; });
+}
+
 bool has_far_peak(const Curve& curve) {
   std::vector<double> values;
   for (const Eigen::Vector2d& point : curve.points) values.push_back(point.y());
@@ -78,7 +83,8 @@ std::string plot_html(const char* kind, const std::string& title, const std::str
 }  // namespace
 
 std::string to_html(const LinePlot& block) {
-  const bool is_log = !block.max && std::any_of(block.curves.begin(), block.curves.end(), has_far_peak);
+  const bool is_signed = std::any_of(block.curves.begin(), block.curves.end(), has_sign);
+  const bool is_log = !block.max && !is_signed && std::any_of(block.curves.begin(), block.curves.end(), has_far_peak);
   Json data = {{"label", block.axis.label}, {"end", block.axis.max}, {"log", is_log}, {"curves", Json::array()}};
   if (block.max) data["max"] = *block.max;
   for (const Curve& curve : block.curves) data["curves"].push_back(curve_json(curve));

@@ -62,7 +62,7 @@
   function linePlot(figure, data) {
     const positive = (y) => (data.log && y <= 0 ? null : y);
     const curves = data.curves.map((curve) => [curve.x, curve.y.map(positive)]);
-    const range = data.log ? decades : (plot, least, greatest) => [0, data.max || 1.08 * greatest || 1];
+    const range = data.log ? decades : (plot, least, greatest) => [Math.min(0, 1.08 * least), data.max || 1.08 * greatest || 1];
     return new uPlot({
       width: 300, height: kPlotHeight, legend: { show: false }, padding: [8, 10, 0, 0],
       scales: { x: { time: false, range: (plot, from, to) => [from ?? 0, to ?? data.end] }, y: { distr: data.log ? 3 : 1, range } },

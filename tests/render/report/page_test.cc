@@ -111,6 +111,8 @@ TEST(LinePlot, GoesLogarithmicWhenThePeakDwarfsTheRest) {
   wild.points.back().y() = 20.0;
   EXPECT_THAT(html_of(plot_of(calm)), HasSubstr("\"log\":false"));
   EXPECT_THAT(html_of(plot_of(wild)), HasSubstr("\"log\":true"));
+  wild.points.front().y() = -1.0;  // a state, not an error: there is no logarithm of it
+  EXPECT_THAT(html_of(plot_of(wild)), HasSubstr("\"log\":false"));
 }
 
 TEST(BoxPlot, StandsOnAScaleOfRoundTicks) {
