@@ -2,19 +2,7 @@
 
 #include <Eigen/LU>
 
-#include <cmath>
-
 namespace patrol::slam {
-
-SightFit fit_sight(const Pose2& T_map_body, const Landmark& landmark, const RangeBearing& seen, const RangeBearingNoise& noise) {
-  SightFit fit{.predicted = predict_sight(T_map_body, landmark.mean_m), .innovation = {}, .S_inverse = {}};
-  fit.innovation = innovation_of(seen, fit.predicted);
-  const Eigen::Matrix2d S = fit.predicted.by_landmark * landmark.covariance * fit.predicted.by_landmark.transpose() + noise.covariance();
-  fit.S_inverse = S.inverse();
-  fit.squared_distance = fit.innovation.dot(fit.S_inverse * fit.innovation);
-  fit.log_density = -0.5 * (fit.squared_distance + std::log(S.determinant()));
-  return fit;
-}
 
 double LandmarkMap::update(int index, const Pose2& T_map_body, const RangeBearing& seen, const RangeBearingNoise& noise) {
   if (static_cast<std::size_t>(index) >= landmarks_.size()) landmarks_.resize(static_cast<std::size_t>(index) + 1);
