@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 namespace patrol::slam {
 namespace {
@@ -66,6 +67,7 @@ BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& 
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<MotionCost, 5, 3, 2, 3>(new MotionCost{motion, controls[k]}), nullptr, poses[k].data(),
                              errors[k].data(), poses[k + 1].data());
     for (const RangeBearing& sight : seen[k]) {
+      if (static_cast<std::size_t>(sight.landmark) >= landmarks.size()) throw std::invalid_argument("a batch needs a guess of every landmark that is seen");
       problem.AddResidualBlock(new ceres::AutoDiffCostFunction<SightCost, 2, 3, 2>(new SightCost{sight, noise}), nullptr, poses[k + 1].data(),
                                landmarks[static_cast<std::size_t>(sight.landmark)].data());
     }

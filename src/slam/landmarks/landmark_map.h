@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "slam/landmarks/range_bearing.h"
@@ -42,7 +41,7 @@ class SightLikelihood {
     const double S12 = (u * v * (c - a) + (u * u - v * v) * b) / r;
     const double S22 = (v * v * a - 2.0 * u * v * b + u * u * c) / q + bearing_variance_;
     const double det = S11 * S22 - S12 * S12;
-    const double range = seen.range_m - r, bearing = wrapped(seen.bearing_rad + T_map_body_.yaw - std::atan2(dy, dx));
+    const double range = seen.range_m - r, bearing = wrap_near_angle(seen.bearing_rad + T_map_body_.yaw - std::atan2(dy, dx));
     squared_distance_ += (S22 * range * range - 2.0 * S12 * range * bearing + S11 * bearing * bearing) / det;
     determinants_ *= det;
     if (determinants_ < 1e-200) flush();
@@ -52,9 +51,6 @@ class SightLikelihood {
   double log_density() const { return -0.5 * (squared_distance_ + log_determinants_ + std::log(determinants_)); }
 
  private:
-  /// wrap_angle, whose remainder costs more than the rest; angles here are seldom more than one turn off.
-  static double wrapped(double angle_rad) { return std::abs(angle_rad) < std::numbers::pi ? angle_rad : wrap_angle(angle_rad); }
-
   void flush() {
     log_determinants_ += std::log(determinants_);
     determinants_ = 1.0;
