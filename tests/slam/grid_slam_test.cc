@@ -94,6 +94,18 @@ TEST(GridSlam, WalksTheStreetAndBackToWithinSixCentimetresRms) {
   EXPECT_TRUE(walk.resampled);
 }
 
+// 36 m. FastSLAM as the papers start from: the particles' own spread is the map's error.
+TEST(GridSlam, DrawnFromOdometryItMapsTheStreetToTwentyCentimetresWithAndWithoutASwarm) {
+  for (const char* optimizer : {"none", "iscso"}) {
+    GridSlamSettings settings = with_particles(15);
+    settings.proposal = "motion";
+    settings.optimizer = optimizer;
+    const Outcome walk = walk_street(1, settings, 200);
+    EXPECT_LT(walk.rmse_m, 0.2) << optimizer;
+    EXPECT_LT(walk.wall_mean_m, 0.1) << optimizer;
+  }
+}
+
 TEST(GridSlam, SameSeedGivesTheSamePosesToTheLastBitAndAnotherSeedOthers) {
   constexpr std::size_t kSteps = 200;  // 40 s
   const Outcome once = walk_street(1, {}, kSteps), again = walk_street(1, {}, kSteps),
