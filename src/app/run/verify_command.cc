@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -7,38 +5,16 @@
 #include "app/commands.h"
 #include "app/run/run_directory.h"
 #include "app/run/run_loop.h"
+#include "app/temporary_folder.h"
 #include "io/log_compare.h"
 
 namespace patrol::app {
-namespace {
-
-/// A folder that goes when it is done with.
-class TemporaryFolder {
- public:
-  TemporaryFolder()
-      : path_(std::filesystem::temp_directory_path() / fmt::format("patrol-verify-{}", ::getpid())) {
-    std::filesystem::create_directories(path_);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-}  // namespace
-
 ExitCode verify_command(const std::filesystem::path& run) {
   const RunDirectory directory = open_run_directory(run);
   const Scenario scenario = load_scenario(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
 
-  const TemporaryFolder again;
+  const TemporaryFolder again("verify");
   const std::filesystem::path log = again.path() / "log.mcap";
   fmt::print(stderr, "verify: running {} again, seed {}\n", directory.scenario().string(), scenario.seed);
   sim::Twin twin = make_twin(scenario, files);

@@ -1,12 +1,9 @@
 #include "app/study/street_study.h"
 
 #include <malloc.h>
-#include <unistd.h>
 
-#include <cmath>
 #include <filesystem>
 #include <limits>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -16,6 +13,7 @@
 #include "app/scenario.h"
 #include "app/scoring/true_map.h"
 #include "app/stack/log_mapper.h"
+#include "app/temporary_folder.h"
 #include "render/report/map_picture.h"
 #include "score/map_error.h"
 #include "score/station_error.h"
@@ -50,23 +48,6 @@ const std::vector<StudyFigure> kFigures = {{.name = "box 1", .unit = "m", .is_co
                                            {.name = "pose RMSE", .unit = "m"},
                                            {.name = "time", .unit = "s", .is_of_the_clock = true},
                                            {.name = "memory", .unit = "MB", .is_of_the_clock = true}};
-
-/// A folder that is gone when this is.
-class ScratchFolder {
- public:
-  explicit ScratchFolder(std::uint64_t seed) : path_(std::filesystem::temp_directory_path() / fmt::format("patrol-study-{}-{}", ::getpid(), seed)) {}
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A patrol that was run, and its truth.
 struct Patrol {
@@ -126,7 +107,7 @@ std::vector<double> figures_of(const Mapped& mapped, const Patrol& patrol) {
 }
 
 StudySample run(std::uint64_t seed) {
-  const ScratchFolder folder(seed);
+  const TemporaryFolder folder(fmt::format("study-{}", seed));
   const Patrol patrol = patrol_the_street(seed, folder.path());
   StudySample sample;
   for (const GridMethod& method : kMethods) sample.push_back(figures_of(map_by(method, patrol), patrol));
@@ -141,7 +122,7 @@ std::vector<Eigen::Vector2d> positions_of(const Trajectory& trajectory, const Po
 
 /// The maps of all methods, each in the colours of its errors.
 std::vector<render::Section> illustrate(std::uint64_t seed) {
-  const ScratchFolder folder(seed);
+  const TemporaryFolder folder(fmt::format("study-{}", seed));
   const Patrol patrol = patrol_the_street(seed, folder.path());
   std::vector<render::Section> sections;
   for (const GridMethod& method : kMethods) {

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace patrol::app {
+
+/// A folder of this process that goes when it is done with.
+class TemporaryFolder {
+ public:
+  /// `purpose` tells it from this process's others.
+  explicit TemporaryFolder(const std::string& purpose) : path_(std::filesystem::temp_directory_path() / fmt::format("patrol-{}-{}", purpose, ::getpid())) {
+    std::filesystem::create_directories(path_);
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace patrol::app
