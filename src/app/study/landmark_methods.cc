@@ -21,9 +21,6 @@ LandmarkMethod gaussian_method(const std::string& name, const slam::EkfSlamSetti
           }};
 }
 
-/// What is known of a lasting error before anything is seen: it is about as large as half of the noise of one step. Tuned on seeds below 1001.
-constexpr slam::OdometryBiasSettings kBias = {.std = 0.4, .walk_std = 0.0};
-
 }  // namespace
 
 LandmarkMethod fast_slam_1(int particles, double noise_scale) {
@@ -46,8 +43,8 @@ LandmarkMethod learning_sand_cats(int particles) {
   return particle_method("ISCSO+", {.particles = particles, .bias = {.std = 0.2}, .prior_share = 0.05}, {.optimizer = "iscso"});
 }
 
-LandmarkMethod ekf_slam() { return gaussian_method("EKF-SLAM", {}); }
+LandmarkMethod ekf_slam() { return gaussian_method("EKF-SLAM", {.bias = {.std = 0.0}, .is_invariant = false}); }
 
-LandmarkMethod invariant_slam() { return gaussian_method("invariant EKF", {.bias = kBias, .is_invariant = true}); }
+LandmarkMethod invariant_slam() { return gaussian_method("invariant EKF", {}); }
 
 }  // namespace patrol::app

@@ -85,7 +85,7 @@ TEST(SolveBatch, WithNoiseBeatsBothEkfsOnTheMeanOfTenSeeds) {
     double batch = 0.0, plain = 0.0, invariant = 0.0;
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       const Drive measured = drive(world, seed);
-      EkfSlam plain_slam({}, world.motion, world.noise), invariant_slam({.is_invariant = true}, world.motion, world.noise);
+      EkfSlam plain_slam({.bias = {.std = 0.0}, .is_invariant = false}, world.motion, world.noise), invariant_slam({.bias = {.std = 0.0}}, world.motion, world.noise);
       const std::vector<Pose2> guess = poses_of(run(plain_slam, measured));
       const BatchSolution solution =
           solve_batch(world.motion, world.noise, measured.controls, measured.seen, {.T_map_body = guess, .landmarks = plain_slam.landmarks()});

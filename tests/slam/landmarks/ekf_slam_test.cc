@@ -17,7 +17,7 @@ namespace {
 using test::CircleWorld, test::drive, test::Drive, test::poses_of, test::rmse_m, test::run, test::VectorNear;
 
 constexpr double kExactTol = 1e-12;
-const EkfSlamSettings kPlain{.is_invariant = false}, kInvariant{.is_invariant = true};
+const EkfSlamSettings kPlain{.bias = {.std = 0.0}, .is_invariant = false}, kInvariant{.bias = {.std = 0.0}, .is_invariant = true};
 
 /// The textbook's filter over (x, y, yaw, x of landmark 0, y of landmark 0, ...): dense, slow and obvious.
 class TextbookEkf {
@@ -233,7 +233,7 @@ TEST(EkfSlam, BlindABiasOfTwoDeviationsMakesTheSecondStepsYawVarianceEighteenNoi
 }
 
 TEST(EkfSlam, NoiseScaledByTwoIsFourTimesTheVariance) {
-  EkfSlam slam({.noise_scale = 2.0}, {.step_s = 0.1, .std = {0.1, 0.05}}, {});
+  EkfSlam slam({.noise_scale = 2.0, .bias = {.std = 0.0}, .is_invariant = false}, {.step_s = 0.1, .std = {0.1, 0.05}}, {});
   EXPECT_NEAR(slam.step({1.0, 0.0}, {}).covariance(2, 2), 4.0 * 0.005 * 0.005, kExactTol);
 }
 
