@@ -11,6 +11,12 @@
 namespace patrol::app {
 namespace {
 
+/// A study's page is made with it, from what it has in hand.
+std::string page_of_study(const std::filesystem::path& root) {
+  const std::filesystem::path page = root / "report.html";
+  if (!std::filesystem::exists(page)) throw InputError(fmt::format("{}: the study has not come to its end: there is nothing to report", root.string()));
+  return io::load_text(page);
+}
 
 render::Page page_of(const std::filesystem::path& root, const std::filesystem::path& page_file) {
   if (!std::filesystem::exists(SweepDirectory{root}.manifest())) return run_page(read_run_contents(root), page_file);
@@ -28,7 +34,8 @@ ExitCode report_command(const ReportOptions& options) {
   const std::filesystem::path out = options.out.value_or(options.directory / "report.html");
   std::string html;
   try {
-    html = render::to_html(page_of(options.directory, out));
+    const bool is_study = std::filesystem::exists(options.directory / "study.json");
+    html = is_study ? page_of_study(options.directory) : render::to_html(page_of(options.directory, out));
   } catch (const io::Metrics::exception& error) {
     throw InputError(fmt::format("{}: metrics.json is not as a run leaves it: {}", options.directory.string(), error.what()));
   }

@@ -64,6 +64,15 @@ class Study(unittest.TestCase):
         with open(self.path / "page/results.csv", newline="") as file:
             self.assertEqual([row["published"] for row in csv.DictReader(file) if row["method"] == "PF" and row["particles"] == "50"][0], "4.2216")
 
+    def test_report_hands_out_the_page_and_has_none_before_the_end(self):
+        self.assertEqual(self.study("page", seeds="1").returncode, 0)
+        subprocess.run([PATROL, "report", self.path / "page", "--out", self.path / "copy.html"], check=True, capture_output=True, cwd=SOURCE)
+        self.assertEqual((self.path / "copy.html").read_bytes(), (self.path / "page/report.html").read_bytes())
+        (self.path / "page/report.html").unlink()
+        done = subprocess.run([PATROL, "report", self.path / "page"], capture_output=True, text=True, cwd=SOURCE)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("has not come to its end", done.stderr)
+
     def test_an_unknown_study_and_no_seeds_are_refused_and_nothing_is_written(self):
         for arguments, says in ((("golf",), "landmarks-circle"), (("ungm", "--seeds", "0"), "--seeds 0"), (("ungm", "--jobs", "-1"), "--jobs")):
             done = subprocess.run([PATROL, "study", *arguments, "--out", self.path / "none"], capture_output=True, text=True, timeout=60, cwd=SOURCE)
