@@ -161,7 +161,8 @@ Study circle_study() {
                          .title = "FastSLAM and its swarms on a round course",
                          .source = "paper 000, table 1 and figures 2 to 4 (20 runs there)",
                          .conditions = kGardenConditions,
-                         .default_seeds = 200},
+                         .default_seeds = 200,
+                         .compared_with = "FastSLAM"},
                         std::move(trials));
 }
 
@@ -175,7 +176,8 @@ Study noncircular_study() {
                          .title = "FastSLAM and its swarms on a course that is not round",
                          .source = "paper 000, figures 5 to 7 (20 particles; no table)",
                          .conditions = kGardenConditions,
-                         .default_seeds = 50},
+                         .default_seeds = 50,
+                         .compared_with = "FastSLAM"},
                         std::move(trials));
 }
 
@@ -203,7 +205,8 @@ Study campus_study() {
                                        "(5 degrees), but neither layout, particles, the bearing's error nor the sensor's reach. Here: 20 particles; bearings err by 1 degree; landmarks are seen "
                                        "in the front half up to 30 m, at every eighth step. Matched: odometry errs as the methods are told. Biased: besides, it says 0.3 m/s and 2 degrees "
                                        "too much, of which no method is told; only so does FastSLAM come to the paper's 2.24 m. Other speeds: 600 m each.",
-                         .default_seeds = 20},
+                         .default_seeds = 20,
+                         .compared_with = "FastSLAM"},
                         std::move(trials));
 }
 

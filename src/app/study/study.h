@@ -37,7 +37,7 @@ struct Study {
   std::string source;      ///< which paper, which table
   std::string conditions;  ///< what the paper leaves open, and what is taken here
   int default_seeds = 20;
-  std::string compared_with = "the first of its N";  ///< each variant's reference, for people
+  std::string compared_with = "the first";  ///< each variant's reference, for people
   std::vector<StudyFigure> figures{};
   std::vector<StudyVariant> variants{};
   std::function<StudySample(std::uint64_t seed)> run{};
