@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/error.h"
 #include "slam/grid_step.h"
 #include "slam/map_rendering.h"
 #include "slam/particle_filter.h"
@@ -12,22 +13,24 @@
 namespace patrol::slam {
 namespace {
 
-ParticleFilterSettings parts_of(const GridSlamSettings& settings) {
-  ParticleFilterSettings parts{.optimizer = settings.optimizer, .resample_threshold = settings.resample_threshold};
-  if (settings.optimizer == "iscso") parts.resampler = "low_weight";
-  if (settings.optimizer == "ifa") parts.resampler = "stepwise";
-  return parts;
+ParticleFilterParts parts_of(const GridSlamSettings& settings) {
+  validate(settings, "slam");
+  if (settings.optimizer != "none" && settings.proposal != "motion") {
+    throw InputError("slam.optimizer = " + settings.optimizer + ": moves what is drawn from odometry, which slam.proposal: motion asks for");
+  }
+  ParticleFilterSettings parts = settings_of_paper(settings.optimizer);
+  parts.resample_threshold = settings.resample_threshold;
+  return make_parts(parts);
 }
 
 }  // namespace
 
 GridSlam::GridSlam(const GridSlamSettings& settings, std::uint64_t seed, const Pose2& T_map_start)
     : settings_(settings),
-      parts_(make_parts(parts_of(settings))),
+      parts_(parts_of(settings)),
       proposal_noise_(seed, "slam/proposal"),
       resampling_noise_(seed, "slam/resampling"),
       T_map_last_(T_map_start) {
-  validate(settings, "slam");
   particles_.push_back({.T_map_body = T_map_start, .map = GridMap(settings.resolution_m, settings.max_extent_m)});
 }
 
@@ -44,7 +47,9 @@ SlamUpdate GridSlam::update(const LevelScan& scan, const Pose2& T_odom_body) {
   if (update.is_keyframe) {
     T_map_last_ = best.posterior.mean;
     const bool is_by_match = settings_.proposal == "scan_match" || particles_.size() == 1;
+    const double tracked_share = best.matched_share;
     best = is_by_match ? move_by_scan_match(points, T_odom_body, scan.stamp, update) : move_by_odometry(points, T_odom_body, scan.stamp, update);
+    if (!is_by_match) best.matched_share = tracked_share;
     integrate(scan);
     T_odom_keyframe_ = T_odom_body, keyframe_stamp_ = scan.stamp;
     ranges_.clear();
@@ -80,7 +85,7 @@ Proposal GridSlam::move_by_odometry(const std::vector<MatchPoint>& points, const
   for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].log_weight = log_weights[i];
 
   update.effective_sample_size = choose_best();
-  const Proposal best{.posterior = {.mean = particles_[best_].T_map_body, .covariance = predictions[best_].covariance}, .matched_share = 1.0};
+  const Proposal best{.posterior = {.mean = particles_[best_].T_map_body, .covariance = predictions[best_].covariance}};
   update.resampled = renew_particles(step, parts_, particles().weights, random, log_weights);
   for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].log_weight = log_weights[i];
   if (update.resampled) {  // whatever the resampler made of it, the best particle's way goes on in the one that stands nearest

@@ -32,7 +32,7 @@ struct GridSlamSettings {
   int particles = 8;
   double likelihood_gain = 0.2;           ///< share of the points that err independently (proposal.h)
   std::string proposal = "scan_match";    ///< motion: FastSLAM's, drawn from odometry alone
-  std::string optimizer = "none";         ///< that moves what was drawn from odometry: the swarms of papers 000 and 001 (ParticleFilterSettings)
+  std::string optimizer = "none";         ///< that moves what was drawn from odometry, with its paper's resampler; for `proposal: motion` alone
   double resample_threshold = 0.5;        ///< resample when the effective sample size falls below this share of the particles
   MotionModelSettings motion;
   RangeUpdateSettings ranges;
@@ -52,7 +52,7 @@ struct GridSlamSettings {
     visit("particles", self.particles, between(1, 10000));
     visit("likelihood_gain", self.likelihood_gain, between(0.0, 1.0));
     visit("proposal", self.proposal, one_of({"scan_match", "motion"}));
-    visit("optimizer", self.optimizer, one_of({"none", "woa", "ba", "fa", "ifa", "scso", "iscso"}));
+    visit("optimizer", self.optimizer, optimizer_names());
     visit("resample_threshold", self.resample_threshold, between(0.0, 1.0));
     visit("motion", self.motion);
     visit("ranges", self.ranges);

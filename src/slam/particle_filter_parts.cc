@@ -31,6 +31,13 @@ Resampler make_resampler(const std::string& name) {
 
 }  // namespace
 
+ParticleFilterSettings settings_of_paper(const std::string& optimizer) {
+  ParticleFilterSettings settings{.optimizer = optimizer};
+  if (optimizer == "iscso") settings.resampler = "low_weight";
+  if (optimizer == "ifa") settings.resampler = "stepwise";
+  return settings;
+}
+
 ParticleFilterParts make_parts(const ParticleFilterSettings& settings) {
   validate(settings, "particle_filter");
   return {.optimizer = make_optimizer(settings), .resample = make_resampler(settings.resampler), .resample_threshold = settings.resample_threshold};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/error.h"
 #include "tests/slam/street_walk.h"
 #include "tests/support/pose_near.h"
 
@@ -104,6 +105,12 @@ TEST(GridSlam, DrawnFromOdometryItMapsTheStreetToTwentyCentimetresWithAndWithout
     EXPECT_LT(walk.rmse_m, 0.2) << optimizer;
     EXPECT_LT(walk.wall_mean_m, 0.1) << optimizer;
   }
+}
+
+TEST(GridSlam, AnOptimiserWithNothingToMoveIsRefused) {
+  GridSlamSettings settings;
+  settings.optimizer = "iscso";
+  EXPECT_THROW(GridSlam(settings, 1), InputError);
 }
 
 TEST(GridSlam, SameSeedGivesTheSamePosesToTheLastBitAndAnotherSeedOthers) {

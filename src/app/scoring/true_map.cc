@@ -1,8 +1,6 @@
 #include "app/scoring/true_map.h"
 
-#include <utility>
-
-#include "sim/mujoco.h"
+#include "render/reference_map.h"
 
 namespace patrol::app {
 namespace {

@@ -2,7 +2,6 @@
 
 #include "app/run/run_record.h"
 #include "app/scenario.h"
-#include "render/reference_map.h"
 #include "score/visibility.h"
 #include "sim/mujoco.h"
 

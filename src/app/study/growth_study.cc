@@ -36,9 +36,12 @@ GrowthMethod particle_filter(const std::string& name, int particles, const slam:
           }};
 }
 
-/// The paper resamples at every step, and sets gamma = 1; one generation a step costs about what its table of times says.
+/// As IFA, but resampled without bias: at every step, gamma = 1; one generation a step costs about what the paper's table of times says.
 slam::ParticleFilterSettings of_the_paper(const std::string& optimizer) {
-  return {.optimizer = optimizer, .optimizer_iterations = 1, .firefly_absorption = 1.0, .resample_threshold = 1.0};
+  slam::ParticleFilterSettings settings = slam::ifa_settings_of_paper();
+  settings.optimizer = optimizer;
+  settings.resampler = "systematic";
+  return settings;
 }
 
 std::vector<GrowthMethod> methods_of(int particles, const std::array<double, 4>& published) {

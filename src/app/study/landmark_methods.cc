@@ -31,12 +31,9 @@ LandmarkMethod fast_slam_1(int particles, double noise_scale) {
 LandmarkMethod fast_slam_2(int particles) { return particle_method("FastSLAM 2", {.particles = particles, .draws_from_observation = true}, {}); }
 
 LandmarkMethod swarm_slam(const std::string& optimizer, int particles) {
-  slam::ParticleFilterSettings filter{.optimizer = optimizer};
-  if (optimizer == "iscso") filter.resampler = "low_weight";
-  if (optimizer == "ifa") filter.resampler = "stepwise";
   std::string name;
   for (const char c : optimizer) name += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return particle_method(name, {.particles = particles}, filter);
+  return particle_method(name, {.particles = particles}, slam::settings_of_paper(optimizer));
 }
 
 LandmarkMethod learning_sand_cats(int particles) {
