@@ -29,6 +29,7 @@ inline constexpr const char* kWorld = "world";
 
 /// The angle's representative in (-pi, pi].
 inline double wrap_angle(double angle_rad) {
+  if (angle_rad > -std::numbers::pi && angle_rad <= std::numbers::pi) return angle_rad;  // most are; remainder is slow
   const double wrapped = std::remainder(angle_rad, 2.0 * std::numbers::pi);
   return wrapped <= -std::numbers::pi ? wrapped + 2.0 * std::numbers::pi : wrapped;
 }

@@ -41,7 +41,7 @@ class SightLikelihood {
     const double S12 = (u * v * (c - a) + (u * u - v * v) * b) / r;
     const double S22 = (v * v * a - 2.0 * u * v * b + u * u * c) / q + bearing_variance_;
     const double det = S11 * S22 - S12 * S12;
-    const double range = seen.range_m - r, bearing = wrap_near_angle(seen.bearing_rad + T_map_body_.yaw - std::atan2(dy, dx));
+    const double range = seen.range_m - r, bearing = wrap_angle(seen.bearing_rad + T_map_body_.yaw - std::atan2(dy, dx));
     squared_distance_ += (S22 * range * range - 2.0 * S12 * range * bearing + S11 * bearing * bearing) / det;
     determinants_ *= det;
     if (determinants_ < 1e-200) flush();

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/frames.h"
 
@@ -26,9 +25,6 @@ struct RangeBearingNoise {
   Eigen::Matrix2d covariance() const { return Eigen::Vector2d(range_std_m * range_std_m, bearing_std_rad * bearing_std_rad).asDiagonal(); }
 };
 
-/// wrap_angle for angles that seldom need it: its remainder costs as much as all else that is done with a sight.
-inline double wrap_near_angle(double angle_rad) { return std::abs(angle_rad) < std::numbers::pi ? angle_rad : wrap_angle(angle_rad); }
-
 /// What would be seen of a landmark at `p_map`, and the derivatives.
 struct PredictedSight {
   Eigen::Vector2d sight;                 ///< range, bearing
@@ -40,7 +36,7 @@ inline PredictedSight predict_sight(const Pose2& T_map_body, const Eigen::Vector
   const double dx = p_map.x() - T_map_body.x, dy = p_map.y() - T_map_body.y;
   const double q = std::max(dx * dx + dy * dy, 1e-12), r = std::sqrt(q);
   PredictedSight predicted;
-  predicted.sight = {r, wrap_near_angle(std::atan2(dy, dx) - T_map_body.yaw)};
+  predicted.sight = {r, wrap_angle(std::atan2(dy, dx) - T_map_body.yaw)};
   predicted.by_landmark << dx / r, dy / r, -dy / q, dx / q;
   predicted.by_pose.leftCols<2>() = -predicted.by_landmark;
   predicted.by_pose.col(2) = Eigen::Vector2d(0.0, -1.0);
@@ -49,7 +45,7 @@ inline PredictedSight predict_sight(const Pose2& T_map_body, const Eigen::Vector
 
 /// Seen minus predicted, the bearing wrapped.
 inline Eigen::Vector2d innovation_of(const RangeBearing& seen, const PredictedSight& predicted) {
-  return {seen.range_m - predicted.sight.x(), wrap_near_angle(seen.bearing_rad - predicted.sight.y())};
+  return {seen.range_m - predicted.sight.x(), wrap_angle(seen.bearing_rad - predicted.sight.y())};
 }
 
 /// Where a sight says that the landmark is.
