@@ -20,9 +20,9 @@ std::vector<int> associate(const LandmarkMap& map, const Pose2& T_map_body, cons
     for (std::size_t i = 0; i < map.landmarks().size(); ++i) {
       const SightFit fit = fit_sight(T_map_body, map.landmarks()[i], sight, noise);
       nearest = std::min(nearest, fit.squared_distance);
-      if (is_taken[i] || fit.squared_distance > settings.gate || fit.log_density <= best_density) continue;
+      if (is_taken[i] || fit.squared_distance > settings.gate || fit.log_density() <= best_density) continue;
       best = static_cast<int>(i);
-      best_density = fit.log_density;
+      best_density = fit.log_density();
     }
     if (best != kUnmatched) is_taken[static_cast<std::size_t>(best)] = true;
     else if (nearest > settings.new_landmark) best = next_new++;

@@ -119,9 +119,10 @@ FastSlam::Proposal FastSlam::propose(const Particle& particle, const Control& co
     for (std::size_t k = 0; k < seen.size(); ++k) {
       if (matches[k] == kUnmatched || !particle.map.has(matches[k])) continue;
       const SightFit fit = fit_sight(pose, particle.map.at(matches[k]), seen[k], noise_);
-      const Eigen::Matrix2d J = fit.predicted.by_pose * by_increment;
-      information += J.transpose() * fit.S_inverse * J;
-      gradient += J.transpose() * fit.S_inverse * fit.innovation;
+      const Eigen::Matrix2d J = fit.by_pose() * by_increment;
+      const Eigen::Matrix2d S_inverse = fit.S_inverse();
+      information += J.transpose() * S_inverse * J;
+      gradient += J.transpose() * S_inverse * fit.innovation();
     }
     mean += information.inverse() * gradient;
   }

@@ -15,12 +15,15 @@ double LandmarkMap::update(int index, const Pose2& T_map_body, const RangeBearin
     return 0.0;
   }
   const SightFit fit = fit_sight(T_map_body, landmark, seen, noise);
-  const Eigen::Matrix2d PHt = landmark.covariance * fit.predicted.by_landmark.transpose();
-  const Eigen::Matrix2d K = PHt * fit.S_inverse;
-  landmark.mean_m += K * fit.innovation;
-  const Eigen::Matrix2d P = landmark.covariance - K * PHt.transpose();
-  landmark.covariance = 0.5 * (P + P.transpose());
-  return fit.log_density;
+  const double K00 = (fit.PH00 * fit.S11 - fit.PH01 * fit.S01) / fit.det, K01 = (fit.PH01 * fit.S00 - fit.PH00 * fit.S01) / fit.det;
+  const double K10 = (fit.PH10 * fit.S11 - fit.PH11 * fit.S01) / fit.det, K11 = (fit.PH11 * fit.S00 - fit.PH10 * fit.S01) / fit.det;
+  landmark.mean_m.x() += K00 * fit.range + K01 * fit.bearing;
+  landmark.mean_m.y() += K10 * fit.range + K11 * fit.bearing;
+  Eigen::Matrix2d& P = landmark.covariance;
+  P(0, 0) -= K00 * fit.PH00 + K01 * fit.PH01;
+  P(1, 1) -= K10 * fit.PH10 + K11 * fit.PH11;
+  P(0, 1) = P(1, 0) -= K00 * fit.PH10 + K01 * fit.PH11;
+  return fit.log_density();
 }
 
 }  // namespace patrol::slam

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -18,32 +17,54 @@ struct Landmark {
   bool is_seen = false;
 };
 
-/// How well a sight fits what is believed of a landmark, seen from a pose that is taken for certain.
+/// How well a sight fits what is believed of a landmark, seen from a pose that is taken for certain. In closed form: with u the direction to the
+/// landmark and n across it, H = [u^T; n^T / r], and this is the innermost loop of every swarm.
 struct SightFit {
-  PredictedSight predicted;
-  Eigen::Vector2d innovation;
-  Eigen::Matrix2d S_inverse;
-  double squared_distance = 0.0;  ///< Mahalanobis
-  double log_density = 0.0;       ///< without log 2 pi
+  double range, bearing;       ///< the innovation, m and rad
+  double ux, uy, r;            ///< direction and distance of the landmark, m
+  double PH00, PH01;           ///< P H^T, the covariance of the landmark's place and its sight
+  double PH10, PH11;
+  double S00, S01, S11, det;   ///< S = H P H^T + R, and its determinant
+  double squared_distance;     ///< Mahalanobis
+
+  /// Without log 2 pi.
+  double log_density() const { return -0.5 * (squared_distance + std::log(det)); }
+  Eigen::Vector2d innovation() const { return {range, bearing}; }
+  Eigen::Matrix2d S_inverse() const { return (Eigen::Matrix2d() << S11, -S01, -S01, S00).finished() / det; }
+  Eigen::Matrix<double, 2, 3> by_pose() const { return (Eigen::Matrix<double, 2, 3>() << -ux, -uy, 0.0, uy / r, -ux / r, -1.0).finished(); }
 };
 
-/// How probable sights are together, and nothing else: the innermost loop of a swarm, in closed form and with one logarithm for all.
+inline SightFit fit_sight(const Pose2& T_map_body, const Landmark& landmark, const RangeBearing& seen, const RangeBearingNoise& noise) {
+  SightFit fit;
+  const double dx = landmark.mean_m.x() - T_map_body.x, dy = landmark.mean_m.y() - T_map_body.y;
+  fit.r = std::sqrt(std::max(dx * dx + dy * dy, 1e-12));
+  fit.ux = dx / fit.r;
+  fit.uy = dy / fit.r;
+  fit.range = seen.range_m - fit.r;
+  fit.bearing = wrap_angle(seen.bearing_rad + T_map_body.yaw - std::atan2(dy, dx));
+  const double nx = -fit.uy / fit.r, ny = fit.ux / fit.r;
+  const Eigen::Matrix2d& P = landmark.covariance;
+  fit.PH00 = P(0, 0) * fit.ux + P(0, 1) * fit.uy;
+  fit.PH10 = P(0, 1) * fit.ux + P(1, 1) * fit.uy;
+  fit.PH01 = P(0, 0) * nx + P(0, 1) * ny;
+  fit.PH11 = P(0, 1) * nx + P(1, 1) * ny;
+  fit.S00 = fit.ux * fit.PH00 + fit.uy * fit.PH10 + noise.range_std_m * noise.range_std_m;
+  fit.S01 = fit.ux * fit.PH01 + fit.uy * fit.PH11;
+  fit.S11 = nx * fit.PH01 + ny * fit.PH11 + noise.bearing_std_rad * noise.bearing_std_rad;
+  fit.det = fit.S00 * fit.S11 - fit.S01 * fit.S01;
+  fit.squared_distance = (fit.S11 * fit.range * fit.range - 2.0 * fit.S01 * fit.range * fit.bearing + fit.S00 * fit.bearing * fit.bearing) / fit.det;
+  return fit;
+}
+
+/// How probable sights are together, with one logarithm for all.
 class SightLikelihood {
  public:
-  SightLikelihood(const Pose2& T_map_body, const RangeBearingNoise& noise)
-      : T_map_body_(T_map_body), range_variance_(noise.range_std_m * noise.range_std_m), bearing_variance_(noise.bearing_std_rad * noise.bearing_std_rad) {}
+  SightLikelihood(const Pose2& T_map_body, const RangeBearingNoise& noise) : T_map_body_(T_map_body), noise_(noise) {}
 
   void add(const Landmark& landmark, const RangeBearing& seen) {
-    const double dx = landmark.mean_m.x() - T_map_body_.x, dy = landmark.mean_m.y() - T_map_body_.y;
-    const double q = std::max(dx * dx + dy * dy, 1e-12), r = std::sqrt(q), u = dx / r, v = dy / r;
-    const double a = landmark.covariance(0, 0), b = landmark.covariance(0, 1), c = landmark.covariance(1, 1);
-    const double S11 = u * u * a + 2.0 * u * v * b + v * v * c + range_variance_;
-    const double S12 = (u * v * (c - a) + (u * u - v * v) * b) / r;
-    const double S22 = (v * v * a - 2.0 * u * v * b + u * u * c) / q + bearing_variance_;
-    const double det = S11 * S22 - S12 * S12;
-    const double range = seen.range_m - r, bearing = wrap_angle(seen.bearing_rad + T_map_body_.yaw - std::atan2(dy, dx));
-    squared_distance_ += (S22 * range * range - 2.0 * S12 * range * bearing + S11 * bearing * bearing) / det;
-    determinants_ *= det;
+    const SightFit fit = fit_sight(T_map_body_, landmark, seen, noise_);
+    squared_distance_ += fit.squared_distance;
+    determinants_ *= fit.det;
     if (determinants_ < 1e-200) flush();
   }
 
@@ -57,20 +78,9 @@ class SightLikelihood {
   }
 
   Pose2 T_map_body_;
-  double range_variance_, bearing_variance_;
+  RangeBearingNoise noise_;
   double squared_distance_ = 0.0, determinants_ = 1.0, log_determinants_ = 0.0;
 };
-
-/// Inline, since a caller seldom uses all of it: a step of FastSLAM takes an eighth less time.
-inline SightFit fit_sight(const Pose2& T_map_body, const Landmark& landmark, const RangeBearing& seen, const RangeBearingNoise& noise) {
-  SightFit fit{.predicted = predict_sight(T_map_body, landmark.mean_m), .innovation = {}, .S_inverse = {}};
-  fit.innovation = innovation_of(seen, fit.predicted);
-  const Eigen::Matrix2d S = fit.predicted.by_landmark * landmark.covariance * fit.predicted.by_landmark.transpose() + noise.covariance();
-  fit.S_inverse = S.inverse();
-  fit.squared_distance = fit.innovation.dot(fit.S_inverse * fit.innovation);
-  fit.log_density = -0.5 * (fit.squared_distance + std::log(S.determinant()));
-  return fit;
-}
 
 /// Landmarks of one particle, each with an extended Kalman filter of its own (FastSLAM 1.0: Montemerlo et al., AAAI 2002).
 class LandmarkMap {

@@ -1,5 +1,6 @@
 #include "slam/landmarks/landmark_map.h"
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -61,7 +62,7 @@ TEST(FitSight, OfACertainLandmarkTwoDeviationsOffInBothIsEight) {
   const Landmark landmark{.mean_m = {5.0, 0.0}, .covariance = Eigen::Matrix2d::Zero(), .is_seen = true};
   const SightFit fit = fit_sight({}, landmark, {.range_m = 6.0, .bearing_rad = 0.2}, kNoise);
   EXPECT_NEAR(fit.squared_distance, 8.0, kExactTol);
-  EXPECT_NEAR(fit.log_density, -4.0 - std::log(0.5 * 0.1), kExactTol);
+  EXPECT_NEAR(fit.log_density(), -4.0 - std::log(0.5 * 0.1), kExactTol);
 }
 
 // An uncertain one: S = 0.75 + 0.25 = 1 along, and (0.48 + 0.16) / 16 = 0.04 across, at 4 m.
@@ -69,15 +70,43 @@ TEST(FitSight, AddsTheLandmarksVarianceToTheSensors) {
   const Landmark landmark{.mean_m = {4.0, 0.0}, .covariance = diagonal(0.75, 0.48), .is_seen = true};
   const SightFit fit = fit_sight({}, landmark, {.range_m = 6.0, .bearing_rad = 0.2}, kNoise);
   EXPECT_NEAR(fit.squared_distance, 4.0 + 1.0, kExactTol);
-  EXPECT_NEAR(fit.log_density, -2.5 - 0.5 * std::log(0.04), kExactTol);
+  EXPECT_NEAR(fit.log_density(), -2.5 - 0.5 * std::log(0.04), kExactTol);
 }
 
 TEST(LandmarkMap, UpdateGivesTheSightsLogDensityAndZeroForANewLandmark) {
   LandmarkMap map;
   EXPECT_EQ(map.update(0, {}, {.range_m = 4.0, .bearing_rad = 0.0}, kNoise), 0.0);
   const RangeBearing again{.range_m = 4.6, .bearing_rad = -0.1};
-  const double expected = fit_sight({}, map.at(0), again, kNoise).log_density;
+  const double expected = fit_sight({}, map.at(0), again, kNoise).log_density();
   EXPECT_EQ(map.update(0, {}, again, kNoise), expected);
+}
+
+// The textbook's matrices, H P H^T + R and (I - K H) P, for landmarks and poses all about.
+TEST(LandmarkMap, ClosedFormIsTheMatrixForm) {
+  const RandomStream stream(1, "test/closed_form");
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const auto place = stream.normals(i, 0), shape = stream.normals(i, 1), error = stream.normals(i, 2);
+    const Pose2 pose{error[2], error[3], 3.0 * std::tanh(place[2])};
+    const Eigen::Matrix2d root = (Eigen::Matrix2d() << 0.4 * shape[0], 0.3 * shape[1], 0.2 * shape[2], 0.5 * shape[3]).finished();
+    LandmarkMap map;
+    map.landmarks().push_back({.mean_m = {5.0 * place[0], 5.0 * place[1]}, .covariance = root * root.transpose(), .is_seen = true});
+    const Landmark before = map.at(0);
+    const PredictedSight predicted = predict_sight(pose, before.mean_m);
+    const RangeBearing seen{.range_m = predicted.sight.x() + 0.3 * error[0], .bearing_rad = wrap_angle(predicted.sight.y() + 0.1 * error[1])};
+
+    const Eigen::Matrix2d& H = predicted.by_landmark;
+    const Eigen::Matrix2d S = H * before.covariance * H.transpose() + kNoise.covariance(), K = before.covariance * H.transpose() * S.inverse();
+    const Eigen::Vector2d innovation = innovation_of(seen, predicted);
+    const SightFit fit = fit_sight(pose, before, seen, kNoise);
+    EXPECT_LT((fit.S_inverse() * S - Eigen::Matrix2d::Identity()).norm(), 1e-9) << i;
+    EXPECT_LT((fit.by_pose() - predicted.by_pose).norm(), kExactTol) << i;
+    EXPECT_NEAR(fit.squared_distance, innovation.dot(S.inverse() * innovation), 1e-9) << i;
+
+    map.update(0, pose, seen, kNoise);
+    EXPECT_LT((map.at(0).mean_m - (before.mean_m + K * innovation)).norm(), 1e-9) << i;
+    EXPECT_LT((map.at(0).covariance - (before.covariance - K * H * before.covariance)).norm(), 1e-9) << i;
+    EXPECT_EQ(map.at(0).covariance(0, 1), map.at(0).covariance(1, 0)) << i;
+  }
 }
 
 // Sharp enough that the product of 1,000 determinants, 1e-6 each or less, is under what a double can be.
@@ -94,7 +123,7 @@ TEST(SightLikelihood, OfAThousandSightsIsTheSumOfTheFits) {
     const Eigen::Vector2d sight = predict_sight(pose, landmark.mean_m).sight;  // in all directions, across the wrap too
     const RangeBearing seen{.range_m = sight.x() + 0.05 * error[0], .bearing_rad = wrap_angle(sight.y() + 0.02 * error[1])};
     likelihood.add(landmark, seen);
-    sum += fit_sight(pose, landmark, seen, noise).log_density;
+    sum += fit_sight(pose, landmark, seen, noise).log_density();
   }
   EXPECT_NEAR(likelihood.log_density(), sum, 1e-10 * std::abs(sum));
 }
