@@ -8,7 +8,6 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "core/random.h"
@@ -42,7 +41,7 @@ class BareLoop {
       const double v = control.x() + world_.motion.std.x() * random.normal(), w = control.y() + world_.motion.std.y() * random.normal();
       x_[i] += v * dt * std::cos(yaw_[i] + 0.5 * w * dt);
       y_[i] += v * dt * std::sin(yaw_[i] + 0.5 * w * dt);
-      yaw_[i] = std::remainder(yaw_[i] + w * dt, 2.0 * std::numbers::pi);
+      yaw_[i] = wrap_angle(yaw_[i] + w * dt);
       for (const RangeBearing& sight : seen) {
         const std::size_t k = i * landmarks_ + static_cast<std::size_t>(sight.landmark);
         is_seen_[k] ? correct(i, k, sight, R0, R1) : begin(i, k, sight, R0, R1);
@@ -55,7 +54,7 @@ class BareLoop {
  private:
   void correct(std::size_t i, std::size_t k, const RangeBearing& sight, double R0, double R1) {
     const double dx = mx_[k] - x_[i], dy = my_[k] - y_[i], q = dx * dx + dy * dy, r = std::sqrt(q);
-    const double nu0 = sight.range_m - r, nu1 = std::remainder(sight.bearing_rad - (std::atan2(dy, dx) - yaw_[i]), 2.0 * std::numbers::pi);
+    const double nu0 = sight.range_m - r, nu1 = wrap_angle(sight.bearing_rad + yaw_[i] - std::atan2(dy, dx));
     const double h00 = dx / r, h01 = dy / r, h10 = -dy / q, h11 = dx / q;
     const double a00 = pxx_[k] * h00 + pxy_[k] * h01, a01 = pxx_[k] * h10 + pxy_[k] * h11;  // P H^T
     const double a10 = pxy_[k] * h00 + pyy_[k] * h01, a11 = pxy_[k] * h10 + pyy_[k] * h11;

@@ -35,6 +35,17 @@ TEST(WrapAngle, KeepsWhatLiesInTheHalfOpenTurnAndFoldsTheRest) {
   EXPECT_DOUBLE_EQ(wrap_angle(0.0), 0.0);
 }
 
+// To the bit: who adds two wrapped angles must not see which way was taken.
+TEST(WrapAngle, IsTheRemainderOfAWholeTurnFromMinusTwelveToTwelve) {
+  for (int i = -12'000; i <= 12'000; ++i) {
+    const double angle = 0.001 * i;
+    EXPECT_EQ(wrap_angle(angle), std::remainder(angle, 2.0 * kPi)) << angle;
+  }
+  for (const double angle : {std::nextafter(kPi, 4.0), std::nextafter(-kPi, -4.0), std::nextafter(kPi, 0.0)}) {
+    EXPECT_EQ(wrap_angle(angle), std::remainder(angle, 2.0 * kPi)) << angle;
+  }
+}
+
 TEST(Pose2, AQuarterTurnTakesForwardToLeft) {
   const Pose2 T_map_body{10.0, 20.0, kPi / 2.0};
   EXPECT_THAT((T_map_body * Eigen::Vector2d(1.0, 0.0)), VectorNear(Eigen::Vector2d(10.0, 21.0), kExactTol));

@@ -17,8 +17,10 @@ class FastSlam::Step {
   Step(FastSlam& slam, const Control& control, const std::vector<RangeBearing>& seen) : slam_(slam), control_(control), seen_(seen) {
     for (Particle& particle : slam_.particles_) {
       particle.T_map_before = particle.T_map_body;
-      const Pose2 expected = slam_.motion_.move_off(particle.T_map_before, control_, particle.bias.mean);
-      matches_.push_back(associate(particle.map, expected, seen_, slam_.noise_, slam_.settings_.association));
+      if (matches_.empty() || !slam_.settings_.association.is_known) {
+        const Pose2 expected = slam_.motion_.move_off(particle.T_map_before, control_, particle.bias.mean);
+        matches_.push_back(associate(particle.map, expected, seen_, slam_.noise_, slam_.settings_.association));
+      }
       if (slam_.settings_.draws_from_observation) proposals_.push_back(slam_.propose(particle, control_, seen_, matches_.back()));
     }
   }
@@ -30,12 +32,12 @@ class FastSlam::Step {
     const Eigen::Vector2d unit(first, random.normal());
     if (slam_.settings_.draws_from_observation) return proposals_[i].mean + proposals_[i].root * unit;
     const OdometryBias& bias = slam_.particles_[i].bias;
-    return bias.mean + bias.increment_covariance().llt().matrixL() * unit;
+    return bias.mean + bias.increment_root() * unit;
   }
 
   double log_fitness(std::size_t i, const Position& position) const {
     const Particle& particle = slam_.particles_[i];
-    const double likelihood = slam_.log_likelihood(particle, pose_at(particle, position), seen_, matches_[i]);
+    const double likelihood = slam_.log_likelihood(particle, pose_at(particle, position), seen_, matches(i));
     return slam_.settings_.prior_share > 0.0 ? likelihood + slam_.settings_.prior_share * log_prior(particle, position) : likelihood;
   }
 
@@ -44,8 +46,9 @@ class FastSlam::Step {
     particle.T_map_body = pose_at(particle, position);
     particle.increment = position;
     double log_weight = 0.0;
+    const std::vector<int>& numbers = matches(i);
     for (std::size_t k = 0; k < seen_.size(); ++k) {
-      if (matches_[i][k] != kUnmatched) log_weight += particle.map.update(matches_[i][k], particle.T_map_body, seen_[k], slam_.noise_);
+      if (numbers[k] != kUnmatched) log_weight += particle.map.update(numbers[k], particle.T_map_body, seen_[k], slam_.noise_);
     }
     if (slam_.settings_.draws_from_observation) {
       const Eigen::Vector2d unit = proposals_[i].root.triangularView<Eigen::Lower>().solve(position - proposals_[i].mean);
@@ -58,6 +61,8 @@ class FastSlam::Step {
   void reproduce(const std::vector<Offspring>& offspring) { slam_.reproduce(control_, offspring); }
 
  private:
+  const std::vector<int>& matches(std::size_t i) const { return matches_[matches_.size() == 1 ? 0 : i]; }
+
   Pose2 pose_at(const Particle& particle, const Position& position) const { return slam_.motion_.move_off(particle.T_map_before, control_, position); }
 
   static double log_prior(const Particle& particle, const Position& position) {
@@ -69,7 +74,7 @@ class FastSlam::Step {
   FastSlam& slam_;
   const Control& control_;
   const std::vector<RangeBearing>& seen_;
-  std::vector<std::vector<int>> matches_;  ///< [particle][sight]
+  std::vector<std::vector<int>> matches_;  ///< [particle][sight], of one particle for all where the association is known
   std::vector<Proposal> proposals_;        ///< [particle], for 2.0
 };
 

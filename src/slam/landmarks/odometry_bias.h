@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
+#include <cmath>
+
 namespace patrol::slam {
 
 /// What is known of a lasting error of odometry before anything is seen.
@@ -21,6 +23,12 @@ struct OdometryBias {
 
   /// Of the next increment: bias and noise of unit variance.
   Eigen::Matrix2d increment_covariance() const { return covariance + Eigen::Matrix2d::Identity(); }
+
+  /// Lower triangular, root root^T is the covariance (Cholesky).
+  Eigen::Matrix2d increment_root() const {
+    const double l00 = std::sqrt(1.0 + covariance(0, 0)), l10 = covariance(1, 0) / l00;
+    return (Eigen::Matrix2d() << l00, 0.0, l10, std::sqrt(1.0 + covariance(1, 1) - l10 * l10)).finished();
+  }
 
   /// An increment xi = bias + noise was taken.
   void learn(const Eigen::Vector2d& increment, const OdometryBiasSettings& settings) {

@@ -43,6 +43,14 @@ TEST(OdometryBias, IncrementsVarianceIsOneMoreThanTheBiass) {
   EXPECT_LT((OdometryBias({.std = 2.0}).increment_covariance() - 5.0 * Eigen::Matrix2d::Identity()).norm(), kExactTol);
 }
 
+TEST(OdometryBias, RootTimesItsTransposeIsTheIncrementsCovariance) {
+  OdometryBias bias;
+  bias.covariance << 0.7, -0.3, -0.3, 0.4;
+  const Eigen::Matrix2d root = bias.increment_root();
+  EXPECT_LT((root * root.transpose() - bias.increment_covariance()).norm(), kExactTol);
+  EXPECT_EQ(root(0, 1), 0.0);
+}
+
 // A bias that wanders: P = P / (P + 1) + q^2 stands still at P = (q^2 + q sqrt(q^2 + 4)) / 2; here q = 0.1: 0.105125.
 TEST(OdometryBias, ThatWandersATenthEachStepIsKnownToTheSteadyStatesVariance) {
   const OdometryBiasSettings settings{.std = 2.0, .walk_std = 0.1};
