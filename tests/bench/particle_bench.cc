@@ -3,7 +3,7 @@
 // Both go once round the same circle with the same odometry and sights, N particles and eight landmarks of which all are seen. The reference is a bare loop on
 // plain arrays as anybody would write it: for every particle draw two normals from the same stream, move, and for every landmark predict range and
 // bearing, add up the logarithm of the Gaussian likelihood, and update mean and covariance of the landmark. The subject is the whole step: also weights,
-// estimate, association and resampling. `ratio` is to be at most 1.3, and is 1.6; `particles_per_second` is to be the same for all N.
+// estimate, association and resampling. `ratio` is to be at most 1.3; `particles_per_second` is to be the same for all N.
 
 #include <benchmark/benchmark.h>
 
