@@ -1,0 +1,119 @@
+#include "slam/graph/branch_and_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace patrol::slam {
+namespace {
+
+/// The points turned, in cells of the finest level.
+struct TurnedPoints {
+  double yaw_rad = 0.0;
+  std::vector<Cell> cells;
+};
+
+/// A square of 2^level x 2^level shifts, in cells from the window's lower left.
+struct Candidate {
+  int turn = 0;
+  int col = 0, row = 0;
+  int bound = 0;  ///< sum over the points
+};
+
+class Search {
+ public:
+  Search(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>& points, const SearchWindow& window, int best_sum,
+         const std::optional<SearchExclusion>& exclusion)
+      : map_(map), exclusion_(exclusion), best_sum_(best_sum), cell_m_(map.resolution_m()) {
+    double far_m = cell_m_;
+    for (const Eigen::Vector2d& point : points) far_m = std::max(far_m, point.norm());
+    const double step_rad = cell_m_ / far_m;
+    const int turns = static_cast<int>(std::ceil(window.half_angle_rad / step_rad));
+    num_steps_ = 2 * static_cast<int>(std::ceil(window.half_width_m / cell_m_)) + 1;
+    corner_m_ = window.T_map_center.position() - Eigen::Vector2d::Constant(0.5 * (num_steps_ - 1) * cell_m_);
+    for (int turn = -turns; turn <= turns; ++turn) {
+      TurnedPoints turned{.yaw_rad = wrap_angle(window.T_map_center.yaw + turn * step_rad), .cells = {}};
+      const Eigen::Matrix2d R = Eigen::Rotation2Dd(turned.yaw_rad).toRotationMatrix();
+      for (const Eigen::Vector2d& point : points) {
+        const Eigen::Vector2d cell = (R * point + corner_m_) / cell_m_;
+        turned.cells.push_back({static_cast<int>(std::floor(cell.x())), static_cast<int>(std::floor(cell.y()))});
+      }
+      turned_.push_back(std::move(turned));
+    }
+  }
+
+  std::optional<SearchResult> run() {
+    const int top = map_.num_levels() - 1, step = 1 << top;
+    std::vector<Candidate> candidates;
+    for (int turn = 0; turn < static_cast<int>(turned_.size()); ++turn) {
+      for (int row = 0; row < num_steps_; row += step) {
+        for (int col = 0; col < num_steps_; col += step) add(turn, col, row, top, candidates);
+      }
+    }
+    descend(candidates, top);
+    if (!best_) return std::nullopt;
+    return SearchResult{.T_map_points = pose_of(*best_), .score = best_sum_ / (static_cast<double>(LikelihoodPyramid::kOnSurface) * static_cast<double>(turned_[0].cells.size()))};
+  }
+
+ private:
+  void add(int turn, int col, int row, int level, std::vector<Candidate>& candidates) const {
+    int sum = 0;
+    for (const Cell& cell : turned_[static_cast<std::size_t>(turn)].cells) sum += map_.value(level, cell.col + col, cell.row + row);
+    if (sum > best_sum_) candidates.push_back({turn, col, row, sum});
+  }
+
+  void descend(std::vector<Candidate>& candidates, int level) {
+    std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.bound > b.bound; });
+    for (const Candidate& candidate : candidates) {
+      if (candidate.bound <= best_sum_) return;
+      if (is_excluded(candidate, level)) continue;
+      if (level == 0) {
+        best_ = candidate;
+        best_sum_ = candidate.bound;
+        return;
+      }
+      const int half = 1 << (level - 1);
+      std::vector<Candidate> children;
+      for (const int row : {candidate.row, candidate.row + half}) {
+        for (const int col : {candidate.col, candidate.col + half}) {
+          if (row < num_steps_ && col < num_steps_) add(candidate.turn, col, row, level - 1, children);
+        }
+      }
+      descend(children, level - 1);
+    }
+  }
+
+  Pose2 pose_of(const Candidate& candidate) const {
+    return {corner_m_.x() + candidate.col * cell_m_, corner_m_.y() + candidate.row * cell_m_, turned_[static_cast<std::size_t>(candidate.turn)].yaw_rad};
+  }
+
+  /// With all its shifts.
+  bool is_excluded(const Candidate& candidate, int level) const {
+    if (!exclusion_) return false;
+    const Pose2 pose = pose_of(candidate);
+    const double half_m = 0.5 * ((1 << level) - 1) * cell_m_;
+    const Eigen::Vector2d offset = pose.position() + Eigen::Vector2d::Constant(half_m) - exclusion_->T_map_center.position();
+    return (offset.cwiseAbs() + Eigen::Vector2d::Constant(half_m)).norm() <= exclusion_->radius_m &&
+           std::abs(wrap_angle(pose.yaw - exclusion_->T_map_center.yaw)) <= exclusion_->angle_rad;
+  }
+
+  const LikelihoodPyramid& map_;
+  std::optional<SearchExclusion> exclusion_;
+  int best_sum_;
+  double cell_m_;
+  int num_steps_ = 1;
+  Eigen::Vector2d corner_m_;
+  std::vector<TurnedPoints> turned_;
+  std::optional<Candidate> best_;
+};
+
+}  // namespace
+
+std::optional<SearchResult> search_window(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>& points, const SearchWindow& window,
+                                          double min_score, const std::optional<SearchExclusion>& exclusion) {
+  if (points.empty()) return std::nullopt;
+  const int min_sum = static_cast<int>(std::floor(min_score * LikelihoodPyramid::kOnSurface * static_cast<double>(points.size())));
+  return Search(map, points, window, min_sum, exclusion).run();
+}
+
+}  // namespace patrol::slam

@@ -1,0 +1,263 @@
+#include "slam/graph/graph_slam.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "slam/map_rendering.h"
+
+namespace patrol::slam {
+namespace {
+
+/// Of x, y, yaw: with the position's axes turned.
+Eigen::Matrix3d turned(const Eigen::Matrix3d& matrix, double yaw_rad) {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  R.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(yaw_rad).toRotationMatrix();
+  return R * matrix * R.transpose();
+}
+
+/// The covariance of T_a_b, given that of T_b_a.
+PoseGaussian inverse_of(const PoseGaussian& T_b_a) {
+  const Pose2 inverse = T_b_a.mean.inverse();
+  const double c = std::cos(T_b_a.mean.yaw), s = std::sin(T_b_a.mean.yaw);
+  const Eigen::Matrix3d J = (Eigen::Matrix3d() << -c, -s, inverse.y, s, -c, -inverse.x, 0.0, 0.0, -1.0).finished();
+  return {.mean = inverse, .covariance = J * T_b_a.covariance * J.transpose()};
+}
+
+}  // namespace
+
+GraphSlam::GraphSlam(const GraphSlamSettings& settings)
+    : settings_(settings), tracker_(settings.tracking), cache_(static_cast<std::size_t>(settings.cached_submaps)) {
+  validate(settings, "slam");
+}
+
+Pose2 GraphSlam::update(const LevelScan& scan, const Pose2& T_odom_body) {
+  const TrackedScan tracked = tracker_.update(scan, T_odom_body);
+  if (tracked.is_keyframe) add_keyframe(scan, tracked);
+  path_.push_back({static_cast<int>(keyframes_.size()) - 1, tracked.T_local_body});
+  return graph_.T_map_node.back() * (keyframes_.back().T_local_body.inverse() * tracked.T_local_body);
+}
+
+void GraphSlam::add_keyframe(const LevelScan& scan, const TrackedScan& tracked) {
+  const int node = static_cast<int>(keyframes_.size());
+  if (node == 0) {
+    graph_.T_map_node.push_back(tracked.T_local_body);
+  } else {
+    const Keyframe& before = keyframes_.back();
+    const Pose2 T_before_node = before.T_local_body.inverse() * tracked.T_local_body;
+    graph_.T_map_node.push_back(graph_.T_map_node.back() * T_before_node);
+    const PoseGaussian motion = predict_motion({}, T_before_node, to_seconds(scan.stamp - before.scan.stamp), settings_.tracking.motion);
+    graph_.edges.push_back({.from = node - 1, .to = node, .T_from_to = T_before_node, .information = motion.covariance.inverse(), .kind = PoseGraphEdge::Kind::kOdometry});
+    const int first = submaps_[static_cast<std::size_t>(tracked.submap)].first;
+    if (tracked.matched_share > 0.0 && first != node) {
+      const Pose2& T_local_first = keyframes_[static_cast<std::size_t>(first)].T_local_body;
+      graph_.edges.push_back({.from = first,
+                              .to = node,
+                              .T_from_to = T_local_first.inverse() * tracked.T_local_body,
+                              .information = edge_information(tracked.match_information, T_local_first),
+                              .kind = PoseGraphEdge::Kind::kMatch});
+    }
+  }
+  keyframes_.push_back({scan, tracked.T_local_body});
+  if (tracked.is_submap_start) submaps_.push_back({.first = node, .last = node});
+  for (std::size_t s = static_cast<std::size_t>(tracked.submap); s < submaps_.size(); ++s) submaps_[s].last = node;
+  while (finished_submaps_ < tracked.submap) close_loops(finished_submaps_++);
+}
+
+Eigen::Matrix3d GraphSlam::edge_information(const Eigen::Matrix3d& match_information, const Pose2& T_map_from) const {
+  const Eigen::Matrix3d in_from = turned(settings_.tracking.likelihood_gain * match_information, -T_map_from.yaw);
+  const Eigen::Matrix3d loose = Eigen::Vector3d(1e-2, 1e-2, 1e-2).asDiagonal();  // 10 m and 10 rad, where the match says nothing
+  const Eigen::Matrix3d systematic =
+      Eigen::Vector3d(settings_.edge_std_m * settings_.edge_std_m, settings_.edge_std_m * settings_.edge_std_m, settings_.edge_std_rad * settings_.edge_std_rad).asDiagonal();
+  const Eigen::Matrix3d information = ((in_from + loose).inverse() + systematic).inverse();
+  return 0.5 * (information + information.transpose());
+}
+
+Eigen::Vector2d GraphSlam::middle_of(int submap) const {
+  const Submap& range = submaps_[static_cast<std::size_t>(submap)];
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (int k = range.first; k <= range.last; ++k) sum += graph_.T_map_node[static_cast<std::size_t>(k)].position();
+  return sum / (range.last - range.first + 1);
+}
+
+// Dijkstra over the submaps, by the way that leaves least uncertain (Olson, "Robust and efficient robotic mapping", 2008, section 4.2).
+std::vector<PoseGaussian> GraphSlam::positions_around(int submap) const {
+  struct Way {
+    int to;
+    Eigen::Matrix3d covariance;  ///< in the frame of where it starts
+  };
+  const auto num = static_cast<std::size_t>(finished_submaps_);
+  std::vector<std::vector<Way>> ways(num);
+  for (int s = 0; s + 1 < finished_submaps_; ++s) {
+    double length_m = 0.0, turn_rad = 0.0;
+    for (int k = submaps_[static_cast<std::size_t>(s)].first; k < submaps_[static_cast<std::size_t>(s) + 1].first; ++k) {
+      const Pose2 step = keyframes_[static_cast<std::size_t>(k)].T_local_body.inverse() * keyframes_[static_cast<std::size_t>(k) + 1].T_local_body;
+      length_m += step.position().norm();
+      turn_rad += std::abs(step.yaw);
+    }
+    const double std_m = settings_.drift_std_m_per_m * length_m, std_rad = settings_.drift_std_rad_per_m * length_m + settings_.drift_std_rad_per_rad * turn_rad;
+    const Eigen::Matrix3d covariance = Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();
+    ways[static_cast<std::size_t>(s)].push_back({s + 1, covariance});
+    ways[static_cast<std::size_t>(s) + 1].push_back({s, covariance});
+  }
+  for (const LoopEdge& loop : loops_) {
+    const Eigen::Matrix3d covariance = graph_.edges[static_cast<std::size_t>(loop.edge)].information.inverse();
+    ways[static_cast<std::size_t>(loop.target)].push_back({loop.source, covariance});
+    ways[static_cast<std::size_t>(loop.source)].push_back({loop.target, covariance});
+  }
+
+  const auto uncertainty = [](const Eigen::Matrix3d& covariance) { return covariance(0, 0) + covariance(1, 1) + 100.0 * covariance(2, 2); };
+  std::vector<PoseGaussian> found(num);
+  std::vector<double> cost(num, std::numeric_limits<double>::infinity());
+  using Entry = std::pair<double, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  const Pose2 T_submap_map = T_map_submap(submap).inverse();
+  cost[static_cast<std::size_t>(submap)] = 0.0;
+  found[static_cast<std::size_t>(submap)] = {};
+  queue.push({0.0, submap});
+  while (!queue.empty()) {
+    const auto [known, at] = queue.top();
+    queue.pop();
+    if (known > cost[static_cast<std::size_t>(at)]) continue;
+    const PoseGaussian here = found[static_cast<std::size_t>(at)];
+    for (const Way& way : ways[static_cast<std::size_t>(at)]) {
+      const Pose2 there = T_submap_map * T_map_submap(way.to);
+      Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
+      F(0, 2) = -(there.y - here.mean.y), F(1, 2) = there.x - here.mean.x;
+      const Eigen::Matrix3d covariance = F * here.covariance * F.transpose() + turned(way.covariance, here.mean.yaw);
+      if (uncertainty(covariance) >= cost[static_cast<std::size_t>(way.to)]) continue;
+      cost[static_cast<std::size_t>(way.to)] = uncertainty(covariance);
+      found[static_cast<std::size_t>(way.to)] = {.mean = there, .covariance = covariance};
+      queue.push({uncertainty(covariance), way.to});
+    }
+  }
+  return found;
+}
+
+void GraphSlam::close_loops(int source) {
+  const std::vector<PoseGaussian> around = positions_around(source);
+  const Eigen::Vector2d middle = middle_of(source);
+  std::vector<std::pair<double, int>> candidates;  // by how far they are
+  for (int target = 0; target < source; ++target) {
+    if (submaps_[static_cast<std::size_t>(target)].last >= submaps_[static_cast<std::size_t>(source)].first) continue;  // neighbours in time
+    const Eigen::Matrix3d& covariance = around[static_cast<std::size_t>(target)].covariance;
+    const double reach_m = settings_.max_loop_distance_m + 2.0 * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
+    const double distance_m = (middle_of(target) - middle).norm();
+    if (distance_m < reach_m) candidates.push_back({distance_m, target});
+  }
+  std::sort(candidates.begin(), candidates.end());
+  if (candidates.size() > static_cast<std::size_t>(settings_.max_loop_candidates)) candidates.resize(static_cast<std::size_t>(settings_.max_loop_candidates));
+  bool has_closed = false;
+  for (const auto& [distance_m, target] : candidates) {
+    const PoseGaussian prediction = inverse_of(around[static_cast<std::size_t>(target)]);  // of the source in the target
+    const SubmapMatchResult result = match_submaps(*drawn(target), *drawn(source), prediction, settings_.loops, settings_.tracking.matching);
+    ++loop_counts_.searched;
+    switch (result.failure) {
+      case MatchFailure::kNone: ++loop_counts_.closed; break;
+      case MatchFailure::kNotFound: ++loop_counts_.not_found; break;
+      case MatchFailure::kAmbiguous: ++loop_counts_.ambiguous; break;
+      case MatchFailure::kNoOverlap: ++loop_counts_.no_overlap; break;
+      case MatchFailure::kMismatch: ++loop_counts_.mismatched; break;
+    }
+    if (!result.match) continue;
+    has_closed = true;
+    loops_.push_back({.target = target, .source = source, .edge = static_cast<int>(graph_.edges.size())});
+    graph_.edges.push_back({.from = submaps_[static_cast<std::size_t>(target)].first,
+                            .to = submaps_[static_cast<std::size_t>(source)].first,
+                            .T_from_to = result.match->T_target_source,
+                            .information = edge_information(result.match->information, {}),
+                            .kind = PoseGraphEdge::Kind::kLoop});
+  }
+  if (has_closed) solve(graph_, settings_.solver);
+}
+
+std::shared_ptr<const DrawnSubmap> GraphSlam::drawn(int submap) {
+  return cache_.get(submap, [&] {
+    return std::make_shared<const DrawnSubmap>(submaps_[static_cast<std::size_t>(submap)], keyframes_, graph_.T_map_node, settings_.tracking.resolution_m,
+                                               settings_.tracking.integration);
+  });
+}
+
+void GraphSlam::finish() {
+  while (finished_submaps_ < static_cast<int>(submaps_.size())) close_loops(finished_submaps_++);
+  const std::size_t num_edges = graph_.edges.size();
+  for (int round = 0; round < settings_.refinement_rounds; ++round) {
+    graph_.edges.resize(num_edges);
+    cache_.clear();
+    refine();
+    solve(graph_, settings_.solver);
+  }
+}
+
+// Submap by submap, so that each is drawn once.
+void GraphSlam::refine() {
+  std::vector<std::vector<int>> keyframes_of(submaps_.size());
+  std::vector<Eigen::Vector2d> middles;
+  for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) middles.push_back(middle_of(s));
+  for (int k = 0; k < static_cast<int>(keyframes_.size()); ++k) {
+    std::vector<std::pair<double, int>> near;
+    for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) {
+      const Submap& range = submaps_[static_cast<std::size_t>(s)];
+      if (k >= range.first && k <= range.last) continue;
+      const double distance_m = (middles[static_cast<std::size_t>(s)] - graph_.T_map_node[static_cast<std::size_t>(k)].position()).norm();
+      if (distance_m < settings_.max_loop_distance_m) near.push_back({distance_m, s});
+    }
+    std::sort(near.begin(), near.end());
+    for (std::size_t i = 0; i < std::min(near.size(), static_cast<std::size_t>(settings_.max_refinement_submaps)); ++i) keyframes_of[static_cast<std::size_t>(near[i].second)].push_back(k);
+  }
+  const ScanMatcherSettings& matching = settings_.tracking.matching;
+  for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) {
+    if (keyframes_of[static_cast<std::size_t>(s)].empty()) continue;
+    const std::shared_ptr<const DrawnSubmap> submap = drawn(s);
+    const Pose2 T_submap_map = T_map_submap(s).inverse();
+    for (const int k : keyframes_of[static_cast<std::size_t>(s)]) {
+      const Keyframe& keyframe = keyframes_[static_cast<std::size_t>(k)];
+      const std::vector<MatchPoint> points = select_match_points(keyframe.scan, matching.point_spacing_m, matching.max_points);
+      const Pose2 start = T_submap_map * graph_.T_map_node[static_cast<std::size_t>(k)];
+      const PoseGaussian prior{.mean = start, .covariance = Eigen::Vector3d(0.04, 0.04, 0.0025).asDiagonal()};
+      const std::optional<MatchResult> match = match_scan(submap->map(), points, start, prior, matching);
+      if (!match || match->matched_share < 0.6) continue;
+      const Pose2 moved = start.inverse() * match->T_map_body;
+      if (moved.position().norm() > settings_.max_refinement_m || std::abs(moved.yaw) > settings_.max_refinement_rad) continue;
+      graph_.edges.push_back({.from = submaps_[static_cast<std::size_t>(s)].first,
+                              .to = k,
+                              .T_from_to = match->T_map_body,
+                              .information = edge_information(match->information, {}),
+                              .kind = PoseGraphEdge::Kind::kLoop});
+    }
+  }
+}
+
+// A scan between two keyframes is moved with both, by how near it is to each.
+std::vector<Pose2> GraphSlam::path() const {
+  std::vector<Pose2> T_map_body;
+  for (std::size_t i = 0; i < path_.size(); ++i) {
+    const auto before = static_cast<std::size_t>(path_[i].keyframe);
+    const Pose2 from_before = graph_.T_map_node[before] * (keyframes_[before].T_local_body.inverse() * path_[i].T_local_body);
+    const std::size_t after = before + 1;
+    if (after >= keyframes_.size()) {
+      T_map_body.push_back(from_before);
+      continue;
+    }
+    const Pose2 from_after = graph_.T_map_node[after] * (keyframes_[after].T_local_body.inverse() * path_[i].T_local_body);
+    const auto distance = [&](std::size_t k) {
+      const Pose2 offset = keyframes_[k].T_local_body.inverse() * path_[i].T_local_body;
+      return offset.position().norm() + std::abs(offset.yaw);
+    };
+    const double to_before = distance(before), to_after = distance(after), share = to_before + to_after > 0.0 ? to_before / (to_before + to_after) : 0.0;
+    T_map_body.push_back({from_before.x + share * (from_after.x - from_before.x), from_before.y + share * (from_after.y - from_before.y),
+                          wrap_angle(from_before.yaw + share * wrap_angle(from_after.yaw - from_before.yaw))});
+  }
+  return T_map_body;
+}
+
+OccupancyGrid GraphSlam::map() const {
+  GridMap map(settings_.tracking.resolution_m, settings_.tracking.max_extent_m);
+  for (std::size_t k = 0; k < keyframes_.size(); ++k) integrate_scan(keyframes_[k].scan, graph_.T_map_node[k], settings_.tracking.integration, map);
+  return render_map(map, settings_.min_hits_occupied, settings_.min_hit_share_occupied);
+}
+
+}  // namespace patrol::slam

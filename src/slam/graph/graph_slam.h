@@ -1,0 +1,122 @@
+#pragma once
+
+#include <vector>
+
+#include "core/grid.h"
+#include "core/messages.h"
+#include "core/pose_graph.h"
+#include "core/settings.h"
+#include "slam/graph/pose_graph_solver.h"
+#include "slam/graph/scan_tracker.h"
+#include "slam/graph/submap.h"
+#include "slam/graph/submap_matcher.h"
+
+namespace patrol::slam {
+
+struct GraphSlamSettings {
+  ScanTrackerSettings tracking;
+  // Where a submap may lie, as far as the way from one to the other says.
+  double drift_std_m_per_m = 0.02;
+  double drift_std_rad_per_m = 0.004;
+  double drift_std_rad_per_rad = 0.01;
+  int max_loop_candidates = 4;       ///< for each new submap: the nearest older ones
+  double max_loop_distance_m = 10.0; ///< between the middles of their ways, beyond what is uncertain
+  SubmapMatcherSettings loops;
+  PoseGraphSolverSettings solver;
+  double edge_std_m = 0.01;          ///< of a match's systematic error, however many points it has
+  double edge_std_rad = 0.001;
+  int refinement_rounds = 2;         ///< at the end: every keyframe is matched with the submaps around it
+  int max_refinement_submaps = 3;    ///< of each keyframe
+  double max_refinement_m = 0.3;     ///< a keyframe that would move farther has been matched wrongly
+  double max_refinement_rad = 0.1;
+  int cached_submaps = 16;           ///< drawn at a time
+  int min_hits_occupied = 2;
+  double min_hit_share_occupied = 0.3;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("tracking", self.tracking);
+    visit("drift_std_m_per_m", self.drift_std_m_per_m, at_least(0.0));
+    visit("drift_std_rad_per_m", self.drift_std_rad_per_m, at_least(0.0));
+    visit("drift_std_rad_per_rad", self.drift_std_rad_per_rad, at_least(0.0));
+    visit("max_loop_candidates", self.max_loop_candidates, between(0, 1000));
+    visit("max_loop_distance_m", self.max_loop_distance_m, at_least(0.0));
+    visit("loops", self.loops);
+    visit("solver", self.solver);
+    visit("edge_std_m", self.edge_std_m, between(1e-5, 1.0));
+    visit("edge_std_rad", self.edge_std_rad, between(1e-6, 1.0));
+    visit("refinement_rounds", self.refinement_rounds, between(0, 100));
+    visit("max_refinement_submaps", self.max_refinement_submaps, between(1, 100));
+    visit("max_refinement_m", self.max_refinement_m, at_least(0.0));
+    visit("max_refinement_rad", self.max_refinement_rad, at_least(0.0));
+    visit("cached_submaps", self.cached_submaps, between(1, 10000));
+    visit("min_hits_occupied", self.min_hits_occupied, between(1, 1000));
+    visit("min_hit_share_occupied", self.min_hit_share_occupied, between(0.0, 1.0));
+  }
+};
+
+/// What became of the search for loops.
+struct LoopCounts {
+  int searched = 0, closed = 0, not_found = 0, ambiguous = 0, no_overlap = 0, mismatched = 0;
+};
+
+/// Mapping by submaps and a pose graph, of the class of Cartographer (Hess, Kohler, Rapp, Andor, "Real-time loop closure in 2D lidar SLAM", ICRA 2016).
+///
+///   every scan     follow it within a map of the last metres (scan_tracker.h)
+///   a keyframe     a node: an edge of odometry to the one before, one of its match to the submap that it was matched with
+///   a submap full  look for the older ones around it, as far as drift may have taken it (submap_matcher.h); where one fits, and fits in one way only,
+///                  an edge from submap to submap; solve the graph
+///   the end        draw all submaps anew, match every keyframe with those around it that it is no part of, solve
+///
+/// Differences, and why. Submaps are matched with submaps rather than scans with submaps: ten metres of walls are told from others where a scan is not.
+/// How far to look comes from the graph, and a second place that fits as well makes the first worthless. Matches are weighed by what they saw: along
+/// a corridor a closure ties nothing. Submaps are not kept but drawn from their scans, at the poses that are believed now; so memory grows by scans only.
+class GraphSlam {
+ public:
+  explicit GraphSlam(const GraphSlamSettings& settings);
+
+  /// Where the body is now, in map.
+  Pose2 update(const LevelScan& scan, const Pose2& T_odom_body);
+  /// No scan will follow.
+  void finish();
+
+  /// [scan]: of every scan that was given, as is believed now.
+  std::vector<Pose2> path() const;
+  const PoseGraph& graph() const { return graph_; }
+  const LoopCounts& loop_counts() const { return loop_counts_; }
+  OccupancyGrid map() const;
+
+ private:
+  /// A scan beside the keyframe before it.
+  struct TrackedPose {
+    int keyframe;
+    Pose2 T_local_body;
+  };
+
+  struct LoopEdge {
+    int target, source;  ///< submaps
+    int edge;
+  };
+
+  void add_keyframe(const LevelScan& scan, const TrackedScan& tracked);
+  void close_loops(int submap);
+  std::vector<PoseGaussian> positions_around(int submap) const;
+  std::shared_ptr<const DrawnSubmap> drawn(int submap);
+  void refine();
+  Eigen::Matrix3d edge_information(const Eigen::Matrix3d& match_information, const Pose2& T_map_from) const;
+  Pose2 T_map_submap(int submap) const { return graph_.T_map_node[static_cast<std::size_t>(submaps_[static_cast<std::size_t>(submap)].first)]; }
+  Eigen::Vector2d middle_of(int submap) const;
+
+  GraphSlamSettings settings_;
+  ScanTracker tracker_;
+  std::vector<Keyframe> keyframes_;
+  std::vector<TrackedPose> path_;
+  std::vector<Submap> submaps_;
+  int finished_submaps_ = 0;
+  PoseGraph graph_;
+  SubmapCache cache_;
+  std::vector<LoopEdge> loops_;
+  LoopCounts loop_counts_;
+};
+
+}  // namespace patrol::slam

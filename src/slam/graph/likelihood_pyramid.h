@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <vector>
+
+#include "core/grid.h"
+#include "slam/grid_map.h"
+
+namespace patrol::slam {
+
+/// How well a point fits a map, for searches over many poses: 100 on a surface, falling off around it; 0 where nothing is known; negative where beams
+/// went through, so that a wall in free space speaks against a pose. Level l has cells of 2^l of the finest and holds the largest value in its cell and
+/// its right and upper neighbours: an upper bound for a point and all its shifts by less than a cell.
+class LikelihoodPyramid {
+ public:
+  LikelihoodPyramid(const GridMap& map, double resolution_m, int num_levels);
+
+  int num_levels() const { return static_cast<int>(levels_.size()); }
+  double resolution_m() const { return resolution_m_; }
+  double cell_m(int level) const { return resolution_m_ * (1 << level); }
+
+  /// At a place in the map, in cells of the finest level from the map's origin.
+  int value(int level, int col, int row) const {
+    const Level& grid = levels_[static_cast<std::size_t>(level)];
+    const int c = (col >> level) - grid.first_col, r = (row >> level) - grid.first_row;
+    if (c < 0 || r < 0 || c >= grid.width || r >= grid.height) return 0;
+    return grid.values[static_cast<std::size_t>(r * grid.width + c)];
+  }
+
+  static constexpr int kOnSurface = 100;
+  static constexpr int kInFreeSpace = -40;
+
+ private:
+  struct Level {
+    int first_col = 0, first_row = 0, width = 0, height = 0;
+    std::vector<std::int8_t> values;  ///< [row][col]
+  };
+
+  double resolution_m_;
+  std::vector<Level> levels_;
+};
+
+}  // namespace patrol::slam

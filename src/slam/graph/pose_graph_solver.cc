@@ -1,0 +1,88 @@
+#include "slam/graph/pose_graph_solver.h"
+
+#include <Eigen/Cholesky>
+#include <ceres/ceres.h>
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace patrol::slam {
+namespace {
+
+/// L^T (R_from^T (p_to - p_from) - p, yaw_to - yaw_from - yaw), with L L^T the information.
+class EdgeCost : public ceres::SizedCostFunction<3, 3, 3> {
+ public:
+  explicit EdgeCost(const PoseGraphEdge& edge) : T_from_to_(edge.T_from_to), root_(edge.information.llt().matrixU()) {}
+
+  bool Evaluate(const double* const* poses, double* residuals, double** jacobians) const override {
+    const double *from = poses[0], *to = poses[1];
+    const double c = std::cos(from[2]), s = std::sin(from[2]), dx = to[0] - from[0], dy = to[1] - from[1];
+    const Eigen::Vector3d error(c * dx + s * dy - T_from_to_.x, -s * dx + c * dy - T_from_to_.y, wrap_angle(to[2] - from[2] - T_from_to_.yaw));
+    Eigen::Map<Eigen::Vector3d>(residuals).noalias() = root_ * error;
+    if (!jacobians) return true;
+    using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    if (jacobians[0]) {
+      Eigen::Matrix3d by_from;
+      by_from << -c, -s, -s * dx + c * dy, s, -c, -c * dx - s * dy, 0.0, 0.0, -1.0;
+      Eigen::Map<RowMajor>(jacobians[0]).noalias() = root_ * by_from;
+    }
+    if (jacobians[1]) {
+      Eigen::Matrix3d by_to;
+      by_to << c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0;
+      Eigen::Map<RowMajor>(jacobians[1]).noalias() = root_ * by_to;
+    }
+    return true;
+  }
+
+ private:
+  Pose2 T_from_to_;
+  Eigen::Matrix3d root_;
+};
+
+}  // namespace
+
+PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings) {
+  std::vector<std::array<double, 3>> poses;
+  for (const Pose2& pose : graph.T_map_node) poses.push_back({pose.x, pose.y, pose.yaw});
+  if (poses.empty() || graph.edges.empty()) return {.converged = true};
+
+  ceres::CauchyLoss kernel(settings.loop_kernel);
+  ceres::Problem::Options problem_options;
+  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // one kernel for all
+  ceres::Problem problem(problem_options);
+  const auto node = [&](int index) {
+    if (index < 0 || static_cast<std::size_t>(index) >= poses.size()) throw std::invalid_argument("an edge names node " + std::to_string(index) + ", which is not there");
+    return poses[static_cast<std::size_t>(index)].data();
+  };
+  for (const PoseGraphEdge& edge : graph.edges) {
+    problem.AddResidualBlock(new EdgeCost(edge), edge.kind == PoseGraphEdge::Kind::kLoop ? &kernel : nullptr, node(edge.from), node(edge.to));
+  }
+  if (problem.HasParameterBlock(poses[0].data())) problem.SetParameterBlockConstant(poses[0].data());
+
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.max_num_iterations = settings.max_iterations;
+  options.num_threads = 1;  // the same sums in the same order
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  for (std::size_t i = 0; i < poses.size(); ++i) graph.T_map_node[i] = {poses[i][0], poses[i][1], wrap_angle(poses[i][2])};
+  return {.initial_cost = summary.initial_cost,
+          .final_cost = summary.final_cost,
+          .iterations = summary.num_successful_steps,
+          .converged = summary.termination_type == ceres::CONVERGENCE};
+}
+
+Eigen::Vector3d edge_error(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node) {
+  const Pose2& T_map_from = T_map_node[static_cast<std::size_t>(edge.from)];
+  const Pose2 T_from_to = T_map_from.inverse() * T_map_node[static_cast<std::size_t>(edge.to)];
+  return {T_from_to.x - edge.T_from_to.x, T_from_to.y - edge.T_from_to.y, wrap_angle(T_from_to.yaw - edge.T_from_to.yaw)};
+}
+
+double squared_error(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node) {
+  const Eigen::Vector3d error = edge_error(edge, T_map_node);
+  return error.dot(edge.information * error);
+}
+
+}  // namespace patrol::slam

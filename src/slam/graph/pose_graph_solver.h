@@ -1,0 +1,35 @@
+#pragma once
+
+#include "core/pose_graph.h"
+#include "core/settings.h"
+
+namespace patrol::slam {
+
+struct PoseGraphSolverSettings {
+  int max_iterations = 50;
+  double loop_kernel = 3.0;  ///< standard deviations from which on a loop closure counts as an outlier, gradually
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("max_iterations", self.max_iterations, between(1, 1000));
+    visit("loop_kernel", self.loop_kernel, at_least(0.1));
+  }
+};
+
+struct PoseGraphSolution {
+  double initial_cost = 0.0;  ///< half the sum of squares, loop closures by their kernel
+  double final_cost = 0.0;
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Moves all nodes but the first to where the edges want them most: sparse least squares, Cauchy's kernel on loop closures.
+/// Throws std::invalid_argument when an edge names a node that is not there.
+PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings);
+
+/// What an edge lacks: (x, y, yaw) of its measurement's inverse times where the nodes stand.
+Eigen::Vector3d edge_error(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node);
+/// Its squared Mahalanobis length.
+double squared_error(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node);
+
+}  // namespace patrol::slam

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <vector>
+
+#include "core/messages.h"
+#include "slam/graph/likelihood_pyramid.h"
+#include "slam/grid_map.h"
+#include "slam/match_points.h"
+#include "slam/scan_integration.h"
+
+namespace patrol::slam {
+
+/// A scan that was kept, and where it was taken.
+struct Keyframe {
+  LevelScan scan;
+  Pose2 T_local_body;
+};
+
+/// A piece of the map, made of successive keyframes, in the frame of the first of them.
+struct Submap {
+  int first = 0;  ///< keyframe, and node of the pose graph
+  int last = 0;   ///< inclusive
+};
+
+/// A submap drawn, to be matched with.
+class DrawnSubmap {
+ public:
+  /// `T_map_node` [keyframe].
+  DrawnSubmap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, double resolution_m,
+              const ScanIntegrationSettings& integration);
+
+  const GridMap& map() const { return map_; }
+  /// The middle of the mean hits of its surfaces, on a coarser grid: what another submap is searched with.
+  const std::vector<MatchPoint>& surface_points() const { return surface_points_; }
+  const LikelihoodPyramid& pyramid() const { return pyramid_; }
+
+ private:
+  GridMap map_;
+  std::vector<MatchPoint> surface_points_;
+  LikelihoodPyramid pyramid_;
+};
+
+/// The submaps drawn last, a limited number.
+class SubmapCache {
+ public:
+  explicit SubmapCache(std::size_t capacity) : capacity_(capacity) {}
+
+  template <typename Draw>
+  std::shared_ptr<const DrawnSubmap> get(int submap, Draw&& draw);
+  void clear() { entries_.clear(); }
+
+ private:
+  struct Entry {
+    int submap;
+    std::shared_ptr<const DrawnSubmap> drawn;
+  };
+  std::size_t capacity_;
+  std::vector<Entry> entries_;  ///< the newest last
+};
+
+template <typename Draw>
+std::shared_ptr<const DrawnSubmap> SubmapCache::get(int submap, Draw&& draw) {
+  for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
+    if (entry->submap != submap) continue;
+    const Entry found = *entry;
+    entries_.erase(entry);
+    entries_.push_back(found);
+    return found.drawn;
+  }
+  if (entries_.size() >= capacity_) entries_.erase(entries_.begin());
+  entries_.push_back({submap, draw()});
+  return entries_.back().drawn;
+}
+
+}  // namespace patrol::slam
