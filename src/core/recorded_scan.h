@@ -1,0 +1,15 @@
+#pragma once
+
+#include "core/frames.h"
+#include "core/messages.h"
+
+namespace patrol {
+
+/// A scan of a recorded log, and where odometry had the robot then. The stamp is the log's own clock.
+struct RecordedScan {
+  LaserScan scan;
+  Pose2 T_odom_body;
+  Pose2 T_body_lidar;
+};
+
+}  // namespace patrol
