@@ -10,6 +10,9 @@ namespace {
 
 /// Odometry's tail: as if of Student's t with so many degrees of freedom.
 constexpr double kTail = 4.0;
+/// Who has been wrong is doubted for a while: his variance grows to what the scan said, and falls back from scan to scan.
+constexpr double kForget = 0.8;
+constexpr double kMostDoubt = 400.0;
 
 double log_student(const PoseGaussian& prediction, const Pose2& pose) {
   const Eigen::Vector3d offset = prediction.offset_of(pose);
@@ -34,7 +37,9 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
     stamp_ = scan.stamp;
   }
   const double step_s = to_seconds(scan.stamp - *stamp_);
-  const PoseGaussian prediction = predict_motion(T_local_last_, T_odom_last_.inverse() * T_odom_body, std::max(0.0, step_s), settings_.motion);
+  const Pose2 T_last_odom = T_odom_last_.inverse() * T_odom_body;
+  PoseGaussian prediction = predict_motion(T_local_last_, T_last_odom, std::max(0.0, step_s), settings_.motion);
+  prediction.covariance *= odometry_doubt_;
   Hypothesis best{.T_local_body = prediction.mean, .match = {}};
   if (older_.has_surface() && !points.empty()) {
     best = try_from(prediction.mean, points, prediction, true);
@@ -44,10 +49,14 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
       const Hypothesis other = try_from(start, points, prediction, false);
       if (other.match && (!best.match || other.log_posterior > best.log_posterior)) best = other;
     };
-    if (is_apart(as_before, prediction.mean)) consider(as_before);
+    for (const Pose2& start : {as_before, T_local_last_ * Pose2{0.0, 0.0, T_last_odom.yaw}, T_local_last_ * Pose2{-T_last_odom.x, -T_last_odom.y, T_last_odom.yaw}}) {
+      if (is_apart(start, prediction.mean) && is_apart(start, best.T_local_body)) consider(start);
+    }
     if (!best.match || best.match->matched_share < 0.6) consider(search_pose(older_, points, prediction.mean, settings_.matching));
   }
   tracked.T_local_body = best.T_local_body;
+  const Eigen::Vector3d offset = prediction.offset_of(best.T_local_body);
+  odometry_doubt_ = std::clamp(std::max(kForget * odometry_doubt_, odometry_doubt_ * offset.dot(prediction.covariance.inverse() * offset) / 3.0), 1.0, kMostDoubt);
   Eigen::Matrix3d information = prediction.covariance.inverse();
   if (best.match) {
     tracked.match_information = best.match->information;

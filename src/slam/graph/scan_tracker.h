@@ -61,7 +61,7 @@ struct TrackedScan {
 /// of half the length or more.
 ///
 /// Old wheels lie: odometry may slip, stand still or say forwards for backwards. It is believed as far as its Gaussian goes and no farther: where the
-/// motion of a moment ago, or a search all round, explains the scan so much better that odometry must have failed, that is taken.
+/// motion of a moment ago, none, the opposite, or a search all round, explains the scan so much better that odometry must have failed, that is taken.
 class ScanTracker {
  public:
   explicit ScanTracker(const ScanTrackerSettings& settings);
@@ -85,6 +85,7 @@ class ScanTracker {
   Pose2 T_local_last_, T_odom_last_, T_local_keyframe_;
   Pose2 T_last_now_;  ///< the motion from the scan before to the last
   double last_step_s_ = 0.0;
+  double odometry_doubt_ = 1.0;  ///< factor of its variance
 };
 
 }  // namespace patrol::slam
