@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "slam/local_line.h"
 
@@ -25,40 +26,52 @@ struct NormalEquations {
 
 double squared(double value) { return value * value; }
 
+/// What one point says.
+struct PointTerm {
+  std::optional<LocalLine> line;  ///< none: no surface is near
+  Eigen::Vector2d arm;            ///< from the body, turned into map
+  double residual_m = 0.0, variance = 0.0, weight = 0.0;
+  double log_likelihood = 0.0;
+};
+
+/// None where nothing is known of the map.
+std::optional<PointTerm> term_of(const GridMap& map, const MatchPoint& point, const Eigen::Matrix2d& R, const Eigen::Vector2d& t, const ScanMatcherSettings& settings) {
+  const double kernel_var = squared(settings.kernel_m);
+  PointTerm term{.line = {}, .arm = R * point.p_body};
+  const Eigen::Vector2d p_map = t + term.arm;
+  const double point_var = squared(settings.point_std_m) + squared(settings.point_angle_std_rad * point.range_m);
+  term.line = fit_local_line(map, p_map, settings.surface_radius_cells);
+  if (!term.line) {
+    const GridCell* cell = map.find(map.cell_at(p_map));
+    if (!cell || !cell->is_known()) return std::nullopt;
+    term.log_likelihood = -0.5 * kernel_var / point_var * std::log1p(squared(settings.surface_radius_cells * map.resolution_m()) / kernel_var);
+    return term;
+  }
+  // Cauchy: loss = kernel^2 log(1 + (r/kernel)^2), weight = 1 / (1 + (r/kernel)^2).
+  term.residual_m = term.line->distance_m(p_map);
+  term.variance = point_var + term.line->roughness_var_m2 + squared(settings.point_std_m) / term.line->num_hits;
+  const double ratio = squared(term.residual_m) / kernel_var;
+  term.weight = squared(term.line->straightness) / (term.variance * (1.0 + ratio));
+  term.log_likelihood = -0.5 * kernel_var / term.variance * std::log1p(ratio);
+  return term;
+}
+
 NormalEquations linearize(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body,
                           const ScanMatcherSettings& settings) {
   NormalEquations sum;
-  const Eigen::Rotation2Dd rotation(T_map_body.yaw);
-  const Eigen::Matrix2d R = rotation.toRotationMatrix();
+  const Eigen::Matrix2d R = Eigen::Rotation2Dd(T_map_body.yaw).toRotationMatrix();
   const Eigen::Vector2d t = T_map_body.position();
-  const double kernel_var = squared(settings.kernel_m);
-  const double outlier_loss = std::log1p(squared(settings.surface_radius_cells * map.resolution_m()) / kernel_var);
-
   for (const MatchPoint& point : points) {
-    const Eigen::Vector2d arm = R * point.p_body;
-    const Eigen::Vector2d p_map = t + arm;
-    const double point_var = squared(settings.point_std_m) + squared(settings.point_angle_std_rad * point.range_m);
-    const std::optional<LocalLine> line = fit_local_line(map, p_map, settings.surface_radius_cells);
-    if (!line) {
-      const GridCell* cell = map.find(map.cell_at(p_map));
-      if (!cell || !cell->is_known()) continue;
-      ++sum.num_known;
-      sum.log_likelihood -= 0.5 * kernel_var / point_var * outlier_loss;
-      continue;
-    }
+    const std::optional<PointTerm> term = term_of(map, point, R, t, settings);
+    if (!term) continue;
     ++sum.num_known;
+    sum.log_likelihood += term->log_likelihood;
+    if (!term->line) continue;
     ++sum.num_matched;
-
-    // Cauchy: loss = kernel^2 log(1 + (r/kernel)^2), weight = 1 / (1 + (r/kernel)^2).
-    const double residual = line->distance_m(p_map);
-    const double variance = point_var + line->roughness_var_m2 + squared(settings.point_std_m) / line->num_hits;
-    const double ratio = squared(residual) / kernel_var;
-    const double weight = squared(line->straightness) / (variance * (1.0 + ratio));
-    const Eigen::Vector2d& n = line->normal_map;
-    const Eigen::Vector3d J(n.x(), n.y(), n.y() * arm.x() - n.x() * arm.y());
-    sum.H += weight * J * J.transpose();
-    sum.b += weight * residual * J;
-    sum.log_likelihood -= 0.5 * kernel_var / variance * std::log1p(ratio);
+    const Eigen::Vector2d& n = term->line->normal_map;
+    const Eigen::Vector3d J(n.x(), n.y(), n.y() * term->arm.x() - n.x() * term->arm.y());
+    sum.H += term->weight * J * J.transpose();
+    sum.b += term->weight * term->residual_m * J;
   }
   return sum;
 }
@@ -107,6 +120,17 @@ double scan_log_likelihood(const GridMap& map, const std::vector<MatchPoint>& po
   const double outlier_loss = std::log1p(squared(settings.surface_radius_cells * map.resolution_m()) / kernel_var);
   const double num_unknown = static_cast<double>(points.size()) - sum.num_known;
   return sum.log_likelihood - 0.5 * num_unknown * kernel_var / squared(settings.point_std_m) * outlier_loss;
+}
+
+std::vector<double> point_log_likelihoods(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body, const ScanMatcherSettings& settings) {
+  const Eigen::Matrix2d R = Eigen::Rotation2Dd(T_map_body.yaw).toRotationMatrix();
+  std::vector<double> log_likelihoods;
+  log_likelihoods.reserve(points.size());
+  for (const MatchPoint& point : points) {
+    const std::optional<PointTerm> term = term_of(map, point, R, T_map_body.position(), settings);
+    log_likelihoods.push_back(term ? term->log_likelihood : std::numeric_limits<double>::quiet_NaN());
+  }
+  return log_likelihoods;
 }
 
 Pose2 search_pose(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_center,

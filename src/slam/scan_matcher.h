@@ -70,6 +70,9 @@ std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<Matc
 /// else a search would do best to leave the map.
 double scan_log_likelihood(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body, const ScanMatcherSettings& settings);
 
+/// [point]: the same for each point alone; NaN where the map knows nothing. Two poses are fairly compared by the points of which it knows something under both.
+std::vector<double> point_log_likelihoods(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body, const ScanMatcherSettings& settings);
+
 /// The pose in the window around `T_map_center` that puts most points on a surface cell or beside one: correlative matching
 /// (Olson, "Real-time correlative scan matching", ICRA 2009) on one level. For when odometry has slipped; ends within
 /// reach of match_scan.

@@ -63,6 +63,7 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.max_num_iterations = settings.max_iterations;
+  options.function_tolerance = 1e-9;
   options.num_threads = 1;  // the same sums in the same order
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;

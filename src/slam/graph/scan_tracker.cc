@@ -47,7 +47,7 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
     const Pose2 as_before = T_local_last_ * scaled(T_last_now_, factor);
     const auto consider = [&](const Pose2& start) {
       const Hypothesis other = try_from(start, points, prediction, false);
-      if (other.match && (!best.match || other.log_posterior > best.log_posterior)) best = other;
+      if (other.match && (!best.match || is_better(other, best))) best = other;
     };
     for (const Pose2& start : {as_before, T_local_last_ * Pose2{0.0, 0.0, T_last_odom.yaw}, T_local_last_ * Pose2{-T_last_odom.x, -T_last_odom.y, T_last_odom.yaw}}) {
       if (is_apart(start, prediction.mean) && is_apart(start, best.T_local_body)) consider(start);
@@ -88,9 +88,19 @@ ScanTracker::Hypothesis ScanTracker::try_from(const Pose2& T_local_start, const 
   Hypothesis hypothesis{.T_local_body = prediction.mean, .match = match_scan(older_, points, T_local_start, prior, settings_.matching)};
   if (!hypothesis.match) return hypothesis;
   hypothesis.T_local_body = hypothesis.match->T_map_body;
-  hypothesis.log_posterior = settings_.likelihood_gain * scan_log_likelihood(older_, points, hypothesis.T_local_body, settings_.matching) +
-                             log_student(prediction, hypothesis.T_local_body);
+  hypothesis.log_prior = log_student(prediction, hypothesis.T_local_body);
+  hypothesis.log_likelihoods = point_log_likelihoods(older_, points, hypothesis.T_local_body, settings_.matching);
   return hypothesis;
+}
+
+// By the points that both see in known places: the others would reward who stays where the map is.
+bool ScanTracker::is_better(const Hypothesis& a, const Hypothesis& b) const {
+  double gain = 0.0;
+  for (std::size_t i = 0; i < a.log_likelihoods.size(); ++i) {
+    const double difference = a.log_likelihoods[i] - b.log_likelihoods[i];
+    if (!std::isnan(difference)) gain += difference;
+  }
+  return settings_.likelihood_gain * gain + a.log_prior - b.log_prior > 0.0;
 }
 
 void ScanTracker::write(const LevelScan& scan, const Pose2& T_local_body, TrackedScan& tracked) {

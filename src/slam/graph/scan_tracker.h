@@ -18,7 +18,7 @@ struct ScanTrackerSettings {
   double keyframe_angle_rad = 0.15;
   int initial_keyframes = 10;            ///< so many first scans are all written
   int submap_keyframes = 60;             ///< that are written into a map before the next takes its place; maps overlap by half
-  double likelihood_gain = 0.1;          ///< share of the points that err independently
+  double likelihood_gain = 0.2;          ///< share of the points that err independently
   MotionModelSettings motion{.along_std_m_per_m = 0.05,
                              .across_std_m_per_m = 0.03,
                              .turn_std_rad_per_rad = 0.1,
@@ -72,9 +72,11 @@ class ScanTracker {
   struct Hypothesis {
     Pose2 T_local_body;
     std::optional<MatchResult> match;
-    double log_posterior = 0.0;
+    double log_prior = 0.0;
+    std::vector<double> log_likelihoods = {};  ///< [point]
   };
 
+  bool is_better(const Hypothesis& a, const Hypothesis& b) const;
   Hypothesis try_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points, const PoseGaussian& prediction, bool is_odometry) const;
   void write(const LevelScan& scan, const Pose2& T_local_body, TrackedScan& tracked);
 

@@ -1,0 +1,118 @@
+#include "slam/graph/pose_graph_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <stdexcept>
+
+#include "core/random.h"
+#include "tests/support/pose_near.h"
+
+namespace patrol::slam {
+namespace {
+
+using test::Pose2Near;
+using Kind = PoseGraphEdge::Kind;
+
+/// As many nodes round a circle of 10 m, looking ahead; edges of odometry from one to the next, without error.
+PoseGraph make_ring(int num_nodes) {
+  PoseGraph graph;
+  for (int i = 0; i < num_nodes; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / num_nodes;
+    graph.T_map_node.push_back({10.0 * std::cos(angle), 10.0 * std::sin(angle), wrap_angle(angle + 0.5 * std::numbers::pi)});
+  }
+  for (int i = 0; i + 1 < num_nodes; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    graph.edges.push_back({.from = i, .to = i + 1, .T_from_to = graph.T_map_node[k].inverse() * graph.T_map_node[k + 1],
+                           .information = Eigen::Vector3d(400.0, 400.0, 1e4).asDiagonal(), .kind = Kind::kOdometry});
+  }
+  return graph;
+}
+
+PoseGraphEdge true_edge(const PoseGraph& truth, int from, int to, Kind kind) {
+  return {.from = from, .to = to, .T_from_to = truth.T_map_node[static_cast<std::size_t>(from)].inverse() * truth.T_map_node[static_cast<std::size_t>(to)],
+          .information = Eigen::Vector3d(1e4, 1e4, 1e6).asDiagonal(), .kind = kind};
+}
+
+/// Nodes as the edges' odometry with noise would have them.
+void shake(PoseGraph& graph, double std_m, double std_rad) {
+  const RandomStream noise(1, "test/shake");
+  Pose2 pose = graph.T_map_node[0];
+  for (std::size_t i = 0; i + 1 < graph.T_map_node.size(); ++i) {
+    const auto unit = noise.normals(i);
+    const Pose2& step = graph.edges[i].T_from_to;
+    pose = pose * Pose2{step.x + std_m * unit[0], step.y + std_m * unit[1], step.yaw + std_rad * unit[2]};
+    graph.T_map_node[i + 1] = pose;
+  }
+}
+
+// Steps of 1 m and 1 m, and the whole measured as 2.3 m with the same weight: each takes a third of the 0.3 m.
+TEST(SolvePoseGraph, ThreeMeasurementsShareTheirContradictionEqually) {
+  PoseGraph graph{.T_map_node = {{}, {1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}},
+                  .edges = {{.from = 0, .to = 1, .T_from_to = {1.0, 0.0, 0.0}}, {.from = 1, .to = 2, .T_from_to = {1.0, 0.0, 0.0}}, {.from = 0, .to = 2, .T_from_to = {2.3, 0.0, 0.0}}}};
+  const PoseGraphSolution solution = solve(graph, {});
+  EXPECT_TRUE(solution.converged);
+  EXPECT_THAT(graph.T_map_node[1], Pose2Near(Pose2{1.1, 0.0, 0.0}, 1e-6, 1e-9));
+  EXPECT_THAT(graph.T_map_node[2], Pose2Near(Pose2{2.2, 0.0, 0.0}, 1e-6, 1e-9));
+  EXPECT_NEAR(solution.initial_cost, 0.5 * 0.3 * 0.3, 1e-12);
+  EXPECT_NEAR(solution.final_cost, 0.5 * 3.0 * 0.1 * 0.1, 1e-9);
+}
+
+TEST(SolvePoseGraph, EdgesWithoutErrorBringARingOfFortyBackFromMetresOff) {
+  const PoseGraph truth = make_ring(40);
+  PoseGraph graph = truth;
+  graph.edges.push_back(true_edge(truth, 39, 0, Kind::kMatch));
+  shake(graph, 0.2, 0.05);
+  EXPECT_GT((graph.T_map_node[39].position() - truth.T_map_node[39].position()).norm(), 2.0);
+  solve(graph, {});
+  for (std::size_t i = 0; i < 40; ++i) EXPECT_THAT(graph.T_map_node[i], Pose2Near(truth.T_map_node[i], 1e-5, 1e-6)) << i;
+}
+
+TEST(SolvePoseGraph, TheFirstNodeStaysWhereItIs) {
+  PoseGraph graph = make_ring(10);
+  const Pose2 T_turned_map{3.0, -2.0, 1.0};
+  for (Pose2& node : graph.T_map_node) node = T_turned_map * node;
+  const Pose2 first = graph.T_map_node[0];
+  graph.edges.push_back({.from = 0, .to = 9, .T_from_to = {1.0, 1.0, 1.0}, .kind = Kind::kLoop});
+  solve(graph, {});
+  EXPECT_THAT(graph.T_map_node[0], Pose2Near(first, 0.0, 1e-15));
+}
+
+// Five loop closures are right, one joins two places 20 m apart. As a plain edge it tears the ring apart.
+TEST(SolvePoseGraph, OneFalseClosureAmongSixMovesNoNodeByTwoCentimetresAndWithoutItsKernelByMetres) {
+  const PoseGraph truth = make_ring(40);
+  for (const Kind kind : {Kind::kLoop, Kind::kMatch}) {
+    PoseGraph graph = truth;
+    for (const int from : {39, 38, 37, 36, 35}) graph.edges.push_back(true_edge(truth, from, 39 - from, Kind::kLoop));
+    PoseGraphEdge wrong = true_edge(truth, 10, 11, kind);
+    wrong.to = 30;
+    graph.edges.push_back(wrong);
+    solve(graph, {});
+    double far_m = 0.0;
+    for (std::size_t i = 0; i < 40; ++i) far_m = std::max(far_m, (graph.T_map_node[i].position() - truth.T_map_node[i].position()).norm());
+    if (kind == Kind::kLoop) {
+      EXPECT_LT(far_m, 0.02);
+      EXPECT_GT(squared_error(graph.edges.back(), graph.T_map_node), 1e5);
+    } else {
+      EXPECT_GT(far_m, 2.0);
+    }
+  }
+}
+
+TEST(SolvePoseGraph, AnEdgeToANodeThatIsNotThereThrows) {
+  PoseGraph graph = make_ring(3);
+  graph.edges.push_back({.from = 0, .to = 3, .T_from_to = {}});
+  EXPECT_THROW(solve(graph, {}), std::invalid_argument);
+}
+
+TEST(EdgeError, IsInTheFrameOfItsFirstNodeAndWrapsTheAngle) {
+  const std::vector<Pose2> nodes = {{1.0, 1.0, 0.5 * std::numbers::pi}, {1.0, 4.0, -3.0}};
+  const PoseGraphEdge edge{.from = 0, .to = 1, .T_from_to = {2.5, 0.1, 1.7}, .information = Eigen::Vector3d(1.0, 4.0, 9.0).asDiagonal()};
+  const Eigen::Vector3d error = edge_error(edge, nodes);
+  const double yaw = 2.0 * std::numbers::pi - 3.0 - 0.5 * std::numbers::pi - 1.7;
+  EXPECT_LT((error - Eigen::Vector3d(0.5, -0.1, yaw)).norm(), 1e-12);
+  EXPECT_NEAR(squared_error(edge, nodes), 0.25 + 4.0 * 0.01 + 9.0 * yaw * yaw, 1e-12);
+}
+
+}  // namespace
+}  // namespace patrol::slam

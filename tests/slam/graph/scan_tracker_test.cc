@@ -1,0 +1,88 @@
+#include "slam/graph/scan_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/slam/graph/office_world.h"
+#include "tests/support/pose_near.h"
+
+namespace patrol::slam {
+namespace {
+
+/// Drives a stretch of the corridor, with what odometry makes of each step.
+template <typename Odometry>
+std::vector<TrackedScan> track(const std::vector<test::DriveStep>& drive, Odometry&& odometry) {
+  ScanTracker tracker({});
+  const test::RoomWorld office = test::make_office();
+  const RandomStream noise(1, "test/tracker");
+  Pose2 T_odom_body;
+  std::vector<TrackedScan> tracked;
+  for (std::size_t k = 0; k < drive.size(); ++k) {
+    if (k > 0) T_odom_body = T_odom_body * odometry(k, drive[k - 1].T_world_body.inverse() * drive[k].T_world_body);
+    tracked.push_back(tracker.update(office.scan(drive[k].T_world_body, drive[k].stamp, test::kOldLidar, noise, k), T_odom_body));
+  }
+  return tracked;
+}
+
+/// The farthest that the estimate is from the truth, both from the start.
+double worst_error_m(const std::vector<test::DriveStep>& drive, const std::vector<TrackedScan>& tracked) {
+  double worst = 0.0;
+  for (std::size_t k = 0; k < drive.size(); ++k) {
+    const Pose2 T_start_body = drive[0].T_world_body.inverse() * drive[k].T_world_body;
+    worst = std::max(worst, (T_start_body.position() - tracked[k].T_local_body.position()).norm());
+  }
+  return worst;
+}
+
+const std::vector<test::DriveStep>& corridor_drive() {
+  static const std::vector<test::DriveStep> drive = test::drive_along({{8.0, 4.2}, {20.0, 4.2}}, {});
+  return drive;
+}
+
+TEST(ScanTracker, FollowsTwelveMetresToTwoCentimetresWithOdometryThatIsTenPercentTooLong) {
+  const auto tracked = track(corridor_drive(), [](std::size_t, const Pose2& motion) { return Pose2{1.1 * motion.x, motion.y, motion.yaw + 0.002}; });
+  EXPECT_LT(worst_error_m(corridor_drive(), tracked), 0.02);
+}
+
+// Twelve centimetres a scan: wheels that report forwards for backwards, that stand still, that spin.
+TEST(ScanTracker, OdometryThatLiesForTwoMetresCostsNoMoreThanThreeCentimetres) {
+  const auto lies = [](std::size_t k) { return k >= 40 && k < 57; };
+  for (const double factor : {-1.0, 0.0, 3.0}) {
+    const auto tracked = track(corridor_drive(), [&](std::size_t k, const Pose2& motion) { return lies(k) ? Pose2{factor * motion.x, 0.0, motion.yaw} : motion; });
+    EXPECT_LT(worst_error_m(corridor_drive(), tracked), 0.03) << factor;
+  }
+}
+
+// Between smooth walls the scan says nothing of the way: odometry's word stands, and the covariance says how little it is.
+TEST(ScanTracker, AlongASmoothCorridorOdometryIsBelievedAndTheCovarianceSaysSo) {
+  test::RoomWorld corridor;
+  corridor.add_wall(-100.0, -1.0, 200.0, -1.0).add_wall(-100.0, 1.0, 200.0, 1.0);
+  ScanTracker tracker({});
+  const RandomStream noise(1, "test/corridor");
+  TrackedScan tracked;
+  for (std::uint64_t k = 0; k <= 50; ++k) {
+    const double x = 0.1 * static_cast<double>(k);
+    tracked = tracker.update(corridor.scan({x, 0.0, 0.0}, from_seconds(0.2 * static_cast<double>(k)), test::kOldLidar, noise, k), {1.03 * x, 0.0, 0.0});
+  }
+  EXPECT_NEAR(tracked.T_local_body.x, 1.03 * 5.0, 0.05);
+  EXPECT_NEAR(tracked.T_local_body.y, 0.0, 0.01);
+  EXPECT_NEAR(std::sqrt(tracked.covariance(0, 0)), std::hypot(0.005, 0.05 * 0.103), 1e-4);  // odometry's own
+  EXPECT_LT(std::sqrt(tracked.covariance(1, 1)), 0.003);
+}
+
+TEST(ScanTracker, KeyframesComeEveryQuarterMetreAndSubmapsEveryThirtyKeyframes) {
+  const auto tracked = track(corridor_drive(), [](std::size_t, const Pose2& motion) { return motion; });
+  int keyframes = 0, submaps = 0;
+  for (const TrackedScan& scan : tracked) {
+    keyframes += scan.is_keyframe ? 1 : 0;
+    submaps += scan.is_submap_start ? 1 : 0;
+    EXPECT_TRUE(scan.is_keyframe || !scan.is_submap_start);
+  }
+  const double rest_m = 12.0 - 9 * 0.12;  // the first ten scans are all written
+  EXPECT_NEAR(keyframes, 10 + rest_m / 0.36, 2);  // a step is 0.12 m, so every third
+  EXPECT_EQ(submaps, 2);
+}
+
+}  // namespace
+}  // namespace patrol::slam

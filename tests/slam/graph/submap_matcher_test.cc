@@ -1,0 +1,81 @@
+#include "slam/graph/submap_matcher.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/slam/graph/office_world.h"
+#include "tests/support/pose_near.h"
+
+namespace patrol::slam {
+namespace {
+
+using test::Pose2Near;
+
+/// A submap drawn from scans every half metre along a way, at their true poses; its frame is the first of them.
+DrawnSubmap drive_past(const test::RoomWorld& world, const std::vector<Eigen::Vector2d>& way, std::uint64_t seed) {
+  std::vector<Keyframe> keyframes;
+  std::vector<Pose2> poses;
+  const RandomStream noise(seed, "test/submap");
+  for (const test::DriveStep& step : test::drive_along(way, {.speed_mps = 0.5, .turn_radps = 0.5, .period_s = 1.0})) {
+    keyframes.push_back({world.scan(step.T_world_body, step.stamp, test::kOldLidar, noise, keyframes.size()), step.T_world_body});
+    poses.push_back(step.T_world_body);
+  }
+  return DrawnSubmap({.first = 0, .last = static_cast<int>(keyframes.size()) - 1}, keyframes, poses, 0.05, {});
+}
+
+PoseGaussian around(const Pose2& mean, double std_m, double std_rad) {
+  return {.mean = mean, .covariance = Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal()};
+}
+
+const Pose2 kThere{8.0, 4.2, 0.0};                          ///< where the first way begins, looking along x
+const Pose2 kBack{17.0, 4.3, std::numbers::pi};             ///< the second comes back
+const Pose2 kTruth = kThere.inverse() * kBack;
+
+TEST(MatchSubmaps, JoinsAWayAndItsReturnToTwoCentimetresFromAMetreAndElevenDegreesOff) {
+  const test::RoomWorld office = test::make_office();
+  const DrawnSubmap target = drive_past(office, {{8.0, 4.2}, {16.0, 4.2}}, 1), source = drive_past(office, {{17.0, 4.3}, {9.0, 4.1}}, 2);
+  const Pose2 off{kTruth.x + 0.8, kTruth.y - 0.6, kTruth.yaw + 0.2 - 0.025};  // the second way bears 0.025 rad to the left
+  const SubmapMatchResult result = match_submaps(target, source, around(off, 0.7, 0.1), {}, {});
+  ASSERT_TRUE(result.match);
+  const Pose2 truth = kThere.inverse() * Pose2{17.0, 4.3, std::atan2(-0.2, -8.0)};
+  EXPECT_THAT(result.match->T_target_source, Pose2Near(truth, 0.02, 0.003));
+  EXPECT_GT(result.match->matched_share, 0.85);
+}
+
+TEST(MatchSubmaps, PlacesOnOppositeSidesOfTheBuildingAreNotJoinedWhereverTheyAreThoughtToLie) {
+  const test::RoomWorld office = test::make_office();
+  const DrawnSubmap target = drive_past(office, {{8.0, 4.2}, {16.0, 4.2}}, 1), source = drive_past(office, {{32.0, 25.8}, {24.0, 25.8}}, 2);
+  for (const double yaw : {0.0, 1.5, 3.0, -1.5}) {
+    EXPECT_FALSE(match_submaps(target, source, around({3.0, 0.0, yaw}, 2.0, 0.2), {}, {}).match) << yaw;
+  }
+}
+
+// Doors every 3 m, all alike: with a metre of doubt only one place fits, with three metres there are several, and none is taken.
+TEST(MatchSubmaps, AmongIdenticalDoorsAMatchIsTakenOnlyWhereNoOtherCanBeMeant) {
+  const test::RoomWorld corridor = test::make_corridor_of_doors();
+  const DrawnSubmap target = drive_past(corridor, {{22.0, 0.0}, {30.0, 0.0}}, 1), source = drive_past(corridor, {{23.0, 0.1}, {31.0, 0.1}}, 2);
+  const SubmapMatchResult sure = match_submaps(target, source, around({1.2, 0.0, 0.0}, 0.3, 0.02), {}, {});
+  ASSERT_TRUE(sure.match);
+  EXPECT_THAT(sure.match->T_target_source, Pose2Near(Pose2{1.0, 0.1, 0.0}, 0.03, 0.003));
+  const SubmapMatchResult unsure = match_submaps(target, source, around({1.2, 0.0, 0.0}, 2.0, 0.02), {}, {});
+  EXPECT_FALSE(unsure.match);
+  EXPECT_EQ(unsure.failure, MatchFailure::kAmbiguous);
+}
+
+TEST(SubmapCache, DrawsOnceAndForgetsWhatWasUsedLongestAgo) {
+  const DrawnSubmap drawn = drive_past(test::make_office(), {{8.0, 4.2}, {9.0, 4.2}}, 1);
+  SubmapCache cache(2);
+  int draws = 0;
+  const auto get = [&](int submap) {
+    cache.get(submap, [&] {
+      ++draws;
+      return std::make_shared<const DrawnSubmap>(drawn);
+    });
+  };
+  for (const int submap : {0, 1, 0, 2, 0}) get(submap);
+  EXPECT_EQ(draws, 3);
+  get(1);
+  EXPECT_EQ(draws, 4);
+}
+
+}  // namespace
+}  // namespace patrol::slam
