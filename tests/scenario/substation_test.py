@@ -35,9 +35,10 @@ class Substation(unittest.TestCase):
         self.assertAlmostEqual(end[1], 71.0, delta=0.15)
         self.assertAlmostEqual(end[2], 55.5, delta=0.15)
 
-    def test_hits_a_support_that_stands_in_its_way(self):
-        # Put down at the road's edge and turned to the breaker of the first bay east of it, seven metres away over the trench.
-        self.run_patrol("--set", "start.left_m=-5.5", "--set", "start.ahead_m=1.8", "--set", "start.turn_deg=-90", "--set", "time_limit_s=14")
+    def test_hits_a_breaker_that_stands_in_its_way(self):
+        drive = pathlib.Path(self.folder.name) / "into_a_breaker.json"
+        drive.write_text(json.dumps({"version": 1, "frame": "site", "waypoints": [{"position": [62.0, 51.8]}, {"position": [65.5, 51.8]}]}))
+        self.run_patrol("--set", f"remote.drive={drive}", "--set", "time_limit_s=20")
         self.assertGreater(self.metrics()["mission"]["collisions"], 0)
 
 
