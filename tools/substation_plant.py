@@ -2,7 +2,7 @@
 import numpy as np
 
 from mjcf import EYE, SEEN, SOLID, TOUCH, upright
-from substation_bays import GRAVEL, INSULATOR, insulator, support, wire
+from substation_bays import GRAVEL, INSULATOR, insulator, wire
 
 
 # --- transformers -----------------------------------------------------------------------------------------------------
