@@ -1,8 +1,6 @@
-"""What the tools that make worlds share: lines of an MJCF file, procedural textures, people. All sizes in metres."""
+"""What the tools that make worlds share: lines of an MJCF file, people. All sizes in metres."""
+import contextlib
 import math
-
-import numpy as np
-from PIL import Image
 
 SOLID = 'class="solid"'  # eye and lidar see it, and it can be touched
 SEEN = 'class="seen"'    # eye and lidar see it, and it is not touched
@@ -43,26 +41,19 @@ class World:
         self.geom(name, 'box', ((x0 + x1) / 2, (y0 + y1) / 2, (z0 + z1) / 2),
                   ((x1 - x0) / 2, (y1 - y0) / 2, (z1 - z0) / 2), material, cls)
 
+    def rod(self, name, a, b, radius, material, cls=SEEN, kind='capsule'):
+        self.count += 1
+        self.lines.append(f'<geom name="{name}" {cls} type="{kind}" fromto="{fmt(a)} {fmt(b)}" size="{radius:g}" material="{material}"/>')
+
+    @contextlib.contextmanager
+    def frame(self, x, y, yaw_deg=0.0, z=0.0):
+        """What is put down within stands at a place and is turned about the vertical."""
+        self.lines.append(f'<frame pos="{fmt((x, y, z))}" euler="0 0 {fmt([yaw_deg])}">')
+        yield
+        self.lines.append('</frame>')
+
     def comment(self, text):
         self.lines.append(f'<!-- {text} -->')
-
-
-# --- textures -------------------------------------------------------------------------------------------------------
-
-def noise(rng, size, scales, weights):
-    """Tileable value noise: sums of blurred random fields, 0 ... 1."""
-    field = np.zeros((size, size))
-    for scale, weight in zip(scales, weights):
-        coarse = rng.random((size // scale, size // scale))
-        tiled = np.tile(coarse, (3, 3))
-        image = Image.fromarray((tiled * 255).astype(np.uint8)).resize((3 * size, 3 * size), Image.BICUBIC)
-        field += weight * np.asarray(image)[size:2 * size, size:2 * size] / 255.0
-    return field / sum(weights)
-
-
-def shade(field, low, high):
-    low, high = np.array(low, float), np.array(high, float)
-    return Image.fromarray((low + field[..., None] * (high - low)).clip(0, 255).astype(np.uint8))
 
 
 # --- people -----------------------------------------------------------------------------------------------------------

@@ -3,24 +3,13 @@ since OpenGL has eight lights and the tunnel has twenty."""
 import math
 
 import numpy as np
-from PIL import Image, ImageDraw
+from PIL import Image
 
-from mjcf import noise, shade
+from textures import noise, stretched_noise
 
 LAMP_SPACING = 8.0
 LAMP_HEIGHT = 3.7
 RING = 2.0  # length of a lining ring
-
-
-def stretched_noise(rng, size, scales, weights, stretch):
-    """Noise drawn out along y, as water draws stains."""
-    image = Image.fromarray((noise(rng, size, scales, weights) * 255).astype(np.uint8))
-    tall = image.resize((size, size * stretch), Image.BICUBIC).crop((0, 0, size, size))
-    return np.asarray(tall) / 255.0
-
-
-def colours(image, count=96):
-    return image.convert('RGB').quantize(count, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.FLOYDSTEINBERG)
 
 
 def paint(field, low, high):
@@ -108,12 +97,6 @@ def duct(rng, size):
     return Image.fromarray((paint(field, (176, 138, 28), (226, 184, 60)) * (hoop * seam)[None, :, None]).clip(0, 255).astype(np.uint8))
 
 
-def stripes(size, light, dark):
-    a, b = np.meshgrid(np.arange(size), np.arange(size))
-    is_light = ((a + b) // (size // 4)) % 2 == 0
-    return Image.fromarray(np.where(is_light[..., None], light, dark).astype(np.uint8))
-
-
 def planks(rng, size, light, dark):
     image = np.zeros((size, size, 3))
     grain = stretched_noise(rng, size, (1, 4, 32), (1, 1, 1), 8).T
@@ -123,32 +106,6 @@ def planks(rng, size, light, dark):
         mix = rng.random()
         image[rows] = (np.array(dark) + mix * (np.array(light) - np.array(dark))) * (0.75 + 0.5 * grain[rows][..., None])
     return Image.fromarray(image.clip(0, 255).astype(np.uint8))
-
-
-def tread_plate(size):
-    """Chequered steel."""
-    image = Image.new('RGB', (size, size), (104, 106, 108))
-    draw = ImageDraw.Draw(image)
-    step = size // 8
-    for i in range(9):
-        for j in range(9):
-            x, y = i * step, j * step
-            dx, dy = (step // 3, step // 8) if (i + j) % 2 else (step // 8, step // 3)
-            draw.ellipse((x - dx, y - dy, x + dx, y + dy), fill=(150, 152, 154))
-    return image
-
-
-def sign(text, background, ink, size=(256, 128)):
-    """Letters of the built-in font, enlarged."""
-    letters = Image.new('L', (6 * len(text) + 2, 12), 0)
-    ImageDraw.Draw(letters).text((1, 0), text, fill=255)
-    letters = letters.crop(letters.getbbox())
-    scale = min((size[0] - 40) / letters.width, (size[1] - 40) / letters.height)
-    letters = letters.resize((int(letters.width * scale), int(letters.height * scale)), Image.BICUBIC)
-    image = Image.new('RGB', size, background)
-    ImageDraw.Draw(image).rectangle((5, 5, size[0] - 6, size[1] - 6), outline=ink, width=4)
-    image.paste(ink, ((size[0] - letters.width) // 2, (size[1] - letters.height) // 2), letters)
-    return image
 
 
 def daylight(size):

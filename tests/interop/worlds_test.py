@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Stock MuJoCo loads a world, steps it, and finds in it what the briefs name.
 
-usage: worlds_test.py Street|Tunnel WORLD_XML
+usage: worlds_test.py Street|Tunnel|Substation WORLD_XML
 """
 import json
 import pathlib
@@ -181,6 +181,89 @@ class Tunnel(World, unittest.TestCase):
             way = np.subtract(goal, origin)
             length = np.hypot(*way)
             self.assertLess(self.range((*origin, 0.55), (*(way / length), 0.0), IN_THE_WAY)[0], length)
+
+
+class Substation(World, unittest.TestCase):
+    BAYS, BAY_WIDTH, PATH_Y = (20.5, 35.5, 50.5, 69.5, 84.5, 99.5), 15.0, 55.5
+    LIDAR_Z, LIDAR_RANGE = 0.55, 20.0
+    BEAMS = np.radians(0.54) * np.arange(667)
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.start = json.loads((XML.parent / "site.json").read_text())["start"]
+        waypoints = json.loads((XML.parent / "drive.json").read_text())["waypoints"]
+        cls.drive = [cls.start["position"][:2]] + [waypoint["position"] for waypoint in waypoints]
+        cls.samples = np.concatenate([np.linspace(a, b, 1 + int(np.hypot(*np.subtract(b, a)) / 0.5), endpoint=False)
+                                      for a, b in zip(cls.drive, cls.drive[1:])])
+
+    def scan(self, x, y):
+        return np.array([self.range((x, y, self.LIDAR_Z), (np.cos(b), np.sin(b), 0.0), LIDAR_SEES)[0] for b in self.BEAMS])
+
+    def lowest(self, geom):
+        """Height of the lowest point of a box, cylinder, capsule or ellipsoid."""
+        size, up = self.model.geom_size[geom], np.abs(self.data.geom_xmat[geom].reshape(3, 3)[2])  # the world's z in the geom
+        reach = {mujoco.mjtGeom.mjGEOM_BOX: up @ size, mujoco.mjtGeom.mjGEOM_CYLINDER: np.hypot(*up[:2]) * size[0] + up[2] * size[1],
+                 mujoco.mjtGeom.mjGEOM_CAPSULE: size[0] + up[2] * size[1], mujoco.mjtGeom.mjGEOM_ELLIPSOID: np.linalg.norm(up * size)}
+        return self.data.geom_xpos[geom][2] - reach[mujoco.mjtGeom(self.model.geom_type[geom])]
+
+    def test_its_fence_encloses_118_by_88_metres(self):
+        for axis, inside in (((1, 0, 0), 118.0), ((0, 1, 0), 88.0)):
+            both = [self.range((60.0, 7.0, 0.3) if axis[0] else (7.0, 45.0, 0.3), np.multiply(sign, axis), IN_THE_WAY) for sign in (-1, 1)]
+            self.assertTrue(all(name.startswith("fence") for _, name in both), both)
+            self.assertAlmostEqual(sum(distance for distance, _ in both), inside, delta=0.5)
+
+    def test_six_bays_look_the_same_to_a_lidar_on_the_path(self):
+        for off in (-2.0, 0.0, 2.0):
+            reach = self.BAY_WIDTH / 2 - 1.2 - abs(off)  # what stands in the bay, and nothing of its neighbours
+            first = np.minimum(self.scan(self.BAYS[0] + off, self.PATH_Y), reach)
+            self.assertGreater((first < reach).sum(), 40)
+            for x in self.BAYS[1:]:
+                np.testing.assert_allclose(np.minimum(self.scan(x + off, self.PATH_Y), reach), first, atol=1e-6)
+
+    def test_the_lidar_sees_little_and_thin_things_a_twentieth_to_half_of_its_beams_return(self):
+        for x, y in self.samples[::100]:
+            returned = self.scan(x, y) < self.LIDAR_RANGE
+            self.assertTrue(0.05 < returned.mean() < 0.5, f"{returned.mean():.2f} at {x:.1f}, {y:.1f}")
+        on_the_path = self.scan(self.BAYS[1], self.PATH_Y) < self.LIDAR_RANGE
+        self.assertGreater(np.count_nonzero(np.diff(on_the_path.astype(int)) == 1), 30)  # things, each apart from the next
+
+    def test_what_is_live_hangs_above_4_and_a_half_metres_but_behind_the_reactors_own_fence(self):
+        live = [i for i in range(self.model.ngeom) if self.model.geom_matid[i] == self.model.material("aluminium").id
+                and not self.model.geom(i).name.startswith("reactor")]
+        self.assertGreater(len(live), 500)
+        self.assertGreater(min(self.lowest(i) for i in live), 4.5)
+
+    def test_the_drive_is_900_metres_long_and_ends_as_it_began(self):
+        self.assertGreater(np.hypot(*np.diff(self.drive, axis=0).T).sum(), 900.0)
+        self.assertEqual(self.drive[0], self.drive[-1])
+        self.assertEqual(self.start["orientation"], [0.0, 0.0, 0.0, 1.0])
+        self.assertEqual(json.loads((XML.parent / "drive.json").read_text())["waypoints"][-1]["mark_heading_deg"], 0.0)
+
+    def test_half_of_the_drive_is_driven_in_both_directions(self):
+        steps = [np.subtract(b, a) for a, b in zip(self.samples, self.samples[1:])]
+        ways = np.array([step / np.hypot(*step) for step in steps])
+        middles = (self.samples[:-1] + self.samples[1:]) / 2
+        again = [((np.hypot(*(middles - p).T) < 1.5) & (ways @ way < -0.9)).any() for p, way in zip(middles, ways)]
+        self.assertGreater(np.mean(again), 0.5)
+
+    def test_the_drive_is_level_and_keeps_a_metre_from_everything(self):
+        bearings = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)  # 3.5 cm apart at a metre: no post is thinner
+        directions = np.stack([np.cos(bearings), np.sin(bearings), 0.0 * bearings], axis=1)
+        geom, distance = np.empty(len(bearings), np.int32), np.empty(len(bearings))
+        for x, y in self.samples:
+            self.assertLess(abs(self.ground_at(x, y)), 0.01, f"at {x:.2f}, {y:.2f}")
+            for z in (0.12, self.LIDAR_Z):
+                mujoco.mj_multiRay(self.model, self.data, (x, y, z), directions.ravel(), IN_THE_WAY, 1, -1, geom, distance, None, len(bearings), 1.4)
+                near = {self.model.geom(i).name for i in geom[(distance >= 0.0) & (distance < 1.0)]}
+                self.assertFalse(near, f"at {x:.2f}, {y:.2f}")
+
+    def test_the_drive_keeps_5_metres_from_mesh_that_a_lidar_would_see_from_nearer(self):
+        meshes = [i for i in range(self.model.ngeom) if self.model.geom(i).name.startswith("fence") and self.model.geom(i).name.endswith("mesh")]
+        self.assertGreater(len(meshes), 6)
+        for i in meshes:
+            beyond = np.abs(self.samples - self.data.geom_xpos[i][:2]) - self.model.geom_size[i][:2]
+            self.assertGreater(np.hypot(*np.maximum(beyond, 0.0).T).min(), 4.99, self.model.geom(i).name)
 
 
 if __name__ == "__main__":
