@@ -1,9 +1,13 @@
 #include "io/scan_log.h"
 
+#include <fstream>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "io/carmen_log.h"
+#include "io/mcap_format.h"
+#include "io/mcap_scan_log.h"
 
 namespace patrol::io {
 namespace {
@@ -15,6 +19,12 @@ std::string counts(const std::map<std::string, std::uint64_t>& by_name) {
   std::string text;
   for (const auto& [name, count] : by_name) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
   return text;
+}
+
+bool is_mcap(const std::filesystem::path& file) {
+  std::string head(mcap::kMagic.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head == mcap::kMagic;
 }
 
 }  // namespace
@@ -62,6 +72,7 @@ std::string to_text(const ScanLogSummary& summary) {
 
 std::unique_ptr<ScanLog> open_scan_log(const std::filesystem::path& file, const ScanLogOptions& options) {
   validate(options, "log");
+  if (is_mcap(file)) return std::make_unique<McapScanLog>(file, options);
   return std::make_unique<CarmenLog>(file, options);
 }
 
