@@ -14,6 +14,7 @@ namespace {
 
 constexpr unsigned kGzipBufferBytes = 1U << 18;
 constexpr std::size_t kReadBytes = std::size_t{1} << 16;
+constexpr std::size_t kMostDroppedBytes = std::size_t{1} << 26;  ///< of one line: a disk's zeros have no end
 
 }  // namespace
 
@@ -58,13 +59,19 @@ bool LineReader::fill() {
 
 void LineReader::drop_rest_of_line() {
   is_inside_cut_line_ = false;
+  std::size_t dropped = 0;
   while (begin_ < end_ || fill()) {
     const void* const newline = std::memchr(buffer_.data() + begin_, '\n', end_ - begin_);
     if (newline) {
       begin_ = static_cast<std::size_t>(static_cast<const char*>(newline) - buffer_.data()) + 1;
       return;
     }
+    dropped += end_ - begin_;
     begin_ = end_ = 0;
+    if (dropped > kMostDroppedBytes) {
+      damage_ = fmt::format("more than {} bytes have no line's end, nothing is read", kMostDroppedBytes);
+      is_at_end_ = true;
+    }
   }
 }
 

@@ -31,7 +31,7 @@ class LineReader {
   /// None at the end. Throws InputError when the disk fails.
   std::optional<Line> next();
 
-  /// Why a gzip file ended before its end ("the gzip data are cut off"); known once the last line was read.
+  /// Why the lines ended before the file ("the gzip data are cut off"; a line that goes on and on); known once the last was read.
   const std::optional<std::string>& damage() const { return damage_; }
 
   /// Share of the file (as it lies on the disk) that was read, 0 ... 1.

@@ -314,6 +314,16 @@ TEST(CarmenLog, TenGigabytesOfZeroBytesAreRefusedAtOnce) {
   }
 }
 
+TEST(CarmenLog, TenGigabytesOfZeroBytesAfterALogAreGivenUpAfterSixtyFourMegabytes) {
+  const TemporaryFolder folder;
+  test::write_bytes(folder / "a.log", flaser("1") + flaser("2"));
+  std::filesystem::resize_file(folder / "a.log", 10'000'000'000);  // sparse
+  const std::unique_ptr<ScanLog> log = open_scan_log(folder / "a.log", kSkip);
+  while (log->next()) {}
+  EXPECT_EQ(log->summary().num_scans, 2U);
+  EXPECT_THAT(log->summary().skipped, ElementsAre(Pair("file ends too early", 1U), Pair("lines that cannot be read", 1U)));
+}
+
 TEST(CarmenLog, NoMoreThanFiftyNamesAreToldApart) {
   std::string text = flaser("1");
   for (int i = 0; i < 100; ++i) text += fmt::format("NAME{} 1\n", i);
