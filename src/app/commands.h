@@ -9,6 +9,7 @@
 #include "app/exit_code.h"
 #include "app/sweep/sweep_options.h"
 #include "app/test/test_options.h"
+#include "score/relation_error.h"
 
 /// One function per command of the program. They print results to standard output and talk to standard error.
 namespace patrol::app {
@@ -22,11 +23,13 @@ struct RunOptions {
 };
 ExitCode run_command(const RunOptions& options);
 
-/// What `patrol score` was given: a run directory, or two trajectories, or two maps.
+/// What `patrol score` was given: a run directory, or two trajectories, or a trajectory and relations, or two maps.
 struct ScoreOptions {
   std::filesystem::path run;
   std::filesystem::path estimate;
   std::filesystem::path reference;
+  std::filesystem::path relations;
+  score::RelationSettings relation_settings;
   std::filesystem::path map;
   std::filesystem::path reference_map;
 };

@@ -126,7 +126,8 @@ MapFile load_map_file(const std::filesystem::path& file) {
   if (map.origin.size() == 3 && map.origin[2] != 0.0) refuse("origin", "a turned map (yaw other than 0) is not read");
   if (map.free_thresh > map.occupied_thresh) refuse("free_thresh", "must not be above occupied_thresh");
   const std::filesystem::path image = file.parent_path() / map.image;
-  if (!std::filesystem::exists(image) || std::filesystem::is_directory(image)) refuse("image", "there is no file " + image.string());
+  std::error_code ignored;  // of a name that is none
+  if (!std::filesystem::is_regular_file(image, ignored)) refuse("image", "there is no file " + image.string());
   map.image = image.string();
   return map;
 }

@@ -13,10 +13,14 @@
 namespace patrol::io {
 namespace {
 
-/// Larger chunks than this are taken for damage, not for data.
-constexpr std::uint64_t kMaxChunkBytes = std::uint64_t{1} << 31;
+/// Larger records, and chunks once unpacked, are taken for damage, not for data: what a file says of its sizes must not fill the memory.
+constexpr std::uint64_t kMaxRecordBytes = std::uint64_t{1} << 28;
 
 Time to_time(std::uint64_t nanoseconds) { return Time{static_cast<std::int64_t>(nanoseconds)}; }
+
+void expect_size(std::uint64_t size, const char* what) {
+  if (size > kMaxRecordBytes) throw mcap::Damage(fmt::format("{} of {} bytes is too large", what, size));
+}
 
 std::string unpack_zstd(std::string_view packed, std::uint64_t size) {
   std::string unpacked(size, '\0');
@@ -89,6 +93,7 @@ void McapReader::find_footer() {
 void McapReader::read_summary(std::uint64_t start, std::uint64_t end) {
   record_start_ = start;
   if (start > end) throw mcap::Damage("the summary lies outside the file");
+  expect_size(end - start, "the summary");
   const std::string bytes = read_bytes(start, end - start);
   mcap::Fields records(bytes);
   while (!records.is_empty()) {
@@ -178,12 +183,14 @@ bool McapReader::read_record() {
     offset_ = start + length;
     if (opcode == mcap::kDataEnd || opcode == mcap::kFooter) break;
     if (opcode == mcap::kChunk && !unwanted_chunks_.contains(record_start_)) {
+      expect_size(length, "a chunk");
       record_ = read_bytes(start, length);
       chunk_ = unpack_chunk(mcap::Fields(record_));
       rest_of_chunk_ = chunk_;
       return true;
     }
     if (opcode == mcap::kSchema || opcode == mcap::kChannel || opcode == mcap::kMessage) {
+      expect_size(length, "a record");
       chunk_ = head_bytes + read_bytes(start, length);
       rest_of_chunk_ = chunk_;
       return true;
@@ -209,7 +216,7 @@ std::string McapReader::unpack_chunk(mcap::Fields content) const {
   const auto crc = content.number<std::uint32_t>();
   const std::string compression = content.text();
   const std::string_view packed = content.take(content.number<std::uint64_t>());
-  if (size > kMaxChunkBytes) throw mcap::Damage(fmt::format("a chunk of {} bytes is too large", size));
+  expect_size(size, "a chunk");
 
   std::string unpacked;
   if (compression.empty()) unpacked = packed;

@@ -51,6 +51,9 @@ class McapReader {
   /// Whether the writer came to its end: the file has its summary.
   bool is_complete() const { return footer_start_ > 0; }
 
+  /// Share of the file that was read, 0 ... 1.
+  double progress() const { return size_ > 0 ? static_cast<double>(offset_) / static_cast<double>(size_) : 1.0; }
+
   /// Log time of the last message, as the summary says; none in a file that was cut off.
   std::optional<Time> last_time() const { return last_time_; }
 

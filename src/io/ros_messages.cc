@@ -460,6 +460,26 @@ void describe(Codec& codec, TransformSet& set) {
   });
 }
 
+void read_head(Reader& reader, std::string& frame) {
+  Time stamp{};
+  time_field(reader, stamp);
+  reader(frame);
+}
+
+/// Hands the bytes to `read`. Throws DecodeError "not a <type>: ...".
+template <typename Read>
+void read_cdr(std::string_view bytes, const char* type, const Read& read) {
+  try {
+    FastBuffer buffer(const_cast<char*>(bytes.data()), bytes.size());  // only read from
+    Cdr cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR);
+    cdr.read_encapsulation();
+    Reader reader{cdr};
+    read(reader);
+  } catch (const eprosima::fastcdr::exception::Exception& error) {
+    throw DecodeError(std::string("not a ") + type + ": " + error.what());
+  }
+}
+
 /// Returns how many bytes it has written.
 template <typename Message>
 std::size_t serialize(Message& message, const RosNames& names, FastBuffer& buffer) {
@@ -485,17 +505,24 @@ std::string encode(const Message& message, const RosNames& names) {
 
 template <typename Message>
 Message decode(std::string_view bytes) {
-  try {
-    FastBuffer buffer(const_cast<char*>(bytes.data()), bytes.size());  // only read from
-    Cdr cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR);
-    cdr.read_encapsulation();
-    Reader reader{cdr};
-    Message message;
-    describe(reader, message);
-    return message;
-  } catch (const eprosima::fastcdr::exception::Exception& error) {
-    throw DecodeError(std::string("not a ") + kRosType<Message> + ": " + error.what());
-  }
+  Message message;
+  read_cdr(bytes, kRosType<Message>, [&](Reader& reader) { describe(reader, message); });
+  return message;
+}
+
+OdometryFrames odometry_frames_of(std::string_view bytes) {
+  OdometryFrames frames;
+  read_cdr(bytes, kRosType<OdometryEstimate>, [&](Reader& reader) {
+    read_head(reader, frames.frame);
+    reader(frames.child);
+  });
+  return frames;
+}
+
+std::string frame_id_of(std::string_view bytes) {
+  std::string frame;
+  read_cdr(bytes, "message with a header", [&](Reader& reader) { read_head(reader, frame); });
+  return frame;
 }
 
 #define PATROL_ROS_MESSAGE(Message)                                     \

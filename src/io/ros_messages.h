@@ -68,4 +68,13 @@ class DecodeError : public InputError {
 template <typename Message>
 Message decode(std::string_view cdr);
 
+/// header.frame_id of a message that begins with a header. Throws DecodeError.
+std::string frame_id_of(std::string_view cdr);
+
+/// The frames of a nav_msgs/Odometry: header.frame_id and child_frame_id. Throws DecodeError.
+struct OdometryFrames {
+  std::string frame, child;
+};
+OdometryFrames odometry_frames_of(std::string_view cdr);
+
 }  // namespace patrol::io

@@ -1,52 +1,57 @@
 #include "io/tum.h"
 
-#include <array>
 #include <cmath>
-#include <sstream>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "io/line_fields.h"
+#include "io/line_reader.h"
 
 namespace patrol::io {
 namespace {
 
 constexpr double kUnitTol = 1e-3;  ///< of a quaternion's length: files carry as few as four digits
 
-/// The line's eight numbers, or what is wrong with them.
-std::array<double, 8> parse_line(const std::string& file, int number, const std::string& line) {
-  const char* const rule = "must be eight finite numbers: t x y z qx qy qz qw";
-  std::istringstream words(line);
-  std::array<double, 8> values{};
-  for (double& value : values) {
-    if (!(words >> value) || !std::isfinite(value)) throw input_error(file, number, rule);
+StampedPose parse_pose(LineFields fields) {
+  StampedPose entry{.stamp = fields.stamp("t"), .pose = {}};
+  Eigen::Vector3d& p = entry.pose.position;
+  for (int axis = 0; axis < 3; ++axis) p[axis] = fields.number("position");
+  const double x = fields.number("qx"), y = fields.number("qy"), z = fields.number("qz"), w = fields.number("qw");
+  if (!fields.is_empty()) throw FieldError("more than eight words");
+  entry.pose.rotation = Eigen::Quaterniond(w, x, y, z);
+  return entry;
+}
+
+StampedPose read_pose(const std::string& file, const LineReader::Line& line) {
+  try {
+    if (line.is_cut) throw FieldError("too long");
+    return parse_pose(LineFields(line.text));
+  } catch (const FieldError&) {
+    throw input_error(file, line.number, "must be eight finite numbers: t x y z qx qy qz qw");
   }
-  if (!(words >> std::ws).eof()) throw input_error(file, number, rule);
-  return values;
 }
 
 }  // namespace
 
-Trajectory load_tum(const std::filesystem::path& file) {
-  std::istringstream lines(load_text(file));
+Trajectory load_tum(const std::filesystem::path& file, SameStamps same_stamps) {
+  LineReader lines(file);
   Trajectory trajectory;
-  int number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    if (line.find_first_not_of(" \t\r") == std::string::npos || line.front() == '#') continue;
-    const auto [t, x, y, z, qx, qy, qz, qw] = parse_line(file.string(), number, line);
-    const Eigen::Quaterniond rotation(qw, qx, qy, qz);
-    if (std::abs(rotation.norm() - 1.0) > kUnitTol) {
-      throw input_error(file.string(), number, fmt::format("the quaternion has length {:.4g}, must be 1", rotation.norm()));
+  while (const auto line = lines.next()) {
+    if (LineFields(line->text).is_empty() || line->text.front() == '#') continue;
+    StampedPose entry = read_pose(file.string(), *line);
+    const double length = entry.pose.rotation.norm();
+    if (std::abs(length - 1.0) > kUnitTol) throw input_error(file.string(), line->number, fmt::format("the quaternion has length {:.4g}, must be 1", length));
+    entry.pose.rotation.normalize();
+    if (!trajectory.empty() && entry.stamp <= trajectory.back().stamp) {
+      if (same_stamps == SameStamps::kKeepFirst && entry.stamp == trajectory.back().stamp) continue;
+      throw input_error(file.string(), line->number, fmt::format("stamp {} does not follow {}: stamps must grow from line to line",
+                                                                 format_stamp(entry.stamp), format_stamp(trajectory.back().stamp)));
     }
-    const Time stamp = from_seconds(t);
-    if (!trajectory.empty() && stamp <= trajectory.back().stamp) {
-      throw input_error(file.string(), number, fmt::format("stamp {:.9f} does not follow {:.9f}: stamps must grow from line to line",
-                                                           t, to_seconds(trajectory.back().stamp)));
-    }
-    trajectory.push_back({stamp, {{x, y, z}, rotation.normalized()}});
+    trajectory.push_back(entry);
   }
+  if (lines.damage()) throw InputError(fmt::format("{}: {}", file.string(), *lines.damage()));
   if (trajectory.empty()) throw InputError(file.string() + ": holds no poses");
   return trajectory;
 }
@@ -56,8 +61,7 @@ void save_tum(const std::filesystem::path& file, const Trajectory& trajectory, c
   for (const auto& [stamp, pose] : trajectory) {
     const Eigen::Vector3d& p = pose.position;
     const Eigen::Quaterniond& q = pose.rotation;
-    text += fmt::format("{}.{:09} {:.9f} {:.9f} {:.9f} {:.12f} {:.12f} {:.12f} {:.12f}\n", stamp.count() / 1'000'000'000,
-                        stamp.count() % 1'000'000'000, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+    text += fmt::format("{} {:.9f} {:.9f} {:.9f} {:.12f} {:.12f} {:.12f} {:.12f}\n", format_stamp(stamp), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
   }
   save_text(file, text);
 }

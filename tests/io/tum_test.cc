@@ -66,6 +66,26 @@ TEST(LoadTum, StampsMustGrow) {
   EXPECT_THAT(complaint_about("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"), HasSubstr("a.tum:2: stamp 1.0"));
 }
 
+TEST(LoadTum, OfPosesOfOneStampTheFirstMayBeKept) {
+  const TemporaryFile file("a.tum", "1 5 0 0 0 0 0 1\n1 6 0 0 0 0 0 1\n2 7 0 0 0 0 0 1\n");
+  const Trajectory trajectory = load_tum(file.path(), SameStamps::kKeepFirst);
+  ASSERT_EQ(trajectory.size(), 2U);
+  EXPECT_EQ(trajectory[0].pose.position.x(), 5.0);
+  EXPECT_EQ(trajectory[1].pose.position.x(), 7.0);
+  const TemporaryFile falling("a.tum", "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n");
+  EXPECT_THROW(load_tum(falling.path(), SameStamps::kKeepFirst), InputError);
+}
+
+TEST(SaveTum, SecondsSinceNineteenSeventyComeBackToTheNanosecond) {
+  const TemporaryFolder folder;
+  const Trajectory was = {{Time(-1'500'000'000), {}}, {Time(976'052'857'222'433'000), {}}, {Time(976'052'857'222'433'001), {}}};
+  save_tum(folder / "a.tum", was, "c");
+  EXPECT_THAT(test::read_bytes(folder / "a.tum"), HasSubstr("\n-1.500000000 0.0"));
+  EXPECT_THAT(test::read_bytes(folder / "a.tum"), HasSubstr("\n976052857.222433000 0.0"));
+  const Trajectory is = load_tum(folder / "a.tum");
+  for (std::size_t i = 0; i < was.size(); ++i) EXPECT_EQ(is[i].stamp, was[i].stamp);
+}
+
 TEST(LoadTum, AQuaternionOfLengthTwoIsRefusedAndFourDigitsAreEnough) {
   EXPECT_EQ(complaint_about("2 0 0 0 0 0 0 2\n"), "a.tum:1: the quaternion has length 2, must be 1");
   EXPECT_EQ(complaint_about("2 0 0 0 0 0 0.7071 0.7071\n"), "");

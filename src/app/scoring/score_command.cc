@@ -2,10 +2,12 @@
 
 #include "app/commands.h"
 #include "app/output_directory.h"
+#include "app/scoring/relation_table.h"
 #include "app/scoring/score_run.h"
 #include "app/scoring/score_table.h"
 #include "core/error.h"
 #include "io/map_server.h"
+#include "io/relations.h"
 #include "io/tum.h"
 
 namespace patrol::app {
@@ -33,8 +35,14 @@ ExitCode score_directory(const std::filesystem::path& root) {
 
 ExitCode score_command(const ScoreOptions& options) {
   const bool is_pair_of_trajectories = !options.estimate.empty() && !options.reference.empty();
+  const bool is_relations = !options.estimate.empty() && !options.relations.empty();
   const bool is_pair_of_maps = !options.map.empty() && !options.reference_map.empty();
   if (!options.run.empty()) return score_directory(options.run);
+  if (is_relations) {
+    const Trajectory estimate = io::load_tum(options.estimate, io::SameStamps::kKeepFirst);
+    fmt::print("{}", relation_table(score::relation_error(estimate, io::load_relations(options.relations), options.relation_settings)));
+    return ExitCode::kDone;
+  }
   if (is_pair_of_trajectories) {
     fmt::print("{}", score_table(score_trajectories(io::load_tum(options.estimate), io::load_tum(options.reference)), {}));
     return ExitCode::kDone;
@@ -43,7 +51,7 @@ ExitCode score_command(const ScoreOptions& options) {
     fmt::print("{}", score_table(score_maps(io::load_map(options.map), io::load_map(options.reference_map)), {}));
     return ExitCode::kDone;
   }
-  throw InputError("score: give a run directory, or --estimate and --reference, or --map and --reference-map");
+  throw InputError("score: give a run directory, or --estimate and --reference, or --estimate and --relations, or --map and --reference-map");
 }
 
 }  // namespace patrol::app

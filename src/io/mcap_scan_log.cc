@@ -1,0 +1,195 @@
+#include "io/mcap_scan_log.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/run_log.h"
+
+namespace patrol::io {
+namespace {
+
+constexpr std::size_t kMostWaiting = 256;  ///< scans; odometry that comes later than these is taken for missing
+constexpr std::size_t kMostBeams = 10'000;
+constexpr double kUnitTol = 1e-3;          ///< of a quaternion's length
+constexpr double kFurthest_m = 1e8;
+constexpr const char* kTf = "/tf";
+constexpr const char* kTfStatic = "/tf_static";
+
+void expect_pose(const Pose3& pose, const char* whose) {
+  const bool is_pose = pose.position.allFinite() && pose.position.cwiseAbs().maxCoeff() <= kFurthest_m && std::abs(pose.rotation.norm() - 1.0) <= kUnitTol;
+  if (!is_pose) throw DecodeError(fmt::format("{} is no pose: not finite, or its quaternion not of length 1", whose));
+}
+
+Pose3 normalized(const Pose3& pose) { return {pose.position, pose.rotation.normalized()}; }
+
+void expect_scan(const LaserScan& scan) {
+  if (scan.ranges_m.empty() || scan.ranges_m.size() > kMostBeams) throw DecodeError(fmt::format("a scan of {} beams: must be 1 ... {}", scan.ranges_m.size(), kMostBeams));
+  const bool has_angles = std::abs(scan.angle_min_rad) <= 7.0 && std::abs(scan.angle_increment_rad) * static_cast<double>(scan.ranges_m.size()) <= 7.0;
+  if (!has_angles) throw DecodeError("a scan of more than a turn");
+  if (!std::isfinite(scan.time_increment_s) || !std::isfinite(scan.scan_time_s)) throw DecodeError("a scan whose times are not finite");
+}
+
+/// REP 117, which drivers follow more or less.
+void tidy_ranges(LaserScan& scan, double no_return_m) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  if (!(scan.range_max_m > 0.0)) scan.range_max_m = no_return_m;
+  if (!(scan.range_min_m >= 0.0)) scan.range_min_m = 0.0;
+  scan.range_max_m = std::min(scan.range_max_m, no_return_m);
+  for (float& range_m : scan.ranges_m) {
+    if (range_m >= static_cast<float>(scan.range_max_m)) range_m = kInfinity;
+    else if (range_m > 0.0F && range_m < static_cast<float>(scan.range_min_m)) range_m = -kInfinity;
+    else if (range_m <= 0.0F && range_m != -kInfinity) range_m = std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+}  // namespace
+
+McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options)
+    : file_(file), options_(options), reader_(file), scan_topic_(options.scan_topic), odometry_topic_(options.odometry_topic) {}
+
+std::string McapScanLog::place(const McapMessage& message) const {
+  return fmt::format("{}: {} at {:.9f} s: ", file_.string(), message.channel.topic, to_seconds(message.log_time));
+}
+
+std::optional<RecordedScan> McapScanLog::next() {
+  while (true) {
+    if (std::optional<RecordedScan> scan = sorter_.take(is_at_end_)) {
+      count_given_out(*scan);
+      return scan;
+    }
+    if (is_at_end_) return std::nullopt;
+    if (!read_message()) finish();
+  }
+}
+
+std::optional<McapMessage> McapScanLog::next_message() {
+  try {
+    return reader_.next();
+  } catch (const InputError& error) {  // names the byte; nothing can be read beyond it
+    refuse_or_skip(options_, "file is damaged, not read further", error.what());
+    return std::nullopt;
+  }
+}
+
+bool McapScanLog::read_message() {
+  const std::optional<McapMessage> message = next_message();
+  if (!message) return false;
+  ++summary_.num_read;
+  try {
+    handle(*message);
+  } catch (const DecodeError& error) {
+    refuse_or_skip(options_, "messages that cannot be read", place(*message) + error.what());
+  }
+  return true;
+}
+
+void McapScanLog::handle(const McapMessage& message) {
+  const std::string &topic = message.channel.topic, &type = message.channel.type;
+  if (type == kRosType<LaserScan>) {
+    if (scan_topic_.empty()) scan_topic_ = topic;
+    if (topic == scan_topic_) return add_scan(message);
+  } else if (type == kRosType<OdometryEstimate>) {
+    if (odometry_topic_.empty() || topic == odometry_topic_) return add_odometry(message);
+  } else if (type == kRosType<TransformSet>) {
+    return add_transforms(message, topic.ends_with(kTfStatic));
+  }
+  count_ignored(topic);
+}
+
+void McapScanLog::add_scan(const McapMessage& message) {
+  WaitingScan waiting{.scan = decode<LaserScan>(message.cdr), .frame = frame_id_of(message.cdr)};
+  expect_scan(waiting.scan);
+  tidy_ranges(waiting.scan, options_.no_return_m);
+  waiting_.push_back(std::move(waiting));
+  if (waiting_.size() > kMostWaiting) {
+    waiting_.pop_front();
+    count_skipped("scans without odometry", place(message) + "no odometry at the time of a scan long before it");
+  }
+  resolve_waiting();
+}
+
+void McapScanLog::add_odometry(const McapMessage& message) {
+  const auto odometry = decode<OdometryEstimate>(message.cdr);
+  const OdometryFrames names = odometry_frames_of(message.cdr);
+  const bool is_own_opinion = names.frame != frame_id::kWorld && names.frame != frame_id::kMap;
+  if (options_.odometry_topic.empty() && !is_own_opinion) return count_ignored(message.channel.topic);
+  expect_pose(odometry.T_odom_body, "odometry");
+  odometry_topic_ = message.channel.topic;
+  if (body_frame_.empty()) body_frame_ = names.child.empty() ? frame_id::kBody : names.child;
+  odometry_.add({.stamp = odometry.stamp, .parent = frame_id::kOdom, .child = frame_id::kBody, .T_parent_child = normalized(odometry.T_odom_body)});
+  resolve_waiting();
+}
+
+void McapScanLog::add_transforms(const McapMessage& message, bool is_static) {
+  for (FrameTransform& transform : decode<TransformSet>(message.cdr).transforms) {
+    expect_pose(transform.T_parent_child, "a transform");
+    transform.T_parent_child = normalized(transform.T_parent_child);
+    is_static ? frames_.add_static(transform) : frames_.add(transform);
+  }
+  resolve_waiting();
+}
+
+std::optional<Pose3> McapScanLog::odometry_at(Time stamp) const {
+  const bool has_topic = !odometry_topic_.empty() && !uses_tf_;
+  return (has_topic ? odometry_ : frames_).find(frame_id::kOdom, frame_id::kBody, stamp);
+}
+
+/// The scans that odometry has passed go on to be sorted.
+void McapScanLog::resolve_waiting() {
+  std::deque<WaitingScan> still_waiting;
+  for (WaitingScan& waiting : waiting_) {
+    const std::optional<Pose3> T_odom_body = odometry_at(waiting.scan.stamp);
+    if (T_odom_body) add_placed(std::move(waiting), to_planar(*T_odom_body));
+    else still_waiting.push_back(std::move(waiting));
+  }
+  waiting_ = std::move(still_waiting);
+}
+
+void McapScanLog::add_placed(WaitingScan waiting, const Pose2& T_odom_body) {
+  if (odometry_topic_.empty()) uses_tf_ = true;  // from now on: two sources may differ
+  const Pose2 T_body_lidar = to_planar(mount_of(waiting));
+  const Time stamp = waiting.scan.stamp;
+  switch (sorter_.add({.scan = std::move(waiting.scan), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar})) {
+    case ScanSorter::Order::kInOrder: return;
+    case ScanSorter::Order::kReordered: ++summary_.num_reordered; return;
+    case ScanSorter::Order::kTooLate:
+      refuse_or_skip(options_, "scans whose time goes back",
+                     fmt::format("{}: {}: time goes back to {:.6f} s, but {:.6f} s was {} scans ago: too late to put them in order", file_.string(), scan_topic_,
+                                 to_seconds(stamp), to_seconds(*sorter_.last_taken()), ScanSorter::kWindow));
+  }
+}
+
+/// Turns the beams of a lidar that hangs upside down round, so that its planar place says all.
+Pose3 McapScanLog::mount_of(WaitingScan& waiting) {
+  std::optional<Pose3> T_body_lidar = frames_.find(body_frame_.empty() ? frame_id::kBody : body_frame_, waiting.frame, waiting.scan.stamp);
+  if (!T_body_lidar) T_body_lidar = frames_.find(frame_id::kBody, waiting.frame, waiting.scan.stamp);
+  if (!T_body_lidar) {
+    ++summary_.assumed["scans: the lidar is at the body's origin (no transform says where)"];
+    return {};
+  }
+  const bool is_upside_down = (T_body_lidar->rotation * Eigen::Vector3d::UnitZ()).z() < 0.0;
+  if (is_upside_down) {
+    waiting.scan.angle_min_rad *= -1.0;
+    waiting.scan.angle_increment_rad *= -1.0;
+  }
+  return *T_body_lidar;
+}
+
+void McapScanLog::finish() {
+  is_at_end_ = true;
+  if (!reader_.is_complete()) count_skipped("file ends too early", file_.string() + ": was cut off: read up to the cut");
+  const std::size_t without_odometry = waiting_.size();
+  for (; !waiting_.empty(); waiting_.pop_front()) {
+    count_skipped("scans without odometry", fmt::format("{}: no odometry at the scan of {:.9f} s", file_.string(), to_seconds(waiting_.front().scan.stamp)));
+  }
+  if (summary_.num_scans > 0 || !sorter_.is_empty()) return;
+  const char* const what = without_odometry > 0 ? "holds no odometry at its scans' times: nav_msgs/msg/Odometry, or tf odom -> base_link, is read"
+                                                : "holds no scan: sensor_msgs/msg/LaserScan is read";
+  throw InputError(fmt::format("{}: {} ({})", file_.string(), what, counted(summary_)));
+}
+
+}  // namespace patrol::io

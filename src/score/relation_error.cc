@@ -1,0 +1,107 @@
+#include "score/relation_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "core/error.h"
+#include "score/statistics.h"
+
+namespace patrol::score {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+/// The trajectory at the relations' stamps, each looked up once.
+class PoseLookup {
+ public:
+  PoseLookup(const Trajectory& T_map_body, const RelationSettings& settings)
+      : trajectory_(T_map_body), max_dt_(from_seconds(settings.max_dt_s)), T_body_reference_{settings.ref_x_m, 0.0, 0.0} {}
+
+  const Pose2& T_map_reference(Time stamp) {
+    const auto known = found_.find(stamp);
+    return known != found_.end() ? known->second : found_.emplace(stamp, find(stamp)).first->second;
+  }
+
+  void count(RelationError& error) const {
+    error.num_stamps = found_.size();
+    error.num_interpolated = num_interpolated_;
+    error.num_outside = num_outside_;
+  }
+
+ private:
+  Pose2 reference_at(const StampedPose& entry) const { return to_planar(entry.pose) * T_body_reference_; }
+
+  Pose2 find(Time stamp) {
+    const auto after = std::lower_bound(trajectory_.begin(), trajectory_.end(), stamp, [](const StampedPose& entry, Time t) { return entry.stamp < t; });
+    const auto before = after == trajectory_.begin() ? after : after - 1;
+    const bool after_is_nearer = after != trajectory_.end() && after->stamp - stamp < std::chrono::abs(stamp - before->stamp);
+    const StampedPose& nearest = after_is_nearer ? *after : *before;
+    if (std::chrono::abs(nearest.stamp - stamp) <= max_dt_) return reference_at(nearest);
+    ++num_interpolated_;
+    const bool is_outside = after == trajectory_.begin() || after == trajectory_.end();
+    if (!is_outside) return between(*before, *after, stamp);
+    ++num_outside_;
+    return reference_at(nearest);
+  }
+
+  /// Linear in x, y and, the short way, in yaw.
+  Pose2 between(const StampedPose& before, const StampedPose& after, Time stamp) const {
+    const Pose2 a = reference_at(before), b = reference_at(after);
+    const double share = to_seconds(stamp - before.stamp) / to_seconds(after.stamp - before.stamp);
+    return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), wrap_angle(a.yaw + share * wrap_angle(b.yaw - a.yaw))};
+  }
+
+  const Trajectory& trajectory_;
+  Time max_dt_;
+  Pose2 T_body_reference_;
+  std::map<Time, Pose2> found_;
+  std::size_t num_interpolated_ = 0, num_outside_ = 0;
+};
+
+ErrorSpread spread_of(const std::vector<double>& values) {
+  const double center = mean(values);
+  double sum = 0.0;
+  for (const double value : values) sum += (value - center) * (value - center);
+  return {.mean = center, .std = std::sqrt(sum / static_cast<double>(values.size()))};
+}
+
+std::vector<double> squares(std::vector<double> values) {
+  for (double& value : values) value *= value;
+  return values;
+}
+
+double upper_median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+RelationError relation_error(const Trajectory& T_map_body, const std::vector<PoseRelation>& relations, const RelationSettings& settings) {
+  validate(settings, "relations");
+  if (T_map_body.empty()) throw InputError("the estimate holds no poses");
+  if (relations.empty()) throw InputError("there are no relations to score");
+  PoseLookup lookup(T_map_body, settings);
+  std::vector<double> trans_m, rot_deg;
+  for (const PoseRelation& relation : relations) {
+    const Pose2 T_from_to = lookup.T_map_reference(relation.from).inverse() * lookup.T_map_reference(relation.to);
+    trans_m.push_back((T_from_to.position() - relation.T_from_to.position()).norm());
+    rot_deg.push_back(kDegPerRad * std::abs(wrap_angle(T_from_to.yaw - relation.T_from_to.yaw)));
+  }
+  RelationError error{.num_relations = relations.size(),
+                      .trans_m = spread_of(trans_m),
+                      .squared_trans_m2 = spread_of(squares(trans_m)),
+                      .trans_median_m = upper_median(trans_m),
+                      .trans_max_m = maximum(trans_m),
+                      .rot_deg = spread_of(rot_deg),
+                      .squared_rot_deg2 = spread_of(squares(rot_deg)),
+                      .rot_median_deg = upper_median(rot_deg),
+                      .rot_max_deg = maximum(rot_deg)};
+  lookup.count(error);
+  return error;
+}
+
+}  // namespace patrol::score

@@ -1,0 +1,7 @@
+#include "io/carmen_log.h"
+#include "tests/fuzz/scan_log_checks.h"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  patrol::test::check_log<patrol::io::CarmenLog>(patrol::test::MemoryFile(data, size));
+  return 0;
+}

@@ -1,0 +1,362 @@
+#include "io/mcap_scan_log.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "core/error.h"
+#include "io/mcap_writer.h"
+#include "io/ros_definitions.h"
+#include "io/run_log.h"
+#include "tests/support/pose_near.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::io {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Pose2Near, test::read_bytes, test::TemporaryFolder, test::write_bytes;
+using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testing::Pair;
+
+constexpr double kExactTol = 1e-12;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// A file that other people's robots could have written.
+class Writer {
+ public:
+  explicit Writer(const std::filesystem::path& file) : writer_(file) {}
+
+  template <typename Message>
+  void write(const std::string& topic, Time log_time, const Message& message) {
+    write_cdr(topic, kRosType<Message>, log_time, encode(message));
+  }
+  void write_cdr(const std::string& topic, const std::string& type, Time log_time, const std::string& cdr) {
+    if (!channels_.contains(topic)) channels_[topic] = writer_.add_channel(topic, type, ros_definition(type));
+    writer_.write(channels_[topic], log_time, cdr);
+  }
+  void close() { writer_.close(); }
+
+ private:
+  McapWriter writer_;
+  std::map<std::string, McapWriter::ChannelId> channels_;
+};
+
+LaserScan scan_at(Time stamp, std::vector<float> ranges_m = {1.0F, 2.0F, 3.0F}) {
+  return {.stamp = stamp, .angle_min_rad = -0.5, .angle_increment_rad = 0.25, .range_min_m = 0.5, .range_max_m = 30.0, .ranges_m = std::move(ranges_m), .intensities = {}};
+}
+
+/// One metre a second along x, from x = 0 at 0 s.
+OdometryEstimate odometry_at(Time stamp, double lead_m = 0.0) {
+  OdometryEstimate odometry;
+  odometry.stamp = stamp;
+  odometry.T_odom_body.position = {to_seconds(stamp) + lead_m, 0.0, 0.3};
+  return odometry;
+}
+
+FrameTransform placed(const std::string& parent, const std::string& child, const Pose3& T_parent_child, Time stamp = {}) {
+  return {.stamp = stamp, .parent = parent, .child = child, .T_parent_child = T_parent_child};
+}
+
+struct Read {
+  std::vector<RecordedScan> scans;
+  ScanLogSummary summary;
+};
+
+class McapScans : public ::testing::Test {
+ protected:
+  Read read(const ScanLogOptions& options = {}) {
+    const std::unique_ptr<ScanLog> log = open_scan_log(file, options);
+    Read result;
+    while (std::optional<RecordedScan> scan = log->next()) result.scans.push_back(std::move(*scan));
+    EXPECT_EQ(log->progress(), 1.0);
+    result.summary = log->summary();
+    return result;
+  }
+  std::string complaint(const ScanLogOptions& options = {}) {
+    try {
+      read(options);
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      return what.substr(what.find("log.mcap"));
+    }
+    return "";
+  }
+
+  TemporaryFolder folder;
+  const std::filesystem::path file = folder / "log.mcap";
+  Writer writer{file};
+};
+
+TEST_F(McapScans, OdometryIsInterpolatedToTheScansStamp) {
+  writer.write("/odom", 1s, odometry_at(1s));
+  writer.write("/scan", 1300ms, scan_at(1250ms));
+  writer.write("/odom", 2s, odometry_at(2s));
+  writer.close();
+  const Read result = read();
+  ASSERT_EQ(result.scans.size(), 1U);
+  EXPECT_EQ(result.scans[0].scan.stamp, 1250ms);
+  EXPECT_THAT(result.scans[0].T_odom_body, Pose2Near(Pose2{1.25, 0.0, 0.0}, kExactTol, kExactTol));
+  EXPECT_THAT(result.scans[0].scan.ranges_m, ElementsAre(1.0F, 2.0F, 3.0F));
+  EXPECT_EQ(result.scans[0].scan.angle_min_rad, -0.5);
+  EXPECT_THAT(result.summary.assumed, ElementsAre(Pair(HasSubstr("body's origin"), 1U)));
+}
+
+TEST_F(McapScans, WithoutAnOdometryTopicTfIsTakenOverItsFramesBetween) {
+  for (const Time t : {1s, 2s}) {
+    writer.write("/tf", t, TransformSet{{placed("odom", "base_footprint", {{to_seconds(t), 0.0, 0.0}, quaternion_from_yaw(0.5)}, t),
+                                         placed("base_footprint", "base_link", {{0.0, 0.0, 0.4}, Eigen::Quaterniond::Identity()}, t)}});
+    if (t == 1s) writer.write("/scan", 1500ms, scan_at(1500ms));
+  }
+  writer.close();
+  EXPECT_THAT(read().scans.at(0).T_odom_body, Pose2Near(Pose2{1.5, 0.0, 0.5}, kExactTol, kExactTol));
+}
+
+TEST_F(McapScans, WhatWasTakenFirstStaysTheSource) {
+  writer.write("/tf", 0s, TransformSet{{placed("odom", "base_link", {}, 0s)}});
+  writer.write("/scan", 500ms, scan_at(500ms));
+  writer.write("/tf", 1s, TransformSet{{placed("odom", "base_link", {}, 1s)}});
+  writer.write("/odom", 1s, odometry_at(1s));
+  writer.write("/scan", 1500ms, scan_at(1500ms));
+  writer.write("/tf", 2s, TransformSet{{placed("odom", "base_link", {}, 2s)}});
+  writer.write("/odom", 2s, odometry_at(2s));
+  writer.write("/scan", 2500ms, scan_at(2500ms));
+  writer.write("/tf", 3s, TransformSet{{placed("odom", "base_link", {}, 3s)}});
+  writer.write("/odom", 3s, odometry_at(3s));
+  writer.close();
+  const Read result = read();
+  ASSERT_EQ(result.scans.size(), 3U);
+  for (const RecordedScan& scan : result.scans) EXPECT_EQ(scan.T_odom_body.x, 0.0) << "tf's, not the topic's";
+}
+
+TEST_F(McapScans, TheLidarsPlaceIsThePlanarPartOfTfStatic) {
+  writer.write("/tf_static", 0s, TransformSet{{placed("base_link", "plate", {{0.1, 0.0, 0.5}, quaternion_from_yaw(std::numbers::pi / 2.0)}),
+                                               placed("plate", "lidar", {{0.2, 0.0, 0.0}, Eigen::Quaterniond::Identity()})}});
+  writer.write("/odom", 0s, odometry_at(0s));
+  writer.write("/scan", 1s, scan_at(500ms));
+  writer.write("/odom", 1s, odometry_at(1s));
+  writer.close();
+  const Read result = read();
+  EXPECT_THAT(result.scans.at(0).T_body_lidar, Pose2Near(Pose2{0.1, 0.2, std::numbers::pi / 2.0}, kExactTol, kExactTol));
+  EXPECT_TRUE(result.summary.assumed.empty());
+}
+
+TEST_F(McapScans, ALidarUpsideDownTurnsTheOtherWay) {
+  writer.write("/tf_static", 0s, TransformSet{{placed("base_link", "lidar", {{0.1, 0.0, 0.5}, quaternion_from_rpy(std::numbers::pi, 0.0, 0.25)})}});
+  writer.write("/odom", 0s, odometry_at(0s));
+  writer.write("/scan", 1s, scan_at(500ms));
+  writer.write("/odom", 1s, odometry_at(1s));
+  writer.close();
+  const RecordedScan scan = read().scans.at(0);
+  EXPECT_THAT(scan.T_body_lidar, Pose2Near(Pose2{0.1, 0.0, 0.25}, kExactTol, kExactTol));
+  EXPECT_EQ(scan.scan.angle_min_rad, 0.5);
+  EXPECT_EQ(scan.scan.angle_increment_rad, -0.25);
+}
+
+TEST_F(McapScans, TheGroundTruthIsNotTheRobotsOdometry) {
+  for (const Time t : {0s, 1s}) {
+    writer.write("/ground_truth/odom", t, GroundTruth{.stamp = t, .T_world_body = {{99.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()}, .twist = {}});
+    writer.write("/odom", t, odometry_at(t));
+    if (t == 0s) writer.write("/scan", t, scan_at(500ms));
+  }
+  writer.close();
+  const Read result = read();
+  EXPECT_EQ(result.scans.at(0).T_odom_body.x, 0.5);
+  EXPECT_THAT(result.summary.ignored, ElementsAre(Pair("/ground_truth/odom", 2U)));
+}
+
+TEST_F(McapScans, TopicsCanBeAskedFor) {
+  for (const Time t : {0s, 1s}) {
+    writer.write("/odom", t, odometry_at(t));
+    writer.write("/visual_odom", t, odometry_at(t, 10.0));
+    if (t == 0s) writer.write("/front/scan", t, scan_at(250ms));
+    if (t == 0s) writer.write("/rear/scan", t, scan_at(500ms));
+  }
+  writer.close();
+  EXPECT_EQ(read().scans.at(0).scan.stamp, 250ms) << "the first, unless asked otherwise";
+  ScanLogOptions options;
+  options.scan_topic = "/rear/scan";
+  options.odometry_topic = "/visual_odom";
+  const Read result = read(options);
+  ASSERT_EQ(result.scans.size(), 1U);
+  EXPECT_EQ(result.scans[0].scan.stamp, 500ms);
+  EXPECT_EQ(result.scans[0].T_odom_body.x, 10.5);
+  EXPECT_THAT(result.summary.ignored, ElementsAre(Pair("/front/scan", 1U), Pair("/odom", 2U)));
+}
+
+TEST_F(McapScans, ScansOutsideTheOdometrysTimeAreSkippedAndCounted) {
+  writer.write("/scan", 0s, scan_at(500ms));
+  writer.write("/odom", 1s, odometry_at(1s));
+  writer.write("/scan", 1s, scan_at(1500ms));
+  writer.write("/odom", 2s, odometry_at(2s));
+  writer.write("/scan", 2s, scan_at(2500ms));
+  writer.close();
+  const Read result = read();
+  ASSERT_EQ(result.scans.size(), 1U);
+  EXPECT_EQ(result.scans[0].scan.stamp, 1500ms);
+  EXPECT_THAT(result.summary.skipped, ElementsAre(Pair("scans without odometry", 2U)));
+  EXPECT_THAT(result.summary.complaints.at(0), EndsWith("log.mcap: no odometry at the scan of 0.500000000 s"));
+}
+
+TEST_F(McapScans, RangesAreTidiedAsRep117Asks) {
+  writer.write("/odom", 0s, odometry_at(0s));
+  writer.write("/scan", 0s, scan_at(500ms, {29.9F, 30.0F, 65.5F, kInfinity, 0.49F, 0.0F, -1.0F, NAN, -kInfinity}));
+  writer.write("/odom", 1s, odometry_at(1s));
+  writer.close();
+  const std::vector<float> ranges = read().scans.at(0).scan.ranges_m;
+  EXPECT_EQ(ranges[0], 29.9F);
+  for (const std::size_t beam : {1U, 2U, 3U}) EXPECT_EQ(ranges[beam], kInfinity) << beam;
+  for (const std::size_t beam : {4U, 8U}) EXPECT_EQ(ranges[beam], -kInfinity) << beam;
+  for (const std::size_t beam : {5U, 6U, 7U}) EXPECT_TRUE(std::isnan(ranges[beam])) << beam;
+}
+
+TEST_F(McapScans, PatrolsOwnRunLogsAreRead) {
+  RobotDescription robot;
+  robot.T_body_sensor["lidar"] = {{0.2, 0.0, 0.1}, quaternion_from_yaw(0.1)};
+  const std::filesystem::path run_log = folder / "run.mcap";
+  RunLogWriter run(run_log, robot);
+  for (int i = 0; i < 100; ++i) {
+    const Time now = i * 100ms;
+    run.write(now, GroundTruth{.stamp = now, .T_world_body = {{50.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()}, .twist = {}});
+    run.write(now, odometry_at(now));
+    run.write(now, scan_at(now + 50ms));
+  }
+  run.close();
+  const std::unique_ptr<ScanLog> log = open_scan_log(run_log);
+  int count = 0;
+  while (const auto scan = log->next()) {
+    EXPECT_EQ(scan->scan.stamp, count * 100ms + 50ms);
+    EXPECT_THAT(scan->T_odom_body, Pose2Near(Pose2{0.1 * count + 0.05, 0.0, 0.0}, kExactTol, kExactTol));
+    EXPECT_THAT(scan->T_body_lidar, Pose2Near(Pose2{0.2, 0.0, 0.1}, kExactTol, kExactTol));
+    ++count;
+  }
+  EXPECT_EQ(count, 99) << "the last has no odometry after it";
+}
+
+TEST_F(McapScans, OrderAndEqualStampsAreAsInTextLogs) {
+  writer.write("/odom", 0s, odometry_at(0s));
+  for (const Time stamp : {300ms, 100ms, 200ms, 200ms}) writer.write("/scan", 1s, scan_at(stamp));
+  writer.write("/odom", 1s, odometry_at(1s));
+  writer.close();
+  const Read result = read();
+  std::vector<Time> stamps;
+  for (const RecordedScan& scan : result.scans) stamps.push_back(scan.scan.stamp);
+  EXPECT_THAT(stamps, ElementsAre(100ms, 200ms, 200ms, 300ms));
+  EXPECT_EQ(result.summary.num_reordered, 3U);
+  EXPECT_EQ(result.summary.num_same_stamp, 1U);
+}
+
+TEST_F(McapScans, AScanTooLateToPutInOrderIsRefusedOrSkipped) {
+  writer.write("/odom", 0s, odometry_at(0s));
+  writer.write("/odom", 5s, odometry_at(5s));
+  for (int i = 1; i <= 40; ++i) writer.write("/scan", 5s, scan_at(i * 100ms));
+  writer.write("/scan", 6s, scan_at(50ms));
+  writer.close();
+  EXPECT_EQ(complaint(), "log.mcap: /scan: time goes back to 0.050000 s, but 0.800000 s was 32 scans ago: too late to put them in order");
+  ScanLogOptions options;
+  options.skip_bad_lines = true;
+  EXPECT_EQ(read(options).scans.size(), 40U);
+}
+
+TEST_F(McapScans, MessagesThatCannotBeReadAreRefusedOrSkipped) {
+  ScanLogOptions skip;
+  skip.skip_bad_lines = true;
+  writer.write("/odom", 0s, odometry_at(0s));
+  writer.write("/scan", 0s, scan_at(500ms));
+  const std::string whole = encode(scan_at(600ms));
+  writer.write_cdr("/scan", kRosType<LaserScan>, 1s, whole.substr(0, whole.size() - 9));
+  writer.write("/odom", 1s, odometry_at(1s));
+  writer.close();
+  EXPECT_THAT(complaint(), HasSubstr("log.mcap: /scan at 1.000000000 s: not a sensor_msgs/msg/LaserScan: "));
+  const Read result = read(skip);
+  EXPECT_EQ(result.scans.size(), 1U);
+  EXPECT_THAT(result.summary.skipped, ElementsAre(Pair("messages that cannot be read", 1U)));
+}
+
+TEST_F(McapScans, ScansAndPosesThatAreNoneAreNamed) {
+  const auto complaint_about = [&](const auto& topic, const auto& message) {
+    const std::filesystem::path bad = folder / "bad.mcap";
+    Writer one(bad);
+    one.write(topic, 1s, message);
+    one.close();
+    try {
+      open_scan_log(bad)->next();
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      return what.substr(what.find("bad.mcap"));
+    }
+    return std::string();
+  };
+  LaserScan wide = scan_at(0s);
+  wide.angle_increment_rad = 3.0;
+  LaserScan timeless = scan_at(0s);
+  timeless.scan_time_s = NAN;
+  OdometryEstimate lost = odometry_at(0s);
+  lost.T_odom_body.position.x() = NAN;
+  OdometryEstimate unturned = odometry_at(0s);
+  unturned.T_odom_body.rotation.coeffs().setZero();
+  EXPECT_EQ(complaint_about("/scan", scan_at(0s, {})), "bad.mcap: /scan at 1.000000000 s: a scan of 0 beams: must be 1 ... 10000");
+  EXPECT_EQ(complaint_about("/scan", scan_at(0s, std::vector<float>(10'001, 1.0F))), "bad.mcap: /scan at 1.000000000 s: a scan of 10001 beams: must be 1 ... 10000");
+  EXPECT_EQ(complaint_about("/scan", wide), "bad.mcap: /scan at 1.000000000 s: a scan of more than a turn");
+  EXPECT_EQ(complaint_about("/scan", timeless), "bad.mcap: /scan at 1.000000000 s: a scan whose times are not finite");
+  EXPECT_EQ(complaint_about("/odom", lost), "bad.mcap: /odom at 1.000000000 s: odometry is no pose: not finite, or its quaternion not of length 1");
+  EXPECT_EQ(complaint_about("/odom", unturned), "bad.mcap: /odom at 1.000000000 s: odometry is no pose: not finite, or its quaternion not of length 1");
+  EXPECT_EQ(complaint_about("/tf", TransformSet{{placed("a", "b", unturned.T_odom_body)}}),
+            "bad.mcap: /tf at 1.000000000 s: a transform is no pose: not finite, or its quaternion not of length 1");
+}
+
+TEST_F(McapScans, AFileThatWasCutOffIsReadUpToTheCut) {
+  for (int i = 0; i < 400; ++i) {
+    writer.write("/odom", i * 50ms, odometry_at(i * 50ms));
+    writer.write("/scan", i * 50ms, scan_at(i * 50ms, {1.0F + 0.01F * static_cast<float>(i), 2.0F}));
+  }
+  writer.close();
+  const std::string bytes = read_bytes(file);
+  write_bytes(file, bytes.substr(0, bytes.size() / 2));
+  const Read result = read();
+  EXPECT_GT(result.scans.size(), 50U);
+  EXPECT_LT(result.scans.size(), 350U);
+  EXPECT_EQ(result.summary.skipped.at("file ends too early"), 1U);
+}
+
+TEST_F(McapScans, ADamagedFileIsRefusedOrReadUpToTheDamage) {
+  for (int i = 0; i < 400; ++i) {
+    writer.write("/odom", i * 50ms, odometry_at(i * 50ms));
+    writer.write("/scan", i * 50ms, scan_at(i * 50ms, {1.0F + 0.01F * static_cast<float>(i), 2.0F}));
+  }
+  writer.close();
+  std::string bytes = read_bytes(file);
+  for (std::size_t i = bytes.size() / 3; i < bytes.size() / 3 + 20; ++i) bytes[i] = static_cast<char>(bytes[i] ^ 0x5a);
+  write_bytes(file, bytes);
+  EXPECT_THAT(complaint(), ::testing::MatchesRegex("log.mcap: byte [0-9]+: .*"));
+  ScanLogOptions skip;
+  skip.skip_bad_lines = true;
+  const Read result = read(skip);
+  EXPECT_GT(result.scans.size(), 20U);
+  EXPECT_EQ(result.summary.skipped.at("file is damaged, not read further"), 1U);
+}
+
+TEST_F(McapScans, AFileWithoutScansOrOdometrySaysSo) {
+  writer.write("/odom", 0s, odometry_at(0s));
+  writer.close();
+  EXPECT_EQ(complaint(), "log.mcap: holds no scan: sensor_msgs/msg/LaserScan is read (1 read)");
+  Writer other(file);
+  for (int i = 0; i < 300; ++i) other.write("/scan", i * 100ms, scan_at(i * 100ms));
+  other.close();
+  EXPECT_EQ(complaint(), "log.mcap: holds no odometry at its scans' times: nav_msgs/msg/Odometry, or tf odom -> base_link, is read (300 read, 300 scans without odometry)");
+}
+
+TEST_F(McapScans, ARecordLargerThanAQuarterOfAGigabyteIsDamageNotData) {
+  writer.close();
+  std::string bytes(mcap::kMagic);
+  mcap::Bytes head;
+  head.record_head(mcap::kMessage, 9'000'000'000);
+  write_bytes(file, bytes + std::string(head.view()));
+  std::filesystem::resize_file(file, 10'000'000'000);  // sparse
+  EXPECT_EQ(complaint(), "log.mcap: byte 8: a record of 9000000000 bytes is too large");
+}
+
+}  // namespace
+}  // namespace patrol::io
