@@ -135,6 +135,7 @@ Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target, const 
 
 std::optional<IcpResult> align_icp(const IcpTarget& target, const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_start,
                                    const IcpSettings& settings) {
+  check_finite(points_source);
   if (target.tree().points().empty() || points_source.empty()) return std::nullopt;
   IcpResult result{.T_target_source = T_start};
   bool on_lines = false;

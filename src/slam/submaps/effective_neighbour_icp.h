@@ -74,6 +74,7 @@ Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target, const 
 
 /// Iterated closest points (Besl, McKay 1992) on effective neighbours (paper 002, section 2.2): every source point with its nearest target point, the pairs
 /// past the threshold dropped, anew in every iteration, so that what lies beyond the common part does not pull. None if fewer than `min_pairs` are left.
+/// Throws InputError when a point is not finite.
 ///
 /// Two things are not the paper's, and can be switched off: the least threshold, without which submaps that overlap wholly are matched on their best
 /// pairs only and stop half way; and the steps on lines at the end (Chen, Medioni 1991), since two submaps' points are never the same pieces of wall, and

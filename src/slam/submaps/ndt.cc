@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "slam/submaps/point_tree.h"
 
 namespace patrol::slam {
 namespace {
@@ -38,10 +39,10 @@ std::array<NodeShare, 4> shares_of(const Eigen::Vector2d& from_origin_m, double 
 
 /// The lattice that holds all points. Nodes lie on multiples of the spacing, so that it is the same wherever else points are.
 GridGeometry lattice_of(const std::vector<Eigen::Vector2d>& points, double spacing_m) {
+  check_finite(points);
   if (points.empty()) return {.resolution_m = spacing_m};
   Eigen::Vector2d low = points.front(), high = points.front();
   for (const Eigen::Vector2d& p : points) {
-    if (!p.allFinite()) throw InputError(fmt::format("ndt: a point is ({}, {}): must be finite", p.x(), p.y()));
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }

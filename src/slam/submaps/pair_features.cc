@@ -46,14 +46,20 @@ double seen_overlap(const SubmapShape& target, const SubmapShape& source, const 
   return fewer > 0 ? std::min(1.0, static_cast<double>(common) / fewer) : 0.0;
 }
 
+/// Between whole bins the correlation is taken to be linear.
 double direction_at(const SubmapShape& target, const SubmapShape& source, double yaw_rad) {
-  return circular_correlation(target.directions, source.directions, yaw_rad / std::numbers::pi * static_cast<double>(target.directions.size()));
+  const double shift = yaw_rad / std::numbers::pi * static_cast<double>(target.directions.size());
+  const int before = static_cast<int>(std::floor(shift));
+  const double fraction = shift - before;
+  return (1.0 - fraction) * circular_correlation(target.directions, source.directions, before) +
+         fraction * circular_correlation(target.directions, source.directions, before + 1);
 }
 
 double best_direction(const SubmapShape& target, const SubmapShape& source) {
   double best = -1.0;
-  const int turns = 2 * static_cast<int>(target.directions.size());
-  for (int turn = 0; turn < turns; ++turn) best = std::max(best, direction_at(target, source, std::numbers::pi * turn / turns));
+  for (int shift = 0; shift < static_cast<int>(target.directions.size()); ++shift) {
+    best = std::max(best, circular_correlation(target.directions, source.directions, shift));
+  }
   return best;
 }
 

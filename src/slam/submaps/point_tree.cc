@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -28,13 +29,17 @@ struct Cloud {
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 2, std::size_t>;
 
 Cloud checked(std::vector<Eigen::Vector2d> points) {
-  for (const Eigen::Vector2d& p : points) {
-    if (!p.allFinite()) throw InputError(fmt::format("a point is ({}, {}): must be finite", p.x(), p.y()));
-  }
+  check_finite(points);
   return {std::move(points)};
 }
 
 }  // namespace
+
+void check_finite(const std::vector<Eigen::Vector2d>& points) {
+  for (const Eigen::Vector2d& p : points) {
+    if (!p.allFinite()) throw InputError(fmt::format("a point is ({}, {}): must be finite", p.x(), p.y()));
+  }
+}
 
 struct PointTree::Index {
   explicit Index(std::vector<Eigen::Vector2d> points) : cloud(checked(std::move(points))), tree(2, cloud) {}

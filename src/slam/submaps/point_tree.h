@@ -8,6 +8,9 @@
 
 namespace patrol::slam {
 
+/// Throws InputError naming the first point that is not finite.
+void check_finite(const std::vector<Eigen::Vector2d>& points);
+
 /// A k-d tree over points in the plane (nanoflann). Equal distances are settled the same way every time.
 class PointTree {
  public:

@@ -91,14 +91,12 @@ double histogram_difference(const std::vector<double>& a, const std::vector<doub
   return 0.5 * sum;
 }
 
-double circular_correlation(const std::vector<double>& a, const std::vector<double>& b, double shift) {
-  std::vector<double> turned(a.size(), 0.0);
-  for (std::size_t bin = 0; bin < b.size(); ++bin) add_around_circle(turned, static_cast<double>(bin) + shift, b[bin]);
-  const auto count = static_cast<double>(a.size());
-  const double mean_a = std::accumulate(a.begin(), a.end(), 0.0) / count, mean_b = std::accumulate(turned.begin(), turned.end(), 0.0) / count;
+double circular_correlation(const std::vector<double>& a, const std::vector<double>& b, int shift) {
+  const int bins = static_cast<int>(a.size());
+  const double mean_a = std::accumulate(a.begin(), a.end(), 0.0) / bins, mean_b = std::accumulate(b.begin(), b.end(), 0.0) / bins;
   double aa = 0.0, ab = 0.0, bb = 0.0;
-  for (std::size_t bin = 0; bin < a.size(); ++bin) {
-    const double u = a[bin] - mean_a, v = turned[bin] - mean_b;
+  for (int bin = 0; bin < bins; ++bin) {
+    const double u = a[static_cast<std::size_t>(bin)] - mean_a, v = b[static_cast<std::size_t>(((bin - shift) % bins + bins) % bins)] - mean_b;
     aa += u * u;
     ab += u * v;
     bb += v * v;

@@ -53,8 +53,7 @@ SubmapShape describe_submap(const std::vector<Eigen::Vector2d>& points_submap, c
 /// Shares that lie in different bins: 0 alike ... 1 nothing in common. Histograms of the same number of bins, each of sum 1.
 double histogram_difference(const std::vector<double>& a, const std::vector<double>& b);
 
-/// Pearson's correlation of a with b turned on by `shift` bins (b's bin 0 lies on a's bin `shift`; between bins it is linear), around the circle: -1 ... 1; 0
-/// if either is even.
-double circular_correlation(const std::vector<double>& a, const std::vector<double>& b, double shift);
+/// Pearson's correlation of a with b turned on by `shift` bins (b's bin 0 lies on a's bin `shift`), around the circle: -1 ... 1; 0 if either is even.
+double circular_correlation(const std::vector<double>& a, const std::vector<double>& b, int shift);
 
 }  // namespace patrol::slam

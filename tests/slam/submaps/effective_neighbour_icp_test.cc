@@ -183,6 +183,7 @@ TEST(AlignIcp, WithoutEnoughPointsThereIsNoMatch) {
   EXPECT_FALSE(align_icp(IcpTarget(points, settings), {}, {}, settings));
   EXPECT_FALSE(align_icp(IcpTarget(points, settings), Points(points.begin(), points.begin() + 9), {}, settings));
   EXPECT_THROW(IcpTarget({{0.0, std::nan("")}}, settings), InputError);
+  EXPECT_THROW(align_icp(IcpTarget(points, settings), {{0.0, std::nan("")}}, {}, settings), InputError);
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ TEST(PairFeatures, OfTwoSquaresAreWhatGeometrySays) {
   const SubmapShape square = describe_submap(square_outline(), GridMap(0.05, 100.0), {});
   const double radius = std::sqrt(4.0 / 3.0);
   ASSERT_NEAR(square.radius_m, radius, 0.01) << "of 80 points";
-  const auto features = pair_features(square, square, prediction_of({1.0, 0.0, 0.0}, 0.25, 0.0), {});
+  const auto features = pair_features(square, square, prediction_of({1.0, 0.0, 0.0}, 0.25, 0.05), {});
   EXPECT_NEAR(value(features, "center_distance"), 1.0 / (2.0 * square.radius_m), kExactTol);
   EXPECT_NEAR(value(features, "center_mahalanobis"), 4.0, 1e-6);
   EXPECT_NEAR(value(features, "center_std"), 0.25 / (2.0 * square.radius_m), kExactTol);
@@ -84,11 +84,11 @@ TEST(PairFeatures, OfNeighboursSayThatTheyAre) {
   const SubmapShape target = describe(see_submap(yard, kTarget, short_walk(kTarget), 1)), source = describe(see_submap(yard, kSource, short_walk(kSource), 2));
   const auto features = pair_features(target, source, prediction_of({kTruth.x + 0.8, kTruth.y - 0.6, kTruth.yaw + 5.0 * kDeg}, 0.7, 4.0 * kDeg), {});
   EXPECT_GT(value(features, "hull_overlap"), 0.8);
-  EXPECT_GT(value(features, "seen_overlap"), 0.8);
+  EXPECT_GT(value(features, "seen_overlap"), 0.6) << "through the gate and between posts each sees what the other does not";
   EXPECT_LT(value(features, "aligned_mahalanobis"), 3.0) << "0.8 and 0.6 m off, 0.7 m of standard deviation; 1.25 of the angle's";
   EXPECT_GT(value(features, "aligned_mahalanobis"), 1.0);
   EXPECT_GT(value(features, "aligned_agreement"), 0.9);
-  EXPECT_GT(value(features, "score_aligned"), 2.0 * 0.2);
+  EXPECT_GT(value(features, "score_aligned"), 0.4);
 }
 
 // The same prediction of another place: a hall with pillars.
@@ -109,7 +109,7 @@ TEST(PairFeatures, FourNeedNoPose) {
   const auto swapped = pair_features(source, target, prediction_of({}, 1.0, 1.0), {});
   for (const char* name : {"distance_difference", "direction_correlation", "point_ratio", "radius_ratio"}) {
     EXPECT_EQ(value(here, name), value(there, name)) << name;
-    EXPECT_NEAR(value(here, name), value(swapped, name), name == std::string("direction_correlation") ? 0.01 : kExactTol) << name;
+    EXPECT_NEAR(value(here, name), value(swapped, name), kExactTol) << name;
   }
 }
 
@@ -124,7 +124,7 @@ TEST(PairFeatures, DoNotDependOnWhereASubmapsFrameLies) {
   for (std::size_t i = 0; i < features.size(); ++i) {
     const std::string name = kPairFeatures[i];
     if (name == "aligned_mahalanobis") continue;  // any heading but the predicted one is impossible here
-    EXPECT_NEAR(features[i], others[i], 0.05) << name;
+    EXPECT_NEAR(features[i], others[i], 0.05 * std::max(1.0, std::abs(features[i]))) << name;
   }
 }
 
@@ -199,7 +199,6 @@ TEST(PairFeatures, AdaBoostTellsNeighboursFromStrangersOnASiteItHasNotSeen) {
   RecordProperty("mistaken", mistaken);
   RecordProperty("strangers", static_cast<int>(std::ranges::count(test.labels, -1)));
   RecordProperty("stumps", static_cast<int>(result.model.stumps.size()));
-  for (const DecisionStump& stump : result.model.stumps) std::printf("  %s > %.3f: %+d x %.2f\n", kPairFeatures[stump.feature], stump.threshold, stump.sign_above, stump.weight);
 }
 
 }  // namespace
