@@ -1,0 +1,149 @@
+#include "slam/submaps/adaboost.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace patrol::slam {
+namespace {
+
+constexpr double kChance = 0.5 - 1e-9;  // a stump with more wrong votes teaches nothing that rounding would not
+
+using Order = std::vector<std::size_t>;  ///< examples by one feature's value, ascending
+
+void check(const LabelledFeatures& training) {
+  if (training.examples.size() != training.labels.size()) {
+    throw InputError(fmt::format("adaboost: there are {} examples and {} labels", training.examples.size(), training.labels.size()));
+  }
+  for (std::size_t i = 0; i < training.examples.size(); ++i) {
+    const std::vector<double>& values = training.examples[i];
+    if (values.size() != training.names.size()) {
+      throw InputError(fmt::format("adaboost: example {} has {} features: must have {}", i, values.size(), training.names.size()));
+    }
+    for (std::size_t f = 0; f < values.size(); ++f) {
+      if (!std::isfinite(values[f])) throw InputError(fmt::format("adaboost: example {}: {} = {}: must be finite", i, training.names[f], values[f]));
+    }
+    if (std::abs(training.labels[i]) != 1) throw InputError(fmt::format("adaboost: example {}: label = {}: must be +1 or -1", i, training.labels[i]));
+  }
+  for (const int label : {1, -1}) {
+    if (std::ranges::count(training.labels, label) == 0) throw InputError(fmt::format("adaboost: there is no example with label {}", label));
+  }
+}
+
+std::vector<Order> orders_of(const LabelledFeatures& training) {
+  std::vector<Order> orders(training.names.size());
+  for (std::size_t f = 0; f < orders.size(); ++f) {
+    orders[f].resize(training.examples.size());
+    std::iota(orders[f].begin(), orders[f].end(), std::size_t{0});
+    std::ranges::stable_sort(orders[f], {}, [&](std::size_t example) { return training.examples[example][f]; });
+  }
+  return orders;
+}
+
+std::vector<double> first_weights(const std::vector<int>& labels, bool balance_classes) {
+  const auto count = static_cast<double>(labels.size());
+  const auto positive = static_cast<double>(std::ranges::count(labels, 1));
+  std::vector<double> weights;
+  for (const int label : labels) weights.push_back(!balance_classes ? 1.0 / count : 0.5 / (label > 0 ? positive : count - positive));
+  return weights;
+}
+
+/// A stump without its vote, and its share of wrong ones.
+struct Candidate {
+  DecisionStump stump;
+  double error = 1.0;
+};
+
+/// Goes through the thresholds from below all values upwards; `wrong` is the weight of wrong votes of "+1 above".
+Candidate best_of_feature(std::size_t feature, const Order& order, const LabelledFeatures& training, const std::vector<double>& weights) {
+  Candidate best;
+  double wrong = 0.0, all = 0.0;
+  for (const std::size_t i : order) {
+    all += weights[i];
+    wrong += training.labels[i] < 0 ? weights[i] : 0.0;
+  }
+  const auto consider = [&](double threshold) {
+    for (const int sign : {1, -1}) {
+      const double error = sign > 0 ? wrong / all : 1.0 - wrong / all;
+      if (error < best.error) best = {.stump = {.feature = feature, .threshold = threshold, .sign_above = sign}, .error = error};
+    }
+  };
+  const auto value = [&](std::size_t rank) { return training.examples[order[rank]][feature]; };
+  consider(value(0) - 1.0);
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    wrong += training.labels[order[rank]] > 0 ? weights[order[rank]] : -weights[order[rank]];
+    if (rank + 1 == order.size() || value(rank) == value(rank + 1)) continue;
+    const double middle = std::midpoint(value(rank), value(rank + 1));
+    consider(middle < value(rank + 1) ? middle : value(rank));
+  }
+  return best;
+}
+
+Candidate best_stump(const std::vector<Order>& orders, const LabelledFeatures& training, const std::vector<double>& weights) {
+  Candidate best;
+  for (std::size_t f = 0; f < orders.size(); ++f) {
+    const Candidate candidate = best_of_feature(f, orders[f], training, weights);
+    if (candidate.error < best.error) best = candidate;
+  }
+  return best;
+}
+
+bool is_wrong(const DecisionStump& stump, const LabelledFeatures& training, std::size_t example) {
+  return stump.vote(training.examples[example]) != training.labels[example];
+}
+
+/// Share of wrong votes, summed without the cancellations of going through the thresholds.
+double error_of(const DecisionStump& stump, const LabelledFeatures& training, const std::vector<double>& weights) {
+  double wrong = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    all += weights[i];
+    wrong += is_wrong(stump, training, i) ? weights[i] : 0.0;
+  }
+  return wrong / all;
+}
+
+/// The wrong ones are half of all then.
+void reweigh(const DecisionStump& stump, double error, const LabelledFeatures& training, std::vector<double>& weights) {
+  for (std::size_t i = 0; i < weights.size(); ++i) weights[i] *= 0.5 / (is_wrong(stump, training, i) ? error : 1.0 - error);
+}
+
+double total_weight(const BoostedStumps& model) {
+  return std::accumulate(model.stumps.begin(), model.stumps.end(), 0.0, [](double sum, const DecisionStump& stump) { return sum + stump.weight; });
+}
+
+double training_error_of(const BoostedStumps& model, const LabelledFeatures& training, const std::vector<double>& weights) {
+  double error = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i) error += model.margin(training.examples[i]) * training.labels[i] > 0.0 ? 0.0 : weights[i];
+  return error;
+}
+
+}  // namespace
+
+BoostingResult train_adaboost(const LabelledFeatures& training, const AdaBoostSettings& settings) {
+  check(training);
+  const std::vector<Order> orders = orders_of(training);
+  const std::vector<double> at_start = first_weights(training.labels, settings.balance_classes);
+  std::vector<double> weights = at_start;
+
+  BoostingResult result;
+  result.model.features = training.names;
+  for (int round = 0; round < settings.rounds; ++round) {
+    DecisionStump stump = best_stump(orders, training, weights).stump;
+    const double error = training.names.empty() ? 1.0 : error_of(stump, training, weights);
+    if (error >= kChance) break;
+    stump.weight = error > 0.0 ? 0.5 * std::log((1.0 - error) / error) : 1.0 + total_weight(result.model);
+    result.model.stumps.push_back(stump);
+    result.errors.push_back(error);
+    result.error_bound *= 2.0 * std::sqrt(error * (1.0 - error));
+    if (error == 0.0) break;
+    reweigh(stump, error, training, weights);
+  }
+  result.training_error = training_error_of(result.model, training, at_start);
+  return result;
+}
+
+}  // namespace patrol::slam

@@ -1,0 +1,160 @@
+#include "slam/submaps/effective_neighbour_icp.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace patrol::slam {
+namespace {
+
+constexpr double kFar_m = 10.0;  // where a step's turn is judged
+
+/// A source point, where it is now, and its nearest target point.
+struct Pair {
+  std::size_t source = 0;
+  std::size_t target = 0;
+  double distance_m = 0.0;
+};
+
+std::vector<Pair> nearest_pairs(const PointTree& target, const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_target_source) {
+  std::vector<Pair> pairs;
+  pairs.reserve(points_source.size());
+  for (std::size_t i = 0; i < points_source.size(); ++i) {
+    const PointTree::Neighbour found = target.nearest(T_target_source * points_source[i]);
+    pairs.push_back({.source = i, .target = found.index, .distance_m = std::sqrt(found.squared_distance_m2)});
+  }
+  return pairs;
+}
+
+double threshold_of(const std::vector<Pair>& pairs, const IcpSettings& settings) {
+  if (!settings.use_effective_neighbours || pairs.empty()) return std::numeric_limits<double>::infinity();
+  std::vector<double> distances;
+  distances.reserve(pairs.size());
+  for (const Pair& pair : pairs) distances.push_back(pair.distance_m);
+  std::ranges::sort(distances);
+  return std::max(settings.min_threshold_m, effective_threshold(distances));
+}
+
+std::vector<Pair> effective_pairs(std::vector<Pair> pairs, const IcpSettings& settings) {
+  const double threshold_m = threshold_of(pairs, settings);
+  std::erase_if(pairs, [&](const Pair& pair) { return pair.distance_m > threshold_m; });
+  return pairs;
+}
+
+Pose2 motion_of(const std::vector<Pair>& pairs, const std::vector<Eigen::Vector2d>& points_target, const std::vector<Eigen::Vector2d>& points_source) {
+  std::vector<Eigen::Vector2d> p, q;
+  p.reserve(pairs.size());
+  q.reserve(pairs.size());
+  for (const Pair& pair : pairs) {
+    p.push_back(points_target[pair.target]);
+    q.push_back(points_source[pair.source]);
+  }
+  return fit_rigid_motion(p, q);
+}
+
+/// The pairs' distances across the target's walls, as if all were independent: H of x, y, yaw in target and the right side of H step = b.
+struct LineEquations {
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+};
+
+LineEquations linearize(const std::vector<Pair>& pairs, const IcpTarget& target, const std::vector<Eigen::Vector2d>& points_source,
+                        const Pose2& T_target_source, double point_std_m) {
+  LineEquations sum;
+  for (const Pair& pair : pairs) {
+    const SurfaceNormal& surface = target.normals()[pair.target];
+    const Eigen::Vector2d& n = surface.normal;
+    const Eigen::Vector2d p_target = T_target_source * points_source[pair.source], arm = p_target - T_target_source.position();
+    const Eigen::Vector3d J(n.x(), n.y(), n.y() * arm.x() - n.x() * arm.y());
+    const double weight = std::pow(surface.straightness / point_std_m, 2);
+    sum.H += weight * J * J.transpose();
+    sum.b -= weight * n.dot(p_target - target.tree().points()[pair.target]) * J;
+  }
+  return sum;
+}
+
+/// Gauss-Newton on the distances across walls; damped, so that nothing moves along a corridor.
+Pose2 step_on_lines(const LineEquations& lines, const Pose2& T_target_source) {
+  constexpr double kDamping = 1e-2;
+  const double shift = lines.H(0, 0) + lines.H(1, 1);
+  Eigen::Matrix3d H = lines.H;
+  H.diagonal() += kDamping * Eigen::Vector3d(shift, shift, lines.H(2, 2));
+  const Eigen::Vector3d step = H.ldlt().solve(lines.b);
+  if (!step.allFinite()) return T_target_source;
+  return {T_target_source.x + step.x(), T_target_source.y + step.y(), wrap_angle(T_target_source.yaw + step.z())};
+}
+
+double rms_of(const std::vector<Pair>& pairs) {
+  double squared = 0.0;
+  for (const Pair& pair : pairs) squared += pair.distance_m * pair.distance_m;
+  return std::sqrt(squared / static_cast<double>(pairs.size()));
+}
+
+double largest_distance(const std::vector<Pair>& pairs) {
+  return std::ranges::max(pairs, {}, &Pair::distance_m).distance_m;
+}
+
+bool is_small(const Pose2& T_step, double tol_m) { return T_step.position().norm() + kFar_m * std::abs(T_step.yaw) <= tol_m; }
+
+}  // namespace
+
+double effective_threshold(const std::vector<double>& sorted_distances) {
+  const std::size_t n = sorted_distances.size();
+  const double first = sorted_distances.front(), last = sorted_distances.back();
+  double most = 0.0, threshold = last;
+  for (std::size_t k = 1; k + 1 < n; ++k) {
+    const double chord = first + (last - first) * static_cast<double>(k) / static_cast<double>(n - 1);  // eq. 7
+    const double departure = chord - sorted_distances[k];                                                // eq. 8
+    if (departure <= 0.0 || departure < most) continue;
+    most = departure;
+    threshold = sorted_distances[k];
+  }
+  return threshold;
+}
+
+Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target, const std::vector<Eigen::Vector2d>& points_source) {
+  const auto count = static_cast<double>(points_target.size());
+  Eigen::Vector2d mu_p = Eigen::Vector2d::Zero(), mu_q = Eigen::Vector2d::Zero();  // eq. 10
+  for (std::size_t i = 0; i < points_target.size(); ++i) {
+    mu_p += points_target[i] / count;
+    mu_q += points_source[i] / count;
+  }
+  // Eq. 11 has its minimum where sum p' x R q' = 0; the paper iterates to it by Gauss-Newton, in the plane it is one arc tangent.
+  double dot = 0.0, cross = 0.0;
+  for (std::size_t i = 0; i < points_target.size(); ++i) {
+    const Eigen::Vector2d p = points_target[i] - mu_p, q = points_source[i] - mu_q;
+    dot += q.dot(p);
+    cross += q.x() * p.y() - q.y() * p.x();
+  }
+  const double yaw = std::atan2(cross, dot);
+  const Eigen::Vector2d t = mu_p - Pose2{0.0, 0.0, yaw} * mu_q;  // eq. 12
+  return {t.x(), t.y(), yaw};
+}
+
+std::optional<IcpResult> align_icp(const IcpTarget& target, const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_start,
+                                   const IcpSettings& settings) {
+  check_finite(points_source);
+  if (target.tree().points().empty() || points_source.empty()) return std::nullopt;
+  IcpResult result{.T_target_source = T_start};
+  bool on_lines = false;
+  while (!result.converged && result.iterations < settings.max_iterations) {
+    const std::vector<Pair> pairs = effective_pairs(nearest_pairs(target.tree(), points_source, result.T_target_source), settings);
+    if (pairs.size() < static_cast<std::size_t>(settings.min_pairs)) return std::nullopt;
+    const LineEquations lines = linearize(pairs, target, points_source, result.T_target_source, settings.point_std_m);
+    const Pose2 T_next = on_lines ? step_on_lines(lines, result.T_target_source) : motion_of(pairs, target.tree().points(), points_source);
+    const bool is_still = is_small(result.T_target_source.inverse() * T_next, settings.step_tol_m);
+    result = {.T_target_source = T_next,
+              .information = lines.H,
+              .num_pairs = static_cast<int>(pairs.size()),
+              .threshold_m = largest_distance(pairs),
+              .rms_m = rms_of(pairs),
+              .iterations = result.iterations + 1,
+              .converged = is_still && on_lines == settings.refine_on_lines};
+    on_lines = on_lines || (is_still && settings.refine_on_lines);
+  }
+  return result;
+}
+
+}  // namespace patrol::slam

@@ -1,0 +1,240 @@
+#include "slam/submaps/ndt.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "slam/submaps/point_tree.h"
+
+namespace patrol::slam {
+namespace {
+
+constexpr double kMostNodes = 4000.0;  // along either axis
+constexpr double kFar_m = 10.0;        // where a step's turn is judged
+constexpr double kMinWeight = 1e-6;    // a cell whose points all lie on its border has no shape
+
+/// One of the four nodes around a point.
+struct NodeShare {
+  Cell node;
+  double weight;             ///< 0 ... 1
+  Eigen::Vector2d gradient;  ///< of the weight, 1/m
+};
+
+std::array<NodeShare, 4> shares_of(const Eigen::Vector2d& from_origin_m, double spacing_m) {
+  const double u = from_origin_m.x() / spacing_m, v = from_origin_m.y() / spacing_m;
+  const int col = static_cast<int>(std::floor(u)), row = static_cast<int>(std::floor(v));
+  const double a = u - col, b = v - row, slope = 1.0 / spacing_m;
+  return {{{{col, row}, (1.0 - a) * (1.0 - b), {-slope * (1.0 - b), -slope * (1.0 - a)}},
+           {{col + 1, row}, a * (1.0 - b), {slope * (1.0 - b), -slope * a}},
+           {{col, row + 1}, (1.0 - a) * b, {-slope * b, slope * (1.0 - a)}},
+           {{col + 1, row + 1}, a * b, {slope * b, slope * a}}}};
+}
+
+/// The lattice that holds all points. Nodes lie on multiples of the spacing, so that it is the same wherever else points are.
+GridGeometry lattice_of(const std::vector<Eigen::Vector2d>& points, double spacing_m) {
+  check_finite(points);
+  if (points.empty()) return {.resolution_m = spacing_m};
+  Eigen::Vector2d low = points.front(), high = points.front();
+  for (const Eigen::Vector2d& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Eigen::Array2d first = (low.array() / spacing_m).floor(), last = (high.array() / spacing_m).floor() + 1.0;
+  const double most = (last - first).maxCoeff() + 1.0;
+  if (most > kMostNodes) throw InputError(fmt::format("ndt: the points need {} nodes of {} m in a row: at most {}", most, spacing_m, kMostNodes));
+  return {.resolution_m = spacing_m,
+          .width = static_cast<int>(last.x() - first.x()) + 1,
+          .height = static_cast<int>(last.y() - first.y()) + 1,
+          .origin_m = spacing_m * first.matrix()};
+}
+
+/// Sums of a cell's points, each by its weight, from the node.
+struct CellSums {
+  double weight = 0.0;
+  Eigen::Vector2d first = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+};
+
+/// Inverse of the covariance, both of whose standard deviations are made at least `min_std_m`.
+Eigen::Matrix2d floored_information(const Eigen::Matrix2d& covariance, double min_std_m) {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+  axes.computeDirect(covariance);
+  const Eigen::Vector2d variances = axes.eigenvalues().cwiseMax(min_std_m * min_std_m);
+  return axes.eigenvectors() * variances.cwiseInverse().asDiagonal() * axes.eigenvectors().transpose();
+}
+
+}  // namespace
+
+NdtGrid::NdtGrid(const std::vector<Eigen::Vector2d>& points_target, double cell_m, double min_std_m) : node_spacing_m_(0.5 * cell_m) {
+  const GridGeometry lattice = lattice_of(points_target, node_spacing_m_);
+  origin_m_ = lattice.origin_m;
+  cell_of_node_ = Grid<int>(lattice, -1);
+
+  std::vector<CellSums> sums;
+  for (const Eigen::Vector2d& p : points_target) {
+    for (const NodeShare& share : shares_of(p - origin_m_, node_spacing_m_)) {
+      if (share.weight <= kMinWeight) continue;
+      int& cell = cell_of_node_.at(share.node);
+      if (cell < 0) {
+        cell = static_cast<int>(sums.size());
+        sums.emplace_back();
+        cells_.push_back({.mean = origin_m_ + node_spacing_m_ * Eigen::Vector2d(share.node.col, share.node.row)});
+      }
+      CellSums& sum = sums[static_cast<std::size_t>(cell)];
+      const Eigen::Vector2d from_node = p - cells_[static_cast<std::size_t>(cell)].mean;
+      sum.weight += share.weight;
+      sum.first += share.weight * from_node;
+      sum.second += share.weight * from_node * from_node.transpose();
+    }
+  }
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+    const Eigen::Vector2d mean = sums[cell].first / sums[cell].weight;
+    const Eigen::Matrix2d covariance = sums[cell].second / sums[cell].weight - mean * mean.transpose();
+    cells_[cell].mean += mean;
+    cells_[cell].information = floored_information(covariance, min_std_m);
+  }
+}
+
+void NdtGrid::add(const Eigen::Vector2d& p_target, const Eigen::Vector2d& arm, NdtScore& sum) const {
+  Eigen::Matrix<double, 2, 3> J;  // of the point by the pose
+  J << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x();
+  for (const NodeShare& share : shares_of(p_target - origin_m_, node_spacing_m_)) {
+    if (!cell_of_node_.contains(share.node)) continue;
+    const int index = cell_of_node_.at(share.node);
+    if (index < 0) continue;
+    const NormalCell& cell = cells_[static_cast<std::size_t>(index)];
+    const Eigen::Vector2d q = p_target - cell.mean, pull = cell.information * q;
+    const double fit = std::exp(-0.5 * q.dot(pull));
+    sum.value += share.weight * fit;
+    sum.gradient += J.transpose() * (fit * (share.gradient - share.weight * pull));
+    sum.curvature += share.weight * fit * (J.transpose() * cell.information * J);
+  }
+}
+
+NdtScore NdtGrid::score(const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_target_source) const {
+  NdtScore sum;
+  const double c = std::cos(T_target_source.yaw), s = std::sin(T_target_source.yaw);
+  const Eigen::Vector2d t = T_target_source.position();
+  // Far beyond the lattice a node's number would not fit an int.
+  const GridGeometry& lattice = cell_of_node_.geometry();
+  const Eigen::Vector2d low = origin_m_.array() - node_spacing_m_;
+  const Eigen::Vector2d high = origin_m_ + node_spacing_m_ * Eigen::Vector2d(lattice.width, lattice.height);
+  for (const Eigen::Vector2d& p : points_source) {
+    const Eigen::Vector2d arm(c * p.x() - s * p.y(), s * p.x() + c * p.y()), p_target = t + arm;
+    if ((p_target.array() >= low.array()).all() && (p_target.array() <= high.array()).all()) add(p_target, arm, sum);
+  }
+  return sum;
+}
+
+std::vector<NdtGrid> make_ndt(const std::vector<Eigen::Vector2d>& points_target, const NdtSettings& settings) {
+  std::vector<NdtGrid> levels;
+  levels.reserve(settings.cells_m.size());
+  for (const double cell_m : settings.cells_m) levels.emplace_back(points_target, cell_m, settings.min_std_per_cell * cell_m);
+  return levels;
+}
+
+std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& points, int max_points) {
+  const std::size_t most = static_cast<std::size_t>(max_points);
+  if (points.size() <= most) return points;
+  std::vector<Eigen::Vector2d> kept(most);
+  for (std::size_t i = 0; i < most; ++i) kept[i] = points[i * points.size() / most];
+  return kept;
+}
+
+namespace {
+
+/// Where a climb stands.
+struct Climb {
+  Pose2 T_target_source;
+  NdtScore score;
+  int iterations = 0;
+  bool converged = false;
+};
+
+Pose2 stepped(const Pose2& T_target_source, const Eigen::Vector3d& step) {
+  return {T_target_source.x + step.x(), T_target_source.y + step.y(), wrap_angle(T_target_source.yaw + step.z())};
+}
+
+/// Levenberg and Marquardt: the damping falls with every step taken and grows until a step climbs.
+Climb climb(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, const Pose2& T_start, const NdtSettings& settings) {
+  constexpr double kMostDamping = 1e7;
+  Climb at{.T_target_source = T_start, .score = grid.score(points, T_start)};
+  const double step_tol = settings.step_tol_per_cell * grid.cell_m();
+  double damping = 1e-3;
+  while (!at.converged && at.iterations < settings.max_iterations && at.score.value > 0.0) {
+    ++at.iterations;
+    Eigen::Matrix3d H = at.score.curvature;
+    H.diagonal() *= 1.0 + damping;
+    const Eigen::Vector3d step = H.ldlt().solve(at.score.gradient);
+    const Pose2 T_next = stepped(at.T_target_source, step);
+    const NdtScore next = step.allFinite() ? grid.score(points, T_next) : NdtScore{};
+    if (next.value > at.score.value) {
+      at.T_target_source = T_next;
+      at.score = next;
+      damping = std::max(1e-9, 0.2 * damping);
+    } else {
+      damping *= 10.0;
+    }
+    at.converged = damping > kMostDamping || (step.head<2>().norm() < step_tol && kFar_m * std::abs(step.z()) < step_tol);
+  }
+  return at;
+}
+
+/// Whether one of the climbs ended here: points 10 m away are moved by less than a hundredth of a cell.
+bool is_near_any(const Pose2& T_target_source, const std::vector<Climb>& climbs, double cell_m) {
+  return std::ranges::any_of(climbs, [&](const Climb& other) {
+    const Pose2& T = other.T_target_source;
+    return (T.position() - T_target_source.position()).norm() < 0.01 * cell_m && kFar_m * std::abs(wrap_angle(T.yaw - T_target_source.yaw)) < 0.01 * cell_m;
+  });
+}
+
+/// How the score falls off around its top, by the differences of its gradient half a node either way; never negative.
+Eigen::Matrix3d measured_information(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, const Pose2& T_target_source) {
+  const double step_m = 0.25 * grid.cell_m();
+  const Eigen::Vector3d steps(step_m, step_m, step_m / kFar_m);
+  Eigen::Matrix3d fall;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d step = steps[k] * Eigen::Vector3d::Unit(k);
+    const Eigen::Vector3d ahead = grid.score(points, stepped(T_target_source, step)).gradient;
+    const Eigen::Vector3d behind = grid.score(points, stepped(T_target_source, -step)).gradient;
+    fall.col(k) = (behind - ahead) / (2.0 * steps[k]);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(0.5 * (fall + fall.transpose()));
+  return axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.eigenvectors().transpose();
+}
+
+}  // namespace
+
+std::optional<NdtResult> align_ndt(const std::vector<NdtGrid>& target, const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_start,
+                                   const NdtSettings& settings) {
+  const std::vector<Eigen::Vector2d> points = thinned(points_source, settings.max_points);
+  if (points.empty()) return std::nullopt;
+  // Each level climbs from the start and from all that the coarser ones have found.
+  std::vector<Climb> found;
+  int iterations = 0;
+  for (const NdtGrid& grid : target) {
+    std::vector<Climb> climbs{climb(grid, points, T_start, settings)};
+    for (const Climb& coarser : found) {
+      if (is_near_any(coarser.T_target_source, climbs, grid.cell_m())) continue;
+      climbs.push_back(climb(grid, points, coarser.T_target_source, settings));
+    }
+    for (const Climb& each : climbs) iterations += each.iterations;
+    found = std::move(climbs);
+  }
+  const auto best = std::ranges::max_element(found, {}, [](const Climb& each) { return each.score.value; });
+  if (best == found.end() || !(best->score.value > 0.0)) return std::nullopt;
+  return NdtResult{.T_target_source = best->T_target_source,
+                   .information = measured_information(target.back(), points, best->T_target_source),
+                   .score = best->score.value / static_cast<double>(points.size()),
+                   .iterations = iterations,
+                   .converged = best->converged};
+}
+
+}  // namespace patrol::slam

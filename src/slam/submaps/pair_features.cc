@@ -1,0 +1,121 @@
+#include "slam/submaps/pair_features.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace patrol::slam {
+namespace {
+
+constexpr double kMostDeviations = 30.0;
+constexpr double kLeastSeenShare = 0.1;
+
+/// In standard deviations; a direction without any counts as one of a micrometre (or microradian).
+template <int N>
+double mahalanobis(const Eigen::Matrix<double, N, 1>& offset, const Eigen::Matrix<double, N, N>& covariance) {
+  const Eigen::Matrix<double, N, N> regular = covariance + 1e-12 * Eigen::Matrix<double, N, N>::Identity();
+  const double squared = offset.dot(regular.ldlt().solve(offset));
+  return squared < kMostDeviations * kMostDeviations ? std::sqrt(std::max(0.0, squared)) : kMostDeviations;
+}
+
+/// Covariance of where the source's centre lies in target.
+Eigen::Matrix2d center_covariance(const SubmapShape& source, const PoseGaussian& T_target_source) {
+  const Eigen::Vector2d arm = T_target_source.mean * source.center - T_target_source.mean.position();
+  Eigen::Matrix<double, 2, 3> J;
+  J << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x();
+  return J * T_target_source.covariance * J.transpose();
+}
+
+double hull_overlap(const SubmapShape& target, const SubmapShape& source, const Pose2& T_target_source) {
+  ConvexPolygon moved;
+  for (const Eigen::Vector2d& corner : source.hull) moved.push_back(T_target_source * corner);
+  const double smaller = std::min(area_of(target.hull), area_of(source.hull));
+  return smaller > 0.0 ? std::min(1.0, area_of(intersection_of(target.hull, moved)) / smaller) : 0.0;
+}
+
+double seen_overlap(const SubmapShape& target, const SubmapShape& source, const Pose2& T_target_source) {
+  int common = 0;
+  source.seen.for_each_known([&](const Eigen::Vector2d& center) {
+    common += target.seen.at(T_target_source * center) != SeenCells::State::kUnknown ? 1 : 0;
+  });
+  const int fewer = std::min(target.seen.num_known(), source.seen.num_known());
+  return fewer > 0 ? std::min(1.0, static_cast<double>(common) / fewer) : 0.0;
+}
+
+/// Between whole bins the correlation is taken to be linear.
+double direction_at(const SubmapShape& target, const SubmapShape& source, double yaw_rad) {
+  const double shift = yaw_rad / std::numbers::pi * static_cast<double>(target.directions.size());
+  const int before = static_cast<int>(std::floor(shift));
+  const double fraction = shift - before;
+  return (1.0 - fraction) * circular_correlation(target.directions, source.directions, before) +
+         fraction * circular_correlation(target.directions, source.directions, before + 1);
+}
+
+double best_direction(const SubmapShape& target, const SubmapShape& source) {
+  double best = -1.0;
+  for (int shift = 0; shift < static_cast<int>(target.directions.size()); ++shift) {
+    best = std::max(best, circular_correlation(target.directions, source.directions, shift));
+  }
+  return best;
+}
+
+double smaller_of_larger(double a, double b) { return std::max(a, b) > 0.0 ? std::min(a, b) / std::max(a, b) : 1.0; }
+
+double score_on(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, const Pose2& T_grid_points) {
+  return grid.score(points, T_grid_points).value / static_cast<double>(points.size());
+}
+
+/// The smaller of both directions, on one level of each.
+double score_both_ways(const SubmapShape& target, const SubmapShape& source, const Pose2& T_target_source, std::size_t level) {
+  return std::min(score_on(target.ndt[level], source.points, T_target_source), score_on(source.ndt[level], target.points, T_target_source.inverse()));
+}
+
+/// Of the points that lie where `seen` knows something, the share with a surface near; none if too few do.
+double agreement_of(const SeenCells& seen, const std::vector<Eigen::Vector2d>& points, const Pose2& T_seen_points) {
+  int known = 0, on_surface = 0;
+  for (const Eigen::Vector2d& p : points) {
+    const Eigen::Vector2d p_seen = T_seen_points * p;
+    const bool is_met = seen.is_surface_near(p_seen);
+    known += is_met || seen.at(p_seen) != SeenCells::State::kUnknown ? 1 : 0;
+    on_surface += is_met ? 1 : 0;
+  }
+  return known >= kLeastSeenShare * static_cast<double>(points.size()) && known > 0 ? static_cast<double>(on_surface) / known : 0.0;
+}
+
+}  // namespace
+
+std::vector<std::string> pair_feature_names() { return {kPairFeatures.begin(), kPairFeatures.end()}; }
+
+std::vector<double> pair_features(const SubmapShape& target, const SubmapShape& source, const PoseGaussian& T_target_source, const NdtSettings& settings) {
+  const Pose2& T_predicted = T_target_source.mean;
+  const double radii_m = std::max(1e-6, target.radius_m + source.radius_m);
+  const Eigen::Vector2d between = T_predicted * source.center - target.center;
+  const Eigen::Matrix2d covariance = center_covariance(source, T_target_source);
+  const double largest_var = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).eigenvalues()[1];
+
+  const std::optional<NdtResult> aligned = align_ndt(target.ndt, source.points, T_predicted, settings);
+  const Pose2 T_aligned = aligned ? aligned->T_target_source : T_predicted;
+  const double deviations = aligned ? mahalanobis<3>(T_target_source.offset_of(T_aligned), T_target_source.covariance) : kMostDeviations;
+  const double agreement = std::min(agreement_of(target.seen, source.points, T_aligned), agreement_of(source.seen, target.points, T_aligned.inverse()));
+
+  return {between.norm() / radii_m,
+          mahalanobis<2>(between, covariance),
+          std::sqrt(std::max(0.0, largest_var)) / radii_m,
+          hull_overlap(target, source, T_predicted),
+          seen_overlap(target, source, T_predicted),
+          histogram_difference(target.distances, source.distances),
+          best_direction(target, source),
+          direction_at(target, source, T_predicted.yaw),
+          smaller_of_larger(static_cast<double>(target.num_points), static_cast<double>(source.num_points)),
+          smaller_of_larger(target.radius_m, source.radius_m),
+          score_both_ways(target, source, T_predicted, std::min<std::size_t>(1, target.ndt.size() - 1)),
+          score_both_ways(target, source, T_aligned, target.ndt.size() - 1),
+          deviations,
+          agreement};
+}
+
+}  // namespace patrol::slam

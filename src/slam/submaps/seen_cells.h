@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstdint>
+
+#include "core/grid.h"
+#include "slam/grid_map.h"
+
+namespace patrol::slam {
+
+/// What a submap has seen, on coarser cells than its map's: where it has looked, and where it met a surface.
+class SeenCells {
+ public:
+  enum class State : std::uint8_t { kUnknown, kFree, kSurface };
+
+  SeenCells(const GridMap& map, double cell_m);
+
+  /// Unknown outside of all that was seen.
+  State at(const Eigen::Vector2d& p_map) const;
+  /// Whether p's cell or one of the eight around it holds a surface.
+  bool is_surface_near(const Eigen::Vector2d& p_map) const;
+
+  int num_known() const { return num_known_; }
+  /// Calls `visit(center)` for every cell that is known.
+  template <typename Visitor>
+  void for_each_known(Visitor&& visit) const {
+    for (int row = 0; row < cells_.geometry().height; ++row) {
+      for (int col = 0; col < cells_.geometry().width; ++col) {
+        if (cells_.at({col, row}) != State::kUnknown) visit(cells_.geometry().center_of({col, row}));
+      }
+    }
+  }
+
+ private:
+  State state(Cell cell) const { return cells_.contains(cell) ? cells_.at(cell) : State::kUnknown; }
+
+  Grid<State> cells_;
+  int num_known_ = 0;
+};
+
+}  // namespace patrol::slam

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "core/frames.h"
+#include "core/random.h"
+#include "tests/support/room_world.h"
+
+namespace patrol::test {
+
+/// Which part of a world a submap holds.
+using Keep = std::function<bool(const Eigen::Vector2d& p_world)>;
+
+struct WallSampling {
+  double spacing_m = 0.1;
+  double phase = 0.0;  ///< of the first point on a wall, in spacings: two submaps' points are never the same pieces of wall
+  double std_m = 0.0;
+  std::uint64_t seed = 1;
+};
+
+/// The surface points of a submap whose frame lies at `T_world_submap`: points along the walls that are kept, in submap.
+inline std::vector<Eigen::Vector2d> sample_walls(const RoomWorld& world, const Pose2& T_world_submap, const WallSampling& sampling = {},
+                                                 const Keep& keep = [](const Eigen::Vector2d&) { return true; }) {
+  const RandomStream noise(sampling.seed, "test/sample_walls");
+  const Pose2 T_submap_world = T_world_submap.inverse();
+  std::vector<Eigen::Vector2d> points;
+  std::uint64_t tick = 0;
+  for (const Segment& wall : world.walls()) {
+    const double length = (wall.b - wall.a).norm();
+    const Eigen::Vector2d along = (wall.b - wall.a) / length;
+    for (double s = sampling.phase * sampling.spacing_m; s < length; s += sampling.spacing_m) {
+      const Eigen::Vector2d p = wall.a + s * along;
+      if (!keep(p)) continue;
+      const auto jitter = noise.normals(tick++);
+      points.push_back(T_submap_world * (p + sampling.std_m * Eigen::Vector2d(jitter[0], jitter[1])));
+    }
+  }
+  return points;
+}
+
+/// A yard of 20 m by 16 m: two walls of a building, a hut, a transformer on its base, a fence with a gate, six posts.
+inline RoomWorld make_yard() {
+  RoomWorld yard;
+  yard.add_polyline({{-10.0, -8.0}, {-10.0, 6.5}, {-6.0, 6.5}, {-6.0, 8.0}, {4.0, 8.0}});
+  yard.add_box(4.0, -7.0, 8.0, -4.5).add_box(-5.0, -2.0, -1.5, 0.5);
+  yard.add_polyline({{10.0, -6.0}, {10.0, 1.0}}).add_polyline({{10.0, 4.0}, {10.0, 8.0}, {7.0, 8.0}});
+  for (const auto& [x, y] : {std::pair{1.0, 2.0}, {3.5, 2.2}, {6.0, 2.0}, {1.2, 5.0}, {3.5, 5.0}, {6.1, 5.2}}) yard.add_post(x, y, 0.15, 6);
+  return yard;
+}
+
+}  // namespace patrol::test
