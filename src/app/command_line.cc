@@ -30,6 +30,7 @@ struct Call {
   std::vector<std::filesystem::path> collect_parts;
   BudgetOptions budget;
   FaultsOptions faults;
+  SlamOptions slam;
   StudyOptions study;
   TestOptions test;
   std::function<ExitCode()> chosen;
@@ -152,6 +153,18 @@ void add_faults(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [&] { return faults_command(call.faults); }; });
 }
 
+void add_slam(CLI::App& app, Call& call) {
+  SlamOptions& slam = call.slam;
+  CLI::App* command = app.add_subcommand("slam", "Map a recorded lidar log (CARMEN, MCAP)");
+  command->add_option("log", slam.log, "Log file: CARMEN's text, plain or in gzip, or MCAP")->required();
+  command->add_option("--method", slam.method, "How to map (patrol list)");
+  command->add_option("--set", slam.overrides, "Override a setting: path=value; may be repeated")->take_all();
+  command->add_option("--seed", slam.seed, "Seed of every random stream");
+  command->add_flag("--skip-bad-lines", slam.skip_bad_lines, "Use what can be read of a damaged log");
+  command->add_option("--out", slam.out, "Directory to leave")->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return slam_command(call.slam); }; });
+}
+
 void add_study(CLI::App& app, Call& call) {
   StudyOptions& study = call.study;
   CLI::App* command = app.add_subcommand("study", "A paper's experiment: its published figures beside ours");
@@ -213,7 +226,7 @@ int run_command_line(int argc, const char* const* argv) {
 
   Call call;
   for (const auto add : {add_run, add_score, add_localizability, add_replay, add_report, add_verify, add_sweep, add_collect, add_budget, add_faults,
-                         add_study, add_test, add_list}) {
+                         add_slam, add_study, add_test, add_list}) {
     add(app, call);
   }
 

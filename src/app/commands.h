@@ -78,6 +78,17 @@ ExitCode budget_command(const BudgetOptions& options);
 /// Runs a scenario with every fault that its robot's sensors can have, and says what each led to.
 ExitCode faults_command(const FaultsOptions& options);
 
+struct SlamOptions {
+  std::filesystem::path log;          ///< CARMEN or MCAP
+  std::optional<std::string> method;  ///< slam.method
+  std::vector<std::string> overrides;
+  std::optional<std::uint64_t> seed;
+  bool skip_bad_lines = false;
+  std::filesystem::path out = "out/slam";
+};
+/// Maps a recorded log.
+ExitCode slam_command(const SlamOptions& options);
+
 struct StudyOptions {
   std::string name;
   std::optional<std::string> seeds;  ///< "N": 1001 ... 1000 + N, on which nothing was tuned; or "A..B"

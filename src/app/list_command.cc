@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/scenario.h"
 #include "app/study/study.h"
+#include "slam/mapper.h"
 
 namespace patrol::app {
 namespace {
@@ -58,7 +59,8 @@ ExitCode list_command() {
   print("sensors", allowed<sim::FaultSettings>("sensor"));
   print("lidar presets", allowed<sim::LidarSettings>("preset"));
   print("sensor faults", allowed<sim::FaultSettings>("kind"));
-  print("mapping methods", {"grid particle filter with scan matching (stack.slam)"});
+  print("mapping methods of a run", {"grid particle filter with scan matching (stack.slam)"});
+  print("mapping methods of a log", allowed<slam::MapperSettings>("method"));
   print("localisation methods", {"Monte-Carlo localisation with KLD sampling (stack.localization)"});
   print("sensor models of localisation", allowed<localize::MonteCarloSettings>("sensor_model"));
   print("global planners", {"A* (stack.navigation.global)"});

@@ -185,4 +185,10 @@ YAML::Node load_document(const std::filesystem::path& file, const std::vector<st
   return document;
 }
 
+YAML::Node document_of(const std::vector<std::string>& overrides) {
+  YAML::Node document(YAML::NodeType::Map);
+  for (const std::string& override : overrides) apply_override(document, override);
+  return document;
+}
+
 }  // namespace patrol::io

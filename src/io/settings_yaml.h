@@ -148,6 +148,9 @@ class SettingsWriter {
 /// The file's document with the overrides ("a.b.0.c=value") put in. Throws InputError.
 YAML::Node load_document(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 
+/// The overrides alone: without a file every value is a default or one of them.
+YAML::Node document_of(const std::vector<std::string>& overrides);
+
 /// Where it stands in its file, from 1; 0 for what an override made.
 int line_of(const YAML::Node& node);
 
@@ -161,6 +164,14 @@ template <typename Settings>
 Settings load_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   Settings settings;
   read_settings(file, overrides, settings);
+  return settings;
+}
+
+/// Defaults, and what `--set` says over them. Throws InputError that names --set and the key.
+template <typename Settings>
+Settings settings_of(const std::vector<std::string>& overrides) {
+  Settings settings;
+  SettingsReader::read_section("--set", document_of(overrides), "", settings);
   return settings;
 }
 

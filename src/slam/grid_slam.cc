@@ -184,7 +184,10 @@ bool GridSlam::resample_if_needed(double num_effective) {
 
 // Particles part only after the start is mapped: until then they are one.
 void GridSlam::integrate(const LevelScan& scan) {
-  for (Particle& particle : particles_) integrate_scan(scan, particle.T_map_body, settings_.integration, particle.map);
+  for (Particle& particle : particles_) {
+    integrate_scan(scan, particle.T_map_body, settings_.integration, particle.map);
+    particle.path = std::make_shared<PathStep>(particle.T_map_body, particle.path);
+  }
   ++keyframes_;
   if (keyframes_ == static_cast<std::uint64_t>(settings_.initial_keyframes)) {
     const Particle first = particles_.front();
@@ -193,6 +196,13 @@ void GridSlam::integrate(const LevelScan& scan) {
 }
 
 OccupancyGrid GridSlam::map() const { return render_map(particles_[best_].map, settings_.min_hits_occupied, settings_.min_hit_share_occupied); }
+
+std::vector<Pose2> GridSlam::best_path() const {
+  std::vector<Pose2> T_map_body;
+  for (const PathStep* step = particles_[best_].path.get(); step; step = step->before.get()) T_map_body.push_back(step->T_map_body);
+  std::reverse(T_map_body.begin(), T_map_body.end());
+  return T_map_body;
+}
 
 ParticleSet GridSlam::particles() const {
   ParticleSet set;

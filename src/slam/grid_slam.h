@@ -98,6 +98,8 @@ class GridSlam {
   /// Of the best particle.
   OccupancyGrid map() const;
   const GridMap& best_map() const { return particles_[best_].map; }
+  /// [keyframe]: the way that the best particle has come.
+  std::vector<Pose2> best_path() const;
   /// As of the last keyframe.
   ParticleSet particles() const;
 

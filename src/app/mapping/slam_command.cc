@@ -1,0 +1,166 @@
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <sys/resource.h>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/output_directory.h"
+#include "app/progress_bar.h"
+#include "core/thread_clock.h"
+#include "io/csv.h"
+#include "io/g2o.h"
+#include "io/map_server.h"
+#include "io/metrics_json.h"
+#include "io/scan_log.h"
+#include "io/settings_yaml.h"
+#include "io/tum.h"
+#include "slam/mapper.h"
+#include "slam/planar_scan.h"
+
+namespace patrol::app {
+namespace {
+
+const OutputKind kMapping = {.name = "mapping of a log",
+                             .unfinished = "The log has not been mapped to its end.",
+                             .made = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o", "performance.csv", "metrics.json", "settings.yaml"},
+                             .kept = {"*.part"}};
+
+/// Everything that `--set` reaches.
+struct LogMappingSettings {
+  std::uint64_t seed = 1;
+  io::ScanLogOptions log;
+  slam::PlanarScanSettings scan;
+  slam::MapperSettings slam;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("seed", self.seed);
+    visit("log", self.log);
+    visit("scan", self.scan);
+    visit("slam", self.slam);
+  }
+};
+
+double wall_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+double peak_memory_mb() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+/// What each stretch of scans cost, to see whether it grows with the map.
+class CostTable {
+ public:
+  static constexpr std::size_t kScans = 200;  ///< in a row of the table
+
+  void add(std::size_t num_scans, double way_m) {
+    if (num_scans % kScans != 0) return;
+    const double now_s = thread_seconds();
+    table_.rows.push_back({static_cast<double>(num_scans), way_m, 1e3 * (now_s - last_s_) / kScans, peak_memory_mb()});
+    last_s_ = now_s;
+  }
+  const io::Table& table() const { return table_; }
+
+ private:
+  io::Table table_{.name = "performance", .columns = {"scans", "way_m", "ms_per_scan", "peak_memory_mb"}, .rows = {}};
+  double last_s_ = thread_seconds();
+};
+
+/// What was read of the log, besides what the mapper keeps.
+struct MappedLog {
+  std::vector<Time> stamps;
+  std::vector<Pose2> T_odom_body;  ///< [scan], from the first
+  double way_m = 0.0;              ///< by odometry
+  CostTable cost;
+
+  double duration_s() const { return stamps.empty() ? 0.0 : to_seconds(stamps.back() - stamps.front()); }
+};
+
+/// False when interrupted.
+bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::string& name, slam::Mapper& mapper, MappedLog& mapped) {
+  InterruptGuard guard;
+  ProgressBar bar;
+  std::optional<Pose2> T_first_odom, T_odom_last;
+  const double start_s = wall_seconds();
+  while (const std::optional<RecordedScan> recorded = log.next()) {
+    mapper.update(slam::planar_scan(*recorded, settings.scan), recorded->T_odom_body);
+    if (!T_first_odom) T_first_odom = recorded->T_odom_body.inverse();
+    if (T_odom_last) mapped.way_m += (recorded->T_odom_body.position() - T_odom_last->position()).norm();
+    T_odom_last = recorded->T_odom_body;
+    mapped.stamps.push_back(recorded->scan.stamp);
+    mapped.T_odom_body.push_back(*T_first_odom * recorded->T_odom_body);
+    mapped.cost.add(mapped.stamps.size(), mapped.way_m);
+    bar.show(fmt::format("{}  {:3.0f} %  {} scans  {:.0f} times real time", name, 100.0 * log.progress(), mapped.stamps.size(),
+                         mapped.duration_s() / std::max(1e-3, wall_seconds() - start_s)));
+    if (guard.is_interrupted()) return false;
+  }
+  bar.show(fmt::format("{}  {} scans, at the end once more over all of them", name, mapped.stamps.size()));
+  mapper.finish();
+  return !guard.is_interrupted();
+}
+
+/// One pose for each stamp: of scans with the same stamp the last.
+Trajectory trajectory_of(const std::vector<Time>& stamps, const std::vector<Pose2>& poses) {
+  Trajectory trajectory;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    if (!trajectory.empty() && trajectory.back().stamp == stamps[i]) trajectory.pop_back();
+    trajectory.push_back({stamps[i], to_spatial(poses[i])});
+  }
+  return trajectory;
+}
+
+io::Metrics metrics_of(const io::ScanLogSummary& summary, const MappedLog& mapped, const Trajectory& estimate, const PoseGraph& graph) {
+  std::size_t num_loops = 0;
+  for (const PoseGraphEdge& edge : graph.edges) num_loops += edge.kind == PoseGraphEdge::Kind::kLoop ? 1 : 0;
+  std::uint64_t num_skipped = 0;
+  for (const auto& [reason, count] : summary.skipped) num_skipped += count;
+  return {{"log", {{"scans", mapped.stamps.size()}, {"skipped", num_skipped}, {"duration_s", mapped.duration_s()}, {"odometry_way_m", mapped.way_m}}},
+          {"path", {{"poses", estimate.size()}, {"way_m", planar_length_m(estimate)}}},
+          {"graph", {{"nodes", graph.T_map_node.size()}, {"edges", graph.edges.size()}, {"loop_edges", num_loops}}}};
+}
+
+}  // namespace
+
+ExitCode slam_command(const SlamOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (options.method) overrides.push_back("slam.method=" + *options.method);
+  if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
+  if (options.skip_bad_lines) overrides.push_back("log.skip_bad_lines=true");
+  const auto settings = io::settings_of<LogMappingSettings>(overrides);
+  const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
+  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, settings.seed);
+
+  const double wall_s = wall_seconds(), thread_s = thread_seconds();
+  MappedLog mapped;
+  const bool is_whole = map_log(*log, settings, options.log.filename().string(), *mapper, mapped);
+  begin_output(options.out, kMapping);  // not before: a log that is damaged half way leaves nothing
+  if (!is_whole) {
+    fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", options.out.string());
+    return ExitCode::kProgramFailed;
+  }
+  const Trajectory estimate = trajectory_of(mapped.stamps, mapper->path());
+  const PoseGraph graph = mapper->graph();
+  io::save_tum(options.out / "estimate.tum", estimate, "T_map_body by " + settings.slam.method);
+  io::save_tum(options.out / "odometry.tum", trajectory_of(mapped.stamps, mapped.T_odom_body), "T_odom_body, from the first scan");
+  io::save_map(options.out / "map.yaml", mapper->map());
+  io::save_g2o(options.out / "pose_graph.g2o", graph);
+  io::save_settings(options.out / "settings.yaml", settings);
+  io::save_csv(options.out / "performance.csv", mapped.cost.table());
+  io::Metrics metrics = metrics_of(log->summary(), mapped, estimate, graph);
+  const double took_s = wall_seconds() - wall_s;
+  metrics["performance"] = {{"wall_s", took_s}, {"processor_s", thread_seconds() - thread_s}, {"real_time_factor", mapped.duration_s() / std::max(1e-9, took_s)}, {"peak_memory_mb", peak_memory_mb()}};
+  io::save_metrics(options.out / "metrics.json", metrics);
+  complete_output(options.out);
+
+  fmt::print("{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, {} edges, {} of them loops\n{}\n",
+             io::to_text(log->summary()), mapped.stamps.size(), mapped.way_m, settings.slam.method, took_s, mapped.duration_s() / std::max(1e-9, took_s), peak_memory_mb(),
+             graph.T_map_node.size(), graph.edges.size(), metrics["graph"]["loop_edges"].get<std::size_t>(), (options.out / "map.yaml").string());
+  return ExitCode::kDone;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/grid.h"
+#include "core/messages.h"
+#include "core/pose_graph.h"
+#include "core/settings.h"
+#include "slam/graph/graph_slam.h"
+#include "slam/tracked_rbpf.h"
+
+namespace patrol::slam {
+
+/// graph: submaps and a pose graph, of Cartographer's class; rbpf: a particle filter with improved proposals, of Gmapping's.
+inline Limits mapping_methods() { return one_of({"graph", "rbpf"}); }
+
+struct MapperSettings {
+  std::string method = "graph";
+  GraphSlamSettings graph;
+  TrackedRbpfSettings rbpf;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("method", self.method, mapping_methods());
+    visit("graph", self.graph);
+    visit("rbpf", self.rbpf);
+  }
+};
+
+/// What maps from scans and odometry, by whatever method: online, and when no scan will follow once more over all of them.
+class Mapper {
+ public:
+  virtual ~Mapper() = default;
+
+  /// Where the body is now, in map. The map's origin is where the first scan was taken.
+  virtual Pose2 update(const LevelScan& scan, const Pose2& T_odom_body) = 0;
+  /// No scan will follow.
+  virtual void finish() = 0;
+
+  /// [scan]: of every scan that was given, as is believed now.
+  virtual std::vector<Pose2> path() const = 0;
+  virtual OccupancyGrid map() const = 0;
+  /// Keyframes and what is known of how they lie to each other. A method without loop closures has odometry's edges only.
+  virtual PoseGraph graph() const = 0;
+};
+
+/// Throws InputError when a setting breaks its rule.
+std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, std::uint64_t seed);
+
+}  // namespace patrol::slam

@@ -1,0 +1,25 @@
+#include "slam/planar_scan.h"
+
+#include <cmath>
+
+namespace patrol::slam {
+
+LevelScan planar_scan(const RecordedScan& recorded, const PlanarScanSettings& settings) {
+  const LaserScan& scan = recorded.scan;
+  LevelScan level;
+  level.stamp = scan.stamp;
+  level.origin_m = recorded.T_body_lidar.position();
+  for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
+    const double range = scan.ranges_m[beam];
+    if (std::isnan(range) || range < settings.min_range_m) continue;
+    const bool is_hit = range <= settings.max_range_m;
+    const double length = is_hit ? range : std::isinf(range) ? settings.no_return_free_m : settings.max_range_m;
+    if (!(length > 0.0)) continue;
+    const double angle = scan.angle_min_rad + static_cast<double>(beam) * scan.angle_increment_rad;
+    const Eigen::Vector2d end = recorded.T_body_lidar * Eigen::Vector2d(length * std::cos(angle), length * std::sin(angle));
+    level.beams.push_back({end.cast<float>(), is_hit});
+  }
+  return level;
+}
+
+}  // namespace patrol::slam
