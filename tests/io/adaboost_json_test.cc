@@ -52,7 +52,8 @@ TEST(LoadBoostedStumps, ReadsWhatTheModelSays) {
 
 TEST(LoadBoostedStumps, WhatWasSavedIsReadBackToTheBitAndSavedAgainIsTheSameFile) {
   const BoostedStumps model{.features = kFeatures,
-                            .stumps = {{.feature = 0, .threshold = 1.0 / 3.0, .sign_above = -1, .weight = 0.1 + 0.2}, {.feature = 1, .threshold = -1e-300, .sign_above = 1, .weight = 5e-324}}};
+                            .stumps = {{.feature = 0, .threshold = 1.0 / 3.0, .sign_above = -1, .weight = 0.1 + 0.2},
+                                       {.feature = 1, .threshold = -1e-300, .sign_above = 1, .weight = 5e-324}}};
   const TemporaryFile file("model.json", ""), again("again.json", "");
   save_boosted_stumps(file.path(), model);
   const BoostedStumps read = load_boosted_stumps(file.path(), kFeatures);
@@ -81,7 +82,8 @@ TEST(LoadBoostedStumps, EachWrongValueIsNamed) {
   EXPECT_EQ(complaint_after([](Json& model) { model["stumps"] = Json::array(); }), "model.json: stumps must be a list of at least one stump");
   EXPECT_EQ(complaint_after([](Json& model) { model["stumps"] = 3; }), "model.json: stumps must be a list");
   EXPECT_EQ(complaint_after([](Json& model) { model["stumps"][0] = 3; }), "model.json: stumps[0]: must be an object");
-  EXPECT_EQ(complaint_after([](Json& model) { model["stumps"][0]["feature"] = "length"; }), "model.json: stumps[0]: feature = length: is not one of the features");
+  EXPECT_EQ(complaint_after([](Json& model) { model["stumps"][0]["feature"] = "length"; }),
+            "model.json: stumps[0]: feature = length: is not one of the features");
   EXPECT_EQ(complaint_after([](Json& model) { model["stumps"][0]["threshold"] = nullptr; }), "model.json: stumps[0]: threshold must be a number");
   EXPECT_EQ(complaint_after([](Json& model) { model["stumps"][0]["sign_above"] = 0; }), "model.json: stumps[0]: sign_above = 0: must be 1 or -1");
   EXPECT_EQ(complaint_after([](Json& model) { model["stumps"][0]["weight"] = 0; }), "model.json: stumps[0]: weight must be positive");

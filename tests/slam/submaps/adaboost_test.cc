@@ -153,7 +153,8 @@ TEST(AdaBoost, TheSameExamplesGiveTheSameModelAndOtherScalesTheSameVotes) {
 
 TEST(BoostedStumps, TheMarginIsTheShareOfVotes) {
   const BoostedStumps model{.features = {"x", "y"},
-                            .stumps = {{.feature = 0, .threshold = 1.0, .sign_above = 1, .weight = 3.0}, {.feature = 1, .threshold = 0.0, .sign_above = -1, .weight = 1.0}}};
+                            .stumps = {{.feature = 0, .threshold = 1.0, .sign_above = 1, .weight = 3.0},
+                                       {.feature = 1, .threshold = 0.0, .sign_above = -1, .weight = 1.0}}};
   EXPECT_EQ(model.margin({2.0, -1.0}), 1.0);
   EXPECT_EQ(model.margin({2.0, 1.0}), 0.5);
   EXPECT_EQ(model.margin({1.0, 1.0}), -1.0) << "at the threshold is not above";

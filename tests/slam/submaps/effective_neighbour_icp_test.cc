@@ -141,7 +141,8 @@ TEST_P(PartlyOverlapping, PlainIcpIsMetresOffAndEffectiveNeighboursAreNot) {
   RecordProperty("with_lines_largest_error_m", std::to_string(ours.largest_m));
 }
 
-INSTANTIATE_TEST_SUITE_P(By, PartlyOverlapping, ::testing::Values(PartOverlap{0.52, 6.0}, PartOverlap{0.45, 5.0}, PartOverlap{0.35, 4.0}, PartOverlap{0.30, 3.0}),
+INSTANTIATE_TEST_SUITE_P(By, PartlyOverlapping,
+                         ::testing::Values(PartOverlap{0.52, 6.0}, PartOverlap{0.45, 5.0}, PartOverlap{0.35, 4.0}, PartOverlap{0.30, 3.0}),
                          [](const auto& run) { return std::to_string(std::lround(100.0 * run.param.share)) + "Percent"; });
 
 TEST(AlignIcp, WithoutALeastThresholdWholeOverlapIsMatchedOnItsBestPairsOnly) {

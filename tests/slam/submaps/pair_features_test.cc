@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "slam/submaps/adaboost.h"
 #include "tests/support/seen_submap.h"
@@ -34,6 +35,11 @@ Points square_outline() {
 }
 
 SubmapShape describe(const SeenSubmap& submap) { return describe_submap(submap.points, submap.map, {}); }
+
+/// A submap of the yard from a short walk that starts at its frame.
+SubmapShape describe_yard(const Pose2& T_world_submap, std::uint64_t seed) {
+  return describe(see_submap(make_yard(), T_world_submap, short_walk(T_world_submap), seed));
+}
 
 PoseGaussian prediction_of(const Pose2& T_target_source, double std_m, double std_rad) {
   return {.mean = T_target_source, .covariance = Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal()};
@@ -80,8 +86,7 @@ TEST(PairFeatures, TheCentreIsAsUncertainAsItsArmIsLong) {
 }
 
 TEST(PairFeatures, OfNeighboursSayThatTheyAre) {
-  const RoomWorld yard = make_yard();
-  const SubmapShape target = describe(see_submap(yard, kTarget, short_walk(kTarget), 1)), source = describe(see_submap(yard, kSource, short_walk(kSource), 2));
+  const SubmapShape target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
   const auto features = pair_features(target, source, prediction_of({kTruth.x + 0.8, kTruth.y - 0.6, kTruth.yaw + 5.0 * kDeg}, 0.7, 4.0 * kDeg), {});
   EXPECT_GT(value(features, "hull_overlap"), 0.8);
   EXPECT_GT(value(features, "seen_overlap"), 0.6) << "through the gate and between posts each sees what the other does not";
@@ -96,16 +101,30 @@ TEST(PairFeatures, OfStrangersSayThatTheyAreNot) {
   RoomWorld hall;
   hall.add_box(-14.0, -9.0, 5.0, 3.0);
   for (int i = -3; i <= 0; ++i) hall.add_post(4.0 * i + 1.0, -2.0, 0.4).add_post(4.0 * i + 1.0, -7.5, 0.4);
-  const SubmapShape target = describe(see_submap(make_yard(), kTarget, short_walk(kTarget), 1)), source = describe(see_submap(hall, kSource, short_walk(kSource), 2));
+  const SubmapShape target = describe_yard(kTarget, 1), source = describe(see_submap(hall, kSource, short_walk(kSource), 2));
   const auto features = pair_features(target, source, prediction_of(kTruth, 0.7, 4.0 * kDeg), {});
   EXPECT_GT(value(features, "hull_overlap"), 0.5) << "by the prediction alone they would be neighbours";
   EXPECT_LT(value(features, "aligned_agreement"), 0.7);
 }
 
+// A room of 10 m, and the same with a wall of 4 m, 2 m before the lidar, that hides one side: of 30 + 4 m that the second sees the first says that 4 are free.
+// All 30 of the first that the second can judge agree; the smaller one counts.
+TEST(PairFeatures, AgreementIsThatOfTheOneWhoDisagrees) {
+  RoomWorld room, divided;
+  room.add_box(-5.02, -5.02, 5.02, 5.02);  // in the middle of cells: with 1 cm of noise one row of them is a wall
+  divided.add(room).add_wall(2.02, -2.02, 2.02, 2.02);
+  const std::vector<Pose2> still(3);
+  const SubmapShape before = describe(see_submap(room, {}, still, 1)), after = describe(see_submap(divided, {}, still, 2));
+  const PoseGaussian prediction = prediction_of({0.1, 0.1, 0.01}, 0.1, 0.01);
+  EXPECT_NEAR(value(pair_features(before, after, prediction, {}), "aligned_agreement"), 30.0 / 34.0, 0.03);
+  EXPECT_NEAR(value(pair_features(after, before, prediction, {}), "aligned_agreement"), 30.0 / 34.0, 0.03);
+  EXPECT_GT(value(pair_features(before, before, prediction, {}), "aligned_agreement"), 0.99);
+}
+
 TEST(PairFeatures, FourNeedNoPose) {
-  const RoomWorld yard = make_yard();
-  const SubmapShape target = describe(see_submap(yard, kTarget, short_walk(kTarget), 1)), source = describe(see_submap(yard, kSource, short_walk(kSource), 2));
-  const auto here = pair_features(target, source, prediction_of(kTruth, 0.1, 0.01), {}), there = pair_features(target, source, prediction_of({70.0, -9.0, 2.0}, 5.0, 1.0), {});
+  const SubmapShape target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
+  const auto here = pair_features(target, source, prediction_of(kTruth, 0.1, 0.01), {});
+  const auto there = pair_features(target, source, prediction_of({70.0, -9.0, 2.0}, 5.0, 1.0), {});
   const auto swapped = pair_features(source, target, prediction_of({}, 1.0, 1.0), {});
   for (const char* name : {"distance_difference", "direction_correlation", "point_ratio", "radius_ratio"}) {
     EXPECT_EQ(value(here, name), value(there, name)) << name;
@@ -115,12 +134,12 @@ TEST(PairFeatures, FourNeedNoPose) {
 
 // The source's frame lies elsewhere in it: 7 m away, turned by 35 degrees. What is computed from points is the same; maps are drawn anew on other cells.
 TEST(PairFeatures, DoNotDependOnWhereASubmapsFrameLies) {
-  const RoomWorld yard = make_yard();
   const Pose2 T_source_other{5.0, -5.0, 35.0 * kDeg};
-  const SubmapShape target = describe(see_submap(yard, kTarget, short_walk(kTarget), 1));
-  const SubmapShape source = describe(see_submap(yard, kSource, short_walk(kSource), 2)), other = describe(see_submap(yard, kSource * T_source_other, short_walk(kSource), 2));
+  const SubmapShape target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
+  const SubmapShape other = describe(see_submap(make_yard(), kSource * T_source_other, short_walk(kSource), 2));
   // The same place of the centre must be as uncertain, whatever the arm: no error of heading.
-  const auto features = pair_features(target, source, prediction_of(kTruth, 0.5, 0.0), {}), others = pair_features(target, other, prediction_of(kTruth * T_source_other, 0.5, 0.0), {});
+  const auto features = pair_features(target, source, prediction_of(kTruth, 0.5, 0.0), {});
+  const auto others = pair_features(target, other, prediction_of(kTruth * T_source_other, 0.5, 0.0), {});
   for (std::size_t i = 0; i < features.size(); ++i) {
     const std::string name = kPairFeatures[i];
     if (name == "aligned_mahalanobis") continue;  // any heading but the predicted one is impossible here
@@ -132,7 +151,8 @@ TEST(PairFeatures, TwiceAsLargeIsTheSame) {
   Points twice = square_outline();
   for (auto& p : twice) p *= 2.0;
   const SubmapShape small = describe_submap(square_outline(), GridMap(0.05, 100.0), {}), large = describe_submap(twice, GridMap(0.05, 100.0), {});
-  const auto of_small = pair_features(small, small, prediction_of({0.7, 0.2, 0.3}, 0.2, 0.05), {}), of_large = pair_features(large, large, prediction_of({1.4, 0.4, 0.3}, 0.4, 0.05), {});
+  const auto of_small = pair_features(small, small, prediction_of({0.7, 0.2, 0.3}, 0.2, 0.05), {});
+  const auto of_large = pair_features(large, large, prediction_of({1.4, 0.4, 0.3}, 0.4, 0.05), {});
   for (const char* name : {"center_distance", "center_mahalanobis", "center_std", "hull_overlap", "radius_ratio", "point_ratio"}) {
     EXPECT_NEAR(value(of_small, name), value(of_large, name), 1e-6) << name;
   }
@@ -142,7 +162,8 @@ TEST(PairFeatures, AreFiniteWhateverTheSubmaps) {
   const GridMap nothing(0.05, 100.0);
   const SubmapShape line = describe_submap({{0, 0}, {1, 1}, {2, 2}}, nothing, {}), spot = describe_submap({{1, 1}, {1, 1}, {1, 1}}, nothing, {});
   for (const PoseGaussian& prediction : {prediction_of({}, 0.0, 0.0), prediction_of({1e6, -1e6, 3.0}, 1e6, 100.0)}) {
-    for (const auto& features : {pair_features(line, spot, prediction, {}), pair_features(spot, line, prediction, {}), pair_features(spot, spot, prediction, {})}) {
+    for (const auto& [target, source] : {std::pair(&line, &spot), {&spot, &line}, {&spot, &spot}}) {
+      const auto features = pair_features(*target, *source, prediction, {});
       for (std::size_t i = 0; i < features.size(); ++i) EXPECT_TRUE(std::isfinite(features[i])) << kPairFeatures[i];
     }
   }

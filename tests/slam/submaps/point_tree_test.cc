@@ -15,7 +15,10 @@ using Points = std::vector<Eigen::Vector2d>;
 Points random_points(int count, std::uint64_t seed) {
   const RandomStream random(seed, "test/point_tree");
   Points points;
-  for (int i = 0; i < count; ++i) points.emplace_back(10.0 * random.uniform(static_cast<std::uint64_t>(i), 0), 10.0 * random.uniform(static_cast<std::uint64_t>(i), 1));
+  for (int i = 0; i < count; ++i) {
+    const auto u = random.uniforms(static_cast<std::uint64_t>(i));
+    points.emplace_back(10.0 * u[0], 10.0 * u[1]);
+  }
   return points;
 }
 
