@@ -87,7 +87,7 @@ void McapReader::find_footer() {
   if (!is_footer || !tail.ends_with(mcap::kMagic)) return;
   footer_start_ = size_ - tail_size;
   const auto summary_start = footer.number<std::uint64_t>();
-  if (summary_start > 0) read_summary(summary_start, footer_start_);
+  if (summary_start > 0 && selection_.use_summary) read_summary(summary_start, footer_start_);
 }
 
 void McapReader::read_summary(std::uint64_t start, std::uint64_t end) {
@@ -161,6 +161,7 @@ std::optional<McapMessage> McapReader::next() {
       if (!read_record()) return std::nullopt;
     }
   } catch (const mcap::Damage& damage) {
+    rest_of_chunk_ = {};
     fail(damage.what());
   }
 }

@@ -35,6 +35,7 @@ struct McapSelection {
   std::vector<std::string> topics;  ///< all if empty
   Time from = Time::min();          ///< log time
   Time to = Time::max();            ///< log time, included
+  bool use_summary = true;          ///< else the file is read from front to back, and a damaged summary does no harm
 };
 
 /// Reads a file's messages in their order, with the help of the summary when there is one: chunks that hold nothing of
@@ -45,7 +46,8 @@ class McapReader {
  public:
   explicit McapReader(const std::filesystem::path& path, McapSelection selection = {});
 
-  /// The next message; it lives until the next call. None at the end, or at the cut.
+  /// The next message; it lives until the next call. None at the end, or at the cut. After damage another call goes on with the record
+  /// behind the damaged one; where that begins cannot be told of every damage: then the same is thrown again.
   std::optional<McapMessage> next();
 
   /// Whether the writer came to its end: the file has its summary.

@@ -16,7 +16,6 @@ constexpr std::size_t kMostWaiting = 256;  ///< scans; odometry that comes later
 constexpr std::size_t kMostBeams = 10'000;
 constexpr double kUnitTol = 1e-3;          ///< of a quaternion's length
 constexpr double kFurthest_m = 1e8;
-constexpr const char* kTf = "/tf";
 constexpr const char* kTfStatic = "/tf_static";
 
 void expect_pose(const Pose3& pose, const char* whose) {
@@ -49,7 +48,7 @@ void tidy_ranges(LaserScan& scan, double no_return_m) {
 }  // namespace
 
 McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options)
-    : file_(file), options_(options), reader_(file), scan_topic_(options.scan_topic), odometry_topic_(options.odometry_topic) {}
+    : file_(file), options_(options), reader_(file, {.topics = {}, .use_summary = false}), scan_topic_(options.scan_topic), odometry_topic_(options.odometry_topic) {}
 
 std::string McapScanLog::place(const McapMessage& message) const {
   return fmt::format("{}: {} at {:.9f} s: ", file_.string(), message.channel.topic, to_seconds(message.log_time));
@@ -66,12 +65,16 @@ std::optional<RecordedScan> McapScanLog::next() {
   }
 }
 
+/// After damage the reader goes on with the file's next record, unless it cannot tell where that begins.
 std::optional<McapMessage> McapScanLog::next_message() {
-  try {
-    return reader_.next();
-  } catch (const InputError& error) {  // names the byte; nothing can be read beyond it
-    refuse_or_skip(options_, "file is damaged, not read further", error.what());
-    return std::nullopt;
+  while (true) {
+    try {
+      return reader_.next();
+    } catch (const InputError& error) {  // names the byte
+      if (damage_at_ == reader_.progress()) return std::nullopt;
+      damage_at_ = reader_.progress();
+      refuse_or_skip(options_, "damaged parts of the file", error.what());
+    }
   }
 }
 

@@ -54,6 +54,7 @@ class McapScanLog : public ScanLog {
   bool uses_tf_ = false;
   std::deque<WaitingScan> waiting_;
   ScanSorter sorter_;
+  std::optional<double> damage_at_;  ///< how far the file was read then
   bool is_at_end_ = false;
 };
 
