@@ -31,6 +31,7 @@ struct Call {
   BudgetOptions budget;
   FaultsOptions faults;
   SlamOptions slam;
+  SolveOptions solve;
   StudyOptions study;
   TestOptions test;
   std::function<ExitCode()> chosen;
@@ -165,6 +166,15 @@ void add_slam(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [&] { return slam_command(call.slam); }; });
 }
 
+void add_solve(CLI::App& app, Call& call) {
+  SolveOptions& solve = call.solve;
+  CLI::App* command = app.add_subcommand("solve", "Solve a pose graph in g2o's text");
+  command->add_option("graph", solve.graph, "Pose graph (g2o)")->required();
+  command->add_flag("--doubt-loops", solve.doubts_loops, "A robust loss on the edges that are not odometry");
+  command->add_option("--out", solve.out, "Solved graph to write (g2o)")->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return solve_command(call.solve); }; });
+}
+
 void add_study(CLI::App& app, Call& call) {
   StudyOptions& study = call.study;
   CLI::App* command = app.add_subcommand("study", "A paper's experiment: its published figures beside ours");
@@ -226,7 +236,7 @@ int run_command_line(int argc, const char* const* argv) {
 
   Call call;
   for (const auto add : {add_run, add_score, add_localizability, add_replay, add_report, add_verify, add_sweep, add_collect, add_budget, add_faults,
-                         add_slam, add_study, add_test, add_list}) {
+                         add_slam, add_solve, add_study, add_test, add_list}) {
     add(app, call);
   }
 

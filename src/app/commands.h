@@ -89,6 +89,14 @@ struct SlamOptions {
 /// Maps a recorded log.
 ExitCode slam_command(const SlamOptions& options);
 
+struct SolveOptions {
+  std::filesystem::path graph;  ///< g2o
+  bool doubts_loops = false;    ///< a robust loss on edges that are not odometry
+  std::filesystem::path out = "out/solved.g2o";
+};
+/// Solves anyone's pose graph.
+ExitCode solve_command(const SolveOptions& options);
+
 struct StudyOptions {
   std::string name;
   std::optional<std::string> seeds;  ///< "N": 1001 ... 1000 + N, on which nothing was tuned; or "A..B"

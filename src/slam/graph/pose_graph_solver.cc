@@ -56,7 +56,8 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
     return poses[static_cast<std::size_t>(index)].data();
   };
   for (const PoseGraphEdge& edge : graph.edges) {
-    problem.AddResidualBlock(new EdgeCost(edge), edge.kind == PoseGraphEdge::Kind::kLoop ? &kernel : nullptr, node(edge.from), node(edge.to));
+    const bool is_doubted = settings.doubts_loops && edge.kind == PoseGraphEdge::Kind::kLoop;
+    problem.AddResidualBlock(new EdgeCost(edge), is_doubted ? &kernel : nullptr, node(edge.from), node(edge.to));
   }
   if (problem.HasParameterBlock(poses[0].data())) problem.SetParameterBlockConstant(poses[0].data());
 

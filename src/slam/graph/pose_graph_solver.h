@@ -7,11 +7,13 @@ namespace patrol::slam {
 
 struct PoseGraphSolverSettings {
   int max_iterations = 50;
+  bool doubts_loops = true;
   double loop_kernel = 3.0;  ///< standard deviations from which on a loop closure counts as an outlier, gradually
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("max_iterations", self.max_iterations, between(1, 1000));
+    visit("doubts_loops", self.doubts_loops);
     visit("loop_kernel", self.loop_kernel, at_least(0.1));
   }
 };
@@ -23,7 +25,8 @@ struct PoseGraphSolution {
   bool converged = false;
 };
 
-/// Moves all nodes but the first to where the edges want them most: sparse least squares, Cauchy's kernel on loop closures.
+/// Moves all nodes but the first to where the edges want them most: sparse least squares, with Cauchy's kernel on loop closures unless they are
+/// to be believed.
 /// Throws std::invalid_argument when an edge names a node that is not there.
 PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings);
 

@@ -150,6 +150,18 @@ class Slam(unittest.TestCase):
         done = self.patrol("score", "--estimate", out / "estimate.tum", "--relations", relations)
         self.assertIn("0.0", done.stdout)
 
+    def test_a_graph_is_solved_and_one_that_is_damaged_refused(self):
+        ring = ["VERTEX_SE2 0 0 0 0", "VERTEX_SE2 1 1 0 0", "VERTEX_SE2 2 2 0 0"]
+        edges = [f"EDGE_SE2 {a} {b} {x} 0 0 1 0 0 1 0 1" for a, b, x in [(0, 1, 1.0), (1, 2, 1.0), (0, 2, 2.3)]]
+        graph, solved = self.folder / "three.g2o", self.folder / "solved.g2o"
+        graph.write_text("\n".join(ring + edges) + "\n")
+        done = self.patrol("solve", graph, "--out", solved)
+        self.assertIn("0.09 -> 0.03", done.stdout)
+        self.assertIn("VERTEX_SE2 1 1.1", solved.read_text())
+        graph.write_text("\n".join(ring + edges[:1] + ["EDGE_SE2 1 2 1.0 0"]) + "\n")
+        self.assertIn("three.g2o:5", self.patrol("solve", graph, "--out", self.folder / "absent.g2o", code=2).stderr)
+        self.assertFalse((self.folder / "absent.g2o").exists())
+
     def refuse(self, text, *says, more=()):
         damaged = self.folder / "damaged.log"
         damaged.write_text(text)
