@@ -53,8 +53,9 @@ void add_score(CLI::App& app, Call& call) {
   command->add_option("--estimate", call.score.estimate, "Estimated trajectory (TUM)");
   command->add_option("--reference", call.score.reference, "Reference trajectory (TUM)");
   command->add_option("--relations", call.score.relations, "Reference relations (Freiburg: t1 t2 x y z roll pitch yaw)");
-  command->add_option("--max-dt", call.score.relation_settings.max_dt_s, "A pose within this of a relation's stamp is taken as it is, s")->capture_default_str();
-  command->add_option("--ref-x", call.score.relation_settings.ref_x_m, "How far ahead of the body the relations' point lies, m")->capture_default_str();
+  score::RelationSettings& relations = call.score.relation_settings;
+  command->add_option("--max-dt", relations.max_dt_s, "A pose within this of a relation's stamp is taken as it is, s")->capture_default_str();
+  command->add_option("--ref-x", relations.ref_x_m, "How far ahead of the body the relations' point lies, m")->capture_default_str();
   command->add_option("--map", call.score.map, "Built map (map_server YAML)");
   command->add_option("--reference-map", call.score.reference_map, "Reference map (map_server YAML)");
   command->callback([&] { call.chosen = [&] { return score_command(call.score); }; });

@@ -29,7 +29,9 @@ struct KnownStep {
   std::size_t num_beams;
   double step_deg;
 };
-constexpr std::array<KnownStep, 7> kKnownSteps = {{{682, 360.0 / 1024.0}, {683, 360.0 / 1024.0}, {769, 360.0 / 1024.0}, {540, 0.5}, {541, 0.5}, {1080, 0.25}, {1081, 0.25}}};
+constexpr double kUrgStepDeg = 360.0 / 1024.0;
+constexpr std::array<KnownStep, 7> kKnownSteps = {
+    {{682, kUrgStepDeg}, {683, kUrgStepDeg}, {769, kUrgStepDeg}, {540, 0.5}, {541, 0.5}, {1080, 0.25}, {1081, 0.25}}};
 
 /// "FLASER", "NMEAGGA", "WIFI-SCAN": what a line begins with, if it is a line of a log.
 bool is_message_name(std::string_view word) {
@@ -137,15 +139,7 @@ void CarmenLog::add(CarmenScan scan) {
     scan.T_odom_body = odometry_->T_odom_body;
   }
   const Pose2 T_odom_body = *scan.T_odom_body, T_body_lidar = mount_of(scan);
-  const Time stamp = scan.stamp;
-  switch (sorter_.add({.scan = to_laser_scan(std::move(scan)), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar})) {
-    case ScanSorter::Order::kInOrder: return;
-    case ScanSorter::Order::kReordered: ++summary_.num_reordered; return;
-    case ScanSorter::Order::kTooLate:
-      refuse_or_skip(options_, "scans whose time goes back",
-                     fmt::format("{}{}: time goes back to {:.6f} s, but {:.6f} s was {} scans ago: too late to put them in order", place(), laser_,
-                                 to_seconds(stamp), to_seconds(*sorter_.last_taken()), ScanSorter::kWindow));
-  }
+  sort_in(sorter_, {.scan = to_laser_scan(std::move(scan)), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar}, options_, place() + laser_);
 }
 
 /// CARMEN's rear lidar looks back, and its offset counts backwards (carmen robot_laser).
@@ -161,7 +155,8 @@ Pose2 CarmenLog::mount_of(const CarmenScan& scan) {
   const Pose2 T_body_lidar = scan.T_odom_body->inverse() * *scan.T_odom_lidar;
   const bool says_nothing = are_equal(T_body_lidar, {}, kEqualPoses, kEqualPoses);
   if (!T_body_lidar_) T_body_lidar_ = says_nothing || T_body_lidar.position().norm() > kMostMount_m ? parameter_mount() : T_body_lidar;
-  if (!says_nothing && !are_equal(T_body_lidar, *T_body_lidar_, kSameMount_m, kSameMountRad)) ++summary_.assumed["scans: the lidar is where the first scan has it"];
+  const bool is_elsewhere = !says_nothing && !are_equal(T_body_lidar, *T_body_lidar_, kSameMount_m, kSameMountRad);
+  if (is_elsewhere) ++summary_.assumed["scans: the lidar is where the first scan has it"];
   return *T_body_lidar_;
 }
 

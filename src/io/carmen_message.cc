@@ -28,7 +28,8 @@ std::size_t read_count(LineFields& fields, const char* what, std::int64_t min) {
 /// The count may be wrong: it must not ask for more than the line holds.
 template <typename Number>
 std::vector<Number> read_numbers(LineFields& fields, std::size_t count, const char* what) {
-  if (count > fields.num_words()) throw FieldError(fmt::format("holds {} words after its {} {}s: cut off, or wrongly counted", fields.num_words(), count, what));
+  const std::size_t words = fields.num_words();
+  if (count > words) throw FieldError(fmt::format("holds {} words after its {} {}s: cut off, or wrongly counted", words, count, what));
   std::vector<Number> numbers;
   numbers.reserve(count);
   for (std::size_t i = 0; i < count; ++i) numbers.push_back(static_cast<Number>(fields.any_number(what)));

@@ -18,7 +18,7 @@ namespace patrol::io {
 class FrameTree {
  public:
   static constexpr Time kMemory = std::chrono::seconds(10);  ///< of what moves
-  static constexpr std::size_t kMostPoses = 20'000;          ///< likewise, of one frame
+  static constexpr std::size_t kMostPoses = 2'000;           ///< likewise, of one frame
   static constexpr std::size_t kMostFrames = 1'000;          ///< further ones are not noted: no robot has as many
 
   void add_static(const FrameTransform& transform);

@@ -133,7 +133,8 @@ std::string to_g2o(const PoseGraph& graph) {
   if (!graph.T_map_node.empty()) text += "FIX 0\n";
   for (const PoseGraphEdge& edge : graph.edges) {
     const Eigen::Matrix3d& I = edge.information;
-    text += fmt::format("EDGE_SE2 {} {} {} {} {} {} {} {} {}\n", edge.from, edge.to, pose_text(edge.T_from_to), I(0, 0), I(0, 1), I(0, 2), I(1, 1), I(1, 2), I(2, 2));
+    text += fmt::format("EDGE_SE2 {} {} {} {} {} {} {} {} {}\n", edge.from, edge.to, pose_text(edge.T_from_to), I(0, 0), I(0, 1), I(0, 2),
+                        I(1, 1), I(1, 2), I(2, 2));
   }
   return text;
 }

@@ -12,15 +12,15 @@
 namespace patrol::io {
 namespace {
 
-constexpr unsigned kGzipBufferBytes = 1U << 18;
-constexpr std::size_t kReadBytes = std::size_t{1} << 16;
+constexpr unsigned kGzipBufferBytes = 1U << 16;
+constexpr std::size_t kReadBytes = std::size_t{1} << 15;
 constexpr std::size_t kMostDroppedBytes = std::size_t{1} << 26;  ///< of one line: a disk's zeros have no end
 
 }  // namespace
 
 void LineReader::Close::operator()(gzFile_s* file) const { gzclose_r(file); }
 
-LineReader::LineReader(const std::filesystem::path& file) : file_(file), buffer_(kMaxLineBytes + kReadBytes) {
+LineReader::LineReader(const std::filesystem::path& file) : file_(file), buffer_(2 * kReadBytes) {
   std::error_code error;
   if (!std::filesystem::exists(file, error)) throw InputError(file.string() + ": there is no such file");
   const bool is_file = std::filesystem::is_regular_file(file, error);
@@ -43,6 +43,7 @@ bool LineReader::fill() {
     end_ -= begin_;
     begin_ = 0;
   }
+  if (end_ + kReadBytes > buffer_.size()) buffer_.resize(2 * buffer_.size());  // a long line: no more than its most bytes are asked for
   const int got = gzread(gzip_.get(), buffer_.data() + end_, static_cast<unsigned>(kReadBytes));
   if (got > 0) {
     end_ += static_cast<std::size_t>(got);

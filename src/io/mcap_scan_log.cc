@@ -16,6 +16,7 @@ constexpr std::size_t kMostWaiting = 256;  ///< scans; odometry that comes later
 constexpr std::size_t kMostBeams = 10'000;
 constexpr double kUnitTol = 1e-3;          ///< of a quaternion's length
 constexpr double kFurthest_m = 1e8;
+constexpr double kMaxAngleRad = 7.0;       ///< a full turn and what rounding adds
 constexpr const char* kTfStatic = "/tf_static";
 
 void expect_pose(const Pose3& pose, const char* whose) {
@@ -26,8 +27,10 @@ void expect_pose(const Pose3& pose, const char* whose) {
 Pose3 normalized(const Pose3& pose) { return {pose.position, pose.rotation.normalized()}; }
 
 void expect_scan(const LaserScan& scan) {
-  if (scan.ranges_m.empty() || scan.ranges_m.size() > kMostBeams) throw DecodeError(fmt::format("a scan of {} beams: must be 1 ... {}", scan.ranges_m.size(), kMostBeams));
-  const bool has_angles = std::abs(scan.angle_min_rad) <= 7.0 && std::abs(scan.angle_increment_rad) * static_cast<double>(scan.ranges_m.size()) <= 7.0;
+  const std::size_t num_beams = scan.ranges_m.size();
+  if (num_beams == 0 || num_beams > kMostBeams) throw DecodeError(fmt::format("a scan of {} beams: must be 1 ... {}", num_beams, kMostBeams));
+  const double span_rad = std::abs(scan.angle_increment_rad) * static_cast<double>(num_beams);
+  const bool has_angles = std::abs(scan.angle_min_rad) <= kMaxAngleRad && span_rad <= kMaxAngleRad;
   if (!has_angles) throw DecodeError("a scan of more than a turn");
   if (!std::isfinite(scan.time_increment_s) || !std::isfinite(scan.scan_time_s)) throw DecodeError("a scan whose times are not finite");
 }
@@ -48,7 +51,11 @@ void tidy_ranges(LaserScan& scan, double no_return_m) {
 }  // namespace
 
 McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options)
-    : file_(file), options_(options), reader_(file, {.topics = {}, .use_summary = false}), scan_topic_(options.scan_topic), odometry_topic_(options.odometry_topic) {}
+    : file_(file),
+      options_(options),
+      reader_(file, {.topics = {}, .use_summary = false}),
+      scan_topic_(options.scan_topic),
+      odometry_topic_(options.odometry_topic) {}
 
 std::string McapScanLog::place(const McapMessage& message) const {
   return fmt::format("{}: {} at {:.9f} s: ", file_.string(), message.channel.topic, to_seconds(message.log_time));
@@ -155,15 +162,8 @@ void McapScanLog::resolve_waiting() {
 void McapScanLog::add_placed(WaitingScan waiting, const Pose2& T_odom_body) {
   if (odometry_topic_.empty()) uses_tf_ = true;  // from now on: two sources may differ
   const Pose2 T_body_lidar = to_planar(mount_of(waiting));
-  const Time stamp = waiting.scan.stamp;
-  switch (sorter_.add({.scan = std::move(waiting.scan), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar})) {
-    case ScanSorter::Order::kInOrder: return;
-    case ScanSorter::Order::kReordered: ++summary_.num_reordered; return;
-    case ScanSorter::Order::kTooLate:
-      refuse_or_skip(options_, "scans whose time goes back",
-                     fmt::format("{}: {}: time goes back to {:.6f} s, but {:.6f} s was {} scans ago: too late to put them in order", file_.string(), scan_topic_,
-                                 to_seconds(stamp), to_seconds(*sorter_.last_taken()), ScanSorter::kWindow));
-  }
+  sort_in(sorter_, {.scan = std::move(waiting.scan), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar}, options_,
+          fmt::format("{}: {}", file_.string(), scan_topic_));
 }
 
 /// Turns the beams of a lidar that hangs upside down round, so that its planar place says all.

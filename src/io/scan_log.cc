@@ -44,6 +44,16 @@ void ScanLog::count_skipped(const std::string& reason, const std::string& compla
   if (summary_.complaints.size() < kMostComplaints) summary_.complaints.push_back(complaint);
 }
 
+void ScanLog::sort_in(ScanSorter& sorter, RecordedScan scan, const ScanLogOptions& options, const std::string& place) {
+  const Time stamp = scan.scan.stamp;
+  const ScanSorter::Order order = sorter.add(std::move(scan));
+  if (order == ScanSorter::Order::kReordered) ++summary_.num_reordered;
+  if (order != ScanSorter::Order::kTooLate) return;
+  refuse_or_skip(options, "scans whose time goes back",
+                 fmt::format("{}: time goes back to {:.6f} s, but {:.6f} s was {} scans ago: too late to put them in order", place, to_seconds(stamp),
+                             to_seconds(*sorter.last_taken()), ScanSorter::kWindow));
+}
+
 void ScanLog::count_given_out(const RecordedScan& scan) {
   ++summary_.num_scans;
   if (last_stamp_ == scan.scan.stamp) ++summary_.num_same_stamp;

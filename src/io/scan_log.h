@@ -10,6 +10,7 @@
 
 #include "core/recorded_scan.h"
 #include "core/settings.h"
+#include "io/scan_sorter.h"
 
 namespace patrol::io {
 
@@ -72,6 +73,8 @@ class ScanLog {
   /// Throws InputError(complaint), or counts it when bad lines are skipped.
   void refuse_or_skip(const ScanLogOptions& options, const std::string& reason, const std::string& complaint);
   void count_skipped(const std::string& reason, const std::string& complaint);
+  /// Refuses or skips a scan that comes too late to be put in order. `place`: what a complaint begins with.
+  void sort_in(ScanSorter& sorter, RecordedScan scan, const ScanLogOptions& options, const std::string& place);
   void count_given_out(const RecordedScan& scan);
 
   ScanLogSummary summary_;

@@ -75,6 +75,13 @@ TEST(FrameTree, RemembersTenSeconds) {
   EXPECT_FALSE(tree.find("odom", "base_link", 89s));
 }
 
+TEST(FrameTree, RemembersTwoThousandPosesAtMost) {
+  FrameTree tree;
+  for (int i = 0; i < 3000; ++i) tree.add(placed("odom", "base_link", i, i * 1ms));
+  EXPECT_TRUE(tree.find("odom", "base_link", 1000ms));
+  EXPECT_FALSE(tree.find("odom", "base_link", 999ms));
+}
+
 TEST(FrameTree, ANewParentMakesTheOldOneForgotten) {
   FrameTree tree;
   tree.add_static(placed("a", "lidar", 1.0));

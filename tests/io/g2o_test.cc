@@ -45,7 +45,8 @@ TEST(LoadG2o, IdsNeedNotBeInOrderNorBeforeTheirEdges) {
 }
 
 TEST(LoadG2o, AnEdgeToTheNextNodeIsOdometryEveryOtherALoop) {
-  const PoseGraph graph = read(std::string(kTwoNodes) + "VERTEX_SE2 2 2 0 0\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 0 2 1 0 0 1 0 0 1 0 1\nEDGE_SE2 1 0 1 0 0 1 0 0 1 0 1\n");
+  const std::string three_nodes = std::string(kTwoNodes) + "VERTEX_SE2 2 2 0 0\n";
+  const PoseGraph graph = read(three_nodes + "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 0 2 1 0 0 1 0 0 1 0 1\nEDGE_SE2 1 0 1 0 0 1 0 0 1 0 1\n");
   EXPECT_EQ(graph.edges[0].kind, PoseGraphEdge::Kind::kOdometry);
   EXPECT_EQ(graph.edges[1].kind, PoseGraphEdge::Kind::kLoop);
   EXPECT_EQ(graph.edges[2].kind, PoseGraphEdge::Kind::kLoop);

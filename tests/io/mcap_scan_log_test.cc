@@ -45,7 +45,13 @@ class Writer {
 };
 
 LaserScan scan_at(Time stamp, std::vector<float> ranges_m = {1.0F, 2.0F, 3.0F}) {
-  return {.stamp = stamp, .angle_min_rad = -0.5, .angle_increment_rad = 0.25, .range_min_m = 0.5, .range_max_m = 30.0, .ranges_m = std::move(ranges_m), .intensities = {}};
+  return {.stamp = stamp,
+          .angle_min_rad = -0.5,
+          .angle_increment_rad = 0.25,
+          .range_min_m = 0.5,
+          .range_max_m = 30.0,
+          .ranges_m = std::move(ranges_m),
+          .intensities = {}};
 }
 
 /// One metre a second along x, from x = 0 at 0 s.
@@ -298,7 +304,8 @@ TEST_F(McapScans, ScansAndPosesThatAreNoneAreNamed) {
   OdometryEstimate unturned = odometry_at(0s);
   unturned.T_odom_body.rotation.coeffs().setZero();
   EXPECT_EQ(complaint_about("/scan", scan_at(0s, {})), "bad.mcap: /scan at 1.000000000 s: a scan of 0 beams: must be 1 ... 10000");
-  EXPECT_EQ(complaint_about("/scan", scan_at(0s, std::vector<float>(10'001, 1.0F))), "bad.mcap: /scan at 1.000000000 s: a scan of 10001 beams: must be 1 ... 10000");
+  EXPECT_EQ(complaint_about("/scan", scan_at(0s, std::vector<float>(10'001, 1.0F))),
+            "bad.mcap: /scan at 1.000000000 s: a scan of 10001 beams: must be 1 ... 10000");
   EXPECT_EQ(complaint_about("/scan", wide), "bad.mcap: /scan at 1.000000000 s: a scan of more than a turn");
   EXPECT_EQ(complaint_about("/scan", timeless), "bad.mcap: /scan at 1.000000000 s: a scan whose times are not finite");
   EXPECT_EQ(complaint_about("/odom", lost), "bad.mcap: /odom at 1.000000000 s: odometry is no pose: not finite, or its quaternion not of length 1");
@@ -361,7 +368,8 @@ TEST_F(McapScans, AFileWithoutScansOrOdometrySaysSo) {
   Writer other(file);
   for (int i = 0; i < 300; ++i) other.write("/scan", i * 100ms, scan_at(i * 100ms));
   other.close();
-  EXPECT_EQ(complaint(), "log.mcap: holds no odometry at its scans' times: nav_msgs/msg/Odometry, or tf odom -> base_link, is read (300 read, 300 scans without odometry)");
+  EXPECT_EQ(complaint(),
+            "log.mcap: holds no odometry at its scans' times: nav_msgs/msg/Odometry, or tf odom -> base_link, is read (300 read, 300 scans without odometry)");
 }
 
 TEST_F(McapScans, ARecordLargerThanAQuarterOfAGigabyteIsDamageNotData) {

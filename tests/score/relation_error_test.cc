@@ -49,7 +49,7 @@ TEST(RelationError, MeanAndDeviationOfErrorsAndTheirSquaresAreThoseOfTheList) {
   EXPECT_NEAR(error.trans_m.mean, 3.0, kTol);
   EXPECT_NEAR(error.trans_m.std, std::sqrt(14.0 / 3.0), kTol);
   EXPECT_NEAR(error.squared_trans_m2.mean, 41.0 / 3.0, kTol);
-  EXPECT_NEAR(error.squared_trans_m2.std, std::sqrt((std::pow(1.0 - 41.0 / 3.0, 2) + std::pow(4.0 - 41.0 / 3.0, 2) + std::pow(36.0 - 41.0 / 3.0, 2)) / 3.0), 1e-10);
+  EXPECT_NEAR(error.squared_trans_m2.std, std::sqrt((38.0 * 38.0 + 29.0 * 29.0 + 67.0 * 67.0) / 27.0), 1e-10) << "thirds of a metre: -38, -29, 67";
   EXPECT_NEAR(error.trans_median_m, 2.0, kTol);
   EXPECT_NEAR(error.trans_max_m, 6.0, kTol);
 }
