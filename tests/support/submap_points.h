@@ -53,4 +53,13 @@ inline RoomWorld make_yard() {
   return yard;
 }
 
+/// Two submaps of the yard that overlap in a strip: where their frames lie, and what lies on one side of a line of each.
+inline const Pose2 kYardTarget{-2.0, 0.0, 0.2}, kYardSource{1.0, 1.0, -0.4};
+inline std::vector<Eigen::Vector2d> yard_target_left_of(double x) {
+  return sample_walls(make_yard(), kYardTarget, {.phase = 0.2, .std_m = 0.01, .seed = 1}, [x](const auto& p) { return p.x() < x; });
+}
+inline std::vector<Eigen::Vector2d> yard_source_right_of(double x) {
+  return sample_walls(make_yard(), kYardSource, {.phase = 0.7, .std_m = 0.01, .seed = 2}, [x](const auto& p) { return p.x() > x; });
+}
+
 }  // namespace patrol::test

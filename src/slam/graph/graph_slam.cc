@@ -4,31 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <queue>
 
+#include "slam/graph/way_uncertainty.h"
 #include "slam/map_rendering.h"
 
 namespace patrol::slam {
-namespace {
-
-/// Of x, y, yaw: with the position's axes turned.
-Eigen::Matrix3d turned(const Eigen::Matrix3d& matrix, double yaw_rad) {
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  R.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(yaw_rad).toRotationMatrix();
-  return R * matrix * R.transpose();
-}
-
-/// The covariance of T_a_b, given that of T_b_a.
-PoseGaussian inverse_of(const PoseGaussian& T_b_a) {
-  const Pose2 inverse = T_b_a.mean.inverse();
-  const double c = std::cos(T_b_a.mean.yaw), s = std::sin(T_b_a.mean.yaw);
-  const Eigen::Matrix3d J = (Eigen::Matrix3d() << -c, -s, inverse.y, s, -c, -inverse.x, 0.0, 0.0, -1.0).finished();
-  return {.mean = inverse, .covariance = J * T_b_a.covariance * J.transpose()};
-}
-
-}  // namespace
-
 GraphSlam::GraphSlam(const GraphSlamSettings& settings)
     : settings_(settings), tracker_(settings.tracking), cache_(static_cast<std::size_t>(settings.cached_submaps)) {
   validate(settings, "slam");
@@ -83,58 +63,28 @@ Eigen::Vector2d GraphSlam::middle_of(int submap) const {
   return sum / (range.last - range.first + 1);
 }
 
-// Dijkstra over the submaps, by the way that leaves least uncertain (Olson, "Robust and efficient robotic mapping", 2008, section 4.2).
+// By the way from each to the next, on which the tracker drifts, and by the loops that are closed.
 std::vector<PoseGaussian> GraphSlam::positions_around(int submap) const {
-  struct Way {
-    int to;
-    Eigen::Matrix3d covariance;  ///< in the frame of where it starts
-  };
-  const auto num = static_cast<std::size_t>(finished_submaps_);
-  std::vector<std::vector<Way>> ways(num);
-  for (int s = 0; s + 1 < finished_submaps_; ++s) {
-    double length_m = 0.0, turn_rad = 0.0;
-    for (int k = submaps_[static_cast<std::size_t>(s)].first; k < submaps_[static_cast<std::size_t>(s) + 1].first; ++k) {
-      const Pose2 step = keyframes_[static_cast<std::size_t>(k)].T_local_body.inverse() * keyframes_[static_cast<std::size_t>(k) + 1].T_local_body;
-      length_m += step.position().norm();
-      turn_rad += std::abs(step.yaw);
-    }
-    const double std_m = settings_.drift_std_m_per_m * length_m, std_rad = settings_.drift_std_rad_per_m * length_m + settings_.drift_std_rad_per_rad * turn_rad;
-    const Eigen::Matrix3d covariance = Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();
-    ways[static_cast<std::size_t>(s)].push_back({s + 1, covariance});
-    ways[static_cast<std::size_t>(s) + 1].push_back({s, covariance});
-  }
+  std::vector<Pose2> T_map_submaps;
+  for (int s = 0; s < finished_submaps_; ++s) T_map_submaps.push_back(T_map_submap(s));
+  std::vector<UncertainWay> ways;
+  for (int s = 0; s + 1 < finished_submaps_; ++s) ways.push_back({.from = s, .to = s + 1, .covariance = drift_after(s)});
   for (const LoopEdge& loop : loops_) {
-    const Eigen::Matrix3d covariance = graph_.edges[static_cast<std::size_t>(loop.edge)].information.inverse();
-    ways[static_cast<std::size_t>(loop.target)].push_back({loop.source, covariance});
-    ways[static_cast<std::size_t>(loop.source)].push_back({loop.target, covariance});
+    ways.push_back({.from = loop.target, .to = loop.source, .covariance = graph_.edges[static_cast<std::size_t>(loop.edge)].information.inverse()});
   }
+  return positions_from(submap, T_map_submaps, ways);
+}
 
-  const auto uncertainty = [](const Eigen::Matrix3d& covariance) { return covariance(0, 0) + covariance(1, 1) + 100.0 * covariance(2, 2); };
-  std::vector<PoseGaussian> found(num);
-  std::vector<double> cost(num, std::numeric_limits<double>::infinity());
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  const Pose2 T_submap_map = T_map_submap(submap).inverse();
-  cost[static_cast<std::size_t>(submap)] = 0.0;
-  found[static_cast<std::size_t>(submap)] = {};
-  queue.push({0.0, submap});
-  while (!queue.empty()) {
-    const auto [known, at] = queue.top();
-    queue.pop();
-    if (known > cost[static_cast<std::size_t>(at)]) continue;
-    const PoseGaussian here = found[static_cast<std::size_t>(at)];
-    for (const Way& way : ways[static_cast<std::size_t>(at)]) {
-      const Pose2 there = T_submap_map * T_map_submap(way.to);
-      Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
-      F(0, 2) = -(there.y - here.mean.y), F(1, 2) = there.x - here.mean.x;
-      const Eigen::Matrix3d covariance = F * here.covariance * F.transpose() + turned(way.covariance, here.mean.yaw);
-      if (uncertainty(covariance) >= cost[static_cast<std::size_t>(way.to)]) continue;
-      cost[static_cast<std::size_t>(way.to)] = uncertainty(covariance);
-      found[static_cast<std::size_t>(way.to)] = {.mean = there, .covariance = covariance};
-      queue.push({uncertainty(covariance), way.to});
-    }
+// Of the next submap's place as seen from this one.
+Eigen::Matrix3d GraphSlam::drift_after(int submap) const {
+  double length_m = 0.0, turn_rad = 0.0;
+  for (int k = submaps_[static_cast<std::size_t>(submap)].first; k < submaps_[static_cast<std::size_t>(submap) + 1].first; ++k) {
+    const Pose2 step = keyframes_[static_cast<std::size_t>(k)].T_local_body.inverse() * keyframes_[static_cast<std::size_t>(k) + 1].T_local_body;
+    length_m += step.position().norm();
+    turn_rad += std::abs(step.yaw);
   }
-  return found;
+  const double std_m = settings_.drift_std_m_per_m * length_m, std_rad = settings_.drift_std_rad_per_m * length_m + settings_.drift_std_rad_per_rad * turn_rad;
+  return Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();
 }
 
 void GraphSlam::close_loops(int source) {

@@ -101,6 +101,7 @@ class GraphSlam {
   void add_keyframe(const LevelScan& scan, const TrackedScan& tracked);
   void close_loops(int submap);
   std::vector<PoseGaussian> positions_around(int submap) const;
+  Eigen::Matrix3d drift_after(int submap) const;
   std::shared_ptr<const DrawnSubmap> drawn(int submap);
   void refine();
   Eigen::Matrix3d edge_information(const Eigen::Matrix3d& match_information, const Pose2& T_map_from) const;

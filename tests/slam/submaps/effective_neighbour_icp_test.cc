@@ -18,16 +18,8 @@ using Points = std::vector<Eigen::Vector2d>;
 constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kExactTol = 1e-12;  // algebra
 
-const Pose2 kTarget{-2.0, 0.0, 0.2}, kSource{1.0, 1.0, -0.4};  // of the submaps, in the yard
-const Pose2 kTruth = kTarget.inverse() * kSource;
+const Pose2 kTruth = test::kYardTarget.inverse() * test::kYardSource;
 constexpr IcpSettings kPaper{.min_threshold_m = 0.0, .refine_on_lines = false};
-
-Points target_left_of(double x) {
-  return sample_walls(make_yard(), kTarget, {.phase = 0.2, .std_m = 0.01, .seed = 1}, [x](const auto& p) { return p.x() < x; });
-}
-Points source_right_of(double x) {
-  return sample_walls(make_yard(), kSource, {.phase = 0.7, .std_m = 0.01, .seed = 2}, [x](const auto& p) { return p.x() > x; });
-}
 
 /// Errors of 12 starts all around, 0.3 m and 3 degrees off.
 struct Errors {
@@ -78,7 +70,7 @@ TEST(EffectiveThreshold, KeepsAllWhereNothingBends) {
 }
 
 TEST(FitRigidMotion, RecoversAMotionExactly) {
-  const Points source = source_right_of(-100.0);
+  const Points source = test::yard_source_right_of(-100.0);
   for (const Pose2& T : {Pose2{3.0, -2.0, 0.7}, Pose2{0.0, 0.0, 3.1}, Pose2{-100.0, 50.0, -2.0}}) {
     Points target;
     for (const auto& p : source) target.push_back(T * p);
@@ -103,7 +95,7 @@ TEST(FitRigidMotion, IsTheLeastSquaresMotion) {
 }
 
 TEST(AlignIcp, RecoversAMotionToANanometreWhereEveryPointHasItsPartner) {
-  const Points source = source_right_of(-100.0);
+  const Points source = test::yard_source_right_of(-100.0);
   Points target;
   for (const auto& p : source) target.push_back(kTruth * p);
   const Pose2 start{kTruth.x + 0.02, kTruth.y - 0.03, kTruth.yaw + 0.2 * kDeg};
@@ -124,7 +116,7 @@ struct PartOverlap {
 class PartlyOverlapping : public ::testing::TestWithParam<PartOverlap> {};
 
 TEST_P(PartlyOverlapping, PlainIcpIsMetresOffAndEffectiveNeighboursAreNot) {
-  const Points target = target_left_of(GetParam().target_left_of_m), source = source_right_of(-3.0);
+  const Points target = test::yard_target_left_of(GetParam().target_left_of_m), source = test::yard_source_right_of(-3.0);
   const auto has_partner = [&](const auto& p) { return std::ranges::any_of(target, [&](const auto& q) { return (kTruth * p - q).norm() < 0.15; }); };
   ASSERT_NEAR(static_cast<double>(std::ranges::count_if(source, has_partner)) / static_cast<double>(source.size()), GetParam().share, 0.02);
 
@@ -146,13 +138,13 @@ INSTANTIATE_TEST_SUITE_P(By, PartlyOverlapping,
                          [](const auto& run) { return std::to_string(std::lround(100.0 * run.param.share)) + "Percent"; });
 
 TEST(AlignIcp, WithoutALeastThresholdWholeOverlapIsMatchedOnItsBestPairsOnly) {
-  const Points target = target_left_of(100.0), source = source_right_of(-100.0);
+  const Points target = test::yard_target_left_of(100.0), source = test::yard_source_right_of(-100.0);
   EXPECT_GT(errors_of(target, source, kPaper).largest_m, 0.1);
   EXPECT_LT(errors_of(target, source, {}).largest_m, 0.005);
 }
 
 TEST(AlignIcp, SaysHowManyPairsAndHowFarApart) {
-  const Points target = target_left_of(4.0), source = source_right_of(-3.0);
+  const Points target = test::yard_target_left_of(4.0), source = test::yard_source_right_of(-3.0);
   const IcpSettings settings;
   const auto result = align_icp(IcpTarget(target, settings), source, kTruth, settings);
   ASSERT_TRUE(result);
@@ -179,7 +171,7 @@ TEST(AlignIcp, ACorridorTellsAcrossAndHeadingButNotAlong) {
 
 TEST(AlignIcp, WithoutEnoughPointsThereIsNoMatch) {
   const IcpSettings settings;
-  const Points points = source_right_of(-100.0);
+  const Points points = test::yard_source_right_of(-100.0);
   EXPECT_FALSE(align_icp(IcpTarget({}, settings), points, {}, settings));
   EXPECT_FALSE(align_icp(IcpTarget(points, settings), {}, {}, settings));
   EXPECT_FALSE(align_icp(IcpTarget(points, settings), Points(points.begin(), points.begin() + 9), {}, settings));

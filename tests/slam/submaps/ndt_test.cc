@@ -22,15 +22,7 @@ using Points = std::vector<Eigen::Vector2d>;
 constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kExactTol = 1e-12;  // algebra
 
-const Pose2 kTarget{-2.0, 0.0, 0.2}, kSource{1.0, 1.0, -0.4};  // of the submaps, in the yard
-const Pose2 kTruth = kTarget.inverse() * kSource;
-
-Points target_left_of(double x) {
-  return sample_walls(make_yard(), kTarget, {.phase = 0.2, .std_m = 0.01, .seed = 1}, [x](const auto& p) { return p.x() < x; });
-}
-Points source_right_of(double x) {
-  return sample_walls(make_yard(), kSource, {.phase = 0.7, .std_m = 0.01, .seed = 2}, [x](const auto& p) { return p.x() > x; });
-}
+const Pose2 kTruth = test::kYardTarget.inverse() * test::kYardSource;
 
 /// Share of the source's points that have one of the target within 15 cm.
 double overlap(const Points& target, const Points& source) {
@@ -77,9 +69,9 @@ TEST(NdtGrid, APointAloneIsFeltAsFarAsTheFloorSays) {
 }
 
 TEST(NdtGrid, TheGradientIsWhatFiniteDifferencesSay) {
-  const Points source = source_right_of(-100.0);
+  const Points source = test::yard_source_right_of(-100.0);
   const NdtSettings settings;
-  for (const NdtGrid& grid : make_ndt(target_left_of(100.0), settings)) {
+  for (const NdtGrid& grid : make_ndt(test::yard_target_left_of(100.0), settings)) {
     for (int i = 0; i < 6; ++i) {
       const Pose2 at{kTruth.x + 0.3 * i - 0.7, kTruth.y - 0.2 * i + 0.5, kTruth.yaw + 0.05 * i - 0.1};
       const Eigen::Vector3d gradient = grid.score(source, at).gradient;
@@ -96,8 +88,8 @@ TEST(NdtGrid, TheGradientIsWhatFiniteDifferencesSay) {
 }
 
 TEST(NdtGrid, TheScoreHasNoJumps) {
-  const Points source = source_right_of(-100.0);
-  const NdtGrid grid(target_left_of(100.0), 1.0, 0.15);
+  const Points source = test::yard_source_right_of(-100.0);
+  const NdtGrid grid(test::yard_target_left_of(100.0), 1.0, 0.15);
   double before = grid.score(source, kTruth).value;
   for (int i = 1; i <= 2000; ++i) {  // 726 points; the steepest slope of a normal 0.15 m wide is 0.61 / 0.15 per metre, of a weight 2 per metre
     const double value = grid.score(source, {kTruth.x + 1e-3 * i, kTruth.y, kTruth.yaw}).value;
@@ -107,8 +99,8 @@ TEST(NdtGrid, TheScoreHasNoJumps) {
 }
 
 TEST(NdtGrid, TheCurvatureIsNeverNegative) {
-  const Points source = source_right_of(-100.0);
-  const NdtGrid grid(target_left_of(100.0), 2.0, 0.3);
+  const Points source = test::yard_source_right_of(-100.0);
+  const NdtGrid grid(test::yard_target_left_of(100.0), 2.0, 0.3);
   for (int i = 0; i < 20; ++i) {
     const NdtScore score = grid.score(source, {0.4 * i - 4.0, 0.3 * i - 3.0, 0.31 * i});
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(score.curvature);
@@ -131,14 +123,14 @@ TEST(NdtGrid, PointsThatAreNotNumbersOrTooFarApartAreRefused) {
 
 // Positions to 5 cm, for walls sampled every 10 cm with 1 cm of noise.
 TEST(AlignNdt, TheBasinIsThreeMetresAndTwentyDegreesWhereAllOverlaps) {
-  const Points target = target_left_of(100.0), source = source_right_of(-100.0);
+  const Points target = test::yard_target_left_of(100.0), source = test::yard_source_right_of(-100.0);
   EXPECT_GT(overlap(target, source), 0.99);
   EXPECT_EQ(num_found(target, source, 3.0, 20.0 * kDeg), 18);
   EXPECT_LT(num_found(target, source, 6.0, 60.0 * kDeg), 9) << "it ends somewhere";
 }
 
 TEST(AlignNdt, TheBasinIsOneMetreAndTenDegreesWhereAThirdOverlapsAndMostlyTwoMetres) {
-  const Points target = target_left_of(3.0), source = source_right_of(-3.0);
+  const Points target = test::yard_target_left_of(3.0), source = test::yard_source_right_of(-3.0);
   EXPECT_NEAR(overlap(target, source), 0.30, 0.01);
   EXPECT_EQ(num_found(target, source, 1.0, 10.0 * kDeg), 18);
   EXPECT_GE(num_found(target, source, 2.0, 15.0 * kDeg), 15);
@@ -146,7 +138,7 @@ TEST(AlignNdt, TheBasinIsOneMetreAndTenDegreesWhereAThirdOverlapsAndMostlyTwoMet
 
 TEST(AlignNdt, SaysHowWellItFits) {
   const NdtSettings settings;
-  const Points target = target_left_of(100.0), source = source_right_of(-100.0);
+  const Points target = test::yard_target_left_of(100.0), source = test::yard_source_right_of(-100.0);
   const auto ndt = make_ndt(target, settings);
   const auto result = align_ndt(ndt, source, {kTruth.x + 0.5, kTruth.y - 0.5, kTruth.yaw + 0.1}, settings);
   ASSERT_TRUE(result);
@@ -178,10 +170,10 @@ TEST(AlignNdt, ACorridorTellsNothingOfAlong) {
 
 TEST(AlignNdt, WithoutPointsOrOutOfSightThereIsNoResult) {
   const NdtSettings settings;
-  const auto ndt = make_ndt(target_left_of(100.0), settings);
+  const auto ndt = make_ndt(test::yard_target_left_of(100.0), settings);
   EXPECT_FALSE(align_ndt(ndt, {}, {}, settings));
   EXPECT_FALSE(align_ndt(make_ndt({}, settings), {{0.0, 0.0}}, {}, settings));
-  EXPECT_FALSE(align_ndt(ndt, source_right_of(0.0), {500.0, 0.0, 0.0}, settings));
+  EXPECT_FALSE(align_ndt(ndt, test::yard_source_right_of(0.0), {500.0, 0.0, 0.0}, settings));
 }
 
 TEST(NdtSettings, RefusesANonsenseSettingByName) {
