@@ -104,13 +104,10 @@ bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::st
   return !guard.is_interrupted();
 }
 
-/// One pose for each stamp: of scans with the same stamp the last.
+/// One pose for each scan, in the log's order; where the log gives several the same stamp, so does the trajectory.
 Trajectory trajectory_of(const std::vector<Time>& stamps, const std::vector<Pose2>& poses) {
   Trajectory trajectory;
-  for (std::size_t i = 0; i < stamps.size(); ++i) {
-    if (!trajectory.empty() && trajectory.back().stamp == stamps[i]) trajectory.pop_back();
-    trajectory.push_back({stamps[i], to_spatial(poses[i])});
-  }
+  for (std::size_t i = 0; i < stamps.size(); ++i) trajectory.push_back({stamps[i], to_spatial(poses[i])});
   return trajectory;
 }
 
