@@ -9,7 +9,7 @@
 #include "core/messages.h"
 
 /// Our messages as ROS 2 messages: the type that stands for each, and its CDR encoding (little-endian XCDR1 with its
-/// four-byte header). Every pair of `encode` and `decode` is one description of the fields, in ros_messages.cc.
+/// four-byte header). Every pair of `encode` and `decode` is one description of the fields, in ros_messages.cc and ros_sensor_messages.cc.
 namespace patrol::io {
 
 /// A transform of /tf and /tf_static.
