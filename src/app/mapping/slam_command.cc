@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "app/mapping/neighbour_model.h"
 #include "app/output_directory.h"
 #include "app/progress_bar.h"
 #include "core/thread_clock.h"
@@ -130,7 +131,7 @@ ExitCode slam_command(const SlamOptions& options) {
   if (options.skip_bad_lines) overrides.push_back("log.skip_bad_lines=true");
   const auto settings = io::settings_of<LogMappingSettings>(overrides);
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
-  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, settings.seed);
+  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbours_for(settings.slam), settings.seed);
 
   const double wall_s = wall_seconds(), thread_s = thread_seconds();
   MappedLog mapped;
