@@ -10,6 +10,7 @@ struct RecordedScan {
   LaserScan scan;
   Pose2 T_odom_body;
   Pose2 T_body_lidar;
+  Pose2 T_first_last = {};  ///< how odometry says that the body moved from the first beam to the last; identity where the log does not say when each was fired
 };
 
 }  // namespace patrol

@@ -35,6 +35,13 @@ void expect_scan(const LaserScan& scan) {
   if (!std::isfinite(scan.time_increment_s) || !std::isfinite(scan.scan_time_s)) throw DecodeError("a scan whose times are not finite");
 }
 
+/// When the last beam was fired; with the first, where the scan does not say so credibly.
+Time last_beam(const LaserScan& scan) {
+  constexpr double kLongest_s = 1.0;
+  const double span_s = scan.time_increment_s * static_cast<double>(scan.ranges_m.size() - 1);
+  return span_s > 0.0 && span_s <= kLongest_s ? scan.stamp + from_seconds(span_s) : scan.stamp;
+}
+
 /// REP 117, which drivers follow more or less.
 void tidy_ranges(LaserScan& scan, double no_return_m) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -152,17 +159,17 @@ std::optional<Pose3> McapScanLog::odometry_at(Time stamp) const {
 void McapScanLog::resolve_waiting() {
   std::deque<WaitingScan> still_waiting;
   for (WaitingScan& waiting : waiting_) {
-    const std::optional<Pose3> T_odom_body = odometry_at(waiting.scan.stamp);
-    if (T_odom_body) add_placed(std::move(waiting), to_planar(*T_odom_body));
+    const std::optional<Pose3> T_odom_first = odometry_at(waiting.scan.stamp), T_odom_last = odometry_at(last_beam(waiting.scan));
+    if (T_odom_first && (T_odom_last || is_at_end_)) add_placed(std::move(waiting), to_planar(*T_odom_first), to_planar(T_odom_last.value_or(*T_odom_first)));
     else still_waiting.push_back(std::move(waiting));
   }
   waiting_ = std::move(still_waiting);
 }
 
-void McapScanLog::add_placed(WaitingScan waiting, const Pose2& T_odom_body) {
+void McapScanLog::add_placed(WaitingScan waiting, const Pose2& T_odom_body, const Pose2& T_odom_last) {
   if (odometry_topic_.empty()) uses_tf_ = true;  // from now on: two sources may differ
   const Pose2 T_body_lidar = to_planar(mount_of(waiting));
-  sort_in(sorter_, {.scan = std::move(waiting.scan), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar}, options_,
+  sort_in(sorter_, {.scan = std::move(waiting.scan), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar, .T_first_last = T_odom_body.inverse() * T_odom_last}, options_,
           fmt::format("{}: {}", file_.string(), scan_topic_));
 }
 
@@ -184,6 +191,7 @@ Pose3 McapScanLog::mount_of(WaitingScan& waiting) {
 
 void McapScanLog::finish() {
   is_at_end_ = true;
+  resolve_waiting();
   if (!reader_.is_complete()) count_skipped("file ends too early", file_.string() + ": was cut off: read up to the cut");
   const std::size_t without_odometry = waiting_.size();
   for (; !waiting_.empty(); waiting_.pop_front()) {

@@ -39,7 +39,7 @@ class McapScanLog : public ScanLog {
   void add_odometry(const McapMessage& message);
   void add_transforms(const McapMessage& message, bool is_static);
   void resolve_waiting();
-  void add_placed(WaitingScan waiting, const Pose2& T_odom_body);
+  void add_placed(WaitingScan waiting, const Pose2& T_odom_body, const Pose2& T_odom_last);
   std::optional<Pose3> odometry_at(Time stamp) const;
   Pose3 mount_of(WaitingScan& waiting);
   void finish();

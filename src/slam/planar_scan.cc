@@ -1,14 +1,22 @@
 #include "slam/planar_scan.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace patrol::slam {
+namespace {
+
+/// Of a small motion, at an even pace.
+Pose2 part_of(const Pose2& motion, double share) { return {share * motion.x, share * motion.y, share * motion.yaw}; }
+
+}  // namespace
 
 LevelScan planar_scan(const RecordedScan& recorded, const PlanarScanSettings& settings) {
   const LaserScan& scan = recorded.scan;
   LevelScan level;
   level.stamp = scan.stamp;
   level.origin_m = recorded.T_body_lidar.position();
+  const double last_beam = std::max(1.0, static_cast<double>(scan.ranges_m.size()) - 1.0);
   for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
     const double range = scan.ranges_m[beam];
     if (std::isnan(range) || range < settings.min_range_m) continue;
@@ -16,7 +24,8 @@ LevelScan planar_scan(const RecordedScan& recorded, const PlanarScanSettings& se
     const double length = is_hit ? range : std::isinf(range) ? settings.no_return_free_m : settings.max_range_m;
     if (!(length > 0.0)) continue;
     const double angle = scan.angle_min_rad + static_cast<double>(beam) * scan.angle_increment_rad;
-    const Eigen::Vector2d end = recorded.T_body_lidar * Eigen::Vector2d(length * std::cos(angle), length * std::sin(angle));
+    const Pose2 T_body_then = part_of(recorded.T_first_last, static_cast<double>(beam) / last_beam);
+    const Eigen::Vector2d end = T_body_then * (recorded.T_body_lidar * Eigen::Vector2d(length * std::cos(angle), length * std::sin(angle)));
     level.beams.push_back({end.cast<float>(), is_hit});
   }
   return level;

@@ -19,8 +19,8 @@ struct PlanarScanSettings {
   }
 };
 
-/// The scan of a lidar that is level, on a robot that nobody knows more of: taken as seen from where the body was at its stamp. Beams within a scan are not
-/// moved by the robot's motion in between: recorded logs seldom say when each was fired, and their scans come in bursts.
+/// The scan of a lidar that is level, on a robot that nobody knows more of: as seen from where the body was at its first beam. The others are moved by what
+/// odometry says of the time in between, where the log says when they were fired.
 LevelScan planar_scan(const RecordedScan& recorded, const PlanarScanSettings& settings);
 
 }  // namespace patrol::slam

@@ -1,5 +1,6 @@
 #include "slam/surface_points.h"
 
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -23,6 +24,31 @@ std::vector<Eigen::Vector2d> surface_points(const GridMap& map) {
   points.reserve(squares.size());
   for (const auto& [square, sum] : squares) points.push_back(sum.first / sum.second);
   return points;
+}
+
+std::vector<Eigen::Vector2d> facings_of(const std::vector<Eigen::Vector2d>& points, const GridMap& map, double radius_m) {
+  constexpr double kLeastOneSided = 0.3;  // half a disc is 0.64
+  const int reach = static_cast<int>(std::ceil(radius_m / map.resolution_m()));
+  std::vector<Eigen::Vector2d> facings;
+  facings.reserve(points.size());
+  for (const Eigen::Vector2d& p : points) {
+    const Cell at = map.cell_at(p);
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    int free = 0;
+    for (int row = at.row - reach; row <= at.row + reach; ++row) {
+      for (int col = at.col - reach; col <= at.col + reach; ++col) {
+        const GridCell* cell = map.find({col, row});
+        const Eigen::Vector2d towards = map.center_of({col, row}) - p;
+        const double distance_m = towards.norm();
+        if (!cell || !cell->is_known() || cell->is_surface() || distance_m > radius_m || distance_m == 0.0) continue;
+        sum += towards / distance_m;
+        ++free;
+      }
+    }
+    const double one_sided = free > 0 ? sum.norm() / free : 0.0;
+    facings.push_back(one_sided < kLeastOneSided ? Eigen::Vector2d(0.0, 0.0) : Eigen::Vector2d(sum.normalized()));
+  }
+  return facings;
 }
 
 }  // namespace patrol::slam

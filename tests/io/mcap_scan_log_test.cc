@@ -110,6 +110,23 @@ TEST_F(McapScans, OdometryIsInterpolatedToTheScansStamp) {
   EXPECT_THAT(result.summary.assumed, ElementsAre(Pair(HasSubstr("body's origin"), 1U)));
 }
 
+TEST_F(McapScans, WhereBeamsHaveTimesTheMotionFromTheFirstToTheLastIsGiven) {
+  LaserScan scan = scan_at(1250ms);
+  scan.time_increment_s = 0.1;  // three beams: 0.2 s at 1 m/s
+  LaserScan last = scan_at(1900ms);
+  last.time_increment_s = 0.1;  // odometry ends before it does
+  writer.write("/odom", 1s, odometry_at(1s));
+  writer.write("/scan", 1300ms, scan);
+  writer.write("/scan", 1950ms, last);
+  writer.write("/odom", 2s, odometry_at(2s));
+  writer.close();
+  const Read result = read();
+  ASSERT_EQ(result.scans.size(), 2U);
+  EXPECT_THAT(result.scans[0].T_odom_body, Pose2Near(Pose2{1.25, 0.0, 0.0}, kExactTol, kExactTol));
+  EXPECT_THAT(result.scans[0].T_first_last, Pose2Near(Pose2{0.2, 0.0, 0.0}, 1e-6, 1e-6));  // float32 in the message
+  EXPECT_THAT(result.scans[1].T_first_last, Pose2Near(Pose2{}, kExactTol, kExactTol));
+}
+
 TEST_F(McapScans, WithoutAnOdometryTopicTfIsTakenOverItsFramesBetween) {
   for (const Time t : {1s, 2s}) {
     writer.write("/tf", t, TransformSet{{placed("odom", "base_footprint", {{to_seconds(t), 0.0, 0.0}, quaternion_from_yaw(0.5)}, t),

@@ -35,6 +35,17 @@ TEST(PlanarScan, EndsOfBeamsLieInTheBodysFrame) {
   for (const LevelScan::Beam& beam : scan.beams) EXPECT_TRUE(beam.is_hit);
 }
 
+// The body goes 0.4 m ahead and turns by 0.2 rad: half of it until the second beam of three.
+TEST(PlanarScan, BeamsAreSeenFromWhereTheFirstOneWasFired) {
+  RecordedScan recorded = make_scan({1.0F, 2.0F, 3.0F});
+  recorded.T_first_last = {0.4, 0.0, 0.2};
+  const LevelScan scan = planar_scan(recorded, {});
+  EXPECT_THAT(scan.beams[0].end_m, test::VectorNear(Eigen::Vector2f(1.5F, 0.0F), 1e-6));
+  const Eigen::Vector2d second = Pose2{0.2, 0.0, 0.1} * Eigen::Vector2d(0.5, 2.0), third = recorded.T_first_last * Eigen::Vector2d(-2.5, 0.0);
+  EXPECT_THAT(scan.beams[1].end_m, test::VectorNear(Eigen::Vector2f(second.cast<float>()), 1e-6));
+  EXPECT_THAT(scan.beams[2].end_m, test::VectorNear(Eigen::Vector2f(third.cast<float>()), 1e-6));
+}
+
 TEST(PlanarScan, WhatIsTooFarIsFreeSoFarAndWhatIsInvalidOrTooNearIsNothing) {
   const LevelScan scan = planar_scan(make_scan({50.0F, std::numeric_limits<float>::quiet_NaN(), 0.01F}), {.max_range_m = 10.0});
   ASSERT_EQ(scan.beams.size(), 1U);

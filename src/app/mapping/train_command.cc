@@ -44,7 +44,7 @@ std::optional<slam::LabelledFeatures> examples_of(const std::vector<std::filesys
     const std::optional<SubmapTrack> track = build_submaps(run, settings.scan, apart, {}, settings.seed, bar, guard);
     if (!track) return std::nullopt;
     const std::size_t before = examples.labels.size();
-    slam::add_neighbour_examples(track->slam, track->T_world_submap, settings.submap_rbpf.surfaces.shape.ndt, settings.examples, settings.seed + before, examples);
+    slam::add_neighbour_examples(track->slam, track->T_world_submap, settings.submap_rbpf.surfaces, settings.examples, settings.seed + before, examples);
     const auto joinable = std::count(examples.labels.begin() + static_cast<std::ptrdiff_t>(before), examples.labels.end(), 1);
     bar.say(fmt::format("{}: {} submaps, {} examples, {} of them neighbours", run.string(), track->T_world_submap.size(), examples.labels.size() - before, joinable));
   }

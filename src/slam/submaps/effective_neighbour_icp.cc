@@ -18,27 +18,41 @@ struct Pair {
   double distance_m = 0.0;
 };
 
-std::vector<Pair> nearest_pairs(const PointTree& target, const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_target_source) {
+bool is_seen_from_one_side(const Eigen::Vector2d& facing_target, const Eigen::Vector2d& facing_source, double yaw_rad) {
+  return facing_target.dot(Pose2{0.0, 0.0, yaw_rad} * facing_source) >= 0.0;  // zero: nobody knows
+}
+
+/// Each source point with the nearest target point that was not seen from the other side; where the nearest was, another is looked for in its reach.
+std::vector<Pair> nearest_pairs(const IcpPoints& target, const IcpPoints& source, const Pose2& T_target_source, const IcpSettings& settings) {
   std::vector<Pair> pairs;
-  pairs.reserve(points_source.size());
-  for (std::size_t i = 0; i < points_source.size(); ++i) {
-    const PointTree::Neighbour found = target.nearest(T_target_source * points_source[i]);
+  pairs.reserve(source.points().size());
+  const auto add = [&](std::size_t i, const PointTree::Neighbour& found) {
+    if (!is_seen_from_one_side(target.facings()[found.index], source.facings()[i], T_target_source.yaw)) return false;
     pairs.push_back({.source = i, .target = found.index, .distance_m = std::sqrt(found.squared_distance_m2)});
+    return true;
+  };
+  for (std::size_t i = 0; i < source.points().size(); ++i) {
+    const Eigen::Vector2d p_target = T_target_source * source.points()[i];
+    const PointTree::Neighbour nearest = target.tree().nearest(p_target);
+    if (add(i, nearest) || nearest.squared_distance_m2 > settings.max_threshold_m * settings.max_threshold_m) continue;
+    for (const PointTree::Neighbour& found : target.tree().within(p_target, settings.max_threshold_m)) {
+      if (add(i, found)) break;
+    }
   }
   return pairs;
 }
 
-double threshold_of(const std::vector<Pair>& pairs, const IcpSettings& settings) {
+double threshold_of(const std::vector<Pair>& pairs, const IcpSettings& settings, bool on_lines) {
   if (!settings.use_effective_neighbours || pairs.empty()) return std::numeric_limits<double>::infinity();
   std::vector<double> distances;
   distances.reserve(pairs.size());
   for (const Pair& pair : pairs) distances.push_back(pair.distance_m);
   std::ranges::sort(distances);
-  return std::max(settings.min_threshold_m, effective_threshold(distances));
+  return std::clamp(effective_threshold(distances), settings.min_threshold_m, std::max(settings.min_threshold_m, on_lines ? settings.line_threshold_m : settings.max_threshold_m));
 }
 
-std::vector<Pair> effective_pairs(std::vector<Pair> pairs, const IcpSettings& settings) {
-  const double threshold_m = threshold_of(pairs, settings);
+std::vector<Pair> effective_pairs(std::vector<Pair> pairs, const IcpSettings& settings, bool on_lines) {
+  const double threshold_m = threshold_of(pairs, settings, on_lines);
   std::erase_if(pairs, [&](const Pair& pair) { return pair.distance_m > threshold_m; });
   return pairs;
 }
@@ -54,23 +68,31 @@ Pose2 motion_of(const std::vector<Pair>& pairs, const std::vector<Eigen::Vector2
   return fit_rigid_motion(p, q);
 }
 
-/// The pairs' distances across the target's walls, as if all were independent: H of x, y, yaw in target and the right side of H step = b.
+/// The pairs' distances, across the target's walls where it has some and either way where it is round, as if all were independent: H of x, y, yaw in target
+/// and the right side of H step = b.
 struct LineEquations {
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
 };
 
-LineEquations linearize(const std::vector<Pair>& pairs, const IcpTarget& target, const std::vector<Eigen::Vector2d>& points_source,
-                        const Pose2& T_target_source, double point_std_m) {
+LineEquations linearize(const std::vector<Pair>& pairs, const IcpPoints& target, const std::vector<Eigen::Vector2d>& points_source,
+                        const Pose2& T_target_source, const IcpSettings& settings) {
   LineEquations sum;
   for (const Pair& pair : pairs) {
     const SurfaceNormal& surface = target.normals()[pair.target];
     const Eigen::Vector2d& n = surface.normal;
     const Eigen::Vector2d p_target = T_target_source * points_source[pair.source], arm = p_target - T_target_source.position();
     const Eigen::Vector3d J(n.x(), n.y(), n.y() * arm.x() - n.x() * arm.y());
-    const double weight = std::pow(surface.straightness / point_std_m, 2);
+    const Eigen::Vector2d error = p_target - target.points()[pair.target];
+    const double kernel = 1.0 / (1.0 + std::pow(pair.distance_m / settings.line_kernel_m, 2));
+    const double weight = kernel * std::pow(surface.straightness / settings.point_std_m, 2);
     sum.H += weight * J * J.transpose();
-    sum.b -= weight * n.dot(p_target - target.tree().points()[pair.target]) * J;
+    sum.b -= weight * n.dot(error) * J;
+    Eigen::Matrix<double, 2, 3> K;
+    K << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x();
+    const double round = kernel * std::pow((1.0 - surface.straightness) / settings.point_std_m, 2);
+    sum.H += round * K.transpose() * K;
+    sum.b -= round * K.transpose() * error;
   }
   return sum;
 }
@@ -133,17 +155,15 @@ Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target, const 
   return {t.x(), t.y(), yaw};
 }
 
-std::optional<IcpResult> align_icp(const IcpTarget& target, const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_start,
-                                   const IcpSettings& settings) {
-  check_finite(points_source);
-  if (target.tree().points().empty() || points_source.empty()) return std::nullopt;
+std::optional<IcpResult> align_icp(const IcpPoints& target, const IcpPoints& source, const Pose2& T_start, const IcpSettings& settings) {
+  if (target.points().empty() || source.points().empty()) return std::nullopt;
   IcpResult result{.T_target_source = T_start};
   bool on_lines = false;
   while (!result.converged && result.iterations < settings.max_iterations) {
-    const std::vector<Pair> pairs = effective_pairs(nearest_pairs(target.tree(), points_source, result.T_target_source), settings);
+    const std::vector<Pair> pairs = effective_pairs(nearest_pairs(target, source, result.T_target_source, settings), settings, on_lines);
     if (pairs.size() < static_cast<std::size_t>(settings.min_pairs)) return std::nullopt;
-    const LineEquations lines = linearize(pairs, target, points_source, result.T_target_source, settings.point_std_m);
-    const Pose2 T_next = on_lines ? step_on_lines(lines, result.T_target_source) : motion_of(pairs, target.tree().points(), points_source);
+    const LineEquations lines = linearize(pairs, target, source.points(), result.T_target_source, settings);
+    const Pose2 T_next = on_lines ? step_on_lines(lines, result.T_target_source) : motion_of(pairs, target.points(), source.points());
     const bool is_still = is_small(result.T_target_source.inverse() * T_next, settings.step_tol_m);
     result = {.T_target_source = T_next,
               .information = lines.H,

@@ -13,8 +13,11 @@ namespace patrol::slam {
 
 struct IcpSettings {
   bool use_effective_neighbours = true;  ///< false: all pairs, plain ICP
-  double min_threshold_m = 0.2;  ///< pairs nearer than this are effective in any case: below about two spacings a distance is the points' pattern
+  double min_threshold_m = 0.1;  ///< pairs nearer than this are effective in any case: below about a spacing a distance is the points' pattern
+  double max_threshold_m = 0.3;  ///< and pairs farther apart are not: a coarse matching leaves less than this
   bool refine_on_lines = true;   ///< goes on with the distances across the target's walls, once those from point to point have converged
+  double line_threshold_m = 0.1; ///< the farthest that pairs may be apart then
+  double line_kernel_m = 0.04;   ///< and those that are so far apart count half
   int max_iterations = 100;
   double step_tol_m = 1e-5;     ///< a smaller step ends it; seen 10 m away
   int min_pairs = 10;           ///< fewer are no match
@@ -25,7 +28,10 @@ struct IcpSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("use_effective_neighbours", self.use_effective_neighbours);
     visit("min_threshold_m", self.min_threshold_m, at_least(0.0));
+    visit("max_threshold_m", self.max_threshold_m, at_least(0.0));
     visit("refine_on_lines", self.refine_on_lines);
+    visit("line_threshold_m", self.line_threshold_m, between(1e-3, 10.0));
+    visit("line_kernel_m", self.line_kernel_m, between(1e-3, 10.0));
     visit("max_iterations", self.max_iterations, between(1, 100000));
     visit("step_tol_m", self.step_tol_m, between(0.0, 1.0));
     visit("min_pairs", self.min_pairs, between(2, 100000));
@@ -34,18 +40,24 @@ struct IcpSettings {
   }
 };
 
-/// What source points are laid on: made once, matched often.
-class IcpTarget {
+/// Points that are laid on others, or on which others are laid: made once, matched often.
+class IcpPoints {
  public:
-  IcpTarget(std::vector<Eigen::Vector2d> points_target, const IcpSettings& settings)
-      : tree_(std::move(points_target)), normals_(surface_normals(tree_, settings.normal_radius_m)) {}
+  /// `facings` [point]: from which side it was seen (surface_points.h); without any, points are points.
+  IcpPoints(std::vector<Eigen::Vector2d> points, const IcpSettings& settings, std::vector<Eigen::Vector2d> facings = {})
+      : tree_(std::move(points)), normals_(surface_normals(tree_, settings.normal_radius_m)), facings_(std::move(facings)) {
+    facings_.resize(tree_.points().size(), Eigen::Vector2d::Zero());
+  }
 
+  const std::vector<Eigen::Vector2d>& points() const { return tree_.points(); }
   const PointTree& tree() const { return tree_; }
   const std::vector<SurfaceNormal>& normals() const { return normals_; }
+  const std::vector<Eigen::Vector2d>& facings() const { return facings_; }
 
  private:
   PointTree tree_;
   std::vector<SurfaceNormal> normals_;
+  std::vector<Eigen::Vector2d> facings_;
 };
 
 struct IcpResult {
@@ -74,12 +86,12 @@ Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target, const 
 
 /// Iterated closest points (Besl, McKay 1992) on effective neighbours (paper 002, section 2.2): every source point with its nearest target point, the pairs
 /// past the threshold dropped, anew in every iteration, so that what lies beyond the common part does not pull. None if fewer than `min_pairs` are left.
-/// Throws InputError when a point is not finite.
 ///
-/// Two things are not the paper's, and can be switched off: the least threshold, without which submaps that overlap wholly are matched on their best
-/// pairs only and stop half way; and the steps on lines at the end (Chen, Medioni 1991), since two submaps' points are never the same pieces of wall, and
-/// lock like two combs.
-std::optional<IcpResult> align_icp(const IcpTarget& target, const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_start,
-                                   const IcpSettings& settings);
+/// Four things are not the paper's, and can be switched off: pairs that were seen from opposite sides are none, or a wall's two faces come to lie on each other; the least threshold, without which submaps that overlap wholly are matched on their best
+/// pairs only and stop half way; the largest, without which the bend of the curve lies metres off where most points have no partner (a switchyard), and the
+/// match is worse than the one that it began at; and the steps at the end on lines where the target is straight and on points where it is not (Segal, Haehnel,
+/// Thrun, "Generalized-ICP", RSS 2009, in the plane), near pairs counting most, since two submaps' points are never the same pieces of wall, and lock like
+/// two combs.
+std::optional<IcpResult> align_icp(const IcpPoints& target, const IcpPoints& source, const Pose2& T_start, const IcpSettings& settings);
 
 }  // namespace patrol::slam

@@ -18,7 +18,7 @@ PoseGaussian draw_prediction(const Pose2& T_target_source, const NeighbourExampl
 
 }  // namespace
 
-void add_neighbour_examples(const SubmapRbpf& built, const std::vector<Pose2>& T_world_submap, const NdtSettings& ndt, const NeighbourExampleSettings& settings,
+void add_neighbour_examples(const SubmapRbpf& built, const std::vector<Pose2>& T_world_submap, const SubmapSurfaceSettings& surfaces, const NeighbourExampleSettings& settings,
                             std::uint64_t seed, LabelledFeatures& examples) {
   validate(settings, "examples");
   const RandomStream stream(seed, "slam/neighbour_examples");
@@ -32,13 +32,13 @@ void add_neighbour_examples(const SubmapRbpf& built, const std::vector<Pose2>& T
       for (int i = 0; i < settings.predictions; ++i) {
         const PoseGaussian prediction = draw_prediction(T_target_source, settings, random);
         if (!may_be_neighbours(of_target->shape, of_source->shape, prediction)) continue;
-        const SubmapComparison comparison = compare_submaps(of_target->shape, of_source->shape, prediction, ndt);
+        SurfaceMatch match = match_surfaces(*of_target, *of_source, prediction, surfaces);
         bool is_right = false;
-        if (comparison.aligned) {
-          const Pose2 off = T_target_source.inverse() * comparison.aligned->T_target_source;
+        if (match.fine) {
+          const Pose2 off = T_target_source.inverse() * match.fine->T_target_source;
           is_right = off.position().norm() < settings.max_match_m && std::abs(off.yaw) < settings.max_match_rad;
         }
-        examples.examples.push_back(comparison.features);
+        examples.examples.push_back(std::move(match.features));
         examples.labels.push_back(is_right ? 1 : -1);
       }
     }

@@ -15,8 +15,8 @@ struct NeighbourExampleSettings {
   double max_prediction_std_m = 3.0;
   double prediction_rad_per_m = 0.05; ///< and its heading, of that
   double blunder_share = 0.2;         ///< of the predictions are off by four times what they say
-  double max_match_m = 0.3;           ///< a match this near to the truth is right
-  double max_match_rad = 0.05;
+  double max_match_m = 0.15;          ///< a match this near to the truth is right
+  double max_match_rad = 0.02;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -35,7 +35,7 @@ struct NeighbourExampleSettings {
 ///
 /// Predictions are the truth and an error as large as the prediction says, or, for some, much larger. Pairs that lie so far apart that nobody would ask are
 /// left out. `T_world_submap` [submap that is full].
-void add_neighbour_examples(const SubmapRbpf& built, const std::vector<Pose2>& T_world_submap, const NdtSettings& ndt, const NeighbourExampleSettings& settings,
+void add_neighbour_examples(const SubmapRbpf& built, const std::vector<Pose2>& T_world_submap, const SubmapSurfaceSettings& surfaces, const NeighbourExampleSettings& settings,
                             std::uint64_t seed, LabelledFeatures& examples);
 
 }  // namespace patrol::slam

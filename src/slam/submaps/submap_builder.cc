@@ -11,7 +11,13 @@ GridSlamSettings SubmapBuilderSettings::short_ways() {
   GridSlamSettings settings = tracked_filter();
   settings.max_extent_m = 400.0;
   settings.particles = 10;
-  settings.initial_keyframes = 5;
+  settings.motion = {.along_std_m_per_m = 0.006,
+                     .across_std_m_per_m = 0.006,
+                     .turn_std_rad_per_rad = 0.006,
+                     .turn_std_rad_per_m = 0.0015,
+                     .turn_std_rad_per_s = 0.0,
+                     .min_std_m = 0.0015,
+                     .min_std_rad = 0.0006};
   return settings;
 }
 

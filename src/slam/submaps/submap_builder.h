@@ -16,7 +16,7 @@ struct SubmapBuilderSettings {
   int max_keyframes = 150;  ///< or so many scans have been written
   GridSlamSettings filter = short_ways();
 
-  /// Few particles: over a few metres they have little to make up for.
+  /// Few particles, and near to where tracking has them: over a few metres they have little to make up for.
   static GridSlamSettings short_ways();
 
   template <typename Self, typename Visitor>

@@ -24,22 +24,28 @@ bool has_rival(const SubmapSurfaces& target, const SubmapSurfaces& source, const
 
 }  // namespace
 
+SurfaceMatch match_surfaces(const SubmapSurfaces& target, const SubmapSurfaces& source, const PoseGaussian& T_target_source, const SubmapSurfaceSettings& settings) {
+  SubmapComparison comparison = compare_submaps(target.shape, source.shape, T_target_source, settings.shape.ndt);
+  std::optional<IcpResult> fine;
+  if (comparison.aligned) fine = align_icp(target.points, source.points, comparison.aligned->T_target_source, settings.icp);
+  return {.features = std::move(comparison.features), .coarse = comparison.aligned, .fine = fine};
+}
+
 JoinResult join_submaps(const SubmapSurfaces& target, const SubmapSurfaces& source, const PoseGaussian& T_target_source, const BoostedStumps& model,
                         const SubmapSurfaceSettings& surfaces, const SubmapJoinerSettings& settings) {
-  const SubmapComparison comparison = compare_submaps(target.shape, source.shape, T_target_source, surfaces.shape.ndt);
-  const double margin = model.margin(comparison.features);
-  if (!comparison.aligned || margin <= settings.min_margin) return {.joint = {}, .failure = JoinFailure::kStrangers};
+  const SurfaceMatch match = match_surfaces(target, source, T_target_source, surfaces);
+  const double margin = model.margin(match.features);
+  if (margin <= settings.min_margin) return {.joint = {}, .failure = JoinFailure::kStrangers};
+  if (!match.fine) return {.joint = {}, .failure = JoinFailure::kMismatch};
 
-  const Pose2& T_coarse = comparison.aligned->T_target_source;
-  const std::optional<IcpResult> fine = align_icp(target.points, source.points.tree().points(), T_coarse, surfaces.icp);
-  if (!fine) return {.joint = {}, .failure = JoinFailure::kMismatch};
-  const Pose2 shift = T_coarse.inverse() * fine->T_target_source;
-  const double agreement = mutual_agreement(target.shape, source.shape, fine->T_target_source);
+  const Pose2 shift = match.coarse->T_target_source.inverse() * match.fine->T_target_source;
+  const double agreement = mutual_agreement(target.shape, source.shape, match.fine->T_target_source);
   if (shift.position().norm() > settings.max_fine_shift_m || std::abs(shift.yaw) > settings.max_fine_shift_rad || agreement < settings.min_agreement) {
     return {.joint = {}, .failure = JoinFailure::kMismatch};
   }
-  if (has_rival(target, source, T_target_source, fine->T_target_source, settings)) return {.joint = {}, .failure = JoinFailure::kAmbiguous};
-  return {.joint = SubmapJoint{.T_target_source = fine->T_target_source, .information = fine->information, .margin = margin, .agreement = agreement}, .failure = JoinFailure::kNone};
+  if (has_rival(target, source, T_target_source, match.fine->T_target_source, settings)) return {.joint = {}, .failure = JoinFailure::kAmbiguous};
+  return {.joint = SubmapJoint{.T_target_source = match.fine->T_target_source, .information = match.fine->information, .margin = margin, .agreement = agreement},
+          .failure = JoinFailure::kNone};
 }
 
 }  // namespace patrol::slam

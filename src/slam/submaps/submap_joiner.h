@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/boosted_stumps.h"
 #include "core/settings.h"
@@ -10,7 +11,7 @@
 namespace patrol::slam {
 
 struct SubmapJoinerSettings {
-  double min_margin = 0.0;         ///< a vote above this, -1 ... 1, says that two submaps are neighbours
+  double min_margin = 0.2;         ///< a vote above this, -1 ... 1, says that two submaps are neighbours
   double max_fine_shift_m = 0.5;   ///< fine matching that moves a submap farther has left the place that was recognised
   double max_fine_shift_rad = 0.1;
   double min_agreement = 0.6;      ///< of either's points that lie where the other has looked, that meet a surface there
@@ -41,6 +42,16 @@ enum class JoinFailure {
   kMismatch,   ///< coarse and fine matching do not agree, or surfaces lie where the other has seen none
   kAmbiguous,  ///< another place would do as well
 };
+
+/// Two submaps looked at together: what tells whether they are neighbours, and how they lie if they are.
+struct SurfaceMatch {
+  std::vector<double> features;          ///< pair_features.h
+  std::optional<NdtResult> coarse;
+  std::optional<IcpResult> fine;         ///< from there on
+};
+
+/// Coarse matching by normal distributions from the prediction on, fine matching on effective neighbours from there (paper 002, section 2).
+SurfaceMatch match_surfaces(const SubmapSurfaces& target, const SubmapSurfaces& source, const PoseGaussian& T_target_source, const SubmapSurfaceSettings& settings);
 
 struct SubmapJoint {
   Pose2 T_target_source;

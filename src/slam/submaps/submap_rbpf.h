@@ -20,15 +20,15 @@ struct SubmapRbpfSettings {
   SubmapBuilderSettings submaps;
   SubmapSurfaceSettings surfaces;
   SubmapJoinerSettings joints;
-  // What a submap may lie off the one before, beside what the particles say.
-  double drift_std_m_per_m = 0.01;
-  double drift_std_rad_per_m = 0.001;
+  // How far a submap may lie off where the one before says that it begins.
+  double drift_std_m_per_m = 0.003;
+  double drift_std_rad_per_m = 0.0005;
   double drift_std_rad_per_rad = 0.005;
   int max_candidates = 8;        ///< for each new submap: the nearest older ones
   double joint_gain = 0.2;       ///< share of a match's points that err independently
   double joint_std_m = 0.02;     ///< of a match's systematic error, however many points it has
   double joint_std_rad = 0.002;
-  PoseGraphSolverSettings solver;
+  PoseGraphSolverSettings solver = {.max_iterations = 50, .doubts_loops = true, .loop_kernel = 0.3};  ///< many joints hold each submap: few must be believed
   int min_hits_occupied = 2;
   double min_hit_share_occupied = 0.3;
 

@@ -15,7 +15,8 @@ std::optional<SubmapSurfaces> describe_surfaces(const GridMap& map, const Submap
   std::vector<Eigen::Vector2d> points = surface_points(map);
   if (static_cast<int>(points.size()) < settings.min_points) return std::nullopt;
   SubmapShape shape = describe_submap(points, map, settings.shape);
-  return SubmapSurfaces{.shape = std::move(shape), .points = IcpTarget(std::move(points), settings.icp), .pyramid = LikelihoodPyramid(map, settings.pyramid_cell_m, kPyramidLevels)};
+  std::vector<Eigen::Vector2d> facings = facings_of(points, map, settings.facing_radius_m);
+  return SubmapSurfaces{.shape = std::move(shape), .points = IcpPoints(std::move(points), settings.icp, std::move(facings)), .pyramid = LikelihoodPyramid(map, settings.pyramid_cell_m, kPyramidLevels)};
 }
 
 }  // namespace patrol::slam

@@ -13,6 +13,7 @@ struct SubmapSurfaceSettings {
   int min_points = 30;  ///< of surface: what has fewer is not compared with others
   SubmapShapeSettings shape;
   IcpSettings icp;
+  double facing_radius_m = 0.2;  ///< around a point, where it is looked for what is free
   double pyramid_cell_m = 0.1;
 
   template <typename Self, typename Visitor>
@@ -20,6 +21,7 @@ struct SubmapSurfaceSettings {
     visit("min_points", self.min_points, between(3, 100000));
     visit("shape", self.shape);
     visit("icp", self.icp);
+    visit("facing_radius_m", self.facing_radius_m, between(0.05, 2.0));
     visit("pyramid_cell_m", self.pyramid_cell_m, between(0.02, 1.0));
   }
 };
@@ -27,7 +29,7 @@ struct SubmapSurfaceSettings {
 /// What a submap is compared and matched by; in submap.
 struct SubmapSurfaces {
   SubmapShape shape;
-  IcpTarget points;
+  IcpPoints points;
   LikelihoodPyramid pyramid;
 };
 

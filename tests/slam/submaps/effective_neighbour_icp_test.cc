@@ -19,7 +19,9 @@ constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kExactTol = 1e-12;  // algebra
 
 const Pose2 kTruth = test::kYardTarget.inverse() * test::kYardSource;
-constexpr IcpSettings kPaper{.min_threshold_m = 0.0, .refine_on_lines = false};
+constexpr double kNoLimit = 1e9;
+constexpr IcpSettings kPaper{.min_threshold_m = 0.0, .max_threshold_m = kNoLimit, .refine_on_lines = false};
+constexpr IcpSettings kFromAfar{.max_threshold_m = kNoLimit};
 
 /// Errors of 12 starts all around, 0.3 m and 3 degrees off.
 struct Errors {
@@ -27,12 +29,12 @@ struct Errors {
   int num_converged = 0;
 };
 Errors errors_of(const Points& target, const Points& source, const IcpSettings& settings) {
-  const IcpTarget prepared(target, settings);
+  const IcpPoints prepared(target, settings), laid(source, settings);
   Errors errors;
   for (int i = 0; i < 12; ++i) {
     const double direction = 60.0 * kDeg * (i % 6), turn = i < 6 ? 3.0 * kDeg : -3.0 * kDeg;
     const Pose2 start{kTruth.x + 0.3 * std::cos(direction), kTruth.y + 0.3 * std::sin(direction), kTruth.yaw + turn};
-    const auto result = align_icp(prepared, source, start, settings);
+    const auto result = align_icp(prepared, laid, start, settings);
     if (!result) continue;
     const Pose2 T_error = kTruth.inverse() * result->T_target_source;
     errors.largest_m = std::max(errors.largest_m, T_error.position().norm());
@@ -100,7 +102,7 @@ TEST(AlignIcp, RecoversAMotionToANanometreWhereEveryPointHasItsPartner) {
   for (const auto& p : source) target.push_back(kTruth * p);
   const Pose2 start{kTruth.x + 0.02, kTruth.y - 0.03, kTruth.yaw + 0.2 * kDeg};
   for (const IcpSettings& settings : {IcpSettings{}, kPaper}) {
-    const auto result = align_icp(IcpTarget(target, settings), source, start, settings);
+    const auto result = align_icp(IcpPoints(target, settings), IcpPoints(source, settings), start, settings);
     ASSERT_TRUE(result);
     EXPECT_THAT(result->T_target_source, Pose2Near(kTruth, 1e-9, 1e-9));
     EXPECT_TRUE(result->converged);
@@ -120,11 +122,11 @@ TEST_P(PartlyOverlapping, PlainIcpIsMetresOffAndEffectiveNeighboursAreNot) {
   const auto has_partner = [&](const auto& p) { return std::ranges::any_of(target, [&](const auto& q) { return (kTruth * p - q).norm() < 0.15; }); };
   ASSERT_NEAR(static_cast<double>(std::ranges::count_if(source, has_partner)) / static_cast<double>(source.size()), GetParam().share, 0.02);
 
-  const Errors plain = errors_of(target, source, {.use_effective_neighbours = false, .refine_on_lines = false});
+  const Errors plain = errors_of(target, source, {.use_effective_neighbours = false, .max_threshold_m = kNoLimit, .refine_on_lines = false});
   EXPECT_GT(plain.smallest_m, 3.0);
   const Errors paper = errors_of(target, source, kPaper);
   EXPECT_LT(paper.largest_m, 0.12);
-  const Errors ours = errors_of(target, source, {});
+  const Errors ours = errors_of(target, source, kFromAfar);
   EXPECT_LT(ours.largest_m, 0.02);
   EXPECT_LT(ours.largest_rad, 0.3 * kDeg);
   EXPECT_EQ(ours.num_converged, 12);
@@ -140,13 +142,13 @@ INSTANTIATE_TEST_SUITE_P(By, PartlyOverlapping,
 TEST(AlignIcp, WithoutALeastThresholdWholeOverlapIsMatchedOnItsBestPairsOnly) {
   const Points target = test::yard_target_left_of(100.0), source = test::yard_source_right_of(-100.0);
   EXPECT_GT(errors_of(target, source, kPaper).largest_m, 0.1);
-  EXPECT_LT(errors_of(target, source, {}).largest_m, 0.005);
+  EXPECT_LT(errors_of(target, source, kFromAfar).largest_m, 0.005);
 }
 
 TEST(AlignIcp, SaysHowManyPairsAndHowFarApart) {
   const Points target = test::yard_target_left_of(4.0), source = test::yard_source_right_of(-3.0);
   const IcpSettings settings;
-  const auto result = align_icp(IcpTarget(target, settings), source, kTruth, settings);
+  const auto result = align_icp(IcpPoints(target, settings), IcpPoints(source, settings), kTruth, settings);
   ASSERT_TRUE(result);
   EXPECT_NEAR(result->num_pairs, 0.35 * static_cast<double>(source.size()), 5.0);
   EXPECT_LE(result->threshold_m, 0.2);
@@ -160,7 +162,7 @@ TEST(AlignIcp, ACorridorTellsAcrossAndHeadingButNotAlong) {
   const Points target = sample_walls(corridor, {}, {.std_m = 0.01, .seed = 1});
   const Points source = sample_walls(corridor, {}, {.phase = 0.5, .std_m = 0.01, .seed = 2}, [](const auto& p) { return std::abs(p.x()) < 8.0; });
   const IcpSettings settings;
-  const auto result = align_icp(IcpTarget(target, settings), source, {0.4, 0.2, 0.03}, settings);
+  const auto result = align_icp(IcpPoints(target, settings), IcpPoints(source, settings), {0.4, 0.2, 0.03}, settings);
   ASSERT_TRUE(result);
   EXPECT_NEAR(result->T_target_source.y, 0.0, 0.005);
   EXPECT_NEAR(result->T_target_source.yaw, 0.0, 0.1 * kDeg);
@@ -169,14 +171,38 @@ TEST(AlignIcp, ACorridorTellsAcrossAndHeadingButNotAlong) {
   EXPECT_NEAR(result->information(1, 1), 320.0 / (0.03 * 0.03), 0.1 * 320.0 / (0.03 * 0.03));
 }
 
+// One face of a wall is 0.25 m behind the other; a cross wall with a face to the east holds the pair along.
+TEST(AlignIcp, FacesOfAWallSeenFromOppositeSidesAreNotLaidOnEachOther) {
+  const auto face = [](double y, double x0, double x1) {
+    Points points;
+    for (double x = x0; x < x1; x += 0.1) points.emplace_back(x, y);
+    return points;
+  };
+  const auto facing = [](const Points& points, double y) { return std::vector<Eigen::Vector2d>(points.size(), Eigen::Vector2d(0.0, y)); };
+  const Points south = face(0.0, 0.0, 8.0), north = face(0.25, 0.0, 8.0);
+  const IcpSettings settings;
+  const auto blind = align_icp(IcpPoints(south, settings), IcpPoints(north, settings), {}, settings);
+  ASSERT_TRUE(blind);
+  EXPECT_NEAR(blind->T_target_source.y, -0.25, 0.01);  // one face taken for the other
+  EXPECT_FALSE(align_icp(IcpPoints(south, settings, facing(south, -1.0)), IcpPoints(north, settings, facing(north, 1.0)), {}, settings));
+
+  Points both = south;
+  both.insert(both.end(), north.begin(), north.end());
+  std::vector<Eigen::Vector2d> sides = facing(south, -1.0);
+  for (std::size_t i = 0; i < north.size(); ++i) sides.emplace_back(0.0, 1.0);
+  const auto seen = align_icp(IcpPoints(both, settings, sides), IcpPoints(north, settings, facing(north, 1.0)), {0.0, -0.2, 0.0}, settings);
+  ASSERT_TRUE(seen);
+  EXPECT_NEAR(seen->T_target_source.y, 0.0, 0.01);  // though the other face was nearer
+}
+
 TEST(AlignIcp, WithoutEnoughPointsThereIsNoMatch) {
   const IcpSettings settings;
   const Points points = test::yard_source_right_of(-100.0);
-  EXPECT_FALSE(align_icp(IcpTarget({}, settings), points, {}, settings));
-  EXPECT_FALSE(align_icp(IcpTarget(points, settings), {}, {}, settings));
-  EXPECT_FALSE(align_icp(IcpTarget(points, settings), Points(points.begin(), points.begin() + 9), {}, settings));
-  EXPECT_THROW(IcpTarget({{0.0, std::nan("")}}, settings), InputError);
-  EXPECT_THROW(align_icp(IcpTarget(points, settings), {{0.0, std::nan("")}}, {}, settings), InputError);
+  const IcpPoints none({}, settings), all(points, settings), nine(Points(points.begin(), points.begin() + 9), settings);
+  EXPECT_FALSE(align_icp(none, all, {}, settings));
+  EXPECT_FALSE(align_icp(all, none, {}, settings));
+  EXPECT_FALSE(align_icp(all, nine, {}, settings));
+  EXPECT_THROW(IcpPoints({{0.0, std::nan("")}}, settings), InputError);
 }
 
 }  // namespace

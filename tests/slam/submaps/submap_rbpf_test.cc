@@ -1,0 +1,89 @@
+#include "slam/submaps/submap_rbpf.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/slam/submaps/submap_drive.h"
+#include "tests/support/pose_near.h"
+
+namespace patrol::slam {
+namespace {
+
+using test::agreeing_neighbours, test::map_by_submaps, test::SubmapDrive;
+
+int num_joints(const SubmapRbpf& slam, int min_apart) {
+  int joints = 0;
+  for (const SubmapRbpf::Comparison& comparison : slam.comparisons()) joints += comparison.result.joint && comparison.source - comparison.target >= min_apart ? 1 : 0;
+  return joints;
+}
+
+// 125 m and a bit of corridor; odometry alone turns by a radian and ends tens of metres off.
+TEST(SubmapRbpf, ARoundOfTheOfficeClosesToFiveCentimetres) {
+  const SubmapDrive mapped = map_by_submaps(test::make_office(), test::office_rounds(1), {}, {}, agreeing_neighbours());
+  EXPECT_LT(mapped.rms_error_m(), 0.05);
+  EXPECT_GE(num_joints(mapped.slam, 8), 1);
+  EXPECT_EQ(mapped.slam.path().size(), mapped.drive.size());
+  EXPECT_GT(mapped.slam.map().geometry().size(), 100'000U);
+}
+
+TEST(SubmapRbpf, EveryJointOfTwoRoundsIsTrueToADecimetre) {
+  const SubmapDrive mapped = map_by_submaps(test::make_office(), test::office_rounds(2), {}, {}, agreeing_neighbours());
+  const std::vector<Pose2> T_world_submap = mapped.T_world_submap();
+  for (const SubmapRbpf::Comparison& comparison : mapped.slam.comparisons()) {
+    if (!comparison.result.joint) continue;
+    const Pose2 T_target_source = T_world_submap[static_cast<std::size_t>(comparison.target)].inverse() * T_world_submap[static_cast<std::size_t>(comparison.source)];
+    EXPECT_THAT(comparison.result.joint->T_target_source, test::Pose2Near(T_target_source, 0.1, 0.02)) << comparison.target << " " << comparison.source;
+  }
+  EXPECT_GT(num_joints(mapped.slam, 8), 8);
+}
+
+// Ten drives up and down among doors three metres apart: a false joint would shift by a door.
+TEST(SubmapRbpf, AmongIdenticalDoorsNoFalseJointIsMadeInTenDrives) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const SubmapDrive mapped = map_by_submaps(test::make_corridor_of_doors(), {{20.0, 0.0}, {40.0, 0.0}, {16.0, 0.0}, {20.0, 0.0}}, {.speed_mps = 1.0, .odometry_scale = 0.01}, {},
+                                              agreeing_neighbours(), seed);
+    const std::vector<Pose2> T_world_submap = mapped.T_world_submap();
+    for (const SubmapRbpf::Comparison& comparison : mapped.slam.comparisons()) {
+      if (!comparison.result.joint) continue;
+      const Pose2 T_target_source = T_world_submap[static_cast<std::size_t>(comparison.target)].inverse() * T_world_submap[static_cast<std::size_t>(comparison.source)];
+      EXPECT_LT((comparison.result.joint->T_target_source.position() - T_target_source.position()).norm(), 1.0) << seed;
+    }
+    EXPECT_LT(mapped.rms_error_m(), 0.3) << seed;
+  }
+}
+
+TEST(SubmapRbpf, WithoutAModelNobodyIsANeighbour) {
+  const SubmapDrive mapped = map_by_submaps(test::make_office(), {{8.0, 4.2}, {30.0, 4.2}, {10.0, 4.2}}, {}, {}, {});
+  EXPECT_GT(mapped.slam.comparisons().size(), 1U);
+  EXPECT_EQ(num_joints(mapped.slam, 0), 0);
+}
+
+TEST(SubmapRbpf, ASubmapIsClosedWhenTheWayIsFullAndTheNextBeginsThere) {
+  SubmapRbpfSettings settings;
+  settings.submaps.max_way_m = 5.0;
+  const SubmapDrive mapped = map_by_submaps(test::make_office(), {{8.0, 4.2}, {30.0, 4.2}}, {.odometry_scale = 0.0, .odometry_drift_rad_per_m = 0.0}, settings, {});
+  EXPECT_EQ(mapped.slam.first_scans().size(), 5U);  // 22 m
+  const std::vector<Pose2>& nodes = mapped.slam.graph().T_map_node;
+  ASSERT_EQ(nodes.size(), 5U);
+  const std::vector<Pose2> path = mapped.slam.path();
+  for (std::size_t s = 0; s < nodes.size(); ++s) EXPECT_THAT(path[mapped.slam.first_scans()[s]], test::Pose2Near(nodes[s], 1e-9, 1e-9));
+  EXPECT_THAT(nodes[1], test::Pose2Near(Pose2{5.0, 0.0, 0.0}, 0.15, 0.01));
+}
+
+TEST(SubmapRbpf, TheSameScansGiveTheSamePathToTheBit) {
+  const std::vector<Eigen::Vector2d> corners = {{8.0, 4.2}, {24.0, 4.2}, {8.0, 4.2}};
+  const auto path = [&] { return map_by_submaps(test::make_office(), corners, {}, {}, agreeing_neighbours()).slam.path(); };
+  const std::vector<Pose2> first = path(), second = path();
+  ASSERT_EQ(first.size(), second.size());
+  for (std::size_t k = 0; k < first.size(); ++k) EXPECT_EQ(first[k].vector(), second[k].vector()) << k;
+}
+
+TEST(SubmapRbpf, BeforeAnyScanItHasNoPathAndAfterOneItStandsAtTheOrigin) {
+  SubmapRbpf slam({}, {}, 1);
+  EXPECT_TRUE(slam.path().empty());
+  slam.finish();
+  EXPECT_THAT(slam.update(test::make_office().scan({8.0, 4.2, 0.0}, test::kOldLidar), {5.0, 5.0, 1.0}), test::Pose2Near(Pose2{}, 1e-12, 1e-12));
+  EXPECT_EQ(slam.path().size(), 1U);
+}
+
+}  // namespace
+}  // namespace patrol::slam
