@@ -4,13 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "core/error.h"
-#include "io/mcap_writer.h"
-#include "io/ros_definitions.h"
 #include "io/run_log.h"
+#include "tests/io/log_messages.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
 
@@ -18,53 +16,12 @@ namespace patrol::io {
 namespace {
 
 using namespace std::chrono_literals;
+using test::MessageFile, test::odometry_at, test::placed, test::scan_at;
 using test::Pose2Near, test::read_bytes, test::TemporaryFolder, test::write_bytes;
 using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testing::Pair;
 
 constexpr double kExactTol = 1e-12;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-/// A file that other people's robots could have written.
-class Writer {
- public:
-  explicit Writer(const std::filesystem::path& file) : writer_(file) {}
-
-  template <typename Message>
-  void write(const std::string& topic, Time log_time, const Message& message) {
-    write_cdr(topic, kRosType<Message>, log_time, encode(message));
-  }
-  void write_cdr(const std::string& topic, const std::string& type, Time log_time, const std::string& cdr) {
-    if (!channels_.contains(topic)) channels_[topic] = writer_.add_channel(topic, type, ros_definition(type));
-    writer_.write(channels_[topic], log_time, cdr);
-  }
-  void close() { writer_.close(); }
-
- private:
-  McapWriter writer_;
-  std::map<std::string, McapWriter::ChannelId> channels_;
-};
-
-LaserScan scan_at(Time stamp, std::vector<float> ranges_m = {1.0F, 2.0F, 3.0F}) {
-  return {.stamp = stamp,
-          .angle_min_rad = -0.5,
-          .angle_increment_rad = 0.25,
-          .range_min_m = 0.5,
-          .range_max_m = 30.0,
-          .ranges_m = std::move(ranges_m),
-          .intensities = {}};
-}
-
-/// One metre a second along x, from x = 0 at 0 s.
-OdometryEstimate odometry_at(Time stamp, double lead_m = 0.0) {
-  OdometryEstimate odometry;
-  odometry.stamp = stamp;
-  odometry.T_odom_body.position = {to_seconds(stamp) + lead_m, 0.0, 0.3};
-  return odometry;
-}
-
-FrameTransform placed(const std::string& parent, const std::string& child, const Pose3& T_parent_child, Time stamp = {}) {
-  return {.stamp = stamp, .parent = parent, .child = child, .T_parent_child = T_parent_child};
-}
 
 struct Read {
   std::vector<RecordedScan> scans;
@@ -93,7 +50,7 @@ class McapScans : public ::testing::Test {
 
   TemporaryFolder folder;
   const std::filesystem::path file = folder / "log.mcap";
-  Writer writer{file};
+  MessageFile writer{file};
 };
 
 TEST_F(McapScans, OdometryIsInterpolatedToTheScansStamp) {
@@ -284,7 +241,7 @@ TEST_F(McapScans, MessagesThatCannotBeReadAreRefusedOrSkipped) {
 TEST_F(McapScans, ScansAndPosesThatAreNoneAreNamed) {
   const auto complaint_about = [&](const auto& topic, const auto& message) {
     const std::filesystem::path bad = folder / "bad.mcap";
-    Writer one(bad);
+    MessageFile one(bad);
     one.write(topic, 1s, message);
     one.close();
     try {
@@ -365,7 +322,7 @@ TEST_F(McapScans, AFileWithoutScansOrOdometrySaysSo) {
   writer.write("/odom", 0s, odometry_at(0s));
   writer.close();
   EXPECT_EQ(complaint(), "log.mcap: holds no scan: sensor_msgs/msg/LaserScan is read (1 read)");
-  Writer other(file);
+  MessageFile other(file);
   for (int i = 0; i < 300; ++i) other.write("/scan", i * 100ms, scan_at(i * 100ms));
   other.close();
   EXPECT_EQ(complaint(),
