@@ -198,6 +198,60 @@ TEST_F(McapScans, PatrolsOwnRunLogsAreRead) {
   EXPECT_EQ(count, 99) << "the last has no odometry after it";
 }
 
+/// A robot stands for 3 s and then turns on the spot by 0.5 rad/s for 12 s, of which its odometry makes `odometry_scale` times as much. Its gyro hangs upside
+/// down and has a bias of 0.03 rad/s about its own axis.
+void turn_with_gyro(MessageFile& writer, double odometry_scale, bool has_place = true) {
+  if (has_place) writer.write("/tf_static", 0s, TransformSet{{placed("base_link", "imu", {{0.0, 0.0, 0.0}, quaternion_from_rpy(std::numbers::pi, 0.0, 0.0)})}});
+  for (int tick = 0; tick <= 1500; ++tick) {
+    const Time now = tick * 10ms;
+    const double rate = tick >= 300 ? 0.5 : 0.0, yaw = std::max(0.0, 0.5 * (to_seconds(now) - 3.0));
+    writer.write("/imu/data", now, Imu{.stamp = now, .angular_velocity_radps = {0.0, 0.0, -rate + 0.03}});
+    if (tick % 5 == 0) {
+      OdometryEstimate odometry;
+      odometry.stamp = now;
+      odometry.T_odom_body.rotation = quaternion_from_yaw(odometry_scale * yaw);
+      writer.write("/odom", now, odometry);
+    }
+    if (tick % 20 == 10) writer.write("/scan", now, scan_at(now));
+  }
+  writer.close();
+}
+constexpr double kLastScanTurnRad = 0.5 * (14.9 - 3.0);
+
+// The trapezoid over the jump from standing to 0.5 rad/s, 10 ms, adds 0.0025 rad.
+ScanLogOptions with_imu(const std::string& imu) {
+  ScanLogOptions options;
+  options.imu = imu;
+  options.finds_no_return = false;  // every scan of these files is the same
+  return options;
+}
+
+TEST_F(McapScans, OdometryWhoseTurnsTheGyroContradictsTurnsByTheGyroWithoutItsBias) {
+  turn_with_gyro(writer, 1.2);
+  const Read result = read(with_imu("auto"));
+  EXPECT_NEAR(wrap_angle(result.scans.back().T_odom_body.yaw - kLastScanTurnRad), 0.0, 0.003);
+  EXPECT_THAT(result.summary.found, ElementsAre("odometry turns by the gyro of /imu/data: bias -0.03000 rad/s from 3 s of standing (log.imu)"));
+  const Read wheels = read(with_imu("off"));
+  EXPECT_NEAR(wrap_angle(wheels.scans.back().T_odom_body.yaw - 1.2 * kLastScanTurnRad), 0.0, 1e-6);
+  EXPECT_THAT(wheels.summary.ignored, ElementsAre(Pair("/imu/data", 1501U)));
+}
+
+TEST_F(McapScans, OdometryThatTurnsAsTheGyroDoesIsKeptUnlessAskedFor) {
+  turn_with_gyro(writer, 1.0);
+  const Read kept = read(with_imu("auto"));
+  EXPECT_NEAR(wrap_angle(kept.scans.back().T_odom_body.yaw - kLastScanTurnRad), 0.0, 1e-6);
+  EXPECT_THAT(kept.summary.found, ElementsAre("odometry turns as the gyro does: it is kept (log.imu)"));
+  EXPECT_THAT(read(with_imu("on")).summary.found, ElementsAre(HasSubstr("turns by the gyro of /imu/data")));
+}
+
+TEST_F(McapScans, AGyroThatTurnsTheOtherWayIsNotUsed) {
+  turn_with_gyro(writer, 1.2, false);  // nothing says that it hangs upside down
+  const Read result = read(with_imu("auto"));
+  EXPECT_NEAR(wrap_angle(result.scans.back().T_odom_body.yaw - 1.2 * kLastScanTurnRad), 0.0, 1e-6);
+  EXPECT_THAT(result.summary.found, ElementsAre(HasSubstr("little in common")));
+  EXPECT_THAT(read(with_imu("on")).summary.assumed, ::testing::Contains(Pair(HasSubstr("IMU is level"), 1501U)));
+}
+
 TEST_F(McapScans, OrderAndEqualStampsAreAsInTextLogs) {
   writer.write("/odom", 0s, odometry_at(0s));
   for (const Time stamp : {300ms, 100ms, 200ms, 200ms}) writer.write("/scan", 1s, scan_at(stamp));
