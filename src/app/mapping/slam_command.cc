@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "app/mapping/read_scans.h"
 #include "app/output_directory.h"
 #include "app/process_cost.h"
-#include "app/progress_bar.h"
 #include "core/thread_clock.h"
 #include "io/csv.h"
 #include "io/g2o.h"
@@ -17,6 +17,7 @@
 #include "io/scan_log.h"
 #include "io/settings_yaml.h"
 #include "io/tum.h"
+#include "slam/calibration/calibration.h"
 #include "slam/mapper.h"
 #include "slam/planar_scan.h"
 
@@ -32,6 +33,7 @@ const OutputKind kMapping = {.name = "mapping of a log",
 struct LogMappingSettings {
   std::uint64_t seed = 1;
   io::ScanLogOptions log;
+  slam::Calibration calibration;
   slam::PlanarScanSettings scan;
   slam::MapperSettings slam;
 
@@ -39,6 +41,7 @@ struct LogMappingSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("seed", self.seed);
     visit("log", self.log);
+    visit("calibration", self.calibration);
     visit("scan", self.scan);
     visit("slam", self.slam);
   }
@@ -76,20 +79,19 @@ struct MappedLog {
 bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::string& name, slam::Mapper& mapper, MappedLog& mapped) {
   InterruptGuard guard;
   ProgressBar bar;
+  slam::CalibratedScans calibrated(settings.calibration);
   std::optional<Pose2> T_first_odom, T_odom_last;
-  const double start_s = wall_seconds();
-  while (const std::optional<RecordedScan> recorded = log.next()) {
-    mapper.update(slam::planar_scan(*recorded, settings.scan), recorded->T_odom_body);
-    if (!T_first_odom) T_first_odom = recorded->T_odom_body.inverse();
-    if (T_odom_last) mapped.way_m += (recorded->T_odom_body.position() - T_odom_last->position()).norm();
-    T_odom_last = recorded->T_odom_body;
-    mapped.stamps.push_back(recorded->scan.stamp);
-    mapped.T_odom_body.push_back(*T_first_odom * recorded->T_odom_body);
+  const bool is_whole = read_scans(log, name, guard, bar, [&](RecordedScan& recorded) {
+    calibrated.correct(recorded);
+    mapper.update(slam::planar_scan(recorded, settings.scan), recorded.T_odom_body);
+    if (!T_first_odom) T_first_odom = recorded.T_odom_body.inverse();
+    if (T_odom_last) mapped.way_m += (recorded.T_odom_body.position() - T_odom_last->position()).norm();
+    T_odom_last = recorded.T_odom_body;
+    mapped.stamps.push_back(recorded.scan.stamp);
+    mapped.T_odom_body.push_back(*T_first_odom * recorded.T_odom_body);
     mapped.cost.add(mapped.stamps.size(), mapped.way_m);
-    bar.show(fmt::format("{}  {:3.0f} %  {} scans  {:.0f} times real time", name, 100.0 * log.progress(), mapped.stamps.size(),
-                         mapped.duration_s() / std::max(1e-3, wall_seconds() - start_s)));
-    if (guard.is_interrupted()) return false;
-  }
+  });
+  if (!is_whole) return false;
   bar.show(fmt::format("{}  {} scans, at the end once more over all of them", name, mapped.stamps.size()));
   mapper.finish();
   return !guard.is_interrupted();
@@ -119,7 +121,9 @@ ExitCode slam_command(const SlamOptions& options) {
   if (options.method) overrides.push_back("slam.method=" + *options.method);
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
   if (options.skip_bad_lines) overrides.push_back("log.skip_bad_lines=true");
-  const auto settings = io::settings_of<LogMappingSettings>(overrides);
+  LogMappingSettings settings;
+  if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
+  io::SettingsReader::read_section("--set", io::document_of(overrides), "", settings);
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
   const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, settings.seed);
 
