@@ -41,7 +41,7 @@ std::optional<double> GyroOdometry::heading_at(Time stamp) const {
 }
 
 std::optional<double> GyroOdometry::bias_radps() const {
-  return standing_s_ > 0.0 ? std::optional(standing_rad_ / standing_s_) : std::nullopt;
+  return standing_s_ > 0.0 ? std::optional(standing_rad_ / standing_s_) : earlier_bias_radps_;
 }
 
 Pose2 GyroOdometry::fuse(Time stamp, const Pose2& T_odom_body) {
@@ -70,7 +70,7 @@ double GyroOdometry::turn_of_step(const Pose2& step, double dt_s, std::optional<
   const bool stands = step.position().norm() < kStandingSpeed_mps * dt_s && std::abs(step.yaw) < kStandingRateRadps * dt_s && std::abs(*gyro_rad) < kMostBiasRadps * dt_s;
   if (!stands) {
     standstill_s_ = pending_s_ = pending_rad_ = 0.0;
-    if (standing_s_ == 0.0) without_bias_s_ += dt_s;
+    if (!bias_radps()) without_bias_s_ += dt_s;
     return *gyro_rad - bias_radps().value_or(0.0) * dt_s;
   }
   standstill_s_ += dt_s;

@@ -19,9 +19,11 @@ enum class GyroVerdict {
 /// Odometry whose turns are those of a gyro. What the wheels say of the way is kept: from one scan to the next it is turned by half of what the turn differs.
 ///
 /// The gyro's bias is its mean while odometry says that the robot stands (a second or more at a time, from all such times so far); while it stands it does
-/// not turn. Before the first such time the bias is taken as none. A stretch that the gyro's messages do not cover keeps odometry's turn.
+/// not turn. Before the first such time the bias is that of an earlier look at the log, or is taken as none. A stretch that the gyro's messages do not cover keeps odometry's turn.
 class GyroOdometry {
  public:
+  explicit GyroOdometry(std::optional<double> earlier_bias_radps = {}) : earlier_bias_radps_(earlier_bias_radps) {}
+
   /// About the body's z axis. Stamps that do not grow are dropped.
   void add(Time stamp, double yaw_rate_radps);
 
@@ -31,7 +33,7 @@ class GyroOdometry {
   GyroVerdict verdict() const;
   std::optional<double> bias_radps() const;
   double standing_s() const { return standing_s_; }
-  double way_without_bias_s() const { return without_bias_s_; }  ///< that the robot moved before it was first seen standing
+  double way_without_bias_s() const { return without_bias_s_; }  ///< that the robot moved before anything was known of it
   double uncovered_s() const { return uncovered_s_; }            ///< that the gyro's messages do not cover
 
  private:
@@ -43,6 +45,7 @@ class GyroOdometry {
   double turn_of_step(const Pose2& step, double dt_s, std::optional<double> gyro_rad);
   void compare(double odometry_rad, double gyro_rad, double dt_s);
 
+  std::optional<double> earlier_bias_radps_;
   std::deque<Heading> headings_;  ///< by growing stamp, without gaps
   double last_rate_radps_ = 0.0;
   std::optional<Time> last_stamp_;  ///< of the scan before

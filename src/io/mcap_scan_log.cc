@@ -51,13 +51,14 @@ void tidy_ranges(LaserScan& scan, double no_return_m) {
 
 }  // namespace
 
-McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options)
+McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options, std::optional<double> gyro_bias_radps)
     : file_(file),
       options_(options),
       reader_(file, {.topics = {}, .use_summary = false}),
       scan_topic_(options.scan_topic),
       odometry_topic_(options.odometry_topic),
-      imu_topic_(options.imu_topic) {}
+      imu_topic_(options.imu_topic),
+      gyro_(gyro_bias_radps) {}
 
 std::string McapScanLog::place(const McapMessage& message) const {
   return fmt::format("{}: {} at {:.9f} s: ", file_.string(), message.channel.topic, to_seconds(message.log_time));
@@ -208,7 +209,7 @@ void McapScanLog::note_gyro() {
   if (options_.imu != "on" || imu_topic_.empty() || is_gyro_noted_) return;
   is_gyro_noted_ = true;
   const std::optional<double> bias_radps = gyro_.bias_radps();
-  std::string how = bias_radps ? fmt::format("bias {:.5f} rad/s from {:.0f} s of standing", *bias_radps, gyro_.standing_s()) : "the robot was never seen standing: its bias is taken as none";
+  std::string how = bias_radps ? fmt::format("bias {:.5f} rad/s from {:.0f} s of standing", *bias_radps, gyro_.standing_s()) : "the robot is not seen standing: its bias is taken as none";
   if (bias_radps && gyro_.way_without_bias_s() > 0.0) how += fmt::format(", the first {:.0f} s of way without it", gyro_.way_without_bias_s());
   if (gyro_.uncovered_s() > 0.0) how += fmt::format("; {:.1f} s that it does not cover turn by odometry", gyro_.uncovered_s());
   add_found(fmt::format("odometry turns by the gyro of {}: {} (log.imu)", imu_topic_, how));

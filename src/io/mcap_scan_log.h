@@ -23,11 +23,12 @@ namespace patrol::io {
 /// - A file that was cut off is read up to the cut.
 class McapScanLog : public ScanLog {
  public:
-  McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options);
+  /// `gyro_bias_radps`: as an earlier look at the file found it.
+  McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options, std::optional<double> gyro_bias_radps = {});
 
   std::optional<RecordedScan> next() override;
   double progress() const override { return is_at_end_ ? 1.0 : reader_.progress(); }
-  GyroVerdict gyro_verdict() const override { return gyro_.verdict(); }
+  const GyroOdometry* gyro() const override { return imu_topic_.empty() ? nullptr : &gyro_; }
 
  private:
   struct WaitingScan {

@@ -79,8 +79,8 @@ class ScanLog {
   /// Notes in the summary what was found before this reading.
   void add_found(const std::string& what) { summary_.found.push_back(what); }
 
-  /// Of the log's gyro, by the scans so far.
-  virtual GyroVerdict gyro_verdict() const { return GyroVerdict::kUnknown; }
+  /// The log's gyro and what the scans so far told of it; null where it has none.
+  virtual const GyroOdometry* gyro() const { return nullptr; }
 
  protected:
   void count_ignored(const std::string& name);
@@ -98,7 +98,7 @@ class ScanLog {
 };
 
 /// Opens a log by what the file holds: MCAP, else CARMEN's text, plain or in gzip. Unless the options say otherwise its first scans are looked at first, for
-/// what stands for no return, and whether odometry turns as the gyro does. Throws InputError.
+/// what stands for no return, whether odometry turns as the gyro does, and the gyro's bias. Throws InputError.
 std::unique_ptr<ScanLog> open_scan_log(const std::filesystem::path& file, const ScanLogOptions& options = {});
 
 }  // namespace patrol::io

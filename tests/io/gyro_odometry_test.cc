@@ -59,6 +59,17 @@ TEST(GyroOdometry, NeverSeenStandingItsBiasIsTakenAsNoneAndTheTimeSaid) {
   EXPECT_NEAR(driven.gyro.way_without_bias_s(), 60.0, 0.5);
 }
 
+TEST(GyroOdometry, AnEarlierBiasCountsUntilTheRobotStands) {
+  GyroOdometry gyro(0.3);
+  for (int tick = 0; tick <= 100; ++tick) gyro.add(tick * 100ms, tick < 40 ? 0.5 : 0.02);
+  gyro.fuse(0s, {});
+  EXPECT_NEAR(gyro.fuse(2s, {1.0, 0.0, 0.0}).yaw, 2.0 * (0.5 - 0.3), 1e-12);
+  gyro.fuse(4s, {2.0, 0.0, 0.0});
+  for (int second = 5; second <= 9; ++second) gyro.fuse(second * 1s, {2.0, 0.0, 0.0});
+  EXPECT_NEAR(gyro.bias_radps().value(), 0.02, 1e-9);
+  EXPECT_EQ(gyro.way_without_bias_s(), 0.0);
+}
+
 TEST(GyroOdometry, WhereTheGyroIsSilentOdometryTurns) {
   const Driven driven = drive({.slope = 1.0, .has_gap = true});
   EXPECT_THAT(driven.T_fused, test::Pose2Near(driven.T_true, 0.003, 1e-3));

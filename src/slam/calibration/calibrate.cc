@@ -25,7 +25,7 @@ constexpr double kPerMedian = 1.4826;    ///< standard deviation over the median
 constexpr double kLeastNoise = 1e-6;     ///< of a log without any
 constexpr double kCauchy = 2.5;          ///< standard deviations, while what is right is still looked for
 constexpr int kCauchyIterations = 15;
-constexpr std::size_t kRuns = 60, kFewestRuns = 20, kStretchesPerRun = 8;
+constexpr std::size_t kRuns = 60, kFewestRuns = 20, kStretchesPerRun = 4;
 /// Loose enough to weigh nothing, so that also what the log does not tell can be solved for.
 const Vector6 kLooseStd{1.0, 1.0, 0.5, 0.5, 0.5, 0.5};
 

@@ -82,7 +82,8 @@ struct CalibrationResult {
 /// - Standard deviations come from the scores of runs of stretches, so that they hold also where errors last longer than a stretch (White's sandwich, in
 ///   clusters); where the log has fewer than twenty runs, from the curvature alone.
 ///
-/// Not estimated: a difference of the two clocks, and the lidar's own scale, with which odometry's is compared. Throws InputError for fewer than
+/// Not estimated: the lidar's own scale, with which odometry's is compared, and a difference of the two clocks: at a steady speed scans that are stamped late by
+/// dt look like a lidar that sits speed * dt farther back. Throws InputError for fewer than
 /// `min_stretches`.
 CalibrationResult calibrate(const std::vector<MotionPair>& pairs, const Pose2& T_body_lidar_before, const CalibratorSettings& settings);
 

@@ -58,6 +58,7 @@ TEST(Calibrate, ErrorsAreAsLargeAsTheStandardDeviationsSayOverTwentySeeds) {
   }
   EXPECT_GT(sum / 120.0, 0.6);
   EXPECT_LT(sum / 120.0, 1.6);
+  EXPECT_LT(std::abs(sum_of_means / 20.0), 4.0 / std::sqrt(120.0));
 }
 
 // Odometry's noise is in what explains: a scale from lidar on odometry would come out too small by noise^2 / turn^2 = (0.05 / 0.3)^2 = 3 %.

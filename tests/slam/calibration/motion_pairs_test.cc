@@ -73,7 +73,8 @@ TEST(MotionPairs, AlongABareCorridorTheLidarsMotionIsSaidToBeUnknown) {
   EXPECT_EQ(result.parameters[3].value, 1.0);
 }
 
-// From scans to the six numbers, the second pass with what the first found; errors in standard deviations, and the centimetres and thousandths that they are.
+// From scans to the six numbers, the second pass with what the first found; errors in centimetres and thousandths, and in standard deviations: the root mean square of
+// 30 is 1 to about sqrt(1/60) = 0.13 where they are independent, which those of one drive are not.
 TEST(MotionPairs, ADriveThroughAnOfficeCalibratesItsLidarAndWheels) {
   const test::RoomWorld office = test::make_office();
   double sum = 0.0;
@@ -97,10 +98,10 @@ TEST(MotionPairs, ADriveThroughAnOfficeCalibratesItsLidarAndWheels) {
       ASSERT_TRUE(result.parameters[i].is_observable);
       const double error = (result.parameters[i].value - truth[i]) / result.parameters[i].std;
       sum += error * error;
-      RecordProperty("seed" + std::to_string(seed) + kCalibrationParameters[i], std::to_string(error));
     }
   }
-  EXPECT_LT(std::sqrt(sum / (6.0 * kSeeds)), 2.0);
+  EXPECT_GT(std::sqrt(sum / (6.0 * kSeeds)), 0.6);
+  EXPECT_LT(std::sqrt(sum / (6.0 * kSeeds)), 1.5);
 }
 
 }  // namespace
