@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <ceres/jet.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,15 +10,14 @@
 #include <optional>
 
 #include "core/error.h"
+#include "slam/calibration/motion_residual.h"
 
 namespace patrol::slam {
 namespace {
 
 constexpr std::size_t kSize = kCalibrationParameters.size();
-using Vector6 = Eigen::Matrix<double, kSize, 1>;
+using Vector6 = CalibrationVector;
 using Matrix6 = Eigen::Matrix<double, kSize, kSize>;
-using Jacobian = Eigen::Matrix<double, 3, kSize>;
-using Jet = ceres::Jet<double, kSize>;
 
 constexpr double kPerMedian = 1.4826;    ///< standard deviation over the median absolute value, of a Gaussian
 constexpr double kLeastNoise = 1e-6;     ///< of a log without any
@@ -28,60 +26,6 @@ constexpr int kCauchyIterations = 15;
 constexpr std::size_t kRuns = 60, kFewestRuns = 20, kStretchesPerRun = 4;
 /// Loose enough to weigh nothing, so that also what the log does not tell can be solved for.
 const Vector6 kLooseStd{1.0, 1.0, 0.5, 0.5, 0.5, 0.5};
-
-/// A pose whose angle is not wrapped, to take derivatives through.
-template <typename T>
-struct Motion {
-  T x, y, yaw;
-
-  friend Motion operator*(const Motion& a, const Motion& b) {
-    const T c = cos(a.yaw), s = sin(a.yaw);
-    return {a.x + c * b.x - s * b.y, a.y + s * b.x + c * b.y, a.yaw + b.yaw};
-  }
-};
-
-/// The inverse of corrected_step: what odometry makes of a true step.
-template <typename T>
-Motion<T> as_odometry_sees(const Motion<T>& step, const T& distance_scale, const T& turn_scale, const T& steering) {
-  const T half = 0.5 * step.yaw;
-  const T c = cos(half), s = sin(half);
-  const T ahead = (c * step.x + s * step.y) / distance_scale, left = (c * step.y - s * step.x) / distance_scale;
-  const T turn = (step.yaw - steering * ahead) / turn_scale;
-  const T co = cos(0.5 * turn), so = sin(0.5 * turn);
-  return {co * ahead - so * left, so * ahead + co * left, turn};
-}
-
-struct Residual {
-  Eigen::Vector3d error;      ///< x, y, yaw of odometry foretold less recorded, in the body at the stretch's begin
-  Jacobian jacobian;
-  Eigen::Matrix3d lidar_covariance, odometry_covariance;  ///< of the error, before the latter is scaled
-
-  Eigen::Matrix3d covariance(double move_noise, double turn_noise) const {
-    const Eigen::Vector3d noise(move_noise, move_noise, turn_noise);
-    return lidar_covariance + noise.asDiagonal() * odometry_covariance * noise.asDiagonal();
-  }
-};
-
-Residual residual_of(const MotionPair& pair, const Vector6& parameters, const MotionModelSettings& odometry) {
-  std::array<Jet, kSize> p;
-  for (std::size_t i = 0; i < kSize; ++i) p[i] = Jet(parameters[static_cast<Eigen::Index>(i)], static_cast<int>(i));
-  const Motion<Jet> T_body_lidar{p[0], p[1], p[2]};
-  const Jet c = cos(p[2]), s = sin(p[2]);
-  const Motion<Jet> T_lidar_body{-c * p[0] - s * p[1], s * p[0] - c * p[1], -p[2]};
-  Motion<Jet> foretold{Jet(0.0), Jet(0.0), Jet(0.0)};
-  for (const Pose2& step : pair.lidar_steps) {
-    foretold = foretold * as_odometry_sees(T_body_lidar * Motion<Jet>{Jet(step.x), Jet(step.y), Jet(step.yaw)} * T_lidar_body, p[3], p[4], p[5]);
-  }
-  Residual residual;
-  residual.error = {foretold.x.a - pair.odometry.x, foretold.y.a - pair.odometry.y, wrap_angle(foretold.yaw.a - pair.odometry.yaw)};
-  residual.jacobian << foretold.x.v.transpose(), foretold.y.v.transpose(), foretold.yaw.v.transpose();
-  Eigen::Matrix3d R_body_lidar = Eigen::Matrix3d::Identity();
-  R_body_lidar.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(parameters[2]).toRotationMatrix();
-  residual.lidar_covariance = R_body_lidar * pair.lidar_covariance * R_body_lidar.transpose();
-  // Not of the motion as recorded, whose error would choose its own weight.
-  residual.odometry_covariance = predict_motion({}, {foretold.x.a, foretold.y.a, wrap_angle(foretold.yaw.a)}, 0.0, odometry).covariance;
-  return residual;
-}
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -172,13 +116,13 @@ class Calibrator {
 
   void evaluate() {
     residuals_.clear();
-    for (const MotionPair& pair : pairs_) residuals_.push_back(residual_of(pair, parameters_, settings_.odometry));
+    for (const MotionPair& pair : pairs_) residuals_.push_back(motion_residual(pair, parameters_, settings_.odometry));
   }
 
   /// By what matching knows better than odometry does: elsewhere the residual is small because the tracker believed odometry.
   void estimate_noise() {
     std::vector<double> moves, turns;
-    for (const Residual& residual : residuals_) {
+    for (const MotionResidual& residual : residuals_) {
       for (Eigen::Index i = 0; i < 3; ++i) {
         if (residual.lidar_covariance(i, i) > residual.odometry_covariance(i, i)) continue;
         (i < 2 ? moves : turns).push_back(std::abs(residual.error[i]) / std::sqrt(residual.odometry_covariance(i, i)));
@@ -192,7 +136,7 @@ class Calibrator {
     information_.clear();
     distances_.clear();
     weights_.clear();
-    for (const Residual& residual : residuals_) {
+    for (const MotionResidual& residual : residuals_) {
       information_.push_back(residual.covariance(move_noise_, turn_noise_).inverse());
       distances_.push_back(std::sqrt(residual.error.dot(information_.back() * residual.error)));
       weights_.push_back(is_early ? cauchy(distances_.back()) : tukey(distances_.back(), settings_.outlier_std));
@@ -223,7 +167,7 @@ class Calibrator {
   double move_noise_ = 1.0, turn_noise_ = 1.0;
   int iterations_ = 0;
   bool converged_ = false;
-  std::vector<Residual> residuals_;           ///< [stretch]
+  std::vector<MotionResidual> residuals_;           ///< [stretch]
   std::vector<Eigen::Matrix3d> information_;  ///< [stretch]
   std::vector<double> distances_;             ///< [stretch], standard deviations
   std::vector<Weight> weights_;               ///< [stretch]

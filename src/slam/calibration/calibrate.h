@@ -80,11 +80,13 @@ struct CalibrationResult {
 /// - A parameter that the log would tell worse than the settings ask keeps its value and takes no part; the worst goes first. A way without turns does not
 ///   tell the lever arm, and a circle does not tell steering from the scale of turns: then the second is right if the first is.
 /// - Standard deviations come from the scores of runs of stretches, so that they hold also where errors last longer than a stretch (White's sandwich, in
-///   clusters); where the log has fewer than twenty runs, from the curvature alone.
+///   clusters); where the log has fewer than twenty runs, from the curvature alone. They know nothing
+///   of odometry that errs otherwise than by these numbers: where it does, stretches of other lengths give other numbers.
 ///
 /// Not estimated: the lidar's own scale, with which odometry's is compared, and a difference of the two clocks: at a steady speed scans that are stamped late by
-/// dt look like a lidar that sits speed * dt farther back. Throws InputError for fewer than
-/// `min_stretches`.
+/// dt look like a lidar that sits speed * dt farther back.
+///
+/// Throws InputError for fewer than `min_stretches`.
 CalibrationResult calibrate(const std::vector<MotionPair>& pairs, const Pose2& T_body_lidar_before, const CalibratorSettings& settings);
 
 }  // namespace patrol::slam
