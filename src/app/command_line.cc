@@ -32,6 +32,7 @@ struct Call {
   FaultsOptions faults;
   SlamOptions slam;
   CalibrateOptions calibrate;
+  TrainOptions train;
   SolveOptions solve;
   StudyOptions study;
   TestOptions test;
@@ -179,6 +180,16 @@ void add_calibrate(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [&] { return calibrate_command(call.calibrate); }; });
 }
 
+void add_train(CLI::App& app, Call& call) {
+  TrainOptions& train = call.train;
+  CLI::App* command = app.add_subcommand("train-neighbours", "Learn to recognise neighbouring submaps from runs whose truth is known");
+  command->add_option("runs", train.runs, "Run directories, of which is learnt")->required();
+  command->add_option("--held-out", train.held_out, "Others, on which what was learnt is tried");
+  command->add_option("--set", train.overrides, "Override a setting: path=value; may be repeated")->take_all();
+  command->add_option("--out", train.out, "Model to write (JSON)")->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return train_command(call.train); }; });
+}
+
 void add_solve(CLI::App& app, Call& call) {
   SolveOptions& solve = call.solve;
   CLI::App* command = app.add_subcommand("solve", "Solve a pose graph in g2o's text");
@@ -249,7 +260,7 @@ int run_command_line(int argc, const char* const* argv) {
 
   Call call;
   for (const auto add : {add_run, add_score, add_localizability, add_replay, add_report, add_verify, add_sweep, add_collect, add_budget, add_faults,
-                         add_slam, add_calibrate, add_solve, add_study, add_test, add_list}) {
+                         add_slam, add_calibrate, add_train, add_solve, add_study, add_test, add_list}) {
     add(app, call);
   }
 

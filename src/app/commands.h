@@ -99,6 +99,15 @@ struct CalibrateOptions {
 /// The lidar's place and odometry's scales, from a recorded log alone.
 ExitCode calibrate_command(const CalibrateOptions& options);
 
+struct TrainOptions {
+  std::vector<std::filesystem::path> runs;      ///< run directories, of which is learnt
+  std::vector<std::filesystem::path> held_out;  ///< others, on which what was learnt is tried
+  std::vector<std::string> overrides;
+  std::filesystem::path out = "submap_neighbours.json";
+};
+/// Learns to recognise neighbouring submaps (`--method submap_rbpf`).
+ExitCode train_command(const TrainOptions& options);
+
 struct SolveOptions {
   std::filesystem::path graph;  ///< g2o
   bool doubts_loops = false;    ///< a robust loss on edges that are not odometry

@@ -22,9 +22,10 @@ class MapperOf final : public Mapper {
 
 }  // namespace
 
-std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, std::uint64_t seed) {
+std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed) {
   validate(settings, "slam");
   if (settings.method == "rbpf") return std::make_unique<MapperOf<TrackedRbpf>>(settings.rbpf, seed);
+  if (settings.method == "submap_rbpf") return std::make_unique<MapperOf<SubmapRbpf>>(settings.submap_rbpf, neighbours, seed);
   return std::make_unique<MapperOf<GraphSlam>>(settings.graph);
 }
 

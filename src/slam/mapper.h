@@ -10,23 +10,27 @@
 #include "core/pose_graph.h"
 #include "core/settings.h"
 #include "slam/graph/graph_slam.h"
+#include "slam/submaps/submap_rbpf.h"
 #include "slam/tracked_rbpf.h"
 
 namespace patrol::slam {
 
-/// graph: submaps and a pose graph, of Cartographer's class; rbpf: a particle filter with improved proposals, of Gmapping's.
-inline Limits mapping_methods() { return one_of({"graph", "rbpf"}); }
+/// graph: submaps and a pose graph, of Cartographer's class; rbpf: a particle filter with improved proposals, of Gmapping's; submap_rbpf: submaps of such
+/// a filter, joined (paper 002).
+inline Limits mapping_methods() { return one_of({"graph", "rbpf", "submap_rbpf"}); }
 
 struct MapperSettings {
   std::string method = "graph";
   GraphSlamSettings graph;
   TrackedRbpfSettings rbpf;
+  SubmapRbpfSettings submap_rbpf;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("method", self.method, mapping_methods());
     visit("graph", self.graph);
     visit("rbpf", self.rbpf);
+    visit("submap_rbpf", self.submap_rbpf);
   }
 };
 
@@ -47,7 +51,8 @@ class Mapper {
   virtual PoseGraph graph() const = 0;
 };
 
+/// `neighbours` recognises neighbouring submaps, for submap_rbpf.
 /// Throws InputError when a setting breaks its rule.
-std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, std::uint64_t seed);
+std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed);
 
 }  // namespace patrol::slam

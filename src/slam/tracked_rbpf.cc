@@ -2,29 +2,29 @@
 
 namespace patrol::slam {
 
-TrackedRbpf::TrackedRbpf(const TrackedRbpfSettings& settings, std::uint64_t seed) : tracker_(settings.tracking), filter_(settings.filter, seed) {}
-
-Pose2 TrackedRbpf::update(const LevelScan& scan, const Pose2& T_odom_body) {
-  const Pose2 T_local_body = tracker_.update(scan, T_odom_body).T_local_body;
-  const SlamUpdate update = filter_.update(scan, T_local_body);
-  if (update.is_keyframe) {
-    ++num_keyframes_;
-    T_local_keyframe_ = T_local_body;
-  }
-  path_.push_back({num_keyframes_ - 1, T_local_keyframe_.inverse() * T_local_body});
-  return update.T_map_body;
+GridSlamSettings tracked_filter() {
+  GridSlamSettings settings;
+  settings.max_extent_m = 2000.0;
+  settings.particles = 30;
+  settings.initial_keyframes = 10;
+  settings.motion = {.along_std_m_per_m = 0.02,
+                     .across_std_m_per_m = 0.02,
+                     .turn_std_rad_per_rad = 0.02,
+                     .turn_std_rad_per_m = 0.005,
+                     .turn_std_rad_per_s = 0.0,
+                     .min_std_m = 0.005,
+                     .min_std_rad = 0.002};
+  return settings;
 }
 
-std::vector<Pose2> TrackedRbpf::path() const {
-  const std::vector<Pose2> keyframes = filter_.best_path();
-  std::vector<Pose2> T_map_body;
-  T_map_body.reserve(path_.size());
-  for (const TrackedPose& pose : path_) T_map_body.push_back(keyframes[pose.keyframe] * pose.T_keyframe_body);
-  return T_map_body;
+TrackedRbpf::TrackedRbpf(const TrackedRbpfSettings& settings, std::uint64_t seed) : tracker_(settings.tracking), filtered_(settings.filter, seed) {}
+
+Pose2 TrackedRbpf::update(const LevelScan& scan, const Pose2& T_odom_body) {
+  return filtered_.update(scan, tracker_.update(scan, T_odom_body).T_local_body).T_map_body;
 }
 
 PoseGraph TrackedRbpf::graph() const {
-  PoseGraph graph{.T_map_node = filter_.best_path(), .edges = {}};
+  PoseGraph graph{.T_map_node = filtered_.filter().best_path(), .edges = {}};
   for (std::size_t i = 0; i + 1 < graph.T_map_node.size(); ++i) {
     graph.edges.push_back({.from = static_cast<int>(i),
                            .to = static_cast<int>(i) + 1,

@@ -5,29 +5,16 @@
 
 #include "core/pose_graph.h"
 #include "slam/graph/scan_tracker.h"
-#include "slam/grid_slam.h"
+#include "slam/filtered_path.h"
 
 namespace patrol::slam {
 
+/// Particles enough for a building; what tracking leaves of odometry's errors; nothing that depends on legs.
+GridSlamSettings tracked_filter();
+
 struct TrackedRbpfSettings {
   ScanTrackerSettings tracking;
-  GridSlamSettings filter = wheeled();
-
-  /// Particles enough for a building; what tracking leaves of odometry's errors; nothing that depends on legs.
-  static GridSlamSettings wheeled() {
-    GridSlamSettings settings;
-    settings.max_extent_m = 2000.0;
-    settings.particles = 30;
-    settings.initial_keyframes = 10;
-    settings.motion = {.along_std_m_per_m = 0.02,
-                       .across_std_m_per_m = 0.02,
-                       .turn_std_rad_per_rad = 0.02,
-                       .turn_std_rad_per_m = 0.005,
-                       .turn_std_rad_per_s = 0.0,
-                       .min_std_m = 0.005,
-                       .min_std_rad = 0.002};
-    return settings;
-  }
+  GridSlamSettings filter = tracked_filter();
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -47,22 +34,13 @@ class TrackedRbpf {
   void finish() {}
 
   /// [scan]: of the particle that is the best now, with the whole way that it has come.
-  std::vector<Pose2> path() const;
-  OccupancyGrid map() const { return filter_.map(); }
+  std::vector<Pose2> path() const { return filtered_.path(); }
+  OccupancyGrid map() const { return filtered_.filter().map(); }
   PoseGraph graph() const;
 
  private:
-  /// A scan beside the keyframe before it.
-  struct TrackedPose {
-    std::size_t keyframe;
-    Pose2 T_keyframe_body;
-  };
-
   ScanTracker tracker_;
-  GridSlam filter_;
-  std::vector<TrackedPose> path_;
-  Pose2 T_local_keyframe_;
-  std::size_t num_keyframes_ = 0;
+  FilteredPath filtered_;
 };
 
 }  // namespace patrol::slam

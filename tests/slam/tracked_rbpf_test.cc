@@ -46,7 +46,7 @@ TEST(MakeMapper, EveryMethodFollowsTenMetresToFourCentimetres) {
   for (const std::string& method : mapping_methods().allowed) {
     MapperSettings settings;
     settings.method = method;
-    const std::unique_ptr<Mapper> mapper = make_mapper(settings, 1);
+    const std::unique_ptr<Mapper> mapper = make_mapper(settings, {}, 1);
     map_drive(*mapper);
     EXPECT_LT(worst_error_m(mapper->path()), 0.04) << method;
     EXPECT_GT(mapper->map().geometry().size(), 10'000U) << method;
@@ -57,7 +57,7 @@ TEST(MakeMapper, EveryMethodFollowsTenMetresToFourCentimetres) {
 TEST(MakeMapper, AMethodThatIsNotThereIsRefused) {
   MapperSettings settings;
   settings.method = "magic";
-  EXPECT_THROW(make_mapper(settings, 1), InputError);
+  EXPECT_THROW(make_mapper(settings, {}, 1), InputError);
 }
 
 // As from an old parent: released in a loop, not by a hundred thousand calls within each other.

@@ -30,6 +30,8 @@ Eigen::Matrix2d center_covariance(const SubmapShape& source, const PoseGaussian&
   return J * T_target_source.covariance * J.transpose();
 }
 
+double largest_variance(const Eigen::Matrix2d& covariance) { return std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).eigenvalues()[1]); }
+
 double hull_overlap(const SubmapShape& target, const SubmapShape& source, const Pose2& T_target_source) {
   ConvexPolygon moved;
   for (const Eigen::Vector2d& corner : source.hull) moved.push_back(T_target_source * corner);
@@ -88,34 +90,42 @@ double agreement_of(const SeenCells& seen, const std::vector<Eigen::Vector2d>& p
 
 }  // namespace
 
+double mutual_agreement(const SubmapShape& target, const SubmapShape& source, const Pose2& T_target_source) {
+  return std::min(agreement_of(target.seen, source.points, T_target_source), agreement_of(source.seen, target.points, T_target_source.inverse()));
+}
+
+bool may_be_neighbours(const SubmapShape& target, const SubmapShape& source, const PoseGaussian& T_target_source) {
+  const double distance_m = (T_target_source.mean * source.center - target.center).norm();
+  return distance_m - 2.0 * std::sqrt(largest_variance(center_covariance(source, T_target_source))) < target.radius_m + source.radius_m;
+}
+
 std::vector<std::string> pair_feature_names() { return {kPairFeatures.begin(), kPairFeatures.end()}; }
 
-std::vector<double> pair_features(const SubmapShape& target, const SubmapShape& source, const PoseGaussian& T_target_source, const NdtSettings& settings) {
+SubmapComparison compare_submaps(const SubmapShape& target, const SubmapShape& source, const PoseGaussian& T_target_source, const NdtSettings& settings) {
   const Pose2& T_predicted = T_target_source.mean;
   const double radii_m = std::max(1e-6, target.radius_m + source.radius_m);
   const Eigen::Vector2d between = T_predicted * source.center - target.center;
   const Eigen::Matrix2d covariance = center_covariance(source, T_target_source);
-  const double largest_var = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).eigenvalues()[1];
 
   const std::optional<NdtResult> aligned = align_ndt(target.ndt, source.points, T_predicted, settings);
   const Pose2 T_aligned = aligned ? aligned->T_target_source : T_predicted;
   const double deviations = aligned ? mahalanobis<3>(T_target_source.offset_of(T_aligned), T_target_source.covariance) : kMostDeviations;
-  const double agreement = std::min(agreement_of(target.seen, source.points, T_aligned), agreement_of(source.seen, target.points, T_aligned.inverse()));
-
-  return {between.norm() / radii_m,
-          mahalanobis<2>(between, covariance),
-          std::sqrt(std::max(0.0, largest_var)) / radii_m,
-          hull_overlap(target, source, T_predicted),
-          seen_overlap(target, source, T_predicted),
-          histogram_difference(target.distances, source.distances),
-          best_direction(target, source),
-          direction_at(target, source, T_predicted.yaw),
-          smaller_of_larger(static_cast<double>(target.num_points), static_cast<double>(source.num_points)),
-          smaller_of_larger(target.radius_m, source.radius_m),
-          score_both_ways(target, source, T_predicted, std::min<std::size_t>(1, target.ndt.size() - 1)),
-          score_both_ways(target, source, T_aligned, target.ndt.size() - 1),
-          deviations,
-          agreement};
+  std::vector<double> features = {
+      between.norm() / radii_m,
+      mahalanobis<2>(between, covariance),
+      std::sqrt(largest_variance(covariance)) / radii_m,
+      hull_overlap(target, source, T_predicted),
+      seen_overlap(target, source, T_predicted),
+      histogram_difference(target.distances, source.distances),
+      best_direction(target, source),
+      direction_at(target, source, T_predicted.yaw),
+      smaller_of_larger(static_cast<double>(target.num_points), static_cast<double>(source.num_points)),
+      smaller_of_larger(target.radius_m, source.radius_m),
+      score_both_ways(target, source, T_predicted, std::min<std::size_t>(1, target.ndt.size() - 1)),
+      score_both_ways(target, source, T_aligned, target.ndt.size() - 1),
+      deviations,
+      mutual_agreement(target, source, T_aligned)};
+  return {.features = std::move(features), .aligned = aligned};
 }
 
 }  // namespace patrol::slam

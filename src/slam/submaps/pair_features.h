@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,15 +28,26 @@ namespace patrol::slam {
 ///   score_predicted        NDT score on the second coarsest cells as predicted, the smaller of both directions: 0 ... 1
 ///   score_aligned          NDT score on the finest cells at the pose that NDT finds from the prediction on, likewise
 ///   aligned_mahalanobis    how far that pose is from the prediction, in standard deviations; at most 30
-///   aligned_agreement      there, of the one's points that lie where the other has looked: share on a surface of the other, the smaller of both; 0 if
-///                          fewer than a tenth of either's points lie where the other has looked
+///   aligned_agreement      mutual_agreement there
 inline constexpr std::array<const char*, 14> kPairFeatures = {
     "center_distance",     "center_mahalanobis", "center_std",   "hull_overlap",    "seen_overlap",  "distance_difference", "direction_correlation",
     "direction_predicted", "point_ratio",        "radius_ratio", "score_predicted", "score_aligned", "aligned_mahalanobis", "aligned_agreement"};
 
 std::vector<std::string> pair_feature_names();
 
-/// [feature] as above, all finite. `T_target_source` as predicted by odometry or the graph. Takes one NDT matching.
-std::vector<double> pair_features(const SubmapShape& target, const SubmapShape& source, const PoseGaussian& T_target_source, const NdtSettings& settings);
+/// Of the one's points that lie where the other has looked, the share that lie on a surface of the other; the smaller of both directions. 0 if fewer than a
+/// tenth of either's points lie where the other has looked.
+double mutual_agreement(const SubmapShape& target, const SubmapShape& source, const Pose2& T_target_source);
+
+/// Whether their centres may lie within both radii of each other, two standard deviations off the prediction.
+bool may_be_neighbours(const SubmapShape& target, const SubmapShape& source, const PoseGaussian& T_target_source);
+
+struct SubmapComparison {
+  std::vector<double> features;      ///< [feature] as above, all finite
+  std::optional<NdtResult> aligned;  ///< none if the submaps do not feel each other
+};
+
+/// `T_target_source` as predicted by odometry or the graph. Takes one NDT matching.
+SubmapComparison compare_submaps(const SubmapShape& target, const SubmapShape& source, const PoseGaussian& T_target_source, const NdtSettings& settings);
 
 }  // namespace patrol::slam

@@ -21,6 +21,10 @@ using Points = std::vector<Eigen::Vector2d>;
 constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kExactTol = 1e-9;  // algebra, some of it through a histogram
 
+std::vector<double> pair_features(const SubmapShape& target, const SubmapShape& source, const PoseGaussian& T_target_source, const NdtSettings& settings) {
+  return compare_submaps(target, source, T_target_source, settings).features;
+}
+
 double value(const std::vector<double>& features, const std::string& name) {
   const auto found = std::ranges::find(kPairFeatures, name);
   EXPECT_NE(found, kPairFeatures.end()) << name;

@@ -1,0 +1,23 @@
+#include "slam/filtered_path.h"
+
+namespace patrol::slam {
+
+SlamUpdate FilteredPath::update(const LevelScan& scan, const Pose2& T_odom_body) {
+  const SlamUpdate update = filter_.update(scan, T_odom_body);
+  if (update.is_keyframe) {
+    ++num_keyframes_;
+    T_odom_keyframe_ = T_odom_body;
+  }
+  path_.push_back({num_keyframes_ - 1, T_odom_keyframe_.inverse() * T_odom_body});
+  return update;
+}
+
+std::vector<Pose2> FilteredPath::path() const {
+  const std::vector<Pose2> keyframes = filter_.best_path();
+  std::vector<Pose2> T_map_body;
+  T_map_body.reserve(path_.size());
+  for (const TrackedPose& pose : path_) T_map_body.push_back(keyframes[pose.keyframe] * pose.T_keyframe_body);
+  return T_map_body;
+}
+
+}  // namespace patrol::slam

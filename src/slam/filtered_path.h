@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "slam/grid_slam.h"
+
+namespace patrol::slam {
+
+/// A particle filter on grids, and where it believes now that every scan was taken.
+class FilteredPath {
+ public:
+  FilteredPath(const GridSlamSettings& settings, std::uint64_t seed) : filter_(settings, seed) {}
+
+  SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
+
+  const GridSlam& filter() const { return filter_; }
+  /// [scan]: of the particle that is the best now, with the whole way that it has come.
+  std::vector<Pose2> path() const;
+
+ private:
+  /// A scan beside the keyframe before it.
+  struct TrackedPose {
+    std::size_t keyframe;
+    Pose2 T_keyframe_body;
+  };
+
+  GridSlam filter_;
+  std::vector<TrackedPose> path_;
+  Pose2 T_odom_keyframe_;
+  std::size_t num_keyframes_ = 0;
+};
+
+}  // namespace patrol::slam

@@ -1,0 +1,38 @@
+#include "slam/submaps/submap_builder.h"
+
+#include <cmath>
+#include <utility>
+
+#include "slam/tracked_rbpf.h"
+
+namespace patrol::slam {
+
+GridSlamSettings SubmapBuilderSettings::short_ways() {
+  GridSlamSettings settings = tracked_filter();
+  settings.max_extent_m = 400.0;
+  settings.particles = 10;
+  settings.initial_keyframes = 5;
+  return settings;
+}
+
+Pose2 SubmapBuilder::update(const LevelScan& scan, const Pose2& T_odom_body) {
+  if (T_odom_last_) {
+    const Pose2 step = T_odom_last_->inverse() * T_odom_body;
+    way_m_ += step.position().norm();
+    turn_rad_ += std::abs(step.yaw);
+  }
+  T_odom_last_ = T_odom_body;
+  const SlamUpdate update = filtered_.update(scan, T_odom_body);
+  if (update.is_keyframe) scans_.push_back(scan);
+  return update.T_map_body;
+}
+
+std::vector<Keyframe> SubmapBuilder::take_keyframes() {
+  const std::vector<Pose2> T_submap_keyframe = filtered_.filter().best_path();
+  std::vector<Keyframe> keyframes;
+  for (std::size_t k = 0; k < scans_.size(); ++k) keyframes.push_back({std::move(scans_[k]), T_submap_keyframe[k]});
+  scans_.clear();
+  return keyframes;
+}
+
+}  // namespace patrol::slam
