@@ -31,6 +31,7 @@ struct Call {
   BudgetOptions budget;
   FaultsOptions faults;
   SlamOptions slam;
+  CalibrateOptions calibrate;
   TrainOptions train;
   SolveOptions solve;
   StudyOptions study;
@@ -162,10 +163,21 @@ void add_slam(CLI::App& app, Call& call) {
   command->add_option("log", slam.log, "Log file: CARMEN's text, plain or in gzip, or MCAP")->required();
   command->add_option("--method", slam.method, "How to map (patrol list)");
   command->add_option("--set", slam.overrides, "Override a setting: path=value; may be repeated")->take_all();
+  command->add_option("--calibration", slam.calibration, "calibration.yaml of patrol calibrate: the lidar's place, odometry put right");
   command->add_option("--seed", slam.seed, "Seed of every random stream");
   command->add_flag("--skip-bad-lines", slam.skip_bad_lines, "Use what can be read of a damaged log");
   command->add_option("--out", slam.out, "Directory to leave")->capture_default_str();
   command->callback([&] { call.chosen = [&] { return slam_command(call.slam); }; });
+}
+
+void add_calibrate(CLI::App& app, Call& call) {
+  CalibrateOptions& calibrate = call.calibrate;
+  CLI::App* command = app.add_subcommand("calibrate", "Where a log's lidar sits and how far its odometry can be believed, from the log alone");
+  command->add_option("log", calibrate.log, "Log file: CARMEN's text, plain or in gzip, or MCAP")->required();
+  command->add_option("--set", calibrate.overrides, "Override a setting: path=value; may be repeated")->take_all();
+  command->add_flag("--skip-bad-lines", calibrate.skip_bad_lines, "Use what can be read of a damaged log");
+  command->add_option("--out", calibrate.out, "Directory to leave")->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return calibrate_command(call.calibrate); }; });
 }
 
 void add_train(CLI::App& app, Call& call) {
@@ -248,7 +260,7 @@ int run_command_line(int argc, const char* const* argv) {
 
   Call call;
   for (const auto add : {add_run, add_score, add_localizability, add_replay, add_report, add_verify, add_sweep, add_collect, add_budget, add_faults,
-                         add_slam, add_train, add_solve, add_study, add_test, add_list}) {
+                         add_slam, add_calibrate, add_train, add_solve, add_study, add_test, add_list}) {
     add(app, call);
   }
 

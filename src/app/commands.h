@@ -82,12 +82,22 @@ struct SlamOptions {
   std::filesystem::path log;          ///< CARMEN or MCAP
   std::optional<std::string> method;  ///< slam.method
   std::vector<std::string> overrides;
+  std::optional<std::filesystem::path> calibration;  ///< calibration.yaml of `patrol calibrate`
   std::optional<std::uint64_t> seed;
   bool skip_bad_lines = false;
   std::filesystem::path out = "out/slam";
 };
 /// Maps a recorded log.
 ExitCode slam_command(const SlamOptions& options);
+
+struct CalibrateOptions {
+  std::filesystem::path log;  ///< CARMEN or MCAP
+  std::vector<std::string> overrides;
+  bool skip_bad_lines = false;
+  std::filesystem::path out = "out/calibration";
+};
+/// The lidar's place and odometry's scales, from a recorded log alone.
+ExitCode calibrate_command(const CalibrateOptions& options);
 
 struct TrainOptions {
   std::vector<std::filesystem::path> runs;      ///< run directories, of which is learnt

@@ -17,6 +17,7 @@ constexpr std::size_t kMostBeams = 10'000;
 constexpr double kUnitTol = 1e-3;          ///< of a quaternion's length
 constexpr double kFurthest_m = 1e8;
 constexpr double kMaxAngleRad = 7.0;       ///< a full turn and what rounding adds
+constexpr double kFastestRadps = 1e3;      ///< that anything turns
 constexpr const char* kTfStatic = "/tf_static";
 
 void expect_pose(const Pose3& pose, const char* whose) {
@@ -57,12 +58,14 @@ void tidy_ranges(LaserScan& scan, double no_return_m) {
 
 }  // namespace
 
-McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options)
+McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options, std::optional<double> gyro_bias_radps)
     : file_(file),
       options_(options),
       reader_(file, {.topics = {}, .use_summary = false}),
       scan_topic_(options.scan_topic),
-      odometry_topic_(options.odometry_topic) {}
+      odometry_topic_(options.odometry_topic),
+      imu_topic_(options.imu_topic),
+      gyro_(gyro_bias_radps) {}
 
 std::string McapScanLog::place(const McapMessage& message) const {
   return fmt::format("{}: {} at {:.9f} s: ", file_.string(), message.channel.topic, to_seconds(message.log_time));
@@ -72,9 +75,14 @@ std::optional<RecordedScan> McapScanLog::next() {
   while (true) {
     if (std::optional<RecordedScan> scan = sorter_.take(is_at_end_)) {
       count_given_out(*scan);
+      const Pose2 T_fused_body = gyro_.fuse(scan->scan.stamp, scan->T_odom_body);
+      if (options_.imu == "on" && !imu_topic_.empty()) scan->T_odom_body = T_fused_body;
       return scan;
     }
-    if (is_at_end_) return std::nullopt;
+    if (is_at_end_) {
+      note_gyro();
+      return std::nullopt;
+    }
     if (!read_message()) finish();
   }
 }
@@ -111,6 +119,9 @@ void McapScanLog::handle(const McapMessage& message) {
     if (topic == scan_topic_) return add_scan(message);
   } else if (type == kRosType<OdometryEstimate>) {
     if (odometry_topic_.empty() || topic == odometry_topic_) return add_odometry(message);
+  } else if (type == kRosType<Imu> && options_.imu != "off") {
+    if (imu_topic_.empty()) imu_topic_ = topic;
+    if (topic == imu_topic_) return add_imu(message);
   } else if (type == kRosType<TransformSet>) {
     return add_transforms(message, topic.ends_with(kTfStatic));
   }
@@ -139,6 +150,14 @@ void McapScanLog::add_odometry(const McapMessage& message) {
   if (body_frame_.empty()) body_frame_ = names.child.empty() ? frame_id::kBody : names.child;
   odometry_.add({.stamp = odometry.stamp, .parent = frame_id::kOdom, .child = frame_id::kBody, .T_parent_child = normalized(odometry.T_odom_body)});
   resolve_waiting();
+}
+
+void McapScanLog::add_imu(const McapMessage& message) {
+  const Imu imu = decode<Imu>(message.cdr);
+  if (!(imu.angular_velocity_radps.norm() <= kFastestRadps)) throw DecodeError("an IMU whose rates are not finite, or no robot's");
+  const std::optional<Pose3> T_body_imu = place_in_body(frame_id_of(message.cdr), imu.stamp);
+  if (!T_body_imu && options_.imu == "on") ++summary_.assumed["IMU messages: the IMU is level (no transform says how it sits)"];
+  gyro_.add(imu.stamp, T_body_imu ? (T_body_imu->rotation * imu.angular_velocity_radps).z() : imu.angular_velocity_radps.z());
 }
 
 void McapScanLog::add_transforms(const McapMessage& message, bool is_static) {
@@ -173,10 +192,14 @@ void McapScanLog::add_placed(WaitingScan waiting, const Pose2& T_odom_body, cons
           fmt::format("{}: {}", file_.string(), scan_topic_));
 }
 
+std::optional<Pose3> McapScanLog::place_in_body(const std::string& frame, Time stamp) const {
+  const std::optional<Pose3> place = frames_.find(body_frame_.empty() ? frame_id::kBody : body_frame_, frame, stamp);
+  return place ? place : frames_.find(frame_id::kBody, frame, stamp);
+}
+
 /// Turns the beams of a lidar that hangs upside down round, so that its planar place says all.
 Pose3 McapScanLog::mount_of(WaitingScan& waiting) {
-  std::optional<Pose3> T_body_lidar = frames_.find(body_frame_.empty() ? frame_id::kBody : body_frame_, waiting.frame, waiting.scan.stamp);
-  if (!T_body_lidar) T_body_lidar = frames_.find(frame_id::kBody, waiting.frame, waiting.scan.stamp);
+  const std::optional<Pose3> T_body_lidar = place_in_body(waiting.frame, waiting.scan.stamp);
   if (!T_body_lidar) {
     ++summary_.assumed["scans: the lidar is at the body's origin (no transform says where)"];
     return {};
@@ -187,6 +210,16 @@ Pose3 McapScanLog::mount_of(WaitingScan& waiting) {
     waiting.scan.angle_increment_rad *= -1.0;
   }
   return *T_body_lidar;
+}
+
+void McapScanLog::note_gyro() {
+  if (options_.imu != "on" || imu_topic_.empty() || is_gyro_noted_) return;
+  is_gyro_noted_ = true;
+  const std::optional<double> bias_radps = gyro_.bias_radps();
+  std::string how = bias_radps ? fmt::format("bias {:.5f} rad/s from {:.0f} s of standing", *bias_radps, gyro_.standing_s()) : "the robot is not seen standing: its bias is taken as none";
+  if (bias_radps && gyro_.way_without_bias_s() > 0.0) how += fmt::format(", the first {:.0f} s of way without it", gyro_.way_without_bias_s());
+  if (gyro_.uncovered_s() > 0.0) how += fmt::format("; {:.1f} s that it does not cover turn by odometry", gyro_.uncovered_s());
+  add_found(fmt::format("odometry turns by the gyro of {}: {} (log.imu)", imu_topic_, how));
 }
 
 void McapScanLog::finish() {

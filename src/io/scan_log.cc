@@ -8,11 +8,14 @@
 #include "io/carmen_log.h"
 #include "io/mcap_format.h"
 #include "io/mcap_scan_log.h"
+#include "io/no_return.h"
 
 namespace patrol::io {
 namespace {
 
 constexpr std::size_t kMostComplaints = 5;
+constexpr int kMostScansLookedAt = 5000;
+constexpr double kNoSuchRange_m = 1e4;  ///< the most that the options allow
 constexpr std::size_t kMostNames = 50;  ///< of ignored messages that are told apart: a damaged file may hold any number
 
 std::string counts(const std::map<std::string, std::uint64_t>& by_name) {
@@ -25,6 +28,50 @@ bool is_mcap(const std::filesystem::path& file) {
   std::string head(mcap::kMagic.size(), '\0');
   std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
   return head == mcap::kMagic;
+}
+
+std::unique_ptr<ScanLog> make_log(const std::filesystem::path& file, const ScanLogOptions& options, std::optional<double> gyro_bias_radps) {
+  if (is_mcap(file)) return std::make_unique<McapScanLog>(file, options, gyro_bias_radps);
+  return std::make_unique<CarmenLog>(file, options);
+}
+
+struct FirstLook {
+  std::optional<NoReturnValue> no_return;
+  GyroVerdict gyro = GyroVerdict::kUnknown;
+  std::optional<double> gyro_bias_radps;
+};
+
+/// What is wrong with the file is left to the reading proper to say.
+FirstLook look_at(const std::filesystem::path& file, ScanLogOptions options) {
+  options.skip_bad_lines = true;
+  options.no_return_m = kNoSuchRange_m;
+  const std::unique_ptr<ScanLog> log = make_log(file, options, {});
+  NoReturnFinder finder;
+  const auto has_seen_enough = [&] { return finder.has_seen_enough() && (!log->gyro() || log->gyro()->bias_radps()); };
+  try {
+    for (int scans = 0; scans < kMostScansLookedAt && !has_seen_enough(); ++scans) {
+      const std::optional<RecordedScan> recorded = log->next();
+      if (!recorded) break;
+      finder.add(*recorded);
+    }
+  } catch (const InputError&) {
+  }
+  if (!log->gyro()) return {.no_return = finder.find(), .gyro_bias_radps = {}};
+  return {.no_return = finder.find(), .gyro = log->gyro()->verdict(), .gyro_bias_radps = log->gyro()->bias_radps()};
+}
+
+/// The options with what the look found, which is told in `found`.
+ScanLogOptions followed(const FirstLook& look, ScanLogOptions options, std::vector<std::string>& found) {
+  if (options.finds_no_return && look.no_return && look.no_return->range_m <= options.no_return_m) {
+    options.no_return_m = look.no_return->range_m * (1.0 - 1e-6);  // the file's digits, rounded
+    found.push_back(fmt::format("{:.4g} m is no return: {} readings from {} places are it to the bit (log.finds_no_return)", look.no_return->range_m,
+                                look.no_return->num_readings, look.no_return->num_places));
+  }
+  if (options.imu != "auto") return options;
+  options.imu = look.gyro == GyroVerdict::kContradicts ? "on" : "off";
+  if (look.gyro == GyroVerdict::kAgrees) found.push_back("odometry turns as the gyro does: it is kept (log.imu)");
+  if (look.gyro == GyroVerdict::kUnrelated) found.push_back("odometry's turns and the gyro's have little in common: the gyro is not used (log.imu)");
+  return options;
 }
 
 }  // namespace
@@ -73,6 +120,7 @@ std::string to_text(const ScanLogSummary& summary) {
   if (summary.num_reordered > 0) text += fmt::format(", {} put in order of time", summary.num_reordered);
   if (summary.num_same_stamp > 0) text += fmt::format(", {} with the stamp of the one before", summary.num_same_stamp);
   text += "\n";
+  for (const std::string& what : summary.found) text += "found: " + what + "\n";
   if (!summary.assumed.empty()) text += "assumed: " + counts(summary.assumed) + "\n";
   if (!summary.ignored.empty()) text += "ignored: " + counts(summary.ignored) + "\n";
   if (!summary.skipped.empty()) text += "skipped: " + counts(summary.skipped) + "\n";
@@ -82,8 +130,12 @@ std::string to_text(const ScanLogSummary& summary) {
 
 std::unique_ptr<ScanLog> open_scan_log(const std::filesystem::path& file, const ScanLogOptions& options) {
   validate(options, "log");
-  if (is_mcap(file)) return std::make_unique<McapScanLog>(file, options);
-  return std::make_unique<CarmenLog>(file, options);
+  const bool needs_look = options.finds_no_return || options.imu != "off";
+  const FirstLook look = needs_look ? look_at(file, options) : FirstLook{};
+  std::vector<std::string> found;
+  std::unique_ptr<ScanLog> log = make_log(file, followed(look, options, found), look.gyro_bias_radps);
+  for (const std::string& what : found) log->add_found(what);
+  return log;
 }
 
 }  // namespace patrol::io

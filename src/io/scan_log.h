@@ -10,6 +10,7 @@
 
 #include "core/recorded_scan.h"
 #include "core/settings.h"
+#include "io/gyro_odometry.h"
 #include "io/scan_sorter.h"
 
 namespace patrol::io {
@@ -17,17 +18,23 @@ namespace patrol::io {
 struct ScanLogOptions {
   bool skip_bad_lines = false;   ///< what cannot be read is counted instead of refused
   double no_return_m = 80.0;     ///< ranges from here on, or from the sensor's own maximum, are no returns
+  bool finds_no_return = true;   ///< and so is a value that the log itself shows to be none (io/no_return.h)
   std::string carmen_laser;      ///< the message that holds the scans, as "FLASER"; empty: the best that the log has
   std::string scan_topic;        ///< of an MCAP file; empty: that of its first scan
   std::string odometry_topic;    ///< of an MCAP file; empty: that of its first odometry; without any: tf
+  std::string imu = "auto";      ///< of an MCAP file: on, its gyro turns odometry (io/gyro_odometry.h); auto, where the log's first scans show that odometry turns otherwise
+  std::string imu_topic = "";    ///< of an MCAP file; empty: that of its first IMU
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("skip_bad_lines", self.skip_bad_lines);
     visit("no_return_m", self.no_return_m, between(0.1, 1e4));
+    visit("finds_no_return", self.finds_no_return);
     visit("carmen_laser", self.carmen_laser, one_of({"", "ROBOTLASER1", "FLASER", "RAWLASER1", "RLASER", "ROBOTLASER2", "RAWLASER2"}));
     visit("scan_topic", self.scan_topic);
     visit("odometry_topic", self.odometry_topic);
+    visit("imu", self.imu, one_of({"auto", "on", "off"}));
+    visit("imu_topic", self.imu_topic);
   }
 };
 
@@ -38,6 +45,7 @@ struct ScanLogSummary {
   std::uint64_t num_reordered = 0;  ///< of these: came after a later one
   std::uint64_t num_same_stamp = 0;  ///< of these: bear the stamp of the one before
   std::map<std::string, std::uint64_t> ignored;  ///< by name of the message: not asked for, or not known
+  std::vector<std::string> found;                ///< what the log itself showed, and was followed
   std::map<std::string, std::uint64_t> assumed;  ///< of these, by what: the file says nothing, or otherwise
   std::map<std::string, std::uint64_t> skipped;  ///< by reason: should have been of use
   std::vector<std::string> complaints;           ///< the first of what was skipped, each with its place
@@ -68,6 +76,12 @@ class ScanLog {
 
   const ScanLogSummary& summary() const { return summary_; }
 
+  /// Notes in the summary what was found before this reading.
+  void add_found(const std::string& what) { summary_.found.push_back(what); }
+
+  /// The log's gyro and what the scans so far told of it; null where it has none.
+  virtual const GyroOdometry* gyro() const { return nullptr; }
+
  protected:
   void count_ignored(const std::string& name);
   /// Throws InputError(complaint), or counts it when bad lines are skipped.
@@ -83,7 +97,8 @@ class ScanLog {
   std::optional<Time> last_stamp_;
 };
 
-/// Opens a log by what the file holds: MCAP, else CARMEN's text, plain or in gzip. Throws InputError.
+/// Opens a log by what the file holds: MCAP, else CARMEN's text, plain or in gzip. Unless the options say otherwise its first scans are looked at first, for
+/// what stands for no return, whether odometry turns as the gyro does, and the gyro's bias. Throws InputError.
 std::unique_ptr<ScanLog> open_scan_log(const std::filesystem::path& file, const ScanLogOptions& options = {});
 
 }  // namespace patrol::io

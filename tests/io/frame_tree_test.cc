@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/io/log_messages.h"
 #include "tests/support/pose_near.h"
 
 namespace patrol::io {
@@ -13,7 +14,7 @@ using test::Pose3Near;
 constexpr double kExactTol = 1e-12;
 
 FrameTransform placed(const std::string& parent, const std::string& child, double x, Time stamp = {}, double yaw = 0.0) {
-  return {.stamp = stamp, .parent = parent, .child = child, .T_parent_child = {{x, 0.0, 0.0}, quaternion_from_yaw(yaw)}};
+  return test::placed(parent, child, {{x, 0.0, 0.0}, quaternion_from_yaw(yaw)}, stamp);
 }
 
 TEST(FrameTree, AFrameIsSeenFromItselfWithoutBeingKnown) { EXPECT_THAT(*FrameTree().find("a", "a", 5s), Pose3Near(Pose3{}, 0.0, 0.0)); }

@@ -4,13 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "core/error.h"
-#include "io/mcap_writer.h"
-#include "io/ros_definitions.h"
 #include "io/run_log.h"
+#include "tests/io/log_messages.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
 
@@ -18,53 +16,12 @@ namespace patrol::io {
 namespace {
 
 using namespace std::chrono_literals;
+using test::MessageFile, test::odometry_at, test::placed, test::scan_at;
 using test::Pose2Near, test::read_bytes, test::TemporaryFolder, test::write_bytes;
 using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testing::Pair;
 
 constexpr double kExactTol = 1e-12;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-/// A file that other people's robots could have written.
-class Writer {
- public:
-  explicit Writer(const std::filesystem::path& file) : writer_(file) {}
-
-  template <typename Message>
-  void write(const std::string& topic, Time log_time, const Message& message) {
-    write_cdr(topic, kRosType<Message>, log_time, encode(message));
-  }
-  void write_cdr(const std::string& topic, const std::string& type, Time log_time, const std::string& cdr) {
-    if (!channels_.contains(topic)) channels_[topic] = writer_.add_channel(topic, type, ros_definition(type));
-    writer_.write(channels_[topic], log_time, cdr);
-  }
-  void close() { writer_.close(); }
-
- private:
-  McapWriter writer_;
-  std::map<std::string, McapWriter::ChannelId> channels_;
-};
-
-LaserScan scan_at(Time stamp, std::vector<float> ranges_m = {1.0F, 2.0F, 3.0F}) {
-  return {.stamp = stamp,
-          .angle_min_rad = -0.5,
-          .angle_increment_rad = 0.25,
-          .range_min_m = 0.5,
-          .range_max_m = 30.0,
-          .ranges_m = std::move(ranges_m),
-          .intensities = {}};
-}
-
-/// One metre a second along x, from x = 0 at 0 s.
-OdometryEstimate odometry_at(Time stamp, double lead_m = 0.0) {
-  OdometryEstimate odometry;
-  odometry.stamp = stamp;
-  odometry.T_odom_body.position = {to_seconds(stamp) + lead_m, 0.0, 0.3};
-  return odometry;
-}
-
-FrameTransform placed(const std::string& parent, const std::string& child, const Pose3& T_parent_child, Time stamp = {}) {
-  return {.stamp = stamp, .parent = parent, .child = child, .T_parent_child = T_parent_child};
-}
 
 struct Read {
   std::vector<RecordedScan> scans;
@@ -93,7 +50,7 @@ class McapScans : public ::testing::Test {
 
   TemporaryFolder folder;
   const std::filesystem::path file = folder / "log.mcap";
-  Writer writer{file};
+  MessageFile writer{file};
 };
 
 TEST_F(McapScans, OdometryIsInterpolatedToTheScansStamp) {
@@ -258,6 +215,60 @@ TEST_F(McapScans, PatrolsOwnRunLogsAreRead) {
   EXPECT_EQ(count, 99) << "the last has no odometry after it";
 }
 
+/// A robot stands for 3 s and then turns on the spot by 0.5 rad/s for 12 s, of which its odometry makes `odometry_scale` times as much. Its gyro hangs upside
+/// down and has a bias of 0.03 rad/s about its own axis.
+void turn_with_gyro(MessageFile& writer, double odometry_scale, bool has_place = true) {
+  if (has_place) writer.write("/tf_static", 0s, TransformSet{{placed("base_link", "imu", {{0.0, 0.0, 0.0}, quaternion_from_rpy(std::numbers::pi, 0.0, 0.0)})}});
+  for (int tick = 0; tick <= 1500; ++tick) {
+    const Time now = tick * 10ms;
+    const double rate = tick >= 300 ? 0.5 : 0.0, yaw = std::max(0.0, 0.5 * (to_seconds(now) - 3.0));
+    writer.write("/imu/data", now, Imu{.stamp = now, .angular_velocity_radps = {0.0, 0.0, -rate + 0.03}});
+    if (tick % 5 == 0) {
+      OdometryEstimate odometry;
+      odometry.stamp = now;
+      odometry.T_odom_body.rotation = quaternion_from_yaw(odometry_scale * yaw);
+      writer.write("/odom", now, odometry);
+    }
+    if (tick % 20 == 10) writer.write("/scan", now, scan_at(now));
+  }
+  writer.close();
+}
+constexpr double kLastScanTurnRad = 0.5 * (14.9 - 3.0);
+
+// The trapezoid over the jump from standing to 0.5 rad/s, 10 ms, adds 0.0025 rad.
+ScanLogOptions with_imu(const std::string& imu) {
+  ScanLogOptions options;
+  options.imu = imu;
+  options.finds_no_return = false;  // every scan of these files is the same
+  return options;
+}
+
+TEST_F(McapScans, OdometryWhoseTurnsTheGyroContradictsTurnsByTheGyroWithoutItsBias) {
+  turn_with_gyro(writer, 1.2);
+  const Read result = read(with_imu("auto"));
+  EXPECT_NEAR(wrap_angle(result.scans.back().T_odom_body.yaw - kLastScanTurnRad), 0.0, 0.003);
+  EXPECT_THAT(result.summary.found, ElementsAre("odometry turns by the gyro of /imu/data: bias -0.03000 rad/s from 3 s of standing (log.imu)"));
+  const Read wheels = read(with_imu("off"));
+  EXPECT_NEAR(wrap_angle(wheels.scans.back().T_odom_body.yaw - 1.2 * kLastScanTurnRad), 0.0, 1e-6);
+  EXPECT_THAT(wheels.summary.ignored, ElementsAre(Pair("/imu/data", 1501U)));
+}
+
+TEST_F(McapScans, OdometryThatTurnsAsTheGyroDoesIsKeptUnlessAskedFor) {
+  turn_with_gyro(writer, 1.0);
+  const Read kept = read(with_imu("auto"));
+  EXPECT_NEAR(wrap_angle(kept.scans.back().T_odom_body.yaw - kLastScanTurnRad), 0.0, 1e-6);
+  EXPECT_THAT(kept.summary.found, ElementsAre("odometry turns as the gyro does: it is kept (log.imu)"));
+  EXPECT_THAT(read(with_imu("on")).summary.found, ElementsAre(HasSubstr("turns by the gyro of /imu/data")));
+}
+
+TEST_F(McapScans, AGyroThatTurnsTheOtherWayIsNotUsed) {
+  turn_with_gyro(writer, 1.2, false);  // nothing says that it hangs upside down
+  const Read result = read(with_imu("auto"));
+  EXPECT_NEAR(wrap_angle(result.scans.back().T_odom_body.yaw - 1.2 * kLastScanTurnRad), 0.0, 1e-6);
+  EXPECT_THAT(result.summary.found, ElementsAre(HasSubstr("little in common")));
+  EXPECT_THAT(read(with_imu("on")).summary.assumed, ::testing::Contains(Pair(HasSubstr("IMU is level"), 1501U)));
+}
+
 TEST_F(McapScans, OrderAndEqualStampsAreAsInTextLogs) {
   writer.write("/odom", 0s, odometry_at(0s));
   for (const Time stamp : {300ms, 100ms, 200ms, 200ms}) writer.write("/scan", 1s, scan_at(stamp));
@@ -301,7 +312,7 @@ TEST_F(McapScans, MessagesThatCannotBeReadAreRefusedOrSkipped) {
 TEST_F(McapScans, ScansAndPosesThatAreNoneAreNamed) {
   const auto complaint_about = [&](const auto& topic, const auto& message) {
     const std::filesystem::path bad = folder / "bad.mcap";
-    Writer one(bad);
+    MessageFile one(bad);
     one.write(topic, 1s, message);
     one.close();
     try {
@@ -382,7 +393,7 @@ TEST_F(McapScans, AFileWithoutScansOrOdometrySaysSo) {
   writer.write("/odom", 0s, odometry_at(0s));
   writer.close();
   EXPECT_EQ(complaint(), "log.mcap: holds no scan: sensor_msgs/msg/LaserScan is read (1 read)");
-  Writer other(file);
+  MessageFile other(file);
   for (int i = 0; i < 300; ++i) other.write("/scan", i * 100ms, scan_at(i * 100ms));
   other.close();
   EXPECT_EQ(complaint(),

@@ -1,16 +1,15 @@
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
-#include <sys/resource.h>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "app/commands.h"
 #include "app/mapping/neighbour_model.h"
+#include "app/mapping/read_scans.h"
 #include "app/output_directory.h"
-#include "app/progress_bar.h"
+#include "app/process_cost.h"
 #include "core/thread_clock.h"
 #include "io/csv.h"
 #include "io/g2o.h"
@@ -19,6 +18,7 @@
 #include "io/scan_log.h"
 #include "io/settings_yaml.h"
 #include "io/tum.h"
+#include "slam/calibration/calibration.h"
 #include "slam/mapper.h"
 #include "slam/planar_scan.h"
 
@@ -34,6 +34,7 @@ const OutputKind kMapping = {.name = "mapping of a log",
 struct LogMappingSettings {
   std::uint64_t seed = 1;
   io::ScanLogOptions log;
+  slam::Calibration calibration;
   slam::PlanarScanSettings scan;
   slam::MapperSettings slam;
 
@@ -41,18 +42,11 @@ struct LogMappingSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("seed", self.seed);
     visit("log", self.log);
+    visit("calibration", self.calibration);
     visit("scan", self.scan);
     visit("slam", self.slam);
   }
 };
-
-double wall_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-double peak_memory_mb() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
 
 /// What each stretch of scans cost, to see whether it grows with the map.
 class CostTable {
@@ -86,20 +80,19 @@ struct MappedLog {
 bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::string& name, slam::Mapper& mapper, MappedLog& mapped) {
   InterruptGuard guard;
   ProgressBar bar;
+  slam::CalibratedScans calibrated(settings.calibration);
   std::optional<Pose2> T_first_odom, T_odom_last;
-  const double start_s = wall_seconds();
-  while (const std::optional<RecordedScan> recorded = log.next()) {
-    mapper.update(slam::planar_scan(*recorded, settings.scan), recorded->T_odom_body);
-    if (!T_first_odom) T_first_odom = recorded->T_odom_body.inverse();
-    if (T_odom_last) mapped.way_m += (recorded->T_odom_body.position() - T_odom_last->position()).norm();
-    T_odom_last = recorded->T_odom_body;
-    mapped.stamps.push_back(recorded->scan.stamp);
-    mapped.T_odom_body.push_back(*T_first_odom * recorded->T_odom_body);
+  const bool is_whole = read_scans(log, name, guard, bar, [&](RecordedScan& recorded) {
+    calibrated.correct(recorded);
+    mapper.update(slam::planar_scan(recorded, settings.scan), recorded.T_odom_body);
+    if (!T_first_odom) T_first_odom = recorded.T_odom_body.inverse();
+    if (T_odom_last) mapped.way_m += (recorded.T_odom_body.position() - T_odom_last->position()).norm();
+    T_odom_last = recorded.T_odom_body;
+    mapped.stamps.push_back(recorded.scan.stamp);
+    mapped.T_odom_body.push_back(*T_first_odom * recorded.T_odom_body);
     mapped.cost.add(mapped.stamps.size(), mapped.way_m);
-    bar.show(fmt::format("{}  {:3.0f} %  {} scans  {:.0f} times real time", name, 100.0 * log.progress(), mapped.stamps.size(),
-                         mapped.duration_s() / std::max(1e-3, wall_seconds() - start_s)));
-    if (guard.is_interrupted()) return false;
-  }
+  });
+  if (!is_whole) return false;
   bar.show(fmt::format("{}  {} scans, at the end once more over all of them", name, mapped.stamps.size()));
   mapper.finish();
   return !guard.is_interrupted();
@@ -113,13 +106,13 @@ Trajectory trajectory_of(const std::vector<Time>& stamps, const std::vector<Pose
 }
 
 io::Metrics metrics_of(const io::ScanLogSummary& summary, const MappedLog& mapped, const Trajectory& estimate, const PoseGraph& graph) {
-  std::size_t num_loops = 0;
-  for (const PoseGraphEdge& edge : graph.edges) num_loops += edge.kind == PoseGraphEdge::Kind::kLoop ? 1 : 0;
+  std::size_t num_cross_submap = 0;  // loops, and at the end every keyframe's matches with the submaps around it
+  for (const PoseGraphEdge& edge : graph.edges) num_cross_submap += edge.kind == PoseGraphEdge::Kind::kLoop ? 1 : 0;
   std::uint64_t num_skipped = 0;
   for (const auto& [reason, count] : summary.skipped) num_skipped += count;
   return {{"log", {{"scans", mapped.stamps.size()}, {"skipped", num_skipped}, {"duration_s", mapped.duration_s()}, {"odometry_way_m", mapped.way_m}}},
           {"path", {{"poses", estimate.size()}, {"way_m", planar_length_m(estimate)}}},
-          {"graph", {{"nodes", graph.T_map_node.size()}, {"edges", graph.edges.size()}, {"loop_edges", num_loops}}}};
+          {"graph", {{"nodes", graph.T_map_node.size()}, {"edges", graph.edges.size()}, {"cross_submap_edges", num_cross_submap}}}};
 }
 
 }  // namespace
@@ -129,7 +122,9 @@ ExitCode slam_command(const SlamOptions& options) {
   if (options.method) overrides.push_back("slam.method=" + *options.method);
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
   if (options.skip_bad_lines) overrides.push_back("log.skip_bad_lines=true");
-  const auto settings = io::settings_of<LogMappingSettings>(overrides);
+  LogMappingSettings settings;
+  if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
+  io::SettingsReader::read_section("--set", io::document_of(overrides), "", settings);
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
   const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbours_for(settings.slam), settings.seed);
 
@@ -155,9 +150,9 @@ ExitCode slam_command(const SlamOptions& options) {
   io::save_metrics(options.out / "metrics.json", metrics);
   complete_output(options.out);
 
-  fmt::print("{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, {} edges, {} of them loops\n{}\n",
+  fmt::print("{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, {} edges, {} of them to other submaps\n{}\n",
              io::to_text(log->summary()), mapped.stamps.size(), mapped.way_m, settings.slam.method, took_s, mapped.duration_s() / std::max(1e-9, took_s), peak_memory_mb(),
-             graph.T_map_node.size(), graph.edges.size(), metrics["graph"]["loop_edges"].get<std::size_t>(), (options.out / "map.yaml").string());
+             graph.T_map_node.size(), graph.edges.size(), metrics["graph"]["cross_submap_edges"].get<std::size_t>(), (options.out / "map.yaml").string());
   return ExitCode::kDone;
 }
 

@@ -1,11 +1,10 @@
 #include "app/run/run_once.h"
 
-#include <sys/resource.h>
-
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
 #include "app/output_directory.h"
+#include "app/process_cost.h"
 #include "app/run/run_directory.h"
 #include "app/run/run_junit.h"
 #include "app/scoring/score_run.h"
@@ -16,12 +15,6 @@ namespace {
 /// What a resolved scenario says about its making.
 std::string made_by(const std::string& name) {
   return fmt::format("{}, every default written out, by patrol {} with MuJoCo {}", name, PATROL_VERSION, mj_versionString());
-}
-
-double peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
 io::Metrics performance_of(const RunOutcome& outcome) {

@@ -12,70 +12,9 @@ import sys
 import tempfile
 import unittest
 
+from block_log import START_S, carmen_lines, drive
+
 PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-STEP_M, BEAMS, START_S = 0.15, 180, 976052890.25
-
-
-def walls():
-    """Outer walls of 20 m x 14 m, a block in the middle with niches, and cupboards along the walls."""
-    corners = [(0, 0), (20, 0), (20, 14), (0, 14)]
-    segments = list(zip(corners, corners[1:] + corners[:1]))
-    for x0, y0, x1, y1 in [(3, 3, 9, 11), (9, 4, 12, 10), (12, 3, 17, 11), (5, 0, 6.2, 0.5), (13, 0, 13.7, 0.6), (19.4, 5, 20, 7), (8, 13.5, 10, 14), (0, 9, 0.5, 10.4), (0, 4, 0.4, 4.8)]:
-        box = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
-        segments += list(zip(box, box[1:] + box[:1]))
-    return segments
-
-
-def ranges_from(x, y, yaw, segments):
-    found = []
-    for beam in range(BEAMS):
-        angle = yaw - 0.5 * math.pi + beam * math.pi / BEAMS
-        c, s = math.cos(angle), math.sin(angle)
-        nearest = 81.83
-        for (ax, ay), (bx, by) in segments:
-            ex, ey = bx - ax, by - ay
-            determinant = c * ey - s * ex
-            if abs(determinant) < 1e-12:
-                continue
-            along = ((ax - x) * ey - (ay - y) * ex) / determinant
-            share = ((ax - x) * s - (ay - y) * c) / determinant
-            if along > 0.0 and 0.0 <= share <= 1.0:
-                nearest = min(nearest, along)
-        found.append(nearest)
-    return found
-
-
-def drive():
-    """Poses (x, y, yaw) round the block, twice."""
-    corners = [(1.6, 1.5), (18.2, 1.5), (18.2, 12.4), (1.6, 12.4), (1.6, 1.5)]
-    poses = []
-    for _ in range(2):
-        for (ax, ay), (bx, by) in zip(corners, corners[1:]):
-            heading, length = math.atan2(by - ay, bx - ax), math.hypot(bx - ax, by - ay)
-            if poses:
-                turn = math.remainder(heading - poses[-1][2], 2 * math.pi)
-                poses += [(ax, ay, poses[-1][2] + turn * k / 10) for k in range(1, 11)]
-            steps = int(length / STEP_M)
-            poses += [(ax + (bx - ax) * k / steps, ay + (by - ay) * k / steps, heading) for k in range(steps + 1)]
-    return poses
-
-
-def carmen_lines(poses):
-    segments, odometry, last = walls(), (0.0, 0.0, 0.0), None
-    lines = ["# CARMEN Logfile", "PARAM robot_frontlaser_offset 0.0 0.0 host 0.0"]
-    for k, (x, y, yaw) in enumerate(poses):
-        if last:
-            dx, dy = x - last[0], y - last[1]
-            forward = 1.03 * (math.cos(last[2]) * dx + math.sin(last[2]) * dy)
-            turn = math.remainder(yaw - last[2], 2 * math.pi) + 0.01 * abs(forward)
-            odometry = (odometry[0] + forward * math.cos(odometry[2]), odometry[1] + forward * math.sin(odometry[2]), odometry[2] + turn)
-        last = (x, y, yaw)
-        noise = [0.01 * math.sin(12.9898 * (k * BEAMS + beam)) for beam in range(BEAMS)]
-        readings = " ".join(f"{r + n:.2f}" if r < 80 else "81.83" for r, n in zip(ranges_from(x, y, yaw, segments), noise))
-        pose = " ".join(f"{value:.6f}" for value in odometry)
-        stamp = START_S + 0.2 * k
-        lines.append(f"FLASER {BEAMS} {readings} {pose} {pose} {stamp:.6f} host {stamp - START_S:.6f}")
-    return lines
 
 
 class Slam(unittest.TestCase):
@@ -126,7 +65,7 @@ class Slam(unittest.TestCase):
                          ["estimate.tum", "map.pgm", "map.yaml", "metrics.json", "odometry.tum", "performance.csv", "pose_graph.g2o", "settings.yaml"])
         metrics = json.loads((out / "metrics.json").read_text())
         self.assertEqual(metrics["log"]["scans"], len(self.poses))
-        self.assertGreater(metrics["graph"]["loop_edges"], 0)
+        self.assertGreater(metrics["graph"]["cross_submap_edges"], 0)
         self.assertLess(metrics["performance"]["peak_memory_mb"], 300)
         self.assertEqual((out / "pose_graph.g2o").read_text().count("VERTEX_SE2"), metrics["graph"]["nodes"])
 
@@ -136,6 +75,16 @@ class Slam(unittest.TestCase):
         first, second = self.map("first"), self.map("second", log=packed)
         for name in ["estimate.tum", "map.pgm", "pose_graph.g2o"]:
             self.assertEqual((first / name).read_bytes(), (second / name).read_bytes(), name)
+
+    def test_eight_metres_for_no_return_are_found_and_are_no_wall(self):
+        log = self.folder / "eight.log"
+        log.write_text("\n".join(carmen_lines(self.poses, max_range=8.0, no_return="8.00")) + "\n")
+        done = self.patrol("slam", log, "--out", self.folder / "eight")
+        self.assertIn("found: 8 m is no return", done.stdout)
+        self.assertLess(max(self.errors_m(self.folder / "eight")), 0.06)
+        done = self.patrol("slam", log, "--out", self.folder / "walls", "--set", "log.finds_no_return=false")
+        self.assertNotIn("found", done.stdout)
+        self.assertGreater(max(self.errors_m(self.folder / "walls")), 0.06)
 
     def test_relations_score_the_estimate(self):
         out = self.map("scored")

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <sys/resource.h>
+
+#include <chrono>
+
+/// What the program costs, for `performance` in metrics.json and for a person's eyes: no decision may depend on it.
+namespace patrol::app {
+
+/// Of a steady clock: only differences say anything.
+inline double wall_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// The most that this process has held so far, in units of 2^20 bytes.
+inline double peak_memory_mb() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+}  // namespace patrol::app

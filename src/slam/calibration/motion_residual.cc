@@ -1,0 +1,57 @@
+#include "slam/calibration/motion_residual.h"
+
+#include <Eigen/Geometry>
+#include <ceres/jet.h>
+
+#include <array>
+
+namespace patrol::slam {
+namespace {
+
+constexpr std::size_t kSize = 6;
+using Jet = ceres::Jet<double, kSize>;
+
+/// A pose whose angle is not wrapped, to take derivatives through.
+struct Motion {
+  Jet x, y, yaw;
+
+  friend Motion operator*(const Motion& a, const Motion& b) {
+    const Jet c = cos(a.yaw), s = sin(a.yaw);
+    return {a.x + c * b.x - s * b.y, a.y + s * b.x + c * b.y, a.yaw + b.yaw};
+  }
+};
+
+/// The inverse of corrected_step: what odometry makes of a true step.
+Motion as_odometry_sees(const Motion& step, const Jet& distance_scale, const Jet& turn_scale, const Jet& steering) {
+  const Jet half = 0.5 * step.yaw;
+  const Jet c = cos(half), s = sin(half);
+  const Jet ahead = (c * step.x + s * step.y) / distance_scale, left = (c * step.y - s * step.x) / distance_scale;
+  const Jet turn = (step.yaw - steering * ahead) / turn_scale;
+  const Jet co = cos(0.5 * turn), so = sin(0.5 * turn);
+  return {co * ahead - so * left, so * ahead + co * left, turn};
+}
+
+}  // namespace
+
+MotionResidual motion_residual(const MotionPair& pair, const CalibrationVector& parameters, const MotionModelSettings& odometry) {
+  std::array<Jet, kSize> p;
+  for (std::size_t i = 0; i < kSize; ++i) p[i] = Jet(parameters[static_cast<Eigen::Index>(i)], static_cast<int>(i));
+  const Motion T_body_lidar{p[0], p[1], p[2]};
+  const Jet c = cos(p[2]), s = sin(p[2]);
+  const Motion T_lidar_body{-c * p[0] - s * p[1], s * p[0] - c * p[1], -p[2]};
+  Motion foretold{Jet(0.0), Jet(0.0), Jet(0.0)};
+  for (const Pose2& step : pair.lidar_steps) {
+    foretold = foretold * as_odometry_sees(T_body_lidar * Motion{Jet(step.x), Jet(step.y), Jet(step.yaw)} * T_lidar_body, p[3], p[4], p[5]);
+  }
+  MotionResidual residual;
+  residual.error = {foretold.x.a - pair.odometry.x, foretold.y.a - pair.odometry.y, wrap_angle(foretold.yaw.a - pair.odometry.yaw)};
+  residual.jacobian << foretold.x.v.transpose(), foretold.y.v.transpose(), foretold.yaw.v.transpose();
+  Eigen::Matrix3d R_body_lidar = Eigen::Matrix3d::Identity();
+  R_body_lidar.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(parameters[2]).toRotationMatrix();
+  residual.lidar_covariance = R_body_lidar * pair.lidar_covariance * R_body_lidar.transpose();
+  // Not of the motion as recorded, whose error would choose its own weight.
+  residual.odometry_covariance = predict_motion({}, {foretold.x.a, foretold.y.a, wrap_angle(foretold.yaw.a)}, 0.0, odometry).covariance;
+  return residual;
+}
+
+}  // namespace patrol::slam

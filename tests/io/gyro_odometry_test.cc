@@ -1,0 +1,99 @@
+#include "io/gyro_odometry.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/pose_near.h"
+
+namespace patrol::io {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kBias = 0.02;
+
+struct Drive {
+  double slope = 1.0;          ///< odometry's turn over the true one
+  double gyro_factor = 1.0;
+  double standing_s = 5.0;     ///< at the start
+  bool has_gap = false;        ///< of the gyro, from 20 s to 22 s
+};
+
+/// 60 s at 0.5 m/s, turning by 0.5 sin(t) rad/s: the gyro 100 times a second, a scan every 0.2 s. Gives what is made of the last scan, and the truth.
+struct Driven {
+  GyroOdometry gyro;
+  Pose2 T_odom, T_fused, T_true;
+};
+Driven drive(const Drive& how) {
+  Driven driven;
+  for (int tick = 0; tick <= 6000; ++tick) {
+    const Time now = tick * 10ms;
+    const double t = to_seconds(now) - how.standing_s, rate = t > 0.0 ? 0.5 * std::sin(t) : 0.0;
+    if (!how.has_gap || now <= 20s || now >= 22s) driven.gyro.add(now, how.gyro_factor * rate + kBias);
+    const double turn = t > 0.0 ? 0.01 * 0.5 * std::sin(t - 0.005) : 0.0, way = t > 0.0 ? 0.005 : 0.0;
+    if (tick > 0) {
+      driven.T_true = driven.T_true * Pose2{way * std::cos(0.5 * turn), way * std::sin(0.5 * turn), turn};
+      driven.T_odom = driven.T_odom * Pose2{way * std::cos(0.5 * how.slope * turn), way * std::sin(0.5 * how.slope * turn), how.slope * turn};
+    }
+    if (tick % 20 == 0) driven.T_fused = driven.gyro.fuse(now, driven.T_odom);
+  }
+  return driven;
+}
+
+// The chord of a step of 0.1 m that odometry turns by 0.12 rad instead of 0.1 is 0.1 * (0.12^2 - 0.1^2) / 24 = 0.018 mm too short: 5 mm in 275 steps.
+TEST(GyroOdometry, TurnsByTheGyroWithoutTheBiasThatItShowedStanding) {
+  const Driven driven = drive({.slope = 1.2});
+  EXPECT_GT((driven.T_odom.position() - driven.T_true.position()).norm(), 0.5);
+  EXPECT_THAT(driven.T_fused, test::Pose2Near(driven.T_true, 0.005, 1e-3));
+  EXPECT_NEAR(driven.gyro.bias_radps().value(), kBias, 1e-4);
+  EXPECT_NEAR(driven.gyro.standing_s(), 5.0, 0.21);
+  EXPECT_EQ(driven.gyro.uncovered_s(), 0.0);
+  EXPECT_EQ(driven.gyro.way_without_bias_s(), 0.0);
+}
+
+TEST(GyroOdometry, NeverSeenStandingItsBiasIsTakenAsNoneAndTheTimeSaid) {
+  const Driven driven = drive({.slope = 1.2, .standing_s = 0.0});
+  EXPECT_FALSE(driven.gyro.bias_radps());
+  EXPECT_NEAR(wrap_angle(driven.T_fused.yaw - driven.T_true.yaw - 60.0 * kBias), 0.0, 0.01);
+  EXPECT_NEAR(driven.gyro.way_without_bias_s(), 60.0, 0.5);
+}
+
+TEST(GyroOdometry, AnEarlierBiasCountsUntilTheRobotStands) {
+  GyroOdometry gyro(0.3);
+  for (int tick = 0; tick <= 100; ++tick) gyro.add(tick * 100ms, tick < 40 ? 0.5 : 0.02);
+  gyro.fuse(0s, {});
+  EXPECT_NEAR(gyro.fuse(2s, {1.0, 0.0, 0.0}).yaw, 2.0 * (0.5 - 0.3), 1e-12);
+  gyro.fuse(4s, {2.0, 0.0, 0.0});
+  for (int second = 5; second <= 9; ++second) gyro.fuse(second * 1s, {2.0, 0.0, 0.0});
+  EXPECT_NEAR(gyro.bias_radps().value(), 0.02, 1e-9);
+  EXPECT_EQ(gyro.way_without_bias_s(), 0.0);
+}
+
+TEST(GyroOdometry, WhereTheGyroIsSilentOdometryTurns) {
+  const Driven driven = drive({.slope = 1.0, .has_gap = true});
+  EXPECT_THAT(driven.T_fused, test::Pose2Near(driven.T_true, 0.003, 1e-3));
+  EXPECT_NEAR(driven.gyro.uncovered_s(), 2.0, 0.41);
+}
+
+TEST(GyroOdometry, TellsAgreementFromContradictionFromNothingInCommon) {
+  EXPECT_EQ(GyroOdometry().verdict(), GyroVerdict::kUnknown);
+  EXPECT_EQ(drive({.slope = 1.005}).gyro.verdict(), GyroVerdict::kAgrees) << "the bias does not matter";
+  EXPECT_EQ(drive({.slope = 1.1}).gyro.verdict(), GyroVerdict::kContradicts);
+  EXPECT_EQ(drive({.slope = 0.9}).gyro.verdict(), GyroVerdict::kContradicts);
+  EXPECT_EQ(drive({.gyro_factor = -1.0}).gyro.verdict(), GyroVerdict::kUnrelated) << "hangs upside down";
+  EXPECT_EQ(drive({.gyro_factor = 0.0}).gyro.verdict(), GyroVerdict::kUnknown) << "another axis";
+}
+
+TEST(GyroOdometry, StampsThatDoNotGrowAreDropped) {
+  GyroOdometry gyro;
+  gyro.add(0s, 1.0);
+  gyro.add(200ms, 1.0);
+  gyro.add(100ms, 50.0);
+  gyro.add(400ms, 1.0);
+  gyro.fuse(0s, {});
+  EXPECT_NEAR(gyro.fuse(400ms, {0.4, 0.0, 0.0}).yaw, 0.4, 1e-12);
+}
+
+}  // namespace
+}  // namespace patrol::io
