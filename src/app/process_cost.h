@@ -1,5 +1,6 @@
 #pragma once
 
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <chrono>
@@ -15,6 +16,12 @@ inline double peak_memory_mb() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+/// What the heap holds now, in units of 10^6 bytes.
+inline double heap_mb() {
+  const struct mallinfo2 info = ::mallinfo2();
+  return 1e-6 * static_cast<double>(info.uordblks + info.hblkhd);
 }
 
 }  // namespace patrol::app

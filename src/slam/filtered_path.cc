@@ -5,10 +5,10 @@ namespace patrol::slam {
 SlamUpdate FilteredPath::update(const LevelScan& scan, const Pose2& T_odom_body) {
   const SlamUpdate update = filter_.update(scan, T_odom_body);
   if (update.is_keyframe) {
-    ++num_keyframes_;
+    keyframe_scans_.push_back(path_.size());
     T_odom_keyframe_ = T_odom_body;
   }
-  path_.push_back({num_keyframes_ - 1, T_odom_keyframe_.inverse() * T_odom_body});
+  path_.push_back({keyframe_scans_.size() - 1, T_odom_keyframe_.inverse() * T_odom_body});
   return update;
 }
 

@@ -18,6 +18,8 @@ class FilteredPath {
   const GridSlam& filter() const { return filter_; }
   /// [scan]: of the particle that is the best now, with the whole way that it has come.
   std::vector<Pose2> path() const;
+  /// [keyframe]: the number of its scan.
+  const std::vector<std::size_t>& keyframe_scans() const { return keyframe_scans_; }
 
  private:
   /// A scan beside the keyframe before it.
@@ -29,7 +31,7 @@ class FilteredPath {
   GridSlam filter_;
   std::vector<TrackedPose> path_;
   Pose2 T_odom_keyframe_;
-  std::size_t num_keyframes_ = 0;
+  std::vector<std::size_t> keyframe_scans_;
 };
 
 }  // namespace patrol::slam

@@ -15,6 +15,7 @@ class MapperOf final : public Mapper {
   std::vector<Pose2> path() const override { return method_.path(); }
   OccupancyGrid map() const override { return method_.map(); }
   PoseGraph graph() const override { return method_.graph(); }
+  std::vector<std::size_t> node_scans() const override { return method_.node_scans(); }
 
  private:
   Method method_;

@@ -49,6 +49,8 @@ class Mapper {
   virtual OccupancyGrid map() const = 0;
   /// Keyframes and what is known of how they lie to each other. A method without loop closures has odometry's edges only.
   virtual PoseGraph graph() const = 0;
+  /// [node of the graph]: the number of the scan that was taken there.
+  virtual std::vector<std::size_t> node_scans() const = 0;
 };
 
 /// `neighbours` recognises neighbouring submaps, for submap_rbpf.

@@ -37,6 +37,7 @@ class TrackedRbpf {
   std::vector<Pose2> path() const { return filtered_.path(); }
   OccupancyGrid map() const { return filtered_.filter().map(); }
   PoseGraph graph() const;
+  std::vector<std::size_t> node_scans() const { return filtered_.keyframe_scans(); }
 
  private:
   ScanTracker tracker_;

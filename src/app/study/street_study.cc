@@ -1,20 +1,13 @@
 #include "app/study/street_study.h"
 
-#include <malloc.h>
-
-#include <filesystem>
 #include <limits>
 
 #include <fmt/format.h>
 
-#include "app/run/run_directory.h"
-#include "app/run/run_once.h"
-#include "app/run/run_record.h"
-#include "app/scenario.h"
-#include "app/scoring/true_map.h"
+#include "app/process_cost.h"
 #include "app/stack/log_mapper.h"
+#include "app/study/study_run.h"
 #include "app/temporary_folder.h"
-#include "render/report/map_picture.h"
 #include "score/map_error.h"
 #include "score/station_error.h"
 #include "score/trajectory_error.h"
@@ -49,39 +42,13 @@ const std::vector<StudyFigure> kFigures = {{.name = "box 1", .unit = "m", .is_co
                                            {.name = "time", .unit = "s", .is_of_the_clock = true},
                                            {.name = "memory", .unit = "MB", .is_of_the_clock = true}};
 
-/// A patrol that was run, and its truth.
-struct Patrol {
-  Scenario scenario;
-  ScenarioFiles files;
-  std::filesystem::path log;
-  RunRecord record;
-  TrueMap truth;
-};
-
-Patrol patrol_the_street(std::uint64_t seed, const std::filesystem::path& folder) {
-  const std::filesystem::path root = find_data_root("");
-  Patrol patrol{.scenario = load_scenario(root / kScenario, {fmt::format("seed={}", seed)}), .files = {}, .log = {}, .record = {}, .truth = {}};
-  patrol.files = load_scenario_files(patrol.scenario, root);
-  Unobserved nobody;
-  run_once(patrol.scenario, "patrol", root, folder, nobody);
-  patrol.log = RunDirectory{folder}.log();
-  patrol.record = read_run_record(patrol.log);
-  patrol.truth = true_map(patrol.record, patrol.scenario, patrol.files);
-  return patrol;
-}
-
-double heap_mb() {
-  const struct mallinfo2 info = ::mallinfo2();
-  return 1e-6 * static_cast<double>(info.uordblks + info.hblkhd);
-}
-
 struct Mapped {
   Trajectory T_map_body;
   OccupancyGrid map;
   double seconds = 0.0, memory_mb = 0.0;
 };
 
-Mapped map_by(const GridMethod& method, const Patrol& patrol) {
+Mapped map_by(const GridMethod& method, const StudyRun& patrol) {
   StackSettings settings = patrol.scenario.stack;
   settings.slam.proposal = method.proposal;
   settings.slam.optimizer = method.optimizer;
@@ -92,7 +59,7 @@ Mapped map_by(const GridMethod& method, const Patrol& patrol) {
   return {.T_map_body = mapper.T_map_body(), .map = mapper.map(), .seconds = mapper.seconds(), .memory_mb = heap_mb() - before_mb};
 }
 
-std::vector<double> figures_of(const Mapped& mapped, const Patrol& patrol) {
+std::vector<double> figures_of(const Mapped& mapped, const StudyRun& patrol) {
   const Pose2 T_world_map = score::join_at_start(mapped.T_map_body, patrol.record.T_world_body);
   std::vector<double> figures;
   for (const score::StationError& station : score::station_errors(patrol.files.route, patrol.record.events, T_world_map, patrol.record.T_world_body, mapped.map, patrol.truth.reference)) {
@@ -108,33 +75,20 @@ std::vector<double> figures_of(const Mapped& mapped, const Patrol& patrol) {
 
 StudySample run(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
-  const Patrol patrol = patrol_the_street(seed, folder.path());
+  const StudyRun patrol = run_for_study(kScenario, {}, seed, folder.path());
   StudySample sample;
   for (const GridMethod& method : kMethods) sample.push_back(figures_of(map_by(method, patrol), patrol));
   return sample;
 }
 
-std::vector<Eigen::Vector2d> positions_of(const Trajectory& trajectory, const Pose2& T_world_frame) {
-  std::vector<Eigen::Vector2d> positions;
-  for (const StampedPose& entry : trajectory) positions.push_back(T_world_frame * to_planar(entry.pose).position());
-  return positions;
-}
-
 /// The maps of all methods, each in the colours of its errors.
 std::vector<render::Section> illustrate(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
-  const Patrol patrol = patrol_the_street(seed, folder.path());
+  const StudyRun patrol = run_for_study(kScenario, {}, seed, folder.path());
   std::vector<render::Section> sections;
   for (const GridMethod& method : kMethods) {
     const Mapped mapped = map_by(method, patrol);
-    const Pose2 T_world_map = score::join_at_start(mapped.T_map_body, patrol.record.T_world_body);
-    const std::vector<render::MapPath> paths = {{"true path", render::Ink::kTruth, {positions_of(patrol.record.T_world_body, {})}},
-                                                {"estimated path", render::Ink::kEstimate, {positions_of(mapped.T_map_body, T_world_map)}}};
-    Eigen::AlignedBox2d shown;
-    for (const Eigen::Vector2d& p_m : paths.front().pieces_m.front()) shown.extend(p_m);
-    const render::MapLayers layers{.built = mapped.map, .T_world_map = T_world_map, .truth = score::seeable_part(patrol.truth.reference),
-                                   .error_m = score::map_error(mapped.map, T_world_map, patrol.truth.reference).cells_m};
-    sections.push_back({method.name, {render::MapBlock{.picture = render::map_picture(layers, shown), .paths = paths, .marks = {}}}});
+    sections.push_back({method.name, {mapped_block(mapped.map, mapped.T_map_body, patrol)}});
   }
   return sections;
 }

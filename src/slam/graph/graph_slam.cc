@@ -181,6 +181,14 @@ void GraphSlam::refine() {
   }
 }
 
+std::vector<std::size_t> GraphSlam::node_scans() const {
+  std::vector<std::size_t> scans;
+  for (std::size_t i = 0; i < path_.size(); ++i) {
+    if (path_[i].keyframe == static_cast<int>(scans.size())) scans.push_back(i);
+  }
+  return scans;
+}
+
 // A scan between two keyframes is moved with both, by how near it is to each.
 std::vector<Pose2> GraphSlam::path() const {
   std::vector<Pose2> T_map_body;

@@ -83,6 +83,8 @@ class GraphSlam {
   /// [scan]: of every scan that was given, as is believed now.
   std::vector<Pose2> path() const;
   const PoseGraph& graph() const { return graph_; }
+  /// [keyframe]: the number of its scan.
+  std::vector<std::size_t> node_scans() const;
   const LoopCounts& loop_counts() const { return loop_counts_; }
   OccupancyGrid map() const;
 

@@ -75,6 +75,7 @@ class SubmapRbpf {
   std::vector<Pose2> path() const;
   /// Nodes are the submaps.
   const PoseGraph& graph() const { return graph_; }
+  std::vector<std::size_t> node_scans() const { return first_scans_; }
   OccupancyGrid map() const;
 
   /// Two submaps that were compared.

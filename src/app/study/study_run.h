@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/run/run_record.h"
+#include "app/scenario.h"
+#include "app/scoring/true_map.h"
+#include "core/grid.h"
+#include "render/report/blocks.h"
+
+namespace patrol::app {
+
+/// A scenario that was run, and its truth.
+struct StudyRun {
+  Scenario scenario;
+  ScenarioFiles files;
+  std::filesystem::path log;
+  RunRecord record;
+  TrueMap truth;
+};
+
+/// `scenario` below the data root; its files are left in `folder`. Throws InputError like run_once.
+StudyRun run_for_study(const std::string& scenario, const std::vector<std::string>& overrides, std::uint64_t seed, const std::filesystem::path& folder);
+
+/// A map that was built of its log, in the colours of its errors, and both paths.
+render::MapBlock mapped_block(const OccupancyGrid& map, const Trajectory& T_map_body, const StudyRun& run);
+
+}  // namespace patrol::app
