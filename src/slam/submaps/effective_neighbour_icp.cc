@@ -84,15 +84,15 @@ LineEquations linearize(const std::vector<Pair>& pairs, const IcpPoints& target,
     const Eigen::Vector2d p_target = T_target_source * points_source[pair.source], arm = p_target - T_target_source.position();
     const Eigen::Vector3d J(n.x(), n.y(), n.y() * arm.x() - n.x() * arm.y());
     const Eigen::Vector2d error = p_target - target.points()[pair.target];
-    const double kernel = 1.0 / (1.0 + std::pow(pair.distance_m / settings.line_kernel_m, 2));
-    const double weight = kernel * std::pow(surface.straightness / settings.point_std_m, 2);
-    sum.H += weight * J * J.transpose();
-    sum.b -= weight * n.dot(error) * J;
+    const double straight = surface.straightness * surface.straightness, round = (1.0 - surface.straightness) * (1.0 - surface.straightness);
+    const double squared_m2 = straight * std::pow(n.dot(error), 2) + round * error.squaredNorm();
+    const double weight = 1.0 / (1.0 + squared_m2 / (settings.line_kernel_m * settings.line_kernel_m)) / (settings.point_std_m * settings.point_std_m);
+    sum.H += weight * straight * J * J.transpose();
+    sum.b -= weight * straight * n.dot(error) * J;
     Eigen::Matrix<double, 2, 3> K;
     K << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x();
-    const double round = kernel * std::pow((1.0 - surface.straightness) / settings.point_std_m, 2);
-    sum.H += round * K.transpose() * K;
-    sum.b -= round * K.transpose() * error;
+    sum.H += weight * round * K.transpose() * K;
+    sum.b -= weight * round * K.transpose() * error;
   }
   return sum;
 }

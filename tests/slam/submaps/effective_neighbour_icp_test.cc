@@ -162,7 +162,7 @@ TEST(AlignIcp, ACorridorTellsAcrossAndHeadingButNotAlong) {
   const Points target = sample_walls(corridor, {}, {.std_m = 0.01, .seed = 1});
   const Points source = sample_walls(corridor, {}, {.phase = 0.5, .std_m = 0.01, .seed = 2}, [](const auto& p) { return std::abs(p.x()) < 8.0; });
   const IcpSettings settings;
-  const auto result = align_icp(IcpPoints(target, settings), IcpPoints(source, settings), {0.4, 0.2, 0.03}, settings);
+  const auto result = align_icp(IcpPoints(target, settings), IcpPoints(source, settings), {0.4, 0.1, 0.01}, settings);
   ASSERT_TRUE(result);
   EXPECT_NEAR(result->T_target_source.y, 0.0, 0.005);
   EXPECT_NEAR(result->T_target_source.yaw, 0.0, 0.1 * kDeg);

@@ -8,10 +8,12 @@
 
 namespace patrol::test {
 
-/// Votes that need no training: whatever the matching lays together well, where both have looked, are neighbours.
+/// Votes that need no training: whatever the matching lays together well, near to where it was predicted, are neighbours.
 inline BoostedStumps agreeing_neighbours() {
   return {.features = slam::pair_feature_names(),
-          .stumps = {{.feature = 13, .threshold = 0.8, .sign_above = 1, .weight = 2.0}, {.feature = 11, .threshold = 0.3, .sign_above = 1, .weight = 1.0}}};
+          .stumps = {{.feature = 13, .threshold = 0.8, .sign_above = 1, .weight = 2.0},
+                     {.feature = 12, .threshold = 3.0, .sign_above = -1, .weight = 2.0},
+                     {.feature = 11, .threshold = 0.3, .sign_above = 1, .weight = 1.0}}};
 }
 
 struct SubmapDrive {
