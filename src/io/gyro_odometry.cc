@@ -16,6 +16,12 @@ constexpr double kEnoughTurnsRad2 = 0.05;     ///< sum of squares over the steps
 constexpr double kSlopeTol = 0.02, kResidualTol = 0.05;  ///< of turns that agree
 constexpr double kSlopeLimit = 0.5, kResidualLimit = 0.5;  ///< of turns that have anything in common
 
+/// The same way, seen from the middle of the turn.
+Pose2 with_turn(const Pose2& step, double turn_rad) {
+  const Eigen::Vector2d move = Eigen::Rotation2Dd(0.5 * (turn_rad - step.yaw)) * step.position();
+  return {move.x(), move.y(), wrap_angle(turn_rad)};
+}
+
 }  // namespace
 
 void GyroOdometry::add(Time stamp, double yaw_rate_radps) {
@@ -49,19 +55,22 @@ Pose2 GyroOdometry::fuse(Time stamp, const Pose2& T_odom_body) {
   if (!last_stamp_) {
     T_fused_last_ = T_odom_body;
   } else {
-    Pose2 step = T_odom_last_.inverse() * T_odom_body;
+    const Pose2 step = T_odom_last_.inverse() * T_odom_body;
     const double dt_s = to_seconds(stamp - *last_stamp_);
     const bool is_covered = heading_rad && last_heading_rad_;
     if (!is_covered) uncovered_s_ += dt_s;
     const double turn_rad = turn_of_step(step, dt_s, is_covered ? std::optional(*heading_rad - *last_heading_rad_) : std::nullopt);
-    const Eigen::Vector2d move = Eigen::Rotation2Dd(0.5 * (turn_rad - step.yaw)) * step.position();
-    step = {move.x(), move.y(), wrap_angle(turn_rad)};
-    T_fused_last_ = T_fused_last_ * step;
+    T_fused_last_ = T_fused_last_ * with_turn(step, turn_rad);
   }
   last_stamp_ = stamp;
   last_heading_rad_ = heading_rad;
   T_odom_last_ = T_odom_body;
   return T_fused_last_;
+}
+
+Pose2 GyroOdometry::turned(const Pose2& motion, Time begin, Time end) const {
+  const std::optional<double> begin_rad = heading_at(begin), end_rad = heading_at(end);
+  return begin_rad && end_rad ? with_turn(motion, *end_rad - *begin_rad - bias_radps().value_or(0.0) * to_seconds(end - begin)) : motion;
 }
 
 double GyroOdometry::turn_of_step(const Pose2& step, double dt_s, std::optional<double> gyro_rad) {

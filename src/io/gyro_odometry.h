@@ -30,6 +30,9 @@ class GyroOdometry {
   /// By growing stamp, one for each scan; begins where odometry has the first.
   Pose2 fuse(Time stamp, const Pose2& T_odom_body);
 
+  /// A motion of odometry's in between, with the gyro's turn: that of a scan from its first beam to its last.
+  Pose2 turned(const Pose2& motion, Time begin, Time end) const;
+
   GyroVerdict verdict() const;
   std::optional<double> bias_radps() const;
   double standing_s() const { return standing_s_; }

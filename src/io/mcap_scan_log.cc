@@ -76,7 +76,10 @@ std::optional<RecordedScan> McapScanLog::next() {
     if (std::optional<RecordedScan> scan = sorter_.take(is_at_end_)) {
       count_given_out(*scan);
       const Pose2 T_fused_body = gyro_.fuse(scan->scan.stamp, scan->T_odom_body);
-      if (options_.imu == "on" && !imu_topic_.empty()) scan->T_odom_body = T_fused_body;
+      if (options_.imu == "on" && !imu_topic_.empty()) {
+        scan->T_odom_body = T_fused_body;
+        scan->T_first_last = gyro_.turned(scan->T_first_last, scan->scan.stamp, last_beam(scan->scan));
+      }
       return scan;
     }
     if (is_at_end_) {

@@ -85,6 +85,14 @@ TEST(GyroOdometry, TellsAgreementFromContradictionFromNothingInCommon) {
   EXPECT_EQ(drive({.gyro_factor = 0.0}).gyro.verdict(), GyroVerdict::kUnknown) << "another axis";
 }
 
+TEST(GyroOdometry, TurnsWithinAScanToo) {
+  GyroOdometry gyro(0.1);
+  for (int tick = 0; tick <= 10; ++tick) gyro.add(tick * 10ms, 1.1);
+  const Pose2 turned = gyro.turned({0.05, 0.0, 0.0}, 20ms, 70ms);
+  EXPECT_THAT(turned, test::Pose2Near(Pose2{0.05 * std::cos(0.025), 0.05 * std::sin(0.025), 0.05}, 1e-12, 1e-12));
+  EXPECT_THAT(gyro.turned({0.05, 0.0, 0.01}, 70ms, 120ms), test::Pose2Near(Pose2{0.05, 0.0, 0.01}, 0.0, 0.0)) << "not covered";
+}
+
 TEST(GyroOdometry, StampsThatDoNotGrowAreDropped) {
   GyroOdometry gyro;
   gyro.add(0s, 1.0);

@@ -16,6 +16,7 @@ void CalibratedScans::correct(RecordedScan& recorded) {
   T_corrected_last_ = T_odom_last_ ? T_corrected_last_ * corrected_step(T_odom_last_->inverse() * T_odom_now, calibration_) : T_odom_now;
   T_odom_last_ = T_odom_now;
   recorded.T_odom_body = T_corrected_last_;
+  recorded.T_first_last = corrected_step(recorded.T_first_last, calibration_);
 }
 
 }  // namespace patrol::slam

@@ -15,7 +15,8 @@ namespace patrol::slam {
 ///
 /// the three numbers of a differential drive whose two radii and track are not what its software takes them for (Censi, Franchi, Marchionni, Oriolo,
 /// "Simultaneous calibration of odometry and sensor parameters for mobile robots", IEEE T-RO 29(2), 2013, eq. 1), but for the move that unequal wheels make while
-/// turning on the spot: nothing tells it from the lidar sitting farther to one side, so lidar_y_m is from the middle that odometry takes itself to turn about.
+/// turning on the spot: nothing tells it from a lidar that sits elsewhere. The lidar's place is that seen from the point that moves as odometry says; on tracks,
+/// which turn about where they grip, that is not quite the body's origin.
 struct Calibration {
   bool places_lidar = false;        ///< the lidar sits where the next three say, not where the log has it
   double lidar_x_m = 0.0;           ///< in body

@@ -40,6 +40,7 @@ void MotionPairs::add(const RecordedScan& recorded) {
   RecordedScan guess = recorded;
   known_.correct(guess);
   const Pose2 T_odom_lidar = guess.T_odom_body * guess.T_body_lidar;
+  guess.T_first_last = guess.T_body_lidar.inverse() * guess.T_first_last * guess.T_body_lidar;
   guess.T_body_lidar = {};
   const TrackedScan tracked = tracker_.update(planar_scan(guess, scan_), T_odom_lidar);
   lidar_steps_.push_back(T_local_last_.inverse() * tracked.T_local_body);

@@ -54,5 +54,13 @@ TEST(CalibratedScans, GoOnFromTheFirstScanAndPutTheLidarInItsPlace) {
   EXPECT_EQ(third.T_body_lidar.x, 0.3);
 }
 
+TEST(CalibratedScans, TheWayWithinAScanIsPutRightToo) {
+  CalibratedScans scans({.distance_scale = 2.0, .turn_scale = 0.5});
+  RecordedScan scan = at({});
+  scan.T_first_last = {0.02, 0.0, 0.0};
+  scans.correct(scan);
+  EXPECT_THAT(scan.T_first_last, Pose2Near(Pose2{0.04, 0.0, 0.0}, kExactTol, kExactTol));
+}
+
 }  // namespace
 }  // namespace patrol::slam

@@ -5,6 +5,7 @@
 #include "slam/calibration/calibrate.h"
 #include "tests/slam/calibration/calibration_world.h"
 #include "tests/slam/graph/office_world.h"
+#include "tests/support/pose_near.h"
 
 namespace patrol::slam {
 namespace {
@@ -56,6 +57,32 @@ TEST(MotionPairs, StretchesAreHalfAMetreOrAThirdOfARadianAndTheLidarsOwn) {
   }
   // Straight ahead the lidar, turned by 2 degrees to the left, sees itself move to its right.
   EXPECT_NEAR(std::atan2(pairs[3].lidar().y, pairs[3].lidar().x), -2.0 * std::numbers::pi / 180.0, 0.005);
+}
+
+// The lidar's own motion from its first beam to its last is not the body's: a quarter of a metre ahead it moves sideways while the body turns on the spot.
+TEST(MotionPairs, BeamsThatWereFiredLaterAreSeenFromWhereTheLidarWas) {
+  const test::RoomWorld office = test::make_office();
+  Calibration worn;
+  worn.places_lidar = true;
+  worn.lidar_x_m = 0.25;
+  const RandomStream none(1, "test/none");
+  MotionPairs pairs({}, {}, worn);
+  constexpr double kTurn = 0.15;  // from scan to scan
+  constexpr int kBeams = 360;
+  for (int k = 0; k < 60; ++k) {
+    const double turn = k % 2 == 0 ? 0.02 : 0.12;  // of it within the scan
+    LaserScan scan{.stamp = from_seconds(0.2 * k), .angle_increment_rad = 2.0 * std::numbers::pi / kBeams, .range_max_m = 30.0, .ranges_m = {}, .intensities = {}};
+    for (std::size_t beam = 0; beam < kBeams; ++beam) {
+      const Pose2 T_world_body{12.0, 4.2, kTurn * k + turn * static_cast<double>(beam) / (kBeams - 1)};
+      scan.ranges_m.push_back(static_cast<float>(office.ranges_m(T_world_body * worn.T_body_lidar(), kBeams, 30.0)[beam]));
+    }
+    pairs.add({.scan = scan, .T_odom_body = {0.0, 0.0, wrap_angle(kTurn * k)}, .T_body_lidar = {}, .T_first_last = {0.0, 0.0, turn}});
+  }
+  ASSERT_GT(pairs.pairs().size(), 10U);
+  for (const MotionPair& pair : pairs.pairs()) {
+    const Pose2 truth = worn.T_body_lidar().inverse() * pair.odometry * worn.T_body_lidar();
+    EXPECT_THAT(pair.lidar(), test::Pose2Near(truth, 0.006, 0.003));
+  }
 }
 
 // The tracker takes odometry's word along the corridor, and the covariance says that the lidar knows nothing of it.
