@@ -6,6 +6,7 @@ usage: slam_test.py PATROL SOURCE_DIR
 import gzip
 import json
 import math
+import os
 import pathlib
 import subprocess
 import sys
@@ -53,8 +54,8 @@ class Slam(unittest.TestCase):
             found.append(math.hypot(float(row[1]) - tx, float(row[2]) - ty))
         return found
 
-    def test_both_methods_follow_to_centimetres_where_odometry_is_metres_off(self):
-        for method, limit_m in [("graph", 0.04), ("rbpf", 0.12)]:
+    def test_all_methods_follow_to_centimetres_where_odometry_is_metres_off(self):
+        for method, limit_m in [("graph", 0.04), ("submap_rbpf", 0.12), ("rbpf", 0.12)]:
             out = self.map(method, "--method", method)
             self.assertLess(max(self.errors_m(out)), limit_m, method)
         self.assertGreater(max(self.errors_m(out, "odometry.tum")), 3.0)
@@ -75,6 +76,17 @@ class Slam(unittest.TestCase):
         first, second = self.map("first"), self.map("second", log=packed)
         for name in ["estimate.tum", "map.pgm", "pose_graph.g2o"]:
             self.assertEqual((first / name).read_bytes(), (second / name).read_bytes(), name)
+
+    def test_one_core_and_two_give_the_same_bytes(self):
+        for method in ["graph", "submap_rbpf"]:
+            outs = []
+            for cores in [{0}, os.sched_getaffinity(0)]:
+                out = self.folder / f"{method}_{len(cores)}_cores_{len(outs)}"
+                subprocess.run([PATROL, "slam", self.log, "--method", method, "--out", out], capture_output=True, timeout=200, cwd=SOURCE, check=True,
+                               preexec_fn=lambda: os.sched_setaffinity(0, cores), env={**os.environ, "OMP_NUM_THREADS": str(len(cores))})
+                outs.append(out)
+            for name in ["estimate.tum", "map.pgm", "pose_graph.g2o"]:
+                self.assertEqual((outs[0] / name).read_bytes(), (outs[1] / name).read_bytes(), name)
 
     def test_eight_metres_for_no_return_are_found_and_are_no_wall(self):
         log = self.folder / "eight.log"
