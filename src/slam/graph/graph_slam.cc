@@ -9,8 +9,35 @@
 #include "slam/map_rendering.h"
 
 namespace patrol::slam {
+namespace {
+
+/// The nearest of those that stand beside their distances, the nearest first.
+std::vector<int> nearest(std::vector<std::pair<double, int>> by_distance, int limit) {
+  std::sort(by_distance.begin(), by_distance.end());
+  if (by_distance.size() > static_cast<std::size_t>(limit)) by_distance.resize(static_cast<std::size_t>(limit));
+  std::vector<int> chosen;
+  for (const auto& [distance_m, index] : by_distance) chosen.push_back(index);
+  return chosen;
+}
+
+}  // namespace
+
+void LoopCounts::add(MatchFailure failure) {
+  ++searched;
+  switch (failure) {
+    case MatchFailure::kNone: ++closed; break;
+    case MatchFailure::kNotFound: ++not_found; break;
+    case MatchFailure::kAmbiguous: ++ambiguous; break;
+    case MatchFailure::kNoOverlap: ++no_overlap; break;
+    case MatchFailure::kMismatch: ++mismatched; break;
+  }
+}
+
 GraphSlam::GraphSlam(const GraphSlamSettings& settings)
-    : settings_(settings), tracker_(settings.tracking), cache_(static_cast<std::size_t>(settings.cached_submaps)) {
+    : settings_(settings),
+      drawing_{.resolution_m = settings.tracking.resolution_m, .max_extent_m = settings.tracking.max_extent_m, .integration = settings.tracking.integration},
+      tracker_(settings.tracking),
+      cache_(static_cast<std::size_t>(settings.cached_submaps)) {
   validate(settings, "slam");
 }
 
@@ -87,31 +114,27 @@ Eigen::Matrix3d GraphSlam::drift_after(int submap) const {
   return Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();
 }
 
-void GraphSlam::close_loops(int source) {
-  const std::vector<PoseGaussian> around = positions_around(source);
+// Older ones, nearest first, as far as drift may have taken this one.
+std::vector<int> GraphSlam::submaps_near(int source, const std::vector<PoseGaussian>& around) const {
   const Eigen::Vector2d middle = middle_of(source);
-  std::vector<std::pair<double, int>> candidates;  // by how far they are
+  std::vector<std::pair<double, int>> near;  // by how far they are
   for (int target = 0; target < source; ++target) {
     if (submaps_[static_cast<std::size_t>(target)].last >= submaps_[static_cast<std::size_t>(source)].first) continue;  // neighbours in time
     const Eigen::Matrix3d& covariance = around[static_cast<std::size_t>(target)].covariance;
     const double reach_m = settings_.max_loop_distance_m + 2.0 * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
     const double distance_m = (middle_of(target) - middle).norm();
-    if (distance_m < reach_m) candidates.push_back({distance_m, target});
+    if (distance_m < reach_m) near.push_back({distance_m, target});
   }
-  std::sort(candidates.begin(), candidates.end());
-  if (candidates.size() > static_cast<std::size_t>(settings_.max_loop_candidates)) candidates.resize(static_cast<std::size_t>(settings_.max_loop_candidates));
+  return nearest(near, settings_.max_loop_candidates);
+}
+
+void GraphSlam::close_loops(int source) {
+  const std::vector<PoseGaussian> around = positions_around(source);
   bool has_closed = false;
-  for (const auto& [distance_m, target] : candidates) {
+  for (const int target : submaps_near(source, around)) {
     const PoseGaussian prediction = inverse_of(around[static_cast<std::size_t>(target)]);  // of the source in the target
     const SubmapMatchResult result = match_submaps(*drawn(target), *drawn(source), prediction, settings_.loops, settings_.tracking.matching);
-    ++loop_counts_.searched;
-    switch (result.failure) {
-      case MatchFailure::kNone: ++loop_counts_.closed; break;
-      case MatchFailure::kNotFound: ++loop_counts_.not_found; break;
-      case MatchFailure::kAmbiguous: ++loop_counts_.ambiguous; break;
-      case MatchFailure::kNoOverlap: ++loop_counts_.no_overlap; break;
-      case MatchFailure::kMismatch: ++loop_counts_.mismatched; break;
-    }
+    loop_counts_.add(result.failure);
     if (!result.match) continue;
     has_closed = true;
     loops_.push_back({.target = target, .source = source, .edge = static_cast<int>(graph_.edges.size())});
@@ -126,8 +149,7 @@ void GraphSlam::close_loops(int source) {
 
 std::shared_ptr<const DrawnSubmap> GraphSlam::drawn(int submap) {
   return cache_.get(submap, [&] {
-    return std::make_shared<const DrawnSubmap>(submaps_[static_cast<std::size_t>(submap)], keyframes_, graph_.T_map_node, settings_.tracking.resolution_m,
-                                               settings_.tracking.integration);
+    return std::make_shared<const DrawnSubmap>(submaps_[static_cast<std::size_t>(submap)], keyframes_, graph_.T_map_node, drawing_);
   });
 }
 
@@ -142,36 +164,34 @@ void GraphSlam::finish() {
   }
 }
 
-// Submap by submap, so that each is drawn once.
-void GraphSlam::refine() {
-  std::vector<std::vector<int>> keyframes_of(submaps_.size());
+// [submap]: the keyframes that lie within its reach and are no part of it.
+std::vector<std::vector<int>> GraphSlam::keyframes_around_submaps() const {
   std::vector<Eigen::Vector2d> middles;
   for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) middles.push_back(middle_of(s));
+  std::vector<std::vector<int>> keyframes_of(submaps_.size());
   for (int k = 0; k < static_cast<int>(keyframes_.size()); ++k) {
     std::vector<std::pair<double, int>> near;
-    for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) {
-      const Submap& range = submaps_[static_cast<std::size_t>(s)];
-      if (k >= range.first && k <= range.last) continue;
-      const double distance_m = (middles[static_cast<std::size_t>(s)] - graph_.T_map_node[static_cast<std::size_t>(k)].position()).norm();
-      if (distance_m < settings_.max_loop_distance_m) near.push_back({distance_m, s});
+    for (std::size_t s = 0; s < submaps_.size(); ++s) {
+      if (k >= submaps_[s].first && k <= submaps_[s].last) continue;
+      const double distance_m = (middles[s] - graph_.T_map_node[static_cast<std::size_t>(k)].position()).norm();
+      if (distance_m < settings_.max_loop_distance_m) near.push_back({distance_m, static_cast<int>(s)});
     }
-    std::sort(near.begin(), near.end());
-    for (std::size_t i = 0; i < std::min(near.size(), static_cast<std::size_t>(settings_.max_refinement_submaps)); ++i) keyframes_of[static_cast<std::size_t>(near[i].second)].push_back(k);
+    for (const int s : nearest(near, settings_.max_refinement_submaps)) keyframes_of[static_cast<std::size_t>(s)].push_back(k);
   }
-  const ScanMatcherSettings& matching = settings_.tracking.matching;
+  return keyframes_of;
+}
+
+// Submap by submap, so that each is drawn once.
+void GraphSlam::refine() {
+  const std::vector<std::vector<int>> keyframes_of = keyframes_around_submaps();
   for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) {
     if (keyframes_of[static_cast<std::size_t>(s)].empty()) continue;
     const std::shared_ptr<const DrawnSubmap> submap = drawn(s);
     const Pose2 T_submap_map = T_map_submap(s).inverse();
     for (const int k : keyframes_of[static_cast<std::size_t>(s)]) {
-      const Keyframe& keyframe = keyframes_[static_cast<std::size_t>(k)];
-      const std::vector<MatchPoint> points = select_match_points(keyframe.scan, matching.point_spacing_m, matching.max_points);
-      const Pose2 start = T_submap_map * graph_.T_map_node[static_cast<std::size_t>(k)];
-      const PoseGaussian prior{.mean = start, .covariance = Eigen::Vector3d(0.04, 0.04, 0.0025).asDiagonal()};
-      const std::optional<MatchResult> match = match_scan(submap->map(), points, start, prior, matching);
-      if (!match || match->matched_share < 0.6) continue;
-      const Pose2 moved = start.inverse() * match->T_map_body;
-      if (moved.position().norm() > settings_.max_refinement_m || std::abs(moved.yaw) > settings_.max_refinement_rad) continue;
+      const Pose2 T_submap_node = T_submap_map * graph_.T_map_node[static_cast<std::size_t>(k)];
+      const std::optional<MatchResult> match = refined(*submap, keyframes_[static_cast<std::size_t>(k)], T_submap_node);
+      if (!match) continue;
       graph_.edges.push_back({.from = submaps_[static_cast<std::size_t>(s)].first,
                               .to = k,
                               .T_from_to = match->T_map_body,
@@ -179,6 +199,17 @@ void GraphSlam::refine() {
                               .kind = PoseGraphEdge::Kind::kLoop});
     }
   }
+}
+
+// A keyframe matched with a submap that lies nearly right.
+std::optional<MatchResult> GraphSlam::refined(const DrawnSubmap& submap, const Keyframe& keyframe, const Pose2& T_submap_body) const {
+  const ScanMatcherSettings& matching = settings_.tracking.matching;
+  const std::vector<MatchPoint> points = select_match_points(keyframe.scan, matching.point_spacing_m, matching.max_points);
+  const std::optional<MatchResult> match = match_scan(submap.map(), points, T_submap_body, start_of_match(T_submap_body), matching);
+  if (!match || match->matched_share < settings_.min_refinement_share) return std::nullopt;
+  const Pose2 moved = T_submap_body.inverse() * match->T_map_body;
+  if (moved.position().norm() > settings_.max_refinement_m || std::abs(moved.yaw) > settings_.max_refinement_rad) return std::nullopt;
+  return match;
 }
 
 // A scan between two keyframes is moved with both, by how near it is to each.

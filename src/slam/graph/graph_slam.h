@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/grid.h"
@@ -27,6 +29,7 @@ struct GraphSlamSettings {
   double edge_std_rad = 0.001;
   int refinement_rounds = 2;         ///< at the end: every keyframe is matched with the submaps around it
   int max_refinement_submaps = 3;    ///< of each keyframe
+  double min_refinement_share = 0.6; ///< of a keyframe's points that meet the submap's surfaces
   double max_refinement_m = 0.3;     ///< a keyframe that would move farther has been matched wrongly
   double max_refinement_rad = 0.1;
   int cached_submaps = 16;           ///< drawn at a time
@@ -47,6 +50,7 @@ struct GraphSlamSettings {
     visit("edge_std_rad", self.edge_std_rad, between(1e-6, 1.0));
     visit("refinement_rounds", self.refinement_rounds, between(0, 100));
     visit("max_refinement_submaps", self.max_refinement_submaps, between(1, 100));
+    visit("min_refinement_share", self.min_refinement_share, between(0.0, 1.0));
     visit("max_refinement_m", self.max_refinement_m, at_least(0.0));
     visit("max_refinement_rad", self.max_refinement_rad, at_least(0.0));
     visit("cached_submaps", self.cached_submaps, between(1, 10000));
@@ -58,6 +62,8 @@ struct GraphSlamSettings {
 /// What became of the search for loops.
 struct LoopCounts {
   int searched = 0, closed = 0, not_found = 0, ambiguous = 0, no_overlap = 0, mismatched = 0;
+
+  void add(MatchFailure failure);
 };
 
 /// Mapping by submaps and a pose graph, of the class of Cartographer (Hess, Kohler, Rapp, Andor, "Real-time loop closure in 2D lidar SLAM", ICRA 2016).
@@ -103,12 +109,16 @@ class GraphSlam {
   std::vector<PoseGaussian> positions_around(int submap) const;
   Eigen::Matrix3d drift_after(int submap) const;
   std::shared_ptr<const DrawnSubmap> drawn(int submap);
+  std::vector<int> submaps_near(int source, const std::vector<PoseGaussian>& around) const;
+  std::vector<std::vector<int>> keyframes_around_submaps() const;
   void refine();
+  std::optional<MatchResult> refined(const DrawnSubmap& submap, const Keyframe& keyframe, const Pose2& T_submap_body) const;
   Eigen::Matrix3d edge_information(const Eigen::Matrix3d& match_information, const Pose2& T_map_from) const;
   Pose2 T_map_submap(int submap) const { return graph_.T_map_node[static_cast<std::size_t>(submaps_[static_cast<std::size_t>(submap)].first)]; }
   Eigen::Vector2d middle_of(int submap) const;
 
   GraphSlamSettings settings_;
+  MapDrawing drawing_;
   ScanTracker tracker_;
   std::vector<Keyframe> keyframes_;
   std::vector<TrackedPose> path_;
