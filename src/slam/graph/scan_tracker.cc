@@ -33,12 +33,14 @@ ScanTracker::ScanTracker(const ScanTrackerSettings& settings)
 
 TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body) {
   if (!stamp_) {
-    T_odom_last_ = T_odom_body;
-    stamp_ = scan.stamp;
+    T_odom_last_ = matched_.T_odom_body = T_odom_body;
+    stamp_ = matched_.stamp = scan.stamp;
   }
   const Step step{.seconds = to_seconds(scan.stamp - *stamp_), .T_last_odom = T_odom_last_.inverse() * T_odom_body};
-  PoseGaussian prediction = predict_motion(T_local_last_, step.T_last_odom, std::max(0.0, step.seconds), settings_.motion);
+  PoseGaussian prediction =
+      predict_motion(matched_.T_local_body, matched_.T_odom_body.inverse() * T_odom_body, std::max(0.0, to_seconds(scan.stamp - matched_.stamp)), settings_.motion);
   prediction.covariance *= odometry_doubt_;
+  const bool can_be_matched = older_.has_surface();
   const Hypothesis best = follow(select_match_points(scan, settings_.matching.point_spacing_m, settings_.matching.max_points), step, prediction);
   doubt_odometry(prediction, best.T_local_body);
   TrackedScan tracked = believed(best, prediction);
@@ -49,6 +51,7 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
   T_local_last_ = tracked.T_local_body;
   T_odom_last_ = T_odom_body;
   stamp_ = scan.stamp;
+  if (best.match || !can_be_matched) matched_ = {.stamp = scan.stamp, .T_local_body = tracked.T_local_body, .T_odom_body = T_odom_body};
   return tracked;
 }
 

@@ -1,8 +1,6 @@
 #include "slam/graph/submap.h"
 
-#include <cmath>
-#include <map>
-#include <utility>
+#include "slam/surface_points.h"
 
 namespace patrol::slam {
 namespace {
@@ -20,24 +18,9 @@ GridMap draw_map(const Submap& submap, const std::vector<Keyframe>& keyframes, c
   return map;
 }
 
-/// One mean for each square of cells.
 std::vector<MatchPoint> surface_points_of(const GridMap& map) {
-  std::map<std::pair<int, int>, std::pair<Eigen::Vector2d, double>> squares;  // [row, col]
-  map.for_each_tile([&](Cell first, const GridTile& tile) {
-    for (int row = 0; row < GridTile::kSize; ++row) {
-      for (int col = 0; col < GridTile::kSize; ++col) {
-        const GridCell& cell = tile.at(col, row);
-        if (!cell.is_surface() || cell.hits < 2) continue;
-        const Cell at{first.col + col, first.row + row};
-        auto& [sum, weight] = squares.try_emplace({at.row >> DrawnSubmap::kPointBits, at.col >> DrawnSubmap::kPointBits}, Eigen::Vector2d::Zero(), 0.0).first->second;
-        sum += cell.hits * (map.center_of(at) + Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m));
-        weight += cell.hits;
-      }
-    }
-  });
   std::vector<MatchPoint> points;
-  points.reserve(squares.size());
-  for (const auto& [square, sum] : squares) points.push_back({.p_body = sum.first / sum.second, .range_m = 0.0});
+  for (const Eigen::Vector2d& p : surface_points(map)) points.push_back({.p_body = p, .range_m = 0.0});
   return points;
 }
 

@@ -39,12 +39,10 @@ class DrawnSubmap {
   DrawnSubmap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, const MapDrawing& drawing);
 
   const GridMap& map() const { return map_; }
-  /// The middle of the mean hits of its surfaces, on a coarser grid: what another submap is searched with.
+  /// (surface_points.h), with which another submap is searched.
   const std::vector<MatchPoint>& surface_points() const { return surface_points_; }
-  double point_spacing_m() const { return (1 << kPointBits) * map_.resolution_m(); }
+  double point_spacing_m() const { return 2.0 * map_.resolution_m(); }
   const LikelihoodPyramid& pyramid() const { return pyramid_; }
-
-  static constexpr int kPointBits = 1;  ///< a surface point speaks for 2^bits by 2^bits cells
 
  private:
   GridMap map_;
