@@ -20,4 +20,16 @@ std::vector<Pose2> FilteredPath::path() const {
   return T_map_body;
 }
 
+PoseGraph FilteredPath::graph() const {
+  PoseGraph graph{.T_map_node = filter_.best_path(), .edges = {}};
+  for (std::size_t i = 0; i + 1 < graph.T_map_node.size(); ++i) {
+    graph.edges.push_back({.from = static_cast<int>(i),
+                           .to = static_cast<int>(i) + 1,
+                           .T_from_to = graph.T_map_node[i].inverse() * graph.T_map_node[i + 1],
+                           .information = Eigen::Matrix3d::Identity(),
+                           .kind = PoseGraphEdge::Kind::kOdometry});
+  }
+  return graph;
+}
+
 }  // namespace patrol::slam

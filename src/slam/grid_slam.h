@@ -14,6 +14,7 @@
 #include "slam/range_update.h"
 #include "slam/scan_integration.h"
 #include "slam/scan_matcher.h"
+#include "slam/slam_update.h"
 
 namespace patrol::slam {
 
@@ -59,15 +60,6 @@ struct GridSlamSettings {
     visit("matching", self.matching);
     visit("integration", self.integration);
   }
-};
-
-struct SlamUpdate {
-  Pose2 T_map_body;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in map; m, m, rad
-  bool is_keyframe = false;
-  double effective_sample_size = 0.0;  ///< at the last keyframe, before any resampling
-  double match_score = 0.0;            ///< share of the scan's points that met a surface, 0 ... 1; 0: odometry alone
-  bool resampled = false;
 };
 
 /// Grid mapping with a Rao-Blackwellised particle filter and improved proposals (Grisetti, Stachniss, Burgard 2007).

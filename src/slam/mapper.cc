@@ -1,21 +1,39 @@
 #include "slam/mapper.h"
 
+#include <type_traits>
+#include <utility>
+
+#include "slam/filtered_path.h"
+
 namespace patrol::slam {
 namespace {
 
-/// Any class with a mapper's members, behind the interface.
+/// Any class with a mapper's members, behind the interface; ranges and particles where it has them.
 template <typename Method>
 class MapperOf final : public Mapper {
  public:
   template <typename... Arguments>
   explicit MapperOf(Arguments&&... arguments) : method_(std::forward<Arguments>(arguments)...) {}
 
-  Pose2 update(const LevelScan& scan, const Pose2& T_odom_body) override { return method_.update(scan, T_odom_body); }
+  void add(const RangeSighting& sighting) override {
+    if constexpr (requires { method_.add(sighting); }) method_.add(sighting);
+  }
+  SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body) override {
+    if constexpr (std::is_same_v<decltype(method_.update(scan, T_odom_body)), Pose2>) {
+      return {.T_map_body = method_.update(scan, T_odom_body)};
+    } else {
+      return method_.update(scan, T_odom_body);
+    }
+  }
   void finish() override { method_.finish(); }
   std::vector<Pose2> path() const override { return method_.path(); }
-  OccupancyGrid map() const override { return method_.map(); }
+  OccupancyGrid map() override { return method_.map(); }
   PoseGraph graph() const override { return method_.graph(); }
   std::vector<std::size_t> node_scans() const override { return method_.node_scans(); }
+  ParticleSet particles() const override {
+    if constexpr (requires { method_.particles(); }) return method_.particles();
+    return {};
+  }
 
  private:
   Method method_;
@@ -27,7 +45,11 @@ std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, const Booste
   validate(settings, "slam");
   if (settings.method == "rbpf") return std::make_unique<MapperOf<TrackedRbpf>>(settings.rbpf, seed);
   if (settings.method == "submap_rbpf") return std::make_unique<MapperOf<SubmapRbpf>>(settings.submap_rbpf, neighbours, seed);
-  return std::make_unique<MapperOf<GraphSlam>>(settings.graph);
+  return make_graph_mapper(settings.graph);
 }
+
+std::unique_ptr<Mapper> make_graph_mapper(const GraphSlamSettings& settings) { return std::make_unique<MapperOf<GraphSlam>>(settings); }
+
+std::unique_ptr<Mapper> make_rbpf_mapper(const GridSlamSettings& settings, std::uint64_t seed) { return std::make_unique<MapperOf<FilteredPath>>(settings, seed); }
 
 }  // namespace patrol::slam

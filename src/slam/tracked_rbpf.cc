@@ -19,20 +19,8 @@ GridSlamSettings tracked_filter() {
 
 TrackedRbpf::TrackedRbpf(const TrackedRbpfSettings& settings, std::uint64_t seed) : tracker_(settings.tracking), filtered_(settings.filter, seed) {}
 
-Pose2 TrackedRbpf::update(const LevelScan& scan, const Pose2& T_odom_body) {
-  return filtered_.update(scan, tracker_.update(scan, T_odom_body).T_local_body).T_map_body;
-}
-
-PoseGraph TrackedRbpf::graph() const {
-  PoseGraph graph{.T_map_node = filtered_.filter().best_path(), .edges = {}};
-  for (std::size_t i = 0; i + 1 < graph.T_map_node.size(); ++i) {
-    graph.edges.push_back({.from = static_cast<int>(i),
-                           .to = static_cast<int>(i) + 1,
-                           .T_from_to = graph.T_map_node[i].inverse() * graph.T_map_node[i + 1],
-                           .information = Eigen::Matrix3d::Identity(),  // nothing weighs them
-                           .kind = PoseGraphEdge::Kind::kOdometry});
-  }
-  return graph;
+SlamUpdate TrackedRbpf::update(const LevelScan& scan, const Pose2& T_odom_body) {
+  return filtered_.update(scan, tracker_.update(scan, T_odom_body).T_local_body);
 }
 
 }  // namespace patrol::slam

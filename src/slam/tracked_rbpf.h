@@ -30,14 +30,15 @@ class TrackedRbpf {
  public:
   TrackedRbpf(const TrackedRbpfSettings& settings, std::uint64_t seed);
 
-  Pose2 update(const LevelScan& scan, const Pose2& T_odom_body);
+  SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
   void finish() {}
 
   /// [scan]: of the particle that is the best now, with the whole way that it has come.
   std::vector<Pose2> path() const { return filtered_.path(); }
-  OccupancyGrid map() const { return filtered_.filter().map(); }
-  PoseGraph graph() const;
-  std::vector<std::size_t> node_scans() const { return filtered_.keyframe_scans(); }
+  OccupancyGrid map() const { return filtered_.map(); }
+  ParticleSet particles() const { return filtered_.particles(); }
+  PoseGraph graph() const { return filtered_.graph(); }
+  std::vector<std::size_t> node_scans() const { return filtered_.node_scans(); }
 
  private:
   ScanTracker tracker_;

@@ -9,7 +9,7 @@
 namespace patrol::app {
 
 LogMapper::LogMapper(const StackSettings& settings, const RobotDescription& robot, std::uint64_t seed)
-    : odometry_(robot, settings.odometry), leveler_(robot.T_body("lidar"), settings.leveling), slam_(settings.slam, seed), settle_(from_seconds(settings.settle_s)) {}
+    : odometry_(robot, settings.odometry), leveler_(robot.T_body("lidar"), settings.leveling), slam_(make_mapper(settings, seed)), settle_(from_seconds(settings.settle_s)) {}
 
 void LogMapper::map(const std::filesystem::path& log_mcap) {
   io::LogHandlers handlers;
@@ -29,7 +29,7 @@ void LogMapper::handle(const LaserScan& raw) {
   const std::optional<LevelScan> scan = leveler_.level(raw, odometry_);
   if (!scan) return;
   const double start_s = thread_seconds();
-  const slam::SlamUpdate update = slam_.update(*scan, to_planar(*odometry_.T_odom_body_at(scan->stamp)));
+  const slam::SlamUpdate update = slam_->update(*scan, to_planar(*odometry_.T_odom_body_at(scan->stamp)));
   seconds_ += thread_seconds() - start_s;
   T_map_body_.push_back({.stamp = scan->stamp, .pose = to_spatial(update.T_map_body)});
 }

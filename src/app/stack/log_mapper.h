@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "app/stack/stack_settings.h"
@@ -9,7 +10,6 @@
 #include "core/trajectory.h"
 #include "localize/body_estimator.h"
 #include "localize/scan_leveler.h"
-#include "slam/grid_slam.h"
 
 namespace patrol::app {
 
@@ -22,7 +22,7 @@ class LogMapper {
   void map(const std::filesystem::path& log_mcap);
 
   const Trajectory& T_map_body() const { return T_map_body_; }  ///< at every scan
-  OccupancyGrid map() const { return slam_.map(); }
+  OccupancyGrid map() { return slam_->map(); }
   double seconds() const { return seconds_; }  ///< of processor time that SLAM took
 
  private:
@@ -30,7 +30,7 @@ class LogMapper {
 
   localize::BodyEstimator odometry_;
   localize::ScanLeveler leveler_;
-  slam::GridSlam slam_;
+  std::unique_ptr<slam::Mapper> slam_;
   Time settle_;
   std::optional<Time> first_odometry_;
   Trajectory T_map_body_;

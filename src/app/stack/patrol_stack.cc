@@ -7,9 +7,9 @@ PatrolStack::PatrolStack(const StackSettings& settings, const RobotDescription& 
     : RobotStack(settings, robot, route_in_map, map_period_s),
       odometry_(robot, settings.odometry),
       leveler_(robot.T_body("lidar"), settings.leveling),
-      slam_(settings.slam, seed),
+      slam_(make_mapper(settings, seed)),
       mission_(settings.mission, route_in_map, robot.T_body("tdlas")) {
-  navigator_.set_map(slam_.map());  // empty yet, but its resolution must suit the costmap's
+  navigator_.set_map(slam_->map());  // empty yet, but its resolution must suit the costmap's
 }
 
 void PatrolStack::use(const SensorMessage& message) {
@@ -43,7 +43,7 @@ void PatrolStack::handle_scan(const LaserScan& raw) {
   }
   if (!scan) return;
   const Pose2 T_odom_body = to_planar(*odometry_.T_odom_body_at(scan->stamp));
-  map_scan(slam_, *scan, T_odom_body);
+  map_scan(*slam_, *scan, T_odom_body);
   const auto lap = clock_.lap("planning");
   navigator_.add_scan(*scan, tracker_.at(scan->stamp, T_odom_body).T_map_body);
 }

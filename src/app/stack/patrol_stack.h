@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "app/stack/robot_stack.h"
@@ -21,14 +22,14 @@ class PatrolStack final : public RobotStack {
   void use(const SensorMessage& message) override;
   void abort(Time now, const char* kind, const std::string& text) override { say(mission_.abort(now, kind, text)); }
   std::optional<OdometryEstimate> odometry() const override { return odometry_.estimate(); }
-  OccupancyGrid map() const override { return slam_.map(); }
+  OccupancyGrid map() override { return slam_->map(); }
   bool is_mapping() const override { return true; }
   VelocityCommand control(Time now, const OdometryEstimate& odometry) override;
   void handle_scan(const LaserScan& scan);
 
   localize::BodyEstimator odometry_;
   localize::ScanLeveler leveler_;
-  slam::GridSlam slam_;
+  std::unique_ptr<slam::Mapper> slam_;
   inspect::Mission mission_;
   std::optional<GasReading> newest_gas_;
 };

@@ -51,12 +51,13 @@ void RobotStack::watch_sensors(Time now, const Pose2& T_odom_body) {
   if (sensor_watch_.has_given_up(now) && !mission_is_over()) abort(now, "sensor_lost", "A sensor that driving needs did not come back: the mission is over.");
 }
 
-void RobotStack::map_scan(slam::GridSlam& slam, const LevelScan& scan, const Pose2& T_odom_body) {
+void RobotStack::map_scan(slam::Mapper& slam, const LevelScan& scan, const Pose2& T_odom_body) {
   const auto lap = clock_.lap("slam");
   const slam::SlamUpdate update = slam.update(scan, T_odom_body);
   tracker_.correct(scan.stamp, T_odom_body, update.T_map_body, update.covariance);
   say(PoseEstimate{scan.stamp, update.T_map_body, update.covariance});
-  if (update.is_keyframe) say(slam.particles());
+  if (!update.is_keyframe) return;
+  if (ParticleSet particles = slam.particles(); !particles.T_map_body.empty()) say(std::move(particles));
 }
 
 plan::NavigationStep RobotStack::navigate(Time now, const PoseEstimate& pose) {

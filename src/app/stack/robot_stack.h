@@ -15,7 +15,6 @@
 #include "localize/map_pose_tracker.h"
 #include "plan/navigator.h"
 #include "plan/sensor_watch.h"
-#include "slam/grid_slam.h"
 
 namespace patrol::app {
 
@@ -38,7 +37,7 @@ class RobotStack {
   void step(Time now);
 
   const VelocityCommand& command() const { return command_; }
-  MapUpdate final_map(Time now) const { return {now, map()}; }
+  MapUpdate final_map(Time now) { return {now, map()}; }
   /// What was said since the last call, in order.
   std::vector<StackMessage> take_messages() { return std::exchange(messages_, {}); }
   const PartClock& clock() const { return clock_; }
@@ -52,7 +51,7 @@ class RobotStack {
   /// Nobody holds the remote control.
   virtual bool drives_itself() const { return true; }
   virtual std::optional<OdometryEstimate> odometry() const = 0;
-  virtual OccupancyGrid map() const = 0;
+  virtual OccupancyGrid map() = 0;
   virtual bool is_mapping() const = 0;
   /// Once a control period: what to do now.
   virtual VelocityCommand control(Time now, const OdometryEstimate& odometry) = 0;
@@ -60,7 +59,7 @@ class RobotStack {
   /// The first scan, which makes the map's origin, waits until odometry has settled.
   bool has_settled(Time stamp) const { return first_odometry_ && stamp >= *first_odometry_ + settle_; }
   /// Matches a scan, corrects the pose in map, and says both.
-  void map_scan(slam::GridSlam& slam, const LevelScan& scan, const Pose2& T_odom_body);
+  void map_scan(slam::Mapper& slam, const LevelScan& scan, const Pose2& T_odom_body);
   /// A step of the navigator, with what is to be told of it.
   plan::NavigationStep navigate(Time now, const PoseEstimate& pose);
   inspect::NavigationFeedback navigation_feedback() const;

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <string>
+
 #include "core/settings.h"
 #include "inspect/mission.h"
 #include "inspect/tour.h"
@@ -12,9 +16,12 @@
 #include "plan/docking.h"
 #include "plan/navigator.h"
 #include "plan/sensor_watch.h"
-#include "slam/grid_slam.h"
+#include "slam/mapper.h"
 
 namespace patrol::app {
+
+/// Of a robot that is known: its odometry as the particle filter takes it to be, and a lidar that is levelled.
+slam::GraphSlamSettings graph_of_a_known_robot();
 
 /// Of every part that some robot has; each stack takes what it is built of.
 struct StackSettings {
@@ -22,7 +29,9 @@ struct StackSettings {
   localize::BodyEstimatorSettings odometry;        ///< of a robot with legs
   localize::TrackOdometrySettings track_odometry;  ///< of a robot with tracks
   localize::ScanLevelerSettings leveling;
-  slam::GridSlamSettings slam;
+  std::string mapping = "graph";  ///< by which of the next two
+  slam::GraphSlamSettings graph = graph_of_a_known_robot();
+  slam::GridSlamSettings slam;  ///< rbpf: a particle filter
   localize::MonteCarloSettings localization;  ///< on a map that is known
   localize::RangeFilterSettings range_filter;  ///< of a robot with tracks and UWB: a second opinion
   plan::NavigatorSettings navigation;
@@ -38,6 +47,8 @@ struct StackSettings {
     visit("odometry", self.odometry);
     visit("track_odometry", self.track_odometry);
     visit("leveling", self.leveling);
+    visit("mapping", self.mapping, one_of({"graph", "rbpf"}));
+    visit("graph", self.graph);
     visit("slam", self.slam);
     visit("localization", self.localization);
     visit("range_filter", self.range_filter);
@@ -49,5 +60,8 @@ struct StackSettings {
     visit("tour", self.tour);
   }
 };
+
+/// What maps, by the method that the settings name. Throws InputError when a setting breaks its rule.
+std::unique_ptr<slam::Mapper> make_mapper(const StackSettings& settings, std::uint64_t seed);
 
 }  // namespace patrol::app

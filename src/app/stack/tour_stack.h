@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -33,8 +34,8 @@ class TourStack final : public RobotStack {
   void abort(Time now, const char* kind, const std::string& text) override { say(tour_.abort(now, kind, text)); }
   bool drives_itself() const override { return mode_ != inspect::TourMode::kRemote; }
   std::optional<OdometryEstimate> odometry() const override { return odometry_.estimate(); }
-  OccupancyGrid map() const override { return slam_ ? slam_->map() : *map_; }
-  bool is_mapping() const override { return slam_.has_value(); }
+  OccupancyGrid map() override { return slam_ ? slam_->map() : *map_; }
+  bool is_mapping() const override { return slam_ != nullptr; }
   VelocityCommand control(Time now, const OdometryEstimate& odometry) override;
 
   void handle_scan(const LaserScan& scan);
@@ -67,7 +68,7 @@ class TourStack final : public RobotStack {
   localize::TrackOdometry odometry_;
   localize::ScanLeveler leveler_;
   localize::RangeFilter range_filter_;  ///< beside the others: it decides nothing
-  std::optional<slam::GridSlam> slam_;  ///< on the mapping drive
+  std::unique_ptr<slam::Mapper> slam_;  ///< on the mapping drive
   std::optional<OccupancyGrid> map_;    ///< from then on
   std::optional<localize::MonteCarloLocalizer> localizer_;
   std::optional<localize::DockDetector> dock_detector_;

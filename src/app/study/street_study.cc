@@ -50,6 +50,7 @@ struct Mapped {
 
 Mapped map_by(const GridMethod& method, const StudyRun& patrol) {
   StackSettings settings = patrol.scenario.stack;
+  settings.mapping = "rbpf";
   settings.slam.proposal = method.proposal;
   settings.slam.optimizer = method.optimizer;
   settings.slam.particles = method.particles;

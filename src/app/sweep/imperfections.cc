@@ -41,7 +41,7 @@ const std::vector<Imperfection>& imperfections() {
       {"people and vehicles", {"actors=[]"}},
       {"faults", {"faults=[]"}},
       {"put down off the start", {"start.ahead_m=0", "start.left_m=0", "start.turn_deg=0"}},
-      {"map: cells of 5 cm (2.5 cm)", {"stack.slam.resolution_m=0.025"}},
+      {"map: cells of 5 cm (2.5 cm)", {"stack.slam.resolution_m=0.025", "stack.graph.tracking.resolution_m=0.025"}},
   };
   return kAll;
 }

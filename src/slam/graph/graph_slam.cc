@@ -5,21 +5,49 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slam/graph/degeneracy.h"
+#include "slam/graph/edge_weight.h"
+#include "slam/graph/nearest.h"
 #include "slam/graph/way_uncertainty.h"
 #include "slam/map_rendering.h"
 
 namespace patrol::slam {
+
+void LoopCounts::add(MatchFailure failure) {
+  ++searched;
+  switch (failure) {
+    case MatchFailure::kNone: ++closed; break;
+    case MatchFailure::kNotFound: ++not_found; break;
+    case MatchFailure::kAmbiguous: ++ambiguous; break;
+    case MatchFailure::kNoOverlap: ++no_overlap; break;
+    case MatchFailure::kMismatch: ++mismatched; break;
+  }
+}
+
 GraphSlam::GraphSlam(const GraphSlamSettings& settings)
-    : settings_(settings), tracker_(settings.tracking), cache_(static_cast<std::size_t>(settings.cached_submaps)) {
+    : settings_(settings),
+      drawing_{.resolution_m = settings.tracking.resolution_m, .max_extent_m = settings.tracking.max_extent_m, .integration = settings.tracking.integration},
+      tracker_(settings.tracking),
+      cache_(static_cast<std::size_t>(settings.cached_submaps)),
+      live_map_(drawing_),
+      ranges_(settings.ranges) {
   validate(settings, "slam");
 }
 
-Pose2 GraphSlam::update(const LevelScan& scan, const Pose2& T_odom_body) {
+SlamUpdate GraphSlam::update(const LevelScan& seen, const Pose2& T_odom_body) {
+  const LevelScan blind{.stamp = seen.stamp, .beams = {}};
+  const LevelScan& scan = seen.tilt_rad <= settings_.max_tilt_rad ? seen : blind;
   const TrackedScan tracked = tracker_.update(scan, T_odom_body);
   if (tracked.is_keyframe) add_keyframe(scan, tracked);
+  believe(tracked, scan.stamp);
+  accept_ranges(tracked, T_odom_body);
+  if (tracked.is_keyframe && !ranges_.ranges().empty() && ranges_.ranges().back().node >= laid_until_ + settings_.range_keyframes) lay_by_ranges(tracked.submap);
   path_.push_back({static_cast<int>(keyframes_.size()) - 1, tracked.T_local_body});
-  return graph_.T_map_node.back() * (keyframes_.back().T_local_body.inverse() * tracked.T_local_body);
+  now_.mean = T_map_body(tracked.T_local_body);
+  return {.T_map_body = now_.mean, .covariance = now_.covariance, .is_keyframe = tracked.is_keyframe, .match_score = tracked.matched_share};
 }
+
+Pose2 GraphSlam::T_map_body(const Pose2& T_local_body) const { return graph_.T_map_node.back() * (keyframes_.back().T_local_body.inverse() * T_local_body); }
 
 void GraphSlam::add_keyframe(const LevelScan& scan, const TrackedScan& tracked) {
   const int node = static_cast<int>(keyframes_.size());
@@ -31,15 +59,7 @@ void GraphSlam::add_keyframe(const LevelScan& scan, const TrackedScan& tracked) 
     graph_.T_map_node.push_back(graph_.T_map_node.back() * T_before_node);
     const PoseGaussian motion = predict_motion({}, T_before_node, to_seconds(scan.stamp - before.scan.stamp), settings_.tracking.motion);
     graph_.edges.push_back({.from = node - 1, .to = node, .T_from_to = T_before_node, .information = motion.covariance.inverse(), .kind = PoseGraphEdge::Kind::kOdometry});
-    const int first = submaps_[static_cast<std::size_t>(tracked.submap)].first;
-    if (tracked.matched_share > 0.0 && first != node) {
-      const Pose2& T_local_first = keyframes_[static_cast<std::size_t>(first)].T_local_body;
-      graph_.edges.push_back({.from = first,
-                              .to = node,
-                              .T_from_to = T_local_first.inverse() * tracked.T_local_body,
-                              .information = edge_information(tracked.match_information, T_local_first),
-                              .kind = PoseGraphEdge::Kind::kMatch});
-    }
+    if (tracked.matched_share > 0.0) add_match_edge(tracked);
   }
   keyframes_.push_back({scan, tracked.T_local_body});
   if (tracked.is_submap_start) submaps_.push_back({.first = node, .last = node});
@@ -47,13 +67,60 @@ void GraphSlam::add_keyframe(const LevelScan& scan, const TrackedScan& tracked) 
   while (finished_submaps_ < tracked.submap) close_loops(finished_submaps_++);
 }
 
-Eigen::Matrix3d GraphSlam::edge_information(const Eigen::Matrix3d& match_information, const Pose2& T_map_from) const {
-  const Eigen::Matrix3d in_from = turned(settings_.tracking.likelihood_gain * match_information, -T_map_from.yaw);
-  const Eigen::Matrix3d loose = Eigen::Vector3d(1e-2, 1e-2, 1e-2).asDiagonal();  // 10 m and 10 rad, where the match says nothing
-  const Eigen::Matrix3d systematic =
-      Eigen::Vector3d(settings_.edge_std_m * settings_.edge_std_m, settings_.edge_std_m * settings_.edge_std_m, settings_.edge_std_rad * settings_.edge_std_rad).asDiagonal();
-  const Eigen::Matrix3d information = ((in_from + loose).inverse() + systematic).inverse();
-  return 0.5 * (information + information.transpose());
+// Of the newest node with the submap that it was matched with.
+void GraphSlam::add_match_edge(const TrackedScan& tracked) {
+  const int first = submaps_[static_cast<std::size_t>(tracked.submap)].first, node = static_cast<int>(graph_.T_map_node.size()) - 1;
+  const Pose2& T_local_first = keyframes_[static_cast<std::size_t>(first)].T_local_body;
+  graph_.edges.push_back({.from = first,
+                          .to = node,
+                          .T_from_to = T_local_first.inverse() * tracked.T_local_body,
+                          .information = weight_of(turned(tracked.match_information, -T_local_first.yaw)),
+                          .kind = PoseGraphEdge::Kind::kMatch});
+}
+
+Eigen::Matrix3d GraphSlam::weight_of(const Eigen::Matrix3d& match_information) const {
+  return edge_information(known_by(match_information), settings_.edge_std_m, settings_.edge_std_rad);
+}
+
+// What a match says in an open direction is noise.
+Eigen::Matrix3d GraphSlam::known_by(const Eigen::Matrix3d& match_information) const {
+  const std::optional<Eigen::Vector2d> open = open_direction(match_information, settings_.open_share);
+  return settings_.tracking.likelihood_gain * (open ? without_direction(match_information, *open) : match_information);
+}
+
+// Odometry adds uncertainty, the match takes it away.
+void GraphSlam::believe(const TrackedScan& tracked, Time stamp) {
+  const Pose2 T_local_last = path_.empty() ? tracked.T_local_body : path_.back().T_local_body, T_map_now = T_map_body(tracked.T_local_body);
+  if (!path_.empty()) {
+    const Eigen::Matrix3d step = predict_motion({}, T_local_last.inverse() * tracked.T_local_body, std::max(0.0, to_seconds(stamp - stamp_)), settings_.tracking.motion).covariance;
+    now_.covariance = carried_on(now_, T_map_now, step);
+    const Eigen::Matrix3d match = turned(known_by(tracked.match_information), T_map_now.yaw - tracked.T_local_body.yaw);
+    now_.covariance = (now_.covariance.inverse() + match).inverse();
+  }
+  now_.mean = T_map_now;
+  stamp_ = stamp;
+}
+
+void GraphSlam::accept_ranges(const TrackedScan& tracked, const Pose2& T_odom_body) {
+  std::vector<RangeSighting> sightings;
+  sightings.swap(new_ranges_);
+  const bool is_matched = tracked.matched_share > 0.0;
+  const std::optional<Eigen::Vector2d> open = open_direction(turned(tracked.match_information, now_.mean.yaw - tracked.T_local_body.yaw), settings_.open_share);
+  if (!settings_.ranges.enabled || (is_matched && !open)) return;
+  const Pose2 T_node_body = keyframes_.back().T_local_body.inverse() * tracked.T_local_body;
+  for (const RangeSighting& sighting : sightings) {
+    if (!is_plausible(range_innovation(now_, T_odom_body, sighting, settings_.ranges), settings_.ranges)) continue;
+    ranges_.add(static_cast<int>(keyframes_.size()) - 1, graph_.T_map_node.back(), T_node_body * (T_odom_body.inverse() * sighting.T_odom_body), sighting, open);
+    PoseGaussian updated = now_;
+    update_with_ranges({sighting}, T_odom_body, settings_.ranges, updated);
+    now_.covariance = updated.covariance;
+  }
+}
+
+// As a smoother of fixed lag: since the submap before the one that scans are matched with.
+void GraphSlam::lay_by_ranges(int submap) {
+  solve(graph_, settings_.solver, ranges_, std::max(1, submaps_[static_cast<std::size_t>(std::max(0, submap - 1))].first));
+  laid_until_ = static_cast<int>(keyframes_.size()) - 1;
 }
 
 Eigen::Vector2d GraphSlam::middle_of(int submap) const {
@@ -87,98 +154,43 @@ Eigen::Matrix3d GraphSlam::drift_after(int submap) const {
   return Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();
 }
 
-void GraphSlam::close_loops(int source) {
-  const std::vector<PoseGaussian> around = positions_around(source);
+// Older ones, nearest first, as far as drift may have taken this one.
+std::vector<int> GraphSlam::submaps_near(int source, const std::vector<PoseGaussian>& around) const {
   const Eigen::Vector2d middle = middle_of(source);
-  std::vector<std::pair<double, int>> candidates;  // by how far they are
+  std::vector<std::pair<double, int>> near;  // by how far they are
   for (int target = 0; target < source; ++target) {
     if (submaps_[static_cast<std::size_t>(target)].last >= submaps_[static_cast<std::size_t>(source)].first) continue;  // neighbours in time
     const Eigen::Matrix3d& covariance = around[static_cast<std::size_t>(target)].covariance;
     const double reach_m = settings_.max_loop_distance_m + 2.0 * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
     const double distance_m = (middle_of(target) - middle).norm();
-    if (distance_m < reach_m) candidates.push_back({distance_m, target});
+    if (distance_m < reach_m) near.push_back({distance_m, target});
   }
-  std::sort(candidates.begin(), candidates.end());
-  if (candidates.size() > static_cast<std::size_t>(settings_.max_loop_candidates)) candidates.resize(static_cast<std::size_t>(settings_.max_loop_candidates));
+  return nearest(near, settings_.max_loop_candidates);
+}
+
+void GraphSlam::close_loops(int source) {
+  const std::vector<PoseGaussian> around = positions_around(source);
   bool has_closed = false;
-  for (const auto& [distance_m, target] : candidates) {
+  for (const int target : submaps_near(source, around)) {
     const PoseGaussian prediction = inverse_of(around[static_cast<std::size_t>(target)]);  // of the source in the target
     const SubmapMatchResult result = match_submaps(*drawn(target), *drawn(source), prediction, settings_.loops, settings_.tracking.matching);
-    ++loop_counts_.searched;
-    switch (result.failure) {
-      case MatchFailure::kNone: ++loop_counts_.closed; break;
-      case MatchFailure::kNotFound: ++loop_counts_.not_found; break;
-      case MatchFailure::kAmbiguous: ++loop_counts_.ambiguous; break;
-      case MatchFailure::kNoOverlap: ++loop_counts_.no_overlap; break;
-      case MatchFailure::kMismatch: ++loop_counts_.mismatched; break;
-    }
+    loop_counts_.add(result.failure);
     if (!result.match) continue;
     has_closed = true;
     loops_.push_back({.target = target, .source = source, .edge = static_cast<int>(graph_.edges.size())});
     graph_.edges.push_back({.from = submaps_[static_cast<std::size_t>(target)].first,
                             .to = submaps_[static_cast<std::size_t>(source)].first,
                             .T_from_to = result.match->T_target_source,
-                            .information = edge_information(result.match->information, {}),
+                            .information = weight_of(result.match->information),
                             .kind = PoseGraphEdge::Kind::kLoop});
   }
-  if (has_closed) solve(graph_, settings_.solver);
+  if (has_closed) solve(graph_, settings_.solver, ranges_);
 }
 
 std::shared_ptr<const DrawnSubmap> GraphSlam::drawn(int submap) {
   return cache_.get(submap, [&] {
-    return std::make_shared<const DrawnSubmap>(submaps_[static_cast<std::size_t>(submap)], keyframes_, graph_.T_map_node, settings_.tracking.resolution_m,
-                                               settings_.tracking.integration);
+    return std::make_shared<const DrawnSubmap>(submaps_[static_cast<std::size_t>(submap)], keyframes_, graph_.T_map_node, drawing_);
   });
-}
-
-void GraphSlam::finish() {
-  while (finished_submaps_ < static_cast<int>(submaps_.size())) close_loops(finished_submaps_++);
-  const std::size_t num_edges = graph_.edges.size();
-  for (int round = 0; round < settings_.refinement_rounds; ++round) {
-    graph_.edges.resize(num_edges);
-    cache_.clear();
-    refine();
-    solve(graph_, settings_.solver);
-  }
-}
-
-// Submap by submap, so that each is drawn once.
-void GraphSlam::refine() {
-  std::vector<std::vector<int>> keyframes_of(submaps_.size());
-  std::vector<Eigen::Vector2d> middles;
-  for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) middles.push_back(middle_of(s));
-  for (int k = 0; k < static_cast<int>(keyframes_.size()); ++k) {
-    std::vector<std::pair<double, int>> near;
-    for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) {
-      const Submap& range = submaps_[static_cast<std::size_t>(s)];
-      if (k >= range.first && k <= range.last) continue;
-      const double distance_m = (middles[static_cast<std::size_t>(s)] - graph_.T_map_node[static_cast<std::size_t>(k)].position()).norm();
-      if (distance_m < settings_.max_loop_distance_m) near.push_back({distance_m, s});
-    }
-    std::sort(near.begin(), near.end());
-    for (std::size_t i = 0; i < std::min(near.size(), static_cast<std::size_t>(settings_.max_refinement_submaps)); ++i) keyframes_of[static_cast<std::size_t>(near[i].second)].push_back(k);
-  }
-  const ScanMatcherSettings& matching = settings_.tracking.matching;
-  for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) {
-    if (keyframes_of[static_cast<std::size_t>(s)].empty()) continue;
-    const std::shared_ptr<const DrawnSubmap> submap = drawn(s);
-    const Pose2 T_submap_map = T_map_submap(s).inverse();
-    for (const int k : keyframes_of[static_cast<std::size_t>(s)]) {
-      const Keyframe& keyframe = keyframes_[static_cast<std::size_t>(k)];
-      const std::vector<MatchPoint> points = select_match_points(keyframe.scan, matching.point_spacing_m, matching.max_points);
-      const Pose2 start = T_submap_map * graph_.T_map_node[static_cast<std::size_t>(k)];
-      const PoseGaussian prior{.mean = start, .covariance = Eigen::Vector3d(0.04, 0.04, 0.0025).asDiagonal()};
-      const std::optional<MatchResult> match = match_scan(submap->map(), points, start, prior, matching);
-      if (!match || match->matched_share < 0.6) continue;
-      const Pose2 moved = start.inverse() * match->T_map_body;
-      if (moved.position().norm() > settings_.max_refinement_m || std::abs(moved.yaw) > settings_.max_refinement_rad) continue;
-      graph_.edges.push_back({.from = submaps_[static_cast<std::size_t>(s)].first,
-                              .to = k,
-                              .T_from_to = match->T_map_body,
-                              .information = edge_information(match->information, {}),
-                              .kind = PoseGraphEdge::Kind::kLoop});
-    }
-  }
 }
 
 std::vector<std::size_t> GraphSlam::node_scans() const {
@@ -212,9 +224,8 @@ std::vector<Pose2> GraphSlam::path() const {
   return T_map_body;
 }
 
-OccupancyGrid GraphSlam::map() const {
-  GridMap map(settings_.tracking.resolution_m, settings_.tracking.max_extent_m);
-  for (std::size_t k = 0; k < keyframes_.size(); ++k) integrate_scan(keyframes_[k].scan, graph_.T_map_node[k], settings_.tracking.integration, map);
+OccupancyGrid GraphSlam::map() {
+  const GridMap& map = live_map_.draw(keyframes_, graph_.T_map_node, is_finished_ ? 0.0 : settings_.redraw_shift_m);
   return render_map(map, settings_.min_hits_occupied, settings_.min_hit_share_occupied);
 }
 

@@ -23,10 +23,7 @@ class LikelihoodPyramid {
 
   /// At a place in the map, in cells of the finest level from the map's origin.
   int value(int level, int col, int row) const {
-    const Level& grid = levels_[static_cast<std::size_t>(level)];
-    const int c = (col >> level) - grid.first_col, r = (row >> level) - grid.first_row;
-    if (c < 0 || r < 0 || c >= grid.width || r >= grid.height) return 0;
-    return grid.values[static_cast<std::size_t>(r * grid.width + c)];
+    return levels_[static_cast<std::size_t>(level)].find(col >> level, row >> level);
   }
 
   static constexpr int kOnSurface = 100;
@@ -36,7 +33,20 @@ class LikelihoodPyramid {
   struct Level {
     int first_col = 0, first_row = 0, width = 0, height = 0;
     std::vector<std::int8_t> values;  ///< [row][col]
+
+    void clear() { values.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0); }
+    std::int8_t& at(int col, int row) { return values[static_cast<std::size_t>((row - first_row) * width + col - first_col)]; }
+    /// 0 outside.
+    int find(int col, int row) const {
+      const int c = col - first_col, r = row - first_row;
+      return c < 0 || r < 0 || c >= width || r >= height ? 0 : values[static_cast<std::size_t>(r * width + c)];
+    }
   };
+
+  Cell cell_of(const Eigen::Vector2d& p_map) const;
+  Level extent_of(const GridMap& map) const;
+  Level draw_finest(const GridMap& map) const;
+  static Level halved(const Level& fine, bool is_of_finest);
 
   double resolution_m_;
   std::vector<Level> levels_;

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <ceres/ceres.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -40,12 +41,33 @@ class EdgeCost : public ceres::SizedCostFunction<3, 3, 3> {
   Eigen::Matrix3d root_;
 };
 
+/// (predicted range - range) / standard deviation.
+class RangeCost : public ceres::SizedCostFunction<1, 3> {
+ public:
+  RangeCost(const NodeRange& range, double std_m, const UwbCalibration& calibration) : range_(range), std_m_(std_m), calibration_(calibration) {}
+
+  bool Evaluate(const double* const* poses, double* residuals, double** jacobians) const override {
+    const Pose2 T_map_judged = range_.T_map_judged({poses[0][0], poses[0][1], poses[0][2]});
+    const PredictedRange predicted = predict_uwb_range(range_.anchor, T_map_judged, range_.p_level_antenna, calibration_);
+    residuals[0] = (predicted.range_m - range_.range_m) / std_m_;
+    if (!jacobians || !jacobians[0]) return true;
+    Eigen::Vector3d by_pose = predicted.by_pose;
+    if (range_.direction) by_pose << range_.direction->dot(predicted.by_pose.head<2>()) * *range_.direction, 0.0;
+    Eigen::Map<Eigen::Vector3d>(jacobians[0]).noalias() = by_pose / std_m_;
+    return true;
+  }
+
+ private:
+  NodeRange range_;
+  double std_m_;
+  const UwbCalibration& calibration_;  ///< the solver's caller's
+};
+
 }  // namespace
 
-PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings) {
+PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings, const NodeRanges& ranges, int first_free) {
   std::vector<std::array<double, 3>> poses;
   for (const Pose2& pose : graph.T_map_node) poses.push_back({pose.x, pose.y, pose.yaw});
-  if (poses.empty() || graph.edges.empty()) return {.converged = true};
 
   ceres::CauchyLoss kernel(settings.loop_kernel);
   ceres::Problem::Options problem_options;
@@ -56,10 +78,18 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
     return poses[static_cast<std::size_t>(index)].data();
   };
   for (const PoseGraphEdge& edge : graph.edges) {
+    double *const from = node(edge.from), *const to = node(edge.to);
+    if (edge.from < first_free && edge.to < first_free) continue;
     const bool is_doubted = settings.doubts_loops && edge.kind == PoseGraphEdge::Kind::kLoop;
-    problem.AddResidualBlock(new EdgeCost(edge), is_doubted ? &kernel : nullptr, node(edge.from), node(edge.to));
+    problem.AddResidualBlock(new EdgeCost(edge), is_doubted ? &kernel : nullptr, from, to);
   }
-  if (problem.HasParameterBlock(poses[0].data())) problem.SetParameterBlockConstant(poses[0].data());
+  for (const NodeRange& range : ranges.ranges()) {
+    if (range.node >= first_free) problem.AddResidualBlock(new RangeCost(range, ranges.std_m(range), ranges.calibration()), &kernel, node(range.node));
+  }
+  for (std::size_t i = 0; i < std::min(poses.size(), static_cast<std::size_t>(first_free)); ++i) {
+    if (problem.HasParameterBlock(poses[i].data())) problem.SetParameterBlockConstant(poses[i].data());
+  }
+  if (problem.NumResidualBlocks() == 0) return {.converged = true};
 
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
@@ -69,7 +99,7 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  for (std::size_t i = 0; i < poses.size(); ++i) graph.T_map_node[i] = {poses[i][0], poses[i][1], wrap_angle(poses[i][2])};
+  for (std::size_t i = static_cast<std::size_t>(first_free); i < poses.size(); ++i) graph.T_map_node[i] = {poses[i][0], poses[i][1], wrap_angle(poses[i][2])};
   return {.initial_cost = summary.initial_cost,
           .final_cost = summary.final_cost,
           .iterations = summary.num_successful_steps,

@@ -13,6 +13,8 @@ constexpr double kTail = 4.0;
 /// Who has been wrong is doubted for a while: his variance grows to what the scan said, and falls back from scan to scan.
 constexpr double kForget = 0.8;
 constexpr double kMostDoubt = 400.0;
+/// A match of fewer of the points is worth a search for a better one.
+constexpr double kGoodShare = 0.6;
 
 double log_student(const PoseGaussian& prediction, const Pose2& pose) {
   const Eigen::Vector3d offset = prediction.offset_of(pose);
@@ -30,33 +32,55 @@ ScanTracker::ScanTracker(const ScanTrackerSettings& settings)
     : settings_(settings), older_(settings.resolution_m, settings.max_extent_m), newer_(settings.resolution_m, settings.max_extent_m) {}
 
 TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body) {
-  const std::vector<MatchPoint> points = select_match_points(scan, settings_.matching.point_spacing_m, settings_.matching.max_points);
-  TrackedScan tracked;
   if (!stamp_) {
-    T_odom_last_ = T_odom_body;
-    stamp_ = scan.stamp;
+    T_odom_last_ = matched_.T_odom_body = T_odom_body;
+    stamp_ = matched_.stamp = scan.stamp;
   }
-  const double step_s = to_seconds(scan.stamp - *stamp_);
-  const Pose2 T_last_odom = T_odom_last_.inverse() * T_odom_body;
-  PoseGaussian prediction = predict_motion(T_local_last_, T_last_odom, std::max(0.0, step_s), settings_.motion);
+  const Step step{.seconds = to_seconds(scan.stamp - *stamp_), .T_last_odom = T_odom_last_.inverse() * T_odom_body};
+  PoseGaussian prediction =
+      predict_motion(matched_.T_local_body, matched_.T_odom_body.inverse() * T_odom_body, std::max(0.0, to_seconds(scan.stamp - matched_.stamp)), settings_.motion);
   prediction.covariance *= odometry_doubt_;
-  Hypothesis best{.T_local_body = prediction.mean, .match = {}};
-  if (older_.has_surface() && !points.empty()) {
-    best = try_from(prediction.mean, points, prediction, true);
-    const double factor = last_step_s_ > 1e-3 ? std::clamp(step_s / last_step_s_, 0.0, 2.0) : 1.0;
-    const Pose2 as_before = T_local_last_ * scaled(T_last_now_, factor);
-    const auto consider = [&](const Pose2& start) {
-      const Hypothesis other = try_from(start, points, prediction, false);
-      if (other.match && (!best.match || is_better(other, best))) best = other;
-    };
-    for (const Pose2& start : {as_before, T_local_last_ * Pose2{0.0, 0.0, T_last_odom.yaw}, T_local_last_ * Pose2{-T_last_odom.x, -T_last_odom.y, T_last_odom.yaw}}) {
-      if (is_apart(start, prediction.mean) && is_apart(start, best.T_local_body)) consider(start);
-    }
-    if (!best.match || best.match->matched_share < 0.6) consider(search_pose(older_, points, prediction.mean, settings_.matching));
+  const bool can_be_matched = older_.has_surface();
+  const Hypothesis best = follow(select_match_points(scan, settings_.matching.point_spacing_m, settings_.matching.max_points), step, prediction);
+  doubt_odometry(prediction, best.T_local_body);
+  TrackedScan tracked = believed(best, prediction);
+  tracked.is_keyframe = is_keyframe_due(tracked.T_local_body);
+  if (tracked.is_keyframe) write(scan, tracked.T_local_body, tracked);
+  T_last_now_ = T_local_last_.inverse() * tracked.T_local_body;
+  last_step_s_ = step.seconds;
+  T_local_last_ = tracked.T_local_body;
+  T_odom_last_ = T_odom_body;
+  stamp_ = scan.stamp;
+  if (best.match || !can_be_matched) matched_ = {.stamp = scan.stamp, .T_local_body = tracked.T_local_body, .T_odom_body = T_odom_body};
+  return tracked;
+}
+
+// From where odometry has it, and from wherever else it may be.
+ScanTracker::Hypothesis ScanTracker::follow(const std::vector<MatchPoint>& points, const Step& step, const PoseGaussian& prediction) const {
+  if (!older_.has_surface() || points.empty()) return {.T_local_body = prediction.mean, .match = {}};
+  Hypothesis best = try_from(prediction.mean, points, prediction, true);
+  const auto consider = [&](const Pose2& start) {
+    const Hypothesis other = try_from(start, points, prediction, false);
+    if (other.match && (!best.match || is_better(other, best))) best = other;
+  };
+  const double factor = last_step_s_ > 1e-3 ? std::clamp(step.seconds / last_step_s_, 0.0, 2.0) : 1.0;
+  const Pose2 as_before = scaled(T_last_now_, factor), none{0.0, 0.0, step.T_last_odom.yaw}, opposite{-step.T_last_odom.x, -step.T_last_odom.y, step.T_last_odom.yaw};
+  for (const Pose2& T_last_now : {as_before, none, opposite}) {
+    const Pose2 start = T_local_last_ * T_last_now;
+    if (is_apart(start, prediction.mean) && is_apart(start, best.T_local_body)) consider(start);
   }
-  tracked.T_local_body = best.T_local_body;
-  const Eigen::Vector3d offset = prediction.offset_of(best.T_local_body);
-  odometry_doubt_ = std::clamp(std::max(kForget * odometry_doubt_, odometry_doubt_ * offset.dot(prediction.covariance.inverse() * offset) / 3.0), 1.0, kMostDoubt);
+  if (!best.match || best.match->matched_share < kGoodShare) consider(search_pose(older_, points, prediction.mean, settings_.matching));
+  return best;
+}
+
+void ScanTracker::doubt_odometry(const PoseGaussian& prediction, const Pose2& T_local_body) {
+  const Eigen::Vector3d offset = prediction.offset_of(T_local_body);
+  const double squared = offset.dot(prediction.covariance.inverse() * offset);  // 3 on average, where the doubt is as it should be
+  odometry_doubt_ = std::clamp(std::max(kForget * odometry_doubt_, odometry_doubt_ * squared / 3.0), 1.0, kMostDoubt);
+}
+
+TrackedScan ScanTracker::believed(const Hypothesis& best, const PoseGaussian& prediction) const {
+  TrackedScan tracked{.T_local_body = best.T_local_body, .submap = submap_};
   Eigen::Matrix3d information = prediction.covariance.inverse();
   if (best.match) {
     tracked.match_information = best.match->information;
@@ -64,17 +88,13 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
     information += settings_.likelihood_gain * best.match->information;
   }
   tracked.covariance = information.inverse();
-  const Pose2 T_keyframe_body = T_local_keyframe_.inverse() * tracked.T_local_body;
-  tracked.is_keyframe = keyframes_ < settings_.initial_keyframes || T_keyframe_body.position().norm() >= settings_.keyframe_distance_m ||
-                        std::abs(T_keyframe_body.yaw) >= settings_.keyframe_angle_rad;
-  tracked.submap = submap_;
-  if (tracked.is_keyframe) write(scan, tracked.T_local_body, tracked);
-  T_last_now_ = T_local_last_.inverse() * tracked.T_local_body;
-  last_step_s_ = step_s;
-  T_local_last_ = tracked.T_local_body;
-  T_odom_last_ = T_odom_body;
-  stamp_ = scan.stamp;
   return tracked;
+}
+
+bool ScanTracker::is_keyframe_due(const Pose2& T_local_body) const {
+  const Pose2 T_keyframe_body = T_local_keyframe_.inverse() * T_local_body;
+  return keyframes_ < settings_.initial_keyframes || T_keyframe_body.position().norm() >= settings_.keyframe_distance_m ||
+         std::abs(T_keyframe_body.yaw) >= settings_.keyframe_angle_rad;
 }
 
 ScanTracker::Hypothesis ScanTracker::try_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points, const PoseGaussian& prediction,

@@ -47,10 +47,10 @@ struct ScanTrackerSettings {
 struct TrackedScan {
   Pose2 T_local_body;
   Eigen::Matrix3d match_information = Eigen::Matrix3d::Zero();  ///< of the scan alone, in `local`; zero: no match
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();         ///< of one scan's step, with odometry; in `local`
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();         ///< of odometry since the last match, with this one; in `local`
   double matched_share = 0.0;
   bool is_keyframe = false;
-  int submap = 0;                ///< it was matched with, and if a keyframe written into: 0, 1, ...
+  int submap = 0;                ///< that it was matched with: 0, 1, ...; a keyframe is part of it, the last one too, with which the next takes its place
   bool is_submap_start = false;  ///< a keyframe that is the first of a new map
 };
 
@@ -76,6 +76,22 @@ class ScanTracker {
     std::vector<double> log_likelihoods = {};  ///< [point]
   };
 
+  /// Where odometry is carried on from.
+  struct Fix {
+    Time stamp{};
+    Pose2 T_local_body, T_odom_body;
+  };
+
+  /// From the scan before to this one, as odometry has it.
+  struct Step {
+    double seconds = 0.0;
+    Pose2 T_last_odom;
+  };
+
+  Hypothesis follow(const std::vector<MatchPoint>& points, const Step& step, const PoseGaussian& prediction) const;
+  void doubt_odometry(const PoseGaussian& prediction, const Pose2& T_local_body);
+  TrackedScan believed(const Hypothesis& best, const PoseGaussian& prediction) const;
+  bool is_keyframe_due(const Pose2& T_local_body) const;
   bool is_better(const Hypothesis& a, const Hypothesis& b) const;
   Hypothesis try_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points, const PoseGaussian& prediction, bool is_odometry) const;
   void write(const LevelScan& scan, const Pose2& T_local_body, TrackedScan& tracked);
@@ -85,6 +101,7 @@ class ScanTracker {
   int older_keyframes_ = 0, newer_keyframes_ = 0, keyframes_ = 0, submap_ = 0;
   std::optional<Time> stamp_;
   Pose2 T_local_last_, T_odom_last_, T_local_keyframe_;
+  Fix matched_;       ///< the last scan that was matched
   Pose2 T_last_now_;  ///< the motion from the scan before to the last
   double last_step_s_ = 0.0;
   double odometry_doubt_ = 1.0;  ///< factor of its variance

@@ -25,16 +25,23 @@ struct Submap {
   int last = 0;   ///< inclusive
 };
 
+/// How scans are made a map.
+struct MapDrawing {
+  double resolution_m = 0.05;
+  double max_extent_m = 4000.0;  ///< nothing is kept farther than half of this from the map's origin
+  ScanIntegrationSettings integration = {};
+};
+
 /// A submap drawn, to be matched with.
 class DrawnSubmap {
  public:
   /// `T_map_node` [keyframe].
-  DrawnSubmap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, double resolution_m,
-              const ScanIntegrationSettings& integration);
+  DrawnSubmap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, const MapDrawing& drawing);
 
   const GridMap& map() const { return map_; }
-  /// The middle of the mean hits of its surfaces, on a coarser grid: what another submap is searched with.
+  /// (surface_points.h), with which another submap is searched.
   const std::vector<MatchPoint>& surface_points() const { return surface_points_; }
+  double point_spacing_m() const { return 2.0 * map_.resolution_m(); }
   const LikelihoodPyramid& pyramid() const { return pyramid_; }
 
  private:

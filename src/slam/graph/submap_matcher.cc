@@ -8,8 +8,6 @@
 namespace patrol::slam {
 namespace {
 
-constexpr double kPointSpacing_m = 0.1;  ///< of a submap's surface points
-
 std::vector<Eigen::Vector2d> thinned(const std::vector<MatchPoint>& points, std::size_t limit) {
   std::vector<Eigen::Vector2d> chosen;
   const std::size_t count = std::min(limit, points.size());
@@ -17,17 +15,18 @@ std::vector<Eigen::Vector2d> thinned(const std::vector<MatchPoint>& points, std:
   return chosen;
 }
 
-/// How the points of one lie on the map of another.
+/// How the surfaces of one lie on the map of another.
 struct Overlap {
   double known_share = 0.0;
   double matched_share = 0.0;
   double matched_length_m = 0.0;
 };
 
-Overlap overlap_of(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_points) {
+Overlap overlap_of(const GridMap& map, const DrawnSubmap& other, const Pose2& T_map_other) {
+  const std::vector<MatchPoint>& points = other.surface_points();
   int known = 0, matched = 0;
   for (const MatchPoint& point : points) {
-    const Cell cell = map.cell_at(T_map_points * point.p_body);
+    const Cell cell = map.cell_at(T_map_other * point.p_body);
     const bool is_matched = map.is_surface_within(cell, 2);
     const GridCell* there = map.find(cell);
     if (!is_matched && (!there || !there->is_known())) continue;
@@ -36,7 +35,7 @@ Overlap overlap_of(const GridMap& map, const std::vector<MatchPoint>& points, co
   }
   return {.known_share = points.empty() ? 0.0 : static_cast<double>(known) / static_cast<double>(points.size()),
           .matched_share = known == 0 ? 0.0 : static_cast<double>(matched) / known,
-          .matched_length_m = matched * kPointSpacing_m};
+          .matched_length_m = matched * other.point_spacing_m()};
 }
 
 }  // namespace
@@ -53,12 +52,10 @@ SubmapMatchResult match_submaps(const DrawnSubmap& target, const DrawnSubmap& so
   const SearchExclusion exclusion{.T_map_center = found->T_map_points, .radius_m = settings.ambiguity_distance_m, .angle_rad = settings.ambiguity_angle_rad};
   if (search_window(target.pyramid(), points, window, settings.ambiguity * found->score, exclusion)) return {.match = {}, .failure = MatchFailure::kAmbiguous};
 
-  // What the surfaces leave open stays where the search found it.
-  const PoseGaussian prior{.mean = found->T_map_points, .covariance = Eigen::Vector3d(0.04, 0.04, 0.0025).asDiagonal()};
-  const std::optional<MatchResult> fine = match_scan(target.map(), source.surface_points(), found->T_map_points, prior, matching);
+  const std::optional<MatchResult> fine = match_scan(target.map(), source.surface_points(), found->T_map_points, start_of_match(found->T_map_points), matching);
   if (!fine) return {.match = {}, .failure = MatchFailure::kMismatch};
-  const Overlap forth = overlap_of(target.map(), source.surface_points(), fine->T_map_body);
-  const Overlap back = overlap_of(source.map(), target.surface_points(), fine->T_map_body.inverse());
+  const Overlap forth = overlap_of(target.map(), source, fine->T_map_body);
+  const Overlap back = overlap_of(source.map(), target, fine->T_map_body.inverse());
   const SubmapMatch match{.T_target_source = fine->T_map_body,
                           .information = fine->information,
                           .score = found->score,

@@ -52,6 +52,11 @@ struct SubmapMatchResult {
   MatchFailure failure = MatchFailure::kNone;
 };
 
+/// Where a match with a submap begins, and how far it may go where the surfaces leave it open: 0.2 m and 0.05 rad.
+inline PoseGaussian start_of_match(const Pose2& T_submap_start) {
+  return {.mean = T_submap_start, .covariance = Eigen::Vector3d(0.2 * 0.2, 0.2 * 0.2, 0.05 * 0.05).asDiagonal()};
+}
+
 /// Where the source lies in the target, searched within three standard deviations of the prediction: branch and bound for the coarse pose, another for a
 /// rival as good, then Gauss-Newton on lines, then a look whether each one's surfaces lie on the other's wherever the other has looked.
 SubmapMatchResult match_submaps(const DrawnSubmap& target, const DrawnSubmap& source, const PoseGaussian& prediction,

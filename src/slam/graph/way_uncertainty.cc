@@ -14,15 +14,14 @@ constexpr double kMetresPerRadian = 10.0;
 
 double uncertainty(const Eigen::Matrix3d& covariance) { return covariance(0, 0) + covariance(1, 1) + kMetresPerRadian * kMetresPerRadian * covariance(2, 2); }
 
-/// How what was uncertain at `here` and on a short way from it makes `there` uncertain, all in one frame.
+}  // namespace
+
 Eigen::Matrix3d carried_on(const PoseGaussian& here, const Pose2& there, const Eigen::Matrix3d& way_covariance) {
   Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
   F(0, 2) = -(there.y - here.mean.y);
   F(1, 2) = there.x - here.mean.x;
   return F * here.covariance * F.transpose() + turned(way_covariance, here.mean.yaw);
 }
-
-}  // namespace
 
 Eigen::Matrix3d turned(const Eigen::Matrix3d& matrix, double yaw_rad) {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();

@@ -18,6 +18,9 @@ struct UncertainWay {
 /// Places that no way leads to are infinitely uncertain.
 std::vector<PoseGaussian> positions_from(int place, const std::vector<Pose2>& T_map_place, const std::vector<UncertainWay>& ways);
 
+/// How surely `there` is known, where what is uncertain at `here` and on the way from it is; `way_covariance` as seen from here. Both in one frame, as is the result.
+Eigen::Matrix3d carried_on(const PoseGaussian& here, const Pose2& there, const Eigen::Matrix3d& way_covariance);
+
 /// T_a_b and its covariance in a, given those of T_b_a in b.
 PoseGaussian inverse_of(const PoseGaussian& T_b_a);
 

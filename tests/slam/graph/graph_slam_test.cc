@@ -69,11 +69,86 @@ TEST(GraphSlam, TheSameScansGiveTheSamePathToTheBit) {
   for (std::size_t k = 0; k < first.size(); ++k) EXPECT_EQ(first[k].vector(), second[k].vector()) << k;
 }
 
+/// Along 40 m of smooth corridor with odometry 3 % too long; a radio at either end is heard ten times a second.
+std::vector<SlamUpdate> follow_corridor(const GraphSlamSettings& settings, GraphSlam& slam) {
+  test::RoomWorld corridor;
+  corridor.add_wall(-100.0, -1.0, 200.0, -1.0).add_wall(-100.0, 1.0, 200.0, 1.0);
+  const std::vector<UwbAnchor> anchors = {{.number = 1, .p_m = {-5.0, 0.8, 1.0}}, {.number = 2, .p_m = {60.0, -0.8, 1.0}}};
+  const RandomStream noise(1, "test/corridor"), radio(1, "test/radio");
+  const Eigen::Vector3d antenna(0.2, 0.0, 0.6);
+  std::vector<SlamUpdate> updates;
+  for (std::uint64_t k = 0; k <= 400; ++k) {
+    const Pose2 truth{0.1 * static_cast<double>(k), 0.0, 0.0}, T_odom_body{1.03 * truth.x, 0.0, 0.0};
+    for (const UwbAnchor& anchor : anchors) {
+      const double range_m = predict_uwb_range(anchor, truth, antenna, settings.ranges.calibration).range_m + 0.1 * radio.normal(k, static_cast<std::uint64_t>(anchor.number));
+      slam.add({.anchor = anchor, .range_m = range_m, .T_odom_body = T_odom_body, .p_level_antenna = antenna});
+    }
+    updates.push_back(slam.update(corridor.scan(truth, from_seconds(0.1 * static_cast<double>(k)), test::kOldLidar, noise, k), T_odom_body));
+  }
+  return updates;
+}
+
+// Odometry alone is 1.2 m off at the end.
+TEST(GraphSlam, AlongASmoothCorridorRangesHoldItToTenCentimetresAndWithoutThemOdometryIsBelieved) {
+  for (const bool has_ranges : {true, false}) {
+    GraphSlamSettings settings;
+    settings.ranges.enabled = has_ranges;
+    GraphSlam slam(settings);
+    const std::vector<SlamUpdate> updates = follow_corridor(settings, slam);
+    double worst = 0.0;
+    for (std::size_t k = 0; k < updates.size(); ++k) worst = std::max(worst, std::abs(updates[k].T_map_body.x - 0.1 * static_cast<double>(k)));
+    if (has_ranges) {
+      EXPECT_LT(worst, 0.1);
+      slam.finish();
+      EXPECT_NEAR(slam.path().back().x, 40.0, 0.05);
+    } else {
+      EXPECT_GT(worst, 0.8);
+    }
+    EXPECT_LT(std::abs(updates.back().T_map_body.y), 0.02);
+  }
+}
+
+TEST(GraphSlam, TheCovarianceGrowsAlongASmoothCorridorAndRangesKeepItSmall) {
+  double along_std_m[2];
+  for (const bool has_ranges : {true, false}) {
+    GraphSlamSettings settings;
+    settings.ranges.enabled = has_ranges;
+    GraphSlam slam(settings);
+    const Eigen::Matrix3d covariance = follow_corridor(settings, slam).back().covariance;
+    along_std_m[has_ranges ? 1 : 0] = std::sqrt(covariance(0, 0));
+    EXPECT_LT(std::sqrt(covariance(1, 1)), 0.005);
+  }
+  EXPECT_GT(along_std_m[0], 0.05);
+  EXPECT_LT(along_std_m[1], 0.05);
+}
+
+// As on a ramp between walls that lean: what is seen there is turned by 3 degrees, and odometry is right.
+TEST(GraphSlam, WhatALidarTiltedBy11DegreesSeesIsNeitherMatchedNorWritten) {
+  test::RoomWorld room;
+  room.add_box(-3.0, -2.0, 5.0, 4.0);
+  for (const double tilt_rad : {0.2, 0.0}) {
+    GraphSlamSettings settings;
+    settings.max_tilt_rad = 0.1;
+    GraphSlam slam(settings);
+    for (int i = 0; i < 12; ++i) slam.update(room.scan({}, {}), {});
+    SlamUpdate update;
+    for (int i = 1; i <= 6; ++i) {
+      const Pose2 T_odom_body{0.1 * i, 0.0, 0.0};
+      LevelScan scan = room.scan(T_odom_body * Pose2{0.0, 0.0, 0.05}, {});
+      scan.tilt_rad = tilt_rad;
+      update = slam.update(scan, T_odom_body);
+    }
+    EXPECT_EQ(update.match_score > 0.0, tilt_rad == 0.0);
+    EXPECT_NEAR(update.T_map_body.yaw, tilt_rad > 0.0 ? 0.0 : 0.05, 0.015);
+    EXPECT_NEAR(update.T_map_body.x, 0.6, 0.02);
+  }
+}
+
 TEST(GraphSlam, BeforeAnyScanItHasNoPathAndAfterOneItStandsAtTheOrigin) {
   GraphSlam slam({});
   EXPECT_TRUE(slam.path().empty());
   slam.finish();
-  const Pose2 pose = slam.update(test::make_office().scan({8.0, 4.2, 0.0}, test::kOldLidar), {5.0, 5.0, 1.0});
+  const Pose2 pose = slam.update(test::make_office().scan({8.0, 4.2, 0.0}, test::kOldLidar), {5.0, 5.0, 1.0}).T_map_body;
   EXPECT_THAT(pose, test::Pose2Near(Pose2{}, 1e-12, 1e-12));
   EXPECT_EQ(slam.path().size(), 1U);
 }

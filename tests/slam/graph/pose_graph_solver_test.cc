@@ -105,6 +105,74 @@ TEST(SolvePoseGraph, AnEdgeToANodeThatIsNotThereThrows) {
   EXPECT_THROW(solve(graph, {}), std::invalid_argument);
 }
 
+/// A metre apart along x; edges say `step_m`.
+PoseGraph make_line(int num_nodes, double step_m) {
+  PoseGraph graph;
+  for (int i = 0; i < num_nodes; ++i) {
+    graph.T_map_node.push_back({static_cast<double>(i), 0.0, 0.0});
+    if (i > 0) graph.edges.push_back({.from = i - 1, .to = i, .T_from_to = {step_m, 0.0, 0.0}, .information = Eigen::Vector3d(1e4, 1e4, 1e4).asDiagonal(), .kind = Kind::kOdometry});
+  }
+  return graph;
+}
+
+RangeSighting clear_range(const Pose2& T_map_body, const UwbAnchor& anchor) {
+  const Eigen::Vector3d antenna = Eigen::Vector3d::Zero();
+  return {.anchor = anchor, .range_m = predict_uwb_range(anchor, T_map_body, antenna, {}).range_m, .T_odom_body = {}, .p_level_antenna = antenna};
+}
+
+// Ten steps that odometry has 1.01 m long; at every node a range of ten readings to an anchor ahead.
+TEST(SolvePoseGraph, RangesAlongALineHoldItWhereOdometryIsOnePercentTooLong) {
+  PoseGraph graph = make_line(11, 1.01);
+  const PoseGraph truth = graph;
+  NodeRanges ranges({.range_std_m = 0.02});
+  for (int i = 1; i < 11; ++i) {
+    const Pose2& node = truth.T_map_node[static_cast<std::size_t>(i)];
+    for (int reading = 0; reading < 10; ++reading) ranges.add(i, node, {}, clear_range(node, {.number = 1, .p_m = {30.0, 0.0, 0.0}}));
+  }
+  solve(graph, {}, ranges);
+  EXPECT_NEAR(graph.T_map_node[5].x, 5.0, 0.001);
+  EXPECT_NEAR(graph.T_map_node[10].x, 10.0, 0.005);
+  solve(graph, {});
+  EXPECT_NEAR(graph.T_map_node[10].x, 10.1, 1e-6);
+}
+
+// From an anchor abreast a range tells where across the line, and along it nothing: asked about the direction along it, it does not move the node.
+TEST(SolvePoseGraph, ARangeMovesItsNodeOnlyInTheDirectionThatItIsAskedAbout) {
+  for (const bool is_along : {true, false}) {
+    PoseGraph graph = make_line(2, 1.0);
+    NodeRanges ranges({.range_std_m = 0.01});
+    const Eigen::Vector2d along(1.0, 0.0), across(0.0, 1.0);
+    RangeSighting sighting = clear_range(graph.T_map_node[1], {.number = 1, .p_m = {1.0, 10.0, 0.0}});
+    sighting.range_m -= 0.01;
+    ranges.add(1, graph.T_map_node[1], {}, sighting, is_along ? along : across);
+    solve(graph, {}, ranges);
+    EXPECT_NEAR(graph.T_map_node[1].x, 1.0, 1e-6);
+    EXPECT_NEAR(graph.T_map_node[1].y, is_along ? 0.0 : 0.005, 5e-4);  // the edge's 1 cm against the range's
+    EXPECT_NEAR(graph.T_map_node[1].yaw, 0.0, 1e-6);
+  }
+}
+
+// One of six went round a corner and is 8 m too long.
+TEST(SolvePoseGraph, ARangeThatIsFarTooLongIsDoubted) {
+  PoseGraph graph = make_line(7, 1.0);
+  NodeRanges ranges({.range_std_m = 0.1});
+  for (int i = 1; i < 7; ++i) {
+    RangeSighting sighting = clear_range(graph.T_map_node[static_cast<std::size_t>(i)], {.number = 1, .p_m = {-20.0, 0.0, 0.0}});
+    if (i == 3) sighting.range_m += 8.0;
+    ranges.add(i, graph.T_map_node[static_cast<std::size_t>(i)], {}, sighting);
+  }
+  solve(graph, {}, ranges);
+  for (int i = 0; i < 7; ++i) EXPECT_NEAR(graph.T_map_node[static_cast<std::size_t>(i)].x, i, 0.01) << i;
+}
+
+// Odometry says 1.1 m; nodes 0 to 4 stay at 0 ... 4 m, those from 5 on follow.
+TEST(SolvePoseGraph, NodesBeforeTheFirstFreeOneStayAndTheOthersAreSolvedBesideThem) {
+  PoseGraph graph = make_line(8, 1.1);
+  solve(graph, {}, {}, 5);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(graph.T_map_node[static_cast<std::size_t>(i)].x, i);
+  for (int i = 5; i < 8; ++i) EXPECT_NEAR(graph.T_map_node[static_cast<std::size_t>(i)].x, 4.0 + 1.1 * (i - 4), 1e-6);
+}
+
 TEST(EdgeError, IsInTheFrameOfItsFirstNodeAndWrapsTheAngle) {
   const std::vector<Pose2> nodes = {{1.0, 1.0, 0.5 * std::numbers::pi}, {1.0, 4.0, -3.0}};
   const PoseGraphEdge edge{.from = 0, .to = 1, .T_from_to = {2.5, 0.1, 1.7}, .information = Eigen::Vector3d(1.0, 4.0, 9.0).asDiagonal()};

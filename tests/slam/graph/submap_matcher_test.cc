@@ -2,25 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/slam/graph/drawn_submap.h"
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
 
 namespace patrol::slam {
 namespace {
 
-using test::Pose2Near;
-
-/// A submap drawn from scans every half metre along a way, at their true poses; its frame is the first of them.
-DrawnSubmap drive_past(const test::RoomWorld& world, const std::vector<Eigen::Vector2d>& way, std::uint64_t seed) {
-  std::vector<Keyframe> keyframes;
-  std::vector<Pose2> poses;
-  const RandomStream noise(seed, "test/submap");
-  for (const test::DriveStep& step : test::drive_along(way, {.speed_mps = 0.5, .turn_radps = 0.5, .period_s = 1.0})) {
-    keyframes.push_back({world.scan(step.T_world_body, step.stamp, test::kOldLidar, noise, keyframes.size()), step.T_world_body});
-    poses.push_back(step.T_world_body);
-  }
-  return DrawnSubmap({.first = 0, .last = static_cast<int>(keyframes.size()) - 1}, keyframes, poses, 0.05, {});
-}
+using test::Pose2Near, test::drive_past;
 
 PoseGaussian around(const Pose2& mean, double std_m, double std_rad) {
   return {.mean = mean, .covariance = Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal()};
@@ -59,22 +48,6 @@ TEST(MatchSubmaps, AmongIdenticalDoorsAMatchIsTakenOnlyWhereNoOtherCanBeMeant) {
   const SubmapMatchResult unsure = match_submaps(target, source, around({1.2, 0.0, 0.0}, 2.0, 0.02), {}, {});
   EXPECT_FALSE(unsure.match);
   EXPECT_EQ(unsure.failure, MatchFailure::kAmbiguous);
-}
-
-TEST(SubmapCache, DrawsOnceAndForgetsWhatWasUsedLongestAgo) {
-  const DrawnSubmap drawn = drive_past(test::make_office(), {{8.0, 4.2}, {9.0, 4.2}}, 1);
-  SubmapCache cache(2);
-  int draws = 0;
-  const auto get = [&](int submap) {
-    cache.get(submap, [&] {
-      ++draws;
-      return std::make_shared<const DrawnSubmap>(drawn);
-    });
-  };
-  for (const int submap : {0, 1, 0, 2, 0}) get(submap);
-  EXPECT_EQ(draws, 3);
-  get(1);
-  EXPECT_EQ(draws, 4);
 }
 
 }  // namespace

@@ -22,6 +22,16 @@ std::vector<Pose2> make_line(int count) {
   return line;
 }
 
+// From the origin, looking along y, with a tenth of a radian of doubt: 2 m ahead that is 0.2 m to the left, along -x; the way's own 0.3 m is ahead, along y.
+TEST(CarriedOn, AHeadingsDoubtSwingsTheWayAndTheWaysOwnIsTurnedWithIt) {
+  const PoseGaussian here{.mean = {0.0, 0.0, 0.5 * std::numbers::pi}, .covariance = diagonal(0.0, 0.0, 0.01)};
+  const Eigen::Matrix3d there = carried_on(here, {0.0, 2.0, 0.5 * std::numbers::pi}, diagonal(0.09, 0.0, 0.0));
+  EXPECT_NEAR(there(0, 0), 0.04, kExactTol);
+  EXPECT_NEAR(there(1, 1), 0.09, kExactTol);
+  EXPECT_NEAR(there(0, 2), -0.02, kExactTol);
+  EXPECT_NEAR(there(2, 2), 0.01, kExactTol);
+}
+
 // Step i of n errs by a yaw that moves the end sideways by its rest: the variance is sigma^2 (1^2 + ... + (n-1)^2) + n q.
 TEST(PositionsFrom, AHeadingThatWandersOverTenMetresSpreadsTheEndAsTheSumOfSquares) {
   std::vector<UncertainWay> ways;

@@ -1,0 +1,23 @@
+#include "slam/graph/degeneracy.h"
+
+#include <Eigen/Eigenvalues>
+
+namespace patrol::slam {
+
+std::optional<Eigen::Vector2d> open_direction(const Eigen::Matrix3d& information, double open_share) {
+  if (information(2, 2) <= 0.0) return std::nullopt;
+  // What is left of the position's when the heading is free (Schur's complement).
+  const Eigen::Vector2d with_yaw = information.topRightCorner<2, 1>();
+  const Eigen::Matrix2d position = information.topLeftCorner<2, 2>() - with_yaw * with_yaw.transpose() / information(2, 2);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(position);  // the smaller eigenvalue first
+  if (axes.eigenvalues()[0] >= open_share * axes.eigenvalues()[1]) return std::nullopt;
+  return Eigen::Vector2d(axes.eigenvectors().col(0));
+}
+
+Eigen::Matrix3d without_direction(const Eigen::Matrix3d& information, const Eigen::Vector2d& direction) {
+  Eigen::Matrix3d rest = Eigen::Matrix3d::Identity();
+  rest.topLeftCorner<2, 2>() -= direction * direction.transpose();
+  return rest * information * rest;
+}
+
+}  // namespace patrol::slam
