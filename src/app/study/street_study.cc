@@ -19,11 +19,12 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr int kSwarmParticles = 30;
 constexpr const char* kScenario = "worlds/street/scenarios/patrol.yaml";
 
-/// A way to move the particles at a keyframe.
+/// A way to move the particles at a keyframe, or to do without.
 struct GridMethod {
   std::string name;
   int particles = 0;
   std::string proposal, optimizer;
+  std::string mapping = "rbpf";
   std::vector<std::optional<double>> published{};  ///< box 1, box 2, well 3; m
 };
 
@@ -32,7 +33,8 @@ const std::vector<GridMethod> kMethods = {{.name = "FastSLAM", .particles = kSwa
                                           {.name = "SCSO", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "scso"},
                                           {.name = "ISCSO", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "iscso", .published = {0.92, 1.17, 1.18}},
                                           {.name = "IFA", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "ifa"},
-                                          {.name = "scan matching (ours, the default)", .particles = 8, .proposal = "scan_match", .optimizer = "none"}};
+                                          {.name = "scan matching (ours)", .particles = 8, .proposal = "scan_match", .optimizer = "none"},
+                                          {.name = "pose graph (ours, the default)", .particles = 1, .proposal = "scan_match", .optimizer = "none", .mapping = "graph"}};
 
 const std::vector<StudyFigure> kFigures = {{.name = "box 1", .unit = "m", .is_compared = true},
                                            {.name = "box 2", .unit = "m", .is_compared = true},
@@ -50,7 +52,7 @@ struct Mapped {
 
 Mapped map_by(const GridMethod& method, const StudyRun& patrol) {
   StackSettings settings = patrol.scenario.stack;
-  settings.mapping = "rbpf";
+  settings.mapping = method.mapping;
   settings.slam.proposal = method.proposal;
   settings.slam.optimizer = method.optimizer;
   settings.slam.particles = method.particles;
