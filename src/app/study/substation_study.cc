@@ -28,11 +28,12 @@ struct LogMethod {
 constexpr double kMinute_s = 60.0, kGigabyte_mb = 1000.0;
 
 const std::vector<LogMethod> kMethods = {
-    {.name = "improved RBPF (submap_rbpf)", .method = "submap_rbpf", .published = {0.1522, 0.0707, {}, {}, {}, {}, {}, 43.93 * kMinute_s, 0.9 * kGigabyte_mb}, .ink = render::Ink::kEstimate},
-    {.name = "Cartographer's class (graph)", .method = "graph", .published = {0.3491, {}, {}, {}, {}, {}, {}, 51.35 * kMinute_s, 1.3 * kGigabyte_mb}, .ink = render::Ink::kRanges},
-    {.name = "plain RBPF (rbpf)", .method = "rbpf", .published = {2.7605, {}, {}, {}, {}, {}, {}, 21.01 * kMinute_s, 1.4 * kGigabyte_mb}, .ink = render::Ink::kOdometry}};
+    {.name = "improved RBPF (submap_rbpf)", .method = "submap_rbpf", .published = {0.1522, std::log10(0.1522), 0.0707, {}, {}, {}, {}, {}, 43.93 * kMinute_s, 0.9 * kGigabyte_mb}, .ink = render::Ink::kEstimate},
+    {.name = "Cartographer's class (graph)", .method = "graph", .published = {0.3491, std::log10(0.3491), {}, {}, {}, {}, {}, {}, 51.35 * kMinute_s, 1.3 * kGigabyte_mb}, .ink = render::Ink::kRanges},
+    {.name = "plain RBPF (rbpf)", .method = "rbpf", .published = {2.7605, std::log10(2.7605), {}, {}, {}, {}, {}, {}, 21.01 * kMinute_s, 1.4 * kGigabyte_mb}, .ink = render::Ink::kOdometry}};
 
 const std::vector<StudyFigure> kFigures = {{.name = "map to nearest surface", .unit = "m", .is_compared = true},
+                                           {.name = "its logarithm to base 10", .unit = "", .is_compared = true},
                                            {.name = "variance of that", .unit = "m^2", .is_compared = true},
                                            {.name = "95 % of it below", .unit = "m"},
                                            {.name = "pose RMSE", .unit = "m"},
@@ -51,6 +52,7 @@ std::vector<double> figures_of(const MappedRun& mapped, const StudyRun& run) {
   const Pose2 T_world_map = score::join_at_start(mapped.T_map_body, run.record.T_world_body);
   const score::MapError error = score::map_error(mapped.map, T_world_map, run.truth.reference);
   return {error.nearest_mean_m,
+          std::log10(error.nearest_mean_m),
           error.nearest_var_m2,
           error.nearest_p95_m,
           score::trajectory_error(mapped.T_map_body, T_world_map, run.record.T_world_body).ate_rmse_m,
@@ -131,7 +133,7 @@ Study substation_study() {
               .title = "The substation, mapped from the same logs by three methods",
               .source = "paper 002, tables 1 and 2, figure 6",
               .conditions = "Each seed is one patrol of 923 m in the twin (worlds/substation/scenarios/mapping.yaml, the paper's lidar); its log is then mapped by every method with its default "
-                            "settings. Distances are from every occupied cell of the built map to the nearest surface of the true one, map and world joined at the start. The paper's figures "
+                            "settings. What the plain filter makes of it differs tenfold from seed to seed: so factors, that is logarithms, are compared too. Distances are from every occupied cell of the built map to the nearest surface of the true one, map and world joined at the start. The paper's figures "
                             "are of its own substation, robot and machine, and of one drive of 964 m; its memory is the program's, ours the heap's. Closures are right within 0.3 m and 0.05 rad; "
                             "recall: of the graph's nodes that came back within 5 m of an older one, those with a right closure.",
               .default_seeds = 5,
