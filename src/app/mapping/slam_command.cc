@@ -6,11 +6,13 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "app/mapping/mapping_page.h"
 #include "app/mapping/neighbour_model.h"
 #include "app/mapping/read_scans.h"
 #include "app/output_directory.h"
 #include "app/process_cost.h"
 #include "core/thread_clock.h"
+#include "io/atomic_file.h"
 #include "io/csv.h"
 #include "io/g2o.h"
 #include "io/map_server.h"
@@ -18,6 +20,7 @@
 #include "io/scan_log.h"
 #include "io/settings_yaml.h"
 #include "io/tum.h"
+#include "render/report/page.h"
 #include "slam/calibration/calibration.h"
 #include "slam/mapper.h"
 #include "slam/planar_scan.h"
@@ -27,7 +30,7 @@ namespace {
 
 const OutputKind kMapping = {.name = "mapping of a log",
                              .unfinished = "The log has not been mapped to its end.",
-                             .made = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o", "performance.csv", "metrics.json", "settings.yaml"},
+                             .made = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o", "performance.csv", "metrics.json", "settings.yaml", "report.html"},
                              .kept = {"*.part"}};
 
 /// Everything that `--set` reaches.
@@ -140,7 +143,8 @@ ExitCode slam_command(const SlamOptions& options) {
   const PoseGraph graph = mapper->graph();
   io::save_tum(options.out / "estimate.tum", estimate, "T_map_body by " + settings.slam.method);
   io::save_tum(options.out / "odometry.tum", trajectory_of(mapped.stamps, mapped.T_odom_body), "T_odom_body, from the first scan");
-  io::save_map(options.out / "map.yaml", mapper->map());
+  const OccupancyGrid map = mapper->map();
+  io::save_map(options.out / "map.yaml", map);
   io::save_g2o(options.out / "pose_graph.g2o", graph);
   io::save_settings(options.out / "settings.yaml", settings);
   io::save_csv(options.out / "performance.csv", mapped.cost.table());
@@ -148,6 +152,8 @@ ExitCode slam_command(const SlamOptions& options) {
   const double took_s = wall_seconds() - wall_s;
   metrics["performance"] = {{"wall_s", took_s}, {"processor_s", thread_seconds() - thread_s}, {"real_time_factor", mapped.duration_s() / std::max(1e-9, took_s)}, {"peak_memory_mb", peak_memory_mb()}};
   io::save_metrics(options.out / "metrics.json", metrics);
+  const MappingContents contents{.log = options.log.filename().string(), .method = settings.slam.method, .map = map, .estimate = estimate, .cost = mapped.cost.table(), .metrics = metrics};
+  io::save_text(options.out / "report.html", render::to_html(mapping_page(contents)));
   complete_output(options.out);
 
   fmt::print("{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, {} edges, {} of them to other submaps\n{}\n",

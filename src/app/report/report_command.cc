@@ -11,10 +11,10 @@
 namespace patrol::app {
 namespace {
 
-/// A study's page is made with it, from what it has in hand.
-std::string page_of_study(const std::filesystem::path& root) {
+/// The page of a study, or of a log that was mapped, is made with it, from what it has in hand.
+std::string page_made_before(const std::filesystem::path& root) {
   const std::filesystem::path page = root / "report.html";
-  if (!std::filesystem::exists(page)) throw InputError(fmt::format("{}: the study has not come to its end: there is nothing to report", root.string()));
+  if (!std::filesystem::exists(page)) throw InputError(fmt::format("{}: has not come to its end: there is nothing to report", root.string()));
   return io::load_text(page);
 }
 
@@ -34,8 +34,8 @@ ExitCode report_command(const ReportOptions& options) {
   const std::filesystem::path out = options.out.value_or(options.directory / "report.html");
   std::string html;
   try {
-    const bool is_study = std::filesystem::exists(options.directory / "study.json");
-    html = is_study ? page_of_study(options.directory) : render::to_html(page_of(options.directory, out));
+    const bool is_made = std::filesystem::exists(options.directory / "study.json") || std::filesystem::exists(options.directory / "pose_graph.g2o");
+    html = is_made ? page_made_before(options.directory) : render::to_html(page_of(options.directory, out));
   } catch (const io::Metrics::exception& error) {
     throw InputError(fmt::format("{}: metrics.json is not as a run leaves it: {}", options.directory.string(), error.what()));
   }

@@ -70,6 +70,14 @@ class Slam(unittest.TestCase):
         self.assertLess(metrics["performance"]["peak_memory_mb"], 300)
         self.assertEqual((out / "pose_graph.g2o").read_text().count("VERTEX_SE2"), metrics["graph"]["nodes"])
 
+    def test_the_page_shows_the_map_and_what_scans_cost(self):
+        out = self.map("page")
+        html = (out / "report.html").read_text()
+        for text in ["mapped by graph", "What scans cost as the map grew", "estimated path"]:
+            self.assertIn(text, html)
+        self.patrol("report", out, "--out", self.folder / "copy.html")
+        self.assertEqual((self.folder / "copy.html").read_text(), html)
+
     def test_gzip_and_a_second_time_give_the_same_bytes(self):
         packed = self.folder / "block.log.gz"
         packed.write_bytes(gzip.compress(self.log.read_bytes()))
