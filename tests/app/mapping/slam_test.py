@@ -63,7 +63,7 @@ class Slam(unittest.TestCase):
     def test_every_file_is_there_and_the_graph_has_loops(self):
         out = self.map("files")
         self.assertEqual(sorted(file.name for file in out.iterdir()),
-                         ["estimate.tum", "map.pgm", "map.yaml", "metrics.json", "odometry.tum", "performance.csv", "pose_graph.g2o", "settings.yaml"])
+                         ["estimate.tum", "map.pgm", "map.yaml", "metrics.json", "odometry.tum", "performance.csv", "pose_graph.g2o", "report.html", "settings.yaml"])
         metrics = json.loads((out / "metrics.json").read_text())
         self.assertEqual(metrics["log"]["scans"], len(self.poses))
         self.assertGreater(metrics["graph"]["cross_submap_edges"], 0)

@@ -19,8 +19,8 @@ class Train(unittest.TestCase):
     def setUpClass(cls):
         cls.folder_object = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.folder_object.name)
-        cls.run = cls.folder / "run"
-        subprocess.run([PATROL, "run", "worlds/substation/scenarios/short.yaml", "--out", cls.run], capture_output=True, timeout=200, cwd=SOURCE, check=True)
+        cls.drive = cls.folder / "run"
+        subprocess.run([PATROL, "run", "worlds/substation/scenarios/short.yaml", "--out", cls.drive], capture_output=True, timeout=200, cwd=SOURCE, check=True)
 
     @classmethod
     def tearDownClass(cls):
@@ -33,22 +33,22 @@ class Train(unittest.TestCase):
 
     def test_a_model_is_left_that_mapping_takes_and_the_second_is_the_same(self):
         first, second = self.folder / "first.json", self.folder / "second.json"
-        done = self.train(self.run, "--held-out", self.run, *SHORT_SUBMAPS, "--out", first)
+        done = self.train(self.drive, "--held-out", self.drive, *SHORT_SUBMAPS, "--out", first)
         self.assertIn("held out", done.stdout)
-        self.train(self.run, *SHORT_SUBMAPS, "--out", second)
+        self.train(self.drive, *SHORT_SUBMAPS, "--out", second)
         self.assertEqual(first.read_bytes(), second.read_bytes())
         self.assertEqual(json.loads(first.read_text())["features"], json.loads((SOURCE / "models/submap_neighbours.json").read_text())["features"])
 
     def test_what_is_no_run_is_refused_in_a_line_and_leaves_nothing(self):
-        for runs in [[self.folder / "nowhere"], [self.run, self.folder]]:
+        for runs in [[self.folder / "nowhere"], [self.drive, self.folder]]:
             model = self.folder / "none.json"
             done = self.train(*runs, "--out", model, code=2)
             self.assertEqual(len(done.stderr.strip().splitlines()[-1:]), 1)
             self.assertFalse(model.exists())
 
     def test_examples_of_one_kind_teach_nothing(self):
-        done = self.train(self.run, *SHORT_SUBMAPS, "--set", "examples.max_match_m=1e-3", "--set", "examples.max_match_rad=1e-4", "--out", self.folder / "none.json", code=2)
-        self.assertIn("at least", done.stderr)
+        done = self.train(self.drive, *SHORT_SUBMAPS, "--set", "examples.max_match_m=1e-3", "--set", "examples.max_match_rad=1e-4", "--out", self.folder / "none.json", code=2)
+        self.assertIn("no example", done.stderr)
 
 
 if __name__ == "__main__":
