@@ -126,6 +126,17 @@ StudySample map_row(std::uint64_t seed) {
   return sample;
 }
 
+std::vector<render::Section> illustrate_row(std::uint64_t seed) {
+  const TemporaryFolder folder(fmt::format("study-{}", seed));
+  const StudyRun run = drive(kRow, seed, folder);
+  std::vector<render::Section> maps;
+  for (const LogMethod& method : kMethods) {
+    const MappedRun mapped = map_log_of(run, method.method);
+    maps.push_back({method.name, {mapped_block(mapped.map, mapped.T_map_body, run)}});
+  }
+  return maps;
+}
+
 }  // namespace
 
 Study substation_study() {
@@ -158,6 +169,7 @@ Study row_study() {
   study.figures = {{.name = "false closures", .unit = ""}, {.name = "right closures", .unit = ""}, {.name = "pose RMSE", .unit = "m", .is_compared = true}};
   for (const LogMethod& method : kMethods) study.variants.push_back({.world = "row", .method = method.name, .particles = 0, .reference = kMethods.size() - 1});
   study.run = map_row;
+  study.illustrate = illustrate_row;
   return study;
 }
 
