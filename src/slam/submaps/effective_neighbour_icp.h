@@ -87,8 +87,8 @@ Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target, const 
 /// Iterated closest points (Besl, McKay 1992) on effective neighbours (paper 002, section 2.2): every source point with its nearest target point, the pairs
 /// past the threshold dropped, anew in every iteration, so that what lies beyond the common part does not pull. None if fewer than `min_pairs` are left.
 ///
-/// Four things are not the paper's, and can be switched off: pairs that were seen from opposite sides are none, or a wall's two faces come to lie on each other; the least threshold, without which submaps that overlap wholly are matched on their best
-/// pairs only and stop half way; the largest, without which the bend of the curve lies metres off where most points have no partner (a switchyard), and the
+/// Four things are not the paper's, and can be switched off: pairs that were seen from opposite sides are none, or a wall's two faces come to lie on each
+/// other; the least threshold, without which submaps that overlap wholly are matched on their best pairs only and stop half way; the largest, without which the bend of the curve lies metres off where most points have no partner (a switchyard), and the
 /// match is worse than the one that it began at; and the steps at the end on lines where the target is straight and on points where it is not (Segal, Haehnel,
 /// Thrun, "Generalized-ICP", RSS 2009, in the plane), near pairs counting most, since two submaps' points are never the same pieces of wall, and lock like
 /// two combs.
