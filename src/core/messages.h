@@ -9,6 +9,7 @@
 
 #include "core/frames.h"
 #include "core/grid.h"
+#include "core/inspection_result.h"
 #include "core/time.h"
 
 /// What the robot's parts say to each other: the same things a real robot would publish. SI units; stamps are the
@@ -117,6 +118,36 @@ struct DepthImage {
   std::vector<std::uint16_t> depth_mm;  ///< [row][column], along the optical axis; 0 invalid
 };
 
+struct ScannerPoint {
+  float x, y, z;    ///< m, in `scanner_level`
+  float intensity;  ///< 0 ... 255
+};
+
+/// A still panoramic scan of the 3D scanner; only returns are kept, in the order of its columns. `scanner_level` has the origin and
+/// the heading of `scanner`, and is level: the instrument's own compensator has taken out the tilt that it reads.
+struct PanoramicScan {
+  Time stamp{};  ///< instant of the last point
+  std::vector<ScannerPoint> points;
+};
+
+/// What the servos of the antenna mount read back: the coil's axis is x of `tem`, turned by yaw (to the left) and then by pitch
+/// (downwards, as REP 103 counts it).
+struct AntennaState {
+  Time stamp{};
+  double yaw_rad = 0.0;
+  double pitch_rad = 0.0;
+};
+
+/// A transient-electromagnetic sounding, stacked: after the current in the coil is switched off, the rate of change of the magnetic
+/// field along the coil's axis.
+struct TemSounding {
+  Time stamp{};                    ///< of its end
+  double moment_am2 = 0.0;         ///< of the transmitter
+  std::vector<double> gate_s;      ///< [gate]: middle, after the end of the current's ramp
+  std::vector<double> rate_tps;    ///< [gate]: -dB/dt, T/s
+  std::vector<double> std_tps;     ///< [gate]: of the mean over the stack, as the instrument estimates it
+};
+
 /// The velocity asked of the robot, in `level`.
 struct VelocityCommand {
   Time stamp{};
@@ -136,7 +167,34 @@ struct RemoteCommand {
 
 /// What the sensors say, and the person at the remote control.
 using SensorMessage = std::variant<LaserScan, PointCloud, Imu, JointState, FootContacts, GasReading, GnssFix, TrackTicks,
-                                   UwbRange, UltrasonicRange, DepthImage, RemoteCommand>;
+                                   UwbRange, UltrasonicRange, DepthImage, RemoteCommand, PanoramicScan, AntennaState, TemSounding>;
+
+/// One panoramic scan, now; the robot stands still until it is there.
+struct ScanCommand {
+  Time stamp{};
+};
+
+/// Turn the antenna there, and hold it.
+struct AntennaCommand {
+  Time stamp{};
+  double yaw_rad = 0.0;
+  double pitch_rad = 0.0;
+};
+
+/// One sounding, now, where the antenna is.
+struct SoundingCommand {
+  Time stamp{};
+};
+
+/// Warning light and siren.
+struct WarningCommand {
+  Time stamp{};
+  bool light = false;
+  bool siren = false;
+};
+
+/// What the stack asks of the inspection's instruments.
+using InstrumentCommand = std::variant<ScanCommand, AntennaCommand, SoundingCommand, WarningCommand>;
 
 /// Smooth, drifting: the body in `odom`.
 struct OdometryEstimate {

@@ -49,7 +49,7 @@ struct RobotDescription {
   std::vector<std::string> joint_names;   ///< leg by leg: abduction, hip, knee; or the sprockets: left, right
   std::vector<JointLimit> joint_limits;   ///< [joint]
   std::vector<Eigen::Vector2d> footprint_m;    ///< convex hull of the collision shapes in level, counter-clockwise
-  /// Fixed frames: "lidar", "lidar3d", "imu", "tdlas", "gnss", "uwb", "depth_camera", "ultrasonic_0", "ultrasonic_1" ...
+  /// Fixed frames: "lidar", "lidar3d", "imu", "tdlas", "gnss", "uwb", "scanner", "tem", "depth_camera", "ultrasonic_0", "ultrasonic_1" ...
   std::map<std::string, Pose3> T_body_sensor;
 
   /// Of the circle about the body's origin that holds the outline.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/frames.h"
+#include "core/tunnel_lining.h"
 #include "core/uwb.h"
 
 namespace patrol {
@@ -35,13 +36,14 @@ struct Route {
   std::vector<std::vector<Eigen::Vector2d>> keep_out_lines;  ///< polylines in the route's frame, m
   std::vector<UwbAnchor> anchors;                            ///< in the route's frame
   std::optional<Dock> dock;
+  std::optional<TunnelLining> lining;
 };
 
 /// A place to drive to, marked in `map` by driving there: an entry of nav.json (paper 004, table 1).
 struct MarkedGoal {
   int number = 0;
   Pose2 T_map_body;
-  char type = 'N';          ///< 'N' navigate: stop there; other letters are for the inspection to come
+  char type = 'N';          ///< 'N' stop there, 'V' pass by, 'D' scan the lining, 'R' stop until a person has driven and handed over again
   double accuracy_m = 0.1;  ///< how near counts as reached
 };
 

@@ -17,6 +17,7 @@ Route to_map(const Route& route_in_site, const Pose2& T_site_start) {
     const Eigen::Vector2d p = T_map_site * Eigen::Vector2d(anchor.p_m.head<2>());
     anchor.p_m.head<2>() = p;
   }
+  if (route.lining) route.lining->T_route_start = T_map_site * route.lining->T_route_start;
   if (route.dock) route.dock->T_route_docked = T_map_site * route.dock->T_route_docked;
   return route;
 }

@@ -114,6 +114,35 @@ void list(Codec& codec, std::vector<Element>& elements, const Describe& describe
   }
 }
 
+/// A field of a sensor_msgs/PointCloud2.
+struct CloudField {
+  std::string name;
+  std::uint32_t offset = 0;
+  std::uint8_t type = 0;
+  std::uint32_t count = 1;
+};
+inline constexpr std::uint8_t kFloat32 = 7, kUint16 = 4;
+
+/// What stands between a PointCloud2's header and its data.
+template <typename Codec>
+void cloud_layout(Codec& codec, std::uint32_t num_points, const std::uint32_t step, std::vector<CloudField> fields) {
+  std::uint32_t height = 1;
+  codec(height);
+  codec(num_points);
+  list(codec, fields, [&](CloudField& field) {
+    codec(field.name);
+    codec(field.offset);
+    codec(field.type);
+    codec(field.count);
+  });
+  bool is_big_endian = false;
+  std::uint32_t point_step = step, row_step = step * num_points;
+  codec(is_big_endian);
+  codec(point_step);
+  codec(row_step);
+  if (point_step != step) throw DecodeError("a point cloud of another layout than ours");
+}
+
 inline void read_head(Reader& reader, std::string& frame) {
   Time stamp{};
   time_field(reader, stamp);

@@ -84,6 +84,35 @@ constexpr Definition kDefinitions[] = {
     {"patrol_msgs/RemoteCommand",
      "# What the person at the remote control asks for. Buttons: this place is a goal; the robot goes on by itself.\n"
      "std_msgs/Header header\nfloat64 vx_mps\nfloat64 yaw_rate_radps\nbool mark\nbool hand_over\n"},
+    {"patrol_msgs/AntennaState",
+     "# What the servos of the antenna mount read back: to the left, then downwards.\n"
+     "std_msgs/Header header\nfloat64 yaw_rad\nfloat64 pitch_rad\n"},
+    {"patrol_msgs/TemSounding",
+     "# After the current is off: -dB/dt along the coil's axis, T/s, at the gates' middles, and its standard deviation.\n"
+     "std_msgs/Header header\nfloat64 moment_am2\nfloat64[] gate_s\nfloat64[] rate_tps\nfloat64[] std_tps\n"},
+    {"patrol_msgs/ScanCommand", "# One panoramic scan, now.\nstd_msgs/Header header\n"},
+    {"patrol_msgs/AntennaCommand", "# Turn the antenna there.\nstd_msgs/Header header\nfloat64 yaw_rad\nfloat64 pitch_rad\n"},
+    {"patrol_msgs/SoundingCommand", "# One sounding, now.\nstd_msgs/Header header\n"},
+    {"patrol_msgs/WarningCommand", "# Warning light and siren.\nstd_msgs/Header header\nbool light\nbool siren\n"},
+    {"patrol_msgs/LiningCell",
+     "# A ring's lining in one direction, against the reference scan; inwards is positive.\n"
+     "int32 ring\nfloat64 clock_deg\nfloat64 inward_m\nfloat64 std_m\nint32 points\n"},
+    {"patrol_msgs/ConvergenceLine", "# A chord between two marks of a ring; longer is positive.\nint32 ring\nstring name\nfloat64 change_m\nfloat64 std_m\n"},
+    {"patrol_msgs/RingFinding",
+     "uint8 NONE=0\nuint8 NOTICE=1\nuint8 WARNING=2\nuint8 ALARM=3\n"
+     "int32 ring\nfloat64 clock_deg\nfloat64 inward_m\nfloat64 std_m\nuint8 level\ngeometry_msgs/Point place\n"},
+    {"patrol_msgs/LiningResult",
+     "# The lining about a station, from one panoramic scan and the reference scan; pose of the body in map.\n"
+     "std_msgs/Header header\nstring station\ngeometry_msgs/Pose pose\nbool is_registered\nfloat64 registration_rms_m\n"
+     "float64 registration_share\nfloat64 correction_m\npatrol_msgs/LiningCell[] cells\npatrol_msgs/ConvergenceLine[] lines\n"
+     "patrol_msgs/RingFinding[] findings\n"},
+    {"patrol_msgs/WaterResult",
+     "# Water ahead of the face, from the soundings of one station (src/core/inspection_result.h).\n"
+     "uint8 NONE=0\nuint8 NOTICE=1\nuint8 WARNING=2\nuint8 ALARM=3\n"
+     "std_msgs/Header header\nstring station\ngeometry_msgs/Pose pose\nint32 soundings\nfloat64 antenna_error_deg\nfloat64 rock_spm\n"
+     "float64 evidence\nbool is_found\nuint8 level\ngeometry_msgs/Point place\nfloat64[9] covariance_m2\nfloat64 distance_m\n"
+     "float64 distance_low_m\nfloat64 distance_high_m\nfloat64 azimuth_deg\nfloat64 elevation_deg\nfloat64 radius_m\n"
+     "float64 radius_low_m\nfloat64 radius_high_m\n"},
     {"patrol_msgs/LocalizationTrust",
      "# trust 0 (lost) ... 1 (sure); standard deviation along the weakest direction, and that direction in map.\n"
      "std_msgs/Header header\nfloat64 trust\nfloat64 weak_std_m\nfloat64 weak_direction_rad\nbool is_lost\n"},

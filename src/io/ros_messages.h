@@ -9,7 +9,8 @@
 #include "core/messages.h"
 
 /// Our messages as ROS 2 messages: the type that stands for each, and its CDR encoding (little-endian XCDR1 with its
-/// four-byte header). Every pair of `encode` and `decode` is one description of the fields, in ros_messages.cc and ros_sensor_messages.cc.
+/// four-byte header). Every pair of `encode` and `decode` is one description of the fields, in ros_messages.cc,
+/// ros_sensor_messages.cc and ros_inspection_messages.cc.
 namespace patrol::io {
 
 /// A transform of /tf and /tf_static.
@@ -36,6 +37,15 @@ template <> inline constexpr const char* kRosType<UwbRange> = "patrol_msgs/msg/U
 template <> inline constexpr const char* kRosType<UltrasonicRange> = "sensor_msgs/msg/Range";
 template <> inline constexpr const char* kRosType<DepthImage> = "patrol_msgs/msg/DepthImage";
 template <> inline constexpr const char* kRosType<RemoteCommand> = "patrol_msgs/msg/RemoteCommand";
+template <> inline constexpr const char* kRosType<PanoramicScan> = "sensor_msgs/msg/PointCloud2";
+template <> inline constexpr const char* kRosType<AntennaState> = "patrol_msgs/msg/AntennaState";
+template <> inline constexpr const char* kRosType<TemSounding> = "patrol_msgs/msg/TemSounding";
+template <> inline constexpr const char* kRosType<ScanCommand> = "patrol_msgs/msg/ScanCommand";
+template <> inline constexpr const char* kRosType<AntennaCommand> = "patrol_msgs/msg/AntennaCommand";
+template <> inline constexpr const char* kRosType<SoundingCommand> = "patrol_msgs/msg/SoundingCommand";
+template <> inline constexpr const char* kRosType<WarningCommand> = "patrol_msgs/msg/WarningCommand";
+template <> inline constexpr const char* kRosType<LiningResult> = "patrol_msgs/msg/LiningResult";
+template <> inline constexpr const char* kRosType<WaterResult> = "patrol_msgs/msg/WaterResult";
 template <> inline constexpr const char* kRosType<LocalizationTrust> = "patrol_msgs/msg/LocalizationTrust";
 template <> inline constexpr const char* kRosType<OdometryEstimate> = "nav_msgs/msg/Odometry";
 template <> inline constexpr const char* kRosType<RangePoseEstimate> = "geometry_msgs/msg/PoseWithCovarianceStamped";

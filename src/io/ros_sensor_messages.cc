@@ -27,29 +27,8 @@ void describe(Codec& codec, PointCloud& cloud) {
   header(codec, cloud.stamp, "lidar3d");
   // Packed as LIO-SAM has it: x y z intensity (float32), ring (uint16), time (float32).
   constexpr std::uint32_t kStep = 22;
-  constexpr std::uint8_t kFloat32 = 7, kUint16 = 4;
-  std::uint32_t height = 1, width = static_cast<std::uint32_t>(cloud.points.size());
-  codec(height);
-  codec(width);
-  struct Field {
-    std::string name;
-    std::uint32_t offset = 0;
-    std::uint8_t type = 0;
-    std::uint32_t count = 1;
-  };
-  std::vector<Field> fields = {{"x", 0, kFloat32}, {"y", 4, kFloat32}, {"z", 8, kFloat32}, {"intensity", 12, kFloat32},
-                               {"ring", 16, kUint16}, {"time", 18, kFloat32}};
-  list(codec, fields, [&](Field& field) {
-    codec(field.name);
-    codec(field.offset);
-    codec(field.type);
-    codec(field.count);
-  });
-  bool is_big_endian = false, is_dense = true;
-  std::uint32_t step = kStep, row_step = kStep * width;
-  codec(is_big_endian);
-  codec(step);
-  codec(row_step);
+  cloud_layout(codec, static_cast<std::uint32_t>(cloud.points.size()), kStep,
+               {{"x", 0, kFloat32}, {"y", 4, kFloat32}, {"z", 8, kFloat32}, {"intensity", 12, kFloat32}, {"ring", 16, kUint16}, {"time", 18, kFloat32}});
   std::vector<std::uint8_t> data(std::size_t{kStep} * cloud.points.size());
   for (std::size_t i = 0; Codec::kWrites && i < cloud.points.size(); ++i) {
     const CloudPoint& point = cloud.points[i];
@@ -60,9 +39,9 @@ void describe(Codec& codec, PointCloud& cloud) {
     std::memcpy(to + 18, &point.time_s, 4);
   }
   codec(data);
+  bool is_dense = true;
   codec(is_dense);
   if constexpr (!Codec::kWrites) {
-    if (step != kStep) throw DecodeError("a point cloud of another layout than ours");
     cloud.points.resize(data.size() / kStep);
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
       CloudPoint& point = cloud.points[i];

@@ -61,12 +61,33 @@ Dock read_dock(const std::string& place, const Json& json) {
   return {.T_route_docked = reader.pose(), .profile_m = reader.polyline("profile")};
 }
 
+TunnelLining read_lining(const std::string& file, const Json& json) {
+  const std::string place = file + ": lining";
+  const JsonObject reader(place, json, {"position", "orientation", "axis", "crown_radius", "crown_centre", "side_radius", "first_ring",
+                                        "ring_length", "rings"});
+  TunnelLining lining{.T_route_start = reader.pose(), .axis = {}, .crown_radius_m = reader.number("crown_radius"),
+                      .crown_centre_m = reader.number("crown_centre"), .side_radius_m = reader.number("side_radius"),
+                      .first_ring_m = reader.number("first_ring"), .ring_length_m = reader.number("ring_length"), .rings = reader.whole("rings")};
+  const Json& axis = reader.list("axis");
+  for (std::size_t i = 0; i < axis.size(); ++i) {
+    const JsonObject element(fmt::format("{}: axis[{}]", place, i), axis[i], {"length", "curvature"});
+    lining.axis.push_back({.length_m = element.number("length"), .curvature_1pm = element.number("curvature")});
+    if (lining.axis.back().length_m <= 0.0) element.fail("length must be positive");
+  }
+  if (lining.axis.empty()) reader.fail("axis must have at least one element");
+  if (lining.crown_radius_m <= 0.0) reader.fail("crown_radius must be positive");
+  if (lining.side_radius_m < lining.crown_radius_m) reader.fail("side_radius must be at least crown_radius");
+  if (lining.ring_length_m <= 0.0) reader.fail("ring_length must be positive");
+  if (lining.rings < 1) reader.fail("rings must be at least 1");
+  return lining;
+}
+
 }  // namespace
 
 RouteFile load_route(const std::filesystem::path& file) {
   const Json json = load_json(file);
   const std::string name = file.string();
-  const JsonObject root(name, json, {"version", "frame", "start", "stations", "keep_out", "anchors", "dock"});
+  const JsonObject root(name, json, {"version", "frame", "start", "stations", "keep_out", "anchors", "dock", "lining"});
   if (root.whole("version") != 1) root.fail("version must be 1");
   if (root.word("frame") != "site") root.fail("frame must be site");
   RouteFile route{.route = {}, .T_site_start = JsonObject(name + ": start", root.member("start"), {"position", "orientation"}).pose()};
@@ -83,6 +104,7 @@ RouteFile load_route(const std::filesystem::path& file) {
   }
   if (root.has("anchors")) route.route.anchors = read_anchors(name, root.list("anchors"));
   if (root.has("dock")) route.route.dock = read_dock(name, root.member("dock"));
+  if (root.has("lining")) route.route.lining = read_lining(name, root.member("lining"));
   return route;
 }
 

@@ -89,6 +89,15 @@ bool read_run_log(const std::filesystem::path& log_mcap, const LogHandlers& hand
   dispatch.add(handlers.ultrasonic);
   dispatch.add(handlers.depth);
   dispatch.add(handlers.remote);
+  dispatch.add(handlers.panorama);
+  dispatch.add(handlers.antenna);
+  dispatch.add(handlers.sounding);
+  dispatch.add(handlers.scan_command);
+  dispatch.add(handlers.antenna_command);
+  dispatch.add(handlers.sounding_command);
+  dispatch.add(handlers.warning);
+  dispatch.add(handlers.lining);
+  dispatch.add(handlers.water);
   dispatch.add(handlers.trust);
   dispatch.add(handlers.odometry);
   dispatch.add(handlers.pose);

@@ -93,7 +93,7 @@ TEST(LoadNav, NumbersThatMeanNothingAreRefused) {
             "nav.json: [1]: orientation must stand upright, within 45 degrees: a quaternion x, y, z, w");
   EXPECT_EQ(complaint_after([](Json& goal) { goal["accuracy"] = 0; }), "nav.json: [1]: accuracy must be positive");
   EXPECT_EQ(complaint_after([](Json& goal) { goal["type"] = "X"; }),
-            "nav.json: [1]: type = X: must be N (stop there) or V (pass by)");
+            "nav.json: [1]: type = X: must be N (stop there), V (pass by), D (scan the lining) or R (wait for the remote control)");
   EXPECT_EQ(complaint_after([](Json& goal) { goal["number"] = 1; }), "nav.json: [1]: number 1 stands there twice");
   EXPECT_EQ(complaint_about("[{\"number\": NaN}]"), "nav.json:1: is not JSON at column 13");
   EXPECT_EQ(complaint_about("[{\"number\": 1e999}]"), "nav.json:1: 1e999 is too large a number");

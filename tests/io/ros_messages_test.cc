@@ -177,6 +177,18 @@ TEST(Decode, MapKeepsItsFrameAndItsCells) {
 }
 
 TEST(Decode, CommandsEventsAndTruthKeepEveryField) {
+  EXPECT_EQ(there_and_back(test::sample_panorama()).points[1].z, 5.5F);
+  EXPECT_EQ(there_and_back(test::sample_antenna()).pitch_rad, -0.25);
+  EXPECT_EQ(there_and_back(test::sample_sounding()).rate_tps, test::sample_sounding().rate_tps);
+  const LiningResult lining = there_and_back(test::sample_lining());
+  EXPECT_EQ(lining.cells[0].points, 340);
+  EXPECT_EQ(lining.lines[0].name, "9-3");
+  EXPECT_EQ(lining.findings[0].level, WarningLevel::kWarning);
+  EXPECT_EQ(lining.findings[0].p_map, test::sample_lining().findings[0].p_map);
+  const WaterResult water = there_and_back(test::sample_water());
+  EXPECT_EQ(water.covariance_m2, test::sample_water().covariance_m2);
+  EXPECT_EQ(water.radius_high_m, 5.5);
+  EXPECT_EQ(water.level, WarningLevel::kAlarm);
   const VelocityCommand command = there_and_back(test::sample_command());
   EXPECT_EQ(std::tie(command.vx_mps, command.vy_mps, command.yaw_rate_radps),
             std::make_tuple(0.5, -0.25, 1.0));

@@ -79,6 +79,33 @@ inline DepthImage sample_depth() {
 inline RemoteCommand sample_remote() {
   return {.stamp = kSampleStamp, .vx_mps = 0.5, .yaw_rate_radps = -0.25, .mark = true, .hand_over = true};
 }
+inline PanoramicScan sample_panorama() {
+  return {.stamp = kSampleStamp, .points = {{1.0F, -2.0F, 0.5F, 120.0F}, {-4.0F, 0.25F, 5.5F, 7.0F}}};
+}
+inline AntennaState sample_antenna() { return {.stamp = kSampleStamp, .yaw_rad = 0.5, .pitch_rad = -0.25}; }
+inline TemSounding sample_sounding() {
+  return {.stamp = kSampleStamp, .moment_am2 = 240.0, .gate_s = {4e-6, 8e-6}, .rate_tps = {2e-5, -1e-6}, .std_tps = {1e-8, 2e-8}};
+}
+inline LiningResult sample_lining() {
+  return {.stamp = kSampleStamp,
+          .station = "goal_2",
+          .T_map_body = {1.0, 2.0, 0.5},
+          .is_registered = true,
+          .registration_rms_m = 0.002,
+          .registration_share = 0.75,
+          .correction_m = 0.04,
+          .cells = {{.ring = 12, .clock_deg = 95.0, .inward_m = 0.003, .std_m = 0.0002, .points = 340}},
+          .lines = {{.ring = 12, .name = "9-3", .change_m = -0.006, .std_m = 0.0003}},
+          .findings = {{.ring = 12, .clock_deg = 95.0, .inward_m = 0.003, .std_m = 0.0002, .level = WarningLevel::kWarning, .p_map = {3.0, -4.0, 1.5}}}};
+}
+inline WaterResult sample_water() {
+  WaterResult water{.stamp = kSampleStamp, .station = "goal_4", .T_map_body = {1.0, 2.0, 0.5}, .soundings = 35, .antenna_error_deg = 0.4,
+                    .rock_spm = 0.002, .evidence = 120.0, .is_found = true, .level = WarningLevel::kAlarm, .p_map = {-170.0, 3.0, 2.0},
+                    .distance_m = 18.0, .distance_low_m = 16.5, .distance_high_m = 19.5, .azimuth_deg = 10.0, .elevation_deg = -5.0,
+                    .radius_m = 5.0, .radius_low_m = 4.5, .radius_high_m = 5.5};
+  water.covariance_m2 << 1.0, 0.25, 0.5, 0.25, 2.0, -0.125, 0.5, -0.125, 3.0;
+  return water;
+}
 inline LocalizationTrust sample_trust() {
   return {.stamp = kSampleStamp, .trust = 0.25, .weak_std_m = 0.75, .weak_direction_rad = 1.5, .is_lost = true};
 }
@@ -141,7 +168,9 @@ inline io::TransformSet sample_transforms() {
 inline auto all_samples() {
   return std::tuple(sample_scan(), sample_cloud(), sample_imu(), sample_joints(), sample_contacts(),
                     sample_gas(), sample_fix(), sample_ticks(), sample_uwb(),
-                    sample_ultrasonic(), sample_depth(), sample_remote(), sample_trust(), sample_odometry(), sample_estimate(), RangePoseEstimate{sample_estimate()}, sample_particles(),
+                    sample_ultrasonic(), sample_depth(), sample_remote(), sample_panorama(),
+                    sample_antenna(), sample_sounding(), ScanCommand{kSampleStamp}, AntennaCommand{kSampleStamp, 0.5, -0.25},
+                    SoundingCommand{kSampleStamp}, WarningCommand{kSampleStamp, true, false}, sample_lining(), sample_water(), sample_trust(), sample_odometry(), sample_estimate(), RangePoseEstimate{sample_estimate()}, sample_particles(),
                     sample_map(), sample_path(), sample_command(), sample_event(), sample_truth(),
                     sample_state(), sample_collision(), sample_transforms());
 }

@@ -20,7 +20,8 @@ namespace patrol::app {
 
 /// What the stack says.
 using StackMessage =
-    std::variant<OdometryEstimate, PoseEstimate, RangePoseEstimate, LocalizationTrust, ParticleSet, MapUpdate, Path, VelocityCommand, Event>;
+    std::variant<OdometryEstimate, PoseEstimate, RangePoseEstimate, LocalizationTrust, ParticleSet, MapUpdate, Path, VelocityCommand, Event, ScanCommand,
+                 AntennaCommand, SoundingCommand, WarningCommand, LiningResult, WaterResult>;
 
 /// The robot's own software, put together. It sees sensor messages and nothing else; a recorded log can take the twin's place.
 /// Here is what every robot's has: the rhythm of odometry, map and control, the pose in map, and the navigator.
