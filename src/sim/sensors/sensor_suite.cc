@@ -70,6 +70,13 @@ struct OffsetBy {
     }
   }
   void operator()(RemoteCommand& command) const { command.vx_mps += offset; }
+  void operator()(PanoramicScan& scan) const {
+    for (ScannerPoint& point : scan.points) point.x += static_cast<float>(offset);
+  }
+  void operator()(AntennaState& state) const { state.yaw_rad += offset; }
+  void operator()(TemSounding& sounding) const {
+    for (double& rate_tps : sounding.rate_tps) rate_tps += offset;
+  }
 };
 
 }  // namespace
