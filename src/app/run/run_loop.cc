@@ -41,6 +41,8 @@ sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& f
           .locomotion = scenario.locomotion,
           .track_drive = scenario.track_drive,
           .props = props_of(scenario),
+          .lining = files.route.lining,  // site is world
+          .lining_moves = scenario.lining,
           .actors = scenario.actors,
           .leaks = scenario.leaks,
           .wind = scenario.wind,
@@ -159,6 +161,10 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
   outcome.seconds_by_part["sensors"] -= twin.sensors().lidar_seconds();
   if (const double seconds = twin.sensors().depth_camera_seconds(); seconds > 0.0) {
     outcome.seconds_by_part["depth_camera"] = seconds;
+    outcome.seconds_by_part["sensors"] -= seconds;
+  }
+  if (const double seconds = twin.sensors().scanner_seconds(); seconds > 0.0) {
+    outcome.seconds_by_part["scanner"] = seconds;
     outcome.seconds_by_part["sensors"] -= seconds;
   }
   return outcome;
