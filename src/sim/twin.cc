@@ -105,7 +105,7 @@ void Twin::step() {
 
 void Twin::hear_remote() {
   if (driver_) {
-    if (const auto command = driver_->step(now_, to_planar(truth().T_world_body), actors_.positions())) {
+    if (const auto command = driver_->step(now_, to_planar(truth().T_world_body), actors_.positions(), is_busy())) {
       sensors_.hear(*command);
     }
   }

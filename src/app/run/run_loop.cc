@@ -11,7 +11,6 @@
 #include "inspect/route_frame.h"
 #include "io/run_log.h"
 #include "render/depth_renderer.h"
-#include "render/depth_renderer.h"
 
 namespace patrol::app {
 namespace {
@@ -30,6 +29,10 @@ class Schedule {
   Time period_;
   Time next_{};
 };
+
+/// What goes on to the twin's instruments.
+template <typename Message>
+concept InstrumentOrder = std::is_constructible_v<InstrumentCommand, Message>;
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -100,7 +103,12 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
   const auto write_stack_messages = [&](Time now) {
     for (const StackMessage& message : stack.take_messages()) {
       const auto lap = clock.lap("log");
-      std::visit([&](const auto& content) { log.write(now, content); }, message);
+      std::visit(Overloaded{[&](const auto& content) { log.write(now, content); },
+                            [&]<InstrumentOrder Command>(const Command& order) {
+                              log.write(now, order);
+                              twin.command(order);
+                            }},
+                 message);
       observer.see(message);
     }
   };
