@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "core/part_clock.h"
 #include "core/robot_description.h"
 #include "sim/actors.h"
+#include "sim/antenna_mount.h"
 #include "sim/gas_plume.h"
 #include "sim/locomotion/locomotion.h"
 #include "sim/locomotion/quadruped_controller.h"
@@ -19,6 +21,7 @@
 #include "sim/props.h"
 #include "sim/remote_operator.h"
 #include "sim/sensors/sensor_suite.h"
+#include "sim/water_ahead.h"
 
 namespace patrol::sim {
 
@@ -34,6 +37,7 @@ struct TwinSettings {
   std::vector<ActorSettings> actors;
   std::vector<LeakSettings> leaks;
   WindSettings wind;
+  Underground underground;
   std::vector<FaultSettings> faults;
   RemoteDrive drive;                    ///< in world; driven by a person with a remote control, empty: nobody
   RemoteOperatorSettings driver;
@@ -54,6 +58,10 @@ class Twin {
   /// Time since the start; of the state that `truth` describes.
   Time now() const { return now_; }
   void set_command(const VelocityCommand& command) { command_ = command; }
+  /// For one of the inspection's instruments. One that the robot has not got is silent.
+  void command(const InstrumentCommand& command);
+  /// An instrument is at work, or the antenna is not stowed: the robot has to stand still.
+  bool is_busy() const;
 
   /// Sensor messages whose delivery is due, in order of delivery.
   std::vector<SensorMessage> take_messages();
@@ -85,6 +93,7 @@ class Twin {
   double robot_radius_m_;
   TwinSettings settings_;
   std::unique_ptr<Locomotion> locomotion_;
+  std::optional<AntennaMount> antenna_;
   Actors actors_;
   SensorSuite sensors_;
   std::optional<RemoteOperator> driver_;

@@ -44,6 +44,12 @@ std::optional<DepthCamera> make_depth_camera(const SensorSuiteSettings& settings
   return DepthCamera(camera, settings.dust, make_imager(view, lens_of(camera), kNear_m, 1.1 * camera.range_max_m), seed);
 }
 
+std::optional<Tem> make_tem(const TemSettings& settings, const Underground& underground, const RobotDescription& robot, std::uint64_t seed) {
+  if (!settings.enabled) return std::nullopt;
+  if (!robot.antenna) throw InputError("robot " + robot.name + ": there is no link named tem_mount");
+  return Tem(settings, underground.rock, underground.water, seed);
+}
+
 constexpr double kSpikeProbability = 0.1;  // of a message, while the fault lasts
 
 /// Adds `offset` to the message's main reading, as drift and spikes do.
@@ -70,13 +76,20 @@ struct OffsetBy {
     }
   }
   void operator()(RemoteCommand& command) const { command.vx_mps += offset; }
+  void operator()(PanoramicScan& scan) const {
+    for (ScannerPoint& point : scan.points) point.x += static_cast<float>(offset);
+  }
+  void operator()(AntennaState& antenna) const { antenna.yaw_rad += offset; }
+  void operator()(TemSounding& sounding) const {
+    for (double& rate_tps : sounding.rate_tps) rate_tps += offset;
+  }
 };
 
 }  // namespace
 
 SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
                          const mjModel& view, GasPlume plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
-                         const DepthImagerFactory& make_depth_imager)
+                         const DepthImagerFactory& make_depth_imager, const Underground& underground)
     : settings_(settings),
       robot_(robot),
       body_(mj_name2id(&physics, mjOBJ_BODY, frame_id::kBody)),
@@ -94,6 +107,8 @@ SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescrip
       uwb_(make_uwb(settings.uwb, view, robot, seed)),
       ultrasonic_(make_ultrasonic(settings.ultrasonic, scene_, robot, seed)),
       depth_camera_(make_depth_camera(settings, view, robot, make_depth_imager, seed)),
+      tem_(make_tem(settings.tem, underground, robot, seed)),
+      coil_(mj_name2id(&physics, mjOBJ_BODY, "tem")),
       spikes_(seed, "fault/spikes"),
       jitter_(seed, "fault/jitter") {
   validate(settings.dust, "sensors.dust");
@@ -153,6 +168,14 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
   if (uwb_) poll_uwb(T_world_body, now);
   if (ultrasonic_) ping_ultrasonic(T_world_body, now);
   if (depth_camera_) take_depth_image(data, T_world_body, now);
+  if (tem_ && tem_->is_sounding()) {
+    const auto sounding = tem_->step(body_pose(data, coil_), now);
+    if (sounding) deliver("tem", now, settings_.tem.latency_s, *sounding);
+  }
+}
+
+void SensorSuite::command(const SoundingCommand& command) {
+  if (tem_) tem_->start(command.stamp);
 }
 
 void SensorSuite::poll_uwb(const Pose3& T_world_body, Time now) {

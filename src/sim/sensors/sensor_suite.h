@@ -10,6 +10,7 @@
 
 #include "core/messages.h"
 #include "core/robot_description.h"
+#include "sim/antenna_mount.h"
 #include "sim/dust.h"
 #include "sim/gas_plume.h"
 #include "sim/lidar_scene.h"
@@ -22,6 +23,7 @@
 #include "sim/sensors/joint_encoders.h"
 #include "sim/sensors/lidar.h"
 #include "sim/sensors/tdlas.h"
+#include "sim/sensors/tem.h"
 #include "sim/sensors/ultrasonic.h"
 #include "sim/sensors/uwb.h"
 
@@ -39,6 +41,8 @@ struct SensorSuiteSettings {
   UwbSettings uwb;
   UltrasonicSettings ultrasonic;
   DepthCameraSettings depth_camera;
+  AntennaSettings antenna;
+  TemSettings tem;
   DustSettings dust;
 
   template <typename Self, typename Visitor>
@@ -54,6 +58,8 @@ struct SensorSuiteSettings {
     visit("uwb", self.uwb);
     visit("ultrasonic", self.ultrasonic);
     visit("depth_camera", self.depth_camera);
+    visit("antenna", self.antenna);
+    visit("tem", self.tem);
     visit("dust", self.dust);
   }
 
@@ -78,13 +84,20 @@ class SensorSuite {
   /// or nothing in the world to speak to; and when the depth camera is enabled and there is no `make_depth_imager`.
   SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
               const mjModel& view, GasPlume plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
-              const DepthImagerFactory& make_depth_imager = {});
+              const DepthImagerFactory& make_depth_imager = {}, const Underground& underground = {});
 
   /// Once a tick, with kinematics and accelerations of `now` in `data`.
   void step(const mjModel& physics, mjData& data, Time now);
 
   /// What comes in by radio from the remote control.
   void hear(const RemoteCommand& command) { deliver("remote", command.stamp, 0.0, command); }
+  /// What the antenna's servos read.
+  void hear(const AntennaState& state) { deliver("antenna", state.stamp, settings_.antenna.latency_s, state); }
+
+  /// Nothing happens where the robot has no such instrument, or it is at it already.
+  void command(const SoundingCommand& command);
+  /// An instrument is at work, for which the robot has to stand still.
+  bool is_busy() const { return tem_ && tem_->is_sounding(); }
 
   /// Messages due by `now`, in order of delivery.
   std::vector<SensorMessage> take_due(Time now);
@@ -127,6 +140,8 @@ class SensorSuite {
   std::optional<Uwb> uwb_;
   std::optional<UltrasonicRing> ultrasonic_;
   std::optional<DepthCamera> depth_camera_;
+  std::optional<Tem> tem_;
+  int coil_ = -1;  ///< body of the link `tem`
   std::vector<FaultReport> faults_;
   std::vector<std::pair<std::string, SensorMessage>> last_good_;  ///< by sensor, for a freeze
   RandomStream spikes_, jitter_;
