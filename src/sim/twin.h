@@ -13,6 +13,7 @@
 #include "sim/actors.h"
 #include "sim/antenna_mount.h"
 #include "sim/gas_plume.h"
+#include "sim/lining_moves.h"
 #include "sim/locomotion/locomotion.h"
 #include "sim/locomotion/quadruped_controller.h"
 #include "sim/locomotion/track_drive_settings.h"
@@ -34,6 +35,8 @@ struct TwinSettings {
   LocomotionSettings locomotion;   ///< of a robot with legs
   TrackDriveSettings track_drive;  ///< of a robot with tracks
   std::vector<PropSettings> props;
+  std::optional<TunnelLining> lining;            ///< of the world, in world
+  std::vector<LiningMoveSettings> lining_moves;
   std::vector<ActorSettings> actors;
   std::vector<LeakSettings> leaks;
   WindSettings wind;

@@ -44,6 +44,12 @@ std::optional<DepthCamera> make_depth_camera(const SensorSuiteSettings& settings
   return DepthCamera(camera, settings.dust, make_imager(view, lens_of(camera), kNear_m, 1.1 * camera.range_max_m), seed);
 }
 
+std::optional<PanoramicScanner> make_scanner(const SensorSuiteSettings& settings, const LidarScene& scene, const RobotDescription& robot,
+                                             std::uint64_t seed) {
+  if (!settings.scanner.enabled) return std::nullopt;
+  return std::optional<PanoramicScanner>(std::in_place, settings.scanner, scene, robot.T_body("scanner"), seed, settings.dust);
+}
+
 std::optional<Tem> make_tem(const TemSettings& settings, const Underground& underground, const RobotDescription& robot, std::uint64_t seed) {
   if (!settings.enabled) return std::nullopt;
   if (!robot.antenna) throw InputError("robot " + robot.name + ": there is no link named tem_mount");
@@ -77,12 +83,21 @@ struct OffsetBy {
   }
   void operator()(RemoteCommand& command) const { command.vx_mps += offset; }
   void operator()(PanoramicScan& scan) const {
-    for (ScannerPoint& point : scan.points) point.x += static_cast<float>(offset);
+    for (ScannerPoint& point : scan.points) {
+      const float range = std::hypot(point.x, point.y, point.z), scale = 1.0F + static_cast<float>(offset) / range;
+      point.x *= scale, point.y *= scale, point.z *= scale;
+    }
   }
   void operator()(AntennaState& antenna) const { antenna.yaw_rad += offset; }
   void operator()(TemSounding& sounding) const {
-    for (double& rate_tps : sounding.rate_tps) rate_tps += offset;
+    for (double& rate : sounding.rate_tps) rate += offset;
   }
+};
+
+/// Each instrument has its handler.
+template <typename... Handlers>
+struct Overloaded : Handlers... {
+  using Handlers::operator()...;
 };
 
 }  // namespace
@@ -107,6 +122,7 @@ SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescrip
       uwb_(make_uwb(settings.uwb, view, robot, seed)),
       ultrasonic_(make_ultrasonic(settings.ultrasonic, scene_, robot, seed)),
       depth_camera_(make_depth_camera(settings, view, robot, make_depth_imager, seed)),
+      scanner_(make_scanner(settings, scene_, robot, seed)),
       tem_(make_tem(settings.tem, underground, robot, seed)),
       coil_(mj_name2id(&physics, mjOBJ_BODY, "tem")),
       spikes_(seed, "fault/spikes"),
@@ -154,8 +170,9 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
       for (PointCloud& cloud : lidar3d_->take_clouds()) deliver("lidar3d", now, settings_.lidar3d.latency_s, std::move(cloud));
     }
   }
-  last_body_ = {now, T_world_body};
   lidar_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (is_busy()) scan_panorama(T_world_body, now);
+  last_body_ = {now, T_world_body};
 
   if (settings_.tdlas.enabled && is_due(settings_.tdlas.rate_hz, tdlas_count_, now)) {
     deliver("tdlas", now, settings_.tdlas.latency_s,
@@ -174,8 +191,19 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
   }
 }
 
-void SensorSuite::command(const SoundingCommand& command) {
-  if (tem_) tem_->start(command.stamp);
+void SensorSuite::command(const InstrumentCommand& command) {
+  std::visit(Overloaded{[&](const ScanCommand&) {
+                          if (scanner_ && last_body_) scanner_->begin(last_body_->first, last_body_->second);
+                        },
+                        [](const AntennaCommand&) {}, [](const SoundingCommand&) {}, [](const WarningCommand&) {}},
+             command);
+}
+
+void SensorSuite::scan_panorama(const Pose3& T_world_body, Time now) {
+  const auto start = std::chrono::steady_clock::now();
+  scanner_->advance(last_body_->first, now, last_body_->second, T_world_body);
+  for (PanoramicScan& scan : scanner_->take_scans()) deliver("scanner", now, settings_.scanner.latency_s, std::move(scan));
+  scanner_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void SensorSuite::poll_uwb(const Pose3& T_world_body, Time now) {

@@ -22,6 +22,7 @@
 #include "sim/sensors/imu.h"
 #include "sim/sensors/joint_encoders.h"
 #include "sim/sensors/lidar.h"
+#include "sim/sensors/panoramic_scanner.h"
 #include "sim/sensors/tdlas.h"
 #include "sim/sensors/tem.h"
 #include "sim/sensors/ultrasonic.h"
@@ -41,6 +42,7 @@ struct SensorSuiteSettings {
   UwbSettings uwb;
   UltrasonicSettings ultrasonic;
   DepthCameraSettings depth_camera;
+  PanoramicScannerSettings scanner;
   AntennaSettings antenna;
   TemSettings tem;
   DustSettings dust;
@@ -58,6 +60,7 @@ struct SensorSuiteSettings {
     visit("uwb", self.uwb);
     visit("ultrasonic", self.ultrasonic);
     visit("depth_camera", self.depth_camera);
+    visit("scanner", self.scanner);
     visit("antenna", self.antenna);
     visit("tem", self.tem);
     visit("dust", self.dust);
@@ -99,6 +102,11 @@ class SensorSuite {
   /// An instrument is at work, for which the robot has to stand still.
   bool is_busy() const { return tem_ && tem_->is_sounding(); }
 
+  /// What the stack asks of the instruments; of one that is switched off, nothing comes.
+  void command(const InstrumentCommand& command);
+  /// An instrument is at work for which the robot must stand still.
+  bool is_busy() const { return scanner_ && scanner_->is_busy(); }
+
   /// Messages due by `now`, in order of delivery.
   std::vector<SensorMessage> take_due(Time now);
 
@@ -111,6 +119,7 @@ class SensorSuite {
   const std::vector<FaultReport>& faults() const { return faults_; }
   double lidar_seconds() const { return lidar_seconds_; }
   double depth_camera_seconds() const { return depth_camera_seconds_; }
+  double scanner_seconds() const { return scanner_seconds_; }
 
  private:
   struct Delivery {
@@ -121,6 +130,7 @@ class SensorSuite {
   void deliver(const char* sensor, Time ready, double latency_s, SensorMessage message);
   bool apply_faults(const char* sensor, Time ready, Time& due, SensorMessage& message);
   bool is_due(double rate_hz, std::uint64_t& count, Time now) const;
+  void scan_panorama(const Pose3& T_world_body, Time now);
   void poll_uwb(const Pose3& T_world_body, Time now);
   void ping_ultrasonic(const Pose3& T_world_body, Time now);
   void take_depth_image(const mjData& data, const Pose3& T_world_body, Time now);
@@ -140,6 +150,7 @@ class SensorSuite {
   std::optional<Uwb> uwb_;
   std::optional<UltrasonicRing> ultrasonic_;
   std::optional<DepthCamera> depth_camera_;
+  std::optional<PanoramicScanner> scanner_;
   std::optional<Tem> tem_;
   int coil_ = -1;  ///< body of the link `tem`
   std::vector<FaultReport> faults_;
@@ -157,7 +168,7 @@ class SensorSuite {
   TrackTicks newest_ticks_;
   std::optional<std::pair<Time, Pose3>> last_body_;
   std::vector<Delivery> queue_;
-  double lidar_seconds_ = 0.0, depth_camera_seconds_ = 0.0;
+  double lidar_seconds_ = 0.0, depth_camera_seconds_ = 0.0, scanner_seconds_ = 0.0;
 };
 
 }  // namespace patrol::sim
