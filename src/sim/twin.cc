@@ -109,22 +109,10 @@ void Twin::step() {
 }
 
 void Twin::command(const InstrumentCommand& command) {
-  struct Order {
-    Twin& twin;
-    void operator()(const AntennaCommand& antenna) const {
-      if (twin.antenna_) twin.antenna_->command(antenna);
-    }
-    void operator()(SoundingCommand sounding) const {
-      sounding.stamp = twin.now_;
-      twin.sensors_.command(sounding);
-    }
-    void operator()(const ScanCommand&) const {}
-    void operator()(const WarningCommand&) const {}
-  };
-  std::visit(Order{*this}, command);
+  const auto* antenna = std::get_if<AntennaCommand>(&command);
+  if (antenna != nullptr && antenna_) antenna_->command(*antenna);
+  sensors_.command(command);
 }
-
-bool Twin::is_busy() const { return sensors_.is_busy() || (antenna_ && antenna_->is_out(*data_)); }
 
 void Twin::hear_remote() {
   if (driver_) {

@@ -61,10 +61,10 @@ class Twin {
   /// Time since the start; of the state that `truth` describes.
   Time now() const { return now_; }
   void set_command(const VelocityCommand& command) { command_ = command; }
-  /// For one of the inspection's instruments. One that the robot has not got is silent.
+  /// What is asked of the inspection's instruments; now.
   void command(const InstrumentCommand& command);
-  /// An instrument is at work, or the antenna is not stowed: the robot has to stand still.
-  bool is_busy() const;
+  /// An instrument is at work, or the antenna is out: the robot must stand still.
+  bool is_busy() const { return sensors_.is_busy() || (antenna_ && antenna_->is_out(*data_)); }
 
   /// Sensor messages whose delivery is due, in order of delivery.
   std::vector<SensorMessage> take_messages();

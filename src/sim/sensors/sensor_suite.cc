@@ -195,7 +195,10 @@ void SensorSuite::command(const InstrumentCommand& command) {
   std::visit(Overloaded{[&](const ScanCommand&) {
                           if (scanner_ && last_body_) scanner_->begin(last_body_->first, last_body_->second);
                         },
-                        [](const AntennaCommand&) {}, [](const SoundingCommand&) {}, [](const WarningCommand&) {}},
+                        [&](const SoundingCommand&) {
+                           if (tem_ && last_body_) tem_->start(last_body_->first);
+                         },
+                         [](const AntennaCommand&) {}, [](const WarningCommand&) {}},
              command);
 }
 

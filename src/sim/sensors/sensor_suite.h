@@ -97,15 +97,10 @@ class SensorSuite {
   /// What the antenna's servos read.
   void hear(const AntennaState& state) { deliver("antenna", state.stamp, settings_.antenna.latency_s, state); }
 
-  /// Nothing happens where the robot has no such instrument, or it is at it already.
-  void command(const SoundingCommand& command);
-  /// An instrument is at work, for which the robot has to stand still.
-  bool is_busy() const { return tem_ && tem_->is_sounding(); }
-
-  /// What the stack asks of the instruments; of one that is switched off, nothing comes.
+  /// What the stack asks of the instruments; of one that is switched off, nothing comes. The antenna is the twin's (sim/antenna_mount.h).
   void command(const InstrumentCommand& command);
   /// An instrument is at work for which the robot must stand still.
-  bool is_busy() const { return scanner_ && scanner_->is_busy(); }
+  bool is_busy() const { return (scanner_ && scanner_->is_busy()) || (tem_ && tem_->is_sounding()); }
 
   /// Messages due by `now`, in order of delivery.
   std::vector<SensorMessage> take_due(Time now);
