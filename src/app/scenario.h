@@ -96,6 +96,8 @@ struct Scenario {
   std::vector<sim::ActorSettings> actors;
   std::vector<sim::LeakSettings> leaks;
   sim::WindSettings wind;
+  sim::RockSettings rock;
+  std::vector<sim::WaterBodySettings> water;  ///< ahead of the face
   render::LightSettings light;  ///< of the replay; for dust see sensors.dust
   std::vector<sim::FaultSettings> faults;
   std::vector<KidnapSettings> kidnaps;
@@ -124,6 +126,8 @@ struct Scenario {
     visit("actors", self.actors);
     visit("leaks", self.leaks);
     visit("wind", self.wind);
+    visit("rock", self.rock);
+    visit("water", self.water);
     visit("light", self.light);
     visit("faults", self.faults);
     visit("kidnaps", self.kidnaps);

@@ -49,6 +49,7 @@ sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& f
           .actors = scenario.actors,
           .leaks = scenario.leaks,
           .wind = scenario.wind,
+          .underground = {.rock = scenario.rock, .water = scenario.water},
           .faults = scenario.faults,
           .drive = files.drive,
           .driver = scenario.remote.driver,

@@ -1,0 +1,116 @@
+#include "inspect/water/sounding_likelihood.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace patrol::inspect {
+namespace {
+
+constexpr double kSteelPowers[] = {0.5, 1.0, 2.0};
+constexpr double kSteelTime_s = 1e-5;
+
+TemWindow window_of(const SoundingErrorSettings& settings, const std::vector<AimedSounding>& soundings) {
+  validate(settings, "stack.water.errors");
+  if (soundings.empty()) throw InputError("soundings of water: there are none");
+  const std::vector<double>& gate_s = soundings.front().sounding.gate_s;
+  for (const AimedSounding& aimed : soundings) {
+    const TemSounding& sounding = aimed.sounding;
+    if (sounding.gate_s != gate_s || sounding.rate_tps.size() != gate_s.size() || sounding.std_tps.size() != gate_s.size() ||
+        gate_s.size() < 3 || !(sounding.moment_am2 > 0.0)) {
+      throw InputError(fmt::format("sounding of water at {:.3f} s: its gates differ from those of the others", to_seconds(sounding.stamp)));
+    }
+  }
+  return {.gate_s = gate_s, .ramp_s = settings.ramp_s, .gate_width = settings.gate_width};
+}
+
+/// d ln(rate) / dt of the mean over the soundings, where that stands out of the noise; else that of rock. [gate], 1/s.
+Eigen::VectorXd log_slopes(const std::vector<double>& gate_s, const Eigen::VectorXd& mean, const Eigen::VectorXd& std) {
+  const auto gates = static_cast<Eigen::Index>(gate_s.size());
+  Eigen::VectorXd slopes(gates);
+  for (Eigen::Index gate = 0; gate < gates; ++gate) {
+    const Eigen::Index before = std::max<Eigen::Index>(gate - 1, 0), after = std::min(gate + 1, gates - 1);
+    const bool is_clear = mean[before] > 5.0 * std[before] && mean[after] > 5.0 * std[after];
+    const double dt_s = gate_s[static_cast<std::size_t>(after)] - gate_s[static_cast<std::size_t>(before)];
+    slopes[gate] = is_clear ? std::log(mean[after] / mean[before]) / dt_s : -2.5 / gate_s[static_cast<std::size_t>(gate)];
+  }
+  return slopes;
+}
+
+}  // namespace
+
+SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings, const std::vector<AimedSounding>& soundings)
+    : gates_(window_of(settings, soundings)), num_gates_(static_cast<Eigen::Index>(soundings.front().sounding.gate_s.size())) {
+  const auto count = static_cast<Eigen::Index>(soundings.size());
+  const std::vector<double>& gate_s = soundings.front().sounding.gate_s;
+  Eigen::MatrixXd rate(num_gates_, count), std(num_gates_, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const AimedSounding& aimed = soundings[static_cast<std::size_t>(i)];
+    axes_.push_back(quaternion_from_rpy(0.0, aimed.pose.pitch_rad, aimed.pose.yaw_rad) * Eigen::Vector3d::UnitX());
+    for (Eigen::Index gate = 0; gate < num_gates_; ++gate) {
+      const auto g = static_cast<std::size_t>(gate);
+      rate(gate, i) = aimed.sounding.rate_tps[g] / aimed.sounding.moment_am2;
+      std(gate, i) = std::hypot(aimed.sounding.std_tps[g] / aimed.sounding.moment_am2, settings.model_std * rate(gate, i));
+      if (!std::isfinite(rate(gate, i)) || !(std(gate, i) > 0.0)) {
+        throw InputError(fmt::format("sounding of water at {:.3f} s: gate {} is not a number with an error", to_seconds(aimed.sounding.stamp), gate));
+      }
+    }
+  }
+  const Eigen::VectorXd mean = rate.rowwise().mean();
+  const Eigen::VectorXd slopes = log_slopes(gate_s, mean, std.rowwise().mean() / std::sqrt(static_cast<double>(count)));
+
+  constexpr Eigen::Index kSteel = 3 * 7;
+  const Eigen::Index data = num_gates_ * count;
+  data_.resize(data);
+  inverse_std_.resize(data);
+  nuisances_ = Eigen::MatrixXd::Zero(data, 2 + kSteel + count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Vector3d& axis = axes_[static_cast<std::size_t>(i)];
+    for (Eigen::Index gate = 0; gate < num_gates_; ++gate) {
+      const Eigen::Index row = i * num_gates_ + gate;
+      inverse_std_[row] = 1.0 / std(gate, i);
+      data_[row] = rate(gate, i) / std(gate, i);
+      nuisances_(row, 0) = settings.gain_std * data_[row];
+      nuisances_(row, 1) = settings.time_shift_std_s * slopes[gate] * data_[row];
+      nuisances_(row, 2 + kSteel + i) = settings.sounding_gain_std * data_[row];
+      Eigen::Index column = 2;
+      for (const double power : kSteelPowers) {
+        const double steel =
+            settings.steel_rate * std::pow(gate_s[static_cast<std::size_t>(gate)] / kSteelTime_s, -power) * inverse_std_[row];
+        nuisances_(row, column++) = steel;
+        for (int a = 0; a < 3; ++a) {
+          for (int b = 0; b <= a; ++b) nuisances_(row, column++) = settings.steel_anisotropy * steel * axis[a] * axis[b] * (a == b ? 1.0 : 2.0);
+        }
+      }
+    }
+  }
+  const Eigen::Index columns = nuisances_.cols();
+  nuisance_information_.compute(Eigen::MatrixXd::Identity(columns, columns) + nuisances_.transpose() * nuisances_);
+}
+
+// With residual r and nuisances B, both whitened: r' (I + B B')^-1 r = r'r - (B'r)' (I + B'B)^-1 (B'r).
+double SoundingLikelihood::of_residual(const Eigen::VectorXd& whitened) const {
+  const Eigen::VectorXd projected = nuisances_.transpose() * whitened;
+  return -0.5 * (whitened.squaredNorm() - projected.dot(nuisance_information_.solve(projected)));
+}
+
+double SoundingLikelihood::of_rock(double rock_spm) const {
+  const Eigen::VectorXd rock = gated_rock(gates_, rock_spm);
+  return of_residual(data_ - rock.replicate(static_cast<Eigen::Index>(axes_.size()), 1).cwiseProduct(inverse_std_));
+}
+
+double SoundingLikelihood::of_body(double rock_spm, const ConductiveSphere& sphere, const Eigen::Vector3d& towards) const {
+  const GatedSphere body = gated_sphere(gates_, rock_spm, sphere);
+  const Eigen::VectorXd across = gated_rock(gates_, rock_spm) + body.transverse, along = body.axial - body.transverse;
+  Eigen::VectorXd whitened = data_;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const Eigen::Index row = static_cast<Eigen::Index>(i) * num_gates_;
+    const double cosine = axes_[i].dot(towards);
+    whitened.segment(row, num_gates_) -= (across + cosine * cosine * along).cwiseProduct(inverse_std_.segment(row, num_gates_));
+  }
+  return of_residual(whitened);
+}
+
+}  // namespace patrol::inspect
