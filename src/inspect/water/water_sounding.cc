@@ -56,17 +56,14 @@ WaterSounding::WaterSounding(const WaterSoundingSettings& settings, const Antenn
       poses_(antenna_poses(settings, antenna)),
       since_(start) {}
 
-void WaterSounding::handle(const AntennaState& state) {
+void WaterSounding::see(const AntennaState& state) {
+  if (state_ && state.stamp <= state_->stamp) return;
   constexpr double kStill_rad = 0.15 * kDegree;  // two steps of the encoder
   const bool is_there = angle_between(pose_of(state), asked_) <= settings_.settled_deg * kDegree;
   const bool is_still = state_ && angle_between(pose_of(state), pose_of(*state_)) <= kStill_rad;
   if (!is_there || !is_still) steady_since_.reset();
   else if (!steady_since_) steady_since_ = state_->stamp;
   state_ = state;
-}
-
-void WaterSounding::handle(const TemSounding& sounding) {
-  if (phase_ == Phase::kSounding && sounding.stamp > since_) heard_ = sounding;
 }
 
 /// Only what was read since the order counts.
@@ -96,7 +93,9 @@ std::optional<InstrumentCommand> WaterSounding::leave_out(Time now) {
   return go_on(now);
 }
 
-std::optional<InstrumentCommand> WaterSounding::step(Time now) {
+std::optional<InstrumentCommand> WaterSounding::step(Time now, const std::optional<AntennaState>& antenna,
+                                                     const std::optional<TemSounding>& sounding) {
+  if (antenna) see(*antenna);
   if (!has_begun_) {
     has_begun_ = true;
     return go_on(now);
@@ -107,11 +106,10 @@ std::optional<InstrumentCommand> WaterSounding::step(Time now) {
       if (!is_settled(now)) return waited_s > settings_.turn_timeout_s ? leave_out(now) : std::nullopt;
       phase_ = Phase::kSounding;
       since_ = now;
-      heard_.reset();
       return SoundingCommand{.stamp = now};
     case Phase::kSounding:
-      if (!heard_) return waited_s > settings_.sounding_timeout_s ? leave_out(now) : std::nullopt;
-      soundings_.push_back({.pose = pose_of(*state_), .sounding = *heard_});
+      if (!sounding || sounding->stamp <= since_) return waited_s > settings_.sounding_timeout_s ? leave_out(now) : std::nullopt;
+      soundings_.push_back({.pose = pose_of(*state_), .sounding = *sounding});
       sum_squared_error_rad2_ += std::pow(angle_between(asked_, pose_of(*state_)), 2);
       left_out_in_a_row_ = 0;
       return go_on(now);

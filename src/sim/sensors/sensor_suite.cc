@@ -196,9 +196,9 @@ void SensorSuite::command(const InstrumentCommand& command) {
                           if (scanner_ && last_body_) scanner_->begin(last_body_->first, last_body_->second);
                         },
                         [&](const SoundingCommand&) {
-                           if (tem_ && last_body_) tem_->start(last_body_->first);
-                         },
-                         [](const AntennaCommand&) {}, [](const WarningCommand&) {}},
+                          if (tem_ && last_body_) tem_->start(last_body_->first);
+                        },
+                        [](const AntennaCommand&) {}, [](const WarningCommand&) {}},
              command);
 }
 
