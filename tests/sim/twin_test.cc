@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
 #include "core/error.h"
 #include "io/urdf.h"
 #include "tests/sim/rubble.h"
@@ -120,6 +124,27 @@ TEST(Twin, AScanOfTheTrackedRobotOnFlatGroundHasTheFloor85CentimetresBelowItAndT
   }
   EXPECT_GT(floor, 2000);
   EXPECT_GT(robot, 10);
+}
+
+TEST(Twin, OnRoughGroundARobotThatCreepsStandsWithin5MicrometresAndAThousandthOfADegreeOverAScan) {
+  TwinSettings settings;
+  settings.sensors.scanner.enabled = true;
+  settings.sensors.scanner.step_deg = 10.0;
+  SmallTwin twin(kTrackedUrdf, make_rubble_world(16.0, 6.0, 0.006, 0.003), settings);
+  twin.run(0.0, 4.0);
+  const auto creep_of = [&](double duration_s) {
+    const Pose3 before = twin->truth().T_world_body;
+    twin.run(0.0, duration_s);
+    const Pose3 after = twin->truth().T_world_body;
+    return std::pair((after.position - before.position).norm(), before.rotation.angularDistance(after.rotation) * 180.0 / std::numbers::pi);
+  };
+  const auto [free_m, free_deg] = creep_of(29.0);
+  twin->command(ScanCommand{twin->now()});
+  const auto [held_m, held_deg] = creep_of(29.0);
+  EXPECT_TRUE(twin->is_busy());
+  EXPECT_LT(held_m, 5e-6);
+  EXPECT_LT(held_deg, 0.001);
+  EXPECT_GT(free_m, 10.0 * held_m) << "the soft contact lets it creep, or there is nothing to be held";
 }
 
 TEST(Twin, RingsOfAWorldWithoutALiningCannotBeMoved) {
