@@ -92,6 +92,7 @@ struct Scenario {
   StackSettings stack;
   std::vector<sim::PropSettings> props;
   sim::LowObstacleSettings low_obstacles;  ///< scattered by the seed, beside the props
+  std::vector<sim::LiningMoveSettings> lining;  ///< how its rings have moved
   std::vector<sim::ActorSettings> actors;
   std::vector<sim::LeakSettings> leaks;
   sim::WindSettings wind;
@@ -119,6 +120,7 @@ struct Scenario {
     visit("stack", self.stack);
     visit("props", self.props);
     visit("low_obstacles", self.low_obstacles);
+    visit("lining", self.lining);
     visit("actors", self.actors);
     visit("leaks", self.leaks);
     visit("wind", self.wind);

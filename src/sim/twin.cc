@@ -38,11 +38,17 @@ std::unique_ptr<Locomotion> make_locomotion(const TwinSettings& settings, const 
   return std::make_unique<TrackDrive>(robot, settings.track_drive, settings.sensors.hall.ticks_per_rad(), physics);
 }
 
+AssembledModel assemble(const TwinSettings& settings) {
+  AssembledModel model = assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start, settings.props);
+  move_lining(settings.lining_moves, settings.lining, *model.view);
+  return model;
+}
+
 }  // namespace
 
 Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uint64_t seed,
            const DepthImagerFactory& make_depth_imager)
-    : model_(assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start, settings.props)),
+    : model_(assemble(settings)),
       data_(make_data(*model_.physics)),
       nearby_(*model_.physics),
       robot_body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)),
@@ -99,7 +105,7 @@ void Twin::step() {
 
 void Twin::hear_remote() {
   if (driver_) {
-    if (const auto command = driver_->step(now_, to_planar(truth().T_world_body), actors_.positions())) {
+    if (const auto command = driver_->step(now_, to_planar(truth().T_world_body), actors_.positions(), is_busy())) {
       sensors_.hear(*command);
     }
   }

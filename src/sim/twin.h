@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "core/robot_description.h"
 #include "sim/actors.h"
 #include "sim/gas_plume.h"
+#include "sim/lining_moves.h"
 #include "sim/locomotion/locomotion.h"
 #include "sim/locomotion/quadruped_controller.h"
 #include "sim/locomotion/track_drive_settings.h"
@@ -31,6 +33,8 @@ struct TwinSettings {
   LocomotionSettings locomotion;   ///< of a robot with legs
   TrackDriveSettings track_drive;  ///< of a robot with tracks
   std::vector<PropSettings> props;
+  std::optional<TunnelLining> lining;            ///< of the world, in world
+  std::vector<LiningMoveSettings> lining_moves;
   std::vector<ActorSettings> actors;
   std::vector<LeakSettings> leaks;
   WindSettings wind;
@@ -54,6 +58,10 @@ class Twin {
   /// Time since the start; of the state that `truth` describes.
   Time now() const { return now_; }
   void set_command(const VelocityCommand& command) { command_ = command; }
+  /// What is asked of the inspection's instruments; now.
+  void command(const InstrumentCommand& command) { sensors_.command(command); }
+  /// An instrument is at work for which the robot must stand still.
+  bool is_busy() const { return sensors_.is_busy(); }
 
   /// Sensor messages whose delivery is due, in order of delivery.
   std::vector<SensorMessage> take_messages();

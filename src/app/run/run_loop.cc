@@ -11,7 +11,6 @@
 #include "inspect/route_frame.h"
 #include "io/run_log.h"
 #include "render/depth_renderer.h"
-#include "render/depth_renderer.h"
 
 namespace patrol::app {
 namespace {
@@ -31,6 +30,10 @@ class Schedule {
   Time next_{};
 };
 
+/// What goes on to the twin's instruments.
+template <typename Message>
+concept InstrumentOrder = std::is_constructible_v<InstrumentCommand, Message>;
+
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& files) {
@@ -41,6 +44,8 @@ sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& f
           .locomotion = scenario.locomotion,
           .track_drive = scenario.track_drive,
           .props = props_of(scenario),
+          .lining = files.route.lining,  // site is world
+          .lining_moves = scenario.lining,
           .actors = scenario.actors,
           .leaks = scenario.leaks,
           .wind = scenario.wind,
@@ -98,7 +103,12 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
   const auto write_stack_messages = [&](Time now) {
     for (const StackMessage& message : stack.take_messages()) {
       const auto lap = clock.lap("log");
-      std::visit([&](const auto& content) { log.write(now, content); }, message);
+      std::visit(Overloaded{[&](const auto& content) { log.write(now, content); },
+                            [&]<InstrumentOrder Command>(const Command& order) {
+                              log.write(now, order);
+                              twin.command(order);
+                            }},
+                 message);
       observer.see(message);
     }
   };
@@ -159,6 +169,10 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
   outcome.seconds_by_part["sensors"] -= twin.sensors().lidar_seconds();
   if (const double seconds = twin.sensors().depth_camera_seconds(); seconds > 0.0) {
     outcome.seconds_by_part["depth_camera"] = seconds;
+    outcome.seconds_by_part["sensors"] -= seconds;
+  }
+  if (const double seconds = twin.sensors().scanner_seconds(); seconds > 0.0) {
+    outcome.seconds_by_part["scanner"] = seconds;
     outcome.seconds_by_part["sensors"] -= seconds;
   }
   return outcome;

@@ -44,6 +44,12 @@ std::optional<DepthCamera> make_depth_camera(const SensorSuiteSettings& settings
   return DepthCamera(camera, settings.dust, make_imager(view, lens_of(camera), kNear_m, 1.1 * camera.range_max_m), seed);
 }
 
+std::optional<PanoramicScanner> make_scanner(const SensorSuiteSettings& settings, const LidarScene& scene, const RobotDescription& robot,
+                                             std::uint64_t seed) {
+  if (!settings.scanner.enabled) return std::nullopt;
+  return std::optional<PanoramicScanner>(std::in_place, settings.scanner, scene, robot.T_body("scanner"), seed, settings.dust);
+}
+
 constexpr double kSpikeProbability = 0.1;  // of a message, while the fault lasts
 
 /// Adds `offset` to the message's main reading, as drift and spikes do.
@@ -70,6 +76,22 @@ struct OffsetBy {
     }
   }
   void operator()(RemoteCommand& command) const { command.vx_mps += offset; }
+  void operator()(PanoramicScan& scan) const {
+    for (ScannerPoint& point : scan.points) {
+      const float range = std::hypot(point.x, point.y, point.z), scale = 1.0F + static_cast<float>(offset) / range;
+      point.x *= scale, point.y *= scale, point.z *= scale;
+    }
+  }
+  void operator()(AntennaState& antenna) const { antenna.yaw_rad += offset; }
+  void operator()(TemSounding& sounding) const {
+    for (double& rate : sounding.rate_tps) rate += offset;
+  }
+};
+
+/// Each instrument has its handler.
+template <typename... Handlers>
+struct Overloaded : Handlers... {
+  using Handlers::operator()...;
 };
 
 }  // namespace
@@ -94,6 +116,7 @@ SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescrip
       uwb_(make_uwb(settings.uwb, view, robot, seed)),
       ultrasonic_(make_ultrasonic(settings.ultrasonic, scene_, robot, seed)),
       depth_camera_(make_depth_camera(settings, view, robot, make_depth_imager, seed)),
+      scanner_(make_scanner(settings, scene_, robot, seed)),
       spikes_(seed, "fault/spikes"),
       jitter_(seed, "fault/jitter") {
   validate(settings.dust, "sensors.dust");
@@ -139,8 +162,9 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
       for (PointCloud& cloud : lidar3d_->take_clouds()) deliver("lidar3d", now, settings_.lidar3d.latency_s, std::move(cloud));
     }
   }
-  last_body_ = {now, T_world_body};
   lidar_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (is_busy()) scan_panorama(T_world_body, now);
+  last_body_ = {now, T_world_body};
 
   if (settings_.tdlas.enabled && is_due(settings_.tdlas.rate_hz, tdlas_count_, now)) {
     deliver("tdlas", now, settings_.tdlas.latency_s,
@@ -153,6 +177,21 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
   if (uwb_) poll_uwb(T_world_body, now);
   if (ultrasonic_) ping_ultrasonic(T_world_body, now);
   if (depth_camera_) take_depth_image(data, T_world_body, now);
+}
+
+void SensorSuite::command(const InstrumentCommand& command) {
+  std::visit(Overloaded{[&](const ScanCommand&) {
+                          if (scanner_ && last_body_) scanner_->begin(last_body_->first, last_body_->second);
+                        },
+                        [](const AntennaCommand&) {}, [](const SoundingCommand&) {}, [](const WarningCommand&) {}},
+             command);
+}
+
+void SensorSuite::scan_panorama(const Pose3& T_world_body, Time now) {
+  const auto start = std::chrono::steady_clock::now();
+  scanner_->advance(last_body_->first, now, last_body_->second, T_world_body);
+  for (PanoramicScan& scan : scanner_->take_scans()) deliver("scanner", now, settings_.scanner.latency_s, std::move(scan));
+  scanner_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void SensorSuite::poll_uwb(const Pose3& T_world_body, Time now) {

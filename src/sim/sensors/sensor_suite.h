@@ -21,6 +21,7 @@
 #include "sim/sensors/imu.h"
 #include "sim/sensors/joint_encoders.h"
 #include "sim/sensors/lidar.h"
+#include "sim/sensors/panoramic_scanner.h"
 #include "sim/sensors/tdlas.h"
 #include "sim/sensors/ultrasonic.h"
 #include "sim/sensors/uwb.h"
@@ -39,6 +40,7 @@ struct SensorSuiteSettings {
   UwbSettings uwb;
   UltrasonicSettings ultrasonic;
   DepthCameraSettings depth_camera;
+  PanoramicScannerSettings scanner;
   DustSettings dust;
 
   template <typename Self, typename Visitor>
@@ -54,6 +56,7 @@ struct SensorSuiteSettings {
     visit("uwb", self.uwb);
     visit("ultrasonic", self.ultrasonic);
     visit("depth_camera", self.depth_camera);
+    visit("scanner", self.scanner);
     visit("dust", self.dust);
   }
 
@@ -86,6 +89,11 @@ class SensorSuite {
   /// What comes in by radio from the remote control.
   void hear(const RemoteCommand& command) { deliver("remote", command.stamp, 0.0, command); }
 
+  /// What the stack asks of the instruments; of one that is switched off, nothing comes.
+  void command(const InstrumentCommand& command);
+  /// An instrument is at work for which the robot must stand still.
+  bool is_busy() const { return scanner_ && scanner_->is_busy(); }
+
   /// Messages due by `now`, in order of delivery.
   std::vector<SensorMessage> take_due(Time now);
 
@@ -98,6 +106,7 @@ class SensorSuite {
   const std::vector<FaultReport>& faults() const { return faults_; }
   double lidar_seconds() const { return lidar_seconds_; }
   double depth_camera_seconds() const { return depth_camera_seconds_; }
+  double scanner_seconds() const { return scanner_seconds_; }
 
  private:
   struct Delivery {
@@ -108,6 +117,7 @@ class SensorSuite {
   void deliver(const char* sensor, Time ready, double latency_s, SensorMessage message);
   bool apply_faults(const char* sensor, Time ready, Time& due, SensorMessage& message);
   bool is_due(double rate_hz, std::uint64_t& count, Time now) const;
+  void scan_panorama(const Pose3& T_world_body, Time now);
   void poll_uwb(const Pose3& T_world_body, Time now);
   void ping_ultrasonic(const Pose3& T_world_body, Time now);
   void take_depth_image(const mjData& data, const Pose3& T_world_body, Time now);
@@ -127,6 +137,7 @@ class SensorSuite {
   std::optional<Uwb> uwb_;
   std::optional<UltrasonicRing> ultrasonic_;
   std::optional<DepthCamera> depth_camera_;
+  std::optional<PanoramicScanner> scanner_;
   std::vector<FaultReport> faults_;
   std::vector<std::pair<std::string, SensorMessage>> last_good_;  ///< by sensor, for a freeze
   RandomStream spikes_, jitter_;
@@ -142,7 +153,7 @@ class SensorSuite {
   TrackTicks newest_ticks_;
   std::optional<std::pair<Time, Pose3>> last_body_;
   std::vector<Delivery> queue_;
-  double lidar_seconds_ = 0.0, depth_camera_seconds_ = 0.0;
+  double lidar_seconds_ = 0.0, depth_camera_seconds_ = 0.0, scanner_seconds_ = 0.0;
 };
 
 }  // namespace patrol::sim
