@@ -22,6 +22,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "io/one_line.h"
 #include "monitor/url.h"
 
 namespace patrol::monitor {
@@ -68,7 +69,7 @@ http::response<http::string_body> to_message(HttpResponse&& response, unsigned v
 }  // namespace
 
 HttpResponse refusal(int status, const std::string& why) {
-  const nlohmann::json json = {{"error", why}};
+  const nlohmann::json json = {{"error", io::on_one_line(why)}};
   return {.status = status, .body = json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace), .headers = {}};
 }
 

@@ -132,14 +132,14 @@ Json rings_of(Database& database, const std::string& world) {
   return list;
 }
 
-/// A content, without what would fill the table.
+/// A content, without what would fill the table: of a list its length.
 Json shortened(const std::string& kind, const std::string& data) {
   if (data.size() <= kLongestContent) return Json::parse(data);
   Json json = Json::parse(data);
   if (kind == "event") return json;
   for (auto& [key, value] : json.items()) {
-    if (value.is_array()) value = fmt::format("{} entries", value.size());
-    if (key == "png_base64") value = "PNG";
+    if (value.is_array()) value = value.size();
+    if (key == "png_base64") value = "";
   }
   return json;
 }
@@ -153,7 +153,8 @@ std::string changes(Database& database, std::int64_t since, std::int64_t now_ms)
   Statement rows = database.prepare(std::string(kRobotColumns) + " WHERE robots.revision > ?1 ORDER BY robots.robot LIMIT ?2");
   json["robots"] = robot_rows(rows.bind(since, kMostChanges));
   if (since == 0) {
-    json["findings"] = findings_page(database, {});
+    json["findings"] = findings_page(database, {.limit = kMostPage});
+    for (Json& open : findings_page(database, {.only_open = true, .limit = kMostPage})) json["findings"].push_back(std::move(open));
   } else {
     Statement findings = database.prepare(std::string(kFindingColumns) + " WHERE findings.revision > ?1 AND findings.level >= 2 ORDER BY findings.number DESC LIMIT ?2");
     json["findings"] = finding_rows(findings.bind(since, kMostChanges));

@@ -9,8 +9,8 @@
 /// What the page asks for, as JSON. Names of robots, runs and stations come as they were sent: the page sets them as text.
 namespace patrol::monitor {
 
-/// What is new since a revision: {"revision", "now_ms", "robots": [...], "findings": [...]}. Since 0: all robots, and the findings that
-/// `alarms` gives.
+/// What is new since a revision: {"revision", "now_ms", "robots": [...], "findings": [...]}. Since 0: all robots, the
+/// newest alarms, and those that are open.
 std::string changes(Database& database, std::int64_t since, std::int64_t now_ms);
 
 /// {"robots": [...]}: where each was last, and in which run.
@@ -41,7 +41,7 @@ struct HistoryPage {
   std::int64_t before = 0;  ///< results with lower numbers; 0: from the newest
   int limit = 25;
 };
-/// {"results": [...], "more": bool}. Of large contents there is a summary.
+/// {"results": [...], "more": bool}. Of large contents, lists are given by their lengths.
 std::string history(Database& database, const HistoryPage& page);
 
 /// A map's PNG.

@@ -19,7 +19,7 @@ using io::Json;
 
 constexpr std::string_view kAlarms = "/api/alarms/", kAcknowledge = "/acknowledge", kMaps = "/api/maps/", kResults = "/api/results";
 constexpr std::size_t kLongestWho = 80, kLongestNote = 500;
-constexpr const char* kPolicy = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; connect-src 'self'; "
+constexpr const char* kPolicy = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
                                 "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 struct Asset {
