@@ -31,6 +31,10 @@ class Statement {
   double number(int column) const;
   std::string text(int column) const;
   bool is_null(int column) const;
+  int num_columns() const;
+  std::string name(int column) const;
+  enum class Type { kNull, kInteger, kNumber, kText };
+  Type type(int column) const;
 
  private:
   friend class Database;

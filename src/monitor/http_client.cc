@@ -41,7 +41,8 @@ asio::awaitable<HttpAnswer> exchange(asio::io_context& context, const Url& url, 
 
 }  // namespace
 
-std::optional<HttpAnswer> post_json(const Url& url, const std::string& path, const std::string& token, const std::string& body, double limit_s, std::string* why) {
+std::optional<HttpAnswer> post_json(const Url& url, const std::string& path, const std::string& token, const std::string& body, double limit_s,
+                                    std::string* why) {
   http::request<http::string_body> request(http::verb::post, path, 11);
   request.set(http::field::host, fmt::format("{}:{}", url.host, url.port));
   request.set(http::field::authorization, "Bearer " + token);

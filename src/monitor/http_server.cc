@@ -44,7 +44,10 @@ auto into(Error& error) { return asio::redirect_error(asio::use_awaitable, error
 
 HttpRequest head_of(const Parser& parser, const std::string& peer) {
   const auto& message = parser.get();
-  HttpRequest head{.peer = peer, .method = std::string(message.method_string()), .path = {}, .parameters = {}, .authorization = std::string(message[http::field::authorization]), .body = {}};
+  HttpRequest head;
+  head.peer = peer;
+  head.method = std::string(message.method_string());
+  head.authorization = std::string(message[http::field::authorization]);
   split_target(std::string(message.target()), head.path, head.parameters);
   return head;
 }
@@ -194,7 +197,9 @@ class HttpServer::Connections {
     HttpResponse response = answer(request);
     auto message = to_message(std::move(response), parser.get().version(), parser.get().keep_alive());
     co_await http::async_write(connection.stream, message, into(error));
-    if (error == beast::error::timeout) log_(fmt::format("{} given up: {} {}: the answer was not read within {} s", connection.peer, request.method, request.path, settings_.request_limit_s));
+    if (error == beast::error::timeout) {
+      log_(fmt::format("{} given up: {} {}: the answer was not read within {} s", connection.peer, request.method, request.path, settings_.request_limit_s));
+    }
     co_return !error && message.keep_alive();
   }
 

@@ -23,36 +23,38 @@ constexpr int kMostStations = 20;
 constexpr int kMostPage = 200;
 constexpr std::size_t kLongestContent = 400;
 
-Json number(const Statement& row, int column) { return row.is_null(column) ? Json(nullptr) : Json(row.number(column)); }
-
-constexpr const char* kRobotColumns =
-    "SELECT robots.robot, runs.run, runs.world, runs.scenario, runs.state, runs.message, robots.made_ms, robots.received_ms, robots.time_s, robots.x, robots.y, robots.yaw, robots.at, "
-    "robots.mark_revision, runs.map_seq FROM robots JOIN runs ON runs.number = robots.run";
-
-Json robot_rows(Statement& row) {
-  Json list = Json::array();
-  while (row.step()) {
-    list.push_back({{"robot", row.text(0)}, {"run", row.text(1)}, {"world", row.text(2)}, {"scenario", row.text(3)}, {"state", row.text(4)}, {"message", row.text(5)},
-                    {"made_ms", row.integer(6)}, {"received_ms", row.integer(7)}, {"time_s", row.number(8)}, {"x", number(row, 9)}, {"y", number(row, 10)},
-                    {"yaw", number(row, 11)}, {"at", row.text(12)}, {"mark_revision", row.integer(13)}, {"has_map", !row.is_null(14)}});
+Json value_of(const Statement& row, int column) {
+  switch (row.type(column)) {
+    case Statement::Type::kNull: return nullptr;
+    case Statement::Type::kInteger: return row.integer(column);
+    case Statement::Type::kNumber: return row.number(column);
+    case Statement::Type::kText: return row.text(column);
   }
+  return nullptr;
+}
+
+/// By the columns' names.
+Json object_of(const Statement& row) {
+  Json object;
+  for (int column = 0; column < row.num_columns(); ++column) object[row.name(column)] = value_of(row, column);
+  return object;
+}
+
+/// All that are left.
+Json objects_of(Statement& rows) {
+  Json list = Json::array();
+  while (rows.step()) list.push_back(object_of(rows));
   return list;
 }
 
-constexpr const char* kFindingColumns =
-    "SELECT findings.number, runs.robot, runs.run, runs.world, findings.time_s, findings.made_ms, findings.received_ms, findings.level, findings.kind, findings.subject, findings.text, "
-    "findings.x, findings.y, findings.acknowledged_ms, findings.who, findings.note FROM findings JOIN runs ON runs.number = findings.run";
+constexpr const char* kRobots =
+    "SELECT robots.robot, runs.run, world, scenario, state, message, robots.made_ms, robots.received_ms, robots.time_s, x, y, yaw, at, "
+    "mark_revision, map_seq IS NOT NULL AS has_map FROM robots JOIN runs ON runs.number = robots.run";
 
-Json finding_rows(Statement& row) {
-  Json list = Json::array();
-  while (row.step()) {
-    list.push_back({{"number", row.integer(0)}, {"robot", row.text(1)}, {"run", row.text(2)}, {"world", row.text(3)}, {"time_s", row.number(4)}, {"made_ms", row.integer(5)},
-                    {"received_ms", row.integer(6)}, {"level", name_of(static_cast<WarningLevel>(row.integer(7)))}, {"kind", row.text(8)}, {"subject", row.text(9)},
-                    {"text", row.text(10)}, {"x", row.number(11)}, {"y", row.number(12)}, {"acknowledged_ms", row.is_null(13) ? Json(nullptr) : Json(row.integer(13))},
-                    {"who", row.text(14)}, {"note", row.text(15)}});
-  }
-  return list;
-}
+constexpr const char* kFindings =
+    "SELECT findings.number, robot, runs.run, world, time_s, made_ms, received_ms, "
+    "CASE level WHEN 1 THEN 'notice' WHEN 2 THEN 'warning' ELSE 'alarm' END AS level, kind, subject, text, x, y, acknowledged_ms, who, note "
+    "FROM findings JOIN runs ON runs.number = findings.run";
 
 /// Warnings and alarms that nobody has acknowledged.
 Json open_count(Database& database) {
@@ -65,8 +67,8 @@ Json open_count(Database& database) {
 Json findings_page(Database& database, const AlarmsPage& page) {
   const std::string where = fmt::format(" WHERE findings.level >= 2 AND (?1 = 0 OR findings.number < ?1){} ORDER BY findings.number DESC LIMIT ?2",
                                         page.only_open ? " AND findings.acknowledged_ms IS NULL" : "");
-  Statement rows = database.prepare(kFindingColumns + where);
-  return finding_rows(rows.bind(page.before, std::clamp(page.limit, 1, kMostPage)));
+  Statement rows = database.prepare(kFindings + where);
+  return objects_of(rows.bind(page.before, std::clamp(page.limit, 1, kMostPage)));
 }
 
 /// At most so many of a run's places, evenly.
@@ -98,26 +100,22 @@ std::string newest_of(Database& database, const std::string& world, const char* 
   while (row.step()) {
     std::string one = Json{{"robot", row.text(0)}, {"run", row.text(1)}, {"time_s", row.number(2)}, {"made_ms", row.integer(3)}}.dump();
     one.pop_back();
-    list += fmt::format("{}{},\"data\":{}}}", list.empty() ? "" : ",", one, row.text(4));
+    list += fmt::format(R"({}{},"data":{}}})", list.empty() ? "" : ",", one, row.text(4));
   }
   return "[" + list + "]";
 }
 
 Json lines_of(Database& database, const std::string& world) {
-  Json list = Json::array();
-  Statement row = database.prepare("SELECT ring, name, made_ms, change_m, std_m, before_m FROM lines WHERE world = ?1 ORDER BY ring, name LIMIT ?2");
-  row.bind(world, kMostLines);
-  while (row.step()) {
-    list.push_back({{"ring", row.integer(0)}, {"name", row.text(1)}, {"made_ms", row.integer(2)}, {"change_m", row.number(3)}, {"std_m", number(row, 4)}, {"before_m", number(row, 5)}});
-  }
-  return list;
+  Statement rows = database.prepare("SELECT ring, name, made_ms, change_m, std_m, before_m FROM lines WHERE world = ?1 ORDER BY ring, name LIMIT ?2");
+  return objects_of(rows.bind(world, kMostLines));
 }
 
 /// [ring, made_ms, inward_m, std_m, clock_deg], the newest of each ring, in the order of time.
 Json rings_of(Database& database, const std::string& world) {
   Statement numbers = database.prepare(
       "WITH RECURSIVE known (ring) AS (SELECT min(ring) FROM rings WHERE world = ?1 UNION ALL "
-      "SELECT (SELECT min(ring) FROM rings WHERE world = ?1 AND ring > known.ring) FROM known WHERE known.ring IS NOT NULL) SELECT ring FROM known WHERE ring IS NOT NULL LIMIT ?2");
+      "SELECT (SELECT min(ring) FROM rings WHERE world = ?1 AND ring > known.ring) FROM known WHERE known.ring IS NOT NULL) "
+      "SELECT ring FROM known WHERE ring IS NOT NULL LIMIT ?2");
   Statement row = database.prepare("SELECT made_ms, inward_m, std_m, clock_deg FROM rings WHERE world = ?1 AND ring = ?2 ORDER BY made_ms DESC LIMIT ?3");
   Json list = Json::array();
   numbers.bind(world, kMostRings);
@@ -125,7 +123,7 @@ Json rings_of(Database& database, const std::string& world) {
     const std::int64_t ring = numbers.integer(0);
     Json one = Json::array();
     row.bind(world, ring, kMostRingRows);
-    while (row.step()) one.push_back({ring, row.integer(0), row.number(1), number(row, 2), row.number(3)});
+    while (row.step()) one.push_back({ring, row.integer(0), row.number(1), value_of(row, 2), row.number(3)});
     std::reverse(one.begin(), one.end());
     list.insert(list.end(), one.begin(), one.end());
   }
@@ -150,47 +148,51 @@ std::string changes(Database& database, std::int64_t since, std::int64_t now_ms)
   Statement revision = database.prepare("SELECT number FROM revision");
   revision.step();
   Json json = {{"revision", revision.integer(0)}, {"now_ms", now_ms}, {"open", open_count(database)}};
-  Statement rows = database.prepare(std::string(kRobotColumns) + " WHERE robots.revision > ?1 ORDER BY robots.robot LIMIT ?2");
-  json["robots"] = robot_rows(rows.bind(since, kMostChanges));
+  Statement rows = database.prepare(std::string(kRobots) + " WHERE robots.revision > ?1 ORDER BY robots.robot LIMIT ?2");
+  json["robots"] = objects_of(rows.bind(since, kMostChanges));
   if (since == 0) {
     json["findings"] = findings_page(database, {.limit = kMostPage});
     for (Json& open : findings_page(database, {.only_open = true, .limit = kMostPage})) json["findings"].push_back(std::move(open));
   } else {
-    Statement findings = database.prepare(std::string(kFindingColumns) + " WHERE findings.revision > ?1 AND findings.level >= 2 ORDER BY findings.number DESC LIMIT ?2");
-    json["findings"] = finding_rows(findings.bind(since, kMostChanges));
+    Statement findings =
+        database.prepare(std::string(kFindings) + " WHERE findings.revision > ?1 AND findings.level >= 2 ORDER BY findings.number DESC LIMIT ?2");
+    json["findings"] = objects_of(findings.bind(since, kMostChanges));
   }
   return json.dump();
 }
 
 std::string robots(Database& database) {
-  Statement rows = database.prepare(std::string(kRobotColumns) + " ORDER BY robots.robot");
-  return Json{{"robots", robot_rows(rows)}}.dump();
+  Statement rows = database.prepare(std::string(kRobots) + " ORDER BY robots.robot");
+  return Json{{"robots", objects_of(rows)}}.dump();
 }
 
-std::string alarms(Database& database, const AlarmsPage& page) { return Json{{"findings", findings_page(database, page)}, {"open", open_count(database)}}.dump(); }
+std::string alarms(Database& database, const AlarmsPage& page) {
+  return Json{{"findings", findings_page(database, page)}, {"open", open_count(database)}}.dump();
+}
 
 std::optional<std::string> run_details(Database& database, const std::string& robot, const std::string& run) {
-  Statement row = database.prepare("SELECT number, run, world, scenario, state, message, stations, poses, map_seq FROM runs WHERE robot = ?1 AND (?2 = '' OR run = ?2) "
-                                   "ORDER BY first_ms DESC LIMIT 1");
+  Statement row = database.prepare(
+      "SELECT number, poses, map_seq, stations, robot, run, world, scenario, state, message FROM runs "
+      "WHERE robot = ?1 AND (?2 = '' OR run = ?2) ORDER BY first_ms DESC LIMIT 1");
   if (!row.bind(robot, run).step()) return std::nullopt;
+  Json json = object_of(row);
   const std::int64_t number = row.integer(0);
-  Json json = {{"robot", robot}, {"run", row.text(1)}, {"world", row.text(2)}, {"scenario", row.text(3)}, {"state", row.text(4)}, {"message", row.text(5)},
-               {"stations", Json::parse(row.text(6))}, {"track", track_of(database, number, row.integer(7))}};
-  json["map"] = row.is_null(8) ? Json(nullptr) : map_geometry(database, row.integer(8));
-  Statement findings = database.prepare(std::string(kFindingColumns) + " WHERE findings.run = ?1 ORDER BY findings.number DESC LIMIT 200");
-  json["findings"] = finding_rows(findings.bind(number));
-  json["runs"] = Json::array();
+  json["track"] = track_of(database, number, row.integer(1));
+  json["map"] = row.is_null(2) ? Json(nullptr) : map_geometry(database, row.integer(2));
+  json["stations"] = Json::parse(row.text(3));
+  Statement findings = database.prepare(std::string(kFindings) + " WHERE findings.run = ?1 ORDER BY findings.number DESC LIMIT ?2");
+  json["findings"] = objects_of(findings.bind(number, kMostPage));
   Statement runs = database.prepare("SELECT run, first_ms, state FROM runs WHERE robot = ?1 ORDER BY first_ms DESC LIMIT 50");
-  runs.bind(robot);
-  while (runs.step()) json["runs"].push_back({{"run", runs.text(0)}, {"first_ms", runs.integer(1)}, {"state", runs.text(2)}});
+  json["runs"] = objects_of(runs.bind(robot));
   return json.dump();
 }
 
 std::string lining(Database& database, const std::string& world) {
-  return fmt::format("{{\"scans\":{},\"lines\":{},\"rings\":{}}}", newest_of(database, world, "lining"), lines_of(database, world).dump(), rings_of(database, world).dump());
+  return fmt::format(R"({{"scans":{},"lines":{},"rings":{}}})", newest_of(database, world, "lining"), lines_of(database, world).dump(),
+                     rings_of(database, world).dump());
 }
 
-std::string water(Database& database, const std::string& world) { return fmt::format("{{\"water\":{}}}", newest_of(database, world, "water")); }
+std::string water(Database& database, const std::string& world) { return fmt::format(R"({{"water":{}}})", newest_of(database, world, "water")); }
 
 std::string gas(Database& database, const std::string& world) {
   Json list = Json::array();
@@ -202,7 +204,7 @@ std::string gas(Database& database, const std::string& world) {
 }
 
 std::string history(Database& database, const HistoryPage& page) {
-  std::string sql = "SELECT seq, robot, run, world, time_s, made_ms, received_ms, kind, data, id FROM results WHERE (?1 = 0 OR seq < ?1)";
+  std::string sql = "SELECT data, seq, id, robot, run, world, time_s, made_ms, received_ms, kind FROM results WHERE (?1 = 0 OR seq < ?1)";
   sql += page.robot.empty() ? " AND ?2 = ''" : " AND robot = ?2";
   sql += page.kind.empty() ? " AND ?3 = '' AND kind NOT IN ('pose', 'map')" : " AND kind = ?3";
   Statement row = database.prepare(sql + " ORDER BY seq DESC LIMIT ?4");
@@ -210,9 +212,9 @@ std::string history(Database& database, const HistoryPage& page) {
   row.bind(page.before, page.robot, page.kind, limit + 1);
   Json list = Json::array();
   while (row.step()) {
-    const std::string kind = row.text(7);
-    list.push_back({{"seq", row.integer(0)}, {"robot", row.text(1)}, {"run", row.text(2)}, {"world", row.text(3)}, {"time_s", row.number(4)}, {"made_ms", row.integer(5)},
-                    {"received_ms", row.integer(6)}, {"kind", kind}, {"data", shortened(kind, row.text(8))}, {"id", row.text(9)}});
+    Json one = object_of(row);
+    one["data"] = shortened(one["kind"], row.text(0));
+    list.push_back(std::move(one));
   }
   const bool has_more = list.size() > static_cast<std::size_t>(limit);
   if (has_more) list.erase(list.size() - 1);

@@ -1,5 +1,6 @@
 #include "monitor/service.h"
 
+#include <algorithm>
 #include <charconv>
 #include <utility>
 
@@ -30,6 +31,8 @@ const Asset* asset_at(std::string_view path) {
   static const Asset kAssets[] = {{"/", "text/html; charset=utf-8", kPage},
                                   {"/page.css", "text/css; charset=utf-8", kPageStyle},
                                   {"/page.js", "text/javascript; charset=utf-8", kPageScript},
+                                  {"/site.js", "text/javascript; charset=utf-8", kSiteScript},
+                                  {"/words.js", "text/javascript; charset=utf-8", kWordsScript},
                                   {"/map.js", "text/javascript; charset=utf-8", kMapScript},
                                   {"/plots.js", "text/javascript; charset=utf-8", kPlotsScript},
                                   {"/uplot.js", "text/javascript; charset=utf-8", kPlotLibrary},
@@ -68,6 +71,8 @@ std::int64_t count(const HttpRequest& request, const char* name, std::int64_t ot
   return *value;
 }
 
+int limit_of(const HttpRequest& request, int otherwise) { return static_cast<int>(std::min<std::int64_t>(count(request, "limit", otherwise), 1000)); }
+
 HttpResponse fresh(std::string json) { return {.body = std::move(json), .headers = {{"Cache-Control", "no-store"}}}; }
 
 bool is_place_to_post(std::string_view path) { return path == kResults || number_in(path, kAlarms, kAcknowledge).has_value(); }
@@ -88,7 +93,7 @@ HttpResponse get(Database& database, const HttpRequest& request) {
   if (path == "/api/changes") return fresh(changes(database, count(request, "since", 0), now_ms()));
   if (path == "/api/robots") return fresh(robots(database));
   if (path == "/api/alarms") {
-    return fresh(alarms(database, {.only_open = parameter(request, "open") == "1", .before = count(request, "before", 0), .limit = static_cast<int>(std::min<std::int64_t>(count(request, "limit", 100), 1000))}));
+    return fresh(alarms(database, {.only_open = parameter(request, "open") == "1", .before = count(request, "before", 0), .limit = limit_of(request, 100)}));
   }
   if (path == "/api/run") {
     const auto details = run_details(database, parameter(request, "robot"), parameter(request, "run"));
@@ -99,7 +104,7 @@ HttpResponse get(Database& database, const HttpRequest& request) {
   if (path == "/api/gas") return fresh(gas(database, parameter(request, "world")));
   if (path == "/api/history") {
     return fresh(history(database, {.robot = parameter(request, "robot"), .kind = parameter(request, "kind"), .before = count(request, "before", 0),
-                                    .limit = static_cast<int>(std::min<std::int64_t>(count(request, "limit", 25), 1000))}));
+                                    .limit = limit_of(request, 25)}));
   }
   const auto image = map_image(database, *number_in(path, kMaps, ""));
   if (!image) return refusal(404, "there is no such map");

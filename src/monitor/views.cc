@@ -42,6 +42,16 @@ namespace {
 
 using io::Json;
 
+/// How much an event matters to those who watch. What the lining and the water say comes with their own results.
+WarningLevel level_of(const std::string& event_kind) {
+  static const std::map<std::string, WarningLevel> kLevels = {
+      {"alarm", WarningLevel::kAlarm},         {"fall", WarningLevel::kAlarm},          {"cannot_localize", WarningLevel::kWarning},
+      {"sensor_fault", WarningLevel::kWarning}, {"dock_failed", WarningLevel::kWarning}, {"inspection_failed", WarningLevel::kWarning},
+      {"mission_failed", WarningLevel::kWarning}, {"station_failed", WarningLevel::kNotice}, {"goal_failed", WarningLevel::kNotice}};
+  const auto level = kLevels.find(event_kind);
+  return level == kLevels.end() ? WarningLevel::kNone : level->second;
+}
+
 /// Enters one result.
 class Entry {
  public:
@@ -89,7 +99,8 @@ class Entry {
   void enter_status(const Json& data) {
     const std::string state = data["state"], scenario = data["scenario"], message = data["message"];
     // A start that comes after its end does not open the run again.
-    database_.prepare("UPDATE runs SET scenario = ?2, state = CASE WHEN ?3 = 'started' THEN state ELSE ?3 END, message = CASE WHEN ?3 = 'started' THEN message ELSE ?4 END, "
+    database_.prepare("UPDATE runs SET scenario = ?2, state = CASE WHEN ?3 = 'started' THEN state ELSE ?3 END, "
+                      "message = CASE WHEN ?3 = 'started' THEN message ELSE ?4 END, "
                       "stations = CASE WHEN ?3 = 'started' THEN ?5 ELSE stations END WHERE number = ?1")
         .bind(run_, scenario, state, message, data["stations"].dump())
         .run();
@@ -110,24 +121,23 @@ class Entry {
 
   void enter_event(const Json& data) {
     const std::string kind = data["kind"], subject = data["subject"];
-    static const std::map<std::string, WarningLevel> kLevels = {
-        {"alarm", WarningLevel::kAlarm},         {"fall", WarningLevel::kAlarm},           {"cannot_localize", WarningLevel::kWarning}, {"mission_failed", WarningLevel::kWarning},
-        {"sensor_fault", WarningLevel::kWarning}, {"station_failed", WarningLevel::kNotice}, {"goal_failed", WarningLevel::kNotice},      {"dock_failed", WarningLevel::kWarning},
-        {"inspection_failed", WarningLevel::kWarning}};
-    if (const auto level = kLevels.find(kind); level != kLevels.end()) {
-      const Json& at = data["position_m"];
-      add_finding(level->second, kind, subject, data["text"], Eigen::Vector2d(at[0].get<double>(), at[1].get<double>()));
-    }
+    const Eigen::Vector2d p_map(data["position_m"][0].get<double>(), data["position_m"][1].get<double>());
+    add_finding(level_of(kind), kind, subject, data["text"], p_map);
     if (kind == "gas_measured" && data["value"].is_number()) {
-      database_.prepare("INSERT OR REPLACE INTO gas VALUES (?1, ?2, ?3, ?4, ?5)").bind(result_.world, subject, result_.made_ms, run_, data["value"].get<double>()).run();
+      database_.prepare("INSERT OR REPLACE INTO gas VALUES (?1, ?2, ?3, ?4, ?5)")
+          .bind(result_.world, subject, result_.made_ms, run_, data["value"].get<double>())
+          .run();
     }
     if (kind == "goal_marked") {
-      database_.prepare("UPDATE runs SET stations = json_insert(stations, '$[#]', json_object('name', ?2, 'type', 'marked', 'position_m', json_array(?3, ?4))) WHERE number = ?1")
-          .bind(run_, subject, data["position_m"][0].get<double>(), data["position_m"][1].get<double>())
+      database_.prepare("UPDATE runs SET stations = json_insert(stations, '$[#]', "
+                        "json_object('name', ?2, 'type', 'marked', 'position_m', json_array(?3, ?4))) WHERE number = ?1")
+          .bind(run_, subject, p_map.x(), p_map.y())
           .run();
     }
     if (kind == "station_reached" || kind == "goal_reached" || kind == "docked") {
-      database_.prepare("UPDATE robots SET at = ?2 WHERE robot = ?1 AND run = ?3").bind(result_.robot, kind == "docked" ? std::string("dock") : subject, run_).run();
+      database_.prepare("UPDATE robots SET at = ?2 WHERE robot = ?1 AND run = ?3")
+          .bind(result_.robot, kind == "docked" ? std::string("dock") : subject, run_)
+          .run();
     }
   }
 
@@ -153,8 +163,8 @@ class Entry {
           .run();
     }
     for (const RingFinding& finding : lining.findings) {
-      const std::string text = fmt::format("Ring {} has moved {:.1f} mm inwards (standard deviation {:.1f} mm) at {:.0f} degrees.", finding.ring, 1e3 * finding.inward_m,
-                                           1e3 * finding.std_m, finding.clock_deg);
+      const std::string text = fmt::format("Ring {} has moved {:.1f} mm inwards (standard deviation {:.1f} mm) at {:.0f} degrees.", finding.ring,
+                                           1e3 * finding.inward_m, 1e3 * finding.std_m, finding.clock_deg);
       add_finding(finding.level, "lining", fmt::format("ring {}", finding.ring), text, finding.p_map.head<2>());
     }
   }
@@ -162,8 +172,8 @@ class Entry {
   void enter_water(const WaterResult& water) {
     enter_newest(water.station);
     if (!water.is_found) return;
-    const std::string text = fmt::format("Water ahead: {:.1f} m from the antenna ({:.1f} ... {:.1f} m), {:.0f} degrees to the left, {:.0f} up.", water.distance_m,
-                                         water.distance_low_m, water.distance_high_m, water.azimuth_deg, water.elevation_deg);
+    const std::string text = fmt::format("Water ahead: {:.1f} m from the antenna ({:.1f} ... {:.1f} m), {:.0f} degrees to the left, {:.0f} up.",
+                                         water.distance_m, water.distance_low_m, water.distance_high_m, water.azimuth_deg, water.elevation_deg);
     add_finding(water.level, "water", water.station, text, water.p_map.head<2>());
   }
 
@@ -175,7 +185,8 @@ class Entry {
 
   void add_finding(WarningLevel level, const std::string& kind, const std::string& subject, const std::string& text, const Eigen::Vector2d& p_map) {
     if (level == WarningLevel::kNone) return;
-    database_.prepare("INSERT INTO findings (run, time_s, made_ms, received_ms, level, kind, subject, text, x, y, revision) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)")
+    database_.prepare("INSERT INTO findings (run, time_s, made_ms, received_ms, level, kind, subject, text, x, y, revision) "
+                      "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)")
         .bind(run_, result_.time_s, result_.made_ms, filed_.received_ms, static_cast<int>(level), kind, subject, text, p_map.x(), p_map.y(), filed_.revision)
         .run();
   }

@@ -109,6 +109,8 @@ class Page(Case):
         self.browser.get_log("performance")
         self.browser.get_log("browser")
         self.show(1280, NASTY)
+        self.js("const select = document.querySelector('#history-robot'); select.value = arguments[0]; select.dispatchEvent(new Event('change'));", NASTY)
+        self.wait("return document.querySelectorAll('#history tbody tr').length === 2;")
         self.assertEqual(self.js("return document.querySelectorAll('main img, main script').length;"), 0)
         self.assertNotIn("owned", self.browser.title)
         for place in (".robots", ".alarms", "#history tbody", "#history-robot", "#site"):

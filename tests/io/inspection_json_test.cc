@@ -22,8 +22,15 @@ LiningResult small_lining() {
 }
 
 WaterResult small_water() {
-  WaterResult water{.stamp = Time{2}, .station = "face", .soundings = 35, .antenna_error_deg = 0.1, .rock_spm = 0.002, .evidence = -3.5, .is_found = true,
-                    .level = WarningLevel::kWarning, .p_map = {70.0, 1.0, 2.0}};
+  WaterResult water;
+  water.stamp = Time{2};
+  water.station = "face";
+  water.soundings = 35;
+  water.rock_spm = 0.002;
+  water.evidence = -3.5;
+  water.is_found = true;
+  water.level = WarningLevel::kWarning;
+  water.p_map = {70.0, 1.0, 2.0};
   water.covariance_m2 << 4.0, 0.5, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 2.0;
   water.distance_m = 14.0;
   water.distance_low_m = 12.0;

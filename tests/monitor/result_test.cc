@@ -53,8 +53,8 @@ TEST(Result, EachFieldIsHeldToItsRule) {
 
 TEST(Result, WhatIsNoJsonIsRefusedInOneLine) {
   EXPECT_EQ(refusal_of(""), "body:1: is not JSON: ends too early");
-  EXPECT_EQ(refusal_of("{\"id\": 1, \"id\": 2}"), "body: id: id stands there twice");
-  EXPECT_EQ(refusal_of("[" + std::string(30, '[')), "body: [0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0]: lies more than 20 levels deep");
+  EXPECT_EQ(refusal_of("{\"id\": 1, \"id\": 2}"), "body: id stands there twice");
+  EXPECT_EQ(refusal_of("[" + std::string(30, '[')), "body: [0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0]: lies more than 20 levels deep");
   EXPECT_NE(refusal_of("\"\xff\""), "");
   EXPECT_NE(refusal_of("[1, 2]"), "");
 }

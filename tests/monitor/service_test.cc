@@ -89,7 +89,7 @@ TEST_F(Platform, APageFetchesNothingFromElsewhere) {
   EXPECT_EQ(policy->second.find("default-src 'none'"), 0U);
   EXPECT_EQ(page.body.find("http://"), std::string::npos);
   EXPECT_EQ(page.body.find("https://"), std::string::npos);
-  for (const char* part : {"/page.css", "/page.js", "/map.js", "/plots.js", "/uplot.js", "/uplot.css", "/schema"}) EXPECT_GT(ask("GET", part).body.size(), 100U) << part;
+  for (const char* part : {"/page.css", "/page.js", "/site.js", "/words.js", "/map.js", "/plots.js", "/uplot.js", "/uplot.css", "/schema"}) EXPECT_GT(ask("GET", part).body.size(), 100U) << part;
 }
 
 TEST_F(Platform, AMapComesBackAsThePngThatWasSent) {

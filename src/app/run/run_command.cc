@@ -91,9 +91,12 @@ std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario
 }
 
 void say_what_was_sent(const Reporter& reporter, const std::string& to, const std::filesystem::path& root) {
-  if (reporter.num_refused() > 0) fmt::print(stderr, "patrol: {} refused {} results: they lie in {}\n", to, reporter.num_refused(), (root / "outbox.refused.jsonl").string());
+  if (reporter.num_refused() > 0) {
+    fmt::print(stderr, "patrol: {} refused {} results: they lie in {}\n", to, reporter.num_refused(), (root / "outbox.refused.jsonl").string());
+  }
   if (const std::size_t waiting = reporter.num_waiting(); waiting > 0) {
-    fmt::print(stderr, "patrol: {} results wait in {} ({}); send them with: patrol send {} --to {}\n", waiting, (root / "outbox.jsonl").string(), reporter.why_not(), root.string(), to);
+    fmt::print(stderr, "patrol: {} results wait in {} ({}); send them with: patrol send {} --to {}\n", waiting,
+               (root / "outbox.jsonl").string(), reporter.why_not(), root.string(), to);
   } else {
     fmt::print(stderr, "patrol: {} has all {} results\n", to, reporter.num_results());
   }

@@ -1,25 +1,10 @@
 // Asks the platform once a second what is new, and shows it. Whatever robots send is set as text, never as markup.
 import { MapView } from '/map.js';
-import { HeatMap, TimePlot } from '/plots.js';
+import { showGas, showLining, showWater } from '/site.js';
+import { $, clock, dayAndClock, make, plural, simulated, spoken } from '/words.js';
 
-const kPeriod_ms = 1000, kSilent_ms = 15000, kLines = 12, kHistoryRows = 25;
-const $ = (selector, from = document) => from.querySelector(selector);
-const state = { revision: 0, robots: new Map(), findings: new Map(), chosen: null, run: '', onlyOpen: true, skew_ms: 0, water: [], details: null, reports: null };
-
-// ---- Small things ----
-
-/// An element with properties and children; strings become text.
-function make(tag, properties, ...children) {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-}
-const plural = (count, word) => `${count} ${word}${count === 1 ? '' : 's'}`;
-const mm = (metres) => (metres == null ? '?' : (1e3 * metres).toFixed(1));
-const spoken = (word) => word.replaceAll('_', ' ');
-const clock = (ms) => new Date(ms).toLocaleTimeString([], { hour: '2-digit', minute: '2-digit', second: '2-digit', hour12: false });
-const dayAndClock = (ms) => (Math.abs(Date.now() - ms) < 43200000 ? clock(ms) : new Date(ms).toLocaleString([], { dateStyle: 'short', timeStyle: 'short' }));
-const simulated = (seconds) => `${Math.floor(seconds / 60)}:${String(Math.floor(seconds % 60)).padStart(2, '0')}`;
+const kPeriod_ms = 1000, kSilent_ms = 15000, kHistoryRows = 25;
+const state = { revision: 0, robots: new Map(), findings: new Map(), chosen: null, run: '', onlyOpen: true, skew_ms: 0, water: [], details: null };
 
 function age(ms) {
   const seconds = Math.max(0, Math.round((Date.now() + state.skew_ms - ms) / 1000));
@@ -135,9 +120,6 @@ $('form', dialog).addEventListener('submit', async (event) => {
 // ---- The chosen robot's run, and its world ----
 
 const map = new MapView($('#map'));
-const heat = new HeatMap($('#lining .wide'));
-const ringPlot = new TimePlot($('#rings'), $('#lining .keys'));
-const gasPlot = new TimePlot($('#gas-plot'), $('#gas .keys'));
 
 async function refreshRun() {
   const name = state.chosen;
@@ -177,63 +159,6 @@ async function refreshWorld() {
   showWater(water.water);
   showGas(gas.gas);
   showMap();
-}
-
-/// Points [key, ms, value] as curves of their keys.
-function curvesOf(points, name) {
-  const curves = new Map();
-  for (const [key, ms, value] of points) {
-    if (!curves.has(key)) curves.set(key, { name: name(key), points: [] });
-    curves.get(key).points.push([ms, value]);
-  }
-  return [...curves.values()];
-}
-const last = (curve) => curve.points[curve.points.length - 1][1];
-
-function showLining({ scans, lines, rings }) {
-  const section = $('#lining'), isEmpty = !scans.length;
-  $('.content', section).hidden = isEmpty;
-  $(':scope > .empty', section).textContent = isEmpty ? 'No lining was scanned at this site.' : '';
-  $('#lining-when').textContent = isEmpty ? '' : `${plural(scans.length, 'station')}, newest scan ${dayAndClock(scans[0].made_ms)}`;
-  if (isEmpty) return;
-  heat.show(scans);
-  ringPlot.show(curvesOf(rings.map(([ring, ms, inward_m]) => [ring, ms, 1e3 * inward_m]), (ring) => 'ring ' + ring).sort((a, b) => last(b) - last(a)));
-  const sorted = [...lines].sort((a, b) => Math.abs(b.change_m) - Math.abs(a.change_m));
-  const body = $('#lines tbody'), row = (line) => make('tr', {}, make('td', { className: 'number', textContent: line.ring }), make('td', { textContent: line.name }),
-    make('td', { className: 'number', textContent: `${mm(line.change_m)} \u00b1 ${mm(line.std_m)}` }), make('td', { className: 'number', textContent: line.before_m == null ? '' : mm(line.before_m) }));
-  body.replaceChildren(...sorted.slice(0, kLines).map(row));
-  if (sorted.length > kLines) {
-    const more = make('button', { type: 'button', textContent: `All ${sorted.length}`, onclick: () => body.replaceChildren(...sorted.map(row)) });
-    const cell = make('td', {}, more);
-    cell.colSpan = 4;
-    body.append(make('tr', {}, cell));
-  }
-}
-
-function showWater(list) {
-  const section = $('#water');
-  $('.empty', section).textContent = list.length ? '' : 'Nobody has sounded for water at this site.';
-  $('#water-when').textContent = list.length ? dayAndClock(list[0].made_ms) : '';
-  $('.content', section).replaceChildren(...list.slice(0, 3).map(({ data, robot }) => {
-    const facts = [['Station', spoken(data.station)], ['By', `${robot}, ${plural(data.soundings, 'sounding')}`]];
-    if (data.found) {
-      const [near, far] = data.distance_interval_m, [thin, thick] = data.radius_interval_m;
-      const side = data.azimuth_deg >= 0 ? 'left' : 'right', height = data.elevation_deg >= 0 ? 'up' : 'down';
-      facts.unshift(['Distance', `${near.toFixed(1)} \u2026 ${far.toFixed(1)} m from the antenna`], ['Direction', `${Math.abs(data.azimuth_deg).toFixed(0)}\u00b0 to the ${side}, ${Math.abs(data.elevation_deg).toFixed(0)}\u00b0 ${height}`],
-        ['Radius', `${data.radius_m == null ? '?' : data.radius_m.toFixed(1)} m (${thin.toFixed(1)} \u2026 ${thick.toFixed(1)} m)`]);
-    }
-    if (data.evidence != null) facts.push(['Evidence', `${data.evidence.toFixed(1)} (natural logarithm, for a body against none)`]);
-    if (data.antenna_error_deg != null) facts.push(['Antenna', `${data.antenna_error_deg.toFixed(2)}\u00b0 off, root mean square`]);
-    const word = data.found ? `Water, ${data.distance_m == null ? '?' : data.distance_m.toFixed(1)} m ahead` : 'No water found';
-    return make('article', {}, make('p', { className: 'word ' + (data.found ? data.level : 'good'), textContent: word }),
-      make('dl', {}, ...facts.flatMap(([name, value]) => [make('dt', { textContent: name }), make('dd', { textContent: value })])));
-  }));
-}
-
-function showGas(points) {
-  $('#gas .empty').textContent = points.length ? '' : 'No gas was measured at this site.';
-  gasPlot.show(curvesOf(points, spoken).sort((a, b) => last(b) - last(a)));
-  $('#gas-plot').hidden = !points.length;
 }
 
 $('#run').addEventListener('change', (event) => {

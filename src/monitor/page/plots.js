@@ -121,11 +121,12 @@ export class TimePlot {
     const data = uPlot.join(shown.map((one) => [one.points.map((point) => point[0] / 1e3), one.points.map((point) => point[1])]));
     const values = shown.flatMap((one) => one.points.map((point) => point[1])), isWide = Math.min(...values) > 0 && Math.max(...values) > 50 * Math.min(...values);
     const axis = { font: '11px ' + ink('font'), stroke: ink('soft'), grid: { stroke: ink('line'), width: 1 }, ticks: { show: false } };
-    const span = (plot, from, to) => (to - from < 60 ? [from - 30, to + 30] : [from - 0.03 * (to - from), to + 0.03 * (to - from)]);
+    const [first, end] = [data[0][0], data[0][data[0].length - 1]], margin = Math.max(30, 0.03 * (end - first));
+    const span = (plot, from, to) => (from > first - margin && to < end + margin && to - from < end - first ? [from, to] : [first - margin, end + margin]);
     this.plot = new uPlot({
       width: this.place.clientWidth || 300, height: kPlotHeight, legend: { show: false }, padding: [8, 8, 0, 0], cursor: { y: false, drag: { x: true, y: false } },
       scales: { x: { range: span }, y: isWide ? { distr: 3 } : { range: (plot, from, to) => [Math.min(0, 1.1 * from), 1.1 * to || 1] } },
-      axes: [{ ...axis, space: 76, values: timesOf }, { ...axis, size: 46, ...(isWide ? { filter: (plot, splits) => splits.map((one) => (Number.isInteger(Math.log10(one)) ? one : null)) } : {}) }],
+      axes: [{ ...axis, space: 76, size: 26, values: timesOf }, { ...axis, size: 46, ...(isWide ? { filter: (plot, splits) => splits.map((one) => (Number.isInteger(Math.log10(one)) ? one : null)) } : {}) }],
       series: [{}, ...shown.map((one, i) => ({ stroke: ink(`series-${i + 1}`), width: 1.5, spanGaps: true, points: { show: true, size: 6, fill: ink(`series-${i + 1}`) } }))],
     }, data, this.place);
   }
