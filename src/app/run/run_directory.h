@@ -27,7 +27,8 @@ struct RunDirectory {
   bool is_complete() const;
 };
 
-/// Makes the directory and marks it incomplete (output_directory.h). An earlier run's files in it are removed.
+/// Makes the directory and marks it incomplete (output_directory.h). An earlier run's files in it are removed. Throws InputError when some
+/// of its results still wait for the platform.
 RunDirectory begin_run_directory(const std::filesystem::path& root);
 
 /// An existing run's directory. Throws InputError when there is no log in it.

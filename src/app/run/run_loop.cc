@@ -164,7 +164,9 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
     if (running) twin.step();
   }
 
-  log.write(twin.now(), stack.final_map(twin.now()));
+  const MapUpdate final_map = stack.final_map(twin.now());
+  log.write(twin.now(), final_map);
+  observer.see(StackMessage(final_map));
   log.close();
   outcome.duration = twin.now();
   outcome.faults = twin.sensors().faults();
