@@ -85,6 +85,7 @@ class Twin {
   const PartClock& clock() const { return clock_; }
 
  private:
+  void hold_still();
   void hear_remote();
   void note_collisions();
   void throw_if_diverged() const;

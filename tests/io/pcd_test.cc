@@ -79,7 +79,7 @@ TEST(Pcd, WrongCountsAreRefusedWithoutFillingTheMemory) {
 TEST(Pcd, NumbersThatAreNoneAreRefusedWithTheirPlace) {
   EXPECT_EQ(complaint_about(header(kOnePoint, "binary") + bytes(1.0F) + bytes(std::nanf("")) + bytes(1.0F)), "c.pcd: point 1 is not finite");
   EXPECT_EQ(complaint_about(header(kOnePoint) + "1 inf 3\n"), "c.pcd:12: is not finite");
-  EXPECT_EQ(complaint_about(header(kOnePoint) + "1 2\n"), "c.pcd:12: must be 3 numbers");
+  EXPECT_EQ(complaint_about(header(kOnePoint) + "1 2    \n"), "c.pcd:12: must be 3 numbers");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "inspect/lining/adjustment.h"
+#include "inspect/lining/grip.h"
 #include "inspect/lining/lining_grid.h"
 #include "inspect/lining/reference_lining.h"
 #include "inspect/lining/registration.h"
@@ -14,10 +15,6 @@
 namespace patrol::inspect {
 namespace {
 
-constexpr double kFacesAlong = 0.7;      // cosine between a normal and the tunnel's axis
-constexpr std::size_t kMinGrip = 40;     // fewer points that face along the tunnel say nothing
-constexpr double kPartner_m = 0.15, kGripBand_m = 0.03;
-
 std::vector<ThinPoint> thin_points(const LiningReference& reference) {
   std::vector<ThinPoint> points;
   points.reserve(reference.points.size());
@@ -25,24 +22,15 @@ std::vector<ThinPoint> thin_points(const LiningReference& reference) {
   return points;
 }
 
-/// Of a cloud's surfaces that face along the tunnel and lie within reach of the other's scanner, the share that the other has too; 1 where there are
-/// too few to say.
-double grip_share(const SurfaceCloud& cloud, const SurfaceCloud& other, const Pose3& T_other_cloud, const Eigen::Vector3d& axis_cloud,
-                  const Eigen::Vector3d& p_cloud_other, double reach_m) {
-  std::size_t count = 0, kept = 0;
-  for (std::size_t i = 0; i < cloud.points().size(); ++i) {
-    const Eigen::Vector3d& p_cloud = cloud.points()[i].p;
-    const Eigen::Vector3d& normal = cloud.surfaces()[i].normal;
-    if (std::abs(normal.dot(axis_cloud)) < kFacesAlong || (p_cloud - p_cloud_other).norm() > reach_m) continue;
-    ++count;
-    const Eigen::Vector3d p = T_other_cloud * p_cloud;
-    const auto near = other.nearest(p, 1);
-    if (near.count == 0 || near.squared_m2[0] > kPartner_m * kPartner_m) continue;
-    const SurfaceCloud::Surface& surface = other.surfaces()[near.index[0]];
-    const bool is_same = std::abs(surface.normal.dot(T_other_cloud.rotation * normal)) > kFacesAlong;
-    kept += is_same && std::abs(surface.normal.dot(p - surface.mean)) < kGripBand_m ? 1 : 0;
-  }
-  return count < kMinGrip ? 1.0 : static_cast<double>(kept) / static_cast<double>(count);
+/// Whether the two scans are of one place: something that faces along the tunnel holds them, and is the same in both. One of them may
+/// show a truck that the other does not, so the better share counts.
+bool is_same_place(const ScanView& source, const ScanView& target_map, const Adjustment& fine, const Eigen::Vector3d& axis_map, const LiningSettings& settings) {
+  const Eigen::Matrix3d covariance_m2 = fine.covariance.topLeftCorner<3, 3>();
+  if (std::sqrt(axis_map.dot(covariance_m2 * axis_map)) > settings.max_along_std_m) return false;
+  const Pose3 T_source_map = fine.T_map_scanner.inverse();
+  const Grip there = grip(source, target_map, fine.T_map_scanner, T_source_map.rotation * axis_map, settings.reach_m);
+  const Grip back = grip(target_map, source, T_source_map, axis_map, settings.reach_m);
+  return std::max(there.share(), back.share()) >= settings.min_grip_share;
 }
 
 }  // namespace
@@ -58,7 +46,7 @@ LiningResult LiningInspection::inspect(Time stamp, const std::string& station, c
   result.stamp = stamp;
   result.station = station;
   result.T_map_body = to_planar(T_map_scanner_guess) * T_scanner_body_;
-  const SurfaceCloud target(thin_points(reference)), source(thin(scan.points, settings_.spacing_m));
+  const SurfaceCloud target(thin_points(reference)), source(thin(scan.points, settings_.spacing_m, settings_.near_m));
   const auto lining = fit_design(design_, target.points(), reference.T_map_scanner.position, settings_);
   if (!lining) return result;
 
@@ -71,16 +59,11 @@ LiningResult LiningInspection::inspect(Time stamp, const std::string& station, c
   const ReferenceLining surface(*lining, grid, target.points(), settings_);
   const Adjustment fine = adjust(*lining, grid, surface, target, source, coarse.T_target_source, T_map_scanner_guess, settings_);
 
-  // One of the two scans may show a truck that the other does not, so the better share counts.
   const double heading = lining->design.heading_at(lining->design.place_of(fine.T_map_scanner.position).chainage_m);
-  const Eigen::Vector3d axis_map(std::cos(heading), std::sin(heading), 0.0);
-  const Pose3 T_scanner_map = fine.T_map_scanner.inverse();
-  const double grip = std::max(
-      grip_share(source, target, fine.T_map_scanner, T_scanner_map.rotation * axis_map, T_scanner_map * reference.T_map_scanner.position, settings_.reach_m),
-      grip_share(target, source, T_scanner_map, axis_map, fine.T_map_scanner.position, settings_.reach_m));
   result.registration_rms_m = fine.rms_m;
   result.correction_m = (fine.T_map_scanner.position - T_map_scanner_guess.position).norm();
-  if (grip < settings_.min_grip_share) return result;
+  if (result.correction_m > settings_.max_correction_m) return result;
+  if (!is_same_place({source}, {target, reference.T_map_scanner.position}, fine, {std::cos(heading), std::sin(heading), 0.0}, settings_)) return result;
 
   result.is_registered = true;
   result.T_map_body = to_planar(fine.T_map_scanner) * T_scanner_body_;

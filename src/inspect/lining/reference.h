@@ -10,10 +10,15 @@ namespace patrol::inspect {
 /// What is kept of the first scan of a station.
 struct LiningReference {
   Pose3 T_map_scanner;               ///< where it was made; x of `scanner_level`
-  std::vector<ScannerPoint> points;  ///< in map, each the mean of a voxel
+  std::vector<ScannerPoint> points;  ///< in map, each a mean of neighbouring beams; its intensity likewise
 };
 
-/// Thinned; a voxel's intensity is the mean. Points beyond `end_m` from the scanner are too far apart to be surfaces.
-LiningReference make_reference(const PanoramicScan& scan, const Pose3& T_map_scanner, double spacing_m = 0.08, double end_m = 40.0);
+struct ReferenceSettings {
+  double spacing_m = 0.1;  ///< points are averaged over that
+  double near_m = 1.5;     ///< nearer to the scanner is the robot itself
+  double far_m = 30.0;     ///< farther away points are too thin to be surfaces
+};
+
+LiningReference make_reference(const PanoramicScan& scan, const Pose3& T_map_scanner, const ReferenceSettings& settings = {});
 
 }  // namespace patrol::inspect

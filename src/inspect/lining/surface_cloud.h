@@ -19,9 +19,10 @@ struct ThinPoint {
   int count = 0;  ///< of the scan's points
 };
 
-/// Points in the scanner's frame, averaged to about a spacing; never across a step in range of more than that. Throws InputError when a point is
+/// Points in the scanner's frame, averaged to about a spacing; never across a step in range of more than that. What is nearer than
+/// `near_m` is left out. Throws InputError when a point is
 /// not finite or farther than 10 km.
-std::vector<ThinPoint> thin(const std::vector<ScannerPoint>& points, double spacing_m);
+std::vector<ThinPoint> thin(const std::vector<ScannerPoint>& points, double spacing_m, double near_m = 0.0);
 
 /// Thinned points that know their surfaces (nanoflann's k-d tree). Equal distances are settled the same way every time.
 class SurfaceCloud {

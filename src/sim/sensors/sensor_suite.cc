@@ -171,7 +171,7 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
     }
   }
   lidar_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (is_busy()) scan_panorama(T_world_body, now);
+  if (scanner_ && scanner_->is_busy()) scan_panorama(T_world_body, now);
   last_body_ = {now, T_world_body};
 
   if (settings_.tdlas.enabled && is_due(settings_.tdlas.rate_hz, tdlas_count_, now)) {
