@@ -110,11 +110,16 @@ std::array<ContourPoint, 6> talbot_contour() {
   return contour;
 }
 
-/// Gauss-Legendre, three points on 0 ... 1.
+/// Gauss-Legendre on 0 ... 1. The ramp is longer than the first gate is late: it needs five points, a gate three.
 struct Quadrature {
   double at, weight;
 };
-const std::array<Quadrature, 3> kGauss = {{{0.5 - std::sqrt(0.15), 5.0 / 18.0}, {0.5, 4.0 / 9.0}, {0.5 + std::sqrt(0.15), 5.0 / 18.0}}};
+constexpr std::array<Quadrature, 3> kGauss3 = {{{0.11270166537925831, 5.0 / 18.0}, {0.5, 4.0 / 9.0}, {0.88729833462074169, 5.0 / 18.0}}};
+constexpr std::array<Quadrature, 5> kGauss5 = {{{0.04691007703066800, 0.11846344252809454},
+                                                {0.23076534494715845, 0.23931433524968324},
+                                                {0.5, 0.28444444444444444},
+                                                {0.76923465505284155, 0.23931433524968324},
+                                                {0.95308992296933200, 0.11846344252809454}}};
 
 }  // namespace
 
@@ -146,8 +151,8 @@ TemGates::TemGates(const TemWindow& window) {
   weights_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(window.gate_s.size()), nodes);
   for (Eigen::Index gate = 0; gate < weights_.rows(); ++gate) {
     const double middle_s = window.gate_s[static_cast<std::size_t>(gate)];
-    for (const Quadrature& width : kGauss) {
-      for (const Quadrature& ramp : kGauss) {
+    for (const Quadrature& width : kGauss3) {
+      for (const Quadrature& ramp : kGauss5) {
         const double time_s = middle_s * (1.0 + window.gate_width * (width.at - 0.5)) + window.ramp_s * ramp.at;
         const double place = std::log(time_s / begin_s) / step;
         const int base = std::clamp(static_cast<int>(place) - 1, 0, nodes - 4);

@@ -87,7 +87,7 @@ struct WaterSettings {
   WaterPriorSettings prior;
   int particles = 400;               ///< of the posterior
   int moves = 6;                     ///< Metropolis steps of each, at each temperature
-  double min_evidence = 6.0;         ///< logarithm of the Bayes factor above which a body is reported: 400 to 1
+  double min_evidence = 5.0;         ///< logarithm of the Bayes factor above which a body is reported: 150 to 1
   double alignment_std_deg = 0.4;    ///< of the antenna's axis on the robot, besides what its servos read
   double warning_distance_m = 30.0;  ///< a body whose nearest point may be this near is warned of
   double alarm_distance_m = 15.0;
