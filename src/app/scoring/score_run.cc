@@ -6,6 +6,7 @@
 #include "app/scoring/run_scans.h"
 #include "app/scoring/score_json.h"
 #include "app/scoring/tour_metrics.h"
+#include "app/scoring/tunnel_metrics.h"
 #include "app/scoring/true_map.h"
 #include "inspect/route_frame.h"
 #include "io/map_server.h"
@@ -92,6 +93,7 @@ io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, c
                                                       truth.reference));
   metrics.update(tour_metrics(record, scenario, files, T_world_map));
   metrics["inspection"] = to_json(score::inspection_score(record.events, T_world_map, true_leaks(scenario, *truth.world)));
+  metrics["inspection"].update(tunnel_metrics(record, scenario, files, T_world_map));
   return metrics;
 }
 

@@ -99,9 +99,9 @@ InspectionFeedback TunnelInspection::sound(Time now) {
   if (order) std::visit([&](const auto& command) { messages_.emplace_back(command); }, *order);
   if (!sounding_->is_over()) return InspectionFeedback::kUnderWay;
   if (!sounding_->is_stowed() || sounding_->soundings().empty()) return InspectionFeedback::kFailed;
-  AntennaGeometry antenna_over_ground = *antenna_geometry_;  // as tilted as the robot stands
-  antenna_over_ground.T_body_mount = place_.T_level_body * antenna_over_ground.T_body_mount;
-  WaterResult result = inversion_.invert(sounding_->soundings(), antenna_over_ground, place_.T_map_body, sounding_->antenna_error_deg(), seed_);
+  AntennaGeometry antenna = *antenna_geometry_;  // as tilted as the robot stands
+  antenna.T_body_mount = Pose3{Eigen::Vector3d::Zero(), place_.T_level_body.rotation} * antenna.T_body_mount;
+  WaterResult result = inversion_.invert(sounding_->soundings(), antenna, place_.T_map_body, sounding_->antenna_error_deg(), seed_);
   result.stamp = now;
   result.station = station_;
   report(now, result);
