@@ -22,7 +22,7 @@ TwinSettings settings_for(const test::TemporaryFile& world) {
   TwinSettings settings;
   settings.world_xml = world.path();
   settings.robot_urdf = kTrackedUrdf;
-  settings.sensors.lidar.enabled = false;
+  settings.sensors.lidar.enabled = settings.sensors.tdlas.enabled = settings.sensors.gnss.enabled = false;
   settings.sensors.tem.enabled = true;
   return settings;
 }
