@@ -95,6 +95,9 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
     if (!name.empty()) files.push_back(find_named_file(world, key, name));
   }
   if (!scenario.map.empty()) files.push_back(io::map_image(find_named_file(world, "map", scenario.map)));
+  if (!scenario.references.empty()) {
+    for (const std::filesystem::path& file : io::station_scan_files(world / scenario.references)) files.push_back(file);
+  }
   return files;
 }
 
@@ -117,14 +120,17 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
     files.goals = io::load_nav(file);
     check_goals(file.string(), files.goals, files.map);
   }
+  if (!scenario.references.empty()) files.references = io::load_station_scans(files.world_xml.parent_path() / scenario.references);
   const RemoteSettings& remote = scenario.remote;
   if (!remote.drive.empty() && !remote.recorded.empty()) {
     throw InputError("remote: has a drive and recorded commands: only one of them can be followed");
   }
   if (!remote.drive.empty()) files.drive = io::load_drive(named_file("remote.drive", remote.drive));
   if (!remote.recorded.empty()) files.recorded = io::load_remote(named_file("remote.recorded", remote.recorded));
-  if (files.map && files.has_remote()) {
-    throw InputError(fmt::format("map = {}: a map is given, and by remote control another would be made: only one of them can be used",
+  const bool waits_for_remote = std::any_of(files.goals.begin(), files.goals.end(), [](const MarkedGoal& goal) { return goal.type == 'R'; });
+  if (files.map && files.has_remote() && !waits_for_remote) {
+    throw InputError(fmt::format("map = {}: a map is given, and by remote control another would be made: only one of them can be used, unless "
+                                 "a goal of type R waits for the remote control",
                                  scenario.map));
   }
   return files;

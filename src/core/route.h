@@ -36,7 +36,7 @@ struct Route {
   std::vector<std::vector<Eigen::Vector2d>> keep_out_lines;  ///< polylines in the route's frame, m
   std::vector<UwbAnchor> anchors;                            ///< in the route's frame
   std::optional<Dock> dock;
-  std::optional<TunnelLining> lining;
+  std::optional<TunnelLining> lining = {};
 };
 
 /// A place to drive to, marked in `map` by driving there: an entry of nav.json (paper 004, table 1).

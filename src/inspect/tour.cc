@@ -7,9 +7,12 @@
 
 namespace patrol::inspect {
 
-Tour::Tour(const TourSettings& settings, std::vector<MarkedGoal> goals, bool has_remote)
-    : settings_(settings), goals_(std::move(goals)), has_remote_(has_remote), is_docked_(settings.starts_docked) {
+Tour::Tour(const TourSettings& settings, std::vector<MarkedGoal> goals, bool has_remote, bool has_map)
+    : settings_(settings), goals_(std::move(goals)), has_remote_(has_remote), has_map_(has_map), is_docked_(settings.starts_docked) {
   validate(settings, "tour");
+  if (settings.mark_types.find_first_not_of("NVDR") != std::string::npos) {
+    throw InputError(fmt::format("tour.mark_types = {}: must be made of the letters N, V, D, R", settings.mark_types));
+  }
   if (goals_.empty() && !has_remote) throw InputError("tour: there is no goal, and no remote control to mark one");
 }
 
@@ -34,13 +37,24 @@ TourOutput Tour::step(Time now, const TourInput& input) {
     case Phase::kStanding:
       stand(output);
       break;
+    case Phase::kScanning:
+      scan(input, output);
+      break;
+    case Phase::kHandedOver:
+      hand_over(input, output);
+      break;
+    case Phase::kSounding:
+      sound(input, output);
+      break;
     case Phase::kDocking:
       dock(input, output);
       break;
     case Phase::kOver:
       break;
   }
-  if (phase_ == Phase::kRemote) output.mode = TourMode::kRemote;
+  if (phase_ == Phase::kRemote || phase_ == Phase::kHandedOver) output.mode = TourMode::kRemote;
+  if (phase_ == Phase::kScanning) output.mode = TourMode::kScan, output.station = goal_name();
+  if (phase_ == Phase::kSounding) output.mode = TourMode::kSound, output.station = sounding_name();
   if (phase_ == Phase::kUndocking) output.mode = TourMode::kUndock;
   if (phase_ == Phase::kDocking) output.mode = TourMode::kDock;
   if (phase_ == Phase::kDriving) {
@@ -76,7 +90,7 @@ bool Tour::watch_localization(const TourInput& input, TourOutput& output) {
 
 void Tour::wait(TourOutput& output) {
   if (now_ < from_seconds(settings_.start_wait_s)) return;
-  if (!has_remote_) return start_navigation(output);
+  if (!has_remote_ || has_map_) return start_navigation(output);
   last_remote_ = now_;
   enter(Phase::kRemote);
 }
@@ -85,7 +99,7 @@ void Tour::follow_remote(const TourInput& input, TourOutput& output) {
   is_docked_ = false;
   if (input.remote) last_remote_ = now_;
   if (input.remote && input.remote->mark) {
-    goals_.push_back({.number = static_cast<int>(goals_.size()) + 1, .T_map_body = T_map_body_});
+    goals_.push_back({.number = static_cast<int>(goals_.size()) + 1, .T_map_body = T_map_body_, .type = settings_.type_of_mark(goals_.size())});
     goal_ = goals_.size() - 1;
     output.events.push_back(event("goal_marked", goal_name(), fmt::format("Marked {}.", goal_name())));
   }
@@ -117,7 +131,43 @@ void Tour::drive(const TourInput& input, TourOutput& output) {
 void Tour::stand(TourOutput& output) {
   if (now_ - phase_start_ < from_seconds(settings_.stand_s)) return;
   output.events.push_back(event("goal_reached", goal_name(), fmt::format("At {}.", goal_name()), navigation_));
+  if (goals_[goal_].type == 'D') return enter(Phase::kScanning);
+  if (goals_[goal_].type != 'R' || !has_remote_ || !has_map_) return next_goal(output);
+  output.events.push_back(event("remote_requested", goal_name(), "From here a person drives."));
+  last_remote_ = now_;
+  enter(Phase::kHandedOver);
+}
+
+void Tour::scan(const TourInput& input, TourOutput& output) {
+  if (now_ == phase_start_ || input.inspection == InspectionFeedback::kUnderWay) return;
+  if (input.inspection == InspectionFeedback::kFailed) {
+    ++num_failed_;
+    output.events.push_back(event("inspection_failed", goal_name(), fmt::format("The lining at {} could not be measured.", goal_name()), navigation_));
+  }
   next_goal(output);
+}
+
+void Tour::hand_over(const TourInput& input, TourOutput& output) {
+  if (input.remote) last_remote_ = now_;
+  if (input.remote && input.remote->mark) {
+    ++num_soundings_;
+    return enter(Phase::kSounding);
+  }
+  const bool is_over = input.remote && input.remote->hand_over;
+  if (!is_over && now_ - last_remote_ <= from_seconds(settings_.driver_patience_s)) return;
+  if (!is_over) ++num_failed_;
+  output.events.push_back(event("remote_ended", goal_name(), is_over ? "The robot goes on by itself." : "Nobody drives: the robot goes on by itself."));
+  next_goal(output);
+}
+
+void Tour::sound(const TourInput& input, TourOutput& output) {
+  if (input.remote) last_remote_ = now_;
+  if (now_ == phase_start_ || input.inspection == InspectionFeedback::kUnderWay) return;
+  if (input.inspection == InspectionFeedback::kFailed) {
+    ++num_failed_;
+    output.events.push_back(event("inspection_failed", sounding_name(), "The antenna could not sound for water.", navigation_));
+  }
+  enter(Phase::kHandedOver);
 }
 
 void Tour::dock(const TourInput& input, TourOutput& output) {
@@ -179,6 +229,8 @@ Event Tour::event(const std::string& kind, const std::string& subject, const std
   return {.stamp = now_, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = T_map_body_,
           .p_map_target = T_map_body_.position()};
 }
+
+std::string Tour::sounding_name() const { return fmt::format("sounding_{}", num_soundings_); }
 
 std::string Tour::goal_name() const { return fmt::format("goal_{}", goals_[goal_].number); }
 

@@ -33,9 +33,12 @@ constexpr std::array<Watched, std::variant_size_v<SensorMessage>> kWatched = {
      {"uwb", Pace::kInstrument, Freezes::kNot, false},
      {"ultrasonic", Pace::kInstrument, Freezes::kNot, false},
      {"depth_camera", Pace::kLidar, Freezes::kNot, false},
-     {"remote", Pace::kUnwatched, Freezes::kNot, false}}};  // a person may let go of it
+     {"remote", Pace::kUnwatched, Freezes::kNot, false},   // a person may let go of it
+     {"scanner", Pace::kUnwatched, Freezes::kNot, false},  // speaks when asked
+     {"antenna", Pace::kUnwatched, Freezes::kNot, false},
+     {"tem", Pace::kUnwatched, Freezes::kNot, false}}};
 static_assert(std::is_same_v<SensorMessage, std::variant<LaserScan, PointCloud, Imu, JointState, FootContacts, GasReading, GnssFix, TrackTicks, UwbRange,
-                                                         UltrasonicRange, DepthImage, RemoteCommand>>);
+                                                         UltrasonicRange, DepthImage, RemoteCommand, PanoramicScan, AntennaState, TemSounding>>);
 
 /// Whether a reading says the same as the one before, to the last bit; only of sensors whose readings cannot, while the robot moves.
 struct Repeats {

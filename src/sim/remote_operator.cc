@@ -12,6 +12,9 @@ constexpr double kPassed_m = 0.6;      // near enough to any other waypoint to g
 constexpr double kAligned_rad = 0.03;
 constexpr double kTurnFirst_rad = 0.9; // the way leads off by more: turn in place
 constexpr double kLook_s = 1.5;        // standing still before and after the button
+constexpr double kMeeting_m = 1.5;     // the robot is where they wait
+constexpr double kStands_m = 0.02;     // it has not moved by more
+constexpr double kStands_s = 4.0;      // for so long
 
 /// Speed that a person dares so far before a stop.
 double speed_before_stop(double left_m) { return std::clamp(0.6 * left_m, 0.08, 10.0); }
@@ -21,21 +24,38 @@ double speed_before_stop(double left_m) { return std::clamp(0.6 * left_m, 0.08, 
 RemoteOperator::RemoteOperator(const RemoteOperatorSettings& settings, RemoteDrive drive, std::uint64_t seed)
     : settings_(settings), drive_(std::move(drive)), hand_(seed, "remote/hand") {
   validate(settings, "remote.operator");
+  if (settings.meets_robot) phase_ = Phase::kWaiting;
 }
 
 std::optional<RemoteCommand> RemoteOperator::step(Time now, const Pose2& T_world_body,
-                                                  const std::vector<Eigen::Vector2d>& p_world_people) {
+                                                  const std::vector<Eigen::Vector2d>& p_world_people, bool is_busy) {
   if (phase_ == Phase::kDone || now < from_seconds(static_cast<double>(count_) / settings_.rate_hz)) return std::nullopt;
+  if (phase_ == Phase::kWaiting && !has_met(now, T_world_body)) {
+    ++count_;
+    return std::nullopt;
+  }
   seen_.emplace_back(now, T_world_body);
   while (seen_.size() > 1 && seen_[1].first <= now - from_seconds(settings_.reaction_s)) seen_.pop_front();
-  RemoteCommand command = decide(now, seen_.front().second, p_world_people);
+  RemoteCommand command = decide(now, seen_.front().second, p_world_people, is_busy);
   command.stamp = now;
   ++count_;
   return command;
 }
 
+bool RemoteOperator::has_met(Time now, const Pose2& T_world_body) {
+  const bool is_here = (T_world_body.position() - drive_.front().p_m).norm() < kMeeting_m;
+  if (!is_here || !stands_since_ || (T_world_body.position() - stands_since_->second.position()).norm() > kStands_m) {
+    stands_since_.reset();
+    if (is_here) stands_since_ = {now, T_world_body};
+    return false;
+  }
+  if (now - stands_since_->first < from_seconds(kStands_s)) return false;
+  phase_ = Phase::kDriving;
+  return true;
+}
+
 RemoteCommand RemoteOperator::decide(Time now, const Pose2& T_world_body,
-                                     const std::vector<Eigen::Vector2d>& p_world_people) {
+                                     const std::vector<Eigen::Vector2d>& p_world_people, bool is_busy) {
   if (!has_started_) has_started_ = true, leg_start_m_ = T_world_body.position();
   const auto enter = [&](Phase phase) { phase_ = phase, phase_start_ = now; };
   RemoteCommand command;
@@ -62,6 +82,7 @@ RemoteCommand RemoteOperator::decide(Time now, const Pose2& T_world_body,
       enter(Phase::kMarked);
       break;
     case Phase::kMarked:
+      if (is_busy) phase_start_ = now;
       if (now - phase_start_ < from_seconds(kLook_s)) break;
       if (next_ + 1 < drive_.size()) {
         leg_start_m_ = drive_[next_++].p_m;
@@ -71,6 +92,7 @@ RemoteCommand RemoteOperator::decide(Time now, const Pose2& T_world_body,
         enter(Phase::kDone);
       }
       break;
+    case Phase::kWaiting:
     case Phase::kDone:
       break;
   }

@@ -21,6 +21,7 @@ struct RemoteOperatorSettings {
   double steering_noise_radps = 0.03;  ///< standard deviation of what the hand adds to each command
   double stop_for_people_m = 2.0;      ///< waits while somebody is this near ahead of the robot
   double rate_hz = 10.0;
+  bool meets_robot = false;            ///< waits at the drive's first place until the robot has come there and stands
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -30,24 +31,27 @@ struct RemoteOperatorSettings {
     visit("steering_noise_radps", self.steering_noise_radps, between(0.0, 1.0));
     visit("stop_for_people_m", self.stop_for_people_m, between(0.0, 10.0));
     visit("rate_hz", self.rate_hz, between(1.0, 50.0));
+    visit("meets_robot", self.meets_robot);
   }
 };
 
 /// A person who walks behind the robot with the remote control, sees where it is, and drives it along a way (pure pursuit, Coulter
-/// 1992) with a human's reaction time and an unsteady hand. At marks they stop, turn the robot to the heading and press the button;
-/// at the end they hand over.
+/// 1992) with a human's reaction time and an unsteady hand. At marks they stop, turn the robot to the heading, press the button, and wait
+/// while they see it busy; at the end they hand over.
 class RemoteOperator {
  public:
   /// `drive` in world.
   RemoteOperator(const RemoteOperatorSettings& settings, RemoteDrive drive, std::uint64_t seed);
 
-  /// Call at every tick; a command when one is due. Nothing more after the hand-over.
-  std::optional<RemoteCommand> step(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people);
+  /// Call at every tick; a command when one is due. Nothing before they have met, and nothing after the hand-over.
+  std::optional<RemoteCommand> step(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people,
+                                    bool is_busy = false);
 
  private:
-  enum class Phase { kDriving, kTurning, kLooking, kMarked, kDone };
+  enum class Phase { kWaiting, kDriving, kTurning, kLooking, kMarked, kDone };
 
-  RemoteCommand decide(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people);
+  bool has_met(Time now, const Pose2& T_world_body);
+  RemoteCommand decide(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people, bool is_busy);
   void drive(const Pose2& T_world_body, RemoteCommand& command);
   void turn_to(double yaw_rad, const Pose2& T_world_body, RemoteCommand& command) const;
   bool passed(const Pose2& T_world_body) const;
@@ -62,6 +66,7 @@ class RemoteOperator {
   std::size_t next_ = 0;
   Eigen::Vector2d leg_start_m_ = Eigen::Vector2d::Zero();
   bool has_started_ = false;
+  std::optional<std::pair<Time, Pose2>> stands_since_;  ///< while waiting for the robot
   Time phase_start_{};
   std::uint64_t count_ = 0;
   std::deque<std::pair<Time, Pose2>> seen_;

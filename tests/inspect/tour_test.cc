@@ -23,12 +23,13 @@ class Robot {
   bool is_lost = false;
   NavigationFeedback navigation = NavigationFeedback::kArrived;
   DockingFeedback docking = DockingFeedback::kDone;
+  InspectionFeedback inspection = InspectionFeedback::kDone;
 
   void run(double seconds, std::optional<RemoteCommand> remote = std::nullopt) {
     for (const Time end = now_ + from_seconds(seconds); now_ < end && !tour_.is_over(); now_ += kStep) {
       if (output.goal) pose_ = output.goal->T_map_body;
       output = tour_.step(now_, {.pose = {.stamp = now_, .T_map_body = pose_}, .is_lost = is_lost, .navigation = navigation,
-                                 .docking = docking, .remote = remote});
+                                 .docking = docking, .inspection = inspection, .remote = remote});
       if (remote) remote->mark = remote->hand_over = false;
       for (const Event& event : output.events) events.push_back(event);
       restarts += output.localize_anew ? 1 : 0;
@@ -132,6 +133,74 @@ TEST(Tour, LostForThirtySecondsItSaysThatItCannotTell) {
   robot.run(2.0);
   EXPECT_EQ(robot.count("cannot_localize"), 1);
   EXPECT_TRUE(robot.tour().is_over());
+}
+
+/// A goal at which the lining is scanned, and one from which a person drives on.
+std::vector<MarkedGoal> inspection_goals() {
+  std::vector<MarkedGoal> goals = two_goals();
+  goals[0].type = 'D';
+  goals[1].type = 'R';
+  return goals;
+}
+
+TEST(Tour, StandsAtAGoalOfTypeDUntilTheLiningIsScanned) {
+  Robot robot(Tour({.navigations = 1}, inspection_goals(), false));
+  robot.inspection = InspectionFeedback::kUnderWay;
+  robot.run(60.0);
+  EXPECT_EQ(robot.output.mode, TourMode::kScan);
+  EXPECT_EQ(robot.output.station, "goal_1");
+  robot.inspection = InspectionFeedback::kDone;
+  robot.run(60.0);
+  EXPECT_EQ(robot.count("mission_completed"), 1);
+}
+
+TEST(Tour, AScanThatFailsIsReportedAndTheRoundGoesOn) {
+  Robot robot(Tour({.navigations = 1}, inspection_goals(), false));
+  robot.inspection = InspectionFeedback::kFailed;
+  robot.run(60.0);
+  EXPECT_EQ(robot.count("inspection_failed"), 1);
+  EXPECT_EQ(robot.count("goal_reached"), 2);
+  EXPECT_EQ(robot.count("docked"), 1);
+  EXPECT_EQ(robot.count("mission_failed"), 1);
+}
+
+TEST(Tour, AtAGoalOfTypeRAPersonDrivesMarksAndHandsOverAgain) {
+  Robot robot(Tour({.navigations = 1}, inspection_goals(), true, true));
+  robot.run(30.0);
+  EXPECT_EQ(robot.count("remote_requested"), 1);
+  EXPECT_EQ(robot.output.mode, TourMode::kRemote);
+  robot.run(10.0, RemoteCommand{.vx_mps = 0.5});
+  robot.inspection = InspectionFeedback::kUnderWay;
+  robot.run(10.0, RemoteCommand{.mark = true});
+  EXPECT_EQ(robot.output.mode, TourMode::kSound);
+  EXPECT_EQ(robot.output.station, "sounding_1");
+  robot.inspection = InspectionFeedback::kDone;
+  robot.run(10.0, RemoteCommand{.vx_mps = 0.5});
+  EXPECT_EQ(robot.output.mode, TourMode::kRemote);
+  robot.run(60.0, RemoteCommand{.hand_over = true});
+  EXPECT_EQ(robot.count("goal_marked"), 0);
+  EXPECT_EQ(robot.count("docked"), 1);
+  EXPECT_EQ(robot.count("mission_completed"), 1);
+}
+
+TEST(Tour, NobodyComesFor120SecondsAndItGoesHomeByItselfWithoutCallingItDone) {
+  Robot robot(Tour({.navigations = 1}, inspection_goals(), true, true));
+  robot.run(8.0 + 119.0);
+  EXPECT_EQ(robot.output.mode, TourMode::kRemote);
+  robot.run(30.0);
+  EXPECT_EQ(robot.count("docked"), 1);
+  EXPECT_EQ(robot.count("mission_failed"), 1);
+}
+
+TEST(Tour, MarksTakeTheTypesThatTheSettingsName) {
+  Robot robot(Tour({.navigations = 0, .docks = false, .mark_types = "DR"}, {}, true));
+  robot.run(5.0);
+  for (int i = 0; i < 3; ++i) robot.run(0.5, RemoteCommand{.mark = true});
+  ASSERT_EQ(robot.tour().goals().size(), 3u);
+  EXPECT_EQ(robot.tour().goals()[0].type, 'D');
+  EXPECT_EQ(robot.tour().goals()[1].type, 'R');
+  EXPECT_EQ(robot.tour().goals()[2].type, 'N');
+  EXPECT_THROW(Tour({.mark_types = "DX"}, {}, true), InputError);
 }
 
 TEST(Tour, NeitherGoalsNorRemoteControlIsRefused) { EXPECT_THROW(Tour({}, {}, false), InputError); }

@@ -48,6 +48,31 @@ TEST(RemoteOperator, MarksWithinTenCentimetresAndThreeDegreesAndHandsOverAtTheEn
   EXPECT_LT((driven.T_world_body.position() - Eigen::Vector2d(4.0, 3.0)).norm(), 0.10);
 }
 
+TEST(RemoteOperator, WaitsFourSecondsForTheRobotToStandWhereTheyMeet) {
+  RemoteOperator person({.meets_robot = true}, {{.p_m = {10.0, 0.0}}, {.p_m = {20.0, 0.0}}}, 7);
+  double first_s = 0.0;
+  for (double t = 0.0; t < 60.0 && first_s == 0.0; t += kTick_s) {
+    const Pose2 passing_then_standing{std::min(0.5 * t, 9.5), 0.0, 0.0};  // there at 19 s
+    if (person.step(from_seconds(t), passing_then_standing, {})) first_s = t;
+  }
+  EXPECT_NEAR(first_s, 19.0 + 4.0, 0.3);
+}
+
+TEST(RemoteOperator, WaitsAtAMarkWhileTheRobotIsBusy) {
+  RemoteOperator person({}, {{.p_m = {1.0, 0.0}, .is_mark = true}, {.p_m = {5.0, 0.0}}}, 7);
+  Pose2 T_world_body;
+  double marked_s = 0.0, moved_on_s = 0.0;
+  for (double t = 0.0; t < 60.0 && moved_on_s == 0.0; t += kTick_s) {
+    const bool is_busy = marked_s > 0.0 && t > marked_s && t < marked_s + 20.0;
+    const auto command = person.step(from_seconds(t), T_world_body, {}, is_busy);
+    if (!command) continue;
+    if (command->mark) marked_s = t;
+    if (marked_s > 0.0 && t > marked_s && command->vx_mps > 0.0) moved_on_s = t;
+    T_world_body = T_world_body * Pose2{command->vx_mps * 0.1, 0.0, command->yaw_rate_radps * 0.1};
+  }
+  EXPECT_NEAR(moved_on_s - marked_s, 20.0 + 1.5, 0.4);
+}
+
 TEST(RemoteOperator, BacksOutOfTheDock) {
   const Driven driven = drive({{.p_m = {2.0, 0.0}, .is_reverse = true}, {.p_m = {8.0, 0.0}}}, {0.0, 0.0, std::numbers::pi});
   EXPECT_GT(driven.way_back_m, 1.2);
