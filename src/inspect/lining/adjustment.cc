@@ -21,7 +21,9 @@ constexpr double kMinReach_m = 0.003;    // within a cell: a bulge is not flat
 constexpr double kPatch_m = 0.5;         // of surfaces other than the lining's
 constexpr double kInside_m = 0.1;        // nearer the design is the lining, or what is fixed flat to it
 constexpr double kPartner_m = 0.15, kFixtureBand_m = 0.03, kFacing = 0.8;
-constexpr int kMinPatchPoints = 4;
+constexpr int kMinPatchPoints = 5;
+// A normal's part along the tunnel, when no larger, is taken for its noise: thousands of points of the wall would hold the scan by it.
+constexpr double kMinAlong = 0.3;
 constexpr double kMaxCount = 8.0;        // a mean of more points is no better: what is left is texture
 
 struct Samples {
@@ -68,7 +70,10 @@ class Adjuster {
  public:
   Adjuster(const LiningInMap& lining, const LiningGrid& grid, const ReferenceLining& reference, const SurfaceCloud& target_map,
            const SurfaceCloud& source, const Pose3& guess, const LiningSettings& settings)
-      : lining_(lining), grid_(grid), reference_(reference), target_(target_map), source_(source), guess_(guess), settings_(settings) {}
+      : lining_(lining), grid_(grid), reference_(reference), target_(target_map), source_(source), guess_(guess), settings_(settings) {
+    const double heading = lining.design.heading_at(lining.design.place_of(guess.position).chainage_m);
+    axis_map_ = {std::cos(heading), std::sin(heading), 0.0};
+  }
 
   std::vector<Patch> patches(const Pose3& T_map_scanner, double range_offset_m) const {
     std::vector<Samples> cells(static_cast<std::size_t>(grid_.cells()));
@@ -136,7 +141,9 @@ class Adjuster {
     const double offset_m = surface.normal.dot(p - surface.mean);
     if (std::abs(surface.normal.dot(normal)) < kFacing || std::abs(offset_m) > kFixtureBand_m) return;
     const double side = surface.normal.dot(arm) > 0.0 ? -1.0 : 1.0;  // towards the scanner
-    others[patch_key(surface.mean, surface.normal)].add(side * offset_m, derivative(side * surface.normal, arm), source_.points()[i].count);
+    const double along = surface.normal.dot(axis_map_);
+    const Eigen::Vector3d held = std::abs(along) < kMinAlong ? Eigen::Vector3d(surface.normal - along * axis_map_) : surface.normal;
+    others[patch_key(surface.mean, surface.normal)].add(side * offset_m, derivative(side * held, arm), source_.points()[i].count);
   }
 
   std::vector<Patch> means(const std::vector<Samples>& cells, const std::map<PatchKey, Samples>& others) const {
@@ -165,6 +172,7 @@ class Adjuster {
   const ReferenceLining& reference_;
   const SurfaceCloud &target_, &source_;
   Pose3 guess_;
+  Eigen::Vector3d axis_map_;  ///< of the tunnel, where the scanner is
   const LiningSettings& settings_;
 };
 

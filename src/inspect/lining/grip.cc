@@ -46,14 +46,14 @@ class NearestRanges {
 
 }  // namespace
 
-Grip grip(const ScanView& one, const ScanView& other, const Pose3& T_other_one, const Eigen::Vector3d& axis_one, double reach_m) {
+Grip grip(const ScanView& one, const ScanView& other, const Pose3& T_other_one, const Eigen::Vector3d& axis_one) {
   const NearestRanges ranges(other);
   Grip found;
   for (std::size_t i = 0; i < one.cloud.points().size(); ++i) {
     const Eigen::Vector3d& p_one = one.cloud.points()[i].p;
     const Eigen::Vector3d& normal = one.cloud.surfaces()[i].normal;
     const Eigen::Vector3d p = T_other_one * p_one;
-    if (std::abs(normal.dot(axis_one)) < kFacesAlong || (p_one - one.p_scanner).norm() > reach_m || (p - other.p_scanner).norm() > reach_m) continue;
+    if (std::abs(normal.dot(axis_one)) < kFacesAlong) continue;
     const auto near = other.cloud.nearest(p, 1);
     if (near.count > 0 && near.squared_m2[0] < kPartner_m * kPartner_m) {
       const SurfaceCloud::Surface& surface = other.cloud.surfaces()[near.index[0]];

@@ -20,7 +20,7 @@ struct Grip {
 };
 
 /// How well two scans agree on what faces along the tunnel, which alone tells one place of a tunnel from another. Of `one`'s points that
-/// face along `axis_one` within reach of both scanners; what stands hidden in `other`, behind a truck, is not counted.
-Grip grip(const ScanView& one, const ScanView& other, const Pose3& T_other_one, const Eigen::Vector3d& axis_one, double reach_m);
+/// face along `axis_one`; what stands hidden in `other`, behind a truck or beyond its end, is not counted.
+Grip grip(const ScanView& one, const ScanView& other, const Pose3& T_other_one, const Eigen::Vector3d& axis_one);
 
 }  // namespace patrol::inspect

@@ -28,8 +28,8 @@ bool is_same_place(const ScanView& source, const ScanView& target_map, const Adj
   const Eigen::Matrix3d covariance_m2 = fine.covariance.topLeftCorner<3, 3>();
   if (std::sqrt(axis_map.dot(covariance_m2 * axis_map)) > settings.max_along_std_m) return false;
   const Pose3 T_source_map = fine.T_map_scanner.inverse();
-  const Grip there = grip(source, target_map, fine.T_map_scanner, T_source_map.rotation * axis_map, settings.reach_m);
-  const Grip back = grip(target_map, source, T_source_map, axis_map, settings.reach_m);
+  const Grip there = grip(source, target_map, fine.T_map_scanner, T_source_map.rotation * axis_map);
+  const Grip back = grip(target_map, source, T_source_map, axis_map);
   return std::max(there.share(), back.share()) >= settings.min_grip_share;
 }
 

@@ -33,7 +33,7 @@ struct LiningSettings {
   double band_m = 0.06;          ///< the lining lies that near the design, and moves by less
   int min_points = 12;           ///< thinned ones; a cell with fewer in either scan is not reported
   double surface_std_m = 0.0001;   ///< of a cell, from what neither averaging nor scatter shows: facets, texture
-  double fixture_std_m = 0.002;     ///< of half a metre of any surface other than the lining's
+  double fixture_std_m = 0.003;     ///< of half a metre of any surface other than the lining's
   double range_offset_std_m = 0.001;  ///< of a scanner from scan to scan, all ranges alike; it is estimated with the pose
   double guess_std_m = 0.3;      ///< of the robot's own estimate
   double guess_std_deg = 2.0;

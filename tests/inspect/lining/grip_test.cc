@@ -11,7 +11,7 @@ SurfaceCloud scan(const test::LinedTunnel& tunnel, double chainage_m, std::uint6
   return SurfaceCloud(thin(tunnel.scan({{chainage_m, -2.0, 0.85}, Eigen::Quaterniond::Identity()}, {.step_deg = 1.0}, seed).points, 0.1, 1.5));
 }
 
-Grip between(const SurfaceCloud& one, const SurfaceCloud& other) { return grip({.cloud = one}, {.cloud = other}, {}, Eigen::Vector3d::UnitX(), 16.0); }
+Grip between(const SurfaceCloud& one, const SurfaceCloud& other) { return grip({.cloud = one}, {.cloud = other}, {}, Eigen::Vector3d::UnitX()); }
 
 TEST(Grip, SamePlaceAgreesAndAnother5mOnDoesNot) {
   const test::LinedTunnel tunnel = test::LinedTunnel().furnish();
