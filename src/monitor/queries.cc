@@ -21,7 +21,6 @@ constexpr int kMostGasRows = 2'000;
 constexpr int kMostLines = 2'000;
 constexpr int kMostStations = 20;
 constexpr int kMostPage = 200;
-constexpr std::size_t kLongestContent = 400;
 
 Json value_of(const Statement& row, int column) {
   switch (row.type(column)) {
@@ -130,18 +129,6 @@ Json rings_of(Database& database, const std::string& world) {
   return list;
 }
 
-/// A content, without what would fill the table: of a list its length.
-Json shortened(const std::string& kind, const std::string& data) {
-  if (data.size() <= kLongestContent) return Json::parse(data);
-  Json json = Json::parse(data);
-  if (kind == "event") return json;
-  for (auto& [key, value] : json.items()) {
-    if (value.is_array()) value = value.size();
-    if (key == "png_base64") value = "";
-  }
-  return json;
-}
-
 }  // namespace
 
 std::string changes(Database& database, std::int64_t since, std::int64_t now_ms) {
@@ -204,7 +191,7 @@ std::string gas(Database& database, const std::string& world) {
 }
 
 std::string history(Database& database, const HistoryPage& page) {
-  std::string sql = "SELECT data, seq, id, robot, run, world, time_s, made_ms, received_ms, kind FROM results WHERE (?1 = 0 OR seq < ?1)";
+  std::string sql = "SELECT summary AS data, seq, id, robot, run, world, time_s, made_ms, received_ms, kind FROM results WHERE (?1 = 0 OR seq < ?1)";
   sql += page.robot.empty() ? " AND ?2 = ''" : " AND robot = ?2";
   sql += page.kind.empty() ? " AND ?3 = '' AND kind NOT IN ('pose', 'map')" : " AND kind = ?3";
   Statement row = database.prepare(sql + " ORDER BY seq DESC LIMIT ?4");
@@ -212,9 +199,8 @@ std::string history(Database& database, const HistoryPage& page) {
   row.bind(page.before, page.robot, page.kind, limit + 1);
   Json list = Json::array();
   while (row.step()) {
-    Json one = object_of(row);
-    one["data"] = shortened(one["kind"], row.text(0));
-    list.push_back(std::move(one));
+    list.push_back(object_of(row));
+    list.back()["data"] = Json::parse(row.text(0));
   }
   const bool has_more = list.size() > static_cast<std::size_t>(limit);
   if (has_more) list.erase(list.size() - 1);

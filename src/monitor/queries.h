@@ -41,7 +41,7 @@ struct HistoryPage {
   std::int64_t before = 0;  ///< results with lower numbers; 0: from the newest
   int limit = 25;
 };
-/// {"results": [...], "more": bool}. Of large contents, lists are given by their lengths.
+/// {"results": [...], "more": bool}. Of their contents there is the summary (result.h).
 std::string history(Database& database, const HistoryPage& page);
 
 /// A map's PNG.

@@ -24,6 +24,7 @@ constexpr std::size_t kMostEntries = 100'000;
 constexpr std::size_t kMostResults = 1000;  // in one request
 constexpr std::size_t kLongestName = 200;
 constexpr std::size_t kLongestText = 2000;
+constexpr std::size_t kLongestSummary = 400;
 constexpr int kMostPixels = 8192;  // of a map's side
 
 std::string text_of(const JsonObject& object, const char* key, std::size_t least, std::size_t most) {
@@ -139,6 +140,16 @@ std::vector<Result> results_from_json(const std::string& text) {
 
 std::string content_of(const Result& result) {
   return Json({result.robot, result.run, result.world, result.sequence, result.time_s, result.made_ms, result.kind, result.data}).dump();
+}
+
+std::string summary_of(const Result& result) {
+  if (result.data.size() <= kLongestSummary || result.kind == "event") return result.data;
+  Json json = Json::parse(result.data);
+  for (auto& [key, value] : json.items()) {
+    if (value.is_array()) value = value.size();
+    if (key == "png_base64") value = "";
+  }
+  return json.dump();
 }
 
 std::string to_utc(std::int64_t milliseconds) {

@@ -33,6 +33,9 @@ std::vector<Result> results_from_json(const std::string& text);
 /// What makes two results the same, beside their id.
 std::string content_of(const Result& result);
 
+/// Its data for a line of a table: of a long one, lists are given by their lengths, and the picture is left out.
+std::string summary_of(const Result& result);
+
 /// "2026-11-22T10:45:33.120Z" (RFC 3339), of milliseconds since 1970. Backwards: throws InputError when it is not that.
 std::string to_utc(std::int64_t milliseconds);
 std::int64_t from_utc(const std::string& text);

@@ -8,7 +8,7 @@ namespace {
 constexpr const char* kTables = R"sql(
 CREATE TABLE IF NOT EXISTS results (
   seq INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, robot TEXT NOT NULL, run TEXT NOT NULL, world TEXT NOT NULL, sequence INTEGER NOT NULL,
-  time_s REAL NOT NULL, made_ms INTEGER NOT NULL, received_ms INTEGER NOT NULL, kind TEXT NOT NULL, data TEXT NOT NULL) STRICT;
+  time_s REAL NOT NULL, made_ms INTEGER NOT NULL, received_ms INTEGER NOT NULL, kind TEXT NOT NULL, summary TEXT NOT NULL, data TEXT NOT NULL) STRICT;
 CREATE INDEX IF NOT EXISTS results_by_kind ON results (kind, seq);
 CREATE INDEX IF NOT EXISTS results_by_robot ON results (robot, kind, seq);
 CREATE INDEX IF NOT EXISTS noted ON results (seq) WHERE kind NOT IN ('pose', 'map');
@@ -44,9 +44,13 @@ std::vector<Stored> Store::add(const std::vector<Result>& results, std::int64_t 
 
 Stored Store::add_one(const Result& result, std::int64_t received_ms, std::int64_t revision) {
   Statement insert = database_.prepare(
-      "INSERT INTO results (id, robot, run, world, sequence, time_s, made_ms, received_ms, kind, data) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) "
+      "INSERT INTO results (id, robot, run, world, sequence, time_s, made_ms, received_ms, kind, summary, data) "
+      "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11) "
       "ON CONFLICT (id) DO NOTHING");
-  insert.bind(result.id, result.robot, result.run, result.world, result.sequence, result.time_s, result.made_ms, received_ms, result.kind, result.data).run();
+  insert
+      .bind(result.id, result.robot, result.run, result.world, result.sequence, result.time_s, result.made_ms, received_ms, result.kind,
+            summary_of(result), result.data)
+      .run();
   if (database_.changes() > 0) {
     update_views(database_, result, {.seq = database_.last_row(), .received_ms = received_ms, .revision = revision});
     return Stored::kNew;

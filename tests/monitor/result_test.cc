@@ -75,6 +75,14 @@ TEST(Result, OneInABatchRefusesIt) {
   EXPECT_EQ(refusal_of("[" + to_json(pose_result(0)) + "," + bad.dump() + "]"), "result[1].data: yaw is missing");
 }
 
+TEST(Result, ItsSummaryHasTheLengthsOfLongLists) {
+  EXPECT_EQ(summary_of(pose_result(1)), pose_result(1).data);
+  const Json summary = Json::parse(summary_of(lining_result(1, 4.0)));
+  EXPECT_EQ(summary["cells"], 3);
+  EXPECT_EQ(summary["findings"], 1);
+  EXPECT_EQ(summary["station"], "station_1");
+}
+
 TEST(Utc, GoesThereAndBackToTheMillisecond) {
   EXPECT_EQ(to_utc(kNoon_ms + 7), "2026-11-21T12:00:00.007Z");
   EXPECT_EQ(from_utc("2026-11-21T12:00:00.007Z"), kNoon_ms + 7);
