@@ -185,7 +185,7 @@ TEST(Tour, AtAGoalOfTypeRAPersonDrivesMarksAndHandsOverAgain) {
 
 TEST(Tour, NobodyComesFor120SecondsAndItGoesHomeByItselfWithoutCallingItDone) {
   Robot robot(Tour({.navigations = 1}, inspection_goals(), true, true));
-  robot.run(8.0 + 119.0);
+  robot.run(5.0 + 119.0);
   EXPECT_EQ(robot.output.mode, TourMode::kRemote);
   robot.run(30.0);
   EXPECT_EQ(robot.count("docked"), 1);

@@ -69,12 +69,16 @@ void TunnelInspection::begin(Time now) {
   new_scan_.reset();
   new_sounding_.reset();
   sounding_.reset();
-  if (mode_ == TourMode::kScan) messages_.emplace_back(ScanCommand{now});
+  has_asked_ = false;
   if (mode_ == TourMode::kSound && antenna_geometry_) sounding_.emplace(settings_.water.sounding, *antenna_geometry_, now);
 }
 
 InspectionFeedback TunnelInspection::scan(Time now) {
   if (!lining_) return InspectionFeedback::kFailed;
+  if (!has_asked_ && now - began_ >= from_seconds(settings_.scan_settle_s)) {
+    has_asked_ = true;
+    messages_.emplace_back(ScanCommand{now});
+  }
   if (now - began_ > from_seconds(settings_.scan_patience_s)) return InspectionFeedback::kFailed;
   if (!new_scan_) return InspectionFeedback::kUnderWay;
   const auto [scan, place] = *std::exchange(new_scan_, std::nullopt);

@@ -71,6 +71,7 @@ class TunnelInspection {
   std::string station_;
   Time began_{};
   StandingPlace place_;
+  bool has_asked_ = false;                          ///< for the scan
   std::optional<inspect::WaterSounding> sounding_;  ///< with kSound
   std::optional<std::pair<PanoramicScan, StandingPlace>> new_scan_;
   std::optional<AntennaState> antenna_;
