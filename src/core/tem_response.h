@@ -29,8 +29,6 @@ struct ConductiveSphere {
 struct SphereRate {
   double axial = 0.0;
   double transverse = 0.0;
-
-  double at(double cos_angle) const { return transverse + cos_angle * cos_angle * (axial - transverse); }
 };
 
 /// Exact, host included: the dipole's field in spherical multipoles of both kinds, each reflected by the sphere (Wait, "A conducting sphere in a

@@ -109,14 +109,6 @@ TEST(TemResponse, TheWholeDecayAddsUpToThePerfectConductorsField) {
   EXPECT_NEAR(sum / (kMu0 * 2.0 / (4.0 * kPi * std::pow(40.0, 6))), 1.0, 5e-3);
 }
 
-TEST(TemResponse, BetweenAlongAndAcrossItGoesWithTheSquareOfTheCosine) {
-  const SphereRate rate{.axial = 5.0, .transverse = 1.0};
-  EXPECT_DOUBLE_EQ(rate.at(1.0), 5.0);
-  EXPECT_DOUBLE_EQ(rate.at(-1.0), 5.0);  // behind is as ahead
-  EXPECT_DOUBLE_EQ(rate.at(0.0), 1.0);
-  EXPECT_DOUBLE_EQ(rate.at(std::sqrt(0.5)), 3.0);
-}
-
 TemWindow usual_window() {
   TemWindow window;
   for (double gate_s = 2e-6; gate_s < 3e-4; gate_s *= std::pow(10.0, 0.1)) window.gate_s.push_back(gate_s);

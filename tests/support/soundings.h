@@ -18,7 +18,7 @@ inline AntennaGeometry antenna_mount() {
   return antenna;
 }
 
-/// Soundings of rock and, if it has a radius, a body `p_coil` from the coil, with independent normal errors of 1 % and 3 nT/s at 1 ms.
+/// Soundings of rock and, if it has a radius, a body in the direction `towards` from the coil, with independent normal errors of 1 % and 3 nT/s at 1 ms.
 inline std::vector<inspect::AimedSounding> make_soundings(double rock_spm, const ConductiveSphere& body, const Eigen::Vector3d& towards,
                                                           const std::vector<inspect::AntennaPose>& poses, std::uint64_t seed) {
   TemWindow window;
