@@ -24,27 +24,27 @@ struct RegistrationSettings {
 
 /// What the comparison of two scans takes for granted, and from when on it matters.
 struct LiningSettings {
-  double near_m = 1.5;           ///< nearer to the scanner is the robot itself
-  double spacing_m = 0.08;         ///< points are averaged over that
-  double reach_m = 16.0;         ///< rings are compared that far along the tunnel, to both sides of the scanner
-  double sector_deg = 10.0;      ///< of the clock; a cell is a ring's part in one sector
-  double lowest_clock_deg = 110.0;  ///< middle of the lowest sector on either side: below it is the ground
-  double joint_margin_m = 0.1;   ///< left out on both sides of a joint between rings: localisation and registration err along the tunnel
-  double band_m = 0.06;          ///< the lining lies that near the design, and moves by less
-  int min_points = 12;           ///< thinned ones; a cell with fewer in either scan is not reported
-  double surface_std_m = 0.0001;   ///< of a cell, from what neither averaging nor scatter shows: facets, texture
-  double fixture_std_m = 0.003;     ///< of half a metre of any surface other than the lining's
+  double near_m = 1.5;                ///< nearer to the scanner is the robot itself
+  double spacing_m = 0.08;            ///< points are averaged over that
+  double reach_m = 16.0;              ///< rings are compared that far along the tunnel, to both sides of the scanner
+  double sector_deg = 10.0;           ///< of the clock; a cell is a ring's part in one sector
+  double lowest_clock_deg = 110.0;    ///< middle of the lowest sector on either side: below it is the ground
+  double joint_margin_m = 0.1;        ///< left out on both sides of a joint between rings: localisation and registration err along the tunnel
+  double band_m = 0.06;               ///< the lining lies that near the design, and moves by less
+  int min_points = 12;                ///< thinned ones; a cell with fewer in either scan is not reported
+  double surface_std_m = 0.0001;      ///< of a cell, from what neither averaging nor scatter shows: facets, texture
+  double fixture_std_m = 0.003;       ///< of half a metre of any surface other than the lining's
   double range_offset_std_m = 0.001;  ///< of a scanner from scan to scan, all ranges alike; it is estimated with the pose
-  double guess_std_m = 0.3;      ///< of the robot's own estimate
+  double guess_std_m = 0.3;           ///< of the robot's own estimate
   double guess_std_deg = 2.0;
-  double min_share = 0.5;        ///< of the points that have a partner in the reference, fewer is no registration
-  double max_correction_m = 0.8; ///< of the robot's own estimate: it is not that far off, another place is
-  double max_along_std_m = 0.005;  ///< of the registered position along the tunnel; a greater one says that nothing holds it there
-  double min_grip_share = 0.4;   ///< of the surfaces that face along the tunnel, which alone tell one place from another
+  double min_share = 0.5;             ///< of the points that have a partner in the reference, fewer is no registration
+  double max_correction_m = 0.8;      ///< of the robot's own estimate: it is not that far off, another place is
+  double max_along_std_m = 0.005;     ///< of the registered position along the tunnel; a greater one says that nothing holds it there
+  double min_grip_share = 0.4;        ///< of the surfaces that face along the tunnel, which alone tell one place from another
   double notice_mm = 2.0;
   double warning_mm = 5.0;
   double alarm_mm = 10.0;
-  double significance = 4.5;     ///< standard deviations that a finding is away from nothing
+  double significance = 4.5;          ///< standard deviations that a finding is away from nothing
   RegistrationSettings registration;
 
   template <typename Self, typename Visitor>
