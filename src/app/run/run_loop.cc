@@ -49,10 +49,19 @@ sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& f
           .actors = scenario.actors,
           .leaks = scenario.leaks,
           .wind = scenario.wind,
+          .underground = {.rock = scenario.rock, .water = scenario.water},
           .faults = scenario.faults,
           .drive = files.drive,
           .driver = scenario.remote.driver,
           .recorded = files.recorded};
+}
+
+LiningReferences references_of(const ScenarioFiles& files) {
+  LiningReferences references;
+  for (const io::StationScan& scan : files.references) {
+    references.emplace(scan.station, inspect::LiningReference{.T_map_scanner = scan.T_map_scanner, .points = scan.points});
+  }
+  return references;
 }
 
 }  // namespace
@@ -77,7 +86,7 @@ std::unique_ptr<RobotStack> make_stack(const Scenario& scenario, const ScenarioF
   const Route route_in_map = inspect::to_map(files.route, files.T_site_start);
   if (files.robot.tracks) {
     return std::make_unique<TourStack>(scenario.stack, files.robot, route_in_map,
-                                       TourStart{.map = files.map, .goals = files.goals, .has_remote = files.has_remote()},
+                                       TourStart{.map = files.map, .goals = files.goals, .references = references_of(files), .has_remote = files.has_remote()},
                                        scenario.log.map_period_s, scenario.seed);
   }
   return std::make_unique<PatrolStack>(scenario.stack, files.robot, route_in_map, scenario.log.map_period_s, scenario.seed);

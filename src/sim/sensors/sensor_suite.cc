@@ -50,6 +50,12 @@ std::optional<PanoramicScanner> make_scanner(const SensorSuiteSettings& settings
   return std::optional<PanoramicScanner>(std::in_place, settings.scanner, scene, robot.T_body("scanner"), seed, settings.dust);
 }
 
+std::optional<Tem> make_tem(const TemSettings& settings, const Underground& underground, const RobotDescription& robot, std::uint64_t seed) {
+  if (!settings.enabled) return std::nullopt;
+  if (!robot.antenna) throw InputError("robot " + robot.name + ": there is no link named tem_mount");
+  return Tem(settings, underground.rock, underground.water, seed);
+}
+
 constexpr double kSpikeProbability = 0.1;  // of a message, while the fault lasts
 
 /// Adds `offset` to the message's main reading, as drift and spikes do.
@@ -98,7 +104,7 @@ struct Overloaded : Handlers... {
 
 SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
                          const mjModel& view, GasPlume plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
-                         const DepthImagerFactory& make_depth_imager)
+                         const DepthImagerFactory& make_depth_imager, const Underground& underground)
     : settings_(settings),
       robot_(robot),
       body_(mj_name2id(&physics, mjOBJ_BODY, frame_id::kBody)),
@@ -117,6 +123,8 @@ SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescrip
       ultrasonic_(make_ultrasonic(settings.ultrasonic, scene_, robot, seed)),
       depth_camera_(make_depth_camera(settings, view, robot, make_depth_imager, seed)),
       scanner_(make_scanner(settings, scene_, robot, seed)),
+      tem_(make_tem(settings.tem, underground, robot, seed)),
+      coil_(mj_name2id(&physics, mjOBJ_BODY, "tem")),
       spikes_(seed, "fault/spikes"),
       jitter_(seed, "fault/jitter") {
   validate(settings.dust, "sensors.dust");
@@ -163,7 +171,7 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
     }
   }
   lidar_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (is_busy()) scan_panorama(T_world_body, now);
+  if (scanner_ && scanner_->is_busy()) scan_panorama(T_world_body, now);
   last_body_ = {now, T_world_body};
 
   if (settings_.tdlas.enabled && is_due(settings_.tdlas.rate_hz, tdlas_count_, now)) {
@@ -177,13 +185,20 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
   if (uwb_) poll_uwb(T_world_body, now);
   if (ultrasonic_) ping_ultrasonic(T_world_body, now);
   if (depth_camera_) take_depth_image(data, T_world_body, now);
+  if (tem_ && tem_->is_sounding()) {
+    const auto sounding = tem_->step(body_pose(data, coil_), now);
+    if (sounding) deliver("tem", now, settings_.tem.latency_s, *sounding);
+  }
 }
 
 void SensorSuite::command(const InstrumentCommand& command) {
   std::visit(Overloaded{[&](const ScanCommand&) {
                           if (scanner_ && last_body_) scanner_->begin(last_body_->first, last_body_->second);
                         },
-                        [](const AntennaCommand&) {}, [](const SoundingCommand&) {}, [](const WarningCommand&) {}},
+                        [&](const SoundingCommand&) {
+                          if (tem_ && last_body_) tem_->start(last_body_->first);
+                        },
+                        [](const AntennaCommand&) {}, [](const WarningCommand&) {}},
              command);
 }
 

@@ -10,6 +10,7 @@
 
 #include "core/messages.h"
 #include "core/robot_description.h"
+#include "sim/antenna_mount.h"
 #include "sim/dust.h"
 #include "sim/gas_plume.h"
 #include "sim/lidar_scene.h"
@@ -23,6 +24,7 @@
 #include "sim/sensors/lidar.h"
 #include "sim/sensors/panoramic_scanner.h"
 #include "sim/sensors/tdlas.h"
+#include "sim/sensors/tem.h"
 #include "sim/sensors/ultrasonic.h"
 #include "sim/sensors/uwb.h"
 
@@ -41,6 +43,8 @@ struct SensorSuiteSettings {
   UltrasonicSettings ultrasonic;
   DepthCameraSettings depth_camera;
   PanoramicScannerSettings scanner;
+  AntennaSettings antenna;
+  TemSettings tem;
   DustSettings dust;
 
   template <typename Self, typename Visitor>
@@ -57,6 +61,8 @@ struct SensorSuiteSettings {
     visit("ultrasonic", self.ultrasonic);
     visit("depth_camera", self.depth_camera);
     visit("scanner", self.scanner);
+    visit("antenna", self.antenna);
+    visit("tem", self.tem);
     visit("dust", self.dust);
   }
 
@@ -81,18 +87,20 @@ class SensorSuite {
   /// or nothing in the world to speak to; and when the depth camera is enabled and there is no `make_depth_imager`.
   SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
               const mjModel& view, GasPlume plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
-              const DepthImagerFactory& make_depth_imager = {});
+              const DepthImagerFactory& make_depth_imager = {}, const Underground& underground = {});
 
   /// Once a tick, with kinematics and accelerations of `now` in `data`.
   void step(const mjModel& physics, mjData& data, Time now);
 
   /// What comes in by radio from the remote control.
   void hear(const RemoteCommand& command) { deliver("remote", command.stamp, 0.0, command); }
+  /// What the antenna's servos read.
+  void hear(const AntennaState& state) { deliver("antenna", state.stamp, settings_.antenna.latency_s, state); }
 
-  /// What the stack asks of the instruments; of one that is switched off, nothing comes.
+  /// What the stack asks of the instruments; of one that is switched off, nothing comes. The antenna is the twin's (sim/antenna_mount.h).
   void command(const InstrumentCommand& command);
   /// An instrument is at work for which the robot must stand still.
-  bool is_busy() const { return scanner_ && scanner_->is_busy(); }
+  bool is_busy() const { return (scanner_ && scanner_->is_busy()) || (tem_ && tem_->is_sounding()); }
 
   /// Messages due by `now`, in order of delivery.
   std::vector<SensorMessage> take_due(Time now);
@@ -138,6 +146,8 @@ class SensorSuite {
   std::optional<UltrasonicRing> ultrasonic_;
   std::optional<DepthCamera> depth_camera_;
   std::optional<PanoramicScanner> scanner_;
+  std::optional<Tem> tem_;
+  int coil_ = -1;  ///< body of the link `tem`
   std::vector<FaultReport> faults_;
   std::vector<std::pair<std::string, SensorMessage>> last_good_;  ///< by sensor, for a freeze
   RandomStream spikes_, jitter_;

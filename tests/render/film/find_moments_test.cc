@@ -47,7 +47,7 @@ TEST(FindMoments, TheLargestErrorIsOne) {
 
 TEST(FindMoments, ALiningAlarmIsOneAndLooksAtTheRing) {
   RunHistory history = quiet_minute();
-  history.events.push_back({.stamp = 20s, .kind = "lining_alarm", .subject = "ring_31", .text = "Ring 31 has moved inwards by 12.0 mm.", .p_map_target = {3.0, 4.0}});
+  history.events.push_back({.stamp = 20s, .kind = "lining_alarm", .subject = "ring_31", .text = "Ring 31 has moved inwards by 12.0 mm.", .T_map_body = {}, .p_map_target = {3.0, 4.0}});
   const std::vector<Moment> moments = moments_of(history);
   ASSERT_THAT(instants(moments, MomentKind::kAlarm), ElementsAre(20s));
   EXPECT_EQ(moments[0].title, "Ring 31 has moved inwards by 12.0 mm");
