@@ -170,8 +170,10 @@ class Entry {
   void enter_water(const WaterResult& water) {
     enter_newest(water.station);
     if (!water.is_found) return;
-    const std::string text = fmt::format("Water ahead: {:.1f} m from the antenna ({:.1f} ... {:.1f} m), {:.0f} degrees to the left, {:.0f} up.",
-                                         water.distance_m, water.distance_low_m, water.distance_high_m, water.azimuth_deg, water.elevation_deg);
+    const std::string text = fmt::format("Water ahead: {:.1f} m from the antenna ({:.1f} ... {:.1f} m), {:.0f} degrees to the {}, {:.0f} {}.",
+                                         water.distance_m, water.distance_low_m, water.distance_high_m, std::abs(water.azimuth_deg),
+                                         water.azimuth_deg >= 0.0 ? "left" : "right", std::abs(water.elevation_deg),
+                                         water.elevation_deg >= 0.0 ? "up" : "down");
     add_finding(water.level, "water", water.station, text, water.p_map.head<2>());
   }
 
