@@ -80,6 +80,11 @@ void Database::execute(const char* sql) {
   }
 }
 
+Statement& Database::prepared(const std::string& sql) {
+  const auto there = prepared_.find(sql);
+  return there != prepared_.end() ? there->second : prepared_.emplace(sql, prepare(sql)).first->second;
+}
+
 int Database::changes() const { return sqlite3_changes(database_.get()); }
 std::int64_t Database::last_row() const { return sqlite3_last_insert_rowid(database_.get()); }
 

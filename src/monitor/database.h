@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -62,6 +63,17 @@ class Database {
   explicit Database(const std::filesystem::path& file);
 
   Statement prepare(std::string_view sql) { return Statement(database_.get(), sql); }
+  /// One that is kept for the next time; for what is run to its end.
+  Statement& prepared(const std::string& sql);
+  /// The first column of the first row, if there is one.
+  template <typename... Values>
+  std::optional<std::int64_t> find_integer(const std::string& sql, const Values&... values) {
+    Statement& statement = prepared(sql);
+    std::optional<std::int64_t> found;
+    if (statement.bind(values...).step()) found = statement.integer(0);
+    statement.reset();
+    return found;
+  }
   void execute(const char* sql);
   int changes() const;  ///< rows of the last statement
   std::int64_t last_row() const;
@@ -71,6 +83,7 @@ class Database {
     void operator()(sqlite3* database) const;
   };
   std::unique_ptr<sqlite3, Close> database_;
+  std::map<std::string, Statement> prepared_;
 };
 
 /// Everything until `commit`, or nothing.

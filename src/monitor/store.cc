@@ -27,10 +27,8 @@ Store::Store(const std::filesystem::path& folder) : lock_(folder), database_(fol
 }
 
 std::int64_t Store::next_revision() {
-  database_.execute("UPDATE revision SET number = number + 1");
-  Statement number = database_.prepare("SELECT number FROM revision");
-  number.step();
-  return number.integer(0);
+  database_.prepared("UPDATE revision SET number = number + 1").bind().run();
+  return database_.find_integer("SELECT number FROM revision").value();
 }
 
 std::vector<Stored> Store::add(const std::vector<Result>& results, std::int64_t received_ms) {
@@ -43,7 +41,7 @@ std::vector<Stored> Store::add(const std::vector<Result>& results, std::int64_t 
 }
 
 Stored Store::add_one(const Result& result, std::int64_t received_ms, std::int64_t revision) {
-  Statement insert = database_.prepare(
+  Statement& insert = database_.prepared(
       "INSERT INTO results (id, robot, run, world, sequence, time_s, made_ms, received_ms, kind, summary, data) "
       "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11) "
       "ON CONFLICT (id) DO NOTHING");
@@ -64,9 +62,9 @@ Stored Store::add_one(const Result& result, std::int64_t received_ms, std::int64
 
 Acknowledged Store::acknowledge(std::int64_t finding, const std::string& who, const std::string& note, std::int64_t now_ms) {
   Transaction transaction(database_);
-  Statement there = database_.prepare("SELECT acknowledged_ms IS NOT NULL FROM findings WHERE number = ?1");
-  if (!there.bind(finding).step()) return Acknowledged::kUnknown;
-  if (there.integer(0) != 0) return Acknowledged::kAlready;
+  const auto is_done = database_.find_integer("SELECT acknowledged_ms IS NOT NULL FROM findings WHERE number = ?1", finding);
+  if (!is_done) return Acknowledged::kUnknown;
+  if (*is_done != 0) return Acknowledged::kAlready;
   database_.prepare("UPDATE findings SET acknowledged_ms = ?2, who = ?3, note = ?4, revision = ?5 WHERE number = ?1")
       .bind(finding, now_ms, who, note, next_revision())
       .run();

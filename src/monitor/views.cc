@@ -72,25 +72,23 @@ class Entry {
 
  private:
   void open_run() {
-    database_.prepare("INSERT INTO runs (robot, run, world, first_ms, last_ms) VALUES (?1, ?2, ?3, ?4, ?4) "
+    database_.prepared("INSERT INTO runs (robot, run, world, first_ms, last_ms) VALUES (?1, ?2, ?3, ?4, ?4) "
                       "ON CONFLICT (robot, run) DO UPDATE SET first_ms = min(first_ms, ?4), last_ms = max(last_ms, ?4)")
         .bind(result_.robot, result_.run, result_.world, result_.made_ms)
         .run();
-    Statement number = database_.prepare("SELECT number FROM runs WHERE robot = ?1 AND run = ?2");
-    number.bind(result_.robot, result_.run).step();
-    run_ = number.integer(0);
+    run_ = database_.find_integer("SELECT number FROM runs WHERE robot = ?1 AND run = ?2", result_.robot, result_.run).value();
   }
 
   /// Results of an earlier run may come late: the robot stays where its newest has it.
   bool touch_robot(bool is_mark) {
-    database_.prepare("INSERT INTO robots (robot, run, made_ms, received_ms, time_s, revision) VALUES (?1, ?2, ?3, ?4, ?5, ?6) ON CONFLICT (robot) DO NOTHING")
+    database_.prepared("INSERT INTO robots (robot, run, made_ms, received_ms, time_s, revision) VALUES (?1, ?2, ?3, ?4, ?5, ?6) ON CONFLICT (robot) DO NOTHING")
         .bind(result_.robot, run_, result_.made_ms, filed_.received_ms, result_.time_s, filed_.revision)
         .run();
-    if (is_mark) database_.prepare("UPDATE robots SET mark_revision = ?2, revision = ?2 WHERE robot = ?1").bind(result_.robot, filed_.revision).run();
-    database_.prepare("UPDATE robots SET x = NULL, y = NULL, yaw = NULL, at = '', run = ?2 WHERE robot = ?1 AND run != ?2 AND made_ms <= ?3")
+    if (is_mark) database_.prepared("UPDATE robots SET mark_revision = ?2, revision = ?2 WHERE robot = ?1").bind(result_.robot, filed_.revision).run();
+    database_.prepared("UPDATE robots SET x = NULL, y = NULL, yaw = NULL, at = '', run = ?2 WHERE robot = ?1 AND run != ?2 AND made_ms <= ?3")
         .bind(result_.robot, run_, result_.made_ms)
         .run();
-    database_.prepare("UPDATE robots SET made_ms = ?2, received_ms = ?3, time_s = ?4, revision = ?5 WHERE robot = ?1 AND run = ?6 AND made_ms <= ?2")
+    database_.prepared("UPDATE robots SET made_ms = ?2, received_ms = ?3, time_s = ?4, revision = ?5 WHERE robot = ?1 AND run = ?6 AND made_ms <= ?2")
         .bind(result_.robot, result_.made_ms, filed_.received_ms, result_.time_s, filed_.revision, run_)
         .run();
     return database_.changes() > 0;
@@ -99,7 +97,7 @@ class Entry {
   void enter_status(const Json& data) {
     const std::string state = data["state"], scenario = data["scenario"], message = data["message"];
     // A start that comes after its end does not open the run again.
-    database_.prepare("UPDATE runs SET scenario = ?2, state = CASE WHEN ?3 = 'started' THEN state ELSE ?3 END, "
+    database_.prepared("UPDATE runs SET scenario = ?2, state = CASE WHEN ?3 = 'started' THEN state ELSE ?3 END, "
                       "message = CASE WHEN ?3 = 'started' THEN message ELSE ?4 END, "
                       "stations = CASE WHEN ?3 = 'started' THEN ?5 ELSE stations END WHERE number = ?1")
         .bind(run_, scenario, state, message, data["stations"].dump())
@@ -108,13 +106,13 @@ class Entry {
 
   void enter_pose(const Json& data, bool is_newest) {
     const double x = data["x"], y = data["y"], yaw = data["yaw"];
-    database_.prepare("UPDATE runs SET poses = poses + 1 WHERE number = ?1").bind(run_).run();
-    database_.prepare("INSERT INTO poses SELECT ?1, poses - 1, ?2, ?3 FROM runs WHERE number = ?1").bind(run_, x, y).run();
-    if (is_newest) database_.prepare("UPDATE robots SET x = ?2, y = ?3, yaw = ?4 WHERE robot = ?1").bind(result_.robot, x, y, yaw).run();
+    database_.prepared("UPDATE runs SET poses = poses + 1 WHERE number = ?1").bind(run_).run();
+    database_.prepared("INSERT INTO poses SELECT ?1, poses - 1, ?2, ?3 FROM runs WHERE number = ?1").bind(run_, x, y).run();
+    if (is_newest) database_.prepared("UPDATE robots SET x = ?2, y = ?3, yaw = ?4 WHERE robot = ?1").bind(result_.robot, x, y, yaw).run();
   }
 
   void enter_map() {
-    database_.prepare("UPDATE runs SET map_seq = ?2, map_time_s = ?3 WHERE number = ?1 AND (map_time_s IS NULL OR map_time_s <= ?3)")
+    database_.prepared("UPDATE runs SET map_seq = ?2, map_time_s = ?3 WHERE number = ?1 AND (map_time_s IS NULL OR map_time_s <= ?3)")
         .bind(run_, filed_.seq, result_.time_s)
         .run();
   }
@@ -124,18 +122,18 @@ class Entry {
     const Eigen::Vector2d p_map(data["position_m"][0].get<double>(), data["position_m"][1].get<double>());
     add_finding(level_of(kind), kind, subject, data["text"], p_map);
     if (kind == "gas_measured" && data["value"].is_number()) {
-      database_.prepare("INSERT OR REPLACE INTO gas VALUES (?1, ?2, ?3, ?4, ?5)")
+      database_.prepared("INSERT OR REPLACE INTO gas VALUES (?1, ?2, ?3, ?4, ?5)")
           .bind(result_.world, subject, result_.made_ms, run_, data["value"].get<double>())
           .run();
     }
     if (kind == "goal_marked") {
-      database_.prepare("UPDATE runs SET stations = json_insert(stations, '$[#]', "
+      database_.prepared("UPDATE runs SET stations = json_insert(stations, '$[#]', "
                         "json_object('name', ?2, 'type', 'marked', 'position_m', json_array(?3, ?4))) WHERE number = ?1")
           .bind(run_, subject, p_map.x(), p_map.y())
           .run();
     }
     if (kind == "station_reached" || kind == "goal_reached" || kind == "docked") {
-      database_.prepare("UPDATE robots SET at = ?2 WHERE robot = ?1 AND run = ?3")
+      database_.prepared("UPDATE robots SET at = ?2 WHERE robot = ?1 AND run = ?3")
           .bind(result_.robot, kind == "docked" ? std::string("dock") : subject, run_)
           .run();
     }
@@ -151,13 +149,13 @@ class Entry {
       if (!is_new && cell.inward_m > there->second.inward_m) there->second = cell;
     }
     for (const auto& [ring, cell] : most) {
-      database_.prepare("INSERT OR REPLACE INTO rings VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)")
+      database_.prepared("INSERT OR REPLACE INTO rings VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)")
           .bind(result_.world, ring, result_.made_ms, run_, lining.station, cell.inward_m, cell.std_m, cell.clock_deg)
           .run();
     }
     for (const ConvergenceLine& line : lining.lines) {
       if (!std::isfinite(line.change_m)) continue;
-      database_.prepare("INSERT INTO lines VALUES (?1, ?2, ?3, ?4, ?5, ?6, NULL) "
+      database_.prepared("INSERT INTO lines VALUES (?1, ?2, ?3, ?4, ?5, ?6, NULL) "
                         "ON CONFLICT DO UPDATE SET before_m = change_m, made_ms = ?4, change_m = ?5, std_m = ?6 WHERE made_ms <= ?4")
           .bind(result_.world, line.ring, line.name, result_.made_ms, line.change_m, line.std_m)
           .run();
@@ -172,20 +170,22 @@ class Entry {
   void enter_water(const WaterResult& water) {
     enter_newest(water.station);
     if (!water.is_found) return;
-    const std::string text = fmt::format("Water ahead: {:.1f} m from the antenna ({:.1f} ... {:.1f} m), {:.0f} degrees to the left, {:.0f} up.",
-                                         water.distance_m, water.distance_low_m, water.distance_high_m, water.azimuth_deg, water.elevation_deg);
+    const std::string text = fmt::format("Water ahead: {:.1f} m from the antenna ({:.1f} ... {:.1f} m), {:.0f} degrees to the {}, {:.0f} {}.",
+                                         water.distance_m, water.distance_low_m, water.distance_high_m, std::abs(water.azimuth_deg),
+                                         water.azimuth_deg >= 0.0 ? "left" : "right", std::abs(water.elevation_deg),
+                                         water.elevation_deg >= 0.0 ? "up" : "down");
     add_finding(water.level, "water", water.station, text, water.p_map.head<2>());
   }
 
   void enter_newest(const std::string& station) {
-    database_.prepare("INSERT INTO newest VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT DO UPDATE SET made_ms = ?4, seq = ?5 WHERE made_ms <= ?4")
+    database_.prepared("INSERT INTO newest VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT DO UPDATE SET made_ms = ?4, seq = ?5 WHERE made_ms <= ?4")
         .bind(result_.world, result_.kind, station, result_.made_ms, filed_.seq)
         .run();
   }
 
   void add_finding(WarningLevel level, const std::string& kind, const std::string& subject, const std::string& text, const Eigen::Vector2d& p_map) {
     if (level == WarningLevel::kNone) return;
-    database_.prepare("INSERT INTO findings (run, time_s, made_ms, received_ms, level, kind, subject, text, x, y, revision) "
+    database_.prepared("INSERT INTO findings (run, time_s, made_ms, received_ms, level, kind, subject, text, x, y, revision) "
                       "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)")
         .bind(run_, result_.time_s, result_.made_ms, filed_.received_ms, static_cast<int>(level), kind, subject, text, p_map.x(), p_map.y(), filed_.revision)
         .run();

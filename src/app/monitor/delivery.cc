@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -69,12 +68,10 @@ Sender::Outcome Sender::send_next() {
 }
 
 void Sender::set_aside_conflicts(const Outbox::Batch& batch, const std::string& answer) {
-  std::set<std::string> conflicts;
-  for (const auto& result : nlohmann::json::parse(answer)["results"]) {
-    if (result["status"] == "conflict") conflicts.insert(result["id"].get<std::string>());
-  }
-  for (const std::string& result : batch.results) {
-    if (conflicts.contains(nlohmann::json::parse(result)["id"].get<std::string>())) outbox_.set_aside(result);
+  const auto json = nlohmann::json::parse(answer);
+  const auto& results = json.at("results");  // in the batch's order
+  for (std::size_t i = 0; i < batch.results.size(); ++i) {
+    if (results.at(i).at("status") == "conflict") outbox_.set_aside(batch.results[i]);
   }
 }
 

@@ -4,7 +4,7 @@ import { showGas, showLining, showWater } from '/site.js';
 import { $, clock, dayAndClock, make, plural, simulated, spoken } from '/words.js';
 
 const kPeriod_ms = 1000, kSilent_ms = 15000, kHistoryRows = 25;
-const state = { revision: 0, robots: new Map(), findings: new Map(), chosen: null, run: '', onlyOpen: true, skew_ms: 0, water: [], details: null };
+const state = { revision: 0, robots: new Map(), findings: new Map(), chosen: null, run: '', onlyOpen: true, skew_ms: 0, water: [], details: null, missed: new Set() };
 
 function age(ms) {
   const seconds = Math.max(0, Math.round((Date.now() + state.skew_ms - ms) / 1000));
@@ -19,6 +19,9 @@ async function ask(path, parameters = {}) {
   if (!answer.ok) throw new Error(`${path}: ${answer.status}`);
   return answer.json();
 }
+
+/// One that the platform did not answer is tried again when it does.
+const attempt = (refresh) => { refresh().catch(() => state.missed.add(refresh)); };
 
 // ---- Robots ----
 
@@ -46,8 +49,8 @@ function choose(name) {
   if (state.chosen === name) return;
   Object.assign(state, { chosen: name, run: '', details: null });
   showRobots();
-  refreshRun();
-  refreshWorld();
+  attempt(refreshRun);
+  attempt(refreshWorld);
 }
 
 // ---- Alarms ----
@@ -163,7 +166,7 @@ async function refreshWorld() {
 
 $('#run').addEventListener('change', (event) => {
   state.run = event.target.value;
-  refreshRun();
+  attempt(refreshRun);
 });
 
 // ---- History ----
@@ -186,10 +189,10 @@ async function refreshHistory() {
     make('td', { textContent: simulated(one.time_s), title: 'into the run ' + one.run }), make('td', { textContent: one.kind === 'event' ? spoken(one.data.kind) : one.kind }), make('td', { textContent: summary(one) }))));
   $('#newer').disabled = pages.length === 1;
   $('#older').disabled = !more;
-  $('#older').onclick = () => { pages.push(results[results.length - 1].seq); refreshHistory(); };
+  $('#older').onclick = () => { pages.push(results[results.length - 1].seq); attempt(refreshHistory); };
 }
-$('#newer').addEventListener('click', () => { pages.pop(); refreshHistory(); });
-for (const id of ['#history-robot', '#history-kind']) $(id).addEventListener('change', () => { pages.length = 1; refreshHistory(); });
+$('#newer').addEventListener('click', () => { pages.pop(); attempt(refreshHistory); });
+for (const id of ['#history-robot', '#history-kind']) $(id).addEventListener('change', () => { pages.length = 1; attempt(refreshHistory); });
 
 function showHistoryRobots() {
   const select = $('#history-robot'), names = [...state.robots.keys()].sort((a, b) => a.localeCompare(b, undefined, { numeric: true }));
@@ -211,6 +214,9 @@ function showLive(isOn) {
 async function poll() {
   const news = await ask('/api/changes', { since: state.revision });
   showLive(true);
+  const missed = [...state.missed];
+  state.missed.clear();
+  missed.forEach(attempt);
   if (news.revision < state.revision) return location.reload();  // another database is served
   const isFirst = state.revision === 0;
   Object.assign(state, { revision: news.revision, skew_ms: news.now_ms - Date.now() });
@@ -225,12 +231,13 @@ async function poll() {
     showRobots();
     showHistoryRobots();
   }
-  if (marked.length && pages.length === 1) refreshHistory();
+  if (marked.length && pages.length === 1) attempt(refreshHistory);
   if (robot && before && before.run !== robot.run) state.run = '';
-  if (marked.some((one) => robot && one.world === robot.world)) refreshWorld();
-  if (marked.includes(robot) || (before && robot.run !== before.run) || news.findings.some((one) => one.robot === state.chosen)) refreshRun();
+  if (marked.some((one) => robot && one.world === robot.world)) attempt(refreshWorld);
+  if (marked.includes(robot) || (before && robot.run !== before.run) || news.findings.some((one) => one.robot === state.chosen)) attempt(refreshRun);
   else if (news.robots.includes(robot)) followTrack(robot);
-  if (isFirst) [showMap(), refreshHistory(), robot || refreshWorld()];
+  if (isFirst) attempt(refreshHistory);
+  if (isFirst && !robot) attempt(refreshWorld);
 }
 
 /// Between two answers of /api/run the track grows by the poses that come.

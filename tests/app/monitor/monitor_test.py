@@ -145,7 +145,7 @@ class Lives(unittest.TestCase):
             batch = []
             for i in range(start, end):
                 robot = f"robot-{i % 20}"
-                one = (lining(i, 3.0 + i % 10, robot=robot) if i % 100 == 0 else event(i, "gas_measured", f"well_{i % 5}", value=float(i % 50), robot=robot) if i % 10 == 0 else
+                one = (lining(i, 3.0 + i % 10, robot=robot) if i % 500 == 0 else event(i, "gas_measured", f"well_{i % 5}", value=float(i % 50), robot=robot) if i % 10 == 0 else
                        event(i, robot=robot) if i % 101 == 0 else result(i, robot=robot))
                 batch.append(one)
                 if len(batch) == 1000:

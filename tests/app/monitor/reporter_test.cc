@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -65,12 +66,12 @@ TEST_F(Reported, PosesAreThinnedToOneASecond) {
 TEST_F(Reported, AMapIsSentWhenItChangedAtMostEveryTenSecondsAndAtTheEnd) {
   reporter_.begin(files_);
   for (int s = 0; s <= 30; ++s) see(StackMessage(MapUpdate{.stamp = std::chrono::seconds(s), .map = map_with(s < 15 ? kUnknown : s < 27 ? kFree : kOccupied)}));
-  std::vector<double> times;
-  for (const Json& map : results("map")) times.push_back(map["time_s"]);
-  EXPECT_EQ(times, (std::vector{0.0, 15.0, 27.0}));
+  std::vector<long> times;
+  for (const Json& map : results("map")) times.push_back(std::lround(map["time_s"].get<double>()));
+  EXPECT_EQ(times, (std::vector{0L, 15L, 27L}));
   see(StackMessage(MapUpdate{.stamp = std::chrono::seconds(31), .map = map_with(kUnknown)}));
   reporter_.finish("finished", "");
-  EXPECT_EQ(results("map").back()["time_s"], 31.0);
+  EXPECT_EQ(std::lround(results("map").back()["time_s"].get<double>()), 31);
   EXPECT_EQ(results("map").size(), 4U);
 }
 
