@@ -4,7 +4,7 @@ import { showGas, showLining, showWater } from '/site.js';
 import { $, clock, dayAndClock, make, plural, simulated, spoken } from '/words.js';
 
 const kPeriod_ms = 1000, kSilent_ms = 15000, kHistoryRows = 25;
-const state = { revision: 0, robots: new Map(), findings: new Map(), chosen: null, run: '', onlyOpen: true, skew_ms: 0, water: [], details: null, missed: new Set() };
+const state = { revision: 0, robots: new Map(), findings: new Map(), chosen: null, run: '', onlyOpen: true, skew_ms: 0, water: [], details: null, wanted: null, missed: new Set() };
 
 function age(ms) {
   const seconds = Math.max(0, Math.round((Date.now() + state.skew_ms - ms) / 1000));
@@ -125,10 +125,10 @@ $('form', dialog).addEventListener('submit', async (event) => {
 const map = new MapView($('#map'));
 
 async function refreshRun() {
-  const name = state.chosen;
-  if (!name) return map.show(null, [], []);
-  const details = await ask('/api/run', { robot: name, run: state.run });
-  if (name !== state.chosen) return;
+  const { chosen, run } = state;
+  if (!chosen) return map.show(null, [], []);
+  const details = await ask('/api/run', { robot: chosen, run });
+  if (chosen !== state.chosen || run !== state.run) return;
   state.details = details;
   $('#run').replaceChildren(...details.runs.map((one, i) => make('option', { value: i === 0 ? '' : one.run, textContent: `${dayAndClock(one.first_ms)}  ${one.run}`, selected: one.run === details.run })));
   showMap();
@@ -184,7 +184,10 @@ function summary({ kind, data }) {
 const sizeOf = (list) => (Array.isArray(list) ? list.length : list);  // of a long one the platform gives the length
 
 async function refreshHistory() {
-  const { results, more } = await ask('/api/history', { robot: $('#history-robot').value, kind: $('#history-kind').value, before: pages[pages.length - 1], limit: kHistoryRows });
+  const wanted = { robot: $('#history-robot').value, kind: $('#history-kind').value, before: pages[pages.length - 1], limit: kHistoryRows };
+  state.wanted = wanted;
+  const { results, more } = await ask('/api/history', wanted);
+  if (state.wanted !== wanted) return;  // another page was asked for meanwhile
   $('#history tbody').replaceChildren(...results.map((one) => make('tr', {}, make('td', { textContent: dayAndClock(one.received_ms) }), make('td', { textContent: one.robot }),
     make('td', { textContent: simulated(one.time_s), title: 'into the run ' + one.run }), make('td', { textContent: one.kind === 'event' ? spoken(one.data.kind) : one.kind }), make('td', { textContent: summary(one) }))));
   $('#newer').disabled = pages.length === 1;
