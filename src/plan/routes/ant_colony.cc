@@ -7,14 +7,14 @@
 #include <thread>
 #include <utility>
 
-#include "plan/routes/ant_walk.h"
+#include "plan/routes/grid_walk.h"
 
 namespace patrol::plan {
 namespace {
 
 constexpr double kReach = 1.5 * std::numbers::sqrt2;                                                      // eq. 8: L tan(gamma / 2), cells
 constexpr double kToEdge = (kReach - 1.0) / kReach, kToDiagonal = (kReach - std::numbers::sqrt2) / kReach;  // 0.53, 0.33 (eqs. 8, 9)
-constexpr double kLeastWeight = 1e-200;  ///< no step that is open is ever impossible: an ant that finds none takes it for a dead end
+constexpr double kLeastWeight = 1e-200;  ///< no open step is ever impossible: it may be the only one
 
 double octile(Cell a, Cell b) {
   const int dx = std::abs(a.col - b.col), dy = std::abs(a.row - b.row);
@@ -56,9 +56,9 @@ class Trails {
   const std::vector<double>& weigh() {
     for (std::uint32_t cell = 0; cell < eta_.size(); ++cell) {
       const std::size_t first = 8 * std::size_t{cell};
-      double in_cell = 0.0;  // q(i)
+      double in_cell = std::numeric_limits<double>::infinity();  // q(i)
       for (std::size_t direction = 0; direction < 8 && !shares_.empty(); ++direction) {
-        if (graph_.has_step(cell, direction)) in_cell += pheromone_[first + direction];
+        if (graph_.has_step(cell, direction)) in_cell = std::min(in_cell, pheromone_[first + direction]);
       }
       for (std::size_t direction = 0; direction < 8; ++direction) {
         if (!graph_.has_step(cell, direction)) continue;
@@ -86,6 +86,19 @@ class Trails {
   std::vector<double> eta_;                           ///< [cell] to the power of beta
 };
 
+/// Eq. 10: one of the open steps, with probability proportional to its weight.
+std::size_t draw_step(const std::vector<double>& weights, std::uint32_t cell, unsigned open, RandomSequence& random) {
+  const double* const of_cell = weights.data() + 8 * std::size_t{cell};
+  double total = 0.0;
+  for (std::size_t direction = 0; direction < 8; ++direction) total += (open >> direction & 1u) != 0 ? of_cell[direction] : 0.0;
+  double left = total * random.uniform();
+  std::size_t drawn = 0;
+  for (std::size_t direction = 0; direction < 8 && left >= 0.0; ++direction) {
+    if ((open >> direction & 1u) != 0) left -= of_cell[direction], drawn = direction;
+  }
+  return drawn;
+}
+
 /// Calls `work(begin, end, worker)` for `num_workers` parts of 0 ... count - 1 at once.
 template <typename Work>
 void in_parallel(int count, int num_workers, const Work& work) {
@@ -111,16 +124,20 @@ void AntColony::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
   const int num_workers = std::min(settings_.ants, settings_.threads > 0 ? settings_.threads : cores);
   std::vector<Walker> walkers(static_cast<std::size_t>(num_workers), Walker(graph));
   std::vector<Walk> walks(static_cast<std::size_t>(settings_.ants));
+  const std::uint32_t from = graph.index_of(start), to = graph.index_of(goal);
   const double Q = settings_.deposit * octile(start, goal);
   Walk best;
   best.cost = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < settings_.iterations; ++iteration) {
     const std::vector<double>& weights = trails.weigh();
     in_parallel(settings_.ants, num_workers, [&](int begin, int end, int worker) {
+      Walker& walker = walkers[static_cast<std::size_t>(worker)];
       for (int ant = begin; ant < end; ++ant) {
-        const RandomSequence random(stream_, static_cast<std::uint64_t>(iteration) * static_cast<std::uint64_t>(settings_.ants) + static_cast<std::uint64_t>(ant));
-        walks[static_cast<std::size_t>(ant)] =
-            walkers[static_cast<std::size_t>(worker)].walk(weights, graph.index_of(start), graph.index_of(goal), settings_.splices, random);
+        RandomSequence random(stream_, static_cast<std::uint64_t>(iteration) * static_cast<std::uint64_t>(settings_.ants) + static_cast<std::uint64_t>(ant));
+        Walk& walk = walks[static_cast<std::size_t>(ant)];
+        walk = walker.walk(from, to, [&](std::uint32_t cell, unsigned open) { return draw_step(weights, cell, open, random); });
+        if (settings_.splices) walker.splice(walk, to);
+        walk.cost = cost_of(graph, walk);
       }
     });
     trails.evaporate();

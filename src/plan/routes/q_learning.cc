@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "plan/routes/ant_walk.h"
+#include "plan/routes/grid_walk.h"
 
 namespace patrol::plan {
 namespace {

@@ -9,8 +9,8 @@
 namespace patrol::plan {
 
 struct QLearningSettings {
-  int episodes = 500;
-  double learning_rate = 0.9;     ///< alpha
+  int episodes = 3000;
+  double learning_rate = 1.0;     ///< alpha
   double discount = 1.0;          ///< gamma
   double exploration = 0.1;       ///< epsilon, the share of steps taken by chance, in the first episode; falls to 0 in the last
   double max_steps_share = 4.0;   ///< of an episode, as a share of the grid's cells; it ends there if not at the goal

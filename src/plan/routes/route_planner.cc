@@ -17,8 +17,6 @@ namespace {
 
 constexpr double kMaxCostWeight = 50.0;
 
-Cell cell_of(const Eigen::Vector2d& point) { return {static_cast<int>(std::floor(point.x())), static_cast<int>(std::floor(point.y()))}; }
-
 double length_of(const std::vector<Eigen::Vector2d>& points) {
   double straight = 0.0, diagonal = 0.0, other = 0.0;  // apart: the first two are whole numbers, and have no rounding
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -47,6 +45,8 @@ double distance_to_box(const Eigen::Vector2d& from, const Eigen::Vector2d& to, c
 
 }  // namespace
 
+Cell cell_of(const Eigen::Vector2d& point) { return {static_cast<int>(std::floor(point.x())), static_cast<int>(std::floor(point.y()))}; }
+
 int iterations_to_within(const std::vector<double>& history, double share) {
   if (history.empty() || !std::isfinite(history.back())) return 0;
   const double enough = history.back() * (1.0 + share);
@@ -59,8 +59,8 @@ std::vector<Eigen::Vector2d> to_metres(const GridGeometry& geometry, const std::
   return points_m;
 }
 
-double clearance_of(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>& points) {
-  double least = kMaxClearance;
+double clearance_of(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>& points, double at_most) {
+  double least = at_most;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector2d from = points[i], to = points[std::min(i + 1, points.size() - 1)];
     // Pieces of at most a cell, and for each the cells that could be nearer than what is known.
@@ -85,13 +85,15 @@ bool may_step(const Grid<Cost>& costs, Cell from, GridStep step) {
   return step.col == 0 || step.row == 0 || (costs.at({to.col, from.row}) != kLethalCost && costs.at({from.col, to.row}) != kLethalCost);
 }
 
-RoutePlanner::RoutePlanner(double cost_weight) {
+std::array<double, 256> cost_factors(double cost_weight) {
   if (!(cost_weight >= 0.0 && cost_weight <= kMaxCostWeight)) {
     throw InputError(fmt::format("cost_weight = {}: must lie in 0 ... {}", cost_weight, kMaxCostWeight));
   }
-  for (std::size_t cost = 0; cost < factors_.size(); ++cost) {
-    factors_[cost] = 1.0 + cost_weight * std::min<double>(static_cast<double>(cost), kMaxPassableCost) / kMaxPassableCost;
+  std::array<double, 256> factors;
+  for (std::size_t cost = 0; cost < factors.size(); ++cost) {
+    factors[cost] = 1.0 + cost_weight * std::min<double>(static_cast<double>(cost), kMaxPassableCost) / kMaxPassableCost;
   }
+  return factors;
 }
 
 Route RoutePlanner::plan(const Grid<Cost>& costs, Cell start, Cell goal) {

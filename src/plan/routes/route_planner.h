@@ -29,11 +29,17 @@ inline constexpr double kMaxClearance = 16.0;  ///< cells
 /// The iteration, from 1, from which the best cost stays within `share` of its final value; 0 if no route was found.
 int iterations_to_within(const std::vector<double>& history, double share);
 
+/// The cell that holds a route's point; of a corner the one above and to the right.
+Cell cell_of(const Eigen::Vector2d& point);
+
 /// In the grid's frame, m.
 std::vector<Eigen::Vector2d> to_metres(const GridGeometry& geometry, const std::vector<Eigen::Vector2d>& points);
 
-/// Cells from the polyline to the nearest lethal cell's square, at most kMaxClearance. The grid's border is no obstacle.
-double clearance_of(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>& points);
+/// Cells from the polyline to the nearest lethal cell's square, at most `at_most`. The grid's border is no obstacle.
+double clearance_of(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>& points, double at_most = kMaxClearance);
+
+/// By how much a cell of each cost lengthens the way through it: 1 + cost weight * cost / kMaxPassableCost. Throws InputError unless the weight lies in 0 ... 50.
+std::array<double, 256> cost_factors(double cost_weight);
 
 /// A step to one of the eight neighbours.
 struct GridStep {
@@ -52,7 +58,7 @@ bool may_step(const Grid<Cost>& costs, Cell from, GridStep step);
 class RoutePlanner {
  public:
   /// `cost_weight`: a cell at the highest passable cost counts as 1 + this many cells; 0 to 50.
-  explicit RoutePlanner(double cost_weight);
+  explicit RoutePlanner(double cost_weight) : factors_(cost_factors(cost_weight)) {}
   virtual ~RoutePlanner() = default;
 
   /// Whether it finds a route wherever there is one.

@@ -2,29 +2,21 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <utility>
 
-#include "plan/routes/line_of_sight.h"
+#include "plan/routes/grid_walk.h"
 
 namespace patrol::plan {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kTouched = 0.5;  ///< a lethal cell that is only touched counts as so long a way through it, cells
-
 /// x and y of each via point, cells.
 using Coordinates = std::vector<double>;
 
-struct Price {
-  double fitness = kInfinite;  ///< the less the better
-  bool is_route = false;       ///< no lethal cell is met; the fitness is the route's cost
-};
-
 struct Particle {
   Coordinates at, velocity, best_at;
-  Price best;
+  double best_cost = kInfinite;
 };
 
 struct Swarm {
@@ -39,42 +31,61 @@ struct Swarm {
   std::size_t extreme(Better better) const {
     std::size_t found = 0;
     for (std::size_t i = 1; i < particles.size(); ++i) {
-      if (better(particles[i].best.fitness, particles[found].best.fitness)) found = i;
+      if (better(particles[i].best_cost, particles[found].best_cost)) found = i;
     }
     return found;
   }
 };
 
+/// For every cell the nearest, as a king walks over lethal cells too, of those that can be reached from the start.
+std::vector<std::uint32_t> nearest_reachable(const StepGraph& graph, const GridGeometry& geometry, std::uint32_t start) {
+  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> nearest(graph.steps.size(), kNone), reached{start};
+  nearest[start] = start;
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    for (std::size_t direction = 0; direction < 8; ++direction) {
+      if (!graph.has_step(reached[i], direction)) continue;
+      const std::uint32_t next = graph.next(reached[i], direction);
+      if (nearest[next] == kNone) nearest[next] = next, reached.push_back(next);
+    }
+  }
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    const Cell cell = graph.cell_of(reached[i]);
+    for (const GridStep step : kGridSteps) {
+      const Cell other{cell.col + step.col, cell.row + step.row};
+      if (!geometry.contains(other) || nearest[graph.index_of(other)] != kNone) continue;
+      nearest[graph.index_of(other)] = nearest[reached[i]];
+      reached.push_back(graph.index_of(other));
+    }
+  }
+  return nearest;
+}
+
 class Flight {
  public:
   Flight(const TwoSwarmsSettings& settings, const Grid<Cost>& costs, const std::array<double, 256>& factors, Cell start, Cell goal)
-      : settings_(settings), costs_(costs), factors_(factors), start_(start), goal_(goal) {}
+      : settings_(settings), geometry_(costs.geometry()), start_(start), goal_(goal), graph_(costs, factors), walker_(graph_),
+        nearest_(nearest_reachable(graph_, geometry_, graph_.index_of(start))) {}
 
-  /// Its cells, without repetitions.
-  std::vector<Cell> legs(const Coordinates& via) const {
-    std::vector<Cell> cells{start_};
-    for (std::size_t i = 0; i < via.size(); i += 2) {
-      const Cell cell{static_cast<int>(via[i]), static_cast<int>(via[i + 1])};
-      if (cell != cells.back()) cells.push_back(cell);
-    }
-    if (goal_ != cells.back()) cells.push_back(goal_);
-    return cells;
-  }
+  const StepGraph& graph() const { return graph_; }
+  bool has_way() const { return nearest_[graph_.index_of(goal_)] == graph_.index_of(goal_); }
 
-  Price price(const Coordinates& via, std::int64_t& num_crossed) const {
-    const std::vector<Cell> cells = legs(via);
-    Price price{.fitness = 0.0, .is_route = true};
-    for (std::size_t i = 1; i < cells.size(); ++i) {
-      const double length = std::hypot(cells[i].col - cells[i - 1].col, cells[i].row - cells[i - 1].row);
-      walk_line(cells[i - 1], cells[i], [&](Cell cell, double share) {
-        const bool is_lethal = costs_.at(cell) == kLethalCost;
-        price.fitness += is_lethal ? settings_.lethal_price * std::max(kTouched, share * length) : share * length * factors_[costs_.at(cell)];
-        price.is_route = price.is_route && !is_lethal;
-        ++num_crossed;
-        return true;
-      });
+  /// The route of a particle there.
+  Walk decode(const Coordinates& via) {
+    Walk route;
+    std::uint32_t here = graph_.index_of(start_);
+    for (std::size_t i = 0; i <= via.size(); i += 2) {
+      const Cell at = i < via.size() ? Cell{static_cast<int>(via[i]), static_cast<int>(via[i + 1])} : goal_;
+      const std::uint32_t target = nearest_[graph_.index_of(at)];
+      const Walk leg = walker_.walk(here, target, [&](std::uint32_t cell, unsigned open) { return step_towards(target, cell, open); });
+      route.cells.insert(route.cells.end(), leg.cells.begin(), leg.cells.end());
+      route.directions.insert(route.directions.end(), leg.directions.begin(), leg.directions.end());
+      route.num_steps += leg.num_steps;
+      here = target;
     }
-    return price;
+    walker_.splice(route, here);
+    route.cost = cost_of(graph_, route);
+    return route;
   }
 
   /// Scattered about the straight line from start to goal, `spread` of the grid's longer side wide.
@@ -101,20 +112,35 @@ class Flight {
   }
 
  private:
-  double longer_side() const { return std::max(costs_.geometry().width, costs_.geometry().height); }
-  double keep_x(double x) const { return std::clamp(x, 0.0, costs_.geometry().width - 0.5); }
-  double keep_y(double y) const { return std::clamp(y, 0.0, costs_.geometry().height - 0.5); }
+  std::size_t step_towards(std::uint32_t target, std::uint32_t cell, unsigned open) const {
+    const Cell to = graph_.cell_of(target);
+    std::size_t nearest = 0;
+    int least = std::numeric_limits<int>::max();  // squared distance, cells
+    for (std::size_t direction = 0; direction < 8; ++direction) {
+      if ((open >> direction & 1u) == 0) continue;
+      const Cell next = graph_.cell_of(graph_.next(cell, direction));
+      const int squared = (to.col - next.col) * (to.col - next.col) + (to.row - next.row) * (to.row - next.row);
+      if (squared < least) least = squared, nearest = direction;
+    }
+    return nearest;
+  }
+
+  double longer_side() const { return std::max(geometry_.width, geometry_.height); }
+  double keep_x(double x) const { return std::clamp(x, 0.0, geometry_.width - 0.5); }
+  double keep_y(double y) const { return std::clamp(y, 0.0, geometry_.height - 0.5); }
 
   const TwoSwarmsSettings& settings_;
-  const Grid<Cost>& costs_;
-  const std::array<double, 256>& factors_;
+  GridGeometry geometry_;
   Cell start_, goal_;
+  StepGraph graph_;
+  Walker walker_;
+  std::vector<std::uint32_t> nearest_;  ///< [cell]
 };
 
 void exchange(Swarm& from, Swarm& to) {
   const Particle& best = from.particles[from.best()];
   Particle& worst = to.particles[to.worst()];
-  if (best.best.fitness < worst.best.fitness) worst.at = worst.best_at = best.best_at, worst.best = best.best;
+  if (best.best_cost < worst.best_cost) worst.at = worst.best_at = best.best_at, worst.best_cost = best.best_cost;
 }
 
 }  // namespace
@@ -125,13 +151,15 @@ TwoSwarms::TwoSwarms(const TwoSwarmsSettings& settings, double cost_weight, std:
 }
 
 void TwoSwarms::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) {
-  const Flight flight(settings_, costs, factors(), start, goal);
-  Coordinates best_route;
-  double best_cost = kInfinite;
+  Flight flight(settings_, costs, factors(), start, goal);
+  if (!flight.has_way()) return;
+  Walk best;
+  best.cost = kInfinite;
   const auto judge = [&](Particle& particle) {
-    const Price price = flight.price(particle.at, route.num_expanded);
-    if (price.fitness < particle.best.fitness) particle.best = price, particle.best_at = particle.at;
-    if (price.is_route && price.fitness < best_cost) best_cost = price.fitness, best_route = particle.at;
+    Walk walk = flight.decode(particle.at);
+    route.num_expanded += walk.num_steps;
+    if (walk.cost < particle.best_cost) particle.best_cost = walk.cost, particle.best_at = particle.at;
+    if (walk.cost < best.cost) best = std::move(walk);
   };
 
   constexpr double kExploringSpread = 1.0, kRefiningSpread = 0.3;
@@ -156,11 +184,10 @@ void TwoSwarms::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
       exchange(swarms[0], swarms[1]);
       exchange(swarms[1], swarms[0]);
     }
-    route.history.push_back(best_cost);
+    route.history.push_back(best.cost);
     ++route.num_iterations;
   }
-  if (!std::isfinite(best_cost)) return;
-  for (const Cell cell : flight.legs(best_route)) route.points.emplace_back(cell.col + 0.5, cell.row + 0.5);
+  route.points = points_of(flight.graph(), best, goal);
 }
 
 }  // namespace patrol::plan

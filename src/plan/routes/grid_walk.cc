@@ -1,4 +1,4 @@
-#include "plan/routes/ant_walk.h"
+#include "plan/routes/grid_walk.h"
 
 #include <numbers>
 #include <utility>
@@ -30,37 +30,6 @@ std::vector<Eigen::Vector2d> points_of(const StepGraph& graph, const Walk& walk,
 
 Walker::Walker(const StepGraph& graph) : graph_(graph), visit_(graph.steps.size()), position_(graph.steps.size()) {}
 
-Walk Walker::walk(const std::vector<double>& weights, std::uint32_t start, std::uint32_t goal, bool splices, RandomSequence random) {
-  ++num_walks_;
-  visit_[start] = num_walks_;
-  Walk walk;
-  for (std::uint32_t here = start; here != goal; ++walk.num_steps) {
-    std::array<double, 8> up_to{};  // sums of weights
-    double total = 0.0;
-    for (std::size_t direction = 0; direction < 8; ++direction) {
-      if (graph_.has_step(here, direction) && visit_[graph_.next(here, direction)] != num_walks_) total += weights[8 * std::size_t{here} + direction];
-      up_to[direction] = total;
-    }
-    if (total == 0.0) {  // a dead end
-      if (walk.cells.empty()) return walk;
-      here = walk.cells.back();
-      walk.cells.pop_back();
-      walk.directions.pop_back();
-      continue;
-    }
-    const double drawn = total * random.uniform();
-    std::size_t direction = 0;
-    while (up_to[direction] <= drawn && up_to[direction] < total) ++direction;
-    walk.cells.push_back(here);
-    walk.directions.push_back(static_cast<std::uint8_t>(direction));
-    here = graph_.next(here, direction);
-    visit_[here] = num_walks_;
-  }
-  if (splices) splice(walk, goal);
-  for (std::size_t i = 0; i < walk.cells.size(); ++i) walk.cost += graph_.price(walk.cells[i], walk.directions[i]);
-  return walk;
-}
-
 void Walker::splice(Walk& walk, std::uint32_t goal) {
   ++num_walks_;
   const auto size = static_cast<std::uint32_t>(walk.cells.size());
@@ -70,6 +39,7 @@ void Walker::splice(Walk& walk, std::uint32_t goal) {
   Walk spliced{.cells = {}, .directions = {}, .cost = 0.0, .num_steps = walk.num_steps};
   for (std::uint32_t i = 0; i < size;) {
     const std::uint32_t cell = walk.cells[i];
+    i = position_[cell];  // past the loops that come back here
     std::uint32_t farthest = i + 1;
     std::uint8_t by = walk.directions[i];
     for (std::uint8_t direction = 0; direction < 8; ++direction) {
@@ -82,6 +52,12 @@ void Walker::splice(Walk& walk, std::uint32_t goal) {
     i = farthest;
   }
   walk = std::move(spliced);
+}
+
+double cost_of(const StepGraph& graph, const Walk& walk) {
+  double cost = 0.0;
+  for (std::size_t i = 0; i < walk.cells.size(); ++i) cost += graph.price(walk.cells[i], walk.directions[i]);
+  return cost;
 }
 
 }  // namespace patrol::plan
