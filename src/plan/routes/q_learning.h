@@ -9,7 +9,7 @@
 namespace patrol::plan {
 
 struct QLearningSettings {
-  int episodes = 3000;
+  int episodes = 5000;
   double learning_rate = 1.0;     ///< alpha
   double discount = 1.0;          ///< gamma
   double exploration = 0.1;       ///< epsilon, the share of steps taken by chance, in the first episode; falls to 0 in the last
