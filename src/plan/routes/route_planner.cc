@@ -43,6 +43,13 @@ double distance_to_box(const Eigen::Vector2d& from, const Eigen::Vector2d& to, c
   return least;
 }
 
+/// From the box about a segment to a cell's square: never more than from the segment, and quick.
+double gap(const Eigen::Vector2d& from, const Eigen::Vector2d& to, int col, int row) {
+  const double dx = std::max({0.0, col - std::max(from.x(), to.x()), std::min(from.x(), to.x()) - col - 1.0});
+  const double dy = std::max({0.0, row - std::max(from.y(), to.y()), std::min(from.y(), to.y()) - row - 1.0});
+  return std::sqrt(dx * dx + dy * dy);
+}
+
 }  // namespace
 
 Cell cell_of(const Eigen::Vector2d& point) { return {static_cast<int>(std::floor(point.x())), static_cast<int>(std::floor(point.y()))}; }
@@ -70,7 +77,7 @@ double clearance_of(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>&
       const Cell low = cell_of(a.cwiseMin(b).array() - least), high = cell_of(a.cwiseMax(b).array() + least);
       for (int row = std::max(0, low.row); row <= std::min(costs.geometry().height - 1, high.row); ++row) {
         for (int col = std::max(0, low.col); col <= std::min(costs.geometry().width - 1, high.col); ++col) {
-          if (costs.at({col, row}) != kLethalCost) continue;
+          if (costs.at({col, row}) != kLethalCost || gap(a, b, col, row) >= least) continue;
           least = std::min(least, distance_to_box(a, b, {Eigen::Vector2d(col, row), Eigen::Vector2d(col + 1, row + 1)}));
         }
       }

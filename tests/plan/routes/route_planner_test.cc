@@ -80,15 +80,15 @@ TEST_P(EveryPlanner, PassesAGapOfOneCell) {
   EXPECT_TRUE(is_through);
 }
 
-TEST_P(EveryPlanner, IfCompleteAgreesWithBreadthFirstSearchOnMazesAndRandomGrids) {
-  if (!planner->is_complete()) GTEST_SKIP() << GetParam() << " does not claim completeness";
+TEST_P(EveryPlanner, AgreesWithBreadthFirstSearchOnMazesAndRandomGridsIfItIsCompleteAndElseFindsNoRouteWhereThereIsNone) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Grid<Cost> costs = seed % 2 == 0 ? generate_grid({.kind = "maze", .size_cells = 15}, seed).costs : random_grid(seed, 16);
     if (seed % 4 == 0) costs.at({7, 6}) = costs.at({6, 7}) = kLethalCost;  // a maze that may be closed
     const auto [start, goal] = random_ends(costs, seed);
     if (costs.at(start) == kLethalCost) continue;
     const bool has_way = std::isfinite(test::lengths_from(costs, start).at(goal));
-    ASSERT_EQ(planner->plan(costs, start, goal).status == PlanStatus::kFound, has_way) << "seed " << seed;
+    const bool is_found = planner->plan(costs, start, goal).status == PlanStatus::kFound;
+    ASSERT_TRUE(is_found == has_way || (!is_found && !planner->is_complete())) << "seed " << seed;
   }
 }
 
@@ -135,7 +135,7 @@ TEST_P(EveryPlanner, GivesTheSameRouteAgainWithTwoThreadsAndWhateverItPlannedBef
 
 // The corridor's middle third costs 1 + 4 in each cell: 3 + 3 x 5 for cells 3, 4, 5 of 0 ... 8, whose ends count half: 8 + 3 x 4 = 20.
 TEST_P(EveryPlanner, PricesARouteByTheCostsItCrosses) {
-  if (GetParam() == "any_angle_optimum") GTEST_SKIP() << "it knows no costs";
+  if (GetParam() == "any_angle_optimum") return;  // it knows no costs, and refuses a weight (below)
   const Route route = make(GetParam(), 4.0)->plan(draw({"...999..."}), {0, 0}, {8, 0});
   ASSERT_EQ(route.status, PlanStatus::kFound);
   EXPECT_NEAR(route.length, 8.0, kExactTol);
