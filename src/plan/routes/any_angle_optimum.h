@@ -12,7 +12,7 @@ namespace patrol::plan {
 /// planners stay off corners, and exceed it by that too.) A* over the visibility graph, whose edges are found only for the corners it expands: light
 /// spreads from the corner over the cells, and each corner that it reaches is checked exactly, in integers.
 ///
-/// A reference, not a planner to drive by: about 10^-5 s for each cell in sight of each corner. Knows no costs but lethal.
+/// A reference, not a planner to drive by: on open ground its time grows with the corners times the cells in sight of each. Knows no costs but lethal.
 class AnyAngleOptimum : public RoutePlanner {
  public:
   AnyAngleOptimum() : RoutePlanner(0.0) {}

@@ -57,7 +57,7 @@ TEST(LineOfSight, OnNeighboursIsTheRuleForSteps) {
 
 // Three cells along: half of the first, the second, half of the third. The second costs 5 ninths of the weight 9: 0.5 + (1 + 5) + 0.5 = 7.
 TEST(LinePrice, IsTheIntegralOfTheFactorsAlongTheLine) {
-  EXPECT_NEAR(*line_price(draw({".5."}), cost_factors(9.0 * 252.0 / 252.0), {0, 0}, {2, 0}), 7.0, kExactTol);
+  EXPECT_NEAR(*line_price(draw({".5."}), cost_factors(9.0), {0, 0}, {2, 0}), 7.0, kExactTol);
 }
 
 TEST(LinePrice, OnFreeGroundIsTheLength) {

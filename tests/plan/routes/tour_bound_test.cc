@@ -47,7 +47,8 @@ TEST(TourBound, OfOneWayMatricesIsBelowTheExactOrderToo) {
 
 // 4 of service in each, and the last cannot end before 100 + 4.
 TEST(TourBound, CountsServiceAndTheLatestOpening) {
-  TourProblem problem{.travel = {{0.0, 10.0, 20.0}, {10.0, 0.0, 10.0}, {20.0, 10.0, 0.0}}, .stations = std::vector<TourProblem::Station>(3, {.service = 4.0}), .start = {}, .end = {}};
+  TourProblem problem{.travel = {{0.0, 10.0, 20.0}, {10.0, 0.0, 10.0}, {20.0, 10.0, 0.0}},
+                      .stations = std::vector<TourProblem::Station>(3, {.service = 4.0}), .start = {}, .end = {}};
   EXPECT_NEAR(tour_lower_bound(problem, 32.0, 300), 20.0 + 12.0, 1e-6);
   problem.stations[1].earliest = 100.0;
   EXPECT_NEAR(tour_lower_bound(problem, 150.0, 300), 104.0, 1e-6);
