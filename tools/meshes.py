@@ -3,9 +3,10 @@ import numpy as np
 
 
 class Mesh:
-    """Triangles with texture coordinates, written as Wavefront OBJ."""
+    """Triangles with texture coordinates, written as Wavefront OBJ; coordinates with so many digits after the point."""
 
-    def __init__(self):
+    def __init__(self, digits=3):
+        self.digits = digits
         self.points, self.texture, self.faces = [], [], []
 
     def grid(self, points, texture, flip=False):
@@ -38,6 +39,6 @@ class Mesh:
     def write(self, path, maker):
         with open(path, 'w') as out:
             out.write(f'# made by {maker}\n')
-            out.writelines(f'v {x:.3f} {y:.3f} {z:.3f}\n' for x, y, z in self.points)
+            out.writelines(f'v {x:.{self.digits}f} {y:.{self.digits}f} {z:.{self.digits}f}\n' for x, y, z in self.points)
             out.writelines(f'vt {u:.4f} {v:.4f}\n' for u, v in self.texture)
             out.writelines(f'f {a + 1}/{a + 1} {b + 1}/{b + 1} {c + 1}/{c + 1}\n' for a, b, c in self.faces)

@@ -13,6 +13,7 @@
 
 #include "app/commands.h"
 #include "core/error.h"
+#include "io/one_line.h"
 
 namespace patrol::app {
 namespace {
@@ -36,6 +37,8 @@ struct Call {
   SolveOptions solve;
   StudyOptions study;
   TestOptions test;
+  MonitorOptions monitor;
+  SendOptions send;
   std::function<ExitCode()> chosen;
 };
 
@@ -46,6 +49,9 @@ void add_run(CLI::App& app, Call& call) {
   command->add_option("--seed", call.run.seed, "Seed of every random stream");
   command->add_flag("--watch", call.run.watch, "Show the run on the terminal while it goes: map, robot, figures, events");
   command->add_option("--out", call.run.out, "Run directory to leave");
+  command->add_option("--report-to", call.run.report_to, "Tell a monitoring platform: http://host:port");
+  command->add_option("--report-token-file", call.run.report_token_file, "File of the platform's token (default: PATROL_TOKEN)");
+  command->add_option("--robot-name", call.run.robot_name, "As the platform shall know it (default: robot and seed)");
   command->callback([&] { call.chosen = [&] { return run_command(call.run); }; });
 }
 
@@ -219,6 +225,26 @@ void add_test(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [&] { return test_command(call.test); }; });
 }
 
+void add_monitor(CLI::App& app, Call& call) {
+  MonitorOptions& monitor = call.monitor;
+  CLI::App* command = app.add_subcommand("monitor", "The monitoring platform: takes results from robots and shows them, until it is interrupted");
+  command->add_option("--port", monitor.port, "Port to listen at; 0: any that is free")->capture_default_str();
+  command->add_option("--host", monitor.host, "Address to listen at; 0.0.0.0: of every network")->capture_default_str();
+  command->add_option("--data", monitor.data, "Directory of what it keeps")->capture_default_str();
+  command->add_option("--token", monitor.token_file, "File of the token (default: PATROL_TOKEN, else one is made in the directory)");
+  command->callback([&] { call.chosen = [&] { return monitor_command(call.monitor); }; });
+}
+
+void add_send(CLI::App& app, Call& call) {
+  SendOptions& send = call.send;
+  CLI::App* command = app.add_subcommand("send", "Send what of a run's results still waits for the monitoring platform");
+  command->add_option("run", send.run, "Run directory")->required();
+  command->add_option("--to", send.to, "Platform: http://host:port")->required();
+  command->add_option("--token", send.token_file, "File of the platform's token (default: PATROL_TOKEN)");
+  command->add_option("--limit-s", send.limit_s, "Give up after so long without an answer, s")->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return send_command(call.send); }; });
+}
+
 void add_list(CLI::App& app, Call& call) {
   CLI::App* command = app.add_subcommand("list", "Worlds, scenarios, robots, sensors, methods");
   command->callback([&] { call.chosen = [] { return list_command(); }; });
@@ -233,20 +259,8 @@ void refuse_unknown_command(const CLI::App& app, int argc, const char* const* ar
   throw InputError(fmt::format("there is no command '{}' (known: {})", word, fmt::join(known, ", ")));
 }
 
-/// What a message quotes from a file may hold line ends and other control characters: they are written out.
-std::string on_one_line(const std::string& text) {
-  std::string line;
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '\n') line += "\\n";
-    else if (code < 0x20 || code == 0x7f) line += fmt::format("\\x{:02x}", code);
-    else line += c;
-  }
-  return line;
-}
-
 int report(const std::string& what, ExitCode code) {
-  fmt::print(stderr, "patrol: {}\n", on_one_line(what));
+  fmt::print(stderr, "patrol: {}\n", io::on_one_line(what));
   return static_cast<int>(code);
 }
 
@@ -260,7 +274,7 @@ int run_command_line(int argc, const char* const* argv) {
 
   Call call;
   for (const auto add : {add_run, add_score, add_localizability, add_replay, add_report, add_verify, add_sweep, add_collect, add_budget, add_faults,
-                         add_slam, add_calibrate, add_train, add_solve, add_study, add_test, add_list}) {
+                         add_slam, add_calibrate, add_train, add_solve, add_study, add_test, add_monitor, add_send, add_list}) {
     add(app, call);
   }
 

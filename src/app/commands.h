@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/exit_code.h"
+#include "app/monitor/monitor_options.h"
 #include "app/sweep/sweep_options.h"
 #include "app/test/test_options.h"
 #include "score/relation_error.h"
@@ -20,6 +21,9 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;
   bool watch = false;  ///< show it on the terminal while it goes
   std::optional<std::filesystem::path> out;
+  std::optional<std::string> report_to;  ///< address of a monitoring platform
+  std::optional<std::filesystem::path> report_token_file;
+  std::optional<std::string> robot_name;  ///< for the platform; otherwise robot and seed
 };
 ExitCode run_command(const RunOptions& options);
 
@@ -128,6 +132,18 @@ ExitCode study_command(const StudyOptions& options);
 
 /// Runs every scenario of a folder against what it expects.
 ExitCode test_command(const TestOptions& options);
+
+/// The monitoring platform, until it is interrupted.
+ExitCode monitor_command(const MonitorOptions& options);
+
+struct SendOptions {
+  std::filesystem::path run;
+  std::string to;
+  std::optional<std::filesystem::path> token_file;
+  double limit_s = 30.0;  ///< without any progress
+};
+/// Sends what of a run's results still waits for the platform.
+ExitCode send_command(const SendOptions& options);
 
 ExitCode list_command();
 

@@ -95,6 +95,9 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
     if (!name.empty()) files.push_back(find_named_file(world, key, name));
   }
   if (!scenario.map.empty()) files.push_back(io::map_image(find_named_file(world, "map", scenario.map)));
+  if (!scenario.references.empty()) {
+    for (const std::filesystem::path& file : io::station_scan_files(world / scenario.references)) files.push_back(file);
+  }
   return files;
 }
 
@@ -117,6 +120,7 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
     files.goals = io::load_nav(file);
     check_goals(file.string(), files.goals, files.map);
   }
+  if (!scenario.references.empty()) files.references = io::load_station_scans(files.world_xml.parent_path() / scenario.references);
   const RemoteSettings& remote = scenario.remote;
   if (!remote.drive.empty() && !remote.recorded.empty()) {
     throw InputError("remote: has a drive and recorded commands: only one of them can be followed");

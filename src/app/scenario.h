@@ -11,6 +11,7 @@
 #include "core/route.h"
 #include "core/settings.h"
 #include "io/expectations.h"
+#include "io/station_scans.h"
 #include "render/light.h"
 #include "sim/twin.h"
 
@@ -84,6 +85,7 @@ struct Scenario {
   std::string mission = "routes/boxes_and_well.json";  ///< below the world's folder
   std::string map;    ///< map_server YAML below the world's folder, in map; empty: the robot makes its own
   std::string goals;  ///< nav.json likewise; empty: marked on the drive by remote control
+  std::string references;  ///< a folder likewise, with the scans of an earlier round (io/station_scans.h)
   RemoteSettings remote;
   StartOffsetSettings start;
   sim::SensorSuiteSettings sensors;
@@ -92,9 +94,12 @@ struct Scenario {
   StackSettings stack;
   std::vector<sim::PropSettings> props;
   sim::LowObstacleSettings low_obstacles;  ///< scattered by the seed, beside the props
+  std::vector<sim::LiningMoveSettings> lining;  ///< how its rings have moved
   std::vector<sim::ActorSettings> actors;
   std::vector<sim::LeakSettings> leaks;
   sim::WindSettings wind;
+  sim::RockSettings rock;
+  std::vector<sim::WaterBodySettings> water;  ///< ahead of the face
   render::LightSettings light;  ///< of the replay; for dust see sensors.dust
   std::vector<sim::FaultSettings> faults;
   std::vector<KidnapSettings> kidnaps;
@@ -111,6 +116,7 @@ struct Scenario {
     visit("mission", self.mission);
     visit("map", self.map);
     visit("goals", self.goals);
+    visit("references", self.references);
     visit("remote", self.remote);
     visit("start", self.start);
     visit("sensors", self.sensors);
@@ -119,9 +125,12 @@ struct Scenario {
     visit("stack", self.stack);
     visit("props", self.props);
     visit("low_obstacles", self.low_obstacles);
+    visit("lining", self.lining);
     visit("actors", self.actors);
     visit("leaks", self.leaks);
     visit("wind", self.wind);
+    visit("rock", self.rock);
+    visit("water", self.water);
     visit("light", self.light);
     visit("faults", self.faults);
     visit("kidnaps", self.kidnaps);
@@ -174,6 +183,7 @@ struct ScenarioFiles {
   RemoteDrive drive;                    ///< in site
   std::vector<RemoteCommand> recorded;
   std::vector<MarkedGoal> goals;        ///< in map
+  std::vector<io::StationScan> references;
   std::optional<OccupancyGrid> map;
 
   bool has_remote() const { return !drive.empty() || !recorded.empty(); }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,16 +41,29 @@ struct TrackGeometry {
   double body_height_m = 0.0;      ///< of the body's origin above level ground under the belts
 };
 
+/// Turns the coil of the water detector: a yaw joint (to the left) and on it a pitch joint (downwards), whose axes meet in the coil's middle.
+struct AntennaGeometry {
+  Pose3 T_body_mount;  ///< there; the coil's axis is x of it at yaw 0 and pitch 0
+  JointLimit yaw, pitch;
+  double stowed_yaw_rad = 0.0;
+  double stowed_pitch_rad = -std::numbers::pi / 2.0;  ///< the loop lies flat
+
+  Pose3 T_body_tem(double yaw_rad, double pitch_rad) const {
+    return T_body_mount * Pose3{Eigen::Vector3d::Zero(), quaternion_from_rpy(0.0, pitch_rad, yaw_rad)};
+  }
+};
+
 /// What the robot knows of itself, read from its URDF (io/urdf.h).
 struct RobotDescription {
   std::string name;
   double mass_kg = 0.0;
   std::vector<LegGeometry> legs;          ///< FL, FR, RL, RR; empty for a robot without legs
   std::optional<TrackGeometry> tracks;    ///< of a tracked robot
+  std::optional<AntennaGeometry> antenna;    ///< of a robot with a link `tem_mount`
   std::vector<std::string> joint_names;   ///< leg by leg: abduction, hip, knee; or the sprockets: left, right
   std::vector<JointLimit> joint_limits;   ///< [joint]
   std::vector<Eigen::Vector2d> footprint_m;    ///< convex hull of the collision shapes in level, counter-clockwise
-  /// Fixed frames: "lidar", "lidar3d", "imu", "tdlas", "gnss", "uwb", "scanner", "tem", "depth_camera", "ultrasonic_0", "ultrasonic_1" ...
+  /// Fixed frames: "lidar", "lidar3d", "imu", "tdlas", "gnss", "uwb", "scanner", "tem_mount", "depth_camera", "ultrasonic_0", "ultrasonic_1" ...
   std::map<std::string, Pose3> T_body_sensor;
 
   /// Of the circle about the body's origin that holds the outline.

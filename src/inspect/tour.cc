@@ -18,6 +18,7 @@ Tour::Tour(const TourSettings& settings, std::vector<MarkedGoal> goals, bool has
 
 TourOutput Tour::step(Time now, const TourInput& input) {
   now_ = now;
+  if (!first_step_) first_step_ = now;
   T_map_body_ = input.pose.T_map_body;
   TourOutput output;
   if (watch_localization(input, output)) return output;
@@ -89,7 +90,7 @@ bool Tour::watch_localization(const TourInput& input, TourOutput& output) {
 }
 
 void Tour::wait(TourOutput& output) {
-  if (now_ < from_seconds(settings_.start_wait_s)) return;
+  if (now_ < from_seconds(settings_.start_wait_s) || now_ < *first_step_ + from_seconds(settings_.start_look_s)) return;
   if (!has_remote_ || has_map_) return start_navigation(output);
   last_remote_ = now_;
   enter(Phase::kRemote);

@@ -17,6 +17,7 @@ struct TourSettings {
   bool starts_docked = true;      ///< otherwise the robot does not know where it is, and localises from scratch
   bool docks = true;              ///< after the mapping drive and each navigation
   double start_wait_s = 4.0;      ///< standing still at first: sensors settle, their biases are learnt
+  double start_look_s = 1.5;      ///< of that, at least so long from the first step on: the map's first scan is taken standing
   double stand_s = 1.0;           ///< at a goal, before it is reported
   double position_tol_m = 0.03;   ///< at a goal; never more than its own accuracy asks
   double yaw_tol_rad = 0.017;
@@ -31,6 +32,7 @@ struct TourSettings {
     visit("starts_docked", self.starts_docked);
     visit("docks", self.docks);
     visit("start_wait_s", self.start_wait_s, between(0.0, 600.0));
+    visit("start_look_s", self.start_look_s, between(0.0, 600.0));
     visit("stand_s", self.stand_s, between(0.0, 60.0));
     visit("position_tol_m", self.position_tol_m, between(0.005, 5.0));
     visit("yaw_tol_rad", self.yaw_tol_rad, between(0.002, 3.2));
@@ -123,6 +125,7 @@ class Tour {
   bool has_map_;
   bool is_docked_;
   Phase phase_ = Phase::kWaiting;
+  std::optional<Time> first_step_;
   Time phase_start_{};
   Time last_remote_{};
   int navigation_ = 0;        ///< 1 is the first

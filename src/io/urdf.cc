@@ -70,6 +70,7 @@ class UrdfReader {
   LegGeometry read_leg(const std::string& name) const;
   void read_legs(RobotDescription& robot) const;
   void read_tracks(RobotDescription& robot) const;
+  AntennaGeometry read_antenna() const;
   JointLimit read_limit(const std::string& name) const;
   double foot_radius_m(const std::string& link) const;
   double sprocket_radius_m(const std::string& link) const;
@@ -339,6 +340,22 @@ void UrdfReader::read_tracks(RobotDescription& robot) const {
   if (robot.tracks->contact_length_m <= 0.0) fail(kTrackNames[0], "two wheels at least must stand on the ground");
 }
 
+AntennaGeometry UrdfReader::read_antenna() const {
+  const auto check = [this](const char* name, const Eigen::Vector3d& axis) {
+    const urdf::JointConstSharedPtr found = joint(name);
+    const Eigen::Vector3d found_axis(found->axis.x, found->axis.y, found->axis.z);
+    if (found->type != urdf::Joint::REVOLUTE || (found_axis - axis).norm() > 1e-9) fail(name, "must be revolute, the yaw about z, the pitch about y");
+    const Pose3 origin = joint_origin(name);
+    if (origin.position.norm() > 1e-9 || origin.rotation.vec().norm() > 1e-9) fail(name, "the axes of the antenna must meet in the coil's middle: no <origin>");
+  };
+  check("tem_yaw_joint", Eigen::Vector3d::UnitZ());
+  check("tem_pitch_joint", Eigen::Vector3d::UnitY());
+  const AntennaGeometry mount{
+      .T_body_mount = joint_origin("tem_mount_joint"), .yaw = read_limit("tem_yaw_joint"), .pitch = read_limit("tem_pitch_joint")};
+  if (mount.pitch.lower_rad >= mount.stowed_pitch_rad) fail("tem_pitch_joint", "must reach -90 degrees, where the antenna is stowed");
+  return mount;
+}
+
 RobotDescription UrdfReader::read() const {
   RobotDescription robot;
   robot.name = model_->getName();
@@ -357,6 +374,7 @@ RobotDescription UrdfReader::read() const {
   } else {
     read_legs(robot);
   }
+  if (model_->getLink("tem_mount")) robot.antenna = read_antenna();
   robot.footprint_m = read_footprint(robot);
   return robot;
 }

@@ -82,7 +82,7 @@ void RunFollower::add(const Path& plan) {
 
 void RunFollower::add(const Event& event) {
   snapshot_.event = event.text;
-  snapshot_.is_alarm = event.kind == "alarm";
+  snapshot_.is_alarm = event.kind.ends_with("alarm");
 }
 
 void RunFollower::add(const GroundTruth& truth) {

@@ -28,7 +28,8 @@ std::uint32_t mask_of(const mjModel& model, int body) {
   if (robot < 0 || model.body_rootid[body] != model.body_rootid[robot]) return kRayScenery;
   const std::string_view name = mj_id2name(&model, mjOBJ_BODY, body);
   if (name == "lidar") return kRayLidar2d;
-  return name == "lidar3d" ? kRayLidar3d : kRayRobot;
+  if (name == "lidar3d") return kRayLidar3d;
+  return name == "scanner" ? kRayScanner : kRayRobot;
 }
 
 /// What moves as one: the geoms of a body and of everything welded to it.

@@ -17,10 +17,11 @@ namespace patrol::sim {
 /// What a ray may hit.
 enum RayMask : std::uint32_t {
   kRayScenery = 1u << 0,  ///< world and actors
-  kRayRobot = 1u << 1,    ///< the robot, but for its lidars
+  kRayRobot = 1u << 1,    ///< the robot, but for its lidars and its scanner
   kRayLidar2d = 1u << 2,  ///< the housing of the link `lidar`
   kRayLidar3d = 1u << 3,  ///< the housing of the link `lidar3d`
-  kRayEverything = 0xfu,
+  kRayScanner = 1u << 4,  ///< the housing of the link `scanner`
+  kRayEverything = 0x1fu,
 };
 
 struct RayHit {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "sim/antenna_mount.h"
 
 namespace patrol::sim {
 namespace {
@@ -101,6 +102,7 @@ AssembledModel assemble_model(const std::string& world_xml, const std::string& r
   const mjModel& model = *assembled.physics;
   assembled.start_qpos.assign(model.qpos0, model.qpos0 + model.nq);
   put_legs_in_start_posture(model, assembled.start_qpos.data());
+  stow_antenna(model, assembled.start_qpos.data());
   refuse_start_inside_something(model, assembled.start_qpos, T_world_start);
   return assembled;
 }

@@ -11,11 +11,12 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "sim/robot_model.h"
+#include "sim/truck_prop.h"
 
 namespace patrol::sim {
 namespace {
 
-constexpr std::array kKinds = {"rebar", "kerb", "hose", "brick"};
+constexpr std::array kLowKinds = {"rebar", "kerb", "hose", "brick"};
 constexpr double kFoot_m = 0.1;  // in the ground
 
 using Color = std::array<float, 4>;
@@ -84,10 +85,28 @@ void add_rebar(mjsBody& body, const PropSettings& prop, int number) {
   add_block(body, prop, number, kGroupTouchOnly, kRust);
 }
 
+void add_truck(mjsBody& body, const PropSettings& prop, int number) {
+  const double turn = prop.turn_deg * std::numbers::pi / 180.0, c = std::cos(turn), s = std::sin(turn);
+  for (const TruckPart& part : truck_parts()) {
+    const bool is_wheel = part.shape == TruckPart::Shape::kWheel;
+    mjsGeom* geom = add_geom(body, is_wheel ? mjGEOM_CYLINDER : mjGEOM_BOX, prop, part.rgba);
+    geom->pos[0] += c * part.centre[0] - s * part.centre[1];
+    geom->pos[1] += s * part.centre[0] + c * part.centre[1];
+    geom->pos[2] = part.centre[2];
+    std::copy(part.half.begin(), part.half.end(), geom->size);
+    if (!is_wheel) continue;
+    const double half = std::sqrt(0.5), w = geom->quat[0], z = geom->quat[3];  // a cylinder's axis is z: first laid along y, then turned
+    const double laid[4] = {w * half, w * half, z * half, z * half};
+    std::copy_n(laid, 4, geom->quat);
+  }
+  add_block(body, prop, number, kGroupTouchOnly, kStone);
+}
+
 void add_prop(mjsBody& body, const PropSettings& prop, int number) {
   if (prop.kind == "rebar") return add_rebar(body, prop, number);
   if (prop.kind == "kerb") return add_block(body, prop, number, kGroupSolid, kStone);
   if (prop.kind == "brick") return add_block(body, prop, number, kGroupSolid, kBrick);
+  if (prop.kind == "truck") return add_truck(body, prop, number);
   const double radius = prop_size("hose").height_m / 2.0;
   make_solid(*add_rod(body, prop, radius, 0.0, radius, kBlue), number);
 }
@@ -125,7 +144,8 @@ PropSize prop_size(const std::string& kind) {
   if (kind == "kerb") return {.length_m = 1.0, .width_m = 0.15, .height_m = 0.22};
   if (kind == "hose") return {.length_m = 1.6, .width_m = 0.10, .height_m = 0.10};
   if (kind == "brick") return {.length_m = 0.25, .width_m = 0.12, .height_m = 0.14};
-  throw InputError(fmt::format("there is no prop of kind {} (known: {})", kind, fmt::join(kKinds, ", ")));
+  if (kind == "truck") return {.length_m = 7.6, .width_m = 2.5, .height_m = 3.0};
+  throw InputError(fmt::format("there is no prop of kind {} (known: {}, truck)", kind, fmt::join(kLowKinds, ", ")));
 }
 
 void add_props(mjSpec& world, const std::vector<PropSettings>& props) {
@@ -152,8 +172,8 @@ std::vector<PropSettings> scatter_low_obstacles(const LowObstacleSettings& setti
     const double in_part = random.uniform(obstacle, 0) * (part - settings.apart_m) + settings.apart_m / 2.0;
     const RoutePlace place = place_at(settings.route, settings.clear_ends_m + i * part + in_part);
     const double beside = settings.beside_m * (2.0 * random.uniform(obstacle, 1) - 1.0);
-    const auto kind = static_cast<std::size_t>(random.uniform(obstacle, 2) * kKinds.size());
-    props.push_back({.kind = kKinds[kind],
+    const auto kind = static_cast<std::size_t>(random.uniform(obstacle, 2) * kLowKinds.size());
+    props.push_back({.kind = kLowKinds[kind],
                      .x_m = place.point.x() - beside * place.ahead.y(),
                      .y_m = place.point.y() + beside * place.ahead.x(),
                      .turn_deg = 180.0 * random.uniform(obstacle, 3)});

@@ -11,7 +11,7 @@
 
 namespace patrol::sim {
 
-/// Something that lies about on a building site and that a 2D lidar looks over.
+/// Something that lies about on a building site and that a 2D lidar looks over; or a truck that is parked there.
 struct PropSettings {
   std::string kind = "rebar";
   double x_m = 0.0;  ///< of its middle, in world
@@ -20,7 +20,7 @@ struct PropSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("kind", self.kind, one_of({"rebar", "kerb", "hose", "brick"}));
+    visit("kind", self.kind, one_of({"rebar", "kerb", "hose", "brick", "truck"}));
     visit("x_m", self.x_m);
     visit("y_m", self.y_m);
     visit("turn_deg", self.turn_deg, between(-360.0, 360.0));
@@ -35,11 +35,11 @@ struct PropSize {
 };
 
 /// rebar: a bundle of 2 m; kerb: a kerbstone on its side; hose: 1.6 m of a 10 cm hose; brick: two on one
-/// another.
+/// another; truck: a dump truck, its nose along x (sim/truck_prop.h).
 PropSize prop_size(const std::string& kind);
 
 /// Adds the props to a world: each is one touchable geom `prop_<number>`, from 1, in group 0 (a bundle of
-/// rebar: a hull in group 3 and bars to be seen). They lie at z = 0, where tunnel and street have their
+/// rebar and a truck: a hull in group 3, and their parts to be seen). They lie at z = 0, where tunnel and street have their
 /// ground to within centimetres. Throws InputError naming `props.<index>.<field>` when a setting breaks its
 /// rule.
 void add_props(mjSpec& world, const std::vector<PropSettings>& props);

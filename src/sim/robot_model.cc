@@ -118,6 +118,14 @@ void set_inertia(const urdf::Inertial& inertial, mjsBody& body) {
   body.inertia[2] = inertial.izz;
 }
 
+bool is_antenna(const urdf::Joint& joint) { return joint.name.starts_with("tem_"); }
+
+/// A digital servo's gear of 200 : 1 behind a small coreless motor. Viscous, not dry: dry friction is a constraint, and costs physics.
+void set_servo_gear(mjsJoint& hinge) {
+  hinge.armature = 0.02;
+  hinge.damping[0] = 0.3;
+}
+
 void add_joint(mjSpec& spec, const urdf::Joint& joint, mjsBody& body) {
   const bool is_sprocket = joint.type == urdf::Joint::CONTINUOUS;
   if (joint.type != urdf::Joint::REVOLUTE && !is_sprocket) return;
@@ -127,19 +135,23 @@ void add_joint(mjSpec& spec, const urdf::Joint& joint, mjsBody& body) {
   hinge->axis[0] = joint.axis.x;
   hinge->axis[1] = joint.axis.y;
   hinge->axis[2] = joint.axis.z;
-  if (is_sprocket) {
+  if (is_antenna(joint)) {
+    set_servo_gear(*hinge);
+  } else if (is_sprocket) {
     hinge->armature = sprocket_armature();
     hinge->frictionloss = joint.dynamics ? joint.dynamics->friction : 0.0;
     hinge->solref_friction[0] = 0.01;  // as firm as the ground: the parking brake is this friction too
     hinge->solimp_friction[0] = hinge->solimp_friction[1] = 0.999;
   } else {
+    hinge->armature = kArmature;
+    hinge->damping[0] = kDamping;
+    hinge->frictionloss = kFrictionLoss;
+  }
+  if (!is_sprocket) {
     hinge->limited = mjLIMITED_TRUE;
     const double unit = spec.compiler.degree ? 180.0 / M_PI : 1.0;  // a spec holds angles as its world's file writes them
     hinge->range[0] = joint.limits->lower * unit;
     hinge->range[1] = joint.limits->upper * unit;
-    hinge->armature = kArmature;
-    hinge->damping[0] = kDamping;
-    hinge->frictionloss = kFrictionLoss;
   }
 
   mjsActuator* motor = mjs_addActuator(&spec, nullptr);

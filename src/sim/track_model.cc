@@ -115,7 +115,7 @@ void use_track_friction(mjOption& option) {
 }
 
 Stance stance_on_tracks(const urdf::ModelInterface& robot) {
-  constexpr double kDrop_m = 0.04;
+  constexpr double kDrop_m = 0.01;
   Stance stance{.height_m = 0.0, .support_m = {Eigen::Vector2d::Zero()}, .eye_height_m = 1.0};
   for (const char* name : {"left_track", "right_track"}) {
     const urdf::LinkConstSharedPtr track = robot.getLink(name);

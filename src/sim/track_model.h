@@ -29,7 +29,7 @@ double sprocket_armature();
 /// form instead of 1 % (tests/scenario/tracks_test.cc).
 void use_track_friction(mjOption& option);
 
-/// A hand's breadth above the highest ground under any wheel: the robot settles from there in the first ticks.
+/// A centimetre above the highest ground under any wheel: the robot settles from there in the first ticks, and does not turn on its springs.
 Stance stance_on_tracks(const urdf::ModelInterface& robot);
 
 }  // namespace patrol::sim

@@ -38,11 +38,17 @@ std::unique_ptr<Locomotion> make_locomotion(const TwinSettings& settings, const 
   return std::make_unique<TrackDrive>(robot, settings.track_drive, settings.sensors.hall.ticks_per_rad(), physics);
 }
 
+AssembledModel assemble(const TwinSettings& settings) {
+  AssembledModel model = assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start, settings.props);
+  move_lining(settings.lining_moves, settings.lining, *model.view);
+  return model;
+}
+
 }  // namespace
 
 Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uint64_t seed,
            const DepthImagerFactory& make_depth_imager)
-    : model_(assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start, settings.props)),
+    : model_(assemble(settings)),
       data_(make_data(*model_.physics)),
       nearby_(*model_.physics),
       robot_body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)),
@@ -51,10 +57,11 @@ Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uin
       locomotion_(make_locomotion(settings, robot, *model_.physics)),
       actors_(*model_.physics, settings.actors),
       sensors_(settings.sensors, robot, *model_.physics, *model_.view,
-               GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed, make_depth_imager),
+               GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed, make_depth_imager, settings.underground),
       recorded_(settings.recorded),
       tick_(from_seconds(model_.physics->opt.timestep)) {
   if (!settings.drive.empty()) driver_.emplace(settings.driver, settings.drive, seed);
+  if (robot.antenna) antenna_.emplace(settings.sensors.antenna, *robot.antenna, *model_.physics, seed);
   if (robot_body_ < 0) throw InputError(fmt::format("{}: no link named {}", settings.robot_urdf, frame_id::kBody));
   std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
   actors_.advance(now_, {.p_world = settings.T_world_start.position(), .radius_m = robot_radius_m_}, *data_);
@@ -73,6 +80,7 @@ void Twin::step() {
                        .feet = sensors_.latest_foot_contacts(),
                        .ticks = sensors_.latest_track_ticks()},
                       command_, *model_.physics, *data_);
+    if (antenna_) antenna_->step(*model_.physics, *data_);
   }
   {
     const auto lap = clock_.lap("actors");
@@ -85,6 +93,7 @@ void Twin::step() {
   }
   {
     const auto lap = clock_.lap("physics");
+    hold_still();
     mj_Euler(model, data_.get());
     now_ += tick_;
     nearby_.update(*data_);
@@ -95,11 +104,28 @@ void Twin::step() {
   hear_remote();
   const auto lap = clock_.lap("sensors");
   sensors_.step(*model, *data_, now_);
+  if (antenna_) {
+    if (const auto state = antenna_->read(*data_, now_)) sensors_.hear(*state);
+  }
+}
+
+void Twin::command(const InstrumentCommand& command) {
+  const auto* antenna = std::get_if<AntennaCommand>(&command);
+  if (antenna != nullptr && antenna_) antenna_->command(*antenna);
+  sensors_.command(command);
+}
+
+// MuJoCo's friction is soft: a robot that stands creeps by micrometres and by thousandths of a degree a second, up to 0.07 degrees
+// over a scan in the tunnel. A parked one does not; so while an instrument needs it still, the solver takes out what slip is left.
+void Twin::hold_still() {
+  constexpr int kNoSlipIterations = 3;
+  const bool is_asked_to_stand = command_.vx_mps == 0.0 && command_.vy_mps == 0.0 && command_.yaw_rate_radps == 0.0;
+  model_.physics->opt.noslip_iterations = sensors_.is_busy() && is_asked_to_stand ? kNoSlipIterations : 0;
 }
 
 void Twin::hear_remote() {
   if (driver_) {
-    if (const auto command = driver_->step(now_, to_planar(truth().T_world_body), actors_.positions())) {
+    if (const auto command = driver_->step(now_, to_planar(truth().T_world_body), actors_.positions(), is_busy())) {
       sensors_.hear(*command);
     }
   }

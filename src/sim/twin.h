@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,9 @@
 #include "core/part_clock.h"
 #include "core/robot_description.h"
 #include "sim/actors.h"
+#include "sim/antenna_mount.h"
 #include "sim/gas_plume.h"
+#include "sim/lining_moves.h"
 #include "sim/locomotion/locomotion.h"
 #include "sim/locomotion/quadruped_controller.h"
 #include "sim/locomotion/track_drive_settings.h"
@@ -19,6 +22,7 @@
 #include "sim/props.h"
 #include "sim/remote_operator.h"
 #include "sim/sensors/sensor_suite.h"
+#include "sim/water_ahead.h"
 
 namespace patrol::sim {
 
@@ -31,9 +35,12 @@ struct TwinSettings {
   LocomotionSettings locomotion;   ///< of a robot with legs
   TrackDriveSettings track_drive;  ///< of a robot with tracks
   std::vector<PropSettings> props;
+  std::optional<TunnelLining> lining;            ///< of the world, in world
+  std::vector<LiningMoveSettings> lining_moves;
   std::vector<ActorSettings> actors;
   std::vector<LeakSettings> leaks;
   WindSettings wind;
+  Underground underground;
   std::vector<FaultSettings> faults;
   RemoteDrive drive;                    ///< in world; driven by a person with a remote control, empty: nobody
   RemoteOperatorSettings driver;
@@ -54,6 +61,10 @@ class Twin {
   /// Time since the start; of the state that `truth` describes.
   Time now() const { return now_; }
   void set_command(const VelocityCommand& command) { command_ = command; }
+  /// What is asked of the inspection's instruments; now.
+  void command(const InstrumentCommand& command);
+  /// An instrument is at work, or the antenna is out: the robot must stand still.
+  bool is_busy() const { return sensors_.is_busy() || (antenna_ && antenna_->is_out(*data_)); }
 
   /// Sensor messages whose delivery is due, in order of delivery.
   std::vector<SensorMessage> take_messages();
@@ -74,6 +85,7 @@ class Twin {
   const PartClock& clock() const { return clock_; }
 
  private:
+  void hold_still();
   void hear_remote();
   void note_collisions();
   void throw_if_diverged() const;
@@ -85,6 +97,7 @@ class Twin {
   double robot_radius_m_;
   TwinSettings settings_;
   std::unique_ptr<Locomotion> locomotion_;
+  std::optional<AntennaMount> antenna_;
   Actors actors_;
   SensorSuite sensors_;
   std::optional<RemoteOperator> driver_;

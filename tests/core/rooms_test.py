@@ -21,7 +21,8 @@ MAY_USE = {
     "inspect": {"core", "slam"},
     "score": {"core"},
     "render": {"core", "io", "sim"},
-    "app": {"core", "io", "sim", "slam", "localize", "plan", "inspect", "score", "render"},
+    "monitor": {"core", "io"},
+    "app": {"core", "io", "sim", "slam", "localize", "plan", "inspect", "score", "render", "monitor"},
 }
 STACK = ("slam", "localize", "plan", "inspect")
 BLIND = STACK + ("score",)  # rooms that never see MuJoCo

@@ -154,6 +154,15 @@ TEST(Tour, StandsAtAGoalOfTypeDUntilTheLiningIsScanned) {
   EXPECT_EQ(robot.count("mission_completed"), 1);
 }
 
+TEST(Tour, ARobotThatIsLateToKnowHowItMovesStandsForOneAndAHalfSecondsFromThenOn) {
+  Tour tour({.navigations = 1, .starts_docked = false}, two_goals(), false);
+  Time started{};
+  for (Time now = std::chrono::seconds(7); started == Time{}; now += kStep) {
+    if (tour.step(now, {}).mode == TourMode::kNavigate) started = now;
+  }
+  EXPECT_NEAR(to_seconds(started), 8.5, 0.06);
+}
+
 TEST(Tour, AScanThatFailsIsReportedAndTheRoundGoesOn) {
   Robot robot(Tour({.navigations = 1}, inspection_goals(), false));
   robot.inspection = InspectionFeedback::kFailed;
@@ -185,7 +194,7 @@ TEST(Tour, AtAGoalOfTypeRAPersonDrivesMarksAndHandsOverAgain) {
 
 TEST(Tour, NobodyComesFor120SecondsAndItGoesHomeByItselfWithoutCallingItDone) {
   Robot robot(Tour({.navigations = 1}, inspection_goals(), true, true));
-  robot.run(8.0 + 119.0);
+  robot.run(5.0 + 119.0);
   EXPECT_EQ(robot.output.mode, TourMode::kRemote);
   robot.run(30.0);
   EXPECT_EQ(robot.count("docked"), 1);

@@ -118,6 +118,23 @@ class Tunnel(World, unittest.TestCase):
             for x in np.arange(24.5, 65.6, 1.0):  # and the beams reach 5.3 m further both ways
                 np.testing.assert_allclose(scan(x, z), first, atol=1e-3)
 
+    def test_the_lining_is_the_surveys_within_a_millimetre_from_the_first_ring_to_the_last(self):
+        design = self.site["lining"]
+        self.assertEqual([element["length"] for element in design["axis"]][0], self.STRAIGHT)
+        self.assertEqual((design["first_ring"], design["ring_length"], design["rings"]), (0.0, 2.0, 50))
+        radius = 1.0 / design["axis"][1]["curvature"]
+        for s in (0.02, 1.3, 35.7, 61.1, 81.5, 83.1, 91.0):  # 83.1: not in the middle of a ring
+            turn = max(s - self.STRAIGHT, 0.0) / radius
+            x, y = min(s, self.STRAIGHT) + radius * np.sin(turn), radius * (1.0 - np.cos(turn))
+            for clock in np.radians((-80, -50, -21, 8, 40, 77)):
+                left = -np.sin(clock)
+                direction = (-left * np.sin(turn), left * np.cos(turn), np.cos(clock))
+                near = design["crown_radius"] - 0.05  # past what hangs there
+                origin = np.array((x, y, design["crown_centre"])) + near * np.array(direction)
+                distance, name = self.range(origin, direction, LIDAR_SEES)
+                self.assertEqual(name, "lining")
+                self.assertAlmostEqual(near + distance, design["crown_radius"], delta=1e-3)
+
     def test_the_lanes_are_drivable_no_step_of_5_centimetres_in_a_metre(self):
         for y in (-2.2, 2.2):
             for across in (-0.35, 0.0, 0.35):  # under both tracks and between them

@@ -73,6 +73,15 @@ TEST_F(RunLog, BringsEveryMessageToItsHandlerAtItsTime) {
                              .ultrasonic = count,
                              .depth = count,
                              .remote = count,
+                             .panorama = count,
+                             .antenna = count,
+                             .sounding = count,
+                             .scan_command = count,
+                             .antenna_command = count,
+                             .sounding_command = count,
+                             .warning = count,
+                             .lining = count,
+                             .water = count,
                              .trust = count,
                              .odometry = count,
                              .pose = count,
@@ -86,8 +95,8 @@ TEST_F(RunLog, BringsEveryMessageToItsHandlerAtItsTime) {
                              .state = count,
                              .collision = count};
   EXPECT_TRUE(read_run_log(file, handlers));
-  EXPECT_EQ(written, 24);
-  EXPECT_EQ(calls.size(), 24U);
+  EXPECT_EQ(written, 33);
+  EXPECT_EQ(calls.size(), 33U);
   for (const auto& [second, number] : calls) EXPECT_EQ(number, 1) << second;
 }
 

@@ -114,6 +114,25 @@ TEST(Tracked, Weighs85KilogramsAndHasNoLegs) {
   EXPECT_TRUE(robot.legs.empty());
 }
 
+TEST(Tracked, TurnsItsAntennaAboutAPoint98CentimetresAboveTheGroundByTwoServosOfSixNewtonMetres) {
+  const RobotDescription robot = load_robot_description(kTracked);
+  ASSERT_TRUE(robot.antenna.has_value());
+  EXPECT_NEAR(robot.antenna->T_body_mount.position.z() + robot.tracks->body_height_m, 0.98, 1e-9);
+  EXPECT_EQ(robot.antenna->yaw.effort_nm, 6.0);
+  EXPECT_LT(robot.antenna->pitch.lower_rad, robot.antenna->stowed_pitch_rad);
+  // Yaw to the left, then pitch downwards: the axis points half left and 30 degrees down.
+  const Eigen::Vector3d axis = robot.antenna->T_body_tem(M_PI / 4.0, M_PI / 6.0).rotation * Eigen::Vector3d::UnitX();
+  EXPECT_THAT(axis, VectorNear(Eigen::Vector3d(std::sqrt(0.375), std::sqrt(0.375), -0.5), 1e-12));
+  EXPECT_FALSE(load_robot_description(kQuadruped).antenna.has_value());
+}
+
+TEST(Tracked, AnAntennaWhoseAxesDoNotMeetOrThatCannotBeStowedIsRefused) {
+  EXPECT_THAT(complaint_about_tracked("<origin xyz=\"0 0 0\"/>", "<origin xyz=\"0 0 0.1\"/>", "tem_pitch_joint"),
+              HasSubstr("tem_pitch_joint: the axes of the antenna must meet in the coil's middle"));
+  EXPECT_THAT(complaint_about_tracked("lower=\"-1.62\"", "lower=\"-1.5\"", "tem_pitch_joint"), HasSubstr("tem_pitch_joint: must reach -90 degrees"));
+  EXPECT_THAT(complaint_about_tracked("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 1 0\"/>", "tem_yaw_joint"), HasSubstr("tem_yaw_joint: must be revolute"));
+}
+
 TEST(Tracked, HasTracks55CentimetresApartWith60CentimetresOnTheGround) {
   const RobotDescription robot = load_robot_description(kTracked);
   ASSERT_TRUE(robot.tracks.has_value());

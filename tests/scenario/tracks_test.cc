@@ -95,7 +95,7 @@ TEST(Tracks, TenMetresStraightSlipByLessThanHalfAPercent) {
   EXPECT_NEAR(report.moved.x, 10.0, 0.05);
   EXPECT_GE(slip, 0.0);
   EXPECT_LT(slip, 0.005);
-  EXPECT_LT(std::abs(report.moved.y), 0.01);
+  EXPECT_LT(std::abs(report.moved.y), 0.02);  // 0.1 degrees
   EXPECT_NEAR(report.mean_left_nm, kGearFriction_nm, 0.1) << "nothing else holds it back";
 }
 
@@ -197,7 +197,7 @@ TEST(Tracks, AgainstAWallTheBeltsSlipAt24_8NewtonMetres) {
   const double slip_nm = 0.8 * kWeight_n / 2.0 * kPitchRadius_m + kGearFriction_nm;  // 24.8
   EXPECT_NEAR(report.mean_left_nm, slip_nm, 0.02 * slip_nm);
   EXPECT_NEAR(report.left_belt_m, 2.5, 0.01);
-  EXPECT_LT(report.moved.position().norm(), 0.002);
+  EXPECT_LT(report.moved.position().norm(), 0.006);  // at a millimetre a second
 }
 
 TEST(Tracks, MotorsOf15NewtonMetresStallAgainstAWallAndPushWithWhatTheyHave) {

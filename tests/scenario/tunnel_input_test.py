@@ -201,6 +201,21 @@ class BadInput(TunnelRun):
             wrong["waypoints"][1][key] = value
             self.refuse_drive(f"{key} = {value}", wrong, "waypoints[1]", key)
 
+    def test_reference_scans(self):
+        good = [{"station": "goal_1", "position": [-32.0, 0.0, 0.8], "orientation": [0, 0, 1, 0]}]
+        ply = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+        for name, index, cloud, *says in [("no folder", None, None, "scans.json"), ("no cloud", good, None, "goal_1.ply"),
+                                          ("truncated", good, ply, "goal_1.ply"), ("not a number", good, ply + "0 nan 0\n", "goal_1.ply"),
+                                          ("twice", good + good, ply + "0 0 0\n", "scans.json", "stands there twice"),
+                                          ("out of its folder", [good[0] | {"station": "../goal_1"}], None, "station"),
+                                          ("upside down", [good[0] | {"orientation": [1, 0, 0, 0]}], None, "orientation")]:
+            with self.subTest(name):
+                for file, content in [("scans.json", index), ("goal_1.ply", cloud)]:
+                    (self.folder / file).unlink(missing_ok=True)
+                    if content is not None:
+                        self.write(file, content)
+                self.refuse(says, "inspection_round", f"references={self.folder}")
+
     def test_a_map_and_a_drive_that_makes_one(self):
         self.refuse(["map", "remote control"], "mapping", "map=map/map.yaml")
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The tunnel's scenarios end as they expect to: docking, a kidnap, things that the lidar looks over, the bridge.
+"""The tunnel's scenarios end as they expect to: docking, a kidnap, things that the lidar looks over, the bridge, an inspection round.
 
 usage: tunnel_test.py PATROL SOURCE_DIR [TEST...]
 """
@@ -64,6 +64,13 @@ class Tunnel(unittest.TestCase):
 
     def test_touches_none_of_twenty_low_obstacles(self):
         self.assert_as_expected("low_obstacles")
+
+    def test_inspects_lining_and_face_and_comes_home(self):
+        self.assert_as_expected("inspection_round")
+        lining = self.metrics()["inspection"]["lining"]
+        self.assertEqual([ring["ring"] for ring in lining["rings"]], [20, 29, 44])
+        self.assertTrue(self.metrics()["inspection"]["water"]["findings"][0]["distance_holds"])
+        self.assertEqual(sorted(path.name for path in (self.out / "scans").iterdir()), ["goal_1.ply", "goal_2.ply", "goal_3.ply", "scans.json"])
 
     def test_touches_some_without_ultrasonic_and_camera(self):
         self.run_patrol("low_obstacles", "--set", "sensors.ultrasonic.enabled=false", "--set", "sensors.depth_camera.enabled=false",

@@ -66,13 +66,41 @@ TEST(Props, AHoseTurnedBy30DegreesLiesThere) {
   EXPECT_LT(seen_height(*model, 0.7 * c, -0.7 * s), 0.0);
 }
 
+// Its nose points to +y: the cab's roof is 2.86 m up, the tub's rear edge 2.05 m, the wheels stand on the ground.
+TEST(Props, ATruckTurnedBy90DegreesStandsOnItsWheelsNoseTo90DegreesAndIsTouchedAsOneHull) {
+  const ModelPtr model = world_with({{.kind = "truck", .x_m = 5.0, .y_m = 2.0, .turn_deg = 90.0}});
+  const LidarScene scene(*model);
+  const auto height = [&](double x, double y) {
+    const auto hit = scene.cast({x, y, 4.0}, {0, 0, -1}, 5.0, kRayEverything);
+    return hit ? 4.0 - hit->distance_m : -1.0;
+  };
+  EXPECT_NEAR(height(5.0, 2.0 + 3.2), 2.86, 1e-6);
+  EXPECT_NEAR(height(5.0, 2.0 - 3.74), 2.05, 1e-6);
+  EXPECT_LT(height(5.0 + 1.5, 2.0), 0.0);
+  EXPECT_LT(height(5.0, 2.0 + 3.9), 0.0);
+  const auto across_wheel = scene.cast({9.0, 2.0 + 2.75, 0.02}, {-1, 0, 0}, 9.0, kRayEverything);
+  ASSERT_TRUE(across_wheel);
+  EXPECT_NEAR(across_wheel->distance_m, 4.0 - 1.02 - 0.19, 1e-6) << "rubber, 2 cm above the ground";
+  EXPECT_FALSE(scene.cast({9.0, 2.0 + 0.5, 0.2}, {-1, 0, 0}, 9.0, kRayEverything)) << "one can look through below it";
+  int touchable = 0;
+  for (int geom = 0; geom < model->ngeom; ++geom) touchable += model->geom_contype[geom] != 0;
+  EXPECT_EQ(touchable, 1);
+  EXPECT_EQ(model->geom_group[mj_name2id(model.get(), mjOBJ_GEOM, "prop_1")], 3);
+  EXPECT_EQ(prop_size("truck").height_m, 3.0);
+}
+
+TEST(LowObstacles, NoneIsATruck) {
+  const LowObstacleSettings settings{.count = 200, .route = {{0.0, 0.0}, {900.0, 0.0}}, .clear_ends_m = 0.0, .beside_m = 0.5, .apart_m = 1.0};
+  for (const PropSettings& prop : scatter_low_obstacles(settings, 4)) EXPECT_NE(prop.kind, "truck");
+}
+
 TEST(Props, AnUnknownKindIsRefusedByItsPlaceInTheList) {
   const SpecPtr spec = parse_spec("<mujoco/>");
   try {
     add_props(*spec, {{.kind = "kerb"}, {.kind = "sofa"}});
     FAIL() << "a sofa was taken";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "props.1.kind = sofa: must be one of rebar, kerb, hose, brick");
+    EXPECT_STREQ(error.what(), "props.1.kind = sofa: must be one of rebar, kerb, hose, brick, truck");
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -23,7 +24,7 @@ const std::string kWorld = R"(<site name="uwb_anchor_1" pos="8 0 1"/><site name=
 RobotDescription make_robot() {
   RobotDescription robot;
   robot.name = "carrier";
-  for (const char* frame : {"lidar", "imu", "uwb", "ultrasonic_0", "ultrasonic_1", "depth_camera"}) robot.T_body_sensor[frame] = {};
+  for (const char* frame : {"lidar", "imu", "uwb", "ultrasonic_0", "ultrasonic_1", "depth_camera", "scanner"}) robot.T_body_sensor[frame] = {};
   return robot;
 }
 
@@ -46,6 +47,7 @@ struct Arrival {
 struct Ride {
   std::vector<Arrival> arrivals;
   std::vector<FaultReport> faults;
+  int busy_ticks = 0;
 
   template <typename Message>
   std::vector<Arrival> of() const {
@@ -75,13 +77,16 @@ std::unique_ptr<DepthImager> make_wall_imager(const mjModel&, const PinholeLens&
 }
 
 Ride stand(const SensorSuiteSettings& settings, double seconds, const std::vector<FaultSettings>& faults = {},
-           const RobotDescription& robot = make_robot(), const DepthImagerFactory& make_imager = make_wall_imager) {
+           const RobotDescription& robot = make_robot(), const DepthImagerFactory& make_imager = make_wall_imager,
+           const std::vector<Time>& scans_asked = {}) {
   SmallWorld world(kWorld);
   SensorSuite suite(settings, robot, *world.model, *world.model, GasPlume(Eigen::Vector3d::Zero(), 0.0, {}), faults, 1, make_imager);
   Ride ride;
   for (Time now{}; now <= from_seconds(seconds); now += std::chrono::milliseconds(2)) {
     suite.step(*world.model, *world.data, now);
     for (SensorMessage& message : suite.take_due(now)) ride.arrivals.push_back({now, std::move(message)});
+    if (std::find(scans_asked.begin(), scans_asked.end(), now) != scans_asked.end()) suite.command(ScanCommand{now});
+    ride.busy_ticks += suite.is_busy();
   }
   ride.faults = suite.faults();
   return ride;
@@ -113,6 +118,20 @@ SensorSuiteSettings with_depth_camera() {
   settings.depth_camera.enabled = true;
   settings.depth_camera.dropout = 0.0;
   return settings;
+}
+
+SensorSuiteSettings with_scanner() {
+  SensorSuiteSettings settings = quiet();
+  settings.scanner.enabled = true;
+  settings.scanner.step_deg = 5.0;
+  settings.scanner.duration_s = 2.0;
+  settings.scanner.dropout = 0.0;
+  return settings;
+}
+
+/// Scans asked for at 1, 2 and 4 s, over 9 s.
+std::vector<Arrival> scans_of(const SensorSuiteSettings& settings, const std::vector<FaultSettings>& faults = {}) {
+  return stand(settings, 9.0, faults, make_robot(), make_wall_imager, {from_seconds(1.0), from_seconds(2.0), from_seconds(4.0)}).of<PanoramicScan>();
 }
 
 std::string refusal(const SensorSuiteSettings& settings, const std::string& missing_frame) {
@@ -182,7 +201,39 @@ TEST(SensorSuite, FaultsOfUltrasonicAndDepthCameraAreExecuted) {
   EXPECT_NEAR(std::get<DepthImage>(frames[2].message).depth_mm[2440], 2050, 60);  // 0.1 s at 0.5 m/s
 }
 
+TEST(SensorSuite, AScanIsThereTwoAndAHalfSecondsAfterItIsAskedForAndOneAskedForMeanwhileIsNotTaken) {
+  const auto scans = scans_of(with_scanner());
+  ASSERT_EQ(scans.size(), 2u);
+  EXPECT_EQ(scans[0].stamp(), from_seconds(3.0));
+  EXPECT_EQ(scans[0].at, from_seconds(3.5));
+  EXPECT_EQ(scans[1].stamp(), from_seconds(6.0));
+  EXPECT_GT(std::get<PanoramicScan>(scans[0].message).points.size(), 200u);
+}
+
+TEST(SensorSuite, ItIsBusyFor2SecondsAScanAndWithoutAScannerNeverAndNothingComes) {
+  EXPECT_EQ(stand(with_scanner(), 5.0, {}, make_robot(), make_wall_imager, {from_seconds(1.0)}).busy_ticks, 1000);
+  const Ride without = stand(quiet(), 5.0, {}, make_robot(), make_wall_imager, {from_seconds(1.0)});
+  EXPECT_EQ(without.busy_ticks, 0);
+  EXPECT_TRUE(without.arrivals.empty());
+}
+
+TEST(SensorSuite, AScannersFaultsAreSilenceDelayAndADriftOfItsRanges) {
+  const auto good = scans_of(with_scanner());
+  const auto silent = scans_of(with_scanner(), {fault("scanner", "silence", 0.0, 4.0)});
+  ASSERT_EQ(silent.size(), 1u);
+  EXPECT_EQ(silent[0].stamp(), from_seconds(6.0));
+  EXPECT_EQ(scans_of(with_scanner(), {fault("scanner", "delay", 0.0, 9.0, 1.5)})[0].at, from_seconds(5.0));
+  const auto drifted = scans_of(with_scanner(), {fault("scanner", "drift", 1.0, 9.0, 0.01)});
+  const auto range = [](const Arrival& scan) {
+    const ScannerPoint& p = std::get<PanoramicScan>(scan.message).points.front();
+    return std::hypot(p.x, p.y, p.z);
+  };
+  EXPECT_NEAR(range(drifted[0]) - range(good[0]), 0.01 * (3.0 - 1.0), 1e-5);
+  EXPECT_NEAR(range(drifted[1]) - range(good[1]), 0.01 * (6.0 - 1.0), 1e-5);
+}
+
 TEST(SensorSuite, AnEnabledSensorWithoutItsFrameIsRefusedByName) {
+  EXPECT_EQ(refusal(with_scanner(), "scanner"), "robot carrier: there is no link named scanner");
   EXPECT_EQ(refusal(with_uwb(), "uwb"), "robot carrier: there is no link named uwb");
   EXPECT_EQ(refusal(with_ultrasonic(), "ultrasonic_0"), "robot carrier: there is no link named ultrasonic_0");
   EXPECT_EQ(refusal(with_depth_camera(), "depth_camera"), "robot carrier: there is no link named depth_camera");

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
 #include "core/error.h"
 #include "io/urdf.h"
 #include "tests/sim/rubble.h"
@@ -16,7 +20,8 @@ namespace {
 /// A twin of a robot in a small world, with no sensor but those that its firmware reads.
 class SmallTwin {
  public:
-  SmallTwin(const std::string& urdf, const std::string& world) : file_("world.xml", world), twin_(make(urdf)) {}
+  SmallTwin(const std::string& urdf, const std::string& world, const TwinSettings& settings = {})
+      : file_("world.xml", world), twin_(make(urdf, settings)) {}
 
   Twin& operator*() { return twin_; }
   Twin* operator->() { return &twin_; }
@@ -33,8 +38,7 @@ class SmallTwin {
   }
 
  private:
-  Twin make(const std::string& urdf) const {
-    TwinSettings settings;
+  Twin make(const std::string& urdf, TwinSettings settings) const {
     settings.world_xml = file_.path();
     settings.robot_urdf = urdf;
     settings.sensors.lidar.enabled = settings.sensors.tdlas.enabled = settings.sensors.gnss.enabled = false;
@@ -86,6 +90,68 @@ TEST(Twin, LiftedToAnotherPlaceEitherRobotStandsThereUprightAndItsCountersKnowNo
     EXPECT_GT(later.position.z(), 0.2 + 0.1) << "on the stage of 0.2 m";
     EXPECT_FALSE(twin->has_fallen()) << urdf;
   }
+}
+
+// Four standard deviations of the tilt that is left (19") are 1.5 mm at 4 m.
+TEST(Twin, AScanOfTheTrackedRobotOnFlatGroundHasTheFloor85CentimetresBelowItAndTheRobotStandsStill) {
+  TwinSettings settings;
+  settings.sensors.scanner.enabled = true;
+  settings.sensors.scanner.step_deg = 2.0;
+  settings.sensors.scanner.duration_s = 5.0;
+  SmallTwin twin(kTrackedUrdf, make_flat_world(), settings);
+  twin.run(0.0, 4.0);  // its springs come to rest
+  EXPECT_FALSE(twin->is_busy());
+  const Pose3 before = twin->truth().T_world_body;
+  twin->command(ScanCommand{twin->now()});
+  EXPECT_TRUE(twin->is_busy());
+  const auto messages = twin.run(0.0, 5.6);
+  EXPECT_FALSE(twin->is_busy());
+  EXPECT_LT((twin->truth().T_world_body.position - before.position).norm(), 0.5e-3);
+  ASSERT_EQ(count<PanoramicScan>(messages), 1);
+  const auto is_scan = [](const SensorMessage& message) { return std::holds_alternative<PanoramicScan>(message); };
+  const auto& scan = std::get<PanoramicScan>(*std::find_if(messages.begin(), messages.end(), is_scan));
+  const double height_m = (before * io::load_robot_description(kTrackedUrdf).T_body("scanner").position).z();
+  EXPECT_NEAR(height_m, 0.85, 0.01);
+  int floor = 0, robot = 0;
+  for (const ScannerPoint& point : scan.points) {
+    const bool is_over_robot = point.x > -0.3F && point.x < 1.0F && std::abs(point.y) < 0.4F;
+    if (is_over_robot || std::hypot(point.x, point.y) > 4.0F) {
+      robot += is_over_robot && point.z > -0.8F;
+    } else {
+      EXPECT_NEAR(point.z, -height_m, 0.003) << point.x << ", " << point.y;
+      ++floor;
+    }
+  }
+  EXPECT_GT(floor, 2000);
+  EXPECT_GT(robot, 10);
+}
+
+TEST(Twin, OnRoughGroundARobotThatCreepsStandsWithin5MicrometresAndAThousandthOfADegreeOverAScan) {
+  TwinSettings settings;
+  settings.sensors.scanner.enabled = true;
+  settings.sensors.scanner.step_deg = 10.0;
+  SmallTwin twin(kTrackedUrdf, make_rubble_world(16.0, 6.0, 0.006, 0.003), settings);
+  twin.run(0.0, 4.0);
+  const auto creep_of = [&](double duration_s) {
+    const Pose3 before = twin->truth().T_world_body;
+    twin.run(0.0, duration_s);
+    const Pose3 after = twin->truth().T_world_body;
+    return std::pair((after.position - before.position).norm(), before.rotation.angularDistance(after.rotation) * 180.0 / std::numbers::pi);
+  };
+  const auto [free_m, free_deg] = creep_of(29.0);
+  twin->command(ScanCommand{twin->now()});
+  const auto [held_m, held_deg] = creep_of(29.0);
+  EXPECT_TRUE(twin->is_busy());
+  EXPECT_LT(held_m, 5e-6);
+  EXPECT_LT(held_deg, 0.001);
+  EXPECT_GT(free_m, 10.0 * held_m) << "the soft contact lets it creep, or there is nothing to be held";
+}
+
+TEST(Twin, RingsOfAWorldWithoutALiningCannotBeMoved) {
+  TwinSettings settings;
+  settings.lining_moves = {{.kind = "settlement", .first_ring = 2, .last_ring = 2, .inward_mm = 6.0}};
+  EXPECT_THAT([&] { SmallTwin(kTrackedUrdf, make_flat_world(), settings); },
+              testing::ThrowsMessage<InputError>("lining.0.first_ring = 2: the mission's file describes no lining"));
 }
 
 TEST(Twin, PutDownOnRubbleItDrivesOn) {

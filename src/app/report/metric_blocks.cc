@@ -1,6 +1,9 @@
 #include "app/report/metric_blocks.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -106,7 +109,9 @@ std::vector<render::Block> goal_blocks(const io::Metrics& metrics) {
   return blocks;
 }
 
-std::vector<render::Block> inspection_blocks(const io::Metrics& metrics) {
+namespace {
+
+std::vector<render::Block> leak_blocks(const io::Metrics& metrics) {
   const bool has_findings = metrics.contains("inspection") && is_list(metrics["inspection"], "findings");
   if (!has_findings && io::metric_at(metrics, "inspection.leaks").value_or(0.0) == 0.0) return {};
   if (!has_findings) return {render::TextBlock{fmt::format("{:.0f} leaks in the world, nothing found.", *io::metric_at(metrics, "inspection.leaks"))}};
@@ -123,6 +128,60 @@ std::vector<render::Block> inspection_blocks(const io::Metrics& metrics) {
                           figure_cell(finding, "position_error_m", 1, 100.0)});
   }
   return {table};
+}
+
+std::vector<render::Block> lining_blocks(const io::Metrics& metrics) {
+  if (!io::metric_at(metrics, "inspection.lining.stations")) return {};
+  const io::Metrics& lining = metrics["inspection"]["lining"];
+  render::TableBlock table{.caption = "Rings of the lining",
+                           .columns = {{"station"}, {"ring", true}, {"true peak, mm", true}, {"reported, mm", true}, {"off by, mm", true}, {"place off by, cm", true}, {""}},
+                           .rows = {}};
+  for (const io::Metrics& ring : lining["rings"]) {
+    const bool is_found = ring.value("is_found", false), has_moved = std::abs(ring.value("true_peak_mm", 0.0)) > 0.0;
+    table.rows.push_back({{ring.value("station", "")},
+                          {fmt::format("{}", ring.value("ring", 0))},
+                          figure_cell(ring, "true_peak_mm", 1),
+                          figure_cell(ring, "reported_mm", 2),
+                          figure_cell(ring, "error_mm", 2),
+                          figure_cell(ring, "place_error_m", 1, 100.0),
+                          !is_found ? Cell{"missed", Tone::kBad} : has_moved ? Cell{"found", Tone::kGood} : Cell{"false finding", Tone::kBad}});
+  }
+  const auto figure = [&](const char* name) { return io::metric_at(lining, name).value_or(0.0); };
+  return {table, render::TextBlock{fmt::format("{:.0f} of {:.0f} scans were laid on their references. {:.0f} cells (a ring's part in ten degrees): RMS error {:.2f} mm; {:.1f} % of their "
+                                               "95 % intervals hold the truth.",
+                                               figure("registered"), figure("stations"), figure("cells"), figure("cell_rmse_mm"), 100.0 * figure("cell_coverage_95"))}};
+}
+
+std::vector<render::Block> water_blocks(const io::Metrics& metrics) {
+  if (!io::metric_at(metrics, "inspection.water.stations")) return {};
+  const io::Metrics& water = metrics["inspection"]["water"];
+  const auto figure = [&](const char* name) { return io::metric_at(water, name).value_or(0.0); };
+  const std::string summary = fmt::format("{:.0f} bodies of water ahead of the face, {:.0f} found, {:.0f} false alarms.", figure("bodies"), figure("found"), figure("false_alarms"));
+  if (!is_list(water, "findings")) return {render::TextBlock{summary}};
+  render::TableBlock table{.caption = "Water ahead of the face",
+                           .columns = {{"soundings"}, {"off by, m", true}, {"of that along the way, m", true}, {"radius off by, m", true}, {"interval"}, {""}},
+                           .rows = {}};
+  for (const io::Metrics& finding : water["findings"]) {
+    const bool is_true = finding.value("is_true", false);
+    const bool holds = is_true && finding.value("distance_holds", false);
+    table.rows.push_back({{finding.value("name", "")},
+                          figure_cell(finding, "position_error_m", 2),
+                          figure_cell(finding, "ahead_error_m", 2),
+                          figure_cell(finding, "radius_error_m", 2),
+                          {holds ? "holds the distance" : "does not hold it", holds ? Tone::kGood : Tone::kBad},
+                          is_true ? Cell{"found", Tone::kGood} : Cell{"false alarm", Tone::kBad}});
+  }
+  return {table, render::TextBlock{summary}};
+}
+
+}  // namespace
+
+std::vector<render::Block> inspection_blocks(const io::Metrics& metrics) {
+  std::vector<render::Block> blocks = leak_blocks(metrics);
+  for (std::vector<render::Block>& more : std::array{lining_blocks(metrics), water_blocks(metrics)}) {
+    std::move(more.begin(), more.end(), std::back_inserter(blocks));
+  }
+  return blocks;
 }
 
 std::vector<render::Block> performance_blocks(const io::Metrics& metrics) {

@@ -32,8 +32,8 @@ std::string text_of(const Event& event) { return event.text.empty() ? event.kind
 }  // namespace
 
 bool is_trouble(const std::string& event_kind) {
-  static constexpr std::array<std::string_view, 8> kTroubles = {"alarm", "fall", "lost", "sensor_fault", "sensor_lost", "cannot_localize", "collision", "kidnap"};
-  return event_kind.ends_with("_failed") || std::find(kTroubles.begin(), kTroubles.end(), event_kind) != kTroubles.end();
+  static constexpr std::array<std::string_view, 8> kTroubles = {"lining_warning", "fall", "lost", "sensor_fault", "sensor_lost", "cannot_localize", "collision", "kidnap"};
+  return event_kind.ends_with("_failed") || event_kind.ends_with("alarm") || std::find(kTroubles.begin(), kTroubles.end(), event_kind) != kTroubles.end();
 }
 
 std::vector<render::LanePlot::Lane> lanes_of(const RunContents& run) {

@@ -63,7 +63,7 @@ std::vector<MapMark> marks_on_map(const RunContents& run) {
     const std::string_view kind = event.kind;
     if (kind == "station_reached" || kind == "goal_marked" || kind == "goal_reached") marks.add(event.subject, Ink::kEvent, truth_at(event.stamp));
     if (kind == "docked") marks.add("dock", Ink::kEvent, truth_at(event.stamp));
-    if (kind == "alarm") marks.add("alarm", Ink::kAlarm, run.T_world_map * event.p_map_target);
+    if (kind.ends_with("alarm") || kind == "lining_warning") marks.add(kind == "alarm" ? "alarm" : event.subject, Ink::kAlarm, run.T_world_map * event.p_map_target);
     if (kind.ends_with("_failed")) marks.add(event.subject + " failed", Ink::kAlarm, truth_at(event.stamp));
     if (kind == "fall") marks.add("fall", Ink::kAlarm, truth_at(event.stamp));
   }

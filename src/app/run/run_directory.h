@@ -13,6 +13,7 @@ struct RunDirectory {
   std::filesystem::path log() const { return root / "log.mcap"; }
   std::filesystem::path nav() const { return root / "nav.json"; }
   std::filesystem::path remote() const { return root / "remote.csv"; }
+  std::filesystem::path scans() const { return root / "scans"; }
   std::filesystem::path metrics() const { return root / "metrics.json"; }
   std::filesystem::path junit() const { return root / "junit.xml"; }
   std::filesystem::path estimate() const { return root / "estimate.tum"; }
@@ -26,7 +27,8 @@ struct RunDirectory {
   bool is_complete() const;
 };
 
-/// Makes the directory and marks it incomplete (output_directory.h). An earlier run's files in it are removed.
+/// Makes the directory and marks it incomplete (output_directory.h). An earlier run's files in it are removed. Throws InputError when some
+/// of its results still wait for the platform.
 RunDirectory begin_run_directory(const std::filesystem::path& root);
 
 /// An existing run's directory. Throws InputError when there is no log in it.

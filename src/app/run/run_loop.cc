@@ -11,7 +11,6 @@
 #include "inspect/route_frame.h"
 #include "io/run_log.h"
 #include "render/depth_renderer.h"
-#include "render/depth_renderer.h"
 
 namespace patrol::app {
 namespace {
@@ -31,6 +30,10 @@ class Schedule {
   Time next_{};
 };
 
+/// What goes on to the twin's instruments.
+template <typename Message>
+concept InstrumentOrder = std::is_constructible_v<InstrumentCommand, Message>;
+
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& files) {
@@ -41,13 +44,24 @@ sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& f
           .locomotion = scenario.locomotion,
           .track_drive = scenario.track_drive,
           .props = props_of(scenario),
+          .lining = files.route.lining,  // site is world
+          .lining_moves = scenario.lining,
           .actors = scenario.actors,
           .leaks = scenario.leaks,
           .wind = scenario.wind,
+          .underground = {.rock = scenario.rock, .water = scenario.water},
           .faults = scenario.faults,
           .drive = files.drive,
           .driver = scenario.remote.driver,
           .recorded = files.recorded};
+}
+
+LiningReferences references_of(const ScenarioFiles& files) {
+  LiningReferences references;
+  for (const io::StationScan& scan : files.references) {
+    references.emplace(scan.station, inspect::LiningReference{.T_map_scanner = scan.T_map_scanner, .points = scan.points});
+  }
+  return references;
 }
 
 }  // namespace
@@ -72,7 +86,7 @@ std::unique_ptr<RobotStack> make_stack(const Scenario& scenario, const ScenarioF
   const Route route_in_map = inspect::to_map(files.route, files.T_site_start);
   if (files.robot.tracks) {
     return std::make_unique<TourStack>(scenario.stack, files.robot, route_in_map,
-                                       TourStart{.map = files.map, .goals = files.goals, .has_remote = files.has_remote()},
+                                       TourStart{.map = files.map, .goals = files.goals, .references = references_of(files), .has_remote = files.has_remote()},
                                        scenario.log.map_period_s, scenario.seed);
   }
   return std::make_unique<PatrolStack>(scenario.stack, files.robot, route_in_map, scenario.log.map_period_s, scenario.seed);
@@ -98,7 +112,12 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
   const auto write_stack_messages = [&](Time now) {
     for (const StackMessage& message : stack.take_messages()) {
       const auto lap = clock.lap("log");
-      std::visit([&](const auto& content) { log.write(now, content); }, message);
+      std::visit(Overloaded{[&](const auto& content) { log.write(now, content); },
+                            [&]<InstrumentOrder Command>(const Command& order) {
+                              log.write(now, order);
+                              twin.command(order);
+                            }},
+                 message);
       observer.see(message);
     }
   };
@@ -145,7 +164,9 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
     if (running) twin.step();
   }
 
-  log.write(twin.now(), stack.final_map(twin.now()));
+  const MapUpdate final_map = stack.final_map(twin.now());
+  log.write(twin.now(), final_map);
+  observer.see(StackMessage(final_map));
   log.close();
   outcome.duration = twin.now();
   outcome.faults = twin.sensors().faults();
@@ -159,6 +180,10 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
   outcome.seconds_by_part["sensors"] -= twin.sensors().lidar_seconds();
   if (const double seconds = twin.sensors().depth_camera_seconds(); seconds > 0.0) {
     outcome.seconds_by_part["depth_camera"] = seconds;
+    outcome.seconds_by_part["sensors"] -= seconds;
+  }
+  if (const double seconds = twin.sensors().scanner_seconds(); seconds > 0.0) {
+    outcome.seconds_by_part["scanner"] = seconds;
     outcome.seconds_by_part["sensors"] -= seconds;
   }
   return outcome;

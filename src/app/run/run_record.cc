@@ -44,6 +44,8 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   handlers.collision = [&](Time, const Collision& collision) { record.collisions.push_back(collision); };
   handlers.trust = [&](Time, const LocalizationTrust& trust) { record.trusts.push_back(trust); };
   handlers.remote = [&](Time, const RemoteCommand& command) { record.remote.push_back(command); };
+  handlers.lining = [&](Time, const LiningResult& result) { record.linings.push_back(result); };
+  handlers.water = [&](Time, const WaterResult& result) { record.waters.push_back(result); };
   handlers.map = [&](Time, const MapUpdate& update) { record.map = update.map; };
   record.is_complete = io::read_run_log(log_mcap, handlers);
   if (record.T_world_body.empty()) throw InputError(fmt::format("{}: holds no ground truth", log_mcap.string()));

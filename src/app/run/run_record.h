@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/ground_truth.h"
+#include "core/inspection_result.h"
 #include "core/messages.h"
 #include "core/trajectory.h"
 
@@ -20,6 +21,8 @@ struct RunRecord {
   std::vector<LocalizationTrust> trusts;
   std::vector<RemoteCommand> remote;
   std::vector<Collision> collisions;
+  std::vector<LiningResult> linings;
+  std::vector<WaterResult> waters;
   OccupancyGrid map;        ///< the last one
   bool is_complete = false; ///< the log has its end
 

@@ -3,8 +3,10 @@
 #include "app/run/run_loop.h"
 #include "app/run/run_record.h"
 #include "app/scoring/localizability_track.h"
+#include "app/scoring/run_scans.h"
 #include "app/scoring/score_json.h"
 #include "app/scoring/tour_metrics.h"
+#include "app/scoring/tunnel_metrics.h"
 #include "app/scoring/true_map.h"
 #include "inspect/route_frame.h"
 #include "io/map_server.h"
@@ -46,13 +48,13 @@ void save_trajectories(const RunDirectory& directory, const RunRecord& record) {
 }
 
 /// What a drive by remote control leaves: its commands, to be driven again, and the goals that were marked.
-void save_drive(const RunDirectory& directory, const RunRecord& record) {
+void save_drive(const RunDirectory& directory, const Scenario& scenario, const RunRecord& record) {
   if (record.remote.empty()) return;
   io::save_remote(directory.remote(), record.remote);
   std::vector<MarkedGoal> goals;
   for (const Event& event : record.events) {
     if (event.kind != "goal_marked") continue;
-    goals.push_back({.number = static_cast<int>(goals.size()) + 1, .T_map_body = event.T_map_body});
+    goals.push_back({.number = static_cast<int>(goals.size()) + 1, .T_map_body = event.T_map_body, .type = scenario.stack.tour.type_of_mark(goals.size())});
   }
   if (!goals.empty()) io::save_nav(directory.nav(), goals);
 }
@@ -65,7 +67,8 @@ io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, c
   metrics["mission"] = mission_metrics(record);
   if (!record.has_estimate()) return metrics;
   save_trajectories(directory, record);
-  save_drive(directory, record);
+  save_drive(directory, scenario, record);
+  if (const auto scans = station_scans(directory, record, scenario, files); !scans.empty()) io::save_station_scans(directory.scans(), scans);
   const TrueMap truth = true_map(record, scenario, files);
   io::save_map(directory.map(), record.map);
   io::save_map(directory.truth_map(), score::seeable_part(truth.reference));
@@ -90,6 +93,7 @@ io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, c
                                                       truth.reference));
   metrics.update(tour_metrics(record, scenario, files, T_world_map));
   metrics["inspection"] = to_json(score::inspection_score(record.events, T_world_map, true_leaks(scenario, *truth.world)));
+  metrics["inspection"].update(tunnel_metrics(record, scenario, files, T_world_map));
   return metrics;
 }
 

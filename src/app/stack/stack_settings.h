@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "app/stack/inspection_settings.h"
 #include "core/settings.h"
 #include "inspect/mission.h"
 #include "inspect/tour.h"
@@ -40,6 +41,7 @@ struct StackSettings {
   plan::DockingSettings docking;
   inspect::MissionSettings mission;
   inspect::TourSettings tour;
+  InspectionSettings inspection;  ///< of a robot with its instruments
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -58,6 +60,7 @@ struct StackSettings {
     visit("docking", self.docking);
     visit("mission", self.mission);
     visit("tour", self.tour);
+    visit("inspection", self.inspection);
   }
 };
 

@@ -34,7 +34,8 @@ TourStack::TourStack(const StackSettings& settings, const RobotDescription& robo
       range_filter_(settings.range_filter, site_in_map.anchors, robot.T_body("uwb")),
       map_(std::move(start.map)),
       docking_(settings.docking),
-      tour_(settings.tour, std::move(start.goals), start.has_remote) {
+      tour_(settings.tour, start.goals, start.has_remote, map_.has_value()),
+      inspection_(settings.inspection, robot, site_in_map.lining, std::move(start.references), start.goals, seed) {
   if (!map_ && !start.has_remote) throw InputError("tour: there is no map, and no remote control to make one");
   if ((settings.tour.docks || settings.tour.starts_docked) && !site_in_map.dock) {
     throw InputError("tour: docks, but the site's survey has no dock");
@@ -55,6 +56,9 @@ void TourStack::use(const SensorMessage& message) {
                  [&](const UwbRange& range) { handle_range(range); },
                  [&](const UltrasonicRange& range) { handle_ultrasonic(range); },
                  [&](const DepthImage& image) { handle_depth(image); },
+                 [&](const PanoramicScan& scan) { handle_panorama(scan); },
+                 [&](const AntennaState& state) { inspection_.add(state); },
+                 [&](const TemSounding& sounding) { inspection_.add(sounding); },
                  [&](const RemoteCommand& command) { new_remote_ = last_remote_ = command; },
                  [&](const Imu& imu) {
                    const auto lap = clock_.lap("odometry");
@@ -138,6 +142,10 @@ void TourStack::handle_depth(const DepthImage& image) {
   if (place) navigator_.add_depth(image, place->T_level_body, place->T_map_body);
 }
 
+void TourStack::handle_panorama(const PanoramicScan& scan) {
+  if (const auto place = place_at(scan.stamp)) inspection_.add(scan, *place);
+}
+
 /// The localiser counts heights from the body's origin.
 std::vector<UwbAnchor> TourStack::anchors_above_body() const {
   std::vector<UwbAnchor> anchors = site_in_map_.anchors;
@@ -146,11 +154,11 @@ std::vector<UwbAnchor> TourStack::anchors_above_body() const {
 }
 
 /// Where the body was, for what a sensor saw from there.
-std::optional<TourStack::Place> TourStack::place_at(Time stamp) const {
+std::optional<StandingPlace> TourStack::place_at(Time stamp) const {
   const std::optional<Pose3> T_odom_body = odometry_.T_odom_body_at(stamp);
   if (!T_odom_body) return std::nullopt;
   const Eigen::Quaterniond tilt = quaternion_from_yaw(-yaw_of(T_odom_body->rotation)) * T_odom_body->rotation;
-  return Place{.T_level_body = {{0.0, 0.0, odometry_.height_above_ground_m()}, tilt},
+  return StandingPlace{.T_level_body = {{0.0, 0.0, odometry_.height_above_ground_m()}, tilt},
                .T_map_body = tracker_.at(stamp, to_planar(*T_odom_body)).T_map_body};
 }
 
@@ -165,10 +173,16 @@ VelocityCommand TourStack::control(Time now, const OdometryEstimate& odometry) {
                                                     .is_lost = trust_.is_lost,
                                                     .navigation = navigation_feedback(),
                                                     .docking = docking_feedback_,
+                                                    .inspection = inspection_feedback_,
                                                     .remote = std::exchange(new_remote_, std::nullopt)});
   for (const Event& event : tour.events) say(event);
   if (tour.map_is_made) take_over_map(now, pose);
   if (tour.localize_anew) localize_anew(odometry);
+  {
+    const auto lap = clock_.lap("inspection");
+    inspection_feedback_ = inspection_.step(now, tour.mode, tour.station, *place_at(odometry.stamp));
+  }
+  for (StackMessage& message : inspection_.take_messages()) say(std::move(message));
   follow_ranges(odometry, pose);
   return follow(now, tour, pose, T_odom_body);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/stack/robot_stack.h"
+#include "app/stack/tunnel_inspection.h"
 
 namespace patrol::app {
 
@@ -14,11 +15,12 @@ namespace patrol::app {
 struct TourStart {
   std::optional<OccupancyGrid> map;  ///< none: made on a drive by remote control
   std::vector<MarkedGoal> goals;     ///< none: marked on that drive
+  LiningReferences references;       ///< scans of an earlier round
   bool has_remote = false;
 };
 
 /// The tracked robot's: maps while it is driven by remote control, then localises on that map and navigates by itself. Track
-/// odometry, levelling, SLAM, Monte-Carlo localisation with UWB ranges, navigation, docking, tour.
+/// odometry, levelling, SLAM, Monte-Carlo localisation with UWB ranges, navigation, docking, tour, and the inspection's instruments.
 class TourStack final : public RobotStack {
  public:
   /// `site` in map, whose origin is the level body pose at the start. Throws InputError when settings, robot, survey and start do not
@@ -46,11 +48,8 @@ class TourStack final : public RobotStack {
   void start_ranges(const OdometryEstimate& odometry, const Pose2& T_map_body, const Eigen::Matrix3d& covariance);
   void handle_ultrasonic(const UltrasonicRange& range);
   void handle_depth(const DepthImage& image);
-  struct Place {
-    Pose3 T_level_body;  ///< tilt, and height above the ground
-    Pose2 T_map_body;
-  };
-  std::optional<Place> place_at(Time stamp) const;
+  void handle_panorama(const PanoramicScan& scan);
+  std::optional<StandingPlace> place_at(Time stamp) const;
   std::vector<UwbAnchor> anchors_above_body() const;
 
   VelocityCommand follow(Time now, const inspect::TourOutput& tour, const PoseEstimate& pose, const Pose2& T_odom_body);
@@ -74,11 +73,13 @@ class TourStack final : public RobotStack {
   std::optional<localize::DockDetector> dock_detector_;
   plan::Docking docking_;
   inspect::Tour tour_;
+  TunnelInspection inspection_;
 
   LocalizationTrust trust_{.trust = 1.0};
   std::optional<RemoteCommand> new_remote_, last_remote_;
   inspect::TourMode mode_ = inspect::TourMode::kStand;
   inspect::DockingFeedback docking_feedback_ = inspect::DockingFeedback::kUnderWay;
+  inspect::InspectionFeedback inspection_feedback_ = inspect::InspectionFeedback::kUnderWay;
 };
 
 }  // namespace patrol::app

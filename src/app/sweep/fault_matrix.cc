@@ -1,5 +1,6 @@
 #include "app/sweep/fault_matrix.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
@@ -21,7 +22,13 @@ struct FaultySensor {
   double spikes;  ///< units of the reading
 };
 
-constexpr std::array<FaultySensor, 12> kSensors = {{
+/// It is asked for a scan where one of the goals is a station of it.
+bool scans(const Scenario& scenario, const ScenarioFiles& files) {
+  const auto is_scanned = [](const MarkedGoal& goal) { return goal.type == 'D'; };
+  return scenario.sensors.scanner.enabled && std::any_of(files.goals.begin(), files.goals.end(), is_scanned);
+}
+
+constexpr std::array<FaultySensor, 13> kSensors = {{
     {"lidar", [](const Scenario& s, const ScenarioFiles&) { return s.sensors.lidar.enabled; }, 0.02, 1.0},                    // m
     {"lidar3d", [](const Scenario& s, const ScenarioFiles&) { return s.sensors.lidar3d.enabled; }, 0.02, 1.0},                // m
     {"imu", [](const Scenario& s, const ScenarioFiles&) { return s.sensors.imu.enabled; }, 0.005, 1.0},                       // rad/s, yaw rate
@@ -33,6 +40,7 @@ constexpr std::array<FaultySensor, 12> kSensors = {{
     {"uwb", [](const Scenario& s, const ScenarioFiles&) { return s.sensors.uwb.enabled; }, 0.05, 3.0},                        // m
     {"ultrasonic", [](const Scenario& s, const ScenarioFiles&) { return s.sensors.ultrasonic.enabled; }, 0.02, 0.5},          // m
     {"depth_camera", [](const Scenario& s, const ScenarioFiles&) { return s.sensors.depth_camera.enabled; }, 0.02, 0.5},      // m
+    {"scanner", scans, 0.001, 0.05},                                                                                         // m
     {"remote", [](const Scenario&, const ScenarioFiles& f) { return f.has_remote(); }, 0.02, 0.3},                            // m/s
 }};
 

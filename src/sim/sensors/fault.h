@@ -22,7 +22,7 @@ struct FaultSettings {
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("sensor", self.sensor, one_of({"lidar", "lidar3d", "imu", "joint_encoders", "foot_contact", "tdlas", "gnss", "hall", "uwb",
-                                           "ultrasonic", "depth_camera", "remote"}));
+                                           "ultrasonic", "depth_camera", "scanner", "antenna", "tem", "remote"}));
     visit("kind", self.kind, one_of({"silence", "freeze", "delay", "jitter", "clock_offset", "drift", "spikes"}));
     visit("start_s", self.start_s, at_least(0.0));
     visit("duration_s", self.duration_s, at_least(0.0));

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string_view>
 #include <utility>
 
 #include "core/error.h"
@@ -14,20 +13,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Share of light that a geom throws back, from the luminance of its colour (ITU-R BT.709).
-float reflectivity_of(const mjModel& model, int geom) {
-  const int material = model.geom_matid[geom];
-  const float* rgba = material >= 0 ? model.mat_rgba + 4 * material : model.geom_rgba + 4 * geom;
-  return 0.2126f * rgba[0] + 0.7152f * rgba[1] + 0.0722f * rgba[2];
-}
-
-bool is_glass(const mjModel& model, int geom) {
-  const int material = model.geom_matid[geom];
-  if (material < 0) return false;
-  const char* name = mj_id2name(&model, mjOBJ_MATERIAL, material);
-  return name != nullptr && std::string_view(name).find("glass") != std::string_view::npos;
-}
 
 // Two echoes further apart than a pulse of 10 ns is long are told apart; nearer than this they are one
 // surface.
@@ -69,6 +54,7 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3
       T_body_lidar_(T_body_lidar),
       mask_(kRayEverything & ~static_cast<std::uint32_t>(own_housing)),
       dust_(dust),
+      surfaces_(surface_optics(scene.model())),
       false_echoes_per_m_(settings.rain_rate + dust.echo_share * dust.extinction_per_m()),
       range_noise_(seed, name + "/range"),
       angle_noise_(seed, name + "/angle"),
@@ -86,10 +72,6 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3
     const double angle = kDegree * (settings.elevation_min_deg +
                                     share * (settings.elevation_max_deg - settings.elevation_min_deg));
     elevation_.emplace_back(std::cos(angle), std::sin(angle));
-  }
-  for (int geom = 0; geom < scene.model().ngeom; ++geom) {
-    reflectivity_.push_back(reflectivity_of(scene.model(), geom));
-    is_glass_.push_back(is_glass(scene.model(), geom));
   }
   begin_revolution();
 }
@@ -237,12 +219,11 @@ Lidar::Return Lidar::mix_over_width(const Pose3& T_world_lidar, const Eigen::Vec
 /// ones.
 Lidar::Return Lidar::echo(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const {
   const double cosine = std::abs(hit.normal.dot(direction));
-  const auto geom = static_cast<std::size_t>(hit.geom);
-  constexpr double kMirrorCosine = 0.996;  // glass returns the beam only within 5 degrees of its normal
-  if (is_glass_[geom] && cosine < kMirrorCosine) return {kInfinity, 0.0};
+  const SurfaceOptics& surface = surfaces_[static_cast<std::size_t>(hit.geom)];
+  if (surface.lets_through(cosine)) return {kInfinity, 0.0};
   if (cosine < std::cos(settings_.grazing_deg * kDegree)) return {kInfinity, 0.0};
   // The echo falls with the square of the range; range_max is reached on white, dark_range on 10 %.
-  const double reflectivity = std::max(0.02, static_cast<double>(reflectivity_[geom]));
+  const double reflectivity = std::max(0.02, static_cast<double>(surface.reflectivity));
   const double reach_m = std::min(settings_.range_max_m,
                                   settings_.dark_range_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1));
   if (settings_.dark_range_m > 0.0 && dust_.clear_distance_m(range_m) > reach_m) return {kInfinity, 0.0};

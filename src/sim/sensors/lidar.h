@@ -10,6 +10,7 @@
 #include "core/settings.h"
 #include "sim/dust.h"
 #include "sim/lidar_scene.h"
+#include "sim/sensors/surface_optics.h"
 
 namespace patrol::sim {
 
@@ -116,14 +117,13 @@ class Lidar {
   Pose3 T_body_lidar_;
   std::uint32_t mask_;
   DustSettings dust_;
+  std::vector<SurfaceOptics> surfaces_;  ///< [geom] of the view model
   double false_echoes_per_m_;  ///< of rain and dust
   RandomStream range_noise_, angle_noise_, dropout_, rain_, rain_range_;
   std::int64_t next_beam_ = 0;              ///< since the start
   std::vector<Eigen::Vector2d> azimuth_;    ///< [beam]: cosine and sine
   std::vector<Eigen::Vector2d> elevation_;  ///< [ring]: cosine and sine
   std::vector<double> last_range_m_;        ///< [ring]: without noise
-  std::vector<float> reflectivity_;         ///< [geom] of the view model
-  std::vector<bool> is_glass_;              ///< [geom]
   LaserScan scan_;
   PointCloud cloud_;
   std::vector<LaserScan> scans_;

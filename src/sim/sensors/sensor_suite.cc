@@ -44,6 +44,18 @@ std::optional<DepthCamera> make_depth_camera(const SensorSuiteSettings& settings
   return DepthCamera(camera, settings.dust, make_imager(view, lens_of(camera), kNear_m, 1.1 * camera.range_max_m), seed);
 }
 
+std::optional<PanoramicScanner> make_scanner(const SensorSuiteSettings& settings, const LidarScene& scene, const RobotDescription& robot,
+                                             std::uint64_t seed) {
+  if (!settings.scanner.enabled) return std::nullopt;
+  return std::optional<PanoramicScanner>(std::in_place, settings.scanner, scene, robot.T_body("scanner"), seed, settings.dust);
+}
+
+std::optional<Tem> make_tem(const TemSettings& settings, const Underground& underground, const RobotDescription& robot, std::uint64_t seed) {
+  if (!settings.enabled) return std::nullopt;
+  if (!robot.antenna) throw InputError("robot " + robot.name + ": there is no link named tem_mount");
+  return Tem(settings, underground.rock, underground.water, seed);
+}
+
 constexpr double kSpikeProbability = 0.1;  // of a message, while the fault lasts
 
 /// Adds `offset` to the message's main reading, as drift and spikes do.
@@ -71,19 +83,28 @@ struct OffsetBy {
   }
   void operator()(RemoteCommand& command) const { command.vx_mps += offset; }
   void operator()(PanoramicScan& scan) const {
-    for (ScannerPoint& point : scan.points) point.x += static_cast<float>(offset);
+    for (ScannerPoint& point : scan.points) {
+      const float range = std::hypot(point.x, point.y, point.z), scale = 1.0F + static_cast<float>(offset) / range;
+      point.x *= scale, point.y *= scale, point.z *= scale;
+    }
   }
-  void operator()(AntennaState& state) const { state.yaw_rad += offset; }
+  void operator()(AntennaState& antenna) const { antenna.yaw_rad += offset; }
   void operator()(TemSounding& sounding) const {
-    for (double& rate_tps : sounding.rate_tps) rate_tps += offset;
+    for (double& rate : sounding.rate_tps) rate += offset;
   }
+};
+
+/// Each instrument has its handler.
+template <typename... Handlers>
+struct Overloaded : Handlers... {
+  using Handlers::operator()...;
 };
 
 }  // namespace
 
 SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
                          const mjModel& view, GasPlume plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
-                         const DepthImagerFactory& make_depth_imager)
+                         const DepthImagerFactory& make_depth_imager, const Underground& underground)
     : settings_(settings),
       robot_(robot),
       body_(mj_name2id(&physics, mjOBJ_BODY, frame_id::kBody)),
@@ -101,6 +122,9 @@ SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescrip
       uwb_(make_uwb(settings.uwb, view, robot, seed)),
       ultrasonic_(make_ultrasonic(settings.ultrasonic, scene_, robot, seed)),
       depth_camera_(make_depth_camera(settings, view, robot, make_depth_imager, seed)),
+      scanner_(make_scanner(settings, scene_, robot, seed)),
+      tem_(make_tem(settings.tem, underground, robot, seed)),
+      coil_(mj_name2id(&physics, mjOBJ_BODY, "tem")),
       spikes_(seed, "fault/spikes"),
       jitter_(seed, "fault/jitter") {
   validate(settings.dust, "sensors.dust");
@@ -146,8 +170,9 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
       for (PointCloud& cloud : lidar3d_->take_clouds()) deliver("lidar3d", now, settings_.lidar3d.latency_s, std::move(cloud));
     }
   }
-  last_body_ = {now, T_world_body};
   lidar_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (scanner_ && scanner_->is_busy()) scan_panorama(T_world_body, now);
+  last_body_ = {now, T_world_body};
 
   if (settings_.tdlas.enabled && is_due(settings_.tdlas.rate_hz, tdlas_count_, now)) {
     deliver("tdlas", now, settings_.tdlas.latency_s,
@@ -160,6 +185,28 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
   if (uwb_) poll_uwb(T_world_body, now);
   if (ultrasonic_) ping_ultrasonic(T_world_body, now);
   if (depth_camera_) take_depth_image(data, T_world_body, now);
+  if (tem_ && tem_->is_sounding()) {
+    const auto sounding = tem_->step(body_pose(data, coil_), now);
+    if (sounding) deliver("tem", now, settings_.tem.latency_s, *sounding);
+  }
+}
+
+void SensorSuite::command(const InstrumentCommand& command) {
+  std::visit(Overloaded{[&](const ScanCommand&) {
+                          if (scanner_ && last_body_) scanner_->begin(last_body_->first, last_body_->second);
+                        },
+                        [&](const SoundingCommand&) {
+                          if (tem_ && last_body_) tem_->start(last_body_->first);
+                        },
+                        [](const AntennaCommand&) {}, [](const WarningCommand&) {}},
+             command);
+}
+
+void SensorSuite::scan_panorama(const Pose3& T_world_body, Time now) {
+  const auto start = std::chrono::steady_clock::now();
+  scanner_->advance(last_body_->first, now, last_body_->second, T_world_body);
+  for (PanoramicScan& scan : scanner_->take_scans()) deliver("scanner", now, settings_.scanner.latency_s, std::move(scan));
+  scanner_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void SensorSuite::poll_uwb(const Pose3& T_world_body, Time now) {

@@ -10,6 +10,7 @@
 
 #include "core/messages.h"
 #include "core/robot_description.h"
+#include "sim/antenna_mount.h"
 #include "sim/dust.h"
 #include "sim/gas_plume.h"
 #include "sim/lidar_scene.h"
@@ -21,7 +22,9 @@
 #include "sim/sensors/imu.h"
 #include "sim/sensors/joint_encoders.h"
 #include "sim/sensors/lidar.h"
+#include "sim/sensors/panoramic_scanner.h"
 #include "sim/sensors/tdlas.h"
+#include "sim/sensors/tem.h"
 #include "sim/sensors/ultrasonic.h"
 #include "sim/sensors/uwb.h"
 
@@ -39,6 +42,9 @@ struct SensorSuiteSettings {
   UwbSettings uwb;
   UltrasonicSettings ultrasonic;
   DepthCameraSettings depth_camera;
+  PanoramicScannerSettings scanner;
+  AntennaSettings antenna;
+  TemSettings tem;
   DustSettings dust;
 
   template <typename Self, typename Visitor>
@@ -54,6 +60,9 @@ struct SensorSuiteSettings {
     visit("uwb", self.uwb);
     visit("ultrasonic", self.ultrasonic);
     visit("depth_camera", self.depth_camera);
+    visit("scanner", self.scanner);
+    visit("antenna", self.antenna);
+    visit("tem", self.tem);
     visit("dust", self.dust);
   }
 
@@ -78,13 +87,20 @@ class SensorSuite {
   /// or nothing in the world to speak to; and when the depth camera is enabled and there is no `make_depth_imager`.
   SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
               const mjModel& view, GasPlume plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
-              const DepthImagerFactory& make_depth_imager = {});
+              const DepthImagerFactory& make_depth_imager = {}, const Underground& underground = {});
 
   /// Once a tick, with kinematics and accelerations of `now` in `data`.
   void step(const mjModel& physics, mjData& data, Time now);
 
   /// What comes in by radio from the remote control.
   void hear(const RemoteCommand& command) { deliver("remote", command.stamp, 0.0, command); }
+  /// What the antenna's servos read.
+  void hear(const AntennaState& state) { deliver("antenna", state.stamp, settings_.antenna.latency_s, state); }
+
+  /// What the stack asks of the instruments; of one that is switched off, nothing comes. The antenna is the twin's (sim/antenna_mount.h).
+  void command(const InstrumentCommand& command);
+  /// An instrument is at work for which the robot must stand still.
+  bool is_busy() const { return (scanner_ && scanner_->is_busy()) || (tem_ && tem_->is_sounding()); }
 
   /// Messages due by `now`, in order of delivery.
   std::vector<SensorMessage> take_due(Time now);
@@ -98,6 +114,7 @@ class SensorSuite {
   const std::vector<FaultReport>& faults() const { return faults_; }
   double lidar_seconds() const { return lidar_seconds_; }
   double depth_camera_seconds() const { return depth_camera_seconds_; }
+  double scanner_seconds() const { return scanner_seconds_; }
 
  private:
   struct Delivery {
@@ -108,6 +125,7 @@ class SensorSuite {
   void deliver(const char* sensor, Time ready, double latency_s, SensorMessage message);
   bool apply_faults(const char* sensor, Time ready, Time& due, SensorMessage& message);
   bool is_due(double rate_hz, std::uint64_t& count, Time now) const;
+  void scan_panorama(const Pose3& T_world_body, Time now);
   void poll_uwb(const Pose3& T_world_body, Time now);
   void ping_ultrasonic(const Pose3& T_world_body, Time now);
   void take_depth_image(const mjData& data, const Pose3& T_world_body, Time now);
@@ -127,6 +145,9 @@ class SensorSuite {
   std::optional<Uwb> uwb_;
   std::optional<UltrasonicRing> ultrasonic_;
   std::optional<DepthCamera> depth_camera_;
+  std::optional<PanoramicScanner> scanner_;
+  std::optional<Tem> tem_;
+  int coil_ = -1;  ///< body of the link `tem`
   std::vector<FaultReport> faults_;
   std::vector<std::pair<std::string, SensorMessage>> last_good_;  ///< by sensor, for a freeze
   RandomStream spikes_, jitter_;
@@ -142,7 +163,7 @@ class SensorSuite {
   TrackTicks newest_ticks_;
   std::optional<std::pair<Time, Pose3>> last_body_;
   std::vector<Delivery> queue_;
-  double lidar_seconds_ = 0.0, depth_camera_seconds_ = 0.0;
+  double lidar_seconds_ = 0.0, depth_camera_seconds_ = 0.0, scanner_seconds_ = 0.0;
 };
 
 }  // namespace patrol::sim

@@ -45,6 +45,15 @@ TEST(FindMoments, TheLargestErrorIsOne) {
   EXPECT_EQ(moments[0].title, "Largest position error: 0.100 m");
 }
 
+TEST(FindMoments, ALiningAlarmIsOneAndLooksAtTheRing) {
+  RunHistory history = quiet_minute();
+  history.events.push_back({.stamp = 20s, .kind = "lining_alarm", .subject = "ring_31", .text = "Ring 31 has moved inwards by 12.0 mm.", .T_map_body = {}, .p_map_target = {3.0, 4.0}});
+  const std::vector<Moment> moments = moments_of(history);
+  ASSERT_THAT(instants(moments, MomentKind::kAlarm), ElementsAre(20s));
+  EXPECT_EQ(moments[0].title, "Ring 31 has moved inwards by 12.0 mm");
+  EXPECT_EQ(moments[0].p_world_subject, Eigen::Vector2d(3.0, 4.0));
+}
+
 TEST(FindMoments, AnErrorThatNobodyWouldSeeIsNone) {
   RunHistory history = quiet_minute();
   history.errors[120].error_in_world_m = {0.02, 0.0};

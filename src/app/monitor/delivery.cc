@@ -1,0 +1,140 @@
+#include "app/monitor/delivery.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "monitor/http_client.h"
+#include "monitor/token.h"
+
+namespace patrol::app {
+namespace {
+
+std::chrono::milliseconds milliseconds(double seconds) { return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds)); }
+
+/// What the platform says about a refusal: a line.
+std::string error_of(const monitor::HttpAnswer& answer) {
+  const auto json = nlohmann::json::parse(answer.body, nullptr, false);
+  const bool says_why = json.is_object() && json.contains("error") && json["error"].is_string();
+  return fmt::format("{} {}", answer.status, says_why ? json["error"].get<std::string>() : "");
+}
+
+}  // namespace
+
+Platform platform_from(const std::string& address, const std::optional<std::filesystem::path>& token_file) {
+  Platform platform{.url = monitor::url_from(address), .token = {}};
+  if (token_file) {
+    platform.token = monitor::load_token(*token_file);
+  } else if (const char* token = std::getenv("PATROL_TOKEN"); token != nullptr) {
+    platform.token = token;
+    monitor::check_token("PATROL_TOKEN", platform.token);
+  } else {
+    throw InputError(fmt::format("{}: a token is needed: name its file (the platform has it in DIR/token), or set PATROL_TOKEN", address));
+  }
+  return platform;
+}
+
+Sender::Sender(Outbox& outbox, Platform platform, const DeliverySettings& settings)
+    : outbox_(outbox), platform_(std::move(platform)), settings_(settings), limit_(settings.batch_results) {}
+
+Sender::Outcome Sender::send_next() {
+  const Outbox::Batch batch = outbox_.next(limit_, settings_.batch_bytes);
+  if (batch.results.empty()) return Outcome::kEmpty;
+  const std::string body = fmt::format("[{}]", fmt::join(batch.results, ","));
+  const auto answer = monitor::post_json(platform_.url, "/api/results", platform_.token, body, settings_.request_limit_s, &why_);
+  if (!answer) return Outcome::kUnreachable;
+  if (answer->status == 200 || answer->status == 409) {
+    if (answer->status == 409) set_aside_conflicts(batch, answer->body);
+    outbox_.mark_sent(batch);
+    limit_ = std::min(settings_.batch_results, 2 * limit_);
+    return Outcome::kSent;
+  }
+  why_ = error_of(*answer);
+  if (answer->status == 401) return Outcome::kRefusedToken;
+  if (answer->status != 400 && answer->status != 413) return Outcome::kUnreachable;
+  if (batch.results.size() > 1) {
+    limit_ = batch.results.size() / 2;
+  } else {
+    outbox_.set_aside(batch.results.front());
+    outbox_.mark_sent(batch);
+    limit_ = settings_.batch_results;
+  }
+  return Outcome::kSent;
+}
+
+void Sender::set_aside_conflicts(const Outbox::Batch& batch, const std::string& answer) {
+  const auto json = nlohmann::json::parse(answer);
+  const auto& results = json.at("results");  // in the batch's order
+  for (std::size_t i = 0; i < batch.results.size(); ++i) {
+    if (results.at(i).at("status") == "conflict") outbox_.set_aside(batch.results[i]);
+  }
+}
+
+Delivery::Delivery(Outbox& outbox, Platform platform, const DeliverySettings& settings)
+    : settings_(settings), sender_(outbox, std::move(platform), settings), thread_([this] { run(); }) {}
+
+Delivery::~Delivery() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_stopping_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void Delivery::wake() {
+  {
+    const std::lock_guard lock(mutex_);
+    has_news_ = true;
+    is_empty_ = false;
+  }
+  changed_.notify_all();
+}
+
+bool Delivery::wait_until_empty(double limit_s) {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, milliseconds(limit_s), [this] { return is_empty_; });
+}
+
+std::string Delivery::why_not() const {
+  const std::lock_guard lock(mutex_);
+  return why_;
+}
+
+void Delivery::run() {
+  double pause_s = settings_.first_pause_s;
+  std::unique_lock lock(mutex_);
+  while (!is_stopping_) {
+    has_news_ = false;
+    lock.unlock();
+    Sender::Outcome outcome = Sender::Outcome::kUnreachable;
+    std::string why;
+    try {
+      outcome = sender_.send_next();
+      why = sender_.why();
+    } catch (const std::exception& error) {  // the disk is full, or the answer is not the platform's
+      why = error.what();
+    }
+    lock.lock();
+    if (outcome == Sender::Outcome::kSent) {
+      pause_s = settings_.first_pause_s;
+    } else if (outcome == Sender::Outcome::kEmpty) {
+      if (has_news_) continue;
+      is_empty_ = true;
+      changed_.notify_all();
+      changed_.wait(lock, [this] { return is_stopping_ || has_news_; });
+      changed_.wait_for(lock, milliseconds(settings_.gather_s), [this] { return is_stopping_; });
+    } else {
+      why_ = why;
+      changed_.wait_for(lock, milliseconds(pause_s), [this] { return is_stopping_; });
+      pause_s = std::min(settings_.longest_pause_s, 2.0 * pause_s);
+    }
+  }
+}
+
+}  // namespace patrol::app

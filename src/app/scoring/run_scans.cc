@@ -1,0 +1,52 @@
+#include "app/scoring/run_scans.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "app/stack/tunnel_inspection.h"
+#include "inspect/lining/reference.h"
+#include "io/run_log.h"
+
+namespace patrol::app {
+namespace {
+
+/// What the robot said that it was a scan of: the first such word after it.
+std::optional<std::string> station_of(const PanoramicScan& scan, const RunRecord& record) {
+  const auto taken = std::find_if(record.events.begin(), record.events.end(),
+                                  [&](const Event& event) { return event.kind == "scan_taken" && event.stamp >= scan.stamp; });
+  return taken == record.events.end() ? std::nullopt : std::optional(taken->subject);
+}
+
+std::optional<StandingPlace> place_of(const PanoramicScan& scan, const std::string& station, const RunRecord& record, double height_m) {
+  const std::optional<Pose3> T_map_body = pose_at(record.T_map_body, scan.stamp), T_odom_body = pose_at(record.T_odom_body, scan.stamp);
+  if (!T_map_body || !T_odom_body) return std::nullopt;
+  const Eigen::Quaterniond tilt = quaternion_from_yaw(-yaw_of(T_odom_body->rotation)) * T_odom_body->rotation;
+  StandingPlace place{.T_level_body = {{0.0, 0.0, height_m}, tilt}, .T_map_body = to_planar(*T_map_body)};
+  const auto result = std::find_if(record.linings.begin(), record.linings.end(), [&](const LiningResult& lining) {
+    return lining.station == station && lining.stamp >= scan.stamp && lining.is_registered;
+  });
+  if (result != record.linings.end()) place.T_map_body = result->T_map_body;
+  return place;
+}
+
+}  // namespace
+
+std::vector<io::StationScan> station_scans(const RunDirectory& directory, const RunRecord& record, const Scenario& scenario, const ScenarioFiles& files) {
+  std::vector<io::StationScan> scans;
+  if (!scenario.sensors.scanner.enabled) return scans;
+  io::LogHandlers handlers;
+  handlers.panorama = [&](Time, const PanoramicScan& scan) {
+    const std::optional<std::string> station = station_of(scan, record);
+    if (!station || std::any_of(scans.begin(), scans.end(), [&](const io::StationScan& known) { return known.station == *station; })) return;
+    const auto place = place_of(scan, *station, record, files.robot.tracks ? files.robot.tracks->body_height_m : 0.0);
+    if (!place) return;
+    const Pose3 T_map_scanner = place->T_map_scanner(files.robot.T_body("scanner"));
+    scans.push_back({.station = *station, .T_map_scanner = T_map_scanner,
+                     .points = inspect::make_reference(scan, T_map_scanner).points});
+  };
+  io::read_run_log(directory.log(), handlers);
+  return scans;
+}
+
+}  // namespace patrol::app

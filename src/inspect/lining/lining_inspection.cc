@@ -1,0 +1,76 @@
+#include "inspect/lining/lining_inspection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "inspect/lining/adjustment.h"
+#include "inspect/lining/grip.h"
+#include "inspect/lining/lining_grid.h"
+#include "inspect/lining/reference_lining.h"
+#include "inspect/lining/registration.h"
+#include "inspect/lining/ring_findings.h"
+#include "inspect/lining/surface_cloud.h"
+
+namespace patrol::inspect {
+namespace {
+
+std::vector<ThinPoint> thin_points(const LiningReference& reference) {
+  std::vector<ThinPoint> points;
+  points.reserve(reference.points.size());
+  for (const ScannerPoint& point : reference.points) points.push_back({{point.x, point.y, point.z}, point.intensity, 1});
+  return points;
+}
+
+/// Whether the two scans are of one place: something that faces along the tunnel holds them, and is the same in both. One of them may
+/// show a truck that the other does not, so the better share counts.
+bool is_same_place(const ScanView& source, const ScanView& target_map, const Adjustment& fine, const Eigen::Vector3d& axis_map, const LiningSettings& settings) {
+  const Eigen::Matrix3d covariance_m2 = fine.covariance.topLeftCorner<3, 3>();
+  if (std::sqrt(axis_map.dot(covariance_m2 * axis_map)) > settings.max_along_std_m) return false;
+  const Pose3 T_source_map = fine.T_map_scanner.inverse();
+  const Grip there = grip(source, target_map, fine.T_map_scanner, T_source_map.rotation * axis_map);
+  const Grip back = grip(target_map, source, T_source_map, axis_map);
+  return std::max(there.share(), back.share()) >= settings.min_grip_share;
+}
+
+}  // namespace
+
+LiningInspection::LiningInspection(const LiningSettings& settings, const TunnelLining& design_in_map, const Pose3& T_body_scanner)
+    : settings_(settings), design_(design_in_map), T_scanner_body_(to_planar(T_body_scanner).inverse()) {
+  validate(settings, "lining");
+}
+
+LiningResult LiningInspection::inspect(Time stamp, const std::string& station, const PanoramicScan& scan, const LiningReference& reference,
+                                       const Pose3& T_map_scanner_guess) const {
+  LiningResult result;
+  result.stamp = stamp;
+  result.station = station;
+  result.T_map_body = to_planar(T_map_scanner_guess) * T_scanner_body_;
+  const SurfaceCloud target(thin_points(reference)), source(thin(scan.points, settings_.spacing_m, settings_.near_m));
+  const auto lining = fit_design(design_, target.points(), reference.T_map_scanner.position, settings_);
+  if (!lining) return result;
+
+  const Registration coarse = register_cloud(target, source, T_map_scanner_guess, settings_.registration);
+  result.registration_share = coarse.share;
+  result.registration_rms_m = coarse.rms_m;
+  if (!coarse.converged || coarse.share < settings_.min_share) return result;
+
+  const LiningGrid grid(*lining, coarse.T_target_source.position, settings_);
+  const ReferenceLining surface(*lining, grid, target.points(), settings_);
+  const Adjustment fine = adjust(*lining, grid, surface, target, source, coarse.T_target_source, T_map_scanner_guess, settings_);
+
+  const double heading = lining->design.heading_at(lining->design.place_of(fine.T_map_scanner.position).chainage_m);
+  result.registration_rms_m = fine.rms_m;
+  result.correction_m = (fine.T_map_scanner.position - T_map_scanner_guess.position).norm();
+  if (result.correction_m > settings_.max_correction_m) return result;
+  if (!is_same_place({source}, {target, reference.T_map_scanner.position}, fine, {std::cos(heading), std::sin(heading), 0.0}, settings_)) return result;
+
+  result.is_registered = true;
+  result.T_map_body = to_planar(fine.T_map_scanner) * T_scanner_body_;
+  result.cells = lining_cells(grid, fine);
+  result.lines = convergence_lines(*lining, grid, fine);
+  result.findings = ring_findings(*lining, grid, fine, settings_);
+  return result;
+}
+
+}  // namespace patrol::inspect

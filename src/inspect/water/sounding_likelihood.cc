@@ -1,0 +1,143 @@
+#include "inspect/water/sounding_likelihood.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/QR>
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace patrol::inspect {
+namespace {
+
+constexpr std::array kSteelDecay_s = {1e-5, 3e-5, 1e-4, 3e-4};
+constexpr double kSteelTime_s = 1e-5;
+
+TemWindow window_of(const SoundingErrorSettings& settings, const std::vector<AimedSounding>& soundings) {
+  validate(settings, "stack.water.errors");
+  if (soundings.empty()) throw InputError("soundings of water: there are none");
+  const std::vector<double>& gate_s = soundings.front().sounding.gate_s;
+  for (const AimedSounding& aimed : soundings) {
+    const TemSounding& sounding = aimed.sounding;
+    if (sounding.gate_s != gate_s || sounding.rate_tps.size() != gate_s.size() || sounding.std_tps.size() != gate_s.size() ||
+        gate_s.size() < 3 || !(sounding.moment_am2 > 0.0)) {
+      throw InputError(fmt::format("sounding of water at {:.3f} s: its gates differ from those of the others", to_seconds(sounding.stamp)));
+    }
+  }
+  return {.gate_s = gate_s, .ramp_s = settings.ramp_s, .gate_width = settings.gate_width};
+}
+
+/// The six products of an axis's components that a quadratic form is made of.
+Eigen::Matrix<double, 6, 1> products(const Eigen::Vector3d& a) {
+  return {a.x() * a.x(), a.y() * a.y(), a.z() * a.z(), 2.0 * a.x() * a.y(), 2.0 * a.x() * a.z(), 2.0 * a.y() * a.z()};
+}
+
+/// What the soundings say with little of their noise: gate by gate the quadratic form of the axis that fits them best, and nothing where
+/// that does not stand out of the noise. Errors that grow with the signal have to be sized by this. Sized by the readings themselves, a gain
+/// that shrinks all readings would shrink the noise with them and look likely (Peelle's puzzle: D'Agostini, "On the use of the covariance
+/// matrix to fit correlated data", Nucl. Instrum. Meth. A 346, 1994). `rate`, `std`: [gate][sounding].
+Eigen::MatrixXd smoothed(const Eigen::MatrixXd& rate, const Eigen::MatrixXd& std, const std::vector<Eigen::Vector3d>& axes) {
+  constexpr Eigen::Index kEnough = 12;
+  const Eigen::Index count = rate.cols();
+  Eigen::MatrixXd form = Eigen::MatrixXd::Ones(count, count < kEnough ? 1 : 6);
+  for (Eigen::Index i = 0; i < count && count >= kEnough; ++i) form.row(i) = products(axes[static_cast<std::size_t>(i)]).transpose();
+  const Eigen::MatrixXd fit = form.completeOrthogonalDecomposition().solve(rate.transpose());
+  Eigen::MatrixXd smooth = (form * fit).transpose();
+  constexpr double kClear = 3.0;
+  for (Eigen::Index gate = 0; gate < rate.rows(); ++gate) {
+    if (smooth.row(gate).norm() < kClear * std.row(gate).norm()) smooth.row(gate).setZero();
+  }
+  return smooth;
+}
+
+/// d ln(rate) / dt of the mean over the soundings, where there is one on both sides; else that of rock. [gate], 1/s.
+Eigen::VectorXd log_slopes(const std::vector<double>& gate_s, const Eigen::VectorXd& mean) {
+  const auto gates = static_cast<Eigen::Index>(gate_s.size());
+  Eigen::VectorXd slopes(gates);
+  for (Eigen::Index gate = 0; gate < gates; ++gate) {
+    const Eigen::Index before = std::max<Eigen::Index>(gate - 1, 0), after = std::min(gate + 1, gates - 1);
+    const double dt_s = gate_s[static_cast<std::size_t>(after)] - gate_s[static_cast<std::size_t>(before)];
+    const bool is_clear = mean[before] > 0.0 && mean[after] > 0.0;
+    slopes[gate] = is_clear ? std::log(mean[after] / mean[before]) / dt_s : -2.5 / gate_s[static_cast<std::size_t>(gate)];
+  }
+  return slopes;
+}
+
+}  // namespace
+
+SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings, const std::vector<AimedSounding>& soundings)
+    : gates_(window_of(settings, soundings)), num_gates_(static_cast<Eigen::Index>(soundings.front().sounding.gate_s.size())) {
+  const auto count = static_cast<Eigen::Index>(soundings.size());
+  const std::vector<double>& gate_s = soundings.front().sounding.gate_s;
+  Eigen::MatrixXd rate(num_gates_, count), std(num_gates_, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const AimedSounding& aimed = soundings[static_cast<std::size_t>(i)];
+    axes_.push_back(quaternion_from_rpy(0.0, aimed.pose.pitch_rad, aimed.pose.yaw_rad) * Eigen::Vector3d::UnitX());
+    for (Eigen::Index gate = 0; gate < num_gates_; ++gate) {
+      const auto g = static_cast<std::size_t>(gate);
+      rate(gate, i) = aimed.sounding.rate_tps[g] / aimed.sounding.moment_am2;
+      std(gate, i) = aimed.sounding.std_tps[g] / aimed.sounding.moment_am2;
+      if (!std::isfinite(rate(gate, i)) || !(std(gate, i) > 0.0)) {
+        throw InputError(fmt::format("sounding of water at {:.3f} s: gate {} is not a number with an error", to_seconds(aimed.sounding.stamp), gate));
+      }
+    }
+  }
+  const Eigen::MatrixXd smooth = smoothed(rate, std, axes_);
+  const Eigen::VectorXd slopes = log_slopes(gate_s, smooth.rowwise().mean());
+  std = (std.array().square() + (settings.model_std * smooth.array()).square()).sqrt();
+
+  constexpr Eigen::Index kSteel = 7 * kSteelDecay_s.size();
+  const Eigen::Index data = num_gates_ * count;
+  data_.resize(data);
+  inverse_std_.resize(data);
+  nuisances_ = Eigen::MatrixXd::Zero(data, 2 + kSteel + count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Vector3d& axis = axes_[static_cast<std::size_t>(i)];
+    for (Eigen::Index gate = 0; gate < num_gates_; ++gate) {
+      const Eigen::Index row = i * num_gates_ + gate;
+      inverse_std_[row] = 1.0 / std(gate, i);
+      data_[row] = rate(gate, i) / std(gate, i);
+      const double signal = smooth(gate, i) / std(gate, i);
+      nuisances_(row, 0) = settings.gain_std * signal;
+      nuisances_(row, 1) = settings.time_shift_std_s * slopes[gate] * signal;
+      nuisances_(row, 2 + kSteel + i) = settings.sounding_gain_std * signal;
+      Eigen::Index column = 2;
+      for (const double decay_s : kSteelDecay_s) {
+        const double steel =
+            settings.steel_rate * std::exp((kSteelTime_s - gate_s[static_cast<std::size_t>(gate)]) / decay_s) * inverse_std_[row];
+        nuisances_(row, column++) = steel;
+        nuisances_.block<1, 6>(row, column) = settings.steel_anisotropy * steel * products(axis).transpose();
+        column += 6;
+      }
+    }
+  }
+  const Eigen::Index columns = nuisances_.cols();
+  nuisance_information_.compute(Eigen::MatrixXd::Identity(columns, columns) + nuisances_.transpose() * nuisances_);
+}
+
+// With residual r and nuisances B, both whitened: r' (I + B B')^-1 r = r'r - (B'r)' (I + B'B)^-1 (B'r).
+double SoundingLikelihood::of_residual(const Eigen::VectorXd& whitened) const {
+  const Eigen::VectorXd projected = nuisances_.transpose() * whitened;
+  return -0.5 * (whitened.squaredNorm() - projected.dot(nuisance_information_.solve(projected)));
+}
+
+double SoundingLikelihood::of_rock(double rock_spm) const {
+  const Eigen::VectorXd rock = gated_rock(gates_, rock_spm);
+  return of_residual(data_ - rock.replicate(static_cast<Eigen::Index>(axes_.size()), 1).cwiseProduct(inverse_std_));
+}
+
+double SoundingLikelihood::of_body(double rock_spm, const ConductiveSphere& sphere, const Eigen::Vector3d& towards) const {
+  const GatedSphere body = gated_sphere(gates_, rock_spm, sphere);
+  const Eigen::VectorXd across = gated_rock(gates_, rock_spm) + body.transverse, along = body.axial - body.transverse;
+  Eigen::VectorXd whitened = data_;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const Eigen::Index row = static_cast<Eigen::Index>(i) * num_gates_;
+    const double cosine = axes_[i].dot(towards);
+    whitened.segment(row, num_gates_) -= (across + cosine * cosine * along).cwiseProduct(inverse_std_.segment(row, num_gates_));
+  }
+  return of_residual(whitened);
+}
+
+}  // namespace patrol::inspect

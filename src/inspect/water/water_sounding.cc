@@ -1,0 +1,130 @@
+#include "inspect/water/water_sounding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace patrol::inspect {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// Step `index` of `count` from -max to max; the middle for one.
+double evenly(int index, int count, double max) { return count == 1 ? 0.0 : max * (2.0 * index / (count - 1) - 1.0); }
+
+void check_reach(const char* name, double angle_deg, const JointLimit& limit) {
+  if (-angle_deg * kDegree >= limit.lower_rad && angle_deg * kDegree <= limit.upper_rad) return;
+  throw InputError(fmt::format("stack.water.sounding.{} = {}: the mount reaches {:.1f} ... {:.1f} deg", name, angle_deg,
+                               limit.lower_rad / kDegree, limit.upper_rad / kDegree));
+}
+
+Eigen::Vector3d axis_of(const AntennaPose& pose) {
+  return quaternion_from_rpy(0.0, pose.pitch_rad, pose.yaw_rad) * Eigen::Vector3d::UnitX();
+}
+
+double angle_between(const AntennaPose& a, const AntennaPose& b) {
+  const Eigen::Vector3d first = axis_of(a), second = axis_of(b);
+  return std::atan2(first.cross(second).norm(), first.dot(second));
+}
+
+AntennaPose pose_of(const AntennaState& state) { return {state.yaw_rad, state.pitch_rad}; }
+
+}  // namespace
+
+std::vector<AntennaPose> antenna_poses(const WaterSoundingSettings& settings, const AntennaGeometry& antenna) {
+  validate(settings, "stack.water.sounding");
+  check_reach("max_yaw_deg", settings.max_yaw_deg, antenna.yaw);
+  check_reach("max_pitch_deg", settings.max_pitch_deg, antenna.pitch);
+  std::vector<AntennaPose> poses;
+  for (int row = 0; row < settings.pitches; ++row) {
+    for (int step = 0; step < settings.yaws; ++step) {
+      const int column = row % 2 == 0 ? step : settings.yaws - 1 - step;
+      poses.push_back({.yaw_rad = kDegree * evenly(column, settings.yaws, settings.max_yaw_deg),
+                       .pitch_rad = kDegree * evenly(row, settings.pitches, settings.max_pitch_deg)});
+    }
+  }
+  return poses;
+}
+
+WaterSounding::WaterSounding(const WaterSoundingSettings& settings, const AntennaGeometry& antenna, Time start)
+    : settings_(settings),
+      stowed_{antenna.stowed_yaw_rad, antenna.stowed_pitch_rad},
+      poses_(antenna_poses(settings, antenna)),
+      since_(start) {}
+
+void WaterSounding::see(const AntennaState& state) {
+  if (state_ && state.stamp <= state_->stamp) return;
+  constexpr double kStill_rad = 0.15 * kDegree;  // two steps of the encoder
+  const bool is_there = angle_between(pose_of(state), asked_) <= settings_.settled_deg * kDegree;
+  const bool is_still = state_ && angle_between(pose_of(state), pose_of(*state_)) <= kStill_rad;
+  if (!is_there || !is_still) steady_since_.reset();
+  else if (!steady_since_) steady_since_ = state_->stamp;
+  state_ = state;
+}
+
+/// Only what was read since the order counts.
+bool WaterSounding::is_settled(Time now) const {
+  return steady_since_ && state_->stamp > since_ && now - std::max(*steady_since_, since_) >= from_seconds(settings_.settle_s);
+}
+
+InstrumentCommand WaterSounding::turn_to(const AntennaPose& pose, Phase phase, Time now) {
+  asked_ = pose;
+  phase_ = phase;
+  since_ = now;
+  steady_since_.reset();
+  return AntennaCommand{.stamp = now, .yaw_rad = pose.yaw_rad, .pitch_rad = pose.pitch_rad};
+}
+
+std::optional<InstrumentCommand> WaterSounding::go_on(Time now) {
+  if (next_ == poses_.size()) return turn_to(stowed_, Phase::kStowing, now);
+  return turn_to(poses_[next_++], Phase::kTurning, now);
+}
+
+std::optional<InstrumentCommand> WaterSounding::leave_out(Time now) {
+  ++left_out_;
+  if (++left_out_in_a_row_ >= settings_.give_up_after) {
+    left_out_ += static_cast<int>(poses_.size() - next_);
+    next_ = poses_.size();
+  }
+  return go_on(now);
+}
+
+std::optional<InstrumentCommand> WaterSounding::step(Time now, const std::optional<AntennaState>& antenna,
+                                                     const std::optional<TemSounding>& sounding) {
+  if (antenna) see(*antenna);
+  if (!has_begun_) {
+    has_begun_ = true;
+    return go_on(now);
+  }
+  const double waited_s = to_seconds(now - since_);
+  switch (phase_) {
+    case Phase::kTurning:
+      if (!is_settled(now)) return waited_s > settings_.turn_timeout_s ? leave_out(now) : std::nullopt;
+      phase_ = Phase::kSounding;
+      since_ = now;
+      return SoundingCommand{.stamp = now};
+    case Phase::kSounding:
+      if (!sounding || sounding->stamp <= since_) return waited_s > settings_.sounding_timeout_s ? leave_out(now) : std::nullopt;
+      soundings_.push_back({.pose = pose_of(*state_), .sounding = *sounding});
+      sum_squared_error_rad2_ += std::pow(angle_between(asked_, pose_of(*state_)), 2);
+      left_out_in_a_row_ = 0;
+      return go_on(now);
+    case Phase::kStowing:
+      is_stowed_ = is_settled(now);
+      if (is_stowed_ || waited_s > settings_.turn_timeout_s) phase_ = Phase::kOver;
+      return std::nullopt;
+    case Phase::kOver:
+      return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+double WaterSounding::antenna_error_deg() const {
+  return soundings_.empty() ? 0.0 : std::sqrt(sum_squared_error_rad2_ / static_cast<double>(soundings_.size())) / kDegree;
+}
+
+}  // namespace patrol::inspect

@@ -1,0 +1,216 @@
+#include "monitor/queries.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/inspection_result.h"
+#include "io/base64.h"
+#include "io/json_object.h"
+
+namespace patrol::monitor {
+namespace {
+
+using io::Json;
+
+constexpr int kMostChanges = 500;
+constexpr int kMostTrackPoints = 600;
+constexpr int kMostRings = 500;
+constexpr int kMostRingRows = 40;  // of one ring
+constexpr int kMostGasRows = 2'000;
+constexpr int kMostLines = 2'000;
+constexpr int kMostStations = 20;
+constexpr int kMostPage = 200;
+
+Json value_of(const Statement& row, int column) {
+  switch (row.type(column)) {
+    case Statement::Type::kNull: return nullptr;
+    case Statement::Type::kInteger: return row.integer(column);
+    case Statement::Type::kNumber: return row.number(column);
+    case Statement::Type::kText: return row.text(column);
+  }
+  return nullptr;
+}
+
+/// By the columns' names.
+Json object_of(const Statement& row) {
+  Json object;
+  for (int column = 0; column < row.num_columns(); ++column) object[row.name(column)] = value_of(row, column);
+  return object;
+}
+
+/// All that are left.
+Json objects_of(Statement& rows) {
+  Json list = Json::array();
+  while (rows.step()) list.push_back(object_of(rows));
+  return list;
+}
+
+constexpr const char* kRobots =
+    "SELECT robots.robot, runs.run, world, scenario, state, message, robots.made_ms, robots.received_ms, robots.time_s, x, y, yaw, at, "
+    "mark_revision, map_seq IS NOT NULL AS has_map FROM robots JOIN runs ON runs.number = robots.run";
+
+constexpr const char* kFindings =
+    "SELECT findings.number, robot, runs.run, world, time_s, made_ms, received_ms, "
+    "CASE level WHEN 1 THEN 'notice' WHEN 2 THEN 'warning' ELSE 'alarm' END AS level, kind, subject, text, x, y, acknowledged_ms, who, note "
+    "FROM findings JOIN runs ON runs.number = findings.run";
+
+/// Warnings and alarms that nobody has acknowledged.
+Json open_count(Database& database) {
+  Json count = {{"warning", 0}, {"alarm", 0}};
+  Statement row = database.prepare("SELECT level, count(*) FROM findings WHERE acknowledged_ms IS NULL AND level >= 2 GROUP BY level");
+  while (row.step()) count[name_of(static_cast<WarningLevel>(row.integer(0)))] = row.integer(1);
+  return count;
+}
+
+Json findings_page(Database& database, const AlarmsPage& page) {
+  const std::string where = fmt::format(" WHERE findings.level >= 2 AND (?1 = 0 OR findings.number < ?1){} ORDER BY findings.number DESC LIMIT ?2",
+                                        page.only_open ? " AND findings.acknowledged_ms IS NULL" : "");
+  Statement rows = database.prepare(kFindings + where);
+  return objects_of(rows.bind(page.before, std::clamp(page.limit, 1, kMostPage)));
+}
+
+/// At most so many of a run's places, evenly.
+Json track_of(Database& database, std::int64_t run, std::int64_t num_poses) {
+  Json track = Json::array();
+  const std::int64_t step = num_poses / kMostTrackPoints + 1;
+  Statement row = database.prepare("SELECT x, y FROM poses WHERE run = ?1 AND (place % ?2 = 0 OR place = ?3) ORDER BY place");
+  row.bind(run, step, num_poses - 1);
+  while (row.step()) track.push_back({row.number(0), row.number(1)});
+  return track;
+}
+
+Json map_geometry(Database& database, std::int64_t seq) {
+  Statement row = database.prepare("SELECT data FROM results WHERE seq = ?1");
+  if (!row.bind(seq).step()) return nullptr;
+  Json map = Json::parse(row.text(0));
+  map.erase("png_base64");
+  map["seq"] = seq;
+  return map;
+}
+
+/// The newest result of each station, their data as they were stored.
+std::string newest_of(Database& database, const std::string& world, const char* kind) {
+  std::string list;
+  Statement row = database.prepare(
+      "SELECT results.robot, results.run, results.time_s, results.made_ms, results.data FROM newest JOIN results USING (seq) "
+      "WHERE newest.world = ?1 AND newest.kind = ?2 ORDER BY newest.made_ms DESC LIMIT ?3");
+  row.bind(world, kind, kMostStations);
+  while (row.step()) {
+    std::string one = Json{{"robot", row.text(0)}, {"run", row.text(1)}, {"time_s", row.number(2)}, {"made_ms", row.integer(3)}}.dump();
+    one.pop_back();
+    list += fmt::format(R"({}{},"data":{}}})", list.empty() ? "" : ",", one, row.text(4));
+  }
+  return "[" + list + "]";
+}
+
+Json lines_of(Database& database, const std::string& world) {
+  Statement rows = database.prepare("SELECT ring, name, made_ms, change_m, std_m, before_m FROM lines WHERE world = ?1 ORDER BY ring, name LIMIT ?2");
+  return objects_of(rows.bind(world, kMostLines));
+}
+
+/// [ring, made_ms, inward_m, std_m, clock_deg], the newest of each ring, in the order of time.
+Json rings_of(Database& database, const std::string& world) {
+  Statement numbers = database.prepare(
+      "WITH RECURSIVE known (ring) AS (SELECT min(ring) FROM rings WHERE world = ?1 UNION ALL "
+      "SELECT (SELECT min(ring) FROM rings WHERE world = ?1 AND ring > known.ring) FROM known WHERE known.ring IS NOT NULL) "
+      "SELECT ring FROM known WHERE ring IS NOT NULL LIMIT ?2");
+  Statement row = database.prepare("SELECT made_ms, inward_m, std_m, clock_deg FROM rings WHERE world = ?1 AND ring = ?2 ORDER BY made_ms DESC LIMIT ?3");
+  Json list = Json::array();
+  numbers.bind(world, kMostRings);
+  while (numbers.step()) {
+    const std::int64_t ring = numbers.integer(0);
+    Json one = Json::array();
+    row.bind(world, ring, kMostRingRows);
+    while (row.step()) one.push_back({ring, row.integer(0), row.number(1), value_of(row, 2), row.number(3)});
+    std::reverse(one.begin(), one.end());
+    list.insert(list.end(), one.begin(), one.end());
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string changes(Database& database, std::int64_t since, std::int64_t now_ms) {
+  Statement revision = database.prepare("SELECT number FROM revision");
+  revision.step();
+  Json json = {{"revision", revision.integer(0)}, {"now_ms", now_ms}, {"open", open_count(database)}};
+  Statement rows = database.prepare(std::string(kRobots) + " WHERE robots.revision > ?1 ORDER BY robots.robot LIMIT ?2");
+  json["robots"] = objects_of(rows.bind(since, kMostChanges));
+  if (since == 0) {
+    json["findings"] = findings_page(database, {.limit = kMostPage});
+    for (Json& open : findings_page(database, {.only_open = true, .limit = kMostPage})) json["findings"].push_back(std::move(open));
+  } else {
+    Statement findings =
+        database.prepare(std::string(kFindings) + " WHERE findings.revision > ?1 AND findings.level >= 2 ORDER BY findings.number DESC LIMIT ?2");
+    json["findings"] = objects_of(findings.bind(since, kMostChanges));
+  }
+  return json.dump();
+}
+
+std::string robots(Database& database) {
+  Statement rows = database.prepare(std::string(kRobots) + " ORDER BY robots.robot");
+  return Json{{"robots", objects_of(rows)}}.dump();
+}
+
+std::string alarms(Database& database, const AlarmsPage& page) {
+  return Json{{"findings", findings_page(database, page)}, {"open", open_count(database)}}.dump();
+}
+
+std::optional<std::string> run_details(Database& database, const std::string& robot, const std::string& run) {
+  Statement row = database.prepare(
+      "SELECT number, poses, map_seq, stations, robot, run, world, scenario, state, message FROM runs "
+      "WHERE robot = ?1 AND (?2 = '' OR run = ?2) ORDER BY first_ms DESC LIMIT 1");
+  if (!row.bind(robot, run).step()) return std::nullopt;
+  Json json = object_of(row);
+  const std::int64_t number = row.integer(0);
+  json["track"] = track_of(database, number, row.integer(1));
+  json["map"] = row.is_null(2) ? Json(nullptr) : map_geometry(database, row.integer(2));
+  json["stations"] = Json::parse(row.text(3));
+  Statement findings = database.prepare(std::string(kFindings) + " WHERE findings.run = ?1 ORDER BY findings.number DESC LIMIT ?2");
+  json["findings"] = objects_of(findings.bind(number, kMostPage));
+  Statement runs = database.prepare("SELECT run, first_ms, state FROM runs WHERE robot = ?1 ORDER BY first_ms DESC LIMIT 50");
+  json["runs"] = objects_of(runs.bind(robot));
+  return json.dump();
+}
+
+std::string lining(Database& database, const std::string& world) {
+  return fmt::format(R"({{"scans":{},"lines":{},"rings":{}}})", newest_of(database, world, "lining"), lines_of(database, world).dump(),
+                     rings_of(database, world).dump());
+}
+
+std::string water(Database& database, const std::string& world) { return fmt::format(R"({{"water":{}}})", newest_of(database, world, "water")); }
+
+std::string gas(Database& database, const std::string& world) {
+  Json list = Json::array();
+  Statement row = database.prepare("SELECT station, made_ms, column_ppm_m FROM gas WHERE world = ?1 ORDER BY made_ms DESC LIMIT ?2");
+  row.bind(world, kMostGasRows);
+  while (row.step()) list.push_back({row.text(0), row.integer(1), row.number(2)});
+  std::reverse(list.begin(), list.end());
+  return Json{{"gas", list}}.dump();
+}
+
+std::string history(Database& database, const HistoryPage& page) {
+  std::string sql = "SELECT summary AS data, seq, id, robot, run, world, time_s, made_ms, received_ms, kind FROM results WHERE (?1 = 0 OR seq < ?1)";
+  sql += page.robot.empty() ? " AND ?2 = ''" : " AND robot = ?2";
+  sql += page.kind.empty() ? " AND ?3 = '' AND kind NOT IN ('pose', 'map')" : " AND kind = ?3";
+  Statement row = database.prepare(sql + " ORDER BY seq DESC LIMIT ?4");
+  const int limit = std::clamp(page.limit, 1, kMostPage);
+  row.bind(page.before, page.robot, page.kind, limit + 1);
+  Json list = Json::array();
+  while (row.step()) {
+    list.push_back(object_of(row));
+    list.back()["data"] = Json::parse(row.text(0));
+  }
+  const bool has_more = list.size() > static_cast<std::size_t>(limit);
+  if (has_more) list.erase(list.size() - 1);
+  return Json{{"results", list}, {"more", has_more}}.dump();
+}
+
+std::optional<std::string> map_image(Database& database, std::int64_t seq) {
+  Statement row = database.prepare("SELECT data FROM results WHERE seq = ?1 AND kind = 'map'");
+  if (!row.bind(seq).step()) return std::nullopt;
+  return io::from_base64(Json::parse(row.text(0))["png_base64"].get<std::string>());
+}
+
+}  // namespace patrol::monitor

@@ -1,0 +1,176 @@
+#include "monitor/result.h"
+
+#include <chrono>
+#include <cstdio>
+#include <set>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/base64.h"
+#include "io/inspection_json.h"
+#include "io/json_check.h"
+#include "io/json_object.h"
+#include "monitor/png_size.h"
+
+namespace patrol::monitor {
+namespace {
+
+using io::Json;
+using io::JsonObject;
+
+constexpr std::size_t kMostEntries = 100'000;
+constexpr std::size_t kMostResults = 1000;  // in one request
+constexpr std::size_t kLongestName = 200;
+constexpr std::size_t kLongestText = 2000;
+constexpr std::size_t kLongestSummary = 400;
+constexpr int kMostPixels = 8192;  // of a map's side
+
+std::string text_of(const JsonObject& object, const char* key, std::size_t least, std::size_t most) {
+  const std::string text = object.word(key);
+  if (text.size() < least || text.size() > most) object.fail(fmt::format("{} must have {} ... {} bytes", key, least, most));
+  return text;
+}
+
+std::string name_of(const JsonObject& object, const char* key) { return text_of(object, key, 1, kLongestName); }
+
+void check_point(const JsonObject& object, const char* key) { object.numbers(key, 2); }
+
+void check_map(const std::string& place, const Json& data) {
+  const JsonObject object(place, data, {"width", "height", "resolution_m", "origin_m", "png_base64"});
+  for (const char* side : {"width", "height"}) {
+    if (object.whole(side) < 1 || object.whole(side) > kMostPixels) object.fail(fmt::format("{} must lie in 1 ... {}", side, kMostPixels));
+  }
+  if (object.number("resolution_m") <= 0.0) object.fail("resolution_m must be positive");
+  check_point(object, "origin_m");
+  const auto bytes = io::from_base64(object.word("png_base64"));
+  const auto size = bytes ? png_size(*bytes) : std::nullopt;
+  if (!size) object.fail("png_base64 must be a PNG in base64");
+  if (size->width != object.whole("width") || size->height != object.whole("height")) {
+    object.fail(fmt::format("png_base64 must have {} x {} pixels, it has {} x {}", object.whole("width"), object.whole("height"), size->width, size->height));
+  }
+}
+
+void check_event(const std::string& place, const Json& data) {
+  const JsonObject object(place, data, {"kind", "subject", "text", "value", "pose", "position_m"});
+  name_of(object, "kind");
+  text_of(object, "subject", 0, kLongestName);
+  text_of(object, "text", 0, kLongestText);
+  if (!object.member("value").is_null()) object.number("value");
+  io::pose_from_json(place + ".pose", object.member("pose"));
+  check_point(object, "position_m");
+}
+
+void check_status(const std::string& place, const Json& data) {
+  const JsonObject object(place, data, {"state", "scenario", "message", "stations"});
+  const std::string state = object.word("state");
+  if (state != "started" && state != "finished" && state != "failed" && state != "interrupted") {
+    object.fail("state must be one of started, finished, failed, interrupted");
+  }
+  text_of(object, "scenario", 0, kLongestName);
+  text_of(object, "message", 0, kLongestText);
+  std::size_t index = 0;
+  for (const Json& station : object.list("stations")) {
+    const JsonObject one(fmt::format("{}.stations[{}]", place, index++), station, {"name", "type", "position_m"});
+    text_of(one, "name", 0, kLongestName);
+    text_of(one, "type", 0, kLongestName);
+    check_point(one, "position_m");
+  }
+}
+
+void check_length(const std::string& place, const std::string& text) {
+  if (text.size() > kLongestText) throw InputError(fmt::format("{} must have at most {} bytes", place, kLongestText));
+}
+
+void check_lining(const std::string& place, const Json& data) {
+  const LiningResult lining = io::lining_from_json(place, data);
+  check_length(place + ".station", lining.station);
+  for (const ConvergenceLine& line : lining.lines) check_length(place + ".lines.name", line.name);
+}
+
+void check_data(const std::string& place, const std::string& kind, const Json& data) {
+  if (kind == "pose") io::pose_from_json(place, data);
+  else if (kind == "map") check_map(place, data);
+  else if (kind == "event") check_event(place, data);
+  else if (kind == "lining") check_lining(place, data);
+  else if (kind == "water") check_length(place + ".station", io::water_from_json(place, data).station);
+  else if (kind == "status") check_status(place, data);
+}
+
+Result result_from(const std::string& place, const Json& json) {
+  const JsonObject object(place, json, {"schema", "id", "robot", "run", "world", "sequence", "time_s", "made_utc", "kind", "data"});
+  if (object.word("schema") != kResultSchema) object.fail(fmt::format("schema must be {}", kResultSchema));
+  Result result{.id = name_of(object, "id"), .robot = name_of(object, "robot"), .run = name_of(object, "run"), .world = name_of(object, "world"),
+                .kind = object.word("kind"), .data = {}};
+  result.sequence = object.whole("sequence");
+  if (result.sequence < 0) object.fail("sequence must not be negative");
+  result.time_s = object.number("time_s");
+  if (result.time_s < 0.0) object.fail("time_s must not be negative");
+  try {
+    result.made_ms = from_utc(object.word("made_utc"));
+  } catch (const InputError& error) {
+    object.fail(fmt::format("made_utc {}", error.what()));
+  }
+  static const std::set<std::string> kKinds = {"pose", "map", "event", "lining", "water", "status"};
+  if (!kKinds.contains(result.kind)) object.fail(fmt::format("kind must be one of {}", fmt::join(kKinds, ", ")));
+  const Json& data = object.member("data");
+  check_data(place + ".data", result.kind, data);
+  result.data = data.dump();
+  return result;
+}
+
+}  // namespace
+
+std::string to_json(const Result& result) {
+  const Json json = {{"schema", kResultSchema}, {"id", result.id}, {"robot", result.robot}, {"run", result.run}, {"world", result.world}, {"sequence", result.sequence},
+                     {"time_s", result.time_s}, {"made_utc", to_utc(result.made_ms)}, {"kind", result.kind}, {"data", Json::parse(result.data)}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::vector<Result> results_from_json(const std::string& text) {
+  io::check_json("body", text, kMostEntries);
+  const Json json = Json::parse(text);
+  if (!json.is_array()) return {result_from("result", json)};
+  if (json.size() > kMostResults) throw InputError(fmt::format("body: must have at most {} results", kMostResults));
+  std::vector<Result> results;
+  for (const Json& entry : json) results.push_back(result_from(fmt::format("result[{}]", results.size()), entry));
+  return results;
+}
+
+std::string content_of(const Result& result) {
+  return Json({result.robot, result.run, result.world, result.sequence, result.time_s, result.made_ms, result.kind, result.data}).dump();
+}
+
+std::string summary_of(const Result& result) {
+  if (result.data.size() <= kLongestSummary || result.kind == "event") return result.data;
+  Json json = Json::parse(result.data);
+  for (auto& [key, value] : json.items()) {
+    if (value.is_array()) value = value.size();
+    if (key == "png_base64") value = "";
+  }
+  return json.dump();
+}
+
+std::string to_utc(std::int64_t milliseconds) {
+  const std::chrono::sys_seconds seconds{std::chrono::floor<std::chrono::seconds>(std::chrono::milliseconds(milliseconds))};
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(seconds.time_since_epoch().count()), ((milliseconds % 1000) + 1000) % 1000);
+}
+
+std::int64_t from_utc(const std::string& text) {
+  int year = 0, month = 0, day = 0, hour = 0, minute = 0, second = 0, fraction = 0, used = 0;
+  const int fields = std::sscanf(text.c_str(), "%4d-%2d-%2dT%2d:%2d:%2d.%3dZ%n", &year, &month, &day, &hour, &minute, &second, &fraction, &used);
+  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)), std::chrono::day(static_cast<unsigned>(day))};
+  constexpr std::size_t kLength = 24;
+  const bool is_time = fields == 7 && text.size() == kLength && static_cast<std::size_t>(used) == kLength && date.ok() && year >= 1970 && hour >= 0 && hour < 24 &&
+                       minute >= 0 && minute < 60 && second >= 0 && second < 60 && fraction >= 0;
+  if (!is_time) throw InputError("must be a time such as 2026-11-22T10:45:33.120Z");
+  const auto day_start = std::chrono::sys_days(date).time_since_epoch();
+  return std::chrono::milliseconds(day_start + std::chrono::hours(hour) + std::chrono::minutes(minute) + std::chrono::seconds(second)).count() + fraction;
+}
+
+std::int64_t now_ms() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace patrol::monitor

@@ -1,0 +1,180 @@
+#include "monitor/service.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/json_check.h"
+#include "io/json_object.h"
+#include "monitor/assets.h"
+#include "monitor/queries.h"
+#include "monitor/token.h"
+
+namespace patrol::monitor {
+namespace {
+
+using io::Json;
+
+constexpr std::string_view kAlarms = "/api/alarms/", kAcknowledge = "/acknowledge", kMaps = "/api/maps/", kResults = "/api/results";
+constexpr std::size_t kLongestWho = 80, kLongestNote = 500;
+constexpr const char* kPolicy = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
+                                "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+struct Asset {
+  std::string_view path, type, content;
+};
+
+const Asset* asset_at(std::string_view path) {
+  static const Asset kAssets[] = {{"/", "text/html; charset=utf-8", kPage},
+                                  {"/page.css", "text/css; charset=utf-8", kPageStyle},
+                                  {"/page.js", "text/javascript; charset=utf-8", kPageScript},
+                                  {"/site.js", "text/javascript; charset=utf-8", kSiteScript},
+                                  {"/words.js", "text/javascript; charset=utf-8", kWordsScript},
+                                  {"/map.js", "text/javascript; charset=utf-8", kMapScript},
+                                  {"/plots.js", "text/javascript; charset=utf-8", kPlotsScript},
+                                  {"/uplot.js", "text/javascript; charset=utf-8", kPlotLibrary},
+                                  {"/uplot.css", "text/css; charset=utf-8", kPlotStyle},
+                                  {"/schema", "application/schema+json", kSchema}};
+  for (const Asset& asset : kAssets) {
+    if (asset.path == path) return &asset;
+  }
+  return nullptr;
+}
+
+std::optional<std::int64_t> whole(std::string_view text) {
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < 0) return std::nullopt;
+  return value;
+}
+
+/// The finding that a path names, between its head and its tail.
+std::optional<std::int64_t> number_in(std::string_view path, std::string_view head, std::string_view tail) {
+  if (!path.starts_with(head) || !path.ends_with(tail) || path.size() <= head.size() + tail.size()) return std::nullopt;
+  return whole(path.substr(head.size(), path.size() - head.size() - tail.size()));
+}
+
+std::string parameter(const HttpRequest& request, const char* name) {
+  const auto there = request.parameters.find(name);
+  return there == request.parameters.end() ? "" : there->second;
+}
+
+/// Throws InputError when it is not a whole number.
+std::int64_t count(const HttpRequest& request, const char* name, std::int64_t otherwise) {
+  const std::string text = parameter(request, name);
+  if (text.empty()) return otherwise;
+  const auto value = whole(text);
+  if (!value || *value > 1'000'000'000'000) throw InputError(fmt::format("{} must be a whole number", name));
+  return *value;
+}
+
+int limit_of(const HttpRequest& request, int otherwise) { return static_cast<int>(std::min<std::int64_t>(count(request, "limit", otherwise), 1000)); }
+
+HttpResponse fresh(std::string json) { return {.body = std::move(json), .headers = {{"Cache-Control", "no-store"}}}; }
+
+bool is_place_to_post(std::string_view path) { return path == kResults || number_in(path, kAlarms, kAcknowledge).has_value(); }
+
+bool is_place_to_get(std::string_view path) {
+  for (const char* known : {"/api/changes", "/api/robots", "/api/alarms", "/api/run", "/api/lining", "/api/water", "/api/gas", "/api/history"}) {
+    if (path == known) return true;
+  }
+  return asset_at(path) != nullptr || number_in(path, kMaps, "").has_value();
+}
+
+HttpResponse get(Database& database, const HttpRequest& request) {
+  const std::string& path = request.path;
+  if (const Asset* asset = asset_at(path)) {
+    return {.type = std::string(asset->type), .body = std::string(asset->content),
+            .headers = {{"Cache-Control", "no-cache"}, {"Content-Security-Policy", kPolicy}, {"Referrer-Policy", "no-referrer"}}};
+  }
+  if (path == "/api/changes") return fresh(changes(database, count(request, "since", 0), now_ms()));
+  if (path == "/api/robots") return fresh(robots(database));
+  if (path == "/api/alarms") {
+    return fresh(alarms(database, {.only_open = parameter(request, "open") == "1", .before = count(request, "before", 0), .limit = limit_of(request, 100)}));
+  }
+  if (path == "/api/run") {
+    const auto details = run_details(database, parameter(request, "robot"), parameter(request, "run"));
+    return details ? fresh(*details) : refusal(404, "there is no such robot or run");
+  }
+  if (path == "/api/lining") return fresh(lining(database, parameter(request, "world")));
+  if (path == "/api/water") return fresh(water(database, parameter(request, "world")));
+  if (path == "/api/gas") return fresh(gas(database, parameter(request, "world")));
+  if (path == "/api/history") {
+    return fresh(history(database, {.robot = parameter(request, "robot"), .kind = parameter(request, "kind"), .before = count(request, "before", 0),
+                                    .limit = limit_of(request, 25)}));
+  }
+  const auto image = map_image(database, *number_in(path, kMaps, ""));
+  if (!image) return refusal(404, "there is no such map");
+  return {.type = "image/png", .body = *image, .headers = {{"Cache-Control", "no-store"}}};
+}
+
+}  // namespace
+
+Service::Service(Store& store, std::string token, HttpServer::Log log) : store_(store), token_(std::move(token)), log_(std::move(log)) {}
+
+std::optional<HttpResponse> Service::refuse(const HttpRequest& head) {
+  const bool posts = is_place_to_post(head.path), gets = is_place_to_get(head.path);
+  if (!posts && !gets) return refusal(404, "there is nothing here");
+  const std::string allowed = posts ? "POST" : "GET";
+  if (head.method != allowed) {
+    HttpResponse no = refusal(405, fmt::format("only {} is allowed here", allowed));
+    no.headers.emplace_back("Allow", allowed);
+    return no;
+  }
+  constexpr std::string_view kBearer = "Bearer ";
+  const std::string_view shown = head.authorization;
+  if (posts && !(shown.starts_with(kBearer) && is_same_token(shown.substr(kBearer.size()), token_))) {
+    HttpResponse no = refusal(401, shown.empty() ? "a token is needed: Authorization: Bearer ..." : "this is not the token");
+    no.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"patrol\"");
+    return no;
+  }
+  return std::nullopt;
+}
+
+HttpResponse Service::answer(const HttpRequest& request) {
+  try {
+    if (request.path == kResults) return take_results(request);
+    if (request.method == "POST") return acknowledge(request);
+    return get(store_.database(), request);
+  } catch (const InputError& error) {
+    return refusal(400, error.what());
+  }
+}
+
+HttpResponse Service::take_results(const HttpRequest& request) {
+  const std::vector<Result> results = results_from_json(request.body);
+  const std::vector<Stored> stored = store_.add(results, now_ms());
+  Json list = Json::array();
+  bool has_conflict = false;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const bool is_conflict = stored[i] == Stored::kConflict;
+    has_conflict = has_conflict || is_conflict;
+    list.push_back({{"id", results[i].id}, {"status", is_conflict ? "conflict" : stored[i] == Stored::kKnown ? "known" : "stored"}});
+    if (is_conflict) log_(fmt::format("{} 409: another result with the id {} is there already", request.peer, results[i].id));
+  }
+  Json answer = {{"results", list}};
+  if (has_conflict) answer["error"] = "another result with the same id is there already; nothing of it was changed";
+  return {.status = has_conflict ? 409 : 200, .body = answer.dump(), .headers = {}};
+}
+
+HttpResponse Service::acknowledge(const HttpRequest& request) {
+  io::check_json("body", request.body, 10);
+  const Json json = Json::parse(request.body);
+  const io::JsonObject object("body", json, {"who", "note"});
+  const std::string who = object.word("who"), note = object.word("note");
+  if (who.empty() || who.size() > kLongestWho) object.fail(fmt::format("who must have 1 ... {} bytes", kLongestWho));
+  if (note.size() > kLongestNote) object.fail(fmt::format("note must have at most {} bytes", kLongestNote));
+  const std::int64_t number = *number_in(request.path, kAlarms, kAcknowledge);
+  switch (store_.acknowledge(number, who, note, now_ms())) {
+    case Acknowledged::kUnknown: return refusal(404, "there is no such alarm");
+    case Acknowledged::kAlready: return refusal(409, "this alarm is acknowledged already");
+    case Acknowledged::kDone: break;
+  }
+  log_(fmt::format("{} alarm {} acknowledged by {}", request.peer, number, who));
+  return {.body = Json{{"number", number}}.dump(), .headers = {}};
+}
+
+}  // namespace patrol::monitor

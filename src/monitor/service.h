@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "monitor/http_server.h"
+#include "monitor/store.h"
+
+namespace patrol::monitor {
+
+/// The platform behind its address: takes results in, and gives the page what it shows.
+///
+/// Whoever changes something shows the token (`Authorization: Bearer ...`); reading needs none: who may reach the address may see. The
+/// token in a header also keeps other sites' pages from changing anything through a visitor's browser, which sends no such header for them.
+///
+///   POST /api/results                         a result or a list of them: {"results": [{"id", "status": stored, known or conflict}]}
+///   POST /api/alarms/<number>/acknowledge     {"who", "note"}
+///   GET  /  /page.css  /page.js  ...  /schema
+///   GET  /api/changes?since=  /api/robots  /api/alarms?open=&before=&limit=  /api/run?robot=&run=  /api/lining?world=  /api/water?world=
+///        /api/gas?world=  /api/history?robot=&kind=&before=&limit=  /api/maps/<number>
+class Service final : public HttpHandler {
+ public:
+  Service(Store& store, std::string token, HttpServer::Log log);
+
+  std::optional<HttpResponse> refuse(const HttpRequest& head) override;
+  HttpResponse answer(const HttpRequest& request) override;
+
+ private:
+  HttpResponse take_results(const HttpRequest& request);
+  HttpResponse acknowledge(const HttpRequest& request);
+
+  Store& store_;
+  std::string token_;
+  HttpServer::Log log_;
+};
+
+}  // namespace patrol::monitor

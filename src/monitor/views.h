@@ -1,0 +1,22 @@
+#pragma once
+
+#include "monitor/database.h"
+#include "monitor/result.h"
+
+namespace patrol::monitor {
+
+/// Where a result stands in the store.
+struct Filed {
+  std::int64_t seq = 0;          ///< of its row in `results`
+  std::int64_t received_ms = 0;
+  std::int64_t revision = 0;     ///< of the transaction that stored it
+};
+
+/// The tables that the page reads, so that no question of its takes longer with more results: robots, runs, poses, findings, gas, rings,
+/// lines, and the newest scan and sounding of each station. They can be made again from `results`.
+extern const char* const kViews;
+
+/// Enters a new result there.
+void update_views(Database& database, const Result& result, const Filed& filed);
+
+}  // namespace patrol::monitor

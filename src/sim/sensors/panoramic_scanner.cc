@@ -1,0 +1,163 @@
+#include "sim/sensors/panoramic_scanner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace patrol::sim {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t kMask = kRayEverything & ~static_cast<std::uint32_t>(kRayScanner);
+
+/// A surface without an edge bends the ranges of neighbouring beams by less than this.
+double least_bend_m(double range_m) { return std::max(0.01, 0.003 * range_m); }
+
+/// By how much the middle of three ranges lies off the line of the others; 0 where one is none.
+double bend_m(double before_m, double range_m, double after_m) {
+  const double bend = std::abs(range_m - 0.5 * (before_m + after_m));
+  return std::isfinite(bend) ? bend : 0.0;
+}
+
+}  // namespace
+
+PanoramicScanner::PanoramicScanner(const PanoramicScannerSettings& settings, const LidarScene& scene, const Pose3& T_body_scanner,
+                                   std::uint64_t seed, const DustSettings& dust)
+    : settings_(settings),
+      scene_(scene),
+      T_body_scanner_(T_body_scanner),
+      dust_(dust),
+      surfaces_(surface_optics(scene.model())),
+      range_noise_(seed, "scanner/range"),
+      range_offset_(seed, "scanner/range_offset"),
+      angle_noise_(seed, "scanner/angle"),
+      tilt_error_(seed, "scanner/tilt"),
+      dropout_(seed, "scanner/dropout") {
+  validate(settings, "sensors.scanner");
+  const auto pairs = static_cast<int>(std::lround(180.0 / settings.step_deg));
+  for (int pair = 0; pair < pairs; ++pair) {
+    const double angle = -std::numbers::pi / 2.0 + std::numbers::pi * pair / pairs;
+    azimuth_.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  const auto rows = static_cast<int>(std::floor((90.0 - settings.elevation_min_deg) / settings.step_deg + 1e-9)) + 1;
+  for (int row = 0; row < rows; ++row) {
+    const double angle = kDegree * (settings.elevation_min_deg + row * settings.step_deg);
+    elevation_.emplace_back(std::cos(angle), std::sin(angle));
+  }
+}
+
+void PanoramicScanner::begin(Time now, const Pose3& T_world_body) {
+  if (scan_) return;
+  const std::uint64_t number = num_begun_++;
+  const Eigen::Quaterniond R_world_scanner = T_world_body.rotation * T_body_scanner_.rotation;
+  const auto tilt = tilt_error_.normals(number);
+  const double std_rad = settings_.tilt_error_deg * kDegree;
+  scan_ = Scan{.start = now,
+               .number = number,
+               .R_level_scanner = quaternion_from_rpy(std_rad * tilt[0], std_rad * tilt[1], 0.0) *
+                                  quaternion_from_yaw(-yaw_of(R_world_scanner)) * R_world_scanner,
+               .range_offset_m = settings_.range_offset_std_m * range_offset_.normal(number),
+               .before_m = {},
+               .points = {}};
+  const std::vector<double> nothing(elevation_.size(), kInfinity);
+  scan_->before_m = {{{nothing, nothing}, {nothing, nothing}}};
+  scan_->points.reserve(2 * azimuth_.size() * elevation_.size());
+}
+
+/// The last pair ends the scan.
+Time PanoramicScanner::instant_of(int pair) const {
+  return scan_->start + from_seconds(settings_.duration_s * (pair + 1) / static_cast<double>(azimuth_.size()));
+}
+
+void PanoramicScanner::advance(Time from, Time to, const Pose3& T_world_body_from, const Pose3& T_world_body_to) {
+  while (scan_ && instant_of(scan_->next_pair) <= to) {
+    const Time instant = instant_of(scan_->next_pair);
+    const double fraction = to_seconds(instant - from) / to_seconds(to - from);
+    const Pose3 T_world_scanner = interpolate(T_world_body_from, T_world_body_to, fraction) * T_body_scanner_;
+    const int pairs = static_cast<int>(azimuth_.size());
+    for (const int column : {scan_->next_pair, scan_->next_pair + pairs}) fire_column(column, T_world_scanner);
+    if (++scan_->next_pair < pairs) continue;
+    scans_.push_back({.stamp = instant, .points = std::move(scan_->points)});
+    scan_.reset();
+  }
+}
+
+/// In `scanner`. The errors are small.
+Eigen::Vector3d PanoramicScanner::direction(int column, std::size_t row, double azimuth_error_rad, double elevation_error_rad) const {
+  const auto pair = static_cast<std::size_t>(column) % azimuth_.size();
+  const Eigen::Vector2d ahead = static_cast<std::size_t>(column) == pair ? azimuth_[pair] : Eigen::Vector2d(-azimuth_[pair]);
+  const double c = elevation_[row].x(), s = elevation_[row].y();
+  const Eigen::Vector3d exact(c * ahead.x(), c * ahead.y(), s);
+  const Eigen::Vector3d aside(-c * ahead.y(), c * ahead.x(), 0.0), up(-s * ahead.x(), -s * ahead.y(), c);
+  return (exact + azimuth_error_rad * aside + elevation_error_rad * up).normalized();
+}
+
+/// First every beam of the column by its axis alone, then those at edges over their width, then the instrument's own errors.
+void PanoramicScanner::fire_column(int column, const Pose3& T_world_scanner) {
+  const std::size_t rows = elevation_.size();
+  const auto beam = [&](std::size_t row) { return static_cast<std::uint64_t>(column) * rows + row; };
+  std::vector<Eigen::Vector3d> aimed(rows);
+  std::vector<Echo> seen(rows);
+  const double angle_std_rad = settings_.angle_noise_deg * kDegree;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const auto error = angle_noise_.normals(scan_->number, beam(row));
+    aimed[row] = direction(column, row, angle_std_rad * error[0], angle_std_rad * error[1]);
+    seen[row] = look(T_world_scanner, aimed[row]);
+  }
+  auto& [one_ago, two_ago] = scan_->before_m[static_cast<std::size_t>(column) < azimuth_.size() ? 0 : 1];
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double range_m = seen[row].range_m;
+    const double upwards = row == 0 || row + 1 == rows ? 0.0 : bend_m(seen[row - 1].range_m, range_m, seen[row + 1].range_m);
+    const double sideways = 2.0 * bend_m(range_m, one_ago[row], two_ago[row]);
+    two_ago[row] = std::exchange(one_ago[row], range_m);
+    const bool is_at_edge = settings_.beam_spread_rad > 0.0 && std::max(upwards, sideways) > least_bend_m(range_m);
+    const Echo echo = is_at_edge ? mix_over_width(T_world_scanner, aimed[row], range_m) : seen[row];
+    if (echo.range_m > settings_.range_max_m || echo.range_m < settings_.range_min_m) continue;
+    if (settings_.dropout > 0.0 && dropout_.uniform(scan_->number, beam(row)) < settings_.dropout) continue;
+    const double measured_m = echo.range_m + scan_->range_offset_m + range_std_m(echo) * range_noise_.normal(scan_->number, beam(row));
+    const Eigen::Vector3f point = (scan_->R_level_scanner * (measured_m * direction(column, row, 0.0, 0.0))).cast<float>();
+    scan_->points.push_back({.x = point.x(), .y = point.y(), .z = point.z(), .intensity = static_cast<float>(255.0 * std::min(1.0, echo.light))});
+  }
+}
+
+/// A ray without width: nothing comes back through glass, from grazing, and from dark and far surfaces.
+PanoramicScanner::Echo PanoramicScanner::look(const Pose3& T_world_scanner, const Eigen::Vector3d& direction) const {
+  const Eigen::Vector3d ray = T_world_scanner.rotation * direction;
+  const std::optional<RayHit> hit = scene_.cast(T_world_scanner.position, ray, settings_.range_max_m, kMask);
+  if (!hit) return {kInfinity, 0.0};
+  const double cosine = std::abs(hit->normal.dot(ray));
+  const SurfaceOptics& surface = surfaces_[static_cast<std::size_t>(hit->geom)];
+  if (surface.lets_through(cosine) || cosine < std::cos(settings_.grazing_deg * kDegree)) return {kInfinity, 0.0};
+  constexpr double kBlack = 0.02;
+  const double light = std::max(kBlack, static_cast<double>(surface.reflectivity)) * cosine;
+  const double reach_m = settings_.black_range_m * std::sqrt(light / kBlack);
+  if (dust_.clear_distance_m(hit->distance_m) > reach_m) return {kInfinity, 0.0};
+  return {hit->distance_m, light};
+}
+
+/// The mean over the beam's width, as wide as it is at this range, weighted by the light that comes back.
+PanoramicScanner::Echo PanoramicScanner::mix_over_width(const Pose3& T_world_scanner, const Eigen::Vector3d& direction, double range_m) const {
+  const double quarter_rad = (0.5 * settings_.beam_exit_m + settings_.beam_spread_rad * range_m) / (2.0 * range_m);
+  const Eigen::Vector3d aside = direction.unitOrthogonal(), across = direction.cross(aside);
+  double returned = 0.0, range_sum = 0.0, light_sum = 0.0;
+  for (const double i : {-1.0, 1.0}) {
+    for (const double j : {-1.0, 1.0}) {
+      const Echo part = look(T_world_scanner, (direction + quarter_rad * (i * aside + j * across)).normalized());
+      if (!std::isfinite(part.range_m)) continue;
+      const double share = part.light / (part.range_m * part.range_m);
+      returned += share;
+      range_sum += share * part.range_m;
+      light_sum += 0.25 * part.light;
+    }
+  }
+  return returned > 0.0 ? Echo{range_sum / returned, light_sum} : Echo{kInfinity, 0.0};
+}
+
+double PanoramicScanner::range_std_m(const Echo& echo) const {
+  const double grey_m = settings_.grey_noise_m * std::sqrt(dust_.clear_distance_m(echo.range_m) / 10.0) * 0.1 / echo.light;
+  return std::hypot(settings_.range_noise_m, grey_m);
+}
+
+}  // namespace patrol::sim

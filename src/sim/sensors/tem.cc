@@ -1,0 +1,112 @@
+#include "sim/sensors/tem.h"
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace patrol::sim {
+namespace {
+
+TemWindow reported_window(const TemSettings& settings) {
+  validate(settings, "sensors.tem");
+  TemWindow window{.gate_s = {}, .ramp_s = settings.ramp_s, .gate_width = settings.gate_width};
+  const double step = std::pow(10.0, 1.0 / settings.gates_per_decade);
+  for (double gate_s = settings.first_gate_s; gate_s <= settings.last_gate_s; gate_s *= step) window.gate_s.push_back(gate_s);
+  if (window.gate_s.size() < 3) {
+    throw InputError(fmt::format("sensors.tem.last_gate_s = {}: leaves fewer than three gates after first_gate_s", settings.last_gate_s));
+  }
+  return window;
+}
+
+TemWindow shifted(TemWindow window, double shift_s) {
+  for (double& gate_s : window.gate_s) gate_s += shift_s;
+  return window;
+}
+
+/// 1 at 10 us.
+double steel_decay(double time_s) {
+  struct Part {
+    double share, tau_s;
+  };
+  constexpr std::array<Part, 3> kParts = {{{0.70, 15e-6}, {0.22, 60e-6}, {0.08, 250e-6}}};
+  double now = 0.0, at_10us = 0.0;
+  for (const Part& part : kParts) {
+    now += part.share * std::exp(-time_s / part.tau_s);
+    at_10us += part.share * std::exp(-10e-6 / part.tau_s);
+  }
+  return now / at_10us;
+}
+
+}  // namespace
+
+Tem::Tem(const TemSettings& settings, const RockSettings& rock, const std::vector<WaterBodySettings>& bodies, std::uint64_t seed)
+    : settings_(settings),
+      rock_(rock),
+      bodies_(bodies),
+      window_(reported_window(settings)),
+      gates_(shifted(window_, settings.time_shift_std_s * RandomStream(seed, "tem/time_shift").normal(0))),
+      gain_(1.0 + settings.gain_std * RandomStream(seed, "tem/gain").normal(0)),
+      noise_(seed, "tem/noise"),
+      relative_noise_(seed, "tem/relative_noise"),
+      current_(seed, "tem/current") {
+  validate(rock, "rock");
+  const RandomStream steel(seed, "tem/steel");
+  steel_rate_ = settings.steel_rate * std::exp(settings.steel_spread * steel.normal(0));
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column <= row; ++column) {
+      const double entry = settings.steel_anisotropy * steel.normal(1, static_cast<std::uint64_t>(3 * row + column));
+      steel_form_(row, column) = steel_form_(column, row) = entry;
+    }
+  }
+}
+
+void Tem::start(Time now) {
+  if (start_) return;
+  start_ = now;
+  ticks_ = 0;
+  sum_p_.setZero();
+  sum_axes_.setZero();
+}
+
+std::optional<TemSounding> Tem::step(const Pose3& T_world_tem, Time now) {
+  if (!start_) return std::nullopt;
+  const Eigen::Vector3d axis = T_world_tem.rotation * Eigen::Vector3d::UnitX();
+  ++ticks_;
+  sum_p_ += T_world_tem.position;
+  sum_axes_ += axis * axis.transpose();
+  if (now - *start_ < from_seconds(settings_.stacking_s)) return std::nullopt;
+  start_.reset();
+  return sound(sum_p_ / ticks_, sum_axes_ / ticks_, count_++, now);
+}
+
+TemSounding Tem::sound(const Eigen::Vector3d& p_world, const Eigen::Matrix3d& axes, std::uint64_t count, Time end) const {
+  Eigen::VectorXd rate = gated_rock(gates_, rock_.conductivity_spm);
+  for (const WaterBodySettings& body : bodies_) {
+    const Eigen::Vector3d way = Eigen::Vector3d(body.x_m, body.y_m, body.z_m) - p_world;
+    const ConductiveSphere sphere{.distance_m = way.norm(), .radius_m = body.radius_m, .conductivity_spm = body.conductivity_spm};
+    if (sphere.distance_m <= 1.02 * sphere.radius_m) {
+      throw InputError(fmt::format("water: the body at ({}, {}, {}) reaches the antenna", body.x_m, body.y_m, body.z_m));
+    }
+    const GatedSphere decay = gated_sphere(gates_, rock_.conductivity_spm, sphere);
+    const double cos_squared = way.dot(axes * way) / way.squaredNorm();
+    rate += decay.transverse + cos_squared * (decay.axial - decay.transverse);
+  }
+  const double steel = steel_rate_ * (1.0 + steel_form_.cwiseProduct(axes).sum());
+
+  TemSounding sounding{.stamp = end, .moment_am2 = settings_.moment_am2, .gate_s = window_.gate_s, .rate_tps = {}, .std_tps = {}};
+  const double moment_am2 = settings_.moment_am2 * (1.0 + settings_.current_std * current_.normal(count));
+  for (std::size_t gate = 0; gate < window_.gate_s.size(); ++gate) {
+    const double gate_s = window_.gate_s[gate];
+    const double clean_tps = gain_ * moment_am2 * (rate[static_cast<Eigen::Index>(gate)] + steel * steel_decay(gate_s));
+    const double noise_tps = settings_.noise_tps / std::sqrt(settings_.stacking_s * gate_s / 1e-3);
+    const double relative_tps = settings_.relative_noise * clean_tps;
+    sounding.rate_tps.push_back(clean_tps + noise_tps * noise_.normal(count, gate) + relative_tps * relative_noise_.normal(count, gate));
+    sounding.std_tps.push_back(std::hypot(noise_tps, relative_tps));
+  }
+  return sounding;
+}
+
+}  // namespace patrol::sim
