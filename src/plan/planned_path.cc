@@ -78,6 +78,21 @@ double line_cost_m(const Grid<Cost>& costs, double cost_weight, const Eigen::Vec
   return total * length_m / steps;
 }
 
+std::vector<std::size_t> join_points(std::size_t count, const std::function<bool(std::size_t from, std::size_t to)>& may_join) {
+  std::vector<std::size_t> kept{0};
+  for (std::size_t from = 0; from + 1 < count;) {
+    // The farthest point in a straight line: stride doubles while it works, then halves.
+    std::size_t to = from + 1;
+    for (std::size_t stride = 2; to + stride < count && may_join(from, to + stride); stride *= 2) to += stride;
+    for (std::size_t stride = std::bit_ceil(count); stride > 0; stride /= 2) {
+      if (to + stride < count && may_join(from, to + stride)) to += stride;
+    }
+    kept.push_back(to);
+    from = to;
+  }
+  return kept;
+}
+
 std::vector<Eigen::Vector2d> shortcut(const Grid<Cost>& costs, double cost_weight,
                                       const std::vector<Eigen::Vector2d>& points_m) {
   if (points_m.size() < 3) return points_m;
@@ -87,20 +102,12 @@ std::vector<Eigen::Vector2d> shortcut(const Grid<Cost>& costs, double cost_weigh
     const double lethal_step = (1.0 + cost_weight) * (points_m[i] - points_m[i - 1]).norm();  // the start may be blocked
     cost_to.push_back(cost_to.back() + (std::isfinite(step) ? step : lethal_step));
   }
-  const auto is_no_dearer = [&](std::size_t from, std::size_t to) {
-    const double line = line_cost_m(costs, cost_weight, points_m[from], points_m[to]);
-    return line <= (cost_to[to] - cost_to[from]) * (1.0 + 1e-6);
-  };
-  std::vector<Eigen::Vector2d> result{points_m.front()};
-  for (std::size_t from = 0; from + 1 < points_m.size();) {
-    // The farthest point in a straight line: stride doubles while it works, then halves.
-    std::size_t to = from + 1;
-    for (std::size_t stride = 2; to + stride < points_m.size() && is_no_dearer(from, to + stride); stride *= 2) to += stride;
-    for (std::size_t stride = std::bit_ceil(points_m.size()); stride > 0; stride /= 2) {
-      if (to + stride < points_m.size() && is_no_dearer(from, to + stride)) to += stride;
-    }
-    result.push_back(points_m[to]);
-    from = to;
+  std::vector<Eigen::Vector2d> result;
+  for (const std::size_t i : join_points(points_m.size(), [&](std::size_t from, std::size_t to) {
+         const double line = line_cost_m(costs, cost_weight, points_m[from], points_m[to]);
+         return line <= (cost_to[to] - cost_to[from]) * (1.0 + 1e-6);
+       })) {
+    result.push_back(points_m[i]);
   }
   return result;
 }

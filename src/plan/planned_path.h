@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "core/frames.h"
@@ -44,6 +45,10 @@ class PlannedPath {
 
 /// Length of the straight line, each metre weighted by the costs it crosses as A* does; infinite across lethal cells.
 double line_cost_m(const Grid<Cost>& costs, double cost_weight, const Eigen::Vector2d& from, const Eigen::Vector2d& to);
+
+/// The points that stay, of `count` along a route, where straight lines replace the stretches from one to a later one that `may_join` allows: from each
+/// the farthest that doubling and halving strides find. The first and the last always stay.
+std::vector<std::size_t> join_points(std::size_t count, const std::function<bool(std::size_t from, std::size_t to)>& may_join);
 
 /// Replaces stretches of the route by straight lines wherever that costs no more: corners of the grid go, the distance kept
 /// from obstacles stays.

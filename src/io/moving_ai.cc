@@ -1,0 +1,174 @@
+#include "io/moving_ai.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/line_fields.h"
+#include "io/line_reader.h"
+
+namespace patrol::io {
+namespace {
+
+constexpr std::size_t kMostCells = 100'000'000;
+constexpr int kLongestSide = 1'000'000;
+constexpr std::string_view kLand = ".GS", kWater = "W", kBlocked = "@OT";
+
+bool is_one_of(char terrain, std::string_view kinds) { return kinds.find(terrain) != std::string_view::npos; }
+
+/// The file's lines without a carriage return, each error with its place.
+class Lines {
+ public:
+  explicit Lines(const std::filesystem::path& file) : reader_(file) {}
+
+  /// None at the end.
+  std::optional<std::string_view> next() {
+    const std::optional<LineReader::Line> line = reader_.next();
+    if (!line) {
+      if (reader_.damage()) throw InputError(fmt::format("{}: {}", reader_.file().string(), *reader_.damage()));
+      return std::nullopt;
+    }
+    number_ = line->number;
+    if (line->is_cut) refuse("is too long");
+    std::string_view text = line->text;
+    if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
+    return text;
+  }
+
+  [[noreturn]] void refuse(const std::string& what) const { throw input_error(reader_.file().string(), number_, what); }
+  [[noreturn]] void refuse_file(const std::string& what) const { throw InputError(fmt::format("{}: {}", reader_.file().string(), what)); }
+
+ private:
+  LineReader reader_;
+  int number_ = 0;
+};
+
+struct Header {
+  int width = 0, height = 0;
+};
+
+/// Up to and including the line "map".
+Header read_header(Lines& lines) {
+  Header header;
+  bool has_type = false;
+  while (const auto text = lines.next()) {
+    LineFields fields(*text);
+    try {
+      const std::string_view key = fields.word("key");
+      if (key == "map") {
+        if (!has_type) lines.refuse("map: must come after the type");
+        if (header.width == 0 || header.height == 0) lines.refuse("map: must come after height and width");
+        return header;
+      }
+      if (key == "type") {
+        if (const std::string_view type = fields.word("type"); type != "octile") lines.refuse(fmt::format("type: is {}, must be octile", type));
+        has_type = true;
+      } else if (key == "height") {
+        header.height = static_cast<int>(fields.integer("height", 1, kLongestSide));
+      } else if (key == "width") {
+        header.width = static_cast<int>(fields.integer("width", 1, kLongestSide));
+      } else {
+        lines.refuse(fmt::format("{}: must be one of type, height, width, map", key));
+      }
+      if (!fields.is_empty()) lines.refuse(fmt::format("{}: holds more than one value", key));
+    } catch (const FieldError& error) {
+      lines.refuse(error.what());
+    }
+  }
+  lines.refuse_file("holds no map");
+}
+
+std::vector<std::string_view> split(std::string_view text) {
+  // Names of maps may hold blanks where tabs part the fields.
+  const std::string_view separators = text.find('\t') != std::string_view::npos ? "\t" : " ";
+  std::vector<std::string_view> fields;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of(separators), text.size());
+    if (end > 0) fields.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return fields;
+}
+
+MovingAiProblem parse_problem(std::string_view text) {
+  constexpr std::size_t kNumFields = 9;
+  const std::vector<std::string_view> fields = split(text);
+  if (fields.size() != kNumFields) throw FieldError(fmt::format("holds {} fields", fields.size()));
+  const auto integer = [&](std::size_t index, const char* what, int min, int max) {
+    return static_cast<int>(LineFields(fields[index]).integer(what, min, max));
+  };
+  MovingAiProblem problem{.bucket = integer(0, "bucket", 0, std::numeric_limits<int>::max()), .map = std::string(fields[1])};
+  problem.width = integer(2, "width", 1, kLongestSide);
+  problem.height = integer(3, "height", 1, kLongestSide);
+  const auto cell = [&](std::size_t index, const char* x, const char* y) {
+    const int col = integer(index, x, 0, problem.width - 1);
+    return Cell{col, problem.height - 1 - integer(index + 1, y, 0, problem.height - 1)};
+  };
+  problem.start = cell(4, "start x", "start y");
+  problem.goal = cell(6, "goal x", "goal y");
+  problem.optimal_length = LineFields(fields[8]).number("optimal length");
+  if (problem.optimal_length < 0.0) throw FieldError("optimal length: must be at least 0");
+  return problem;
+}
+
+}  // namespace
+
+MovingAiMap load_moving_ai_map(const std::filesystem::path& file) {
+  Lines lines(file);
+  const Header header = read_header(lines);
+  const auto width = static_cast<std::size_t>(header.width), height = static_cast<std::size_t>(header.height);
+  if (width * height > kMostCells) lines.refuse(fmt::format("map: {} x {} cells, at most {} are read", width, height, kMostCells));
+  std::vector<char> from_top;  // grows with what is there, not with what the header says
+  for (std::size_t row = 0; row < height; ++row) {
+    const auto text = lines.next();
+    if (!text) lines.refuse_file(fmt::format("ends after {} of {} rows", row, height));
+    if (text->size() != width) lines.refuse(fmt::format("row {}: has {} cells, must have {}", row, text->size(), width));
+    for (const char terrain : *text) {
+      if (is_one_of(terrain, kLand) || is_one_of(terrain, kWater) || is_one_of(terrain, kBlocked)) continue;
+      lines.refuse(fmt::format("row {}: holds the character {}, must be of . G S W @ O T", row, static_cast<int>(static_cast<unsigned char>(terrain))));
+    }
+    from_top.insert(from_top.end(), text->begin(), text->end());
+  }
+  while (const auto text = lines.next()) {
+    if (!text->empty()) lines.refuse(fmt::format("must hold no more than {} rows", height));
+  }
+  MovingAiMap map{.terrain = Grid<char>({.resolution_m = 1.0, .width = header.width, .height = header.height})};
+  for (std::size_t row = 0; row < height; ++row) {
+    std::copy_n(from_top.begin() + static_cast<std::ptrdiff_t>(row * width), width,
+                map.terrain.values().begin() + static_cast<std::ptrdiff_t>((height - 1 - row) * width));
+  }
+  return map;
+}
+
+OccupancyGrid to_occupancy(const MovingAiMap& map, Cell start) {
+  const bool swims = map.terrain.contains(start) && is_one_of(map.terrain.at(start), kWater);
+  OccupancyGrid occupancy(map.terrain.geometry(), kOccupied);
+  for (std::size_t i = 0; i < map.terrain.values().size(); ++i) {
+    if (is_one_of(map.terrain.values()[i], swims ? kWater : kLand)) occupancy.values()[i] = kFree;
+  }
+  return occupancy;
+}
+
+std::vector<MovingAiProblem> load_moving_ai_problems(const std::filesystem::path& file) {
+  Lines lines(file);
+  const auto first = lines.next();
+  if (!first) lines.refuse_file("is empty");
+  if (*first != "version 1" && *first != "version 1.0") lines.refuse("must be \"version 1\"");
+  std::vector<MovingAiProblem> problems;
+  while (const auto text = lines.next()) {
+    if (text->empty()) continue;
+    try {
+      problems.push_back(parse_problem(*text));
+    } catch (const FieldError& error) {
+      lines.refuse(fmt::format("{}: a problem is bucket, map, width, height, start x, y, goal x, y, optimal length", error.what()));
+    }
+  }
+  if (problems.empty()) lines.refuse_file("holds no problems");
+  return problems;
+}
+
+}  // namespace patrol::io

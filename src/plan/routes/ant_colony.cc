@@ -1,0 +1,157 @@
+#include "plan/routes/ant_colony.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <thread>
+#include <utility>
+
+#include "plan/routes/grid_walk.h"
+
+namespace patrol::plan {
+namespace {
+
+constexpr double kReach = 1.5 * std::numbers::sqrt2;                                                      // eq. 8: L tan(gamma / 2), cells
+constexpr double kToEdge = (kReach - 1.0) / kReach, kToDiagonal = (kReach - std::numbers::sqrt2) / kReach;  // 0.53, 0.33 (eqs. 8, 9)
+constexpr double kLeastWeight = 1e-200;  ///< no open step is ever impossible: it may be the only one
+
+double octile(Cell a, Cell b) {
+  const int dx = std::abs(a.col - b.col), dy = std::abs(a.row - b.row);
+  return std::max(dx, dy) + (std::numbers::sqrt2 - 1.0) * std::min(dx, dy);
+}
+
+double power(double base, double exponent) { return exponent == 1.0 ? base : std::pow(base, exponent); }
+
+/// tau'' of each step as a share of the pheromone of its cell (eqs. 7-9): [cell * 8 + direction]. Empty without diffusion.
+std::vector<double> diffusion_shares(const std::optional<DiffusionSettings>& settings, const Grid<Cost>& costs, Cell goal) {
+  std::vector<double> shares;
+  if (!settings) return shares;
+  const Grid<Eigen::Vector2d> forces = potential_forces(settings->field, costs, goal);
+  const double least_cosine = std::cos(settings->half_angle_deg * std::numbers::pi / 180.0);
+  for (const Eigen::Vector2d& force : forces.values()) {
+    const double size = force.norm();
+    for (std::size_t direction = 0; direction < 8; ++direction) {
+      const Eigen::Vector2d step(kGridSteps[direction].col, kGridSteps[direction].row);
+      const bool is_along = size > 0.0 && step.dot(force) >= (least_cosine - 1e-9) * step.norm() * size;
+      shares.push_back(is_along ? settings->coefficient * std::min(1.0, size) * (direction < kFirstDiagonal ? kToEdge : kToDiagonal) : 0.0);
+    }
+  }
+  return shares;
+}
+
+/// What does not change from iteration to iteration, and the pheromone that does.
+class Trails {
+ public:
+  Trails(const AntColonySettings& settings, const std::optional<DiffusionSettings>& diffusion, const Grid<Cost>& costs, const StepGraph& graph, Cell goal)
+      : settings_(settings), graph_(graph), shares_(diffusion_shares(diffusion, costs, goal)), pheromone_(8 * graph.steps.size(), 1.0),
+        weights_(pheromone_.size(), 0.0), eta_(graph.steps.size()) {
+    for (std::uint32_t cell = 0; cell < eta_.size(); ++cell) {
+      const Cell at = graph.cell_of(cell);
+      eta_[cell] = std::pow(std::max(0.5, std::hypot(at.col - goal.col, at.row - goal.row)), -settings.beta);
+    }
+  }
+
+  /// Eq. 10 without its denominator: [cell * 8 + direction].
+  const std::vector<double>& weigh() {
+    for (std::uint32_t cell = 0; cell < eta_.size(); ++cell) {
+      const std::size_t first = 8 * std::size_t{cell};
+      double in_cell = std::numeric_limits<double>::infinity();  // q(i)
+      for (std::size_t direction = 0; direction < 8 && !shares_.empty(); ++direction) {
+        if (graph_.has_step(cell, direction)) in_cell = std::min(in_cell, pheromone_[first + direction]);
+      }
+      for (std::size_t direction = 0; direction < 8; ++direction) {
+        if (!graph_.has_step(cell, direction)) continue;
+        const double spread = shares_.empty() ? 0.0 : shares_[first + direction] * in_cell;
+        const double tau = pheromone_[first + direction] + spread;
+        weights_[first + direction] = std::max(kLeastWeight, power(tau, settings_.alpha) * eta_[graph_.next(cell, direction)]);
+      }
+    }
+    return weights_;
+  }
+
+  void evaporate() {
+    for (double& tau : pheromone_) tau *= 1.0 - settings_.evaporation;  // eq. 11
+  }
+
+  /// Eqs. 12, 13.
+  void lay(const Walk& walk, double amount) {
+    for (std::size_t i = 0; i < walk.cells.size(); ++i) pheromone_[8 * std::size_t{walk.cells[i]} + walk.directions[i]] += amount;
+  }
+
+ private:
+  const AntColonySettings& settings_;
+  const StepGraph& graph_;
+  std::vector<double> shares_, pheromone_, weights_;  ///< [cell * 8 + direction]
+  std::vector<double> eta_;                           ///< [cell] to the power of beta
+};
+
+/// Eq. 10: one of the open steps, with probability proportional to its weight.
+std::size_t draw_step(const std::vector<double>& weights, std::uint32_t cell, unsigned open, RandomSequence& random) {
+  const double* const of_cell = weights.data() + 8 * std::size_t{cell};
+  double total = 0.0;
+  for (std::size_t direction = 0; direction < 8; ++direction) total += (open >> direction & 1u) != 0 ? of_cell[direction] : 0.0;
+  double left = total * random.uniform();
+  std::size_t drawn = 0;
+  for (std::size_t direction = 0; direction < 8 && left >= 0.0; ++direction) {
+    if ((open >> direction & 1u) != 0) left -= of_cell[direction], drawn = direction;
+  }
+  return drawn;
+}
+
+/// Calls `work(begin, end, worker)` for `num_workers` parts of 0 ... count - 1 at once.
+template <typename Work>
+void in_parallel(int count, int num_workers, const Work& work) {
+  std::vector<std::jthread> threads;
+  for (int worker = 1; worker < num_workers; ++worker) {
+    threads.emplace_back(work, count * worker / num_workers, count * (worker + 1) / num_workers, worker);
+  }
+  work(0, count / num_workers, 0);
+}
+
+}  // namespace
+
+AntColony::AntColony(const AntColonySettings& settings, const std::optional<DiffusionSettings>& diffusion, double cost_weight, std::uint64_t seed)
+    : RoutePlanner(cost_weight), settings_(settings), diffusion_(diffusion), stream_(seed, "plan/routes/ants") {
+  validate(settings_, "ant_colony");
+  if (diffusion_) validate(*diffusion_, "diffusion");
+}
+
+void AntColony::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) {
+  const StepGraph graph(costs, factors());
+  Trails trails(settings_, diffusion_, costs, graph, goal);
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int num_workers = std::min(settings_.ants, settings_.threads > 0 ? settings_.threads : cores);
+  std::vector<Walker> walkers(static_cast<std::size_t>(num_workers), Walker(graph));
+  std::vector<Walk> walks(static_cast<std::size_t>(settings_.ants));
+  const std::uint32_t from = graph.index_of(start), to = graph.index_of(goal);
+  const double Q = settings_.deposit * octile(start, goal);
+  Walk best;
+  best.cost = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < settings_.iterations; ++iteration) {
+    const std::vector<double>& weights = trails.weigh();
+    in_parallel(settings_.ants, num_workers, [&](int begin, int end, int worker) {
+      Walker& walker = walkers[static_cast<std::size_t>(worker)];
+      for (int ant = begin; ant < end; ++ant) {
+        RandomSequence random(stream_, static_cast<std::uint64_t>(iteration) * static_cast<std::uint64_t>(settings_.ants) + static_cast<std::uint64_t>(ant));
+        Walk& walk = walks[static_cast<std::size_t>(ant)];
+        walk = walker.walk(from, to, [&](std::uint32_t cell, unsigned open) { return draw_step(weights, cell, open, random); });
+        if (settings_.splices) walker.splice(walk, to);
+        walk.cost = cost_of(graph, walk);
+      }
+    });
+    trails.evaporate();
+    for (const Walk& walk : walks) {
+      route.num_expanded += walk.num_steps;
+      if (walk.cells.empty()) return;  // it has been everywhere: there is no way
+      trails.lay(walk, Q / walk.cost);
+      if (walk.cost < best.cost) best = walk;
+    }
+    trails.lay(best, settings_.elite * Q / best.cost);
+    route.history.push_back(best.cost);
+    ++route.num_iterations;
+  }
+  route.points = points_of(graph, best, goal);
+}
+
+}  // namespace patrol::plan

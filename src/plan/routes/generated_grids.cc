@@ -1,0 +1,116 @@
+#include "plan/routes/generated_grids.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "plan/routes/route_planner.h"
+
+namespace patrol::plan {
+namespace {
+
+constexpr std::uint64_t kMaxDraws = 100;
+
+/// By breadth-first search.
+bool has_way(const Grid<Cost>& costs, Cell start, Cell goal) {
+  Grid<std::uint8_t> is_reached(costs.geometry(), 0);
+  std::vector<Cell> reached{start};
+  is_reached.at(start) = 1;
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    if (reached[i] == goal) return true;
+    for (const GridStep step : kGridSteps) {
+      const Cell next{reached[i].col + step.col, reached[i].row + step.row};
+      if (!may_step(costs, reached[i], step) || is_reached.at(next) != 0) continue;
+      is_reached.at(next) = 1;
+      reached.push_back(next);
+    }
+  }
+  return false;
+}
+
+void fill(Grid<Cost>& costs, Cell first, int width, int height, Cost cost) {
+  for (int row = first.row; row < std::min(first.row + height, costs.geometry().height); ++row) {
+    for (int col = first.col; col < std::min(first.col + width, costs.geometry().width); ++col) costs.at({col, row}) = cost;
+  }
+}
+
+void draw_random(const GeneratedGridSettings& settings, RandomSequence random, GeneratedGrid& grid) {
+  for (Cost& cost : grid.costs.values()) cost = random.uniform() < settings.lethal_share ? kLethalCost : kFreeCost;
+  grid.costs.at(grid.start) = grid.costs.at(grid.goal) = kFreeCost;
+}
+
+/// Walls one cell thick every room_cells; a door at a random place of each wall between two rooms, three in four open.
+void draw_rooms(const GeneratedGridSettings& settings, RandomSequence random, GeneratedGrid& grid) {
+  constexpr double kOpenShare = 0.75;
+  const int size = settings.size_cells, room = settings.room_cells;
+  for (int wall = room - 1; wall < size; wall += room) {
+    fill(grid.costs, {wall, 0}, 1, size, kLethalCost);
+    fill(grid.costs, {0, wall}, size, 1, kLethalCost);
+  }
+  const auto door_width = [&](int first) { return std::min({settings.door_cells, room - 1, size - first}); };
+  for (int wall = room - 1; wall + 1 < size; wall += room) {
+    for (int first = 0; first < size; first += room) {
+      const int length = std::min(room - 1, size - first), width = std::min(door_width(first), length);
+      for (const bool is_vertical : {true, false}) {
+        const int place = first + static_cast<int>(random.index(static_cast<std::size_t>(length - width + 1)));
+        if (random.uniform() >= kOpenShare) continue;
+        if (is_vertical) fill(grid.costs, {wall, place}, 1, width, kFreeCost);
+        else fill(grid.costs, {place, wall}, width, 1, kFreeCost);
+      }
+    }
+  }
+}
+
+/// Depth-first carving: from the last corridor cell that has an uncarved neighbour, to one of these by chance.
+void draw_maze(const GeneratedGridSettings& settings, RandomSequence random, GeneratedGrid& grid) {
+  const int corridor = settings.corridor_cells, pitch = corridor + 1, count = std::max(1, (settings.size_cells + 1) / pitch);
+  fill(grid.costs, {0, 0}, settings.size_cells, settings.size_cells, kLethalCost);
+  Grid<std::uint8_t> is_carved({.resolution_m = 1.0, .width = count, .height = count}, 0);
+  std::vector<Cell> path{{0, 0}};
+  is_carved.at({0, 0}) = 1;
+  fill(grid.costs, {0, 0}, corridor, corridor, kFreeCost);
+  while (!path.empty()) {
+    const Cell here = path.back();
+    std::vector<GridStep> open;
+    for (std::size_t direction = 0; direction < kFirstDiagonal; ++direction) {
+      const Cell next{here.col + kGridSteps[direction].col, here.row + kGridSteps[direction].row};
+      if (is_carved.contains(next) && is_carved.at(next) == 0) open.push_back(kGridSteps[direction]);
+    }
+    if (open.empty()) {
+      path.pop_back();
+      continue;
+    }
+    const GridStep step = open[random.index(open.size())];
+    const Cell next{here.col + step.col, here.row + step.row};
+    const Cell first{pitch * std::min(here.col, next.col), pitch * std::min(here.row, next.row)};
+    fill(grid.costs, first, step.col != 0 ? corridor + pitch : corridor, step.row != 0 ? corridor + pitch : corridor, kFreeCost);
+    is_carved.at(next) = 1;
+    path.push_back(next);
+  }
+  grid.goal = {pitch * (count - 1), pitch * (count - 1)};
+}
+
+}  // namespace
+
+GeneratedGrid generate_grid(const GeneratedGridSettings& settings, std::uint64_t seed) {
+  validate(settings, "grid");
+  const int size = settings.size_cells;
+  const RandomStream stream(seed, "plan/routes/grid/" + settings.kind);
+  const GridGeometry geometry{.resolution_m = 1.0, .width = size, .height = size};
+  // Rooms end in a wall where the size is a multiple of the rooms'.
+  const int far = settings.kind == "rooms" && size % settings.room_cells == 0 ? size - 2 : size - 1;
+  for (std::uint64_t draw = 0; draw < kMaxDraws; ++draw) {
+    GeneratedGrid grid{.costs = Grid<Cost>(geometry, kFreeCost), .start = {0, 0}, .goal = {far, far}};
+    const RandomSequence random(stream, draw);
+    if (settings.kind == "random") draw_random(settings, random, grid);
+    else if (settings.kind == "rooms") draw_rooms(settings, random, grid);
+    else draw_maze(settings, random, grid);
+    if (has_way(grid.costs, grid.start, grid.goal)) return grid;
+  }
+  throw InputError(fmt::format("grid: no way between the corners in {} draws of {} x {} cells, {}", kMaxDraws, size, size, settings.kind));
+}
+
+}  // namespace patrol::plan

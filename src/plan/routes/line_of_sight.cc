@@ -1,0 +1,21 @@
+#include "plan/routes/line_of_sight.h"
+
+#include <cmath>
+
+namespace patrol::plan {
+
+bool has_line_of_sight(const Grid<Cost>& costs, Cell from, Cell to) {
+  return walk_line(from, to, [&](Cell cell, double) { return costs.at(cell) != kLethalCost; });
+}
+
+std::optional<double> line_price(const Grid<Cost>& costs, const std::array<double, 256>& factors, Cell from, Cell to) {
+  double mean_factor = 0.0;
+  const bool is_clear = walk_line(from, to, [&](Cell cell, double share) {
+    mean_factor += share * factors[costs.at(cell)];
+    return costs.at(cell) != kLethalCost;
+  });
+  if (!is_clear) return std::nullopt;
+  return mean_factor * std::hypot(to.col - from.col, to.row - from.row);
+}
+
+}  // namespace patrol::plan

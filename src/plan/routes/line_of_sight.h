@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdlib>
+#include <optional>
+
+#include "core/grid.h"
+#include "plan/costmap.h"
+
+namespace patrol::plan {
+
+/// Walks the straight line between two cells' centres and calls `visit(cell, share)` for every cell whose closed square it meets, in
+/// order, `share` being the part of the line inside; 0 for cells that it only touches at a corner. Exact in integers. Stops, and returns
+/// false, as soon as `visit` does.
+template <typename Visit>
+bool walk_line(Cell from, Cell to, Visit&& visit) {
+  const int step_col = to.col > from.col ? 1 : -1, step_row = to.row > from.row ? 1 : -1;
+  const long dx = std::abs(to.col - from.col), dy = std::abs(to.row - from.row);
+  Cell cell = from;
+  double done = 0.0;  // share of the line up to where it enters the cell
+  for (long i = 0, j = 0; i < dx || j < dy;) {
+    // The next side crossed is (2 i + 1) / (2 dx) of the way on in columns, (2 j + 1) / (2 dy) in rows.
+    const long along_col = (2 * i + 1) * dy, along_row = (2 * j + 1) * dx;
+    const bool crosses_col = dx > 0 && (dy == 0 || along_col <= along_row), crosses_row = dy > 0 && (dx == 0 || along_row <= along_col);
+    const double next = crosses_col ? (2.0 * static_cast<double>(i) + 1.0) / (2.0 * static_cast<double>(dx))
+                                    : (2.0 * static_cast<double>(j) + 1.0) / (2.0 * static_cast<double>(dy));
+    if (!visit(cell, next - done)) return false;
+    done = next;
+    if (crosses_col && crosses_row) {
+      if (!visit(Cell{cell.col + step_col, cell.row}, 0.0) || !visit(Cell{cell.col, cell.row + step_row}, 0.0)) return false;
+    }
+    if (crosses_col) cell.col += step_col, ++i;
+    if (crosses_row) cell.row += step_row, ++j;
+  }
+  return visit(cell, 1.0 - done);
+}
+
+/// Whether the straight line between two cells' centres meets no lethal cell, not even a corner of one: on neighbours this is may_step's rule.
+/// Both cells lie in the grid.
+bool has_line_of_sight(const Grid<Cost>& costs, Cell from, Cell to);
+
+/// What the line costs, cells: its length, each part weighted by its cell's factor. None without line of sight.
+std::optional<double> line_price(const Grid<Cost>& costs, const std::array<double, 256>& factors, Cell from, Cell to);
+
+}  // namespace patrol::plan

@@ -1,0 +1,136 @@
+#include "plan/routes/route_planner.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "plan/routes/line_of_sight.h"
+
+namespace patrol::plan {
+namespace {
+
+constexpr double kMaxCostWeight = 50.0;
+
+double length_of(const std::vector<Eigen::Vector2d>& points) {
+  double straight = 0.0, diagonal = 0.0, other = 0.0;  // apart: the first two are whole numbers, and have no rounding
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Eigen::Vector2d d = (points[i] - points[i - 1]).cwiseAbs();
+    if (d.x() == 0.0 || d.y() == 0.0) straight += d.sum();
+    else if (d.x() == d.y()) diagonal += d.x();
+    else other += d.norm();
+  }
+  return straight + std::numbers::sqrt2 * diagonal + other;
+}
+
+double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  const Eigen::Vector2d d = to - from;
+  const double along = d.squaredNorm() > 0.0 ? std::clamp((p - from).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0.0;
+  return (p - from - along * d).norm();
+}
+
+/// From a segment to a square that it does not cross: the least lies at an end of the one or at a corner of the other.
+double distance_to_box(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Eigen::AlignedBox2d& box) {
+  double least = std::min(box.exteriorDistance(from), box.exteriorDistance(to));
+  for (int corner = 0; corner < 4; ++corner) {
+    least = std::min(least, distance_to_segment(box.corner(static_cast<Eigen::AlignedBox2d::CornerType>(corner)), from, to));
+  }
+  return least;
+}
+
+/// From the box about a segment to a cell's square: never more than from the segment, and quick.
+double gap(const Eigen::Vector2d& from, const Eigen::Vector2d& to, int col, int row) {
+  const double dx = std::max({0.0, col - std::max(from.x(), to.x()), std::min(from.x(), to.x()) - col - 1.0});
+  const double dy = std::max({0.0, row - std::max(from.y(), to.y()), std::min(from.y(), to.y()) - row - 1.0});
+  return std::sqrt(dx * dx + dy * dy);
+}
+
+}  // namespace
+
+Cell cell_of(const Eigen::Vector2d& point) { return {static_cast<int>(std::floor(point.x())), static_cast<int>(std::floor(point.y()))}; }
+
+int iterations_to_within(const std::vector<double>& history, double share) {
+  if (history.empty() || !std::isfinite(history.back())) return 0;
+  const double enough = history.back() * (1.0 + share);
+  return 1 + static_cast<int>(std::find_if(history.begin(), history.end(), [&](double cost) { return cost <= enough; }) - history.begin());
+}
+
+std::vector<Eigen::Vector2d> to_metres(const GridGeometry& geometry, const std::vector<Eigen::Vector2d>& points) {
+  std::vector<Eigen::Vector2d> points_m;
+  for (const Eigen::Vector2d& point : points) points_m.push_back(geometry.origin_m + geometry.resolution_m * point);
+  return points_m;
+}
+
+double clearance_of(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>& points, double at_most) {
+  double least = at_most;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector2d from = points[i], to = points[std::min(i + 1, points.size() - 1)];
+    // Pieces of at most a cell, and for each the cells that could be nearer than what is known.
+    const int pieces = std::max(1, static_cast<int>(std::ceil((to - from).cwiseAbs().maxCoeff())));
+    for (int k = 0; k < pieces; ++k) {
+      const Eigen::Vector2d a = from + (to - from) * k / pieces, b = from + (to - from) * (k + 1) / pieces;
+      const Cell low = cell_of(a.cwiseMin(b).array() - least), high = cell_of(a.cwiseMax(b).array() + least);
+      for (int row = std::max(0, low.row); row <= std::min(costs.geometry().height - 1, high.row); ++row) {
+        for (int col = std::max(0, low.col); col <= std::min(costs.geometry().width - 1, high.col); ++col) {
+          if (costs.at({col, row}) != kLethalCost || gap(a, b, col, row) >= least) continue;
+          least = std::min(least, distance_to_box(a, b, {Eigen::Vector2d(col, row), Eigen::Vector2d(col + 1, row + 1)}));
+        }
+      }
+    }
+  }
+  return least;
+}
+
+bool may_step(const Grid<Cost>& costs, Cell from, GridStep step) {
+  const Cell to{from.col + step.col, from.row + step.row};
+  if (!costs.contains(to) || costs.at(to) == kLethalCost) return false;
+  return step.col == 0 || step.row == 0 || (costs.at({to.col, from.row}) != kLethalCost && costs.at({from.col, to.row}) != kLethalCost);
+}
+
+std::array<double, 256> cost_factors(double cost_weight) {
+  if (!(cost_weight >= 0.0 && cost_weight <= kMaxCostWeight)) {
+    throw InputError(fmt::format("cost_weight = {}: must lie in 0 ... {}", cost_weight, kMaxCostWeight));
+  }
+  std::array<double, 256> factors;
+  for (std::size_t cost = 0; cost < factors.size(); ++cost) {
+    factors[cost] = 1.0 + cost_weight * std::min<double>(static_cast<double>(cost), kMaxPassableCost) / kMaxPassableCost;
+  }
+  return factors;
+}
+
+Route RoutePlanner::plan(const Grid<Cost>& costs, Cell start, Cell goal) {
+  const auto is_blocked = [&](Cell cell) { return !costs.contains(cell) || costs.at(cell) == kLethalCost; };
+  Route route;
+  if (is_blocked(start)) {
+    route.status = PlanStatus::kStartBlocked;
+    return route;
+  }
+  if (is_blocked(goal)) {
+    route.status = PlanStatus::kGoalBlocked;
+    return route;
+  }
+  if (start == goal) {
+    route.points = {Eigen::Vector2d(start.col + 0.5, start.row + 0.5)};
+    route.history = {0.0};
+    route.num_iterations = 1;
+  } else {
+    search(costs, start, goal, route);
+  }
+  if (route.points.empty()) return route;
+
+  route.status = PlanStatus::kFound;
+  route.length = length_of(route.points);
+  route.clearance = clearance_of(costs, route.points);
+  route.cost = is_weighted() ? 0.0 : route.length;
+  for (std::size_t i = 1; is_weighted() && i < route.points.size(); ++i) {
+    route.cost += line_price(costs, factors_, cell_of(route.points[i - 1]), cell_of(route.points[i])).value();
+  }
+  return route;
+}
+
+}  // namespace patrol::plan

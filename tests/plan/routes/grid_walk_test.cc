@@ -1,0 +1,76 @@
+#include "plan/routes/grid_walk.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/plan/routes/drawn_grid.h"
+
+namespace patrol::plan {
+namespace {
+
+constexpr double kExactTol = 1e-12;
+
+StepGraph graph_of(const std::vector<std::string>& drawing) { return StepGraph(test::draw(drawing), cost_factors(9.0)); }
+
+/// The open step that comes first in kGridSteps: right, up, left, down.
+std::size_t first_open(std::uint32_t, unsigned open) { return static_cast<std::size_t>(std::countr_zero(open)); }
+
+TEST(StepGraph, HasTheStepsThatTheRuleAllows) {
+  const StepGraph graph = graph_of({".#",  //
+                                    ".."});
+  EXPECT_EQ(graph.steps[graph.index_of({0, 0})], 0b00000011) << "right and up; not across the corner";
+  EXPECT_EQ(graph.steps[graph.index_of({1, 1})], 0) << "out of a lethal cell none";
+}
+
+// From 1 to 1 + 9 x 5/9 = 6: half of each.
+TEST(StepGraph, PricesAStepByBothItsCells) {
+  const StepGraph graph = graph_of({"..",  //
+                                    ".5"});
+  EXPECT_NEAR(graph.price(graph.index_of({0, 0}), 0), 3.5, kExactTol);
+  EXPECT_NEAR(graph.price(graph.index_of({1, 0}), 1), 3.5, kExactTol);
+  EXPECT_NEAR(graph.price(graph.index_of({0, 1}), 7), 3.5 * std::numbers::sqrt2, kExactTol);
+}
+
+// To the right first: into the dead end of three cells, back, and up.
+TEST(Walker, GoesBackOutOfADeadEnd) {
+  const StepGraph graph = graph_of({"....",  //
+                                    ".###",  //
+                                    "...."});
+  Walker walker(graph);
+  const Walk walk = walker.walk(graph.index_of({0, 0}), graph.index_of({0, 2}), first_open);
+  ASSERT_EQ(walk.cells.size(), 2u);
+  EXPECT_EQ(graph.cell_of(walk.cells[1]), (Cell{0, 1}));
+  EXPECT_EQ(walk.num_steps, 3 + 3 + 2);
+}
+
+TEST(Walker, ThatHasBeenEverywhereSaysThatThereIsNoWay) {
+  const StepGraph graph = graph_of({"..#.",  //
+                                    "..#."});
+  EXPECT_TRUE(Walker(graph).walk(graph.index_of({0, 0}), graph.index_of({3, 0}), first_open).cells.empty());
+}
+
+// Right along the row, up, and back along the next to the cell above the start: spliced, it is the one step up.
+TEST(Walker, SplicesWhatLiesBetweenNeighbours) {
+  const StepGraph graph = graph_of({"....",  //
+                                    "...."});
+  Walker walker(graph);
+  Walk walk = walker.walk(graph.index_of({0, 0}), graph.index_of({0, 1}), first_open);
+  EXPECT_EQ(walk.cells.size(), 7u);
+  walker.splice(walk, graph.index_of({0, 1}));
+  ASSERT_EQ(walk.cells.size(), 1u);
+  EXPECT_EQ(walk.directions[0], 1);
+}
+
+// Right, left, right, right: the loop back to the start goes.
+TEST(Walker, SplicesLoops) {
+  const StepGraph graph = graph_of({"....."});
+  Walker walker(graph);
+  Walk walk{.cells = {0, 1, 0, 1, 2}, .directions = {0, 2, 0, 0, 0}};
+  walker.splice(walk, 3);
+  EXPECT_EQ(walk.cells, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_NEAR(cost_of(graph, walk), 3.0, kExactTol);
+}
+
+}  // namespace
+}  // namespace patrol::plan
