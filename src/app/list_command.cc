@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/scenario.h"
 #include "app/study/study.h"
+#include "plan/routes/planners.h"
 #include "slam/mapper.h"
 
 namespace patrol::app {
@@ -63,8 +64,8 @@ ExitCode list_command() {
   print("mapping methods of a log", allowed<slam::MapperSettings>("method"));
   print("localisation methods", {"Monte-Carlo localisation with KLD sampling (stack.localization)"});
   print("sensor models of localisation", allowed<localize::MonteCarloSettings>("sensor_model"));
-  print("global planners", {"A* (stack.navigation.global)"});
-  print("local planners", allowed<plan::NavigatorSettings>("local_planner"));
+  print("global planners (stack.plan.global; patrol plan --planner)", plan::route_planner_names());
+  print("local planners (stack.plan.local_planner)", allowed<plan::NavigatorSettings>("local_planner"));
   print("studies", study_names());
   return ExitCode::kDone;
 }

@@ -75,11 +75,11 @@ const char* sentence_of(NavigationTrouble trouble) {
 }
 
 Navigator::Navigator(const NavigatorSettings& settings, const RobotDescription& robot,
-                     std::vector<Polyline> keep_out_lines_in_map)
+                     std::vector<Polyline> keep_out_lines_in_map, std::uint64_t seed)
     : settings_(settings),
       robot_(robot),
       costmap_(settings.costmap, Footprint(robot.footprint_m, settings.footprint_rows), std::move(keep_out_lines_in_map)),
-      planner_(settings.global),
+      planner_(settings.global, settings.routes, seed),
       local_planner_(make_local_planner(settings)),
       approach_(settings.differential_approach) {
   validate(settings, "navigation");
@@ -211,7 +211,7 @@ bool Navigator::plan_if_needed(Time now, const Pose2& T_map_body, NavigationStep
   }
   no_route_since_.reset();
   trouble_ = NavigationTrouble::kNone;
-  path_ = PlannedPath(shortcut(costmap_.cost(), settings_.global.cost_weight, plan.points_m));
+  path_ = PlannedPath(plan.points_m);
   along_m_ = 0.0;
   step.replanned = true;
   step.is_detour = is_blocked;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,10 +9,10 @@
 #include "core/messages.h"
 #include "core/navigation_goal.h"
 #include "core/robot_description.h"
-#include "plan/astar.h"
 #include "plan/costmap.h"
 #include "plan/differential_approach.h"
 #include "plan/dwa.h"
+#include "plan/global_planner.h"
 #include "plan/local_planner.h"
 #include "plan/paper_dwa.h"
 #include "plan/planned_path.h"
@@ -21,6 +22,7 @@ namespace patrol::plan {
 
 struct NavigatorSettings {
   std::string drive = "omnidirectional";  ///< or "differential": a robot that cannot step sideways
+  std::string global = "astar";           ///< planner of the way to the goal (plan/routes/planners.h)
   std::string local_planner = "dwa";      ///< or "paper_dwa": paper 004's, as printed
   int footprint_rows = 1;             ///< of discs that stand for the outline (plan/footprint.h)
   double replan_period_s = 4.0;       ///< a new path after this time, for what the map has learnt
@@ -43,7 +45,7 @@ struct NavigatorSettings {
   CostmapSettings costmap;
   DepthPointsSettings depth;
   SonarConeSettings sonar;
-  AstarSettings global;
+  GlobalPlannerSettings routes;
   DwaSettings local;
   PaperDwaSettings paper_local;
   PoseRegulatorSettings approach;                      ///< of an omnidirectional robot
@@ -52,6 +54,7 @@ struct NavigatorSettings {
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("drive", self.drive, one_of({"omnidirectional", "differential"}));
+    visit("global", self.global, one_of({"astar", "dijkstra", "theta_star", "plain_ant_colony", "ant_colony", "two_swarms", "q_learning"}));
     visit("local_planner", self.local_planner, one_of({"dwa", "paper_dwa"}));
     visit("footprint_rows", self.footprint_rows, between(1, 4));
     visit("replan_period_s", self.replan_period_s, between(0.1, 600.0));
@@ -74,7 +77,7 @@ struct NavigatorSettings {
     visit("costmap", self.costmap);
     visit("depth", self.depth);
     visit("sonar", self.sonar);
-    visit("global", self.global);
+    visit("routes", self.routes);
     visit("local", self.local);
     visit("paper_local", self.paper_local);
     visit("approach", self.approach);
@@ -101,12 +104,12 @@ struct NavigationStep {
   std::vector<Pose2> path;  ///< in map; filled when replanned
 };
 
-/// Takes the body to a goal: costmap, A* for the way, the dynamic window for every step of it, an approach of its own at
+/// Takes the body to a goal: costmap, a global planner for the way, the dynamic window for every step of it, an approach of its own at
 /// the end. Blocked, it waits, then recovers (backs up, looks around) and plans anew, and says so when there is no way.
 class Navigator {
  public:
-  /// Throws InputError if a setting breaks its rule or the robot has no footprint.
-  Navigator(const NavigatorSettings& settings, const RobotDescription& robot, std::vector<Polyline> keep_out_lines_in_map);
+  /// `seed`: of the global planners that draw. Throws InputError if a setting breaks its rule or the robot has no footprint.
+  Navigator(const NavigatorSettings& settings, const RobotDescription& robot, std::vector<Polyline> keep_out_lines_in_map, std::uint64_t seed = 0);
 
   void set_map(const OccupancyGrid& map);
   void add_scan(const LevelScan& scan, const Pose2& T_map_body) { costmap_.add_scan(scan, T_map_body); }
@@ -159,7 +162,7 @@ class Navigator {
   NavigatorSettings settings_;
   RobotDescription robot_;
   Costmap costmap_;
-  AstarPlanner planner_;
+  GlobalPlanner planner_;
   std::unique_ptr<LocalPlanner> local_planner_;
   DifferentialApproach approach_;
 

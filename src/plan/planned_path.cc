@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace patrol::plan {
 
@@ -65,19 +64,6 @@ std::vector<Pose2> PlannedPath::sample(double step_m) const {
   return poses;
 }
 
-double line_cost_m(const Grid<Cost>& costs, double cost_weight, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
-  const GridGeometry& grid = costs.geometry();
-  const double length_m = (to - from).norm();
-  const int steps = std::max(1, static_cast<int>(std::ceil(2.0 * length_m / grid.resolution_m)));
-  double total = 0.0;
-  for (int i = 0; i < steps; ++i) {
-    const Cell cell = grid.cell_at(from + (i + 0.5) / steps * (to - from));
-    if (!costs.contains(cell) || costs.at(cell) == kLethalCost) return std::numeric_limits<double>::infinity();
-    total += 1.0 + cost_weight * std::min<double>(costs.at(cell), kMaxPassableCost) / kMaxPassableCost;
-  }
-  return total * length_m / steps;
-}
-
 std::vector<std::size_t> join_points(std::size_t count, const std::function<bool(std::size_t from, std::size_t to)>& may_join) {
   std::vector<std::size_t> kept{0};
   for (std::size_t from = 0; from + 1 < count;) {
@@ -91,25 +77,6 @@ std::vector<std::size_t> join_points(std::size_t count, const std::function<bool
     from = to;
   }
   return kept;
-}
-
-std::vector<Eigen::Vector2d> shortcut(const Grid<Cost>& costs, double cost_weight,
-                                      const std::vector<Eigen::Vector2d>& points_m) {
-  if (points_m.size() < 3) return points_m;
-  std::vector<double> cost_to{0.0};  // along the route
-  for (std::size_t i = 1; i < points_m.size(); ++i) {
-    const double step = line_cost_m(costs, cost_weight, points_m[i - 1], points_m[i]);
-    const double lethal_step = (1.0 + cost_weight) * (points_m[i] - points_m[i - 1]).norm();  // the start may be blocked
-    cost_to.push_back(cost_to.back() + (std::isfinite(step) ? step : lethal_step));
-  }
-  std::vector<Eigen::Vector2d> result;
-  for (const std::size_t i : join_points(points_m.size(), [&](std::size_t from, std::size_t to) {
-         const double line = line_cost_m(costs, cost_weight, points_m[from], points_m[to]);
-         return line <= (cost_to[to] - cost_to[from]) * (1.0 + 1e-6);
-       })) {
-    result.push_back(points_m[i]);
-  }
-  return result;
 }
 
 }  // namespace patrol::plan

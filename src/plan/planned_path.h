@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "core/frames.h"
-#include "core/grid.h"
-#include "plan/costmap.h"
 
 namespace patrol::plan {
 
@@ -43,16 +41,8 @@ class PlannedPath {
   std::vector<double> along_m_;            ///< [point]
 };
 
-/// Length of the straight line, each metre weighted by the costs it crosses as A* does; infinite across lethal cells.
-double line_cost_m(const Grid<Cost>& costs, double cost_weight, const Eigen::Vector2d& from, const Eigen::Vector2d& to);
-
 /// The points that stay, of `count` along a route, where straight lines replace the stretches from one to a later one that `may_join` allows: from each
 /// the farthest that doubling and halving strides find. The first and the last always stay.
 std::vector<std::size_t> join_points(std::size_t count, const std::function<bool(std::size_t from, std::size_t to)>& may_join);
-
-/// Replaces stretches of the route by straight lines wherever that costs no more: corners of the grid go, the distance kept
-/// from obstacles stays.
-std::vector<Eigen::Vector2d> shortcut(const Grid<Cost>& costs, double cost_weight,
-                                      const std::vector<Eigen::Vector2d>& points_m);
 
 }  // namespace patrol::plan

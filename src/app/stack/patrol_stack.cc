@@ -4,7 +4,7 @@ namespace patrol::app {
 
 PatrolStack::PatrolStack(const StackSettings& settings, const RobotDescription& robot, const Route& route_in_map,
                        double map_period_s, std::uint64_t seed)
-    : RobotStack(settings, robot, route_in_map, map_period_s),
+    : RobotStack(settings, robot, route_in_map, map_period_s, seed),
       odometry_(robot, settings.odometry),
       leveler_(robot.T_body("lidar"), settings.leveling),
       slam_(make_mapper(settings, seed)),

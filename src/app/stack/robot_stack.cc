@@ -9,8 +9,8 @@ constexpr Time kOdometryPeriod = std::chrono::milliseconds(20);
 }  // namespace
 
 RobotStack::RobotStack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
-                       double map_period_s)
-    : navigator_(settings.navigation, robot, site_in_map.keep_out_lines),
+                       double map_period_s, std::uint64_t seed)
+    : navigator_(settings.plan, robot, site_in_map.keep_out_lines, seed),
       sensor_watch_(settings.sensor_watch),
       settle_(from_seconds(settings.settle_s)),
       map_period_(from_seconds(map_period_s)) {}

@@ -44,7 +44,8 @@ class RobotStack {
   const PartClock& clock() const { return clock_; }
 
  protected:
-  RobotStack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, double map_period_s);
+  RobotStack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, double map_period_s,
+             std::uint64_t seed);
 
   virtual void use(const SensorMessage& message) = 0;
   /// Ends the mission with an event of this kind.

@@ -35,7 +35,7 @@ struct StackSettings {
   slam::GridSlamSettings slam;  ///< rbpf: a particle filter
   localize::MonteCarloSettings localization;  ///< on a map that is known
   localize::RangeFilterSettings range_filter;  ///< of a robot with tracks and UWB: a second opinion
-  plan::NavigatorSettings navigation;
+  plan::NavigatorSettings plan;
   plan::SensorWatchSettings sensor_watch;
   localize::DockDetectorSettings dock_detector;
   plan::DockingSettings docking;
@@ -54,7 +54,7 @@ struct StackSettings {
     visit("slam", self.slam);
     visit("localization", self.localization);
     visit("range_filter", self.range_filter);
-    visit("navigation", self.navigation);
+    visit("plan", self.plan);
     visit("sensor_watch", self.sensor_watch);
     visit("dock_detector", self.dock_detector);
     visit("docking", self.docking);

@@ -24,7 +24,7 @@ Eigen::Matrix3d docked_covariance() {
 
 TourStack::TourStack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, TourStart start,
                      double map_period_s, std::uint64_t seed)
-    : RobotStack(settings, robot, site_in_map, map_period_s),
+    : RobotStack(settings, robot, site_in_map, map_period_s, seed),
       settings_(settings),
       robot_(robot),
       site_in_map_(site_in_map),

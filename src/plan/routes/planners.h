@@ -13,9 +13,8 @@
 
 namespace patrol::plan {
 
-/// Every planner of the family by name, with what it needs.
+/// What the planners of the family need; each takes what is its own.
 struct RoutePlannerSettings {
-  std::string planner = "theta_star";
   double cost_weight = 0.0;              ///< a cell at the highest passable cost counts as 1 + this many cells
   AntColonySettings ant_colony = {};     ///< of both colonies
   DiffusionSettings diffusion = {};      ///< of paper 003's
@@ -24,8 +23,6 @@ struct RoutePlannerSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("planner", self.planner,
-          one_of({"astar", "dijkstra", "theta_star", "any_angle_optimum", "plain_ant_colony", "ant_colony", "two_swarms", "q_learning"}));
     visit("cost_weight", self.cost_weight, between(0.0, 50.0));
     visit("ant_colony", self.ant_colony);
     visit("diffusion", self.diffusion);
@@ -34,10 +31,10 @@ struct RoutePlannerSettings {
   }
 };
 
-/// In the order of the settings' list.
+/// Every planner of the family: astar, dijkstra, theta_star, any_angle_optimum, plain_ant_colony, ant_colony (paper 003's), two_swarms, q_learning.
 std::vector<std::string> route_planner_names();
 
-/// The planner that the settings name. Throws InputError for a wrong setting, and for the any-angle optimum with a cost weight: it knows none.
-std::unique_ptr<RoutePlanner> make_route_planner(const RoutePlannerSettings& settings, std::uint64_t seed);
+/// Throws InputError for an unknown name or a wrong setting, and for the any-angle optimum with a cost weight: it knows none.
+std::unique_ptr<RoutePlanner> make_route_planner(const std::string& name, const RoutePlannerSettings& settings, std::uint64_t seed);
 
 }  // namespace patrol::plan

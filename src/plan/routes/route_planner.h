@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "core/grid.h"
-#include "plan/astar.h"
 #include "plan/costmap.h"
 
 namespace patrol::plan {
+
+enum class PlanStatus { kFound, kStartBlocked, kGoalBlocked, kNoRoute };
 
 /// A way over a grid, and how it was found. Lengths are in cells, so that grids of any resolution compare.
 struct Route {
@@ -52,7 +53,7 @@ inline constexpr std::size_t kFirstDiagonal = 4;
 bool may_step(const Grid<Cost>& costs, Cell from, GridStep step);
 
 /// A global planner from cell to cell: lethal cells are blocked, others may lengthen the way through them. The price of a route is the integral of
-/// 1 + cost weight * cost / kMaxPassableCost along it. (plan/astar.h, which the navigator drives by, prices a step by the cell entered, in thousandths.)
+/// 1 + cost weight * cost / kMaxPassableCost along it.
 ///
 /// The same planner with the same settings and seed gives the same route, on any number of threads and whatever it planned before.
 class RoutePlanner {

@@ -22,11 +22,11 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// Small colonies and swarms: what is claimed of all planners must hold of them too.
 std::unique_ptr<RoutePlanner> make(const std::string& name, double cost_weight = 0.0, int threads = 1) {
-  RoutePlannerSettings settings{.planner = name, .cost_weight = cost_weight};
+  RoutePlannerSettings settings{.cost_weight = cost_weight};
   settings.ant_colony.ants = 10, settings.ant_colony.iterations = 10, settings.ant_colony.threads = threads;
   settings.two_swarms.particles = 8, settings.two_swarms.iterations = 10;
   settings.q_learning.episodes = 300;
-  return make_route_planner(settings, 1);
+  return make_route_planner(name, settings, 1);
 }
 
 class EveryPlanner : public ::testing::TestWithParam<std::string> {
@@ -147,8 +147,8 @@ TEST(RoutePlanners, AreEight) { EXPECT_EQ(route_planner_names().size(), 8u); }
 
 TEST(RoutePlanners, RefuseAWrongNameAndACostWeightForTheOptimum) {
   using ::testing::HasSubstr, ::testing::ThrowsMessage;
-  EXPECT_THAT([] { make_route_planner({.planner = "ants"}, 0); }, ThrowsMessage<InputError>(HasSubstr("routes.planner = ants: must be one of astar, dijkstra")));
-  EXPECT_THAT([] { make_route_planner({.planner = "any_angle_optimum", .cost_weight = 1.0}, 0); }, ThrowsMessage<InputError>(HasSubstr("knows no costs")));
+  EXPECT_THAT([] { make_route_planner("ants", {}, 0); }, ThrowsMessage<InputError>(HasSubstr("no planner 'ants' (known: astar, dijkstra")));
+  EXPECT_THAT([] { make_route_planner("any_angle_optimum", {.cost_weight = 1.0}, 0); }, ThrowsMessage<InputError>(HasSubstr("knows no costs")));
   EXPECT_THAT([] { cost_factors(-1.0); }, ThrowsMessage<InputError>(HasSubstr("cost_weight = -1")));
 }
 
