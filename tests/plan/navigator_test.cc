@@ -248,7 +248,7 @@ TEST(Navigator, RefusesAnEmptyListOfRecoveries) {
   NavigatorSettings settings;
   settings.recoveries = {};
   EXPECT_THAT([&] { Navigator(settings, make_robot(), {}); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("navigation.recoveries")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("plan.recoveries")));
 }
 
 // Nose on, 25 cm from the wall and less: nearer than discs and margins allow. It may not circle before such a
@@ -337,7 +337,7 @@ TEST(Navigator, RefusesARobotWithoutAnOutlineAndSettingsThatBreakTheirRule) {
   NavigatorSettings settings;
   settings.approach_m = -1.0;
   EXPECT_THAT([&] { Navigator(settings, make_robot(), {}); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("navigation.approach_m = -1")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("plan.approach_m = -1")));
 }
 
 }  // namespace

@@ -128,7 +128,7 @@ void AntColony::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
   const double Q = settings_.deposit * octile(start, goal);
   Walk best;
   best.cost = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; iteration < settings_.iterations; ++iteration) {
+  for (int iteration = 0; iteration < settings_.iterations && !is_spent(route); ++iteration) {
     const std::vector<double>& weights = trails.weigh();
     in_parallel(settings_.ants, num_workers, [&](int begin, int end, int worker) {
       Walker& walker = walkers[static_cast<std::size_t>(worker)];

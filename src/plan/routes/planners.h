@@ -15,6 +15,7 @@ namespace patrol::plan {
 
 /// What the planners of the family need; each takes what is its own.
 struct RoutePlannerSettings {
+  int max_steps_millions = 0;            ///< from cell to cell, of ants, particles and episodes; then the best so far is taken. 0: as many as it needs
   double cost_weight = 0.0;              ///< a cell at the highest passable cost counts as 1 + this many cells
   AntColonySettings ant_colony = {};     ///< of both colonies
   DiffusionSettings diffusion = {};      ///< of paper 003's
@@ -23,6 +24,7 @@ struct RoutePlannerSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("max_steps_millions", self.max_steps_millions, between(0, 1000000));
     visit("cost_weight", self.cost_weight, between(0.0, 50.0));
     visit("ant_colony", self.ant_colony);
     visit("diffusion", self.diffusion);

@@ -121,7 +121,10 @@ Route RoutePlanner::plan(const Grid<Cost>& costs, Cell start, Cell goal) {
   } else {
     search(costs, start, goal, route);
   }
-  if (route.points.empty()) return route;
+  if (route.points.empty()) {
+    route.status = is_complete() && !is_spent(route) ? PlanStatus::kNoRoute : PlanStatus::kNoneFound;
+    return route;
+  }
 
   route.status = PlanStatus::kFound;
   route.length = length_of(route.points);
