@@ -23,7 +23,7 @@ std::unique_ptr<RoutePlanner> make(const std::string& name, const RoutePlannerSe
     return std::make_unique<AnyAngleOptimum>();
   }
   if (name == "plain_ant_colony") return std::make_unique<AntColony>(settings.ant_colony, std::nullopt, cost_weight, seed);
-  if (name == "ant_colony") return std::make_unique<AntColony>(settings.ant_colony, settings.diffusion, cost_weight, seed);
+  if (name == "ant_colony") return std::make_unique<AntColony>(settings.ant_colony, settings.improved_colony, cost_weight, seed);
   if (name == "two_swarms") return std::make_unique<TwoSwarms>(settings.two_swarms, cost_weight, seed);
   if (name == "q_learning") return std::make_unique<QLearning>(settings.q_learning, cost_weight, seed);
   throw InputError(fmt::format("there is no planner '{}' (known: {})", name, fmt::join(route_planner_names(), ", ")));

@@ -59,6 +59,9 @@ inline constexpr std::size_t kFirstDiagonal = 4;
 /// Whether a step stays on the grid and out of lethal cells; a diagonal one needs both cells beside it free (MovingAI's rule).
 bool may_step(const Grid<Cost>& costs, Cell from, GridStep step);
 
+/// Every cell that steps lead to from a passable one, itself first; by breadth-first search.
+std::vector<Cell> reachable_cells(const Grid<Cost>& costs, Cell start);
+
 /// A global planner from cell to cell: lethal cells are blocked, others may lengthen the way through them. The price of a route is the integral of
 /// 1 + cost weight * cost / kMaxPassableCost along it.
 ///
