@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,9 @@ struct Station {
   Pose2 T_route_body;  ///< where the robot shall stand
   Eigen::Vector3d p_route_target = Eigen::Vector3d::Zero();  ///< what the instrument looks at, m
   double accuracy_m = 0.2;  ///< how near the standing place counts as reached
+  int priority = 0;         ///< lower ones come first, where the robot orders its stations itself
+  double earliest_s = 0.0;  ///< of the mission: work there does not begin before, and
+  double latest_s = std::numeric_limits<double>::infinity();  ///< if it can be helped, not after
 };
 
 /// The post at which the robot charges: where its body is when it is docked, and the post's outline at the lidar's height.
@@ -32,10 +36,10 @@ struct Dock {
 /// The order of stations, and lines that the robot must not walk across (full-height kerbs, which its 2D lidar cannot
 /// see but the survey knows).
 struct Route {
-  std::vector<Station> stations;
-  std::vector<std::vector<Eigen::Vector2d>> keep_out_lines;  ///< polylines in the route's frame, m
-  std::vector<UwbAnchor> anchors;                            ///< in the route's frame
-  std::optional<Dock> dock;
+  std::vector<Station> stations = {};
+  std::vector<std::vector<Eigen::Vector2d>> keep_out_lines = {};  ///< polylines in the route's frame, m
+  std::vector<UwbAnchor> anchors = {};                            ///< in the route's frame
+  std::optional<Dock> dock = {};
   std::optional<TunnelLining> lining = {};
 };
 

@@ -3,11 +3,12 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace patrol::inspect {
 
-Mission::Mission(const MissionSettings& settings, Route route_in_map, const Pose3& T_body_gas)
-    : settings_(settings), route_(std::move(route_in_map)), T_body_gas_(T_body_gas) {
+Mission::Mission(const MissionSettings& settings, Route route_in_map, const Pose3& T_body_gas, std::string about_order)
+    : settings_(settings), route_(std::move(route_in_map)), T_body_gas_(T_body_gas), about_order_(std::move(about_order)) {
   validate(settings, "mission");
   if (route_.stations.empty()) throw InputError("the route has no station");
 }
@@ -43,8 +44,10 @@ Event Mission::abort(Time now, const std::string& kind, const std::string& text)
 
 void Mission::wait(MissionOutput& output) {
   if (now_ < from_seconds(settings_.start_wait_s)) return;
-  output.events.push_back(
-      event("mission_started", "", fmt::format("The mission starts: {} stations.", route_.stations.size())));
+  std::vector<std::string> names;
+  for (const Station& station : route_.stations) names.push_back(station.name);
+  const std::string stations = fmt::format("The mission starts: {} stations, {}.", names.size(), fmt::join(names, ", "));
+  output.events.push_back(event("mission_started", "", about_order_.empty() ? stations : stations + " " + about_order_));
   phase_ = Phase::kDriving;
   phase_start_ = now_;
 }
@@ -58,9 +61,12 @@ void Mission::drive(NavigationFeedback feedback, MissionOutput& output) {
   }
   if (feedback != NavigationFeedback::kArrived) return;
   output.events.push_back(event("station_reached", station().name, fmt::format("At {}.", station().name)));
+  if (const double late_s = to_seconds(now_) - station().latest_s; late_s > 0.0) {
+    output.events.push_back(event("station_late", station().name, fmt::format("{:.0f} s late at {}.", late_s, station().name), late_s));
+  }
   if (station().type != "inspect") return next_station(output);
   phase_ = Phase::kMeasuring;
-  phase_start_ = now_;
+  phase_start_ = std::max(now_, from_seconds(station().earliest_s));
   gas_ = {};
 }
 

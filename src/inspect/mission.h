@@ -15,6 +15,8 @@
 namespace patrol::inspect {
 
 struct MissionSettings {
+  std::string order = "given";        ///< of the stations; or "best": the soonest done, by priorities and windows
+  double expected_speed_mps = 0.7;    ///< on the way, for that
   double start_wait_s = 4.0;          ///< standing still at first: sensors settle, their biases are learnt
   double settle_s = 0.5;              ///< after arriving, before the instrument is believed
   double measure_s = 3.0;             ///< of readings at each station
@@ -26,6 +28,8 @@ struct MissionSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("order", self.order, one_of({"given", "best"}));
+    visit("expected_speed_mps", self.expected_speed_mps, between(0.01, 10.0));
     visit("start_wait_s", self.start_wait_s, between(0.0, 600.0));
     visit("settle_s", self.settle_s, between(0.0, 60.0));
     visit("measure_s", self.measure_s, between(0.0, 600.0));
@@ -45,12 +49,14 @@ struct MissionOutput {
 /// Walks the route station by station: goes there, stands, measures methane, raises the alarm where the column exceeds the
 /// threshold beyond doubt (two standard errors), and goes on. A station that cannot be reached or measured is reported and left out.
 ///
-/// Events: mission_started, station_reached, gas_measured (value: column, ppm m), alarm (value: column; target: the place on the beam
+/// Work at a station with a window waits for it to open.
+///
+/// Events: mission_started (names the stations in their order), station_reached, station_late (value: by how many seconds), gas_measured (value: column, ppm m), alarm (value: column; target: the place on the beam
 /// nearest to what was inspected), station_failed, mission_completed (every station was done), mission_failed.
 class Mission {
  public:
-  /// `T_body_gas`: the methane meter, looking along its x axis. Throws InputError if a setting breaks its rule.
-  Mission(const MissionSettings& settings, Route route_in_map, const Pose3& T_body_gas);
+  /// `route_in_map`: its stations in their order. `T_body_gas`: the methane meter, looking along its x axis. `about_order`: a sentence for mission_started. Throws InputError if a setting breaks its rule.
+  Mission(const MissionSettings& settings, Route route_in_map, const Pose3& T_body_gas, std::string about_order = "");
 
   MissionOutput step(Time now, const PoseEstimate& pose, NavigationFeedback feedback,
                      const std::optional<GasReading>& newest_gas);
@@ -75,6 +81,7 @@ class Mission {
   MissionSettings settings_;
   Route route_;
   Pose3 T_body_gas_;
+  std::string about_order_;
   Phase phase_ = Phase::kWaiting;
   std::size_t current_ = 0;
   int num_failed_ = 0;

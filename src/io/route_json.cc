@@ -11,7 +11,7 @@ namespace patrol::io {
 namespace {
 
 Station read_station(const std::string& place, const Json& json) {
-  const JsonObject reader(place, json, {"number", "name", "type", "position", "orientation", "target", "accuracy"});
+  const JsonObject reader(place, json, {"number", "name", "type", "position", "orientation", "target", "accuracy", "priority", "window"});
   Station station{.number = reader.whole("number"), .name = reader.word("name"), .type = reader.word("type"),
                   .T_route_body = reader.pose(), .p_route_target = {}, .accuracy_m = reader.number("accuracy")};
   if (station.type != "inspect" && station.type != "pass" && station.type != "home") {
@@ -23,6 +23,12 @@ Station read_station(const std::string& place, const Json& json) {
     station.p_route_target = {target[0], target[1], target[2]};
   } else if (station.type == "inspect") {
     reader.fail("target is missing: what an inspection looks at");
+  }
+  if (reader.has("priority")) station.priority = reader.whole("priority");
+  if (reader.has("window")) {
+    const std::vector<double> window = reader.numbers("window", 2);
+    station.earliest_s = window[0], station.latest_s = window[1];
+    if (station.earliest_s < 0.0 || station.latest_s < station.earliest_s) reader.fail("window must be two times in s, from 0 on and in order");
   }
   return station;
 }

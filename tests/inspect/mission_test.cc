@@ -123,6 +123,24 @@ TEST(Mission, WalksMeasuresAndCompletesInOrder) {
   EXPECT_TRUE(mission.is_over());
 }
 
+TEST(Mission, NamesItsStationsWhenItStarts) {
+  Mission mission(make_settings(), make_route(), {}, "They should take 9 s.");
+  EXPECT_EQ(run(mission, clean_air).find("mission_started").text, "The mission starts: 3 stations, first, second, home. They should take 9 s.");
+}
+
+// It arrives after three seconds and measures one and a half; the second station opens at the tenth.
+TEST(Mission, WaitsForAStationsWindowAndSaysHowLateItIs) {
+  Route route = make_route();
+  route.stations[0].latest_s = 2.0;
+  route.stations[1].earliest_s = 10.0;
+  Mission mission(make_settings(), route, {});
+  const MissionRecord record = run(mission, clean_air);
+  EXPECT_NEAR(record.find("station_late", "first").value, to_seconds(record.find("station_reached", "first").stamp) - 2.0, 1e-9);
+  EXPECT_EQ(record.count("station_late"), 1);
+  EXPECT_LT(to_seconds(record.find("station_reached", "second").stamp), 10.0);
+  EXPECT_NEAR(to_seconds(record.find("gas_measured", "second").stamp), 10.0 + 0.5 + 1.0, kPeriod_s + 1e-9);
+}
+
 TEST(Mission, StandsForItsStartWait) {
   Mission mission(make_settings(), make_route(), {});
   for (int tick = 0; tick < 10; ++tick) {

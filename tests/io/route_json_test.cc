@@ -63,8 +63,23 @@ TEST(LoadRoute, ReadsStartStationsAndKeepOutLines) {
   EXPECT_EQ(route.route.keep_out_lines[0].size(), 3U);
 }
 
+TEST(LoadRoute, ReadsPriorityAndWindowWhichNobodyMustGive) {
+  Json json = make_route();
+  json["stations"][0]["priority"] = -2;
+  json["stations"][0]["window"] = {60, 90.5};
+  const TemporaryFile file("r.json", json.dump());
+  const std::vector<Station> stations = load_route(file.path()).route.stations;
+  EXPECT_EQ(stations[0].priority, -2);
+  EXPECT_EQ(stations[0].earliest_s, 60.0);
+  EXPECT_EQ(stations[0].latest_s, 90.5);
+  EXPECT_EQ(stations[1].priority, 0);
+  EXPECT_EQ(stations[1].latest_s, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0]["window"] = {90, 60}; }), "r.json: stations[0]: window must be two times in s, from 0 on and in order");
+  EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0]["window"] = {-1, 60}; }), "r.json: stations[0]: window must be two times in s, from 0 on and in order");
+}
+
 TEST(LoadRoute, TheStreetsRoutesAreGood) {
-  for (const char* name : {"boxes_and_well.json", "short.json"}) {
+  for (const char* name : {"boxes_and_well.json", "short.json", "whole_street.json"}) {
     const RouteFile route = load_route(std::string(PATROL_SOURCE_DIR "/worlds/street/routes/") + name);
     EXPECT_EQ(route.route.stations.back().type, "home");
     EXPECT_FALSE(route.route.keep_out_lines.empty());

@@ -1,6 +1,21 @@
 #include "app/stack/patrol_stack.h"
 
+#include "app/stack/station_order.h"
+
 namespace patrol::app {
+namespace {
+
+inspect::Mission make_mission(const StackSettings& settings, const RobotDescription& robot, Route route_in_map, std::uint64_t seed) {
+  std::string about_order;
+  if (settings.mission.order == "best" && !route_in_map.stations.empty()) {
+    StationOrder order = order_stations(route_in_map, robot, settings.plan, settings.mission, seed);
+    route_in_map.stations = std::move(order.stations);
+    about_order = std::move(order.text);
+  }
+  return inspect::Mission(settings.mission, std::move(route_in_map), robot.T_body("tdlas"), std::move(about_order));
+}
+
+}  // namespace
 
 PatrolStack::PatrolStack(const StackSettings& settings, const RobotDescription& robot, const Route& route_in_map,
                        double map_period_s, std::uint64_t seed)
@@ -8,7 +23,7 @@ PatrolStack::PatrolStack(const StackSettings& settings, const RobotDescription& 
       odometry_(robot, settings.odometry),
       leveler_(robot.T_body("lidar"), settings.leveling),
       slam_(make_mapper(settings, seed)),
-      mission_(settings.mission, route_in_map, robot.T_body("tdlas")) {
+      mission_(make_mission(settings, robot, route_in_map, seed)) {
   navigator_.set_map(slam_->map());  // empty yet, but its resolution must suit the costmap's
 }
 
