@@ -19,7 +19,7 @@ import jsonschema
 from selenium import webdriver
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "app/monitor"))
-from monitoring import Platform, event  # noqa: E402
+from monitoring import PlatformCase, event  # noqa: E402
 
 PATROL, ROBOT = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
@@ -40,15 +40,7 @@ def open_browser():
     return webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
 
 
-class Case(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.path = pathlib.Path(folder.name)
-        cls.platform = Platform(PATROL, cls.path / "data")
-        cls.addClassCleanup(lambda: cls.platform.kill())
-
+class Case(PlatformCase):
     @classmethod
     def start_robot(cls, name, world, seconds=2.0, run=None):
         return subprocess.Popen([ROBOT, cls.platform.url, cls.platform.token_file, cls.path / (run or f"run_{world}_{name}"), name, world, str(seconds), "5"],

@@ -6,11 +6,13 @@
 #include "score/driven_clearance.h"
 #include "score/goal_error.h"
 #include "score/inspection_score.h"
+#include "score/lining_score.h"
 #include "score/localizability.h"
 #include "score/localization_score.h"
 #include "score/map_error.h"
 #include "score/station_error.h"
 #include "score/trajectory_error.h"
+#include "score/water_score.h"
 
 namespace patrol::app {
 
@@ -25,5 +27,7 @@ io::Metrics to_json(const score::GoalError& error);
 io::Metrics to_json(const score::LocalizationScore& score);
 io::Metrics to_json(const score::LocalizabilityScore& score);
 io::Metrics to_json(const score::RelocalizationScore& score);
+io::Metrics to_json(const score::LiningScore& score);
+io::Metrics to_json(const score::WaterScore& score);
 
 }  // namespace patrol::app

@@ -14,20 +14,10 @@ import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from monitoring import Platform, event, is_closed, lining, result  # noqa: E402
+from monitoring import Platform, PlatformCase, event, is_closed, lining, result  # noqa: E402
 
 PATROL = pathlib.Path(sys.argv[1])
 MANY = 100_000
-
-
-class PlatformCase(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.path = pathlib.Path(folder.name)
-        cls.platform = Platform(PATROL, cls.path / "data")
-        cls.addClassCleanup(lambda: cls.platform.kill())
 
 
 class Refusals(PlatformCase):

@@ -8,7 +8,10 @@ import re
 import select
 import signal
 import subprocess
+import sys
+import tempfile
 import time
+import unittest
 
 
 class Platform:
@@ -109,3 +112,15 @@ def is_closed(connection, within_s):
         if select.select([connection], [], [], 0.1)[0] and not connection.recv(65536):
             return True
     return False
+
+
+class PlatformCase(unittest.TestCase):
+    """A platform for all tests of a class; the test program's first argument is patrol."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.path = pathlib.Path(folder.name)
+        cls.platform = Platform(pathlib.Path(sys.argv[1]), cls.path / "data")
+        cls.addClassCleanup(lambda: cls.platform.kill())
