@@ -9,7 +9,7 @@ namespace patrol::io {
 
 /// A place that a tour is to visit.
 struct TourStation {
-  std::string name;
+  std::string name = {};
   double x = 0.0, y = 0.0;  ///< as the tour's map names places
   double service_s = 0.0;   ///< spent there
   double earliest_s = 0.0, latest_s = std::numeric_limits<double>::infinity();  ///< when the service may begin, from the tour's start

@@ -75,7 +75,7 @@ std::string to_text(const TourReport& report) {
   if (tour.order.is_found) {
     text += visits_text(report);
     text += fmt::format("completion   {:.1f} s at {} {}/s: {:.1f} s of it waiting; {}\n", tour.order.completion, report.setup.settings.speed_mps, unit, waiting_s(tour),
-                        num_late(tour) == 0 ? "every window kept" : fmt::format("{} windows missed, by {:.1f} s in all", num_late(tour), tour.order.lateness));
+                        num_late(tour) == 0 ? "every window kept" : fmt::format("{} window{} missed, by {:.1f} s in all", num_late(tour), num_late(tour) == 1 ? "" : "s", tour.order.lateness));
     text += tour.order.is_exact ? fmt::format("order        the best there is, by exact search (lower bound {:.1f} s)\n", tour.order.lower_bound)
                                 : fmt::format("order        by local search: at most {:.2f} % above the best, whose lower bound is {:.1f} s\n", 100.0 * tour.order.gap(), tour.order.lower_bound);
   } else if (tour.unreachable.size() + 1 < report.stops.size() + 1 + report.p_end_m.has_value()) {
