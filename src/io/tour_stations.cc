@@ -73,7 +73,9 @@ class StationReader {
   void read_header(const std::vector<std::string>& cells) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const auto known = {"name", "x", "y", "service_s", "earliest_s", "latest_s", "priority"};
-      if (std::find(known.begin(), known.end(), cells[i]) == known.end()) refuse(fmt::format("{}: is no column: the first line must name {}", cells[i], kColumns));
+      if (std::find(known.begin(), known.end(), cells[i]) == known.end()) {
+        refuse(fmt::format("{}: is no column: the first line must name {}", cells[i], kColumns));
+      }
       if (!columns_.emplace(cells[i], i).second) refuse(fmt::format("{}: stands there twice", cells[i]));
     }
     for (const char* column : {"name", "x", "y"}) {

@@ -17,8 +17,8 @@ struct TourStation {
   int line = 0;             ///< of the file
 };
 
-/// A table (RFC 4180) whose header names, in any order, the columns name, x, y and, if they are there, service_s, earliest_s, latest_s, priority; of these four an
-/// empty cell is the default. Throws InputError with the file and the line.
+/// A table (RFC 4180) whose header names, in any order, the columns name, x, y and, if they are there, service_s, earliest_s, latest_s, priority; of
+/// these four an empty cell is the default. Throws InputError with the file and the line.
 std::vector<TourStation> load_tour_stations(const std::filesystem::path& file);
 
 }  // namespace patrol::io

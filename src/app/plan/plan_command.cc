@@ -24,8 +24,9 @@ namespace patrol::app {
 namespace {
 
 void refuse_options_of_maps(const PlanOptions& options) {
-  const std::pair<const char*, bool> given[] = {{"--from", options.from.has_value()}, {"--to", options.to.has_value()}, {"--stations", options.stations.has_value()},
-                                                {"--robot", options.robot.has_value()}, {"--radius-m", options.radius_m.has_value()}, {"--smooth", options.smooth}};
+  const std::pair<const char*, bool> given[] = {{"--from", options.from.has_value()},         {"--to", options.to.has_value()},
+                                                {"--stations", options.stations.has_value()}, {"--robot", options.robot.has_value()},
+                                                {"--radius-m", options.radius_m.has_value()}, {"--smooth", options.smooth}};
   for (const auto& [option, is_given] : given) {
     if (is_given) throw InputError(fmt::format("{}: is of a map: a .scen file has its own problems, a point's", option));
   }
@@ -84,14 +85,22 @@ Ground load_ground(const PlanOptions& options) {
   const Eigen::Vector2d p_from_m = map.place("--from", options.from.value());
   OccupancyGrid occupancy = map.occupancy_from(p_from_m);
   Grid<plan::Cost> costs = make_costs(occupancy, setup.body, setup.settings.costmap);
-  return {.map = std::move(map), .map_name = options.map.filename().string(), .setup = std::move(setup), .p_from_m = p_from_m, .occupancy = std::move(occupancy), .costs = std::move(costs)};
+  return {.map = std::move(map), .map_name = options.map.filename().string(), .setup = std::move(setup), .p_from_m = p_from_m,
+          .occupancy = std::move(occupancy), .costs = std::move(costs)};
+}
+
+void save_picture(const std::filesystem::path& folder, const Ground& ground, const std::vector<Eigen::Vector2d>& line_m, const std::vector<RoutePicture::Mark>& marks,
+                  const std::string& title) {
+  render::save_png(folder / "route.png", draw_route({.occupancy = ground.occupancy, .costs = ground.costs, .line_m = line_m, .marks = marks, .title = title,
+                                                     .note = grid_text(ground.map_name, ground.map, ground.costs, ground.setup.body)}));
 }
 
 ExitCode plan_one(const PlanOptions& options) {
   const Ground ground = load_ground(options);
   const Eigen::Vector2d p_to_m = ground.map.place("--to", options.to.value());
   const GridGeometry& grid = ground.costs.geometry();
-  const RouteReport report{.map = ground.map, .map_name = ground.map_name, .setup = ground.setup, .costs = ground.costs, .p_from_m = ground.p_from_m, .p_to_m = p_to_m,
+  const RouteReport report{.map = ground.map, .map_name = ground.map_name, .setup = ground.setup, .costs = ground.costs,
+                           .p_from_m = ground.p_from_m, .p_to_m = p_to_m,
                            .figures = figures_of_route(ground.costs, grid.cell_at(ground.p_from_m), grid.cell_at(p_to_m), ground.setup.settings)};
   const plan::Route& route = report.figures.route;
   const bool is_found = route.status == plan::PlanStatus::kFound;
@@ -101,9 +110,7 @@ ExitCode plan_one(const PlanOptions& options) {
     if (is_found) io::save_csv(*options.out / "route.csv", route_table(ground.map, points_m));
     io::save_metrics(*options.out / "plan.json", to_json(report));
     io::save_settings(*options.out / "settings.yaml", ground.setup.settings);
-    render::save_png(*options.out / "route.png", draw_route({.occupancy = ground.occupancy, .costs = ground.costs, .lines_m = {points_m},
-                                                             .marks = {{ground.p_from_m, "start", kStartColor}, {p_to_m, "goal", kGoalColor}},
-                                                             .title = route_title(report), .note = grid_text(ground.map_name, ground.map, ground.costs, ground.setup.body)}));
+    save_picture(*options.out, ground, points_m, {{ground.p_from_m, "start", kStartColor}, {p_to_m, "goal", kGoalColor}}, route_title(report));
     complete_output(*options.out);
   }
   fmt::print("{}", to_text(report));
@@ -127,7 +134,8 @@ ExitCode plan_stations(const PlanOptions& options) {
   const std::optional<Eigen::Vector2d> p_end_m = options.to ? std::optional(ground.map.place("--to", *options.to)) : std::nullopt;
   const std::optional<TourPlan> tour = plan_tour(ground.costs, ground.p_from_m, stops, p_end_m, ground.setup.settings);
   if (!tour) return interrupted();
-  const TourReport report{.map = ground.map, .map_name = ground.map_name, .setup = ground.setup, .costs = ground.costs, .p_from_m = ground.p_from_m, .p_end_m = p_end_m, .stops = stops, .tour = *tour};
+  const TourReport report{.map = ground.map, .map_name = ground.map_name, .setup = ground.setup, .costs = ground.costs,
+                          .p_from_m = ground.p_from_m, .p_end_m = p_end_m, .stops = stops, .tour = *tour};
   if (options.out) {
     begin_output(*options.out, kPlanOutput);
     if (tour->order.is_found) {
@@ -136,8 +144,7 @@ ExitCode plan_stations(const PlanOptions& options) {
     }
     io::save_metrics(*options.out / "plan.json", to_json(report));
     io::save_settings(*options.out / "settings.yaml", ground.setup.settings);
-    render::save_png(*options.out / "route.png", draw_route({.occupancy = ground.occupancy, .costs = ground.costs, .lines_m = {tour->points_m}, .marks = marks_of(report),
-                                                             .title = tour_title(report), .note = grid_text(ground.map_name, ground.map, ground.costs, ground.setup.body)}));
+    save_picture(*options.out, ground, tour->points_m, marks_of(report), tour_title(report));
     complete_output(*options.out);
   }
   fmt::print("{}", to_text(report));

@@ -25,8 +25,8 @@ void check_reach(const plan::Footprint& footprint, const plan::CostmapSettings& 
   const double lethal_m = footprint.inscribed_radius_m() + settings.safety_margin_m + settings.route_margin_m;
   const double reach_m = std::min(std::max(settings.inflation_radius_m, footprint.circumscribed_radius_m() + 0.3), 98.0 * settings.resolution_m);
   if (lethal_m <= reach_m) return;
-  throw InputError(fmt::format("an outline and margins of {:.2f} m reach beyond the costmap's {:.2f} m: costmap.inflation_radius_m or costmap.resolution_m must be larger",
-                               lethal_m, reach_m));
+  throw InputError(fmt::format("an outline and margins of {:.2f} m reach beyond the costmap's {:.2f} m: costmap.inflation_radius_m or "
+                               "costmap.resolution_m must be larger", lethal_m, reach_m));
 }
 
 }  // namespace

@@ -11,9 +11,9 @@
 
 namespace patrol::app {
 
-/// What the planners get. For a point the map's own cells: lethal what is occupied, or unknown and not to be crossed. For an outline the costmap that a robot drives by
-/// (plan/costmap.h), without live obstacles and keep-out lines, cut to the map; its cells are no finer than the map's. Throws InputError when
-/// the outline is too large for the costmap's reach.
+/// What the planners get. For a point the map's own cells: lethal what is occupied, or unknown and not to be crossed. For an outline the costmap
+/// that a robot drives by (plan/costmap.h), without live obstacles and keep-out lines, cut to the map; its cells are no finer than the map's.
+/// Throws InputError when the outline is too large for the costmap's reach.
 Grid<plan::Cost> make_costs(const OccupancyGrid& occupancy, const PlanBody& body, const plan::CostmapSettings& settings);
 
 std::int64_t num_passable(const Grid<plan::Cost>& costs);

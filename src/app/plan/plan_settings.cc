@@ -79,7 +79,9 @@ PlanSetup load_plan_setup(const PlanOptions& options) {
   io::SettingsReader::read_section("--set", io::document_of(overrides), "", settings);
   settings.costmap.crosses_unknown = settings.unknown == "free";
   plan::make_route_planner(settings.planner, settings.routes, settings.seed);  // refuses what is no planner
-  if (settings.smooth && settings.planner == "any_angle_optimum") throw InputError("--smooth: the any-angle optimum has nothing to smooth, and touches what is lethal");
+  if (settings.smooth && settings.planner == "any_angle_optimum") {
+    throw InputError("--smooth: the any-angle optimum has nothing to smooth, and touches what is lethal");
+  }
   return setup;
 }
 

@@ -18,10 +18,10 @@ namespace patrol::app {
 struct PlanSettings {
   std::string planner = "theta_star";  ///< plan/routes/planners.h
   std::uint64_t seed = 1;              ///< of planners and tour orders that draw
-  std::string unknown = "lethal";      ///< or "free": what the map does not know may be crossed; by a disc or a robot at costmap.unknown_cost. Sets costmap.crosses_unknown
+  std::string unknown = "lethal";      ///< or "free": what the map does not know may be crossed, by a disc or a robot at costmap.unknown_cost
   bool smooth = false;
   double kept_clearance_m = 0.3;       ///< as far as this, smoothing brings a route no nearer to what is lethal; on MovingAI maps cells
-  int any_angle_most_cells = 150'000;  ///< with more passable ones, or 8 times as many in all, the any-angle optimum is not looked for: seconds, at worst, and 160 bytes a cell
+  int any_angle_most_cells = 150'000;  ///< with more passable ones, or 8 times as many in all, the any-angle optimum is not looked for: it took up to 8 s
   double speed_mps = 1.0;              ///< on a tour; on MovingAI maps cells a second
   plan::CostmapSettings costmap;
   plan::RoutePlannerSettings routes;

@@ -28,7 +28,8 @@ class Grids {
     if (map == maps_.end()) map = maps_.emplace(problem.map, io::load_moving_ai_map(find_map(file_, problem))).first;
     const GridGeometry& size = map->second.terrain.geometry();
     if (size.width != problem.width || size.height != problem.height) {
-      throw input_error(file_.string(), problem.line, fmt::format("{}: is {} x {} cells, the problem's map is {} x {}", problem.map, size.width, size.height, problem.width, problem.height));
+      throw input_error(file_.string(), problem.line,
+                        fmt::format("{}: is {} x {} cells, the problem's map is {} x {}", problem.map, size.width, size.height, problem.width, problem.height));
     }
     const bool swims = map->second.terrain.at(problem.start) == 'W';
     const auto key = std::pair(problem.map, swims);
@@ -79,8 +80,8 @@ std::optional<std::vector<SolvedProblem>> solve_problems(const std::filesystem::
     const Grid<plan::Cost>& costs = grids.of(problem);
     const double processor_s = process_seconds();
     const plan::Route route = planner->plan(costs, problem.start, problem.goal);
-    SolvedProblem solved{.problem = problem, .status = route.status, .length = route.length, .num_turns = count_turns(route.points), .num_expanded = route.num_expanded,
-                         .processor_s = process_seconds() - processor_s};
+    SolvedProblem solved{.problem = problem, .status = route.status, .length = route.length, .num_turns = count_turns(route.points),
+                         .num_expanded = route.num_expanded, .processor_s = process_seconds() - processor_s};
     solved.failure = failure_of(solved, route, costs, settings.planner);
     all.push_back(std::move(solved));
     if (guard.is_interrupted()) return std::nullopt;

@@ -39,8 +39,9 @@ bool must_agree(const std::string& planner);
 /// The map that a problem names: relative to the file, else the name's last part beside it. Throws InputError when there is neither.
 std::filesystem::path find_map(const std::filesystem::path& file, const io::MovingAiProblem& problem);
 
-/// Every problem of the file by one planner, each route checked (app/plan/route_check.h): it must be found; A*'s and Dijkstra's must have the published length, those of Theta*
-/// and of the any-angle optimum must not be longer. With a line on a terminal; none when interrupted. Throws InputError with the file and the line.
+/// Every problem of the file by one planner, each route checked (app/plan/route_check.h): it must be found; A*'s and Dijkstra's must have the
+/// published length, those of Theta* and of the any-angle optimum must not be longer. With a line on a terminal; none when interrupted. Throws
+/// InputError with the file and the line.
 std::optional<std::vector<SolvedProblem>> solve_problems(const std::filesystem::path& file, const PlanSettings& settings);
 
 }  // namespace patrol::app

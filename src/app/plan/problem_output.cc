@@ -42,20 +42,23 @@ double mean_of(const std::vector<double>& values) {
 }  // namespace
 
 std::size_t num_failed(const ProblemReport& report) {
-  return static_cast<std::size_t>(std::count_if(report.solved.begin(), report.solved.end(), [](const SolvedProblem& solved) { return solved.failure.has_value(); }));
+  const auto has_failed = [](const SolvedProblem& solved) { return solved.failure.has_value(); };
+  return static_cast<std::size_t>(std::count_if(report.solved.begin(), report.solved.end(), has_failed));
 }
 
 std::string to_text(const ProblemReport& report) {
   const Summary summary = summary_of(report);
   const std::size_t count = report.solved.size(), failed = num_failed(report);
-  std::string text = fmt::format("{}: {} problems by {}\nroutes             {} found, each checked against every lethal cell\n", report.file_name, count, report.settings.planner, summary.num_found);
-  text += fmt::format("published lengths  {} agree to {} cells{}, worst difference {:.3g} cells\n", summary.num_agree, kPublishedTol, must_agree(report.settings.planner) ? "" : " (need not)",
-                      summary.worst_difference);
+  std::string text = fmt::format("{}: {} problems by {}\nroutes             {} found, each checked against every lethal cell\n", report.file_name, count,
+                                 report.settings.planner, summary.num_found);
+  text += fmt::format("published lengths  {} agree to {} cells{}, worst difference {:.3g} cells\n", summary.num_agree, kPublishedTol,
+                      must_agree(report.settings.planner) ? "" : " (need not)", summary.worst_difference);
   if (!summary.ratios.empty()) {
-    text += fmt::format("length / optimum   mean {:.6f}, median {:.6f}, least {:.6f}, worst {:.6f}\n", mean_of(summary.ratios), score::percentile(summary.ratios, 0.5),
-                        *std::min_element(summary.ratios.begin(), summary.ratios.end()), *std::max_element(summary.ratios.begin(), summary.ratios.end()));
+    text += fmt::format("length / optimum   mean {:.6f}, median {:.6f}, least {:.6f}, worst {:.6f}\n", mean_of(summary.ratios),
+                        score::percentile(summary.ratios, 0.5), *std::min_element(summary.ratios.begin(), summary.ratios.end()), *std::max_element(summary.ratios.begin(), summary.ratios.end()));
   }
-  text += fmt::format("processor time     {:.3f} ms a problem, {:.2f} s in all\nchecks failed      {}\n", 1e3 * summary.processor_s / static_cast<double>(count), summary.processor_s, failed);
+  text += fmt::format("processor time     {:.3f} ms a problem, {:.2f} s in all\nchecks failed      {}\n",
+                      1e3 * summary.processor_s / static_cast<double>(count), summary.processor_s, failed);
   std::size_t num_printed = 0;
   for (const SolvedProblem& solved : report.solved) {
     if (solved.failure && num_printed++ < kMostFailuresPrinted) text += fmt::format("  {}:{}: {}\n", report.file_name, solved.problem.line, *solved.failure);
@@ -81,19 +84,22 @@ io::Metrics to_json(const ProblemReport& report) {
             {"median", ratios.empty() ? std::nan("") : score::percentile(ratios, 0.5)},
             {"least", ratio(ratios.empty() ? 0.0 : *std::min_element(ratios.begin(), ratios.end()))},
             {"worst", ratio(ratios.empty() ? 0.0 : *std::max_element(ratios.begin(), ratios.end()))}}},
-          {"performance", {{"processor_s", summary.processor_s}, {"processor_s_per_problem", summary.processor_s / static_cast<double>(report.solved.size())}}}};
+          {"performance",
+           {{"processor_s", summary.processor_s}, {"processor_s_per_problem", summary.processor_s / static_cast<double>(report.solved.size())}}}};
 }
 
 io::Table problem_table(const ProblemReport& report) {
   io::Table table{.name = "problems",
-                  .columns = {"line", "bucket", "start_x", "start_y", "goal_x", "goal_y", "published_cells", "status", "length_cells", "ratio", "turns", "expanded_cells", "failure"},
+                  .columns = {"line", "bucket", "start_x", "start_y", "goal_x", "goal_y", "published_cells", "status", "length_cells", "ratio", "turns",
+                              "expanded_cells", "failure"},
                   .rows = {}};
   for (const SolvedProblem& solved : report.solved) {
     const io::MovingAiProblem& problem = solved.problem;
     const auto whole = [](std::int64_t value) { return io::Cell(value); };
     const auto from_top = [&](Cell cell) { return whole(problem.height - 1 - cell.row); };
-    table.rows.push_back({whole(problem.line), whole(problem.bucket), whole(problem.start.col), from_top(problem.start), whole(problem.goal.col), from_top(problem.goal), problem.optimal_length,
-                          std::string(status_name(solved.status)), solved.is_found() ? io::Cell(solved.length) : io::Cell(), solved.ratio() ? io::Cell(*solved.ratio()) : io::Cell(),
+    table.rows.push_back({whole(problem.line), whole(problem.bucket), whole(problem.start.col), from_top(problem.start), whole(problem.goal.col),
+                          from_top(problem.goal), problem.optimal_length, std::string(status_name(solved.status)),
+                          solved.is_found() ? io::Cell(solved.length) : io::Cell(), solved.ratio() ? io::Cell(*solved.ratio()) : io::Cell(),
                           whole(solved.num_turns), whole(solved.num_expanded), solved.failure.value_or("")});
   }
   return table;

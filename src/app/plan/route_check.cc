@@ -59,14 +59,16 @@ class Leg {
 
   /// A corner on the leg at which two lethal cells meet, or a side between two along which it runs.
   bool squeezes() const {
-    if (low_.y == high_.y && low_.y % 2 == 0 && runs_between(std::min(low_.x, high_.x), std::max(low_.x, high_.x), [&](long along, long side) { return is_lethal(along, low_.y / 2 + side); })) return true;
-    if (low_.x == high_.x && low_.x % 2 == 0 && runs_between(low_.y, high_.y, [&](long along, long side) { return is_lethal(low_.x / 2 + side, along); })) return true;
     if (low_.y == high_.y) {
-      for (long x = std::min(low_.x, high_.x); low_.y % 2 == 0 && x <= std::max(low_.x, high_.x); ++x) {
-        if (x % 2 == 0 && is_pinched(x / 2, low_.y / 2)) return true;
+      if (low_.y % 2 != 0) return false;  // through the cells' middles
+      const auto [left, right] = std::minmax(low_.x, high_.x);
+      for (long x = left + left % 2; x <= right; x += 2) {
+        if (is_pinched(x / 2, low_.y / 2)) return true;
       }
-      return false;
+      return runs_between(left, right, [&](long along, long side) { return is_lethal(along, low_.y / 2 + side); });
     }
+    const auto is_beside = [&](long along, long side) { return is_lethal(low_.x / 2 + side, along); };
+    if (low_.x == high_.x && low_.x % 2 == 0 && runs_between(low_.y, high_.y, is_beside)) return true;
     for (long y = low_.y + low_.y % 2; y <= high_.y; y += 2) {
       const long x_parts = low_.x * (high_.y - low_.y) + (high_.x - low_.x) * (y - low_.y), corner = 2 * (high_.y - low_.y);
       if (x_parts % corner == 0 && is_pinched(x_parts / corner, y / 2)) return true;

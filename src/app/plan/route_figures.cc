@@ -59,7 +59,8 @@ RouteFigures figures_of_route(const Grid<plan::Cost>& costs, Cell start, Cell go
   const plan::Route octile = GridSearch(GridSearch::Method::kAstar).plan(costs, start, goal);
   if (octile.status != plan::PlanStatus::kFound) return figures;
   figures.octile_length = octile.length;
-  if (settings.routes.cost_weight > 0.0) figures.octile_cost = GridSearch(GridSearch::Method::kAstar, settings.routes.cost_weight).plan(costs, start, goal).cost;
+  const double cost_weight = settings.routes.cost_weight;
+  if (cost_weight > 0.0) figures.octile_cost = GridSearch(GridSearch::Method::kAstar, cost_weight).plan(costs, start, goal).cost;
   if (settings.planner == "any_angle_optimum") figures.any_angle_length = figures.route.length;
   else if (is_too_large(costs, settings.any_angle_most_cells)) figures.is_any_angle_left_out = true;
   else figures.any_angle_length = plan::AnyAngleOptimum().plan(costs, start, goal).length;

@@ -40,7 +40,8 @@ std::string references_text(const RouteReport& report) {
   if (figures.any_angle_length) text += line("any-angle optimum", *figures.any_angle_length, figures.route.length);
   if (figures.is_any_angle_left_out) {
     const std::int64_t most = report.setup.settings.any_angle_most_cells;
-    text += fmt::format("any-angle optimum  not looked for: it may take long with more than {} passable cells, or {} in all (any_angle_most_cells)\n", most, 8 * most);
+    text += fmt::format("any-angle optimum  not looked for: it may take long with more than {} passable cells, or {} in all (any_angle_most_cells)\n",
+                        most, 8 * most);
   }
   return text;
 }
@@ -66,7 +67,8 @@ std::string grid_text(const std::string& map_name, const PlanMap& map, const Gri
 std::string route_title(const RouteReport& report) {
   const plan::Route& route = report.figures.route;
   const double cell = report.costs.geometry().resolution_m;
-  const std::string what = route.status == plan::PlanStatus::kFound ? fmt::format("{:.3f} {}, {}", cell * route.length, report.map.unit(), turns_text(report.figures.num_turns)) : status_name(route.status);
+  std::string what = status_name(route.status);
+  if (route.status == plan::PlanStatus::kFound) what = fmt::format("{:.3f} {}, {}", cell * route.length, report.map.unit(), turns_text(report.figures.num_turns));
   return fmt::format("{} from {} to {}: {}", report.setup.settings.planner, report.map.text_of(report.p_from_m), report.map.text_of(report.p_to_m), what);
 }
 
@@ -76,8 +78,8 @@ std::string to_text(const RouteReport& report) {
   const double cell = report.costs.geometry().resolution_m, weight = report.setup.settings.routes.cost_weight;
   const char* unit = report.map.unit();
   const bool is_found = route.status == plan::PlanStatus::kFound;
-  std::string text = fmt::format("{} from {} to {}\n{}\n", report.setup.settings.planner, report.map.text_of(report.p_from_m), report.map.text_of(report.p_to_m),
-                                 grid_text(report.map_name, report.map, report.costs, report.setup.body));
+  std::string text = fmt::format("{} from {} to {}\n{}\n", report.setup.settings.planner, report.map.text_of(report.p_from_m),
+                                 report.map.text_of(report.p_to_m), grid_text(report.map_name, report.map, report.costs, report.setup.body));
   const bool is_given_up = route.status == plan::PlanStatus::kNoRoute && !figures.is_complete;
   text += fmt::format("status             {}{}{}\n", status_name(route.status), is_found && report.setup.settings.smooth ? ", smoothed" : "",
                       is_given_up ? ": this planner may miss one" : "");
@@ -94,7 +96,12 @@ std::string to_text(const RouteReport& report) {
 
 io::Metrics grid_json(const PlanMap& map, const Grid<plan::Cost>& costs, const PlanBody& body) {
   const GridGeometry& grid = costs.geometry();
-  return {{"unit", map.unit()}, {"resolution_m", grid.resolution_m}, {"width_cells", grid.width}, {"height_cells", grid.height}, {"passable_cells", num_passable(costs)}, {"body", body.name}};
+  return {{"unit", map.unit()},
+          {"resolution_m", grid.resolution_m},
+          {"width_cells", grid.width},
+          {"height_cells", grid.height},
+          {"passable_cells", num_passable(costs)},
+          {"body", body.name}};
 }
 
 io::Metrics to_json(const RouteReport& report) {
@@ -106,7 +113,9 @@ io::Metrics to_json(const RouteReport& report) {
   const auto figure = [](bool is_known, auto value) { return is_known ? io::Metrics(value) : io::Metrics(nullptr); };
   const auto place = [&](const Eigen::Vector2d& p_m) { return io::Metrics{report.map.named(p_m).x(), report.map.named(p_m).y()}; };
   const auto best = [&](const std::optional<double>& value) { return value ? io::Metrics(cell * *value) : io::Metrics(nullptr); };
-  const auto gap_to = [&](double value, const std::optional<double>& reference) { return is_found && reference ? io::Metrics(gap(value, *reference)) : io::Metrics(nullptr); };
+  const auto gap_to = [&](double value, const std::optional<double>& reference) {
+    return is_found && reference ? io::Metrics(gap(value, *reference)) : io::Metrics(nullptr);
+  };
   return {{"map", report.map_name},
           {"grid", grid_json(report.map, report.costs, report.setup.body)},
           {"planner", report.setup.settings.planner},

@@ -12,7 +12,8 @@ namespace {
 
 using render::Color;
 
-constexpr Color kPaper{255, 255, 255}, kUnknownGround{214, 216, 219}, kObstacle{22, 34, 48}, kInflated{233, 164, 136}, kDear{252, 222, 170}, kRoute{20, 90, 214}, kWriting{40, 48, 58};
+constexpr Color kPaper{255, 255, 255}, kUnknownGround{214, 216, 219}, kObstacle{22, 34, 48}, kInflated{233, 164, 136}, kDear{252, 222, 170};
+constexpr Color kRoute{20, 90, 214}, kWriting{40, 48, 58};
 constexpr int kFooter_px = 74, kEdge_px = 16, kLeastWidth_px = 720;
 constexpr double kMaxWidth_px = 1600.0, kMaxHeight_px = 1000.0, kMaxCell_px = 24.0;
 
@@ -25,9 +26,7 @@ class Sheet {
         if (picture.occupancy.at({col, row}) != kUnknown) shown_.extend(map.center_of({col, row}));
       }
     }
-    for (const auto& line : picture.lines_m) {
-      for (const Eigen::Vector2d& p : line) shown_.extend(p);
-    }
+    for (const Eigen::Vector2d& p_m : picture.line_m) shown_.extend(p_m);
     for (const RoutePicture::Mark& mark : picture.marks) shown_.extend(mark.p_m);
     shown_.min().array() -= 0.5 * map.resolution_m;
     shown_.max().array() += 0.5 * map.resolution_m;
@@ -40,7 +39,7 @@ class Sheet {
   render::Frame draw() {
     draw_ground();
     draw_obstacles();
-    for (const auto& line : picture_.lines_m) draw_line(line);
+    draw_line();
     for (const RoutePicture::Mark& mark : picture_.marks) draw_mark(mark);
     draw_footer();
     return std::move(frame_);
@@ -82,7 +81,8 @@ class Sheet {
     }
   }
 
-  void draw_line(const std::vector<Eigen::Vector2d>& line_m) {
+  void draw_line() {
+    const std::vector<Eigen::Vector2d>& line_m = picture_.line_m;
     for (std::size_t i = 1; i < line_m.size(); ++i) render::draw_line(frame_, pixel_of(line_m[i - 1]), pixel_of(line_m[i]), 2.4, {kRoute});
   }
 

@@ -28,8 +28,10 @@ double length_m(const TourPlan& tour) {
   return length_m;
 }
 
-std::size_t num_late(const TourPlan& tour) {
-  return static_cast<std::size_t>(std::count_if(tour.visits.begin(), tour.visits.end(), [](const TourVisit& visit) { return visit.late_s > 0.0; }));
+std::string windows_text(const TourPlan& tour) {
+  const auto num_late = std::count_if(tour.visits.begin(), tour.visits.end(), [](const TourVisit& visit) { return visit.late_s > 0.0; });
+  if (num_late == 0) return "every window kept";
+  return fmt::format("{} window{} missed, by {:.1f} s in all", num_late, num_late == 1 ? "" : "s", tour.order.lateness);
 }
 
 double waiting_s(const TourPlan& tour) {
@@ -42,12 +44,13 @@ double waiting_s(const TourPlan& tour) {
 std::string visits_text(const TourReport& report) {
   std::size_t width = 5;
   for (const TourStop& stop : report.stops) width = std::clamp(stop.station.name.size(), width, std::size_t{32});
-  std::string text = fmt::format("     {:<{}}  {:>10}  {:>10}  {:>10}  {:>10}  {:>10}\n", "", width, fmt::format("way, {}", report.map.unit()), "arrives, s", "waits, s", "leaves, s", "late, s");
+  std::string text = fmt::format("     {:<{}}  {:>10}  {:>10}  {:>10}  {:>10}  {:>10}\n", "", width, fmt::format("way, {}", report.map.unit()),
+                                 "arrives, s", "waits, s", "leaves, s", "late, s");
   std::size_t number = 0;
   for (const TourVisit& visit : report.tour.visits) {
     const std::string late = visit.late_s > 0.0 ? fmt::format("{:.1f}", visit.late_s) : "";
-    const std::string line = fmt::format("{:>3}  {:<{}}  {:>10.2f}  {:>10.1f}  {:>10.1f}  {:>10.1f}  {:>10}", number++, place_name(report, visit.place), width, visit.leg_m, visit.arrives_s, visit.waits_s,
-                                         visit.leaves_s, late);
+    const std::string line = fmt::format("{:>3}  {:<{}}  {:>10.2f}  {:>10.1f}  {:>10.1f}  {:>10.1f}  {:>10}", number++, place_name(report, visit.place),
+                                         width, visit.leg_m, visit.arrives_s, visit.waits_s, visit.leaves_s, late);
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
   }
   return text;
@@ -63,9 +66,8 @@ std::string place_name(const TourReport& report, std::size_t place) {
 std::string tour_title(const TourReport& report) {
   const TourPlan& tour = report.tour;
   if (!tour.order.is_found) return fmt::format("{}: no tour of {} stations", report.setup.settings.planner, report.stops.size());
-  return fmt::format("{}: {} of {} stations in {:.2f} {}, {:.1f} s", report.setup.settings.planner,
-                     report.stops.size() - static_cast<std::size_t>(std::count_if(tour.unreachable.begin(), tour.unreachable.end(), [&](std::size_t place) { return place <= report.stops.size(); })),
-                     report.stops.size(), length_m(tour), report.map.unit(), tour.order.completion);
+  return fmt::format("{}: {} of {} stations in {:.2f} {}, {:.1f} s", report.setup.settings.planner, report.stops.size() - tour.unreachable.size(),
+                     report.stops.size(), length_m(tour), report.map.unit(), tour.order.completion);  // the end is reached, or there is no order
 }
 
 std::string to_text(const TourReport& report) {
@@ -74,10 +76,11 @@ std::string to_text(const TourReport& report) {
   std::string text = fmt::format("{}\n{}\n", tour_title(report), grid_text(report.map_name, report.map, report.costs, report.setup.body));
   if (tour.order.is_found) {
     text += visits_text(report);
-    text += fmt::format("completion   {:.1f} s at {} {}/s: {:.1f} s of it waiting; {}\n", tour.order.completion, report.setup.settings.speed_mps, unit, waiting_s(tour),
-                        num_late(tour) == 0 ? "every window kept" : fmt::format("{} window{} missed, by {:.1f} s in all", num_late(tour), num_late(tour) == 1 ? "" : "s", tour.order.lateness));
+    text += fmt::format("completion   {:.1f} s at {} {}/s: {:.1f} s of it waiting; {}\n", tour.order.completion, report.setup.settings.speed_mps, unit,
+                        waiting_s(tour), windows_text(tour));
     text += tour.order.is_exact ? fmt::format("order        the best there is, by exact search (lower bound {:.1f} s)\n", tour.order.lower_bound)
-                                : fmt::format("order        by local search: at most {:.2f} % above the best, whose lower bound is {:.1f} s\n", 100.0 * tour.order.gap(), tour.order.lower_bound);
+                                : fmt::format("order        by local search: at most {:.2f} % above the best, whose lower bound is {:.1f} s\n",
+                                              100.0 * tour.order.gap(), tour.order.lower_bound);
   } else if (tour.unreachable.size() + 1 < report.stops.size() + 1 + report.p_end_m.has_value()) {
     text += "there is no order: between some of the places no way was found\n";
   }
@@ -91,7 +94,12 @@ io::Metrics to_json(const TourReport& report) {
   const char* unit = report.map.unit();
   io::Metrics visits = io::Metrics::array();
   for (const TourVisit& visit : tour.visits) {
-    visits.push_back({{"name", place_name(report, visit.place)}, {fmt::format("way_{}", unit), visit.leg_m}, {"arrives_s", visit.arrives_s}, {"waits_s", visit.waits_s}, {"leaves_s", visit.leaves_s}, {"late_s", visit.late_s}});
+    visits.push_back({{"name", place_name(report, visit.place)},
+                      {fmt::format("way_{}", unit), visit.leg_m},
+                      {"arrives_s", visit.arrives_s},
+                      {"waits_s", visit.waits_s},
+                      {"leaves_s", visit.leaves_s},
+                      {"late_s", visit.late_s}});
   }
   const auto figure = [&](double value) { return tour.order.is_found ? io::Metrics(value) : io::Metrics(nullptr); };
   return {{"map", report.map_name},
@@ -131,7 +139,7 @@ std::vector<RoutePicture::Mark> marks_of(const TourReport& report) {
     marks.push_back({place_of(report, place), fmt::format("{} {}", k, place_name(report, place)), kStopColor});
   }
   for (const std::size_t place : report.tour.unreachable) marks.push_back({place_of(report, place), place_name(report, place) + ": no way", kGoalColor});
-  const bool is_end_reached = std::none_of(report.tour.unreachable.begin(), report.tour.unreachable.end(), [&](std::size_t place) { return place > report.stops.size(); });
+  const bool is_end_reached = report.tour.unreachable.empty() || report.tour.unreachable.back() <= report.stops.size();
   if (report.p_end_m && is_end_reached) marks.push_back({*report.p_end_m, "end", kGoalColor});
   return marks;
 }

@@ -34,8 +34,8 @@ struct TourPlan {
   double processor_s = 0.0;           ///< of them
 };
 
-/// The order in which to visit the stops from the start, ending at `end` or else back at the start, travel being by the settings' planner between all pairs. Ways
-/// are planned one way and driven both: they cost the same. What cannot be reached is left out. None when interrupted.
+/// The order in which to visit the stops from the start, ending at `p_end_m` or else back at the start, travel being by the settings' planner between
+/// all pairs. Ways are planned one way and driven both: they cost the same. What cannot be reached is left out. None when interrupted.
 std::optional<TourPlan> plan_tour(const Grid<plan::Cost>& costs, const Eigen::Vector2d& p_start_m, const std::vector<TourStop>& stops,
                                   const std::optional<Eigen::Vector2d>& p_end_m, const PlanSettings& settings);
 

@@ -28,7 +28,8 @@ TEST(PlanGrid, APointIsStoppedByOccupiedCellsAndByUnknownOnesAsItIsTold) {
   EXPECT_EQ(make_costs(map, bold.body, bold.settings.costmap).values(), (std::vector<plan::Cost>{0, 0, 255}));
 }
 
-// The cell's surface counts as half a cell nearer than its centre, and costmap.safety_margin_m is 0.05 m: lethal are centres within 0.32 + 0.05 + 0.05 m; none lies just there.
+// The cell's surface counts as half a cell nearer than its centre, and costmap.safety_margin_m is 0.05 m: lethal are centres within
+// 0.32 + 0.05 + 0.05 m; none lies just there.
 TEST(PlanGrid, ADiscMakesLethalWhatLiesWithinItsRadiusAndTheMargin) {
   const PlanSetup setup = setup_of(disc(0.32));
   const Grid<plan::Cost> costs = make_costs(one_post({0.0, 0.0}), setup.body, setup.settings.costmap);

@@ -17,8 +17,8 @@ class RoutePictureTest : public ::testing::Test {
     }
     occupancy.at({10, 9}) = kUnknown;
   }
-  render::Frame draw(std::vector<std::vector<Eigen::Vector2d>> lines_m) const {
-    return draw_route({.occupancy = occupancy, .costs = costs, .lines_m = std::move(lines_m), .marks = {}, .title = "t", .note = "n"});
+  render::Frame draw(std::vector<Eigen::Vector2d> line_m) const {
+    return draw_route({.occupancy = occupancy, .costs = costs, .line_m = std::move(line_m), .marks = {}, .title = "t", .note = "n"});
   }
   /// The pixel in the middle of a cell, y up.
   static render::Color at(const render::Frame& frame, int col, int row) { return frame.at(24 * col + 12, 24 * (9 - row) + 12); }
@@ -38,7 +38,7 @@ TEST_F(RoutePictureTest, ObstaclesInflationCostsAndTheUnknownAreToldApart) {
 }
 
 TEST_F(RoutePictureTest, TheRouteLiesWhereItIsWithYUp) {
-  const render::Frame frame = draw({{{5.5, 1.5}, {15.5, 1.5}}});
+  const render::Frame frame = draw({{5.5, 1.5}, {15.5, 1.5}});
   EXPECT_GT(at(frame, 10, 1).b, 180);
   EXPECT_LT(at(frame, 10, 1).r, 60);
   EXPECT_EQ(at(frame, 10, 8), (render::Color{255, 255, 255}));
@@ -48,7 +48,8 @@ TEST(RoutePicture, AMapOfOneCellAndOneOfMillionsAreDrawn) {
   for (const int size : {1, 3000}) {
     const OccupancyGrid occupancy({.resolution_m = 0.05, .width = size, .height = size}, kFree);
     const Grid<plan::Cost> costs(occupancy.geometry());
-    const render::Frame frame = draw_route({.occupancy = occupancy, .costs = costs, .lines_m = {}, .marks = {{{0.02, 0.02}, "start", kStartColor}}, .title = "t", .note = "n"});
+    const render::Frame frame =
+        draw_route({.occupancy = occupancy, .costs = costs, .line_m = {}, .marks = {{{0.02, 0.02}, "start", kStartColor}}, .title = "t", .note = "n"});
     EXPECT_LE(frame.width(), 1600);
     EXPECT_LE(frame.height(), 1100);
   }
