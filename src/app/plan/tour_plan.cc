@@ -25,6 +25,7 @@ class Ways {
       : costs_(costs), places_(std::move(places)), settings_(settings), planner_(plan::make_route_planner(settings.planner, settings.routes, settings.seed)) {}
 
   std::size_t size() const { return places_.size(); }
+  bool are_complete() const { return planner_->is_complete(); }
 
   /// Of either direction; planned from the place that comes first.
   void plan(std::size_t from, std::size_t to) {
@@ -105,6 +106,7 @@ std::optional<TourPlan> plan_tour(const Grid<plan::Cost>& costs, const Eigen::Ve
   InterruptGuard guard;
   ProgressBar bar;
   TourPlan tour;
+  tour.is_complete = ways.are_complete();
   const double processor_s = process_seconds();
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t place = 1; place < ways.size(); ++place) pairs.emplace_back(0, place);
