@@ -112,6 +112,7 @@ std::optional<TourPlan> plan_tour(const Grid<plan::Cost>& costs, const Eigen::Ve
   for (std::size_t place = 1; place < ways.size(); ++place) pairs.emplace_back(0, place);
   if (!plan_ways(ways, pairs, guard, bar)) return std::nullopt;
   tour.num_routes = static_cast<int>(pairs.size());
+  tour.processor_s = process_seconds() - processor_s;
   std::vector<std::size_t> places = {0};
   for (std::size_t place = 1; place < ways.size(); ++place) {
     (std::isinf(ways.length_m(0, place)) ? tour.unreachable : places).push_back(place);
