@@ -16,7 +16,7 @@
 namespace patrol::plan {
 
 struct GlobalPlannerSettings {
-  RoutePlannerSettings family = {.cost_weight = 4.0};
+  RoutePlannerSettings family = {.max_steps_millions = 100, .cost_weight = 4.0};
   double goal_tolerance_m = 0.3;   ///< a blocked goal may be replaced by a free place this near
   double start_tolerance_m = 0.6;  ///< likewise the start: the robot stands there, so it must get out
   double kept_clearance_m = 0.3;   ///< as far as this, smoothing brings a route no nearer to what is lethal

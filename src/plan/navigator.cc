@@ -15,6 +15,7 @@ constexpr double kPathStep_m = 0.25;          // poses of the published path
 constexpr double kProgress_m = 0.5;           // that much nearer counts as getting on
 constexpr double kMinApproachSpeed_mps = 0.15;
 constexpr double kMinPassable_m = 0.02;       // of a turn in place
+constexpr Time kAtOnce = std::chrono::milliseconds(50);  // a search that is over so soon holds nothing up
 constexpr double kTurnPatience = 2.0;         // tracks that slip turn more slowly than asked
 
 Twist3 twist_of(const VelocityCommand& command) {
@@ -48,6 +49,8 @@ NavigationTrouble trouble_of(PlanStatus status) {
       return NavigationTrouble::kGoalBlocked;
     case PlanStatus::kNoRoute:
       return NavigationTrouble::kNoRoute;
+    case PlanStatus::kNoneFound:
+      return NavigationTrouble::kNoneFound;
     case PlanStatus::kFound:
       break;
   }
@@ -66,6 +69,8 @@ const char* sentence_of(NavigationTrouble trouble) {
       return "The goal lies in an obstacle or too near to one.";
     case NavigationTrouble::kNoRoute:
       return "There is no route to the goal.";
+    case NavigationTrouble::kNoneFound:
+      return "The planner finds no route to the goal.";
     case NavigationTrouble::kPathBlocked:
       return "Something stands in the way.";
     case NavigationTrouble::kStuck:
@@ -82,8 +87,8 @@ Navigator::Navigator(const NavigatorSettings& settings, const RobotDescription& 
       planner_(settings.global, settings.routes, seed),
       local_planner_(make_local_planner(settings)),
       approach_(settings.differential_approach) {
-  validate(settings, "navigation");
-  if (settings.recoveries.empty()) throw InputError("navigation.recoveries: must name at least one recovery");
+  validate(settings, "plan");
+  if (settings.recoveries.empty()) throw InputError("plan.recoveries: must name at least one recovery");
 }
 
 void Navigator::set_map(const OccupancyGrid& map) {
@@ -109,6 +114,7 @@ void Navigator::set_goal(const std::optional<NavigationGoal>& goal) {
   has_arrived_ = false;
   is_approaching_ = false;
   path_ = {};
+  search_.reset();
   planned_at_ = Time::min();
   blocked_since_.reset();
   stay_.reset();
@@ -138,10 +144,12 @@ NavigationStep Navigator::step(Time now, const Pose2& T_map_body) {
     } else if (is_stuck(now, T_map_body)) {
       say(NavigationTrouble::kStuck);
       step.status = recover(now, T_map_body, step.command);
-    } else if (plan_if_needed(now, T_map_body, step)) {
-      step.status = drive(now, T_map_body, step.command);
     } else {
-      step.status = stand_blocked(now, T_map_body, step.command);
+      search_if_needed(now, T_map_body);
+      take_route(now, T_map_body, step);
+      if (!path_.is_empty()) step.status = drive(now, T_map_body, step.command);
+      else if (search_) step.status = think(now);
+      else step.status = stand_blocked(now, T_map_body, step.command);
     }
   }
   step.trouble = trouble_;
@@ -185,38 +193,45 @@ bool Navigator::is_blocked_by_newcomer(Time now) const {
   return true;
 }
 
-/// False if there is no path.
-bool Navigator::plan_if_needed(Time now, const Pose2& T_map_body, NavigationStep& step) {
+/// Begins to look for a route when there is none, or none that is good for long.
+void Navigator::search_if_needed(Time now, const Pose2& T_map_body) {
   bool is_blocked = false;
   if (!path_.is_empty()) {
     const PathProjection here =
         path_.project(T_map_body.position(), std::max(0.0, along_m_ - 0.5), along_m_ + 2.0);
     along_m_ = here.along_m;
     is_blocked = is_path_blocked(along_m_);
-    if (is_blocked && settings_.detour_after_s > 0.0 && is_blocked_by_newcomer(now)) return true;
+    if (is_blocked && settings_.detour_after_s > 0.0 && is_blocked_by_newcomer(now)) return;
     const bool is_old = map_is_new_ && now - planned_at_ >= from_seconds(settings_.replan_period_s);
-    if (!is_blocked && !is_old && here.distance_m <= settings_.stray_m) return true;
+    if (!is_blocked && !is_old && here.distance_m <= settings_.stray_m) return;
   }
   // An unsolvable search is the dearest one: not at every step.
-  if (planned_at_ != Time::min() && now - planned_at_ < from_seconds(0.5)) return !path_.is_empty();
+  if (search_ || (planned_at_ != Time::min() && now - planned_at_ < from_seconds(0.5))) return;
   planned_at_ = now;
   map_is_new_ = false;
   costmap_.include(T_map_body.position(), 5.0);
   costmap_.include(goal_->T_map_body.position(), 5.0);
-  const PlanResult plan = planner_.plan(costmap_.cost(), T_map_body.position(), goal_->T_map_body.position());
-  if (plan.status != PlanStatus::kFound) {
-    if (is_blocked) path_ = {};
-    if (path_.is_empty()) note_no_route(now, trouble_of(plan.status));
-    return !path_.is_empty();
+  PlanResult found = planner_.plan(costmap_.cost(), T_map_body.position(), goal_->T_map_body.position());
+  const Time takes = from_seconds(static_cast<double>(found.num_expanded) / settings_.steps_per_s);
+  search_ = Search{.found = std::move(found), .ready = now + (takes < kAtOnce ? Time{} : takes), .is_detour = is_blocked};
+}
+
+/// Takes the route that was looked for, once the robot's computer would have it.
+void Navigator::take_route(Time now, const Pose2& T_map_body, NavigationStep& step) {
+  if (!search_ || now < search_->ready) return;
+  const Search search = *std::exchange(search_, std::nullopt);
+  if (search.found.status != PlanStatus::kFound) {
+    if (search.is_detour) path_ = {};
+    if (path_.is_empty()) note_no_route(now, trouble_of(search.found.status));
+    return;
   }
   no_route_since_.reset();
   trouble_ = NavigationTrouble::kNone;
-  path_ = PlannedPath(plan.points_m);
-  along_m_ = 0.0;
+  path_ = PlannedPath(search.found.points_m);
+  along_m_ = path_.project(T_map_body.position(), 0.0, path_.length_m()).along_m;
   step.replanned = true;
-  step.is_detour = is_blocked;
+  step.is_detour = search.is_detour;
   step.path = path_.sample(kPathStep_m);
-  return true;
 }
 
 void Navigator::note_no_route(Time now, NavigationTrouble trouble) {
@@ -289,6 +304,13 @@ bool Navigator::turn_in_place(const Pose2& T_map_body, VelocityCommand& command)
   return false;
 }
 
+/// Stands until there is a first route.
+NavigationStatus Navigator::think(Time now) {
+  blocked_since_.reset();
+  if (stay_) stay_->since = now;
+  return NavigationStatus::kDriving;
+}
+
 /// Waits; recovers when that has lasted.
 NavigationStatus Navigator::stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command) {
   command = {};
@@ -307,6 +329,7 @@ bool Navigator::is_stuck(Time now, const Pose2& T_map_body) {
 /// Begins the next recovery.
 NavigationStatus Navigator::recover(Time now, const Pose2& T_map_body, VelocityCommand& command) {
   command = {};
+  search_.reset();
   blocked_since_.reset();
   stay_.reset();
   is_approaching_ = false;

@@ -25,6 +25,7 @@ struct NavigatorSettings {
   std::string global = "astar";           ///< planner of the way to the goal (plan/routes/planners.h)
   std::string local_planner = "dwa";      ///< or "paper_dwa": paper 004's, as printed
   int footprint_rows = 1;             ///< of discs that stand for the outline (plan/footprint.h)
+  double steps_per_s = 1e7;               ///< cells that the robot's computer looks at in a second: a route comes so much later
   double replan_period_s = 4.0;       ///< a new path after this time, for what the map has learnt
   double check_ahead_m = 6.0;         ///< an obstacle on the path nearer than this calls for a new one at once
   double stray_m = 0.8;               ///< so does being farther than this from it
@@ -57,6 +58,7 @@ struct NavigatorSettings {
     visit("global", self.global, one_of({"astar", "dijkstra", "theta_star", "plain_ant_colony", "ant_colony", "two_swarms", "q_learning"}));
     visit("local_planner", self.local_planner, one_of({"dwa", "paper_dwa"}));
     visit("footprint_rows", self.footprint_rows, between(1, 4));
+    visit("steps_per_s", self.steps_per_s, between(1e3, 1e12));
     visit("replan_period_s", self.replan_period_s, between(0.1, 600.0));
     visit("check_ahead_m", self.check_ahead_m, between(0.5, 100.0));
     visit("stray_m", self.stray_m, between(0.1, 10.0));
@@ -85,10 +87,11 @@ struct NavigatorSettings {
   }
 };
 
+/// kBlocked: nothing to follow, or no room for it; kDriving also while the first route to a goal is being looked for.
 enum class NavigationStatus { kIdle, kDriving, kArrived, kBlocked, kRecovering, kFailed };
 
 /// Why it does not get on.
-enum class NavigationTrouble { kNone, kStartBlocked, kGoalBlocked, kNoRoute, kPathBlocked, kStuck };
+enum class NavigationTrouble { kNone, kStartBlocked, kGoalBlocked, kNoRoute, kNoneFound, kPathBlocked, kStuck };
 
 /// The same as one sentence; empty for none.
 const char* sentence_of(NavigationTrouble trouble);
@@ -133,6 +136,12 @@ class Navigator {
     Eigen::Vector2d p_map;
     Time since{};
   };
+  /// A route that is being looked for.
+  struct Search {
+    PlanResult found;
+    Time ready{};
+    bool is_detour = false;
+  };
   struct Recovery {
     std::string kind;
     Time until{};
@@ -143,7 +152,8 @@ class Navigator {
   bool has_given_up(Time now) const;
   bool is_path_blocked(double from_m) const;
   bool is_blocked_by_newcomer(Time now) const;
-  bool plan_if_needed(Time now, const Pose2& T_map_body, NavigationStep& step);
+  void search_if_needed(Time now, const Pose2& T_map_body);
+  void take_route(Time now, const Pose2& T_map_body, NavigationStep& step);
   bool is_at_goal(const Pose2& T_map_body) const;
   void note_no_route(Time now, NavigationTrouble trouble);
   NavigationStatus carry_on_recovery(Time now, const Pose2& T_map_body, VelocityCommand& command);
@@ -152,6 +162,7 @@ class Navigator {
   VelocityCommand follow_path(const Pose2& T_map_body);
   bool is_newcomer_ahead(const Pose2& T_map_body) const;
   bool turn_in_place(const Pose2& T_map_body, VelocityCommand& command) const;
+  NavigationStatus think(Time now);
   NavigationStatus stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command);
   bool is_stuck(Time now, const Pose2& T_map_body);
   NavigationStatus recover(Time now, const Pose2& T_map_body, VelocityCommand& command);
@@ -171,7 +182,8 @@ class Navigator {
   bool is_approaching_ = false;       ///< the differential approach drives
   PlannedPath path_;
   double along_m_ = 0.0;
-  Time planned_at_ = Time::min();
+  std::optional<Search> search_;
+  Time planned_at_ = Time::min();     ///< when the last search began
   bool map_is_new_ = false;
   VelocityCommand last_;              ///< the command before, in place of the noisy measured twist
   std::optional<Time> blocked_since_;

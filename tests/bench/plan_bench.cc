@@ -87,7 +87,7 @@ BENCHMARK_CAPTURE(AstarAgainstBareHeap, maze, "maze")->Arg(500)->Arg(2000)->ArgN
 void AntsInIteration(benchmark::State& state) {
   const plan::GeneratedGrid grid = plan::generate_grid({.size_cells = 100}, 1);
   const int ants = static_cast<int>(state.range(0));
-  plan::AntColony colony({.ants = ants, .iterations = 10, .threads = static_cast<int>(state.range(1))}, plan::DiffusionSettings{}, 0.0, 1);
+  plan::AntColony colony({.ants = ants, .iterations = 10, .threads = static_cast<int>(state.range(1))}, plan::ImprovedColonySettings{}, 0.0, 1);
   for (auto _ : state) benchmark::DoNotOptimize(colony.plan(grid.costs, grid.start, grid.goal));
   state.counters["ants_per_second"] = benchmark::Counter(10.0 * ants, benchmark::Counter::kIsIterationInvariantRate);
 }

@@ -248,7 +248,7 @@ TEST(Navigator, RefusesAnEmptyListOfRecoveries) {
   NavigatorSettings settings;
   settings.recoveries = {};
   EXPECT_THAT([&] { Navigator(settings, make_robot(), {}); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("navigation.recoveries")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("plan.recoveries")));
 }
 
 // Nose on, 25 cm from the wall and less: nearer than discs and margins allow. It may not circle before such a
@@ -319,6 +319,40 @@ TEST(Navigator, PublishesThePathItPlans) {
   EXPECT_TRUE(second.path.empty());
 }
 
+// Some tens of cells at a thousand a second: the robot stands for that long, then has its path.
+TEST(Navigator, HasARouteOnlyWhenItsComputerWouldHaveFoundIt) {
+  const RoomWorld room = make_room();
+  NavigatorSettings settings;
+  settings.steps_per_s = 1000.0;
+  Navigator navigator = make_navigator(map_of_room(room), settings);
+  navigator.set_goal(make_goal({4.0, 0.0, 0.0}));
+  const Pose2 start{-4.0, 0.0, 0.0};
+  const std::int64_t num_expanded = GlobalPlanner(settings.global, settings.routes, 0).plan(navigator.costmap().cost(), start.position(), {4.0, 0.0}).num_expanded;
+  const double expected_s = static_cast<double>(num_expanded) / 1000.0;
+  ASSERT_GT(expected_s, 0.05);
+  double found_s = 0.0;
+  for (NavigationStep step = navigator.step(Time{}, start); !step.replanned; step = navigator.step(from_seconds(found_s), start)) {
+    EXPECT_EQ(step.status, NavigationStatus::kDriving);
+    EXPECT_EQ(step.command.vx_mps, 0.0);
+    found_s += 0.01;
+    ASSERT_LT(found_s, 10.0);
+  }
+  EXPECT_NEAR(found_s, expected_s, 0.011);
+}
+
+TEST(Navigator, SaysThatItsPlannerFoundNothingWhereThatProvesNothing) {
+  const RoomWorld room = make_room();
+  NavigatorSettings settings;
+  settings.global = "q_learning";
+  settings.routes.family.q_learning.episodes = 1;
+  settings.routes.family.q_learning.max_steps_share = 0.1;
+  Navigator navigator = make_navigator(map_of_room(room), settings);
+  navigator.set_goal(make_goal({4.0, 0.0, 0.0}));
+  const NavigationStep step = navigator.step(Time{}, {-4.0, 0.0, 0.0});
+  EXPECT_EQ(step.trouble, NavigationTrouble::kNoneFound);
+  EXPECT_EQ(step.text, "The planner finds no route to the goal.");
+}
+
 TEST(Navigator, GivesTheSameCommandsAgain) {
   RoomWorld room = make_room();
   room.add_post(0.3, 0.2, 0.4);
@@ -337,7 +371,7 @@ TEST(Navigator, RefusesARobotWithoutAnOutlineAndSettingsThatBreakTheirRule) {
   NavigatorSettings settings;
   settings.approach_m = -1.0;
   EXPECT_THAT([&] { Navigator(settings, make_robot(), {}); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("navigation.approach_m = -1")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("plan.approach_m = -1")));
 }
 
 }  // namespace

@@ -41,6 +41,7 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   };
   handlers.truth = [&](Time, const GroundTruth& truth) { append(record.T_world_body, truth.stamp, truth.T_world_body); };
   handlers.event = [&](Time, const Event& event) { record.events.push_back(event); };
+  handlers.path = [&](Time, const Path&) { ++record.num_paths; };
   handlers.collision = [&](Time, const Collision& collision) { record.collisions.push_back(collision); };
   handlers.trust = [&](Time, const LocalizationTrust& trust) { record.trusts.push_back(trust); };
   handlers.remote = [&](Time, const RemoteCommand& command) { record.remote.push_back(command); };

@@ -23,6 +23,7 @@ struct RunRecord {
   std::vector<Collision> collisions;
   std::vector<LiningResult> linings;
   std::vector<WaterResult> waters;
+  std::size_t num_paths = 0;  ///< that the navigation planned
   OccupancyGrid map;        ///< the last one
   bool is_complete = false; ///< the log has its end
 

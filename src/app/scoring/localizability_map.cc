@@ -1,15 +1,13 @@
 #include "app/scoring/localizability_map.h"
 
-#include <algorithm>
 #include <deque>
 #include <set>
 #include <utility>
 
 #include "app/scoring/localizability_oracle.h"
+#include "app/scoring/world_surfaces.h"
 #include "core/error.h"
-#include "render/reference_map.h"
 #include "score/distance_field.h"
-#include "sim/model_assembly.h"
 
 namespace patrol::app {
 namespace {
@@ -17,27 +15,13 @@ namespace {
 constexpr double kClearance_m = 0.4;
 constexpr double kSurfaceCell_m = 0.05;
 
-/// Of the robot standing at the start.
-double lidar_height_m(const ScenarioFiles& files) {
-  const sim::AssembledModel assembled = sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), files.T_site_start);
-  const sim::DataPtr data = sim::make_data(*assembled.physics);
-  std::copy(assembled.start_qpos.begin(), assembled.start_qpos.end(), data->qpos);
-  mj_kinematics(assembled.physics.get(), data.get());
-  const int body = mj_name2id(assembled.physics.get(), mjOBJ_BODY, frame_id::kBody);
-  return data->xpos[3 * body + 2] + files.robot.T_body("lidar").position.z();
-}
-
 }  // namespace
 
 LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFiles& files, double step_m) {
-  const sim::SpecPtr spec = sim::load_spec(files.world_xml.string());
-  const sim::ModelPtr world = sim::compile(*spec, files.world_xml.string());
-  const double height_m = lidar_height_m(files);
-  LocalizabilityMap map{.surfaces = render::reference_map(*world, {.height_m = height_m, .resolution_m = kSurfaceCell_m, .margin_m = 0.0}).map,
-                        .step_m = step_m,
-                        .places = {}};
+  const WorldSurfaces world = world_surfaces(files, kSurfaceCell_m);
+  LocalizabilityMap map{.surfaces = world.surfaces, .step_m = step_m, .places = {}};
   const score::DistanceField clearance(score::occupied_cells(map.surfaces));
-  const LocalizabilityOracle oracle(*world, scenario.sensors.lidar, height_m);
+  const LocalizabilityOracle oracle(*world.world, scenario.sensors.lidar, world.lidar_height_m);
   const Eigen::Vector2d start = files.T_site_start.position();
   const auto place_at = [&](const std::pair<int, int>& node) { return Eigen::Vector2d(start + step_m * Eigen::Vector2d(node.first, node.second)); };
   const auto can_stand = [&](const Eigen::Vector2d& p_world_m) {

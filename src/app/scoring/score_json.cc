@@ -33,6 +33,10 @@ io::Metrics to_json(const score::TrajectoryError& error) {
   return metrics;
 }
 
+io::Metrics to_json(const score::DrivenClearance& clearance) {
+  return {{"mean_m", clearance.mean_m}, {"p05_m", clearance.p05_m}, {"min_m", clearance.min_m}};
+}
+
 io::Metrics to_json(const score::AlignedError& error) {
   io::Metrics metrics;
   metrics["rmse_m"] = error.rmse_m;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "io/metrics_json.h"
+#include "score/driven_clearance.h"
 #include "score/goal_error.h"
 #include "score/inspection_score.h"
 #include "score/localizability.h"
@@ -17,6 +18,7 @@ namespace patrol::app {
 io::Metrics to_json(const score::TrajectoryError& error);
 io::Metrics to_json(const score::AlignedError& error);
 io::Metrics to_json(const score::MapError& error);
+io::Metrics to_json(const score::DrivenClearance& clearance);
 io::Metrics to_json(const std::vector<score::StationError>& errors);
 io::Metrics to_json(const score::InspectionScore& score);
 io::Metrics to_json(const score::GoalError& error);

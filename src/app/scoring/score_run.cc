@@ -13,6 +13,7 @@
 #include "io/nav_json.h"
 #include "io/remote_csv.h"
 #include "io/tum.h"
+#include "score/driven_clearance.h"
 
 namespace patrol::app {
 namespace {
@@ -30,6 +31,15 @@ io::Metrics mission_metrics(const RunRecord& record) {
   metrics["sensor_faults_noticed"] = record.num_events("sensor_fault");
   metrics["duration_s"] = to_seconds(record.T_world_body.back().stamp);
   metrics["distance_m"] = planar_length_m(record.T_world_body);
+  return metrics;
+}
+
+io::Metrics navigation_metrics(const RunRecord& record, const ScenarioFiles& files, const TrueMap& truth) {
+  io::Metrics metrics;
+  metrics["paths"] = record.num_paths;
+  metrics["detours"] = record.num_events("replan");
+  metrics["recoveries"] = record.num_events("recovery");
+  metrics["clearance"] = to_json(score::driven_clearance(record.T_world_body, files.robot.footprint_m, truth.reference.cells));
   return metrics;
 }
 
@@ -89,6 +99,7 @@ io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, c
       track_localizability(record, T_world_map, LocalizabilityOracle(*truth.world, scenario.sensors.lidar, truth.lidar_height_m));
   save_localizability(directory.localizability(), localizability);
   metrics["localizability"] = to_json(score_of(localizability));
+  metrics["navigation"] = navigation_metrics(record, files, truth);
   metrics["stations"] = to_json(score::station_errors(files.route, record.events, T_world_map, record.T_world_body, record.map,
                                                       truth.reference));
   metrics.update(tour_metrics(record, scenario, files, T_world_map));

@@ -7,6 +7,7 @@
 
 #include "app/study/growth_study.h"
 #include "app/study/landmark_study.h"
+#include "app/study/planner_study.h"
 #include "app/study/street_study.h"
 #include "app/study/substation_study.h"
 #include "core/error.h"
@@ -14,13 +15,14 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::array<std::pair<const char*, Study (*)()>, 7> kStudies = {{{"ungm", growth_study},
+constexpr std::array<std::pair<const char*, Study (*)()>, 8> kStudies = {{{"ungm", growth_study},
                                                                          {"landmarks-circle", circle_study},
                                                                          {"landmarks-noncircular", noncircular_study},
                                                                          {"landmarks-100x80", campus_study},
                                                                          {"street-map", street_study},
                                                                          {"substation", substation_study},
-                                                                         {"substation-row", row_study}}};
+                                                                         {"substation-row", row_study},
+                                                                         {"planners", planner_study}}};
 
 }  // namespace
 

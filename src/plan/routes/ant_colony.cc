@@ -24,7 +24,7 @@ double octile(Cell a, Cell b) {
 double power(double base, double exponent) { return exponent == 1.0 ? base : std::pow(base, exponent); }
 
 /// tau'' of each step as a share of the pheromone of its cell (eqs. 7-9): [cell * 8 + direction]. Empty without diffusion.
-std::vector<double> diffusion_shares(const std::optional<DiffusionSettings>& settings, const Grid<Cost>& costs, Cell goal) {
+std::vector<double> diffusion_shares(const std::optional<ImprovedColonySettings>& settings, const Grid<Cost>& costs, Cell goal) {
   std::vector<double> shares;
   if (!settings) return shares;
   const Grid<Eigen::Vector2d> forces = potential_forces(settings->field, costs, goal);
@@ -43,8 +43,8 @@ std::vector<double> diffusion_shares(const std::optional<DiffusionSettings>& set
 /// What does not change from iteration to iteration, and the pheromone that does.
 class Trails {
  public:
-  Trails(const AntColonySettings& settings, const std::optional<DiffusionSettings>& diffusion, const Grid<Cost>& costs, const StepGraph& graph, Cell goal)
-      : settings_(settings), graph_(graph), shares_(diffusion_shares(diffusion, costs, goal)), pheromone_(8 * graph.steps.size(), 1.0),
+  Trails(const AntColonySettings& settings, const std::optional<ImprovedColonySettings>& improved, const Grid<Cost>& costs, const StepGraph& graph, Cell goal)
+      : settings_(settings), graph_(graph), shares_(diffusion_shares(improved, costs, goal)), pheromone_(8 * graph.steps.size(), 1.0),
         weights_(pheromone_.size(), 0.0), eta_(graph.steps.size()) {
     for (std::uint32_t cell = 0; cell < eta_.size(); ++cell) {
       const Cell at = graph.cell_of(cell);
@@ -111,15 +111,15 @@ void in_parallel(int count, int num_workers, const Work& work) {
 
 }  // namespace
 
-AntColony::AntColony(const AntColonySettings& settings, const std::optional<DiffusionSettings>& diffusion, double cost_weight, std::uint64_t seed)
-    : RoutePlanner(cost_weight), settings_(settings), diffusion_(diffusion), stream_(seed, "plan/routes/ants") {
+AntColony::AntColony(const AntColonySettings& settings, const std::optional<ImprovedColonySettings>& improved, double cost_weight, std::uint64_t seed)
+    : RoutePlanner(cost_weight), settings_(settings), improved_(improved), stream_(seed, "plan/routes/ants") {
   validate(settings_, "ant_colony");
-  if (diffusion_) validate(*diffusion_, "diffusion");
+  if (improved_) validate(*improved_, "improved_colony");
 }
 
 void AntColony::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) {
   const StepGraph graph(costs, factors());
-  Trails trails(settings_, diffusion_, costs, graph, goal);
+  Trails trails(settings_, improved_, costs, graph, goal);
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int num_workers = std::min(settings_.ants, settings_.threads > 0 ? settings_.threads : cores);
   std::vector<Walker> walkers(static_cast<std::size_t>(num_workers), Walker(graph));
@@ -128,7 +128,7 @@ void AntColony::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
   const double Q = settings_.deposit * octile(start, goal);
   Walk best;
   best.cost = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; iteration < settings_.iterations; ++iteration) {
+  for (int iteration = 0; iteration < settings_.iterations && !is_spent(route); ++iteration) {
     const std::vector<double>& weights = trails.weigh();
     in_parallel(settings_.ants, num_workers, [&](int begin, int end, int worker) {
       Walker& walker = walkers[static_cast<std::size_t>(worker)];
@@ -137,6 +137,10 @@ void AntColony::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
         Walk& walk = walks[static_cast<std::size_t>(ant)];
         walk = walker.walk(from, to, [&](std::uint32_t cell, unsigned open) { return draw_step(weights, cell, open, random); });
         if (settings_.splices) walker.splice(walk, to);
+        if (improved_ && improved_->tightens) {
+          walker.tighten(walk, to);
+          walker.splice(walk, to);
+        }
         walk.cost = cost_of(graph, walk);
       }
     });

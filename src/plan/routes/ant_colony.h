@@ -36,17 +36,19 @@ struct AntColonySettings {
   }
 };
 
-/// Paper 003's diffusion of pheromone along the force.
-struct DiffusionSettings {
+/// What the improved colony has beside the plain one: paper 003's diffusion of pheromone along the force, and ours.
+struct ImprovedColonySettings {
   double coefficient = 4.0;      ///< delta of eqs. 7-9
   double half_angle_deg = 70.0;  ///< neighbours this near to the force's direction get some
   PotentialFieldSettings field = {};
+  bool tightens = true;          ///< the best ant's route of each iteration is pulled tight (grid_walk.h); ours
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("coefficient", self.coefficient, between(0.0, 100.0));
     visit("half_angle_deg", self.half_angle_deg, between(0.0, 180.0));
     visit("field", self.field);
+    visit("tightens", self.tightens);
   }
 };
 
@@ -62,11 +64,12 @@ struct DiffusionSettings {
 ///            the steps for q, every trail leaks along the force for ever: on grids of rooms such a colony ends longer than the plain one.)
 ///   eq. 13   L_k, "the longest path of ant k", is the ant's length.
 /// Ours, in both colonies: an ant in a dead end goes back step by step, and does not enter a cell twice, so every ant arrives if there is a way; loops
-/// are spliced out of its route; the best route so far is laid again by `elite` ants.
+/// are spliced out of its route; the best route so far is laid again by `elite` ants. Ours, in the improved one: in each iteration the best ant's route is pulled
+/// tight before it counts, without which ants on large open grids wander about the straight line for hundreds of iterations.
 class AntColony : public RoutePlanner {
  public:
-  /// Plain without `diffusion`.
-  AntColony(const AntColonySettings& settings, const std::optional<DiffusionSettings>& diffusion, double cost_weight, std::uint64_t seed);
+  /// Plain without `improved`.
+  AntColony(const AntColonySettings& settings, const std::optional<ImprovedColonySettings>& improved, double cost_weight, std::uint64_t seed);
 
   bool is_complete() const override { return true; }
 
@@ -74,7 +77,7 @@ class AntColony : public RoutePlanner {
   void search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) override;
 
   AntColonySettings settings_;
-  std::optional<DiffusionSettings> diffusion_;
+  std::optional<ImprovedColonySettings> improved_;
   RandomStream stream_;
 };
 

@@ -14,21 +14,9 @@ namespace {
 
 constexpr std::uint64_t kMaxDraws = 100;
 
-/// By breadth-first search.
 bool has_way(const Grid<Cost>& costs, Cell start, Cell goal) {
-  Grid<std::uint8_t> is_reached(costs.geometry(), 0);
-  std::vector<Cell> reached{start};
-  is_reached.at(start) = 1;
-  for (std::size_t i = 0; i < reached.size(); ++i) {
-    if (reached[i] == goal) return true;
-    for (const GridStep step : kGridSteps) {
-      const Cell next{reached[i].col + step.col, reached[i].row + step.row};
-      if (!may_step(costs, reached[i], step) || is_reached.at(next) != 0) continue;
-      is_reached.at(next) = 1;
-      reached.push_back(next);
-    }
-  }
-  return false;
+  const std::vector<Cell> reached = reachable_cells(costs, start);
+  return std::find(reached.begin(), reached.end(), goal) != reached.end();
 }
 
 void fill(Grid<Cost>& costs, Cell first, int width, int height, Cost cost) {

@@ -74,6 +74,10 @@ class Walker {
   /// From each cell on, the step to the latest of the walk's cells beside it replaces what lies between. The walk may cross itself before, not after.
   void splice(Walk& walk, std::uint32_t goal);
 
+  /// Pulls a walk that enters no cell twice tight: stretches that cost more than a shortest way over open ground between their ends (diagonal steps and straight
+  /// ones, evenly mixed, or the ones before the others) are replaced by that. What is left depends on which way round obstacles the walk went.
+  void tighten(Walk& walk, std::uint32_t goal);
+
  private:
   const StepGraph& graph_;
   std::vector<std::uint32_t> visit_;     ///< [cell] the walk that was here last

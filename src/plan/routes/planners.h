@@ -15,17 +15,19 @@ namespace patrol::plan {
 
 /// What the planners of the family need; each takes what is its own.
 struct RoutePlannerSettings {
+  int max_steps_millions = 0;            ///< from cell to cell, of ants, particles and episodes; then the best so far is taken. 0: as many as it needs
   double cost_weight = 0.0;              ///< a cell at the highest passable cost counts as 1 + this many cells
   AntColonySettings ant_colony = {};     ///< of both colonies
-  DiffusionSettings diffusion = {};      ///< of paper 003's
+  ImprovedColonySettings improved_colony = {};  ///< of the improved one: paper 003's
   TwoSwarmsSettings two_swarms = {};
   QLearningSettings q_learning = {};
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("max_steps_millions", self.max_steps_millions, between(0, 1000000));
     visit("cost_weight", self.cost_weight, between(0.0, 50.0));
     visit("ant_colony", self.ant_colony);
-    visit("diffusion", self.diffusion);
+    visit("improved_colony", self.improved_colony);
     visit("two_swarms", self.two_swarms);
     visit("q_learning", self.q_learning);
   }

@@ -81,7 +81,7 @@ void QLearning::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
   const auto max_steps = static_cast<std::int64_t>(settings_.max_steps_share * static_cast<double>(graph.steps.size()));
   Walk best;
   best.cost = std::numeric_limits<double>::infinity();
-  for (int episode = 0; episode < settings_.episodes; ++episode) {
+  for (int episode = 0; episode < settings_.episodes && !is_spent(route); ++episode) {
     const double epsilon = settings_.exploration * (1.0 - static_cast<double>(episode) / settings_.episodes);
     RandomSequence random(stream_, static_cast<std::uint64_t>(episode));
     std::uint32_t here = from;

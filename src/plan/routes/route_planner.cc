@@ -92,6 +92,21 @@ bool may_step(const Grid<Cost>& costs, Cell from, GridStep step) {
   return step.col == 0 || step.row == 0 || (costs.at({to.col, from.row}) != kLethalCost && costs.at({from.col, to.row}) != kLethalCost);
 }
 
+std::vector<Cell> reachable_cells(const Grid<Cost>& costs, Cell start) {
+  Grid<std::uint8_t> is_reached(costs.geometry(), 0);
+  std::vector<Cell> reached{start};
+  is_reached.at(start) = 1;
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    for (const GridStep step : kGridSteps) {
+      const Cell next{reached[i].col + step.col, reached[i].row + step.row};
+      if (!may_step(costs, reached[i], step) || is_reached.at(next) != 0) continue;
+      is_reached.at(next) = 1;
+      reached.push_back(next);
+    }
+  }
+  return reached;
+}
+
 std::array<double, 256> cost_factors(double cost_weight) {
   if (!(cost_weight >= 0.0 && cost_weight <= kMaxCostWeight)) {
     throw InputError(fmt::format("cost_weight = {}: must lie in 0 ... {}", cost_weight, kMaxCostWeight));
@@ -121,7 +136,10 @@ Route RoutePlanner::plan(const Grid<Cost>& costs, Cell start, Cell goal) {
   } else {
     search(costs, start, goal, route);
   }
-  if (route.points.empty()) return route;
+  if (route.points.empty()) {
+    route.status = is_complete() && !is_spent(route) ? PlanStatus::kNoRoute : PlanStatus::kNoneFound;
+    return route;
+  }
 
   route.status = PlanStatus::kFound;
   route.length = length_of(route.points);

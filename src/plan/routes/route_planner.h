@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/grid.h"
@@ -11,11 +12,17 @@
 
 namespace patrol::plan {
 
-enum class PlanStatus { kFound, kStartBlocked, kGoalBlocked, kNoRoute };
+enum class PlanStatus {
+  kFound,
+  kStartBlocked,
+  kGoalBlocked,
+  kNoRoute,    ///< there is none
+  kNoneFound,  ///< which proves nothing: the planner is not complete, or had to stop
+};
 
 /// A way over a grid, and how it was found. Lengths are in cells, so that grids of any resolution compare.
 struct Route {
-  PlanStatus status = PlanStatus::kNoRoute;  ///< kNoRoute of a planner that is not complete: it found none
+  PlanStatus status = PlanStatus::kNoRoute;
   std::vector<Eigen::Vector2d> points;       ///< start ... goal, cells from the grid's lower-left corner: (col + 0.5, row + 0.5) is a cell's centre
   double length = 0.0;                       ///< cells; exact but for rounding at its end: straight and diagonal steps are counted
   double cost = 0.0;                         ///< cells, each weighted by the costs of the cells it crosses; the length if the weight is 0
@@ -52,6 +59,9 @@ inline constexpr std::size_t kFirstDiagonal = 4;
 /// Whether a step stays on the grid and out of lethal cells; a diagonal one needs both cells beside it free (MovingAI's rule).
 bool may_step(const Grid<Cost>& costs, Cell from, GridStep step);
 
+/// Every cell that steps lead to from a passable one, itself first; by breadth-first search.
+std::vector<Cell> reachable_cells(const Grid<Cost>& costs, Cell start);
+
 /// A global planner from cell to cell: lethal cells are blocked, others may lengthen the way through them. The price of a route is the integral of
 /// 1 + cost weight * cost / kMaxPassableCost along it.
 ///
@@ -65,6 +75,10 @@ class RoutePlanner {
   /// Whether it finds a route wherever there is one.
   virtual bool is_complete() const = 0;
 
+  /// A planner that goes on improving its route (of ants, particles, episodes) ends with the iteration in which it has taken so many steps from cell to
+  /// cell, and gives what it has.
+  void limit_steps(std::int64_t max_steps) { max_steps_ = max_steps; }
+
   Route plan(const Grid<Cost>& costs, Cell start, Cell goal);
 
  protected:
@@ -73,10 +87,12 @@ class RoutePlanner {
 
   /// By how much a cell of this cost lengthens the way through it.
   const std::array<double, 256>& factors() const { return factors_; }
+  bool is_spent(const Route& route) const { return route.num_expanded >= max_steps_; }
   bool is_weighted() const { return factors_[kMaxPassableCost] > 1.0; }
 
  private:
   std::array<double, 256> factors_;
+  std::int64_t max_steps_ = std::numeric_limits<std::int64_t>::max();
 };
 
 }  // namespace patrol::plan

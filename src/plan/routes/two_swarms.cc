@@ -171,7 +171,7 @@ void TwoSwarms::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
       judge(swarm.particles.back());
     }
   }
-  for (int iteration = 1; iteration <= settings_.iterations; ++iteration) {
+  for (int iteration = 1; iteration <= settings_.iterations && !is_spent(route); ++iteration) {
     RandomSequence random(stream_, static_cast<std::uint64_t>(iteration));
     for (Swarm& swarm : swarms) {
       const Coordinates swarm_best = swarm.particles[swarm.best()].best_at;

@@ -1,0 +1,66 @@
+#include "score/driven_clearance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/frames.h"
+#include "score/distance_field.h"
+#include "score/statistics.h"
+
+namespace patrol::score {
+namespace {
+
+std::vector<Eigen::Vector2d> occupied_centers(const OccupancyGrid& map) {
+  const Grid<std::uint8_t> is_occupied = occupied_cells(map);
+  std::vector<Eigen::Vector2d> centers;
+  for (int row = 0; row < map.geometry().height; ++row) {
+    for (int col = 0; col < map.geometry().width; ++col) {
+      if (is_occupied.at({col, row}) != 0) centers.push_back(map.geometry().center_of({col, row}));
+    }
+  }
+  return centers;
+}
+
+/// 0 inside.
+double distance_to_outline(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& outline) {
+  bool is_inside = true;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d from = outline[i], side = outline[(i + 1) % outline.size()] - from, to_p = p - from;
+    if (side.x() * to_p.y() - side.y() * to_p.x() < 0.0) is_inside = false;
+    const double along = std::clamp(to_p.dot(side) / std::max(side.squaredNorm(), 1e-12), 0.0, 1.0);
+    least = std::min(least, (to_p - along * side).norm());
+  }
+  return is_inside ? 0.0 : least;
+}
+
+}  // namespace
+
+DrivenClearance driven_clearance(const Trajectory& T_world_body, const std::vector<Eigen::Vector2d>& footprint_m, const OccupancyGrid& map_in_world,
+                                 double spacing_m) {
+  if (T_world_body.empty() || footprint_m.size() < 3) return {};
+  const std::vector<Eigen::Vector2d> occupied = occupied_centers(map_in_world);
+  double reach_m = 0.0;
+  for (const Eigen::Vector2d& corner : footprint_m) reach_m = std::max(reach_m, corner.norm());
+  std::vector<double> clearances_m;
+  Eigen::Vector2d last = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  for (const StampedPose& stamped : T_world_body) {
+    const Pose2 T_world = to_planar(stamped.pose);
+    if ((T_world.position() - last).norm() < spacing_m) continue;
+    last = T_world.position();
+    const Pose2 T_body_world = T_world.inverse();
+    double least_m = kMaxClearance_m;
+    for (const Eigen::Vector2d& p : occupied) {
+      const Eigen::Vector2d d = (p - last).cwiseAbs();
+      if (d.maxCoeff() < least_m + reach_m) least_m = std::min(least_m, distance_to_outline(T_body_world * p, footprint_m));
+    }
+    clearances_m.push_back(least_m);
+  }
+  return {.mean_m = mean(clearances_m),
+          .p05_m = percentile(clearances_m, 0.05),
+          .min_m = *std::min_element(clearances_m.begin(), clearances_m.end()),
+          .places = clearances_m.size()};
+}
+
+}  // namespace patrol::score
