@@ -48,7 +48,6 @@ plan::Route plan_route(plan::RoutePlanner& planner, const Grid<plan::Cost>& cost
 RouteFigures figures_of_route(const Grid<plan::Cost>& costs, Cell start, Cell goal, const PlanSettings& settings) {
   const std::unique_ptr<plan::RoutePlanner> planner = plan::make_route_planner(settings.planner, settings.routes, settings.seed);
   RouteFigures figures;
-  figures.is_complete = planner->is_complete();
   const double processor_s = process_seconds(), wall_s = wall_seconds();
   figures.route = plan_route(*planner, costs, start, goal, settings);
   figures.processor_s = process_seconds() - processor_s;

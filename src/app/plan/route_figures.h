@@ -15,7 +15,6 @@ struct RouteFigures {
   plan::Route route;
   int num_turns = 0;                          ///< points at which it changes direction
   double processor_s = 0.0, wall_s = 0.0;     ///< of the planner alone
-  bool is_complete = true;                    ///< the planner finds a route wherever there is one
   std::optional<double> octile_length = {};   ///< the shortest over eight neighbours, by A*; none if there is no route
   std::optional<double> octile_cost = {};     ///< the cheapest over them; likewise, and none if costs weigh nothing
   std::optional<double> any_angle_length = {};

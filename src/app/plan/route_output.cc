@@ -54,6 +54,7 @@ const char* status_name(plan::PlanStatus status) {
     case plan::PlanStatus::kStartBlocked: return "start blocked";
     case plan::PlanStatus::kGoalBlocked: return "goal blocked";
     case plan::PlanStatus::kNoRoute: return "no route";
+    case plan::PlanStatus::kNoneFound: return "none found";
   }
   return "";
 }
@@ -80,9 +81,8 @@ std::string to_text(const RouteReport& report) {
   const bool is_found = route.status == plan::PlanStatus::kFound;
   std::string text = fmt::format("{} from {} to {}\n{}\n", report.setup.settings.planner, report.map.text_of(report.p_from_m),
                                  report.map.text_of(report.p_to_m), grid_text(report.map_name, report.map, report.costs, report.setup.body));
-  const bool is_given_up = route.status == plan::PlanStatus::kNoRoute && !figures.is_complete;
   text += fmt::format("status             {}{}{}\n", status_name(route.status), is_found && report.setup.settings.smooth ? ", smoothed" : "",
-                      is_given_up ? ": this planner may miss one" : "");
+                      route.status == plan::PlanStatus::kNoneFound ? ": this planner may miss one" : "");
   if (is_found) {
     text += fmt::format("length             {:.3f} {}, {} points, {}\n", cell * route.length, unit, route.points.size(), turns_text(figures.num_turns));
     if (weight > 0.0) text += fmt::format("cost               {:.3f} {}: a cell at the highest passable cost counts as {}\n", cell * route.cost, unit, 1.0 + weight);

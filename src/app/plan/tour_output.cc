@@ -86,7 +86,7 @@ std::string to_text(const TourReport& report) {
   }
   text += fmt::format("ways         {} planned, {:.2f} ms each\n", tour.num_routes, 1e3 * tour.processor_s / std::max(1, tour.num_routes));
   if (!tour.unreachable.empty()) {
-    text += fmt::format("UNREACHABLE  {}{}\n", fmt::join(unreachable_names(report), ", "), tour.is_complete ? "" : ": this planner may miss a way");
+    text += fmt::format("UNREACHABLE  {}{}\n", fmt::join(unreachable_names(report), ", "), tour.is_proved ? "" : ": this planner may miss a way");
   }
   return text;
 }

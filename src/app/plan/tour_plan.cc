@@ -25,7 +25,6 @@ class Ways {
       : costs_(costs), places_(std::move(places)), settings_(settings), planner_(plan::make_route_planner(settings.planner, settings.routes, settings.seed)) {}
 
   std::size_t size() const { return places_.size(); }
-  bool are_complete() const { return planner_->is_complete(); }
 
   /// Of either direction; planned from the place that comes first.
   void plan(std::size_t from, std::size_t to) {
@@ -37,6 +36,8 @@ class Ways {
     const plan::Route& way = ways_.at(std::minmax(from, to));
     return way.status == plan::PlanStatus::kFound ? costs_.geometry().resolution_m * way.length : kInfinite;
   }
+  /// That there is a way, or none.
+  bool is_proved(std::size_t from, std::size_t to) const { return ways_.at(std::minmax(from, to)).status != plan::PlanStatus::kNoneFound; }
   std::vector<Eigen::Vector2d> points_m(std::size_t from, std::size_t to) const {
     std::vector<Eigen::Vector2d> points_m = plan::to_metres(costs_.geometry(), ways_.at(std::minmax(from, to)).points);
     if (from > to) std::reverse(points_m.begin(), points_m.end());
@@ -106,7 +107,6 @@ std::optional<TourPlan> plan_tour(const Grid<plan::Cost>& costs, const Eigen::Ve
   InterruptGuard guard;
   ProgressBar bar;
   TourPlan tour;
-  tour.is_complete = ways.are_complete();
   const double processor_s = process_seconds();
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t place = 1; place < ways.size(); ++place) pairs.emplace_back(0, place);
@@ -116,6 +116,7 @@ std::optional<TourPlan> plan_tour(const Grid<plan::Cost>& costs, const Eigen::Ve
   std::vector<std::size_t> places = {0};
   for (std::size_t place = 1; place < ways.size(); ++place) {
     (std::isinf(ways.length_m(0, place)) ? tour.unreachable : places).push_back(place);
+    tour.is_proved = tour.is_proved && ways.is_proved(0, place);
   }
   const bool has_end = p_end_m.has_value();
   if (places.size() == 1 || (has_end && places.back() != ways.size() - 1)) return tour;

@@ -29,8 +29,8 @@ struct TourPlan {
   plan::TourOrder order;              ///< not found: no order leads to all that can be reached. Its indices are of what can be reached
   std::vector<TourVisit> visits;      ///< in order, from the start to the end, or back to it
   std::vector<std::size_t> unreachable;  ///< places to which there is no way from the start
+  bool is_proved = true;                 ///< that; false: none was found, and the planner may have missed one
   std::vector<Eigen::Vector2d> points_m; ///< of the whole way, in the grid's frame
-  bool is_complete = true;            ///< the planner finds a way wherever there is one
   int num_routes = 0;                 ///< planned
   double processor_s = 0.0;           ///< of them
 };
