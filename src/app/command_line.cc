@@ -35,6 +35,7 @@ struct Call {
   CalibrateOptions calibrate;
   TrainOptions train;
   SolveOptions solve;
+  PlanOptions plan;
   StudyOptions study;
   TestOptions test;
   MonitorOptions monitor;
@@ -205,6 +206,24 @@ void add_solve(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [&] { return solve_command(call.solve); }; });
 }
 
+void add_plan(CLI::App& app, Call& call) {
+  PlanOptions& plan = call.plan;
+  CLI::App* command = app.add_subcommand("plan", "A route on anybody's map, a tour of many stations, or every problem of a .scen file");
+  command->add_option("map", plan.map, "map_server YAML, MovingAI .map, or a .scen file of problems, its map beside it")->required();
+  command->add_option("--from", plan.from, "X,Y: metres in the map's frame; of a MovingAI map cells from the upper left, y down");
+  command->add_option("--to", plan.to, "X,Y likewise; of a tour where it ends (default: back at the start)");
+  command->add_option("--stations", plan.stations, "Visit these (CSV: name, x, y and, if wanted, service_s, earliest_s, latest_s, priority)");
+  command->add_option("--planner", plan.planner, "By which planner (patrol list)");
+  command->add_option("--robot", plan.robot, "Inflate by this robot's outline, with the costmap that it drives by (default: a point)");
+  command->add_option("--radius-m", plan.radius_m, "Or by a disc's, m");
+  command->add_flag("--smooth", plan.smooth, "Straighten the route where that keeps its clearance");
+  command->add_option("--speed-mps", plan.speed_mps, "On a tour, m/s (default: the robot's, or 1)");
+  command->add_option("--seed", plan.seed, "Seed of planners that draw");
+  command->add_option("--set", plan.overrides, "Override a setting: path=value; may be repeated")->take_all();
+  command->add_option("--out", plan.out, "Directory to leave");
+  command->callback([&] { call.chosen = [&] { return plan_command(call.plan); }; });
+}
+
 void add_study(CLI::App& app, Call& call) {
   StudyOptions& study = call.study;
   CLI::App* command = app.add_subcommand("study", "A paper's experiment: its published figures beside ours");
@@ -274,7 +293,7 @@ int run_command_line(int argc, const char* const* argv) {
 
   Call call;
   for (const auto add : {add_run, add_score, add_localizability, add_replay, add_report, add_verify, add_sweep, add_collect, add_budget, add_faults,
-                         add_slam, add_calibrate, add_train, add_solve, add_study, add_test, add_monitor, add_send, add_list}) {
+                         add_slam, add_calibrate, add_train, add_solve, add_plan, add_study, add_test, add_monitor, add_send, add_list}) {
     add(app, call);
   }
 

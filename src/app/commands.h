@@ -8,6 +8,7 @@
 
 #include "app/exit_code.h"
 #include "app/monitor/monitor_options.h"
+#include "app/plan/plan_options.h"
 #include "app/sweep/sweep_options.h"
 #include "app/test/test_options.h"
 #include "score/relation_error.h"
@@ -119,6 +120,9 @@ struct SolveOptions {
 };
 /// Solves anyone's pose graph.
 ExitCode solve_command(const SolveOptions& options);
+
+/// A route, a tour, or every problem of a file, on anybody's map.
+ExitCode plan_command(const PlanOptions& options);
 
 struct StudyOptions {
   std::string name;

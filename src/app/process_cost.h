@@ -4,12 +4,20 @@
 #include <sys/resource.h>
 
 #include <chrono>
+#include <ctime>
 
 /// What the program costs, for `performance` in metrics.json and for a person's eyes: no decision may depend on it.
 namespace patrol::app {
 
 /// Of a steady clock: only differences say anything.
 inline double wall_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// Time that all threads of this process have computed.
+inline double process_seconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 /// The most that this process has held so far, in units of 2^20 bytes.
 inline double peak_memory_mb() {

@@ -39,6 +39,7 @@ class Lines {
     return text;
   }
 
+  int number() const { return number_; }
   [[noreturn]] void refuse(const std::string& what) const { throw input_error(reader_.file().string(), number_, what); }
   [[noreturn]] void refuse_file(const std::string& what) const { throw InputError(fmt::format("{}: {}", reader_.file().string(), what)); }
 
@@ -163,6 +164,7 @@ std::vector<MovingAiProblem> load_moving_ai_problems(const std::filesystem::path
     if (text->empty()) continue;
     try {
       problems.push_back(parse_problem(*text));
+      problems.back().line = lines.number();
     } catch (const FieldError& error) {
       lines.refuse(fmt::format("{}: a problem is bucket, map, width, height, start x, y, goal x, y, optimal length", error.what()));
     }

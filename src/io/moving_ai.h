@@ -28,6 +28,7 @@ struct MovingAiProblem {
   int width = 0, height = 0;    ///< of the map
   Cell start = {}, goal = {};
   double optimal_length = 0.0;  ///< cells: eight neighbours, sqrt 2 for a diagonal, none past the corner of a blocked cell
+  int line = 0;                 ///< of the file
 };
 
 /// Throws InputError with the file and the line.

@@ -98,6 +98,7 @@ TEST_F(MovingAi, AProblemsRowsCountFromTheTopOfTheFile) {
   EXPECT_EQ(problems[0].goal, (Cell{29, 0}));
   EXPECT_DOUBLE_EQ(problems[0].optimal_length, 31.04163056);
   EXPECT_EQ(problems[1].bucket, 3);
+  EXPECT_EQ(problems[1].line, 3);
   EXPECT_EQ(problems[1].start, (Cell{0, 19}));
 }
 

@@ -1,0 +1,88 @@
+#include "app/plan/plan_settings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/scenario.h"
+#include "core/error.h"
+#include "io/settings_yaml.h"
+#include "io/urdf.h"
+#include "plan/global_planner.h"
+
+namespace patrol::app {
+namespace {
+
+/// A regular polygon about a disc: its inscribed circle is the disc.
+plan::Footprint outline_of_disc(double radius_m) {
+  constexpr int kCorners = 32;
+  const double corner_m = radius_m / std::cos(std::numbers::pi / kCorners);
+  std::vector<Eigen::Vector2d> corners_m;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kCorners;
+    corners_m.emplace_back(corner_m * std::cos(angle), corner_m * std::sin(angle));
+  }
+  return plan::Footprint(corners_m);
+}
+
+std::filesystem::path urdf_of(const std::string& robot, const std::filesystem::path& models) {
+  std::vector<std::string> known;
+  for (const auto& entry : std::filesystem::directory_iterator(models)) {
+    const std::string name = entry.path().filename().string();
+    if (std::filesystem::exists(entry.path() / (name + ".urdf"))) known.push_back(name);
+  }
+  std::sort(known.begin(), known.end());
+  if (std::find(known.begin(), known.end(), robot) == known.end()) {
+    throw InputError(fmt::format("--robot: there is no robot '{}' (known: {})", robot, fmt::join(known, ", ")));
+  }
+  return models / robot / (robot + ".urdf");
+}
+
+void set_robot(const std::string& robot, const std::filesystem::path& data_root, PlanSetup& setup) {
+  const std::filesystem::path urdf = urdf_of(robot, data_root / "models");
+  setup.body = {.name = robot, .footprint = plan::Footprint(io::load_robot_description(urdf.string()).footprint_m)};
+  const plan::NavigatorSettings drives_with = default_scenario(robot, data_root).stack.plan;
+  setup.settings.costmap = drives_with.costmap;
+  setup.settings.unknown = drives_with.costmap.crosses_unknown ? "free" : "lethal";
+  setup.settings.routes = drives_with.routes.family;
+  setup.settings.kept_clearance_m = drives_with.routes.kept_clearance_m;
+  setup.settings.speed_mps = drives_with.local.max_speed_mps;
+}
+
+void set_disc(double radius_m, PlanSetup& setup) {
+  if (!(radius_m >= 0.01 && radius_m <= 10.0)) throw InputError(fmt::format("--radius-m: {}: must lie in 0.01 ... 10", radius_m));
+  setup.body = {.name = fmt::format("a disc of {} m", radius_m), .footprint = outline_of_disc(radius_m)};
+  setup.settings.routes.cost_weight = plan::GlobalPlannerSettings().family.cost_weight;
+}
+
+}  // namespace
+
+PlanSetup load_plan_setup(const PlanOptions& options) {
+  if (options.robot && options.radius_m) throw InputError("--robot and --radius-m: only one of them can be followed");
+  for (const std::string& entry : options.overrides) {
+    if (entry.starts_with("costmap.crosses_unknown")) throw InputError("--set: costmap.crosses_unknown: say it by unknown=lethal or unknown=free");
+  }
+  PlanSetup setup;
+  PlanSettings& settings = setup.settings;
+  if (options.robot) set_robot(*options.robot, find_data_root(options.map), setup);
+  if (options.radius_m) set_disc(*options.radius_m, setup);
+
+  std::vector<std::string> overrides = options.overrides;
+  if (options.planner) overrides.push_back("planner=" + *options.planner);
+  if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
+  if (options.smooth) overrides.push_back("smooth=true");
+  if (options.speed_mps) overrides.push_back(fmt::format("speed_mps={}", *options.speed_mps));
+  io::SettingsReader::read_section("--set", io::document_of(overrides), "", settings);
+  settings.costmap.crosses_unknown = settings.unknown == "free";
+  plan::make_route_planner(settings.planner, settings.routes, settings.seed);  // refuses what is no planner
+  if (settings.smooth && settings.planner == "any_angle_optimum") {
+    throw InputError("--smooth: the any-angle optimum has nothing to smooth, and touches what is lethal");
+  }
+  return setup;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "app/plan/plan_settings.h"
+#include "app/plan/problem_file.h"
+#include "io/metrics_json.h"
+#include "io/table.h"
+
+namespace patrol::app {
+
+struct ProblemReport {
+  std::string file_name;
+  const PlanSettings& settings;
+  const std::vector<SolvedProblem>& solved;
+};
+
+std::size_t num_failed(const ProblemReport& report);
+
+/// The block for standard output, failures by line.
+std::string to_text(const ProblemReport& report);
+/// The same figures, those of the clock under `performance`.
+io::Metrics to_json(const ProblemReport& report);
+/// A row for each problem, cells as the file names them.
+io::Table problem_table(const ProblemReport& report);
+
+}  // namespace patrol::app

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/plan/plan_map.h"
+#include "app/plan/route_picture.h"
+#include "app/plan/tour_plan.h"
+#include "io/metrics_json.h"
+#include "io/table.h"
+
+namespace patrol::app {
+
+/// Everything about a tour that is printed and written.
+struct TourReport {
+  const PlanMap& map;
+  std::string map_name;
+  const PlanSetup& setup;
+  const Grid<plan::Cost>& costs;
+  Eigen::Vector2d p_from_m;
+  std::optional<Eigen::Vector2d> p_end_m;
+  const std::vector<TourStop>& stops;
+  const TourPlan& tour;
+};
+
+/// "start", a station's name, "end"; places as in TourVisit.
+std::string place_name(const TourReport& report, std::size_t place);
+
+std::string tour_title(const TourReport& report);
+/// The block for standard output: the order with its times.
+std::string to_text(const TourReport& report);
+/// The same figures, those of the clock under `performance`.
+io::Metrics to_json(const TourReport& report);
+io::Table tour_table(const TourReport& report);
+/// Stations by number in the order of the tour; those that it leaves out by name alone.
+std::vector<RoutePicture::Mark> marks_of(const TourReport& report);
+
+}  // namespace patrol::app

@@ -1,0 +1,74 @@
+#include "app/plan/plan_settings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "app/scenario.h"
+#include "core/error.h"
+#include "plan/global_planner.h"
+
+namespace patrol::app {
+namespace {
+
+PlanOptions options_of(std::vector<std::string> overrides) { return {.map = "m.yaml", .overrides = std::move(overrides)}; }
+
+std::string complaint(const PlanOptions& options) {
+  try {
+    load_plan_setup(options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(PlanSettings, APointWeighsNoCostsAndCrossesNothingUnknown) {
+  const PlanSetup setup = load_plan_setup({.map = "m.yaml"});
+  EXPECT_FALSE(setup.body.footprint);
+  EXPECT_EQ(setup.settings.routes.cost_weight, 0.0);
+  EXPECT_FALSE(setup.settings.costmap.crosses_unknown);
+}
+
+TEST(PlanSettings, ADiscsOutlineHoldsTheDiscAndNoMoreThanHalfAPercentBeyond) {
+  const PlanSetup setup = load_plan_setup({.map = "m.yaml", .radius_m = 0.4});
+  EXPECT_NEAR(setup.body.footprint->inscribed_radius_m(), 0.4, 1e-12);
+  EXPECT_LT(setup.body.footprint->circumscribed_radius_m(), 0.4 * 1.005);
+  EXPECT_EQ(setup.settings.routes.cost_weight, plan::GlobalPlannerSettings().family.cost_weight);
+}
+
+TEST(PlanSettings, ARobotsAreThoseThatItDrivesWithUnderWhatIsSet) {
+  const plan::NavigatorSettings drives_with = default_scenario("tracked", find_data_root("")).stack.plan;
+  const PlanSetup setup = load_plan_setup({.map = "m.yaml", .robot = "tracked", .overrides = {"costmap.safety_margin_m=0.2"}});
+  EXPECT_EQ(setup.settings.costmap.route_margin_m, drives_with.costmap.route_margin_m);
+  EXPECT_EQ(setup.settings.costmap.inflation_radius_m, drives_with.costmap.inflation_radius_m);
+  EXPECT_EQ(setup.settings.costmap.safety_margin_m, 0.2);
+  EXPECT_EQ(setup.settings.costmap.crosses_unknown, drives_with.costmap.crosses_unknown);
+  EXPECT_EQ(setup.settings.routes.cost_weight, drives_with.routes.family.cost_weight);
+  EXPECT_EQ(setup.settings.speed_mps, drives_with.local.max_speed_mps);
+  EXPECT_TRUE(load_plan_setup({.map = "m.yaml", .robot = "tracked", .overrides = {"unknown=free"}}).settings.costmap.crosses_unknown);
+}
+
+TEST(PlanSettings, OptionsWinOverSet) {
+  const PlanSetup setup = load_plan_setup({.map = "m.yaml", .planner = "astar", .smooth = true, .speed_mps = 0.5, .seed = 9, .overrides = {"planner=dijkstra", "seed=3"}});
+  EXPECT_EQ(setup.settings.planner, "astar");
+  EXPECT_EQ(setup.settings.seed, 9u);
+  EXPECT_TRUE(setup.settings.smooth);
+  EXPECT_EQ(setup.settings.speed_mps, 0.5);
+}
+
+TEST(PlanSettings, WhatIsWrongIsNamed) {
+  EXPECT_EQ(complaint({.map = "m.yaml", .planner = "fly"}).substr(0, 60), "there is no planner 'fly' (known: astar, dijkstra, theta_sta");
+  EXPECT_EQ(complaint({.map = "m.yaml", .robot = "wheeled"}), "--robot: there is no robot 'wheeled' (known: quadruped, tracked)");
+  EXPECT_EQ(complaint({.map = "m.yaml", .robot = "tracked", .radius_m = 0.3}), "--robot and --radius-m: only one of them can be followed");
+  EXPECT_EQ(complaint({.map = "m.yaml", .radius_m = 0.0}), "--radius-m: 0: must lie in 0.01 ... 10");
+  EXPECT_EQ(complaint({.map = "m.yaml", .radius_m = std::nan("")}), "--radius-m: nan: must lie in 0.01 ... 10");
+  EXPECT_EQ(complaint({.map = "m.yaml", .planner = "any_angle_optimum", .smooth = true}).substr(0, 9), "--smooth:");
+  EXPECT_NE(complaint({.map = "m.yaml", .planner = "any_angle_optimum", .robot = "tracked"}).find("routes.cost_weight"), std::string::npos);
+  EXPECT_NE(complaint(options_of({"unknown=maybe"})).find("unknown: maybe"), std::string::npos) << complaint(options_of({"unknown=maybe"}));
+  EXPECT_EQ(complaint(options_of({"costmap.crosses_unknown=true"})), "--set: costmap.crosses_unknown: say it by unknown=lethal or unknown=free");
+  EXPECT_NE(complaint(options_of({"routes.ant_colony.antz=3"})).find("routes.ant_colony.antz"), std::string::npos);
+  EXPECT_NE(complaint(options_of({"speed_mps=0"})).find("speed_mps"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace patrol::app
