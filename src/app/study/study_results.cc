@@ -27,12 +27,17 @@ std::string title_of(const StudyFigure& figure) { return figure.unit.empty() ? f
 
 /// Of one world: a table for each figure that is compared, the first with all that are not.
 std::vector<render::TableBlock> tables_of(const Study& study, const StudyResults& results, const std::string& world) {
+  // Columns that are empty throughout are left out.
+  const bool has_particles = std::any_of(study.variants.begin(), study.variants.end(), [](const StudyVariant& variant) { return variant.particles > 0; });
+  const bool has_published = std::any_of(study.variants.begin(), study.variants.end(), [](const StudyVariant& variant) { return !variant.published.empty(); });
   std::vector<render::TableBlock> tables;
   for (std::size_t f = 0; f < study.figures.size(); ++f) {
     if (!study.figures[f].is_compared) continue;
-    render::TableBlock& table = tables.emplace_back(render::TableBlock{.caption = title_of(study.figures[f]),
-                                                                       .columns = {{"method"}, {"N", true}, {"published", true}, {"ours", true}, {"against " + study.compared_with, true}},
-                                                                       .rows = {}});
+    render::TableBlock& table = tables.emplace_back(render::TableBlock{.caption = title_of(study.figures[f]), .columns = {{"method"}}, .rows = {}});
+    if (has_particles) table.columns.push_back({"N", true});
+    if (has_published) table.columns.push_back({"published", true});
+    table.columns.push_back({has_published ? "ours" : "mean", true});
+    table.columns.push_back({"against " + study.compared_with, true});
     const bool is_first = tables.size() == 1;
     for (const StudyFigure& figure : study.figures) {
       if (is_first && !figure.is_compared) table.columns.push_back({title_of(figure), true});
@@ -44,8 +49,8 @@ std::vector<render::TableBlock> tables_of(const Study& study, const StudyResults
       const auto paper = published(variant, f);
       std::vector<render::Cell>& row = table.rows.emplace_back();
       row.push_back({variant.method});
-      row.push_back({variant.particles > 0 ? std::to_string(variant.particles) : ""});
-      row.push_back({paper ? fmt::format("{:.4g}", *paper) : "–", render::Tone::kFaint});
+      if (has_particles) row.push_back({variant.particles > 0 ? std::to_string(variant.particles) : ""});
+      if (has_published) row.push_back({paper ? fmt::format("{:.4g}", *paper) : "–", render::Tone::kFaint});
       row.push_back({result.num_seeds > 0 ? with_interval(result.interval, result.mean, "") : "–"});
       row.push_back({result.difference ? with_interval(result.difference, result.difference->center, "+") : "",
                      verdict_of(result) == "no difference" ? render::Tone::kFaint : render::Tone::kPlain});

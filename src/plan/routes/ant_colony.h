@@ -41,7 +41,7 @@ struct ImprovedColonySettings {
   double coefficient = 4.0;      ///< delta of eqs. 7-9
   double half_angle_deg = 70.0;  ///< neighbours this near to the force's direction get some
   PotentialFieldSettings field = {};
-  bool tightens = true;          ///< the best ant's route of each iteration is pulled tight (grid_walk.h); ours
+  bool tightens = true;          ///< every ant's route is pulled tight (grid_walk.h) before it counts; ours
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -64,8 +64,8 @@ struct ImprovedColonySettings {
 ///            the steps for q, every trail leaks along the force for ever: on grids of rooms such a colony ends longer than the plain one.)
 ///   eq. 13   L_k, "the longest path of ant k", is the ant's length.
 /// Ours, in both colonies: an ant in a dead end goes back step by step, and does not enter a cell twice, so every ant arrives if there is a way; loops
-/// are spliced out of its route; the best route so far is laid again by `elite` ants. Ours, in the improved one: in each iteration the best ant's route is pulled
-/// tight before it counts, without which ants on large open grids wander about the straight line for hundreds of iterations.
+/// are spliced out of its route; the best route so far is laid again by `elite` ants. Ours, in the improved one: every ant's route is pulled tight before
+/// it counts, without which ants on large open grids wander about the straight line for hundreds of iterations (`patrol study planners` has both).
 class AntColony : public RoutePlanner {
  public:
   /// Plain without `improved`.
