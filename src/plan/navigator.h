@@ -22,7 +22,7 @@ namespace patrol::plan {
 
 struct NavigatorSettings {
   std::string drive = "omnidirectional";  ///< or "differential": a robot that cannot step sideways
-  std::string global = "astar";           ///< planner of the way to the goal (plan/routes/planners.h)
+  std::string global = "theta_star";      ///< planner of the way to the goal (plan/routes/planners.h)
   std::string local_planner = "dwa";      ///< or "paper_dwa": paper 004's, as printed
   int footprint_rows = 1;             ///< of discs that stand for the outline (plan/footprint.h)
   double steps_per_s = 1e7;               ///< cells that the robot's computer looks at in a second: a route comes so much later

@@ -33,8 +33,8 @@ class Street(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertGreater(self.metrics()["navigation"]["paths"], 2)
 
-    def test_arrives_by_theta_star(self):
-        self.assert_arrives("stack.plan.global=theta_star")
+    def test_arrives_by_a_star(self):
+        self.assert_arrives("stack.plan.global=astar")
 
     def test_arrives_by_the_ants_and_later_than_by_a_star(self):
         """On a computer a hundred times slower the colony's search takes seconds, in which the robot stands; A* takes it few."""
