@@ -28,7 +28,10 @@ Station read_station(const std::string& place, const Json& json) {
   if (reader.has("window")) {
     const std::vector<double> window = reader.numbers("window", 2);
     station.earliest_s = window[0], station.latest_s = window[1];
-    if (station.earliest_s < 0.0 || station.latest_s < station.earliest_s) reader.fail("window must be two times in s, from 0 on and in order");
+    constexpr double kLongest_s = 1e7;
+    if (station.earliest_s < 0.0 || station.latest_s < station.earliest_s || station.latest_s > kLongest_s) {
+      reader.fail("window must be two times in s, from 0 to 1e7 and in order");
+    }
   }
   return station;
 }

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/segment.h"
 
 namespace patrol::localize {
 namespace {
@@ -24,13 +25,6 @@ constexpr double kFineStep_m = 0.02;
 constexpr double kFinest_m = 0.0005;
 constexpr double kRadPerMetre = 4.0;      // a step of the search in yaw, per step in position: half a post's width apart
 constexpr double kMaxStd_m = 0.05;        // in the search's steps: more leaves a direction open
-
-
-double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  const Eigen::Vector2d ab = b - a;
-  const double along = std::clamp((p - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
-  return (p - a - along * ab).norm();
-}
 
 }  // namespace
 

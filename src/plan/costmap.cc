@@ -7,6 +7,11 @@
 #include <numbers>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/segment.h"
+
 namespace patrol::plan {
 namespace {
 
@@ -20,11 +25,12 @@ int cap_of(const CostmapSettings& settings, const Footprint& footprint) {
   return std::clamp(static_cast<int>(std::ceil(reach_m / settings.resolution_m)) + 1, 2, 100);
 }
 
-double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  const Eigen::Vector2d ab = b - a;
-  const double length2 = ab.squaredNorm();
-  const double along = length2 > 0.0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - along * ab).norm();
+/// What is nearer than the lethal distance must be within the field's reach, or it would be taken for free.
+void check_reach(const CostmapSettings& settings, const Footprint& footprint, double lethal_m) {
+  const double reach_m = settings.resolution_m * (cap_of(settings, footprint) - 1);
+  if (lethal_m <= reach_m) return;
+  throw InputError(fmt::format("an outline and margins of {:.2f} m reach beyond the costmap's {:.2f} m: costmap.inflation_radius_m or "
+                               "costmap.resolution_m must be larger", lethal_m, reach_m));
 }
 
 /// Cost of being `beyond_m` farther than the lethal distance, falling to 1/e over `decay_m`.
@@ -84,6 +90,7 @@ Costmap::Costmap(const CostmapSettings& settings, const Footprint& footprint, st
       low_(settings.low) {
   validate(settings_, "costmap");
   const double lethal_m = footprint_.inscribed_radius_m() + settings_.safety_margin_m + settings_.route_margin_m;
+  check_reach(settings_, footprint_, lethal_m);
   for (int squared = 0; squared <= transform_.beyond(); ++squared) {
     // Somewhere in its cell an obstacle has its surface; half a cell is the middle guess.
     const double distance = std::max(0.0, settings_.resolution_m * (std::sqrt(squared) - 0.5));

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/frames.h"
+#include "core/segment.h"
 #include "score/distance_field.h"
 #include "score/statistics.h"
 
@@ -29,8 +30,7 @@ double distance_to_outline(const Eigen::Vector2d& p, const std::vector<Eigen::Ve
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Eigen::Vector2d from = outline[i], side = outline[(i + 1) % outline.size()] - from, to_p = p - from;
     if (side.x() * to_p.y() - side.y() * to_p.x() < 0.0) is_inside = false;
-    const double along = std::clamp(to_p.dot(side) / std::max(side.squaredNorm(), 1e-12), 0.0, 1.0);
-    least = std::min(least, (to_p - along * side).norm());
+    least = std::min(least, distance_to_segment(p, from, from + side));
   }
   return is_inside ? 0.0 : least;
 }

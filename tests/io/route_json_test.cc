@@ -74,8 +74,9 @@ TEST(LoadRoute, ReadsPriorityAndWindowWhichNobodyMustGive) {
   EXPECT_EQ(stations[0].latest_s, 90.5);
   EXPECT_EQ(stations[1].priority, 0);
   EXPECT_EQ(stations[1].latest_s, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0]["window"] = {90, 60}; }), "r.json: stations[0]: window must be two times in s, from 0 on and in order");
-  EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0]["window"] = {-1, 60}; }), "r.json: stations[0]: window must be two times in s, from 0 on and in order");
+  EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0]["window"] = {90, 60}; }), "r.json: stations[0]: window must be two times in s, from 0 to 1e7 and in order");
+  EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0]["window"] = {0, 1e300}; }), "r.json: stations[0]: window must be two times in s, from 0 to 1e7 and in order");
+  EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0]["window"] = {-1, 60}; }), "r.json: stations[0]: window must be two times in s, from 0 to 1e7 and in order");
 }
 
 TEST(LoadRoute, TheStreetsRoutesAreGood) {

@@ -421,5 +421,14 @@ TEST(Costmap, RefusesSettingsThatBreakTheirRule) {
               ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("costmap.resolution_m = 0")));
 }
 
+// The field reaches 100 cells: 2 m. What lies farther would be taken for free.
+TEST(Costmap, RefusesAnOutlineThatReachesBeyondItsField) {
+  CostmapSettings settings;
+  settings.resolution_m = 0.02;
+  const auto square = [](double half_m) { return Footprint({{half_m, half_m}, {-half_m, half_m}, {-half_m, -half_m}, {half_m, -half_m}}); };
+  EXPECT_NO_THROW(Costmap(settings, square(1.5), {}));
+  EXPECT_THAT([&] { Costmap(settings, square(2.5), {}); }, ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("reach beyond the costmap's 1.98 m")));
+}
+
 }  // namespace
 }  // namespace patrol::plan

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/overloaded.h"
 #include "inspect/route_frame.h"
 #include "io/base64.h"
 #include "io/inspection_json.h"

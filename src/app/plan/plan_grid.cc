@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
-#include "core/error.h"
 #include "plan/global_planner.h"
 
 namespace patrol::app {
@@ -20,24 +17,12 @@ Grid<plan::Cost> costs_of_point(const OccupancyGrid& occupancy, const plan::Cost
   return costs;
 }
 
-/// The costmap measures distances only so far (plan/costmap.cc: 100 cells; inflation, or the outline and 0.3 m).
-void check_reach(const plan::Footprint& footprint, const plan::CostmapSettings& settings) {
-  const double lethal_m = footprint.inscribed_radius_m() + settings.safety_margin_m + settings.route_margin_m;
-  const double reach_m = std::min(std::max(settings.inflation_radius_m, footprint.circumscribed_radius_m() + 0.3), 98.0 * settings.resolution_m);
-  if (lethal_m <= reach_m) return;
-  throw InputError(fmt::format("an outline and margins of {:.2f} m reach beyond the costmap's {:.2f} m: costmap.inflation_radius_m or "
-                               "costmap.resolution_m must be larger", lethal_m, reach_m));
-}
-
 }  // namespace
 
 Grid<plan::Cost> make_costs(const OccupancyGrid& occupancy, const PlanBody& body, const plan::CostmapSettings& settings) {
   if (!body.footprint) return costs_of_point(occupancy, settings);
   plan::CostmapSettings drives_with = settings;
   drives_with.resolution_m = std::max(settings.resolution_m, occupancy.geometry().resolution_m);
-  validate(drives_with, "costmap");
-  check_reach(*body.footprint, drives_with);
-
   // The costmap holds its frame's origin, however far that lies from the map: the map is moved there, by whole cells.
   const double cell_m = drives_with.resolution_m;
   const Eigen::Vector2d corner_m = cell_m * (occupancy.geometry().origin_m.array() / cell_m).floor();

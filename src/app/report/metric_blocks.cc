@@ -156,7 +156,7 @@ std::vector<render::Block> water_blocks(const io::Metrics& metrics) {
   if (!io::metric_at(metrics, "inspection.water.stations")) return {};
   const io::Metrics& water = metrics["inspection"]["water"];
   const auto figure = [&](const char* name) { return io::metric_at(water, name).value_or(0.0); };
-  const std::string summary = fmt::format("{:.0f} bodies of water ahead of the face, {:.0f} found, {:.0f} false alarms.", figure("bodies"), figure("found"), figure("false_alarms"));
+  const std::string summary = fmt::format("Bodies of water ahead of the face: {:.0f}; found: {:.0f}; false alarms: {:.0f}.", figure("bodies"), figure("found"), figure("false_alarms"));
   if (!is_list(water, "findings")) return {render::TextBlock{summary}};
   render::TableBlock table{.caption = "Water ahead of the face",
                            .columns = {{"soundings"}, {"off by, m", true}, {"of that along the way, m", true}, {"radius off by, m", true}, {"interval"}, {""}},

@@ -8,6 +8,7 @@
 
 #include "app/stack/patrol_stack.h"
 #include "app/stack/tour_stack.h"
+#include "core/overloaded.h"
 #include "inspect/route_frame.h"
 #include "io/run_log.h"
 #include "render/depth_renderer.h"

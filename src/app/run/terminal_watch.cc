@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/overloaded.h"
 
 namespace patrol::app {
 namespace {

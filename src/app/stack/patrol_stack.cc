@@ -1,6 +1,7 @@
 #include "app/stack/patrol_stack.h"
 
 #include "app/stack/station_order.h"
+#include "core/overloaded.h"
 
 namespace patrol::app {
 namespace {

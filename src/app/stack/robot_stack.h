@@ -92,10 +92,4 @@ class RobotStack {
   std::vector<StackMessage> messages_;
 };
 
-/// For std::visit.
-template <typename... Handlers>
-struct Overloaded : Handlers... {
-  using Handlers::operator()...;
-};
-
 }  // namespace patrol::app

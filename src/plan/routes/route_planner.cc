@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/segment.h"
 #include "plan/routes/line_of_sight.h"
 
 namespace patrol::plan {
@@ -26,12 +27,6 @@ double length_of(const std::vector<Eigen::Vector2d>& points) {
     else other += d.norm();
   }
   return straight + std::numbers::sqrt2 * diagonal + other;
-}
-
-double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
-  const Eigen::Vector2d d = to - from;
-  const double along = d.squaredNorm() > 0.0 ? std::clamp((p - from).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0.0;
-  return (p - from - along * d).norm();
 }
 
 /// From a segment to a square that it does not cross: the least lies at an end of the one or at a corner of the other.

@@ -4,17 +4,9 @@
 #include <iterator>
 #include <utility>
 
+#include "core/segment.h"
+
 namespace patrol::render {
-namespace {
-
-double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  const Eigen::Vector2d ab = b - a;
-  const double length2 = ab.squaredNorm();
-  const double along = length2 > 0.0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - along * ab).norm();
-}
-
-}  // namespace
 
 std::vector<Eigen::Vector2d> decimated(const std::vector<Eigen::Vector2d>& curve, std::size_t num_stretches) {
   if (curve.size() <= 2 * num_stretches) return curve;

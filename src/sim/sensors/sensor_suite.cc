@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/overloaded.h"
 
 namespace patrol::sim {
 namespace {
@@ -92,12 +93,6 @@ struct OffsetBy {
   void operator()(TemSounding& sounding) const {
     for (double& rate : sounding.rate_tps) rate += offset;
   }
-};
-
-/// Each instrument has its handler.
-template <typename... Handlers>
-struct Overloaded : Handlers... {
-  using Handlers::operator()...;
 };
 
 }  // namespace

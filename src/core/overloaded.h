@@ -1,0 +1,11 @@
+#pragma once
+
+namespace patrol {
+
+/// For std::visit: a handler for each kind.
+template <typename... Handlers>
+struct Overloaded : Handlers... {
+  using Handlers::operator()...;
+};
+
+}  // namespace patrol
