@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "core/angles.h"
 
 namespace patrol {
 namespace {
-
-constexpr double kRadian = std::numbers::pi / 180.0;
 
 /// The pose of an element's axis a way along it.
 Pose2 along(const Pose2& start, double curvature_1pm, double way_m) {
@@ -76,12 +75,12 @@ int TunnelLining::ring_at(double chainage_m) const {
 }
 
 double TunnelLining::clock_deg(const TunnelPlace& place) const {
-  const double angle = std::atan2(-place.left_m, place.height_m - crown_centre_m) / kRadian;
+  const double angle = std::atan2(-place.left_m, place.height_m - crown_centre_m) / kDegree;
   return angle < 0.0 ? angle + 360.0 : angle;
 }
 
 double TunnelLining::radius_at(double clock_deg) const {
-  const double across = std::abs(std::sin(clock_deg * kRadian)), up = std::cos(clock_deg * kRadian);
+  const double across = std::abs(std::sin(clock_deg * kDegree)), up = std::cos(clock_deg * kDegree);
   if (up >= 0.0) return crown_radius_m;
   // The side wall's circle has its centre beyond the axis, at the height of the half circle's.
   const double beyond_m = side_radius_m - crown_radius_m;
@@ -90,8 +89,8 @@ double TunnelLining::radius_at(double clock_deg) const {
 
 Eigen::Vector3d TunnelLining::intrados(double chainage_m, double clock_deg) const {
   const double radius_m = radius_at(clock_deg);
-  const Eigen::Vector2d p = point_at(chainage_m, -radius_m * std::sin(clock_deg * kRadian));
-  return {p.x(), p.y(), crown_centre_m + radius_m * std::cos(clock_deg * kRadian)};
+  const Eigen::Vector2d p = point_at(chainage_m, -radius_m * std::sin(clock_deg * kDegree));
+  return {p.x(), p.y(), crown_centre_m + radius_m * std::cos(clock_deg * kDegree)};
 }
 
 }  // namespace patrol

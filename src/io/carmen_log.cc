@@ -8,13 +8,13 @@
 
 #include <fmt/format.h>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "io/line_fields.h"
 
 namespace patrol::io {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kMostMount_m = 2.0;     ///< a lidar sits no further from the robot's middle
 constexpr double kSameMount_m = 0.05, kSameMountRad = 0.05;
 constexpr double kEqualPoses = 1e-6;     ///< m, rad: the last digit that CARMEN writes
@@ -173,7 +173,7 @@ LaserScan CarmenLog::to_laser_scan(CarmenScan scan) const {
   const std::size_t num_steps = num_beams % 2 == 0 ? num_beams : num_beams - 1;
   LaserScan to;
   to.stamp = scan.stamp;
-  to.angle_increment_rad = scan.angle_increment_rad ? *scan.angle_increment_rad : kRadPerDeg * old_step_deg(num_beams, num_steps);
+  to.angle_increment_rad = scan.angle_increment_rad ? *scan.angle_increment_rad : kDegree * old_step_deg(num_beams, num_steps);
   to.angle_min_rad = scan.angle_min_rad ? *scan.angle_min_rad : -0.5 * to.angle_increment_rad * static_cast<double>(num_steps);
   to.range_max_m = std::min(options_.no_return_m, scan.range_max_m.value_or(options_.no_return_m));
   to.ranges_m.reserve(num_beams);

@@ -1,10 +1,10 @@
 #include "io/drive_json.h"
 
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "io/json_object.h"
 
@@ -22,7 +22,7 @@ DriveWaypoint read_waypoint(const std::string& place, const Json& json) {
     waypoint.is_mark = true;
     const double heading_deg = reader.number("mark_heading_deg");
     if (std::abs(heading_deg) > 360.0) reader.fail("mark_heading_deg must lie in -360 ... 360");
-    waypoint.heading_rad = heading_deg * std::numbers::pi / 180.0;
+    waypoint.heading_rad = to_rad(heading_deg);
   }
   return waypoint;
 }

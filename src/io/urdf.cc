@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include "core/convex_polygon.h"
 #include "core/error.h"
 #include "core/leg_kinematics.h"
 #include "io/atomic_file.h"
@@ -243,27 +244,6 @@ JointLimit UrdfReader::read_limit(const std::string& name) const {
   if (lower >= upper) fail(name, fmt::format("limit lower {} is not below upper {}", lower, upper));
   if (limits->effort <= 0.0 || limits->velocity <= 0.0) fail(name, "limit effort and velocity must be positive");
   return {.lower_rad = lower, .upper_rad = upper, .velocity_radps = limits->velocity, .effort_nm = limits->effort};
-}
-
-/// Convex hull, counter-clockwise (Andrew's monotone chain).
-std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
-  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
-    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-  });
-  const auto turns_right = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
-    return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x() <= 0.0;
-  };
-  std::vector<Eigen::Vector2d> hull;
-  for (int pass = 0; pass < 2; ++pass) {
-    const std::size_t start = hull.size();
-    for (const Eigen::Vector2d& point : points) {
-      while (hull.size() >= start + 2 && turns_right(hull[hull.size() - 2], hull.back(), point)) hull.pop_back();
-      hull.push_back(point);
-    }
-    hull.pop_back();
-    std::reverse(points.begin(), points.end());
-  }
-  return hull;
 }
 
 /// Where the belt touches level ground, in body.

@@ -4,12 +4,12 @@
 #include <optional>
 #include <vector>
 
+#include "core/distance_transform.h"
 #include "core/frames.h"
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/settings.h"
 #include "plan/depth_points.h"
-#include "plan/distance_field.h"
 #include "plan/footprint.h"
 #include "plan/low_obstacles.h"
 #include "plan/sonar_cone.h"
@@ -153,7 +153,7 @@ class Costmap {
   Grid<Cost> cost_;
 
   std::vector<std::uint8_t> window_obstacles_;
-  SquaredDistances window_squared_;
+  DistanceTransform::SquaredDistances window_squared_;
 };
 
 }  // namespace patrol::plan

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "core/angles.h"
 #include "render/canvas.h"
 #include "render/palette.h"
 
@@ -72,7 +73,7 @@ void lay_over(Frame& frame, Veil& veil) {
 }  // namespace
 
 GasCloud::GasCloud(const mjModel& world, const std::vector<sim::LeakSettings>& leaks, const sim::WindSettings& wind) {
-  const double from_rad = wind.direction_deg * std::numbers::pi / 180.0;  // clockwise from north
+  const double from_rad = to_rad(wind.direction_deg);  // clockwise from north
   downwind_ = {-std::sin(from_rad), -std::cos(from_rad)};
   for (const sim::LeakSettings& leak : leaks) {
     const Eigen::Vector3d source = sim::leak_source(world, leak);

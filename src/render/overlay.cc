@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "core/angles.h"
 #include "core/time.h"
 #include "render/ghost.h"
 #include "render/palette.h"
@@ -26,7 +26,7 @@ std::string clock_text(Time time) {
 std::string figures_text(const RunSnapshot& snapshot) {
   return fmt::format("{}    position error {:.3f} m    heading error {:.2f}°    {} {:.1f} m",
                                  clock_text(snapshot.state.stamp), snapshot.T_true_estimate.position().norm(),
-                                 std::abs(snapshot.T_true_estimate.yaw) * 180.0 / std::numbers::pi,
+                                 to_deg(std::abs(snapshot.T_true_estimate.yaw)),
                                  snapshot.is_driving ? "driven" : "walked", snapshot.travelled_m);
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "core/angles.h"
 #include "render/ghost.h"
 #include "render/model_state.h"
 #include "sim/robot_model.h"
@@ -143,7 +144,7 @@ void ScenePainter::let_nearest_lamp_throw_shadows(const View& view) {
     if (other != lamp) second_m = std::min(second_m, away_m(*other));
   }
   const double reach_deg = static_cast<double>(lamp->cutoff * model_.vis.map.shadowscale);
-  double share = shadow_share(*lamp, view.focus, reach_deg * std::numbers::pi / 180.0, second_m);
+  double share = shadow_share(*lamp, view.focus, to_rad(reach_deg), second_m);
   const bool has_room = scene_.nlight < kMostLights;
   if (!has_room) share = std::round(share);
   if (share == 0.0) return;

@@ -4,50 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "core/distance_transform.h"
+
 namespace patrol::score {
 namespace {
 
 constexpr std::int8_t kOccupiedPercent = 65;
-constexpr float kFar = 1e20f;
-
-/// One line of the exact squared distance transform: the lower envelope of parabolas (Felzenszwalb & Huttenlocher 2012).
-class LineTransform {
- public:
-  explicit LineTransform(std::size_t length) : vertex_(length), boundary_(length + 1) {}
-
-  /// `line[i]` becomes min over j of line[j] + (i - j)^2.
-  void apply(std::vector<float>& line) {
-    std::size_t last = 0;
-    vertex_[0] = 0;
-    boundary_[0] = -kInfinity;
-    boundary_[1] = kInfinity;
-    for (std::size_t q = 1; q < line.size(); ++q) {
-      double meet = intersection(line, vertex_[last], q);
-      while (meet <= boundary_[last]) meet = intersection(line, vertex_[--last], q);
-      vertex_[++last] = q;
-      boundary_[last] = meet;
-      boundary_[last + 1] = kInfinity;
-    }
-    input_ = line;
-    for (std::size_t q = 0, k = 0; q < line.size(); ++q) {
-      while (boundary_[k + 1] < static_cast<double>(q)) ++k;
-      const auto step = static_cast<double>(q) - static_cast<double>(vertex_[k]);
-      line[q] = static_cast<float>(step * step + input_[vertex_[k]]);
-    }
-  }
-
- private:
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-  static double intersection(const std::vector<float>& line, std::size_t p, std::size_t q) {
-    const auto x_p = static_cast<double>(p), x_q = static_cast<double>(q);
-    return ((line[q] + x_q * x_q) - (line[p] + x_p * x_p)) / (2.0 * (x_q - x_p));
-  }
-
-  std::vector<std::size_t> vertex_;
-  std::vector<double> boundary_;
-  std::vector<float> input_;
-};
 
 }  // namespace
 
@@ -55,25 +17,10 @@ DistanceField::DistanceField(const Grid<std::uint8_t>& occupied)
     : geometry_(occupied.geometry()),
       distance_m_(geometry_.size()),
       is_empty_(std::all_of(occupied.values().begin(), occupied.values().end(), [](auto value) { return value == 0; })) {
-  const auto width = static_cast<std::size_t>(geometry_.width), height = static_cast<std::size_t>(geometry_.height);
-  std::transform(occupied.values().begin(), occupied.values().end(), distance_m_.begin(),
-                 [](std::uint8_t is_occupied) { return is_occupied != 0 ? 0.0f : kFar; });
-  std::vector<float> line(height);
-  LineTransform column_transform(height), row_transform(width);
-  for (std::size_t col = 0; col < width; ++col) {
-    for (std::size_t row = 0; row < height; ++row) line[row] = distance_m_[row * width + col];
-    column_transform.apply(line);
-    for (std::size_t row = 0; row < height; ++row) distance_m_[row * width + col] = line[row];
-  }
-  line.resize(width);
+  const std::vector<double> squared_cells = squared_distances(occupied.values(), geometry_.width, geometry_.height);
   const auto resolution_m = static_cast<float>(geometry_.resolution_m);
-  for (std::size_t row = 0; row < height; ++row) {
-    const auto begin = distance_m_.begin() + static_cast<std::ptrdiff_t>(row * width);
-    std::copy_n(begin, width, line.begin());
-    row_transform.apply(line);
-    std::transform(line.begin(), line.end(), begin,
-                   [resolution_m](float squared_cells) { return resolution_m * std::sqrt(squared_cells); });
-  }
+  std::transform(squared_cells.begin(), squared_cells.end(), distance_m_.begin(),
+                 [resolution_m](double squared) { return resolution_m * std::sqrt(static_cast<float>(squared)); });
 }
 
 DistanceField::Place DistanceField::place_of(const Eigen::Vector2d& p_m) const {

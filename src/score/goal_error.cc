@@ -2,7 +2,8 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
+
+#include "core/angles.h"
 
 namespace patrol::score {
 namespace {
@@ -15,7 +16,7 @@ std::optional<Pose2> truth_at(const Trajectory& T_world_body, Time stamp) {
 Arrival arrival(int navigation, const Pose2& T_world_wanted, const Pose2& T_world_truth) {
   return {.navigation = navigation,
           .position_error_m = (T_world_truth.position() - T_world_wanted.position()).norm(),
-          .heading_error_deg = std::abs(wrap_angle(T_world_truth.yaw - T_world_wanted.yaw)) * 180.0 / std::numbers::pi};
+          .heading_error_deg = to_deg(std::abs(wrap_angle(T_world_truth.yaw - T_world_wanted.yaw)))};
 }
 
 /// Where each goal truly is.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/symmetric_axes.h"
 #include "score/statistics.h"
 
@@ -57,7 +58,7 @@ LocalizabilityScore localizability_score(const std::vector<LocalizabilitySample>
     }
     if (sample.truth.is_degenerate()) {
       const double error_rad = std::abs(folded(sample.claimed_direction_rad - sample.truth.weak_direction_rad));
-      direction_errors_deg.push_back(error_rad * 180.0 / std::numbers::pi);
+      direction_errors_deg.push_back(to_deg(error_rad));
     }
   }
   LocalizabilityScore score{.num_poses = samples.size(),

@@ -3,8 +3,8 @@
 #include <Eigen/Dense>
 
 #include <cmath>
-#include <numbers>
 
+#include "core/angles.h"
 #include "score/distance_field.h"
 #include "score/map_error.h"
 
@@ -87,7 +87,7 @@ std::vector<StationError> station_errors(const Route& route_in_world, const std:
       error.is_reached = true;
       error.position_error_m = (T_world_estimate.position() - T_world_truth.position()).norm();
       error.heading_error_deg =
-          std::abs(wrap_angle(T_world_estimate.yaw - T_world_truth.yaw)) * 180.0 / std::numbers::pi;
+          to_deg(std::abs(wrap_angle(T_world_estimate.yaw - T_world_truth.yaw)));
       error.stand_error_m = (T_world_truth.position() - station.T_route_body.position()).norm();
     }
     errors.push_back(error);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/angles.h"
 #include "core/error.h"
 
 namespace patrol::sim {
@@ -34,7 +35,7 @@ BriggsUrban briggs_urban(char stability) {
 }
 
 Eigen::Vector2d downwind_of(double direction_deg) {
-  const double from_rad = direction_deg * std::numbers::pi / 180.0;
+  const double from_rad = to_rad(direction_deg);
   return {-std::sin(from_rad), -std::cos(from_rad)};
 }
 

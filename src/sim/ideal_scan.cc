@@ -3,10 +3,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
+
 namespace patrol::sim {
 
 std::vector<SurfaceReturn> ideal_scan(const LidarScene& scene, const Eigen::Vector3d& p_world_m, const IdealScanSettings& settings) {
-  const double least_cosine = std::cos(settings.grazing_deg * std::numbers::pi / 180.0);
+  const double least_cosine = std::cos(to_rad(settings.grazing_deg));
   std::vector<SurfaceReturn> returns;
   for (int beam = 0; beam < settings.beams; ++beam) {
     const double angle = 2.0 * std::numbers::pi * beam / settings.beams;

@@ -7,16 +7,15 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/angles.h"
 #include "core/error.h"
 
 namespace patrol::sim {
 namespace {
 
-constexpr double kRadian = std::numbers::pi / 180.0;
-
 /// Share of `inward_mm` that reaches a clock position.
 double share_at(const LiningMoveSettings& move, double clock_deg) {
-  if (move.kind == "settlement") return std::max(0.0, std::cos(clock_deg * kRadian));
+  if (move.kind == "settlement") return std::max(0.0, std::cos(clock_deg * kDegree));
   if (move.kind == "bulge") {
     const double aside_deg = std::abs(std::remainder(clock_deg - move.clock_deg, 360.0));
     return aside_deg < move.half_width_deg ? std::pow(std::cos(0.5 * std::numbers::pi * aside_deg / move.half_width_deg), 2.0) : 0.0;

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "core/random.h"
 #include "sim/robot_model.h"
@@ -59,7 +60,7 @@ void add_block(mjsBody& body, const PropSettings& prop, int number, int group, c
 mjsGeom* add_rod(mjsBody& body, const PropSettings& prop, double radius_m, double aside_m, double height_m,
                  const Color& color) {
   mjsGeom* rod = add_geom(body, mjGEOM_CAPSULE, prop, color);
-  const double turn = prop.turn_deg * std::numbers::pi / 180.0;
+  const double turn = to_rad(prop.turn_deg);
   rod->pos[0] -= aside_m * std::sin(turn);
   rod->pos[1] += aside_m * std::cos(turn);
   rod->pos[2] = height_m;
@@ -86,7 +87,7 @@ void add_rebar(mjsBody& body, const PropSettings& prop, int number) {
 }
 
 void add_truck(mjsBody& body, const PropSettings& prop, int number) {
-  const double turn = prop.turn_deg * std::numbers::pi / 180.0, c = std::cos(turn), s = std::sin(turn);
+  const double turn = to_rad(prop.turn_deg), c = std::cos(turn), s = std::sin(turn);
   for (const TruckPart& part : truck_parts()) {
     const bool is_wheel = part.shape == TruckPart::Shape::kWheel;
     mjsGeom* geom = add_geom(body, is_wheel ? mjGEOM_CYLINDER : mjGEOM_BOX, prop, part.rgba);

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/particle_weights.h"
 #include "slam/grid_step.h"
 #include "slam/map_rendering.h"
 #include "slam/particle_filter.h"
-#include "slam/resampling.h"
 
 namespace patrol::slam {
 namespace {

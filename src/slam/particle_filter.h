@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/particle_weights.h"
 #include "slam/particle_filter_parts.h"
-#include "slam/resampling.h"
 
 namespace patrol::slam {
 

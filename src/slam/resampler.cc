@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "slam/resampling.h"
+#include "core/particle_weights.h"
 
 namespace patrol::slam {
 namespace {

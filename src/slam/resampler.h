@@ -22,7 +22,7 @@ using Resampler = std::function<std::vector<Offspring>(const std::vector<double>
 /// Each new particle draws its parent by itself (Gordon, Salmond, Smith 1993). Unbiased: the mean number of children is N w.
 std::vector<Offspring> resample_multinomially(const std::vector<double>& weights, RandomSequence& random);
 
-/// One draw for all (resampling.h). Unbiased.
+/// One draw for all (core/particle_weights.h). Unbiased.
 std::vector<Offspring> resample_evenly(const std::vector<double>& weights, RandomSequence& random);
 
 /// floor(N w) children for certain, the rest drawn from what is left over (Liu, Chen 1998). Unbiased.

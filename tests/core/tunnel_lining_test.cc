@@ -1,9 +1,10 @@
 #include "core/tunnel_lining.h"
 
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
+
+#include "core/angles.h"
 
 namespace patrol {
 namespace {
@@ -61,7 +62,7 @@ TEST(TunnelLining, IntradosIsTheHalfCircleAboveAndTheSideWallsBelow) {
   EXPECT_NEAR(lining.radius_at(90.0), 5.5, 1e-12);
   // A side wall's circle: centre 2.5 m beyond the axis at the same height, radius 8 m.
   for (const double clock_deg : {95.0, 110.0, 250.0}) {
-    const double radius_m = lining.radius_at(clock_deg), angle = clock_deg * std::numbers::pi / 180.0;
+    const double radius_m = lining.radius_at(clock_deg), angle = to_rad(clock_deg);
     const double across_m = radius_m * std::abs(std::sin(angle)), up_m = radius_m * std::cos(angle);
     EXPECT_NEAR(std::hypot(across_m + 2.5, up_m), 8.0, 1e-12);
   }

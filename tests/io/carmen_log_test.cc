@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "tests/support/gzip_file.h"
 #include "tests/support/pose_near.h"
@@ -20,7 +21,6 @@ using namespace std::chrono_literals;
 using test::gzipped, test::Pose2Near, test::TemporaryFile, test::TemporaryFolder;
 using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testing::Pair, ::testing::StartsWith, ::testing::UnorderedElementsAre;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kExactTol = 1e-12;
 const ScanLogOptions kSkip{.skip_bad_lines = true, .carmen_laser = {}, .scan_topic = {}, .odometry_topic = {}};
 
@@ -93,38 +93,38 @@ TEST(CarmenLog, ReadsGzipAsThePlainFile) {
 TEST(CarmenLog, AnEvenNumberOfOldBeamsStartsAtMinusNinetyAndEndsAStepBeforeNinety) {
   for (const int n : {180, 360}) {
     const LaserScan scan = read_one(flaser("1", "0 0 0", "0 0 0", std::to_string(n) + repeated("1", n))).scan;
-    EXPECT_NEAR(scan.angle_min_rad, -90.0 * kRadPerDeg, kExactTol);
-    EXPECT_NEAR(scan.angle_increment_rad, 180.0 / n * kRadPerDeg, kExactTol);
+    EXPECT_NEAR(scan.angle_min_rad, -90.0 * kDegree, kExactTol);
+    EXPECT_NEAR(scan.angle_increment_rad, 180.0 / n * kDegree, kExactTol);
   }
 }
 
 TEST(CarmenLog, AnOddNumberOfOldBeamsEndsAtNinety) {
   for (const int n : {181, 361}) {
     const LaserScan scan = read_one(flaser("1", "0 0 0", "0 0 0", std::to_string(n) + repeated("1", n))).scan;
-    EXPECT_NEAR(scan.angle_min_rad, -90.0 * kRadPerDeg, kExactTol);
-    EXPECT_NEAR(scan.angle_min_rad + (n - 1) * scan.angle_increment_rad, 90.0 * kRadPerDeg, kExactTol);
+    EXPECT_NEAR(scan.angle_min_rad, -90.0 * kDegree, kExactTol);
+    EXPECT_NEAR(scan.angle_min_rad + (n - 1) * scan.angle_increment_rad, 90.0 * kDegree, kExactTol);
   }
 }
 
 TEST(CarmenLog, TheResolutionParameterNarrowsTheFieldOfView) {
   // A SICK LMS at 0.25 deg has 401 beams over 100 deg.
   const LaserScan scan = read_one("PARAM laser_front_laser_resolution 0.25 0 host 0\n" + flaser("1", "0 0 0", "0 0 0", "401" + repeated("1", 401))).scan;
-  EXPECT_NEAR(scan.angle_increment_rad, 0.25 * kRadPerDeg, kExactTol);
-  EXPECT_NEAR(scan.angle_min_rad, -50.0 * kRadPerDeg, kExactTol);
+  EXPECT_NEAR(scan.angle_increment_rad, 0.25 * kDegree, kExactTol);
+  EXPECT_NEAR(scan.angle_min_rad, -50.0 * kDegree, kExactTol);
 }
 
 TEST(CarmenLog, AnImpossibleResolutionParameterIsNotFollowed) {
   for (const char* const resolution : {"0", "-1", "4"}) {  // 180 beams at 4 deg: two turns
     const LaserScan scan =
         read_one(fmt::format("PARAM laser_front_laser_resolution {}\n", resolution) + flaser("1", "0 0 0", "0 0 0", "180" + repeated("1", 180))).scan;
-    EXPECT_NEAR(scan.angle_increment_rad, kRadPerDeg, kExactTol) << resolution;
+    EXPECT_NEAR(scan.angle_increment_rad, kDegree, kExactTol) << resolution;
   }
 }
 
 TEST(CarmenLog, AnOldMessageOf1081BeamsIsAHokuyosOver270Degrees) {
   const LaserScan scan = read_one(flaser("1", "0 0 0", "0 0 0", "1081" + repeated("1", 1081))).scan;
-  EXPECT_NEAR(scan.angle_min_rad, -135.0 * kRadPerDeg, kExactTol);
-  EXPECT_NEAR(scan.angle_increment_rad, 0.25 * kRadPerDeg, kExactTol);
+  EXPECT_NEAR(scan.angle_min_rad, -135.0 * kDegree, kExactTol);
+  EXPECT_NEAR(scan.angle_increment_rad, 0.25 * kDegree, kExactTol);
 }
 
 TEST(CarmenLog, ReadsRobotlaserWithItsOwnAngles) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/angles.h"
 #include "io/scan_log.h"
 #include "tests/support/temporary_file.h"
 
@@ -24,7 +25,7 @@ std::vector<float> corridor_cm(double x_m, float no_return_m) {
   std::vector<float> ranges_m;
   const double y_m = 0.15 * std::sin(x_m);
   for (int beam = 0; beam < 180; ++beam) {
-    const double angle = (beam - 90) * 3.14159265358979 / 180.0;
+    const double angle = to_rad(beam - 90);
     const double side_m = (1.0 + (beam > 90 ? y_m : -y_m)) / std::max(1e-9, std::abs(std::sin(angle))), end_m = (27.9 - x_m) / std::max(1e-9, std::cos(angle));
     const double range_m = std::min(side_m, end_m);
     ranges_m.push_back(range_m < 8.0 ? static_cast<float>(std::round(range_m * 100.0) / 100.0) : no_return_m);

@@ -6,9 +6,9 @@
 
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <optional>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/tunnel_world.h"
@@ -125,9 +125,9 @@ TEST(MonteCarlo, AmongFeaturesItStandsToThreeCentimetresAndHalfADegreeAndIsNotSu
     worst_m = std::max(worst_m, mean_m), worst_rad = std::max(worst_rad, mean_rad);
   }
   std::printf("among features, worst of 20 drives: mean error %.4f m, %.3f deg; NEES %.2f (2.02 ... 4.16)\n", worst_m,
-              worst_rad * 180.0 / std::numbers::pi, nees);
+              to_deg(worst_rad), nees);
   EXPECT_LT(worst_m, 0.03);
-  EXPECT_LT(worst_rad, 0.5 * std::numbers::pi / 180.0);
+  EXPECT_LT(worst_rad, to_rad(0.5));
   EXPECT_LT(nees, 4.16);
 }
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "core/angles.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/tunnel_world.h"
 
@@ -13,7 +13,6 @@ namespace {
 
 using test::Pose2Near;
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 const slam::PoseGaussian kWide{.mean = {}, .covariance = Eigen::Vector3d(0.04, 0.04, 0.01).asDiagonal()};
 
 slam::PoseGaussian wide_about(const Pose2& mean) { return {.mean = mean, .covariance = kWide.covariance}; }
@@ -40,11 +39,11 @@ TEST(RefinePose, RecoversTenCentimetresAndTwoDegreesToTwoCentimetresAndATenthOfA
   const test::Tunnel tunnel;
   const Pose2 truth{6.0, 0.4, 0.1};
   for (const double sign : {-1.0, 1.0}) {
-    const Pose2 start{truth.x + sign * 0.1, truth.y - sign * 0.05, truth.yaw + sign * 2.0 * kDeg};
+    const Pose2 start{truth.x + sign * 0.1, truth.y - sign * 0.05, truth.yaw + sign * 2.0 * kDegree};
     const RefinedPose refined = refine_pose(tunnel_lines(), look(tunnel.world, truth), wide_about(start), start, {});
     EXPECT_TRUE(refined.is_matched);
     EXPECT_GT(refined.matched_share, 0.95);
-    EXPECT_THAT(refined.posterior.mean, Pose2Near(truth, 0.02, 0.1 * kDeg));
+    EXPECT_THAT(refined.posterior.mean, Pose2Near(truth, 0.02, 0.1 * kDegree));
   }
 }
 
@@ -69,7 +68,7 @@ TEST(RefinePose, AnUnknownTruckPullsByLessThanOneCentimetre) {
   tunnel.world.add_box(2.5, 1.4, 11.5, 3.8);
   const RefinedPose hidden = refine_pose(tunnel_lines(), look(tunnel.world, truth), wide_about(truth), truth, {});
   EXPECT_LT(hidden.matched_share, 0.8);
-  EXPECT_THAT(hidden.posterior.mean, Pose2Near(clear.posterior.mean, 0.01, 0.1 * kDeg));
+  EXPECT_THAT(hidden.posterior.mean, Pose2Near(clear.posterior.mean, 0.01, 0.1 * kDegree));
 }
 
 TEST(RefinePose, WhereNothingFitsThePriorStays) {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "tests/support/walking_robot.h"
 
@@ -16,8 +16,6 @@ using test::make_quadruped;
 using test::stand_then_walk;
 using test::WalkingRobot;
 using test::WalkingRobotSettings;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Which messages get through at a time.
 struct Channels {

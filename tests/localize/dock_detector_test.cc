@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "tests/support/dock_world.h"
 #include "tests/support/pose_near.h"
@@ -19,7 +19,6 @@ using test::Pose2Near;
 using test::RoomWorld;
 
 constexpr double kStd_m = 0.025;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// The room at the portal: walls 3 m to each side and 2 m behind the post.
 RoomWorld make_portal(const Pose2& T_world_docked) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/trajectory.h"
 #include "tests/support/walking_robot.h"
 
@@ -114,7 +115,7 @@ TEST(ScanLeveler, StampIsThatOfTheLastBeamAndOriginIsTheLidarThen) {
 TEST(ScanLeveler, GroundInFrontOfATippedRobotIsNoObstacleAndFreeUpToTheBand) {
   // 5 degrees nose down, lidar 0.475 m above the ground: the front beam meets the ground 5.4 m ahead, and
   // sinks below 0.15 m (margin off) at 0.325 / tan(5 deg) = 3.7 m.
-  const double pitch = 5.0 * std::numbers::pi / 180.0;
+  const double pitch = to_rad(5.0);
   const PoseLookup tipped = [=](Time) { return Pose3{{0, 0, 0}, quaternion_from_rpy(0, pitch, 0)}; };
   const LaserScan scan = scan_room(tipped, Time{0}, 720, -0.3);
   const auto level = ScanLeveler(kLidar, {.tilt_margin_rad = 0.0}).level(scan, tipped, 0.3);

@@ -11,6 +11,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "tests/support/tracked_drive.h"
 
@@ -22,8 +23,6 @@ using test::make_tracked_robot;
 using test::stand_then_drive;
 using test::TrackedDrive;
 using test::TrackedDriveSettings;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Which messages get through at a time.
 struct Channels {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "core/angles.h"
 #include "plan/costmap.h"
 #include "tests/support/depth_scene.h"
 #include "tests/support/room_world.h"
@@ -15,7 +15,6 @@ using test::DepthScene;
 
 constexpr double kBodyHeight_m = 0.15;
 constexpr double kStdPerM = 0.02;  // of the depth squared
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Footprint make_robot() { return Footprint({{-0.5, -0.35}, {0.5, -0.35}, {0.5, 0.35}, {-0.5, 0.35}}, 2); }
 Pose3 body_camera() { return {{0.445, 0.0, 0.225}, quaternion_from_rpy(0.0, 0.48, 0.0)}; }

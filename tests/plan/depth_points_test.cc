@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "core/angles.h"
 #include "tests/support/depth_scene.h"
 
 namespace patrol::plan {
@@ -14,7 +14,6 @@ using test::DepthScene;
 
 constexpr double kBodyHeight_m = 0.15;
 constexpr double kStdPerM = 0.02;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// The tracked robot's: 0.375 m above the ground, looking down by 0.48 rad.
 Pose3 body_camera() { return {{0.445, 0.0, 0.225}, quaternion_from_rpy(0.0, 0.48, 0.0)}; }

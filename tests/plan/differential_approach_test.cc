@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/random.h"
 #include "tests/plan/tracked_plant.h"
 
@@ -14,7 +15,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kPeriod_s = 0.05;
-constexpr double kDegree = pi / 180.0;
 
 struct ApproachRecord {
   bool is_done = false;

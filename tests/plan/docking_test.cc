@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "core/random.h"
 #include "localize/dock_detector.h"
@@ -18,7 +19,6 @@ namespace {
 
 using test::RoomWorld;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr int kTicksPerSecond = 20;
 constexpr double kPeriod_s = 1.0 / kTicksPerSecond;
 

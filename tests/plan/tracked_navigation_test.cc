@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "core/angles.h"
 #include "core/random.h"
 #include "plan/navigator.h"
 #include "tests/plan/kinematic_drive.h"
@@ -14,8 +14,6 @@ namespace patrol::plan {
 namespace {
 
 using test::RoomWorld;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// 16 m by 16 m about the origin.
 RoomWorld make_hall() {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "render/scene_painter.h"
 #include "tests/render/small_scene.h"
@@ -108,8 +109,8 @@ TEST(CameraRigTest, LooksUpByMoreThanSevenDegreesWhereThereIsARoof) {
   const Pose3 robot{{0.0, 0.0, 0.15}, Eigen::Quaterniond::Identity()};
   CameraRig outdoors(CameraKind::kChase), indoors(CameraKind::kChase, under_roof(7.5));
   const double gained_rad = std::asin(indoors.follow(robot, 10.0).forward.z()) - std::asin(outdoors.follow(robot, 10.0).forward.z());
-  EXPECT_GT(gained_rad, 7.0 * std::numbers::pi / 180.0);
-  EXPECT_LT(gained_rad, 9.0 * std::numbers::pi / 180.0);
+  EXPECT_GT(gained_rad, to_rad(7.0));
+  EXPECT_LT(gained_rad, to_rad(9.0));
 }
 
 // The eye is 14 m above the body at 0.15 m. The cut is 0.6 of the roof's 7.35 m above it: 14 - 4.41 m from the eye.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "tests/render/small_scene.h"
 
@@ -53,7 +54,7 @@ TEST(ReferenceMapTest, SurfaceCellsLieBehindTheSurfaceByLessThanACell) {
   const auto model =
       small_scene(R"(<geom type="box" size="0.5 0.5 0.5" pos="0.013 0.004 0.5" euler="0 0 27"/>)");
   const OccupancyGrid map = reference_map(*model).map;
-  const double c = std::cos(27.0 * M_PI / 180.0), s = std::sin(27.0 * M_PI / 180.0);
+  const double c = std::cos(to_rad(27.0)), s = std::sin(to_rad(27.0));
   for (int row = 0; row < map.geometry().height; ++row) {
     for (int col = 0; col < map.geometry().width; ++col) {
       if (map.at({col, row}) != kOccupied) continue;

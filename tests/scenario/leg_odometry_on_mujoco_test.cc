@@ -2,11 +2,11 @@
 
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "core/angles.h"
 #include "io/urdf.h"
 #include "localize/body_estimator.h"
 #include "sim/twin.h"
@@ -17,7 +17,6 @@ namespace patrol {
 namespace {
 
 const std::string kRobotUrdf = PATROL_SOURCE_DIR "/models/quadruped/quadruped.urdf";
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 const char* const kFlatWorld = R"(<mujoco><option timestep="0.002" cone="elliptic" impratio="10"/>
   <default><geom contype="1" conaffinity="2"/></default>

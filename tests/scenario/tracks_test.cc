@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/angles.h"
 #include "tests/sim/rubble.h"
 #include "tests/support/tracked_twin.h"
 #include "tests/support/quadruped_twin.h"
@@ -35,7 +36,7 @@ std::string make_slope(double angle_deg) {
 
 /// 15 degrees up over 3 m, 2 m level, and down again; it begins 1.5 m ahead.
 std::string make_ramp() {
-  const double a = 15.0 * M_PI / 180.0, run = 3.0 * std::cos(a), rise = 3.0 * std::sin(a), t = 0.1;
+  const double a = to_rad(15.0), run = 3.0 * std::cos(a), rise = 3.0 * std::sin(a), t = 0.1;
   const double x_up = 1.5 + run / 2.0 + t * std::sin(a), x_down = 1.5 + run + 2.0 + run / 2.0 - t * std::sin(a);
   const double z = rise / 2.0 - t * std::cos(a);
   return make_flat_world(fmt::format(R"(<geom name="ground_up" type="box" size="1.5 1 0.1" pos="{} 0 {}" euler="0 -15 0"/>
@@ -186,8 +187,8 @@ TEST(Tracks, OnAnIcySlopeOf10DegreesTheBeltsRunForwardsAndTheRobotSlidesBackAsOn
   const DriveReport report = robot.drive(0.5, 0.0, 2.0);
   EXPECT_GT(report.left_belt_m, 0.6);
   // x = (v + a t / 2) t cos 10 with a = -g (sin 10 - 0.05 cos 10) while the belts go the other way over the ground.
-  const double a = -9.81 * (std::sin(10.0 * M_PI / 180.0) - 0.05 * std::cos(10.0 * M_PI / 180.0));
-  EXPECT_NEAR(report.moved.x, 2.0 * speed + 2.0 * a * std::cos(10.0 * M_PI / 180.0), 0.05 * 2.5);
+  const double a = -9.81 * (std::sin(to_rad(10.0)) - 0.05 * std::cos(to_rad(10.0)));
+  EXPECT_NEAR(report.moved.x, 2.0 * speed + 2.0 * a * std::cos(to_rad(10.0)), 0.05 * 2.5);
 }
 
 TEST(Tracks, AgainstAWallTheBeltsSlipAt24_8NewtonMetres) {

@@ -8,8 +8,8 @@
 
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
+#include "core/angles.h"
 #include "inspect/water/water_inversion.h"
 #include "sim/sensors/tem.h"
 #include "tests/support/soundings.h"
@@ -18,7 +18,6 @@ namespace patrol {
 namespace {
 
 constexpr int kSeeds = 10;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct Truth {
   double rock_spm = 0.0;

@@ -2,13 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
+#include "core/angles.h"
 
 namespace patrol::score {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 Event event(const char* kind, const char* subject, Time stamp, double value = 0.0) {
   Event event;
@@ -21,7 +20,7 @@ Event event(const char* kind, const char* subject, Time stamp, double value = 0.
 
 /// At 1 s at (10, 0), at 2 s 3 cm ahead and 4 cm beside of it and turned by 2 degrees, at 3 s exactly there.
 Trajectory truth() {
-  return {{1s, to_spatial({10.0, 0.0, 0.0})}, {2s, to_spatial({10.03, 0.04, 2.0 * kDeg})}, {3s, to_spatial({10.0, 0.0, 0.0})}};
+  return {{1s, to_spatial({10.0, 0.0, 0.0})}, {2s, to_spatial({10.03, 0.04, 2.0 * kDegree})}, {3s, to_spatial({10.0, 0.0, 0.0})}};
 }
 
 TEST(GoalErrors, AMarkedGoalIsMetWhereTheRobotTrulyStoodAtTheMark) {

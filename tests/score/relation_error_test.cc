@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/error.h"
 
 namespace patrol::score {
@@ -13,7 +14,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double kTol = 1e-12;
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 StampedPose pose_at(Time stamp, double x, double y = 0.0, double yaw = 0.0) { return {stamp, to_spatial(Pose2{x, y, yaw})}; }
 

@@ -3,14 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "core/angles.h"
 
 namespace patrol::score {
 namespace {
 
 using namespace std::chrono_literals;
-
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 /// A corner of two walls through (5, 5): along x at y = 5 and along y at x = 5, cells of 2.5 cm, or only the
 /// first.
@@ -45,9 +44,9 @@ TEST(MapDisplacement, OfAMapTenCentimetresOffIsTenToTwoMillimetres) {
 // Turned about the origin by half a degree, the target at 6.8 m moves by 5.9 cm; a fit that knew no turn
 // would see the mean over the walls.
 TEST(MapDisplacement, OfATurnedMapIsThatOfTheTarget) {
-  const double expected_m = kTarget.norm() * 2.0 * std::sin(0.25 * kDeg);
+  const double expected_m = kTarget.norm() * 2.0 * std::sin(0.25 * kDegree);
   const auto displacement =
-      map_displacement_m(make_walls(), {0.0, 0.0, 0.5 * kDeg}, all_seeable(make_walls()), kTarget);
+      map_displacement_m(make_walls(), {0.0, 0.0, 0.5 * kDegree}, all_seeable(make_walls()), kTarget);
   ASSERT_TRUE(displacement);
   EXPECT_NEAR(*displacement, expected_m, 0.002);
 }
@@ -99,10 +98,10 @@ TEST(StationErrors, TellBeliefTruthAndSurveyApart) {
       .stations = {make_station("box_1", {2.0, 1.0, 0.0}), make_station("box_2", {9.0, 1.0, 0.0})},
       .keep_out_lines = {}, .anchors = {}, .dock = {}};
   // At 1 s the robot stands at (2, 1.1) heading 3 degrees; it believes (2.03, 1.14) and 5 degrees.
-  const Trajectory truth = {{Time(0s), to_spatial({1.0, 1.1, 3.0 * kDeg})},
-                            {Time(2s), to_spatial({3.0, 1.1, 3.0 * kDeg})}};
+  const Trajectory truth = {{Time(0s), to_spatial({1.0, 1.1, 3.0 * kDegree})},
+                            {Time(2s), to_spatial({3.0, 1.1, 3.0 * kDegree})}};
   const Pose2 T_world_map{0.5, 0.0, 0.0};
-  const auto errors = station_errors(route, {reached("box_1", 1s, {1.53, 1.14, 5.0 * kDeg})}, T_world_map,
+  const auto errors = station_errors(route, {reached("box_1", 1s, {1.53, 1.14, 5.0 * kDegree})}, T_world_map,
                                      truth, make_walls(), all_seeable(make_walls()));
   ASSERT_EQ(errors.size(), 2U);
   EXPECT_EQ(errors[0].name, "box_1");

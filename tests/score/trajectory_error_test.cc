@@ -6,6 +6,7 @@
 #include <functional>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "tests/support/pose_near.h"
 
@@ -16,7 +17,6 @@ using namespace std::chrono_literals;
 using test::Pose2Near, test::Pose3Near;
 
 constexpr double kExactTol = 1e-9;
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 /// Steps of a quarter of a metre, ten a second, each pose changed by `change(i, pose)`.
 Trajectory make_trajectory(const std::vector<Pose2>& poses,
@@ -64,13 +64,13 @@ TEST(TrajectoryError, OfThreeByFourCentimetresBesideIsFiveEverywhereAndNoneFromM
 // A chord of the turn: 2 s sin(alpha / 2) after s metres. For s = 0, 0.25 ... 10 the mean square of s is
 // 0.25^2 n (2 n + 1) / 6 with n = 40.
 TEST(TrajectoryError, OfOneDegreeAtTheStartGrowsInProportionToTheWay) {
-  const Pose2 T_world_map{2.0, 3.0, 1.0 * kDeg};
+  const Pose2 T_world_map{2.0, 3.0, 1.0 * kDegree};
   const Trajectory truth = make_trajectory(straight(40));
   const Trajectory estimate = make_trajectory(straight(40), [](int, const Pose2& p) {
     return Pose2{p.x - 2.0, p.y - 3.0, p.yaw};
   });
   const TrajectoryError error = trajectory_error(estimate, T_world_map, truth);
-  const double chord = 2.0 * std::sin(0.5 * kDeg), mean_square = 0.0625 * 40.0 * 81.0 / 6.0;
+  const double chord = 2.0 * std::sin(0.5 * kDegree), mean_square = 0.0625 * 40.0 * 81.0 / 6.0;
   EXPECT_NEAR(error.ate_max_m, 10.0 * chord, kExactTol);
   EXPECT_NEAR(error.ate_rmse_m, chord * std::sqrt(mean_square), kExactTol);
   EXPECT_NEAR(error.heading_rmse_deg, 1.0, kExactTol);
@@ -90,7 +90,7 @@ TEST(TrajectoryError, OfTwoPercentOfScaleIsTwoCentimetresPerMetre) {
 TEST(TrajectoryError, OfHeadingThatDriftsAThirdOfADegreePerStepIsFourThirdsPerMetre) {
   const Trajectory truth = make_trajectory(straight(40));
   const Trajectory estimate = make_trajectory(straight(40), [](int i, const Pose2& p) {
-    return Pose2{p.x, p.y, i * kDeg / 3.0};
+    return Pose2{p.x, p.y, i * kDegree / 3.0};
   });
   EXPECT_NEAR(trajectory_error(estimate, {}, truth).rpe_rot_1m_deg, 4.0 / 3.0, kExactTol);
 }
@@ -99,7 +99,7 @@ TEST(TrajectoryError, HeadingsOnBothSidesOfTheHalfTurnAreTwoDegreesApart) {
   const auto turned = [](double yaw) {
     return make_trajectory(straight(4), [yaw](int, const Pose2& p) { return Pose2{p.x, p.y, yaw}; });
   };
-  EXPECT_NEAR(trajectory_error(turned(179.0 * kDeg), {}, turned(-179.0 * kDeg)).heading_rmse_deg, 2.0,
+  EXPECT_NEAR(trajectory_error(turned(179.0 * kDegree), {}, turned(-179.0 * kDegree)).heading_rmse_deg, 2.0,
               kExactTol);
 }
 

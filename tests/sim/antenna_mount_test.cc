@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "sim/twin.h"
 #include "tests/support/quadruped_twin.h"
@@ -15,8 +15,6 @@
 
 namespace patrol::sim {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 TwinSettings settings_for(const test::TemporaryFile& world) {
   TwinSettings settings;

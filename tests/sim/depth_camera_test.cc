@@ -8,12 +8,12 @@
 #include <memory>
 #include <utility>
 
+#include "core/angles.h"
 #include "tests/support/moments.h"
 
 namespace patrol::sim {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr int kWidth = 80, kHeight = 60, kPixels = kWidth * kHeight;
 
 /// Draws a formula.

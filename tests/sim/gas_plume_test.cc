@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "tests/sim/small_world.h"
 
@@ -76,7 +77,7 @@ TEST(GasPlume, WindFrom240DegreesDrivesTheGasTo60DegreesFromNorth) {
   const GasPlume gas(kSource, 1.0, {.speed_mps = 1.5, .direction_deg = 240.0, .stability = "D"});
   double strongest = 0.0, strongest_deg = 0.0;
   for (int bearing = 0; bearing < 360; ++bearing) {
-    const double angle = bearing * kPi / 180.0;
+    const double angle = to_rad(bearing);
     const double here =
         gas.concentration_kgpm3(kSource + 5.0 * Eigen::Vector3d(std::sin(angle), std::cos(angle), 0.0), 0.0);
     if (here > strongest) strongest = here, strongest_deg = bearing;

@@ -3,15 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "core/angles.h"
 #include "tests/sim/small_world.h"
 
 namespace patrol::sim {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A court of walls 20 m high about the origin, open at the top; 2 m wide in the middle of nothing else.
 const std::string kCourt =

@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <vector>
 
+#include "core/angles.h"
 #include "tests/sim/small_world.h"
 
 namespace patrol::sim {
@@ -128,7 +128,7 @@ TEST(Imu, ScaleSpreadsBy1PerMilleAndMisalignmentBy0_05Degrees) {
   const test::Moments skew =
       over_seeds(settings, [&](ImuSensor& imu) { return turned(imu).linear_acceleration_mps2.z() / 10.0; });
   EXPECT_NEAR(scale.std(), 0.001, 0.05 * 0.001);
-  EXPECT_NEAR(skew.std(), 0.05 * std::numbers::pi / 180.0, 0.05 * 0.05 * std::numbers::pi / 180.0);
+  EXPECT_NEAR(skew.std(), to_rad(0.05), 0.05 * to_rad(0.05));
 }
 
 TEST(Imu, ReadingsAreWholeStepsOfTheResolution) {
@@ -167,7 +167,7 @@ TEST(Imu, AtRestItReadsGravityUpwardsAndFallingFreelyNothing) {
       R"(<body><joint type="slide" axis="1 0 0"/><geom size="0.1"/><site name="imu" euler="30 0 0"/></body>)");
   ImuSensor at_rest(ideal(), *standing.model, 1);
   const Imu reading = at_rest.read(*standing.model, *standing.data, Time{}, 0);
-  const double roll = 30.0 * std::numbers::pi / 180.0;
+  const double roll = to_rad(30.0);
   EXPECT_NEAR(
       (reading.linear_acceleration_mps2 - 9.81 * Eigen::Vector3d(0, std::sin(roll), std::cos(roll))).norm(),
       0.0, 1e-9);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/angles.h"
 #include "sim/sensors/lidar.h"
 #include "tests/sim/small_world.h"
 
@@ -15,7 +16,6 @@
 namespace patrol::sim {
 
 inline constexpr double kPi = std::numbers::pi;
-inline constexpr double kDegree = kPi / 180.0;
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 inline constexpr Time kTick = std::chrono::milliseconds(2);
 

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "io/route_json.h"
 #include "sim/lidar_scene.h"
@@ -82,7 +82,7 @@ class MovedTunnel : public testing::Test {
   /// From 3 cm before the intrados, along the radius: where it is met, as a radius. Below 0 if something else is.
   static double seen_radius_m(const LidarScene& scene, double chainage_m, double clock_deg) {
     constexpr double kBefore_m = 0.03;
-    const double angle = clock_deg * std::numbers::pi / 180.0, from_m = lining_->radius_at(clock_deg) - kBefore_m;
+    const double angle = to_rad(clock_deg), from_m = lining_->radius_at(clock_deg) - kBefore_m;
     const auto at = [&](double radius_m) {
       const Eigen::Vector2d p = lining_->point_at(chainage_m, -radius_m * std::sin(angle));
       return Eigen::Vector3d(p.x(), p.y(), lining_->crown_centre_m + radius_m * std::cos(angle));

@@ -5,20 +5,18 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "tests/sim/small_world.h"
 
 namespace patrol::sim {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::string box(const std::string& position, const std::string& size, double grey = 1.0, const std::string& more = "") {
   const std::string g = std::to_string(grey);

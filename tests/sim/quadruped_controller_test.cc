@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "tests/support/quadruped_twin.h"
 
 namespace patrol::sim {
@@ -24,7 +25,7 @@ TEST(QuadrupedController, StandsFiveSecondsWithin1CentimetreAnd1DegreeWithoutASt
   const WalkReport report = robot.stand(5.0);
   EXPECT_LT(report.moved.position().norm(), 0.01);
   EXPECT_LT(std::abs(report.moved.yaw), 0.02);
-  EXPECT_LT(report.max_tilt_rad, kPi / 180.0);
+  EXPECT_LT(report.max_tilt_rad, kDegree);
   EXPECT_NEAR(report.min_height_m, 0.32, 0.03);
   EXPECT_EQ(report.steps_taken, 0);
   EXPECT_FALSE(report.has_fallen);
@@ -84,7 +85,7 @@ TEST(QuadrupedController, TakesAKerbEdgeOf5CentimetresUpAndDownAgain) {
 
 TEST(QuadrupedController, ClimbsASlopeOf5DegreesAndComesDownIt) {
   // A ridge: 5 degrees up over 3 m from x = 0.7 m, and as much down on the other side.
-  const double angle = 5.0 * kPi / 180.0, length = 3.0;
+  const double angle = to_rad(5.0), length = 3.0;
   const auto ramp = [&](double foot_x, double sign) {
     const double x = foot_x + sign * (length / 2.0 * std::cos(angle)) + sign * 0.1 * std::sin(angle);
     const double z = length / 2.0 * std::sin(angle) - 0.1 * std::cos(angle);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
+
 namespace patrol::sim {
 namespace {
 
@@ -43,7 +45,7 @@ TEST(RemoteOperator, MarksWithinTenCentimetresAndThreeDegreesAndHandsOverAtTheEn
                               {});
   ASSERT_EQ(driven.marks.size(), 1u);
   EXPECT_LT((driven.marks[0].position() - Eigen::Vector2d(12.0, 2.0)).norm(), 0.10);
-  EXPECT_LT(std::abs(wrap_angle(driven.marks[0].yaw - 1.0)), 3.0 * std::numbers::pi / 180.0);
+  EXPECT_LT(std::abs(wrap_angle(driven.marks[0].yaw - 1.0)), to_rad(3.0));
   ASSERT_TRUE(driven.handed_over.has_value());
   EXPECT_LT((driven.T_world_body.position() - Eigen::Vector2d(4.0, 3.0)).norm(), 0.10);
 }

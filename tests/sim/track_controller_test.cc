@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/angles.h"
 #include "sim/sensors/hall_sensors.h"
 #include "tests/support/tracked_twin.h"
 
@@ -151,7 +152,7 @@ TEST(TrackController, BeyondSixtyDegreesFor300MillisecondsIsAFall) {
   for (const double tilt_deg : {50.0, 70.0}) {
     TrackController controller(tracked_description(), {}, kTicksPerRad);
     Imu imu = level_imu();
-    const double tilt = tilt_deg * M_PI / 180.0;
+    const double tilt = to_rad(tilt_deg);
     imu.linear_acceleration_mps2 = {0.0, 9.81 * std::sin(tilt), 9.81 * std::cos(tilt)};
     for (int tick = 0; tick < 100; ++tick) controller.step(imu, {}, {});
     EXPECT_FALSE(controller.has_fallen()) << "0.2 s";

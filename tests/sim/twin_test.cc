@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "io/urdf.h"
 #include "tests/sim/rubble.h"
@@ -136,7 +136,7 @@ TEST(Twin, OnRoughGroundARobotThatCreepsStandsWithin5MicrometresAndAThousandthOf
     const Pose3 before = twin->truth().T_world_body;
     twin.run(0.0, duration_s);
     const Pose3 after = twin->truth().T_world_body;
-    return std::pair((after.position - before.position).norm(), before.rotation.angularDistance(after.rotation) * 180.0 / std::numbers::pi);
+    return std::pair((after.position - before.position).norm(), to_deg(before.rotation.angularDistance(after.rotation)));
   };
   const auto [free_m, free_deg] = creep_of(29.0);
   twin->command(ScanCommand{twin->now()});

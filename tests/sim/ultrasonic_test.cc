@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "core/random.h"
 #include "tests/sim/small_world.h"
@@ -16,7 +17,6 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr float kSilence = std::numeric_limits<float>::infinity();
 constexpr int kPings = 2000;
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "tests/slam/street_walk.h"
 #include "tests/support/pose_near.h"
@@ -14,8 +14,6 @@ namespace patrol::slam {
 namespace {
 
 using test::Pose2Near, test::WalkStep;
-
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 GridSlamSettings with_particles(int particles) {
   GridSlamSettings settings;
@@ -89,7 +87,7 @@ TEST(GridSlam, WalksTheStreetAndBackToWithinSixCentimetresRms) {
   EXPECT_LT(walk.rmse_m, 0.06);
   EXPECT_GT(walk.rmse_m, 0.01) << "better than scans of 2 cm noise allow: look before you celebrate";
   EXPECT_LT(walk.end_error_m, 0.03);
-  EXPECT_LT(walk.heading_rmse_rad, 0.1 * kDeg);
+  EXPECT_LT(walk.heading_rmse_rad, 0.1 * kDegree);
   EXPECT_LT(walk.wall_mean_m, 0.05);
   EXPECT_GT(walk.num_occupied, 7000U) << "about 440 m of walls seen, 20 cells a metre";
   EXPECT_TRUE(walk.resampled);
@@ -168,12 +166,12 @@ TEST(GridSlam, WhatALidarTiltedBy11DegreesSeesIsNeitherMatchedNorWritten) {
     SlamUpdate update;
     for (int i = 1; i <= 6; ++i) {
       const Pose2 T_odom_body{0.1 * i, 0.0, 0.0};
-      LevelScan scan = room.scan(T_odom_body * Pose2{0.0, 0.0, 3.0 * kDeg}, {});
+      LevelScan scan = room.scan(T_odom_body * Pose2{0.0, 0.0, 3.0 * kDegree}, {});
       scan.tilt_rad = tilt_rad;
       update = slam.update(scan, T_odom_body);
       EXPECT_FALSE(update.is_keyframe && tilt_rad > 0.0);
     }
-    EXPECT_NEAR(update.T_map_body.yaw, tilt_rad > 0.0 ? 0.0 : 3.0 * kDeg, 1.0 * kDeg);
+    EXPECT_NEAR(update.T_map_body.yaw, tilt_rad > 0.0 ? 0.0 : 3.0 * kDegree, 1.0 * kDegree);
     EXPECT_NEAR(update.T_map_body.x, 0.6, 0.02);
   }
 }

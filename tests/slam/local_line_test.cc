@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "core/angles.h"
 #include "core/random.h"
 
 namespace patrol::slam {
@@ -27,7 +27,7 @@ GridMap make_wall(const Eigen::Vector2d& through, double angle_rad, double std_m
 
 TEST(FitLocalLine, MeasuresThreeCentimetresFromAWallAtAnyAngleToATenthOfAMillimetre) {
   for (int degrees = 0; degrees < 180; degrees += 7) {
-    const double angle = degrees * std::numbers::pi / 180.0;
+    const double angle = to_rad(degrees);
     const GridMap map = make_wall({0.312, -0.457}, angle);
     const Eigen::Vector2d across(-std::sin(angle), std::cos(angle));
     const auto line = fit_local_line(map, Eigen::Vector2d(0.312, -0.457) + 0.03 * across, 3);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "slam/resampling.h"
+#include "core/particle_weights.h"
 
 namespace patrol::slam {
 namespace {

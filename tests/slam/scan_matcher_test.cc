@@ -4,8 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <numbers>
-
+#include "core/angles.h"
 #include "slam/match_points.h"
 #include "slam/scan_integration.h"
 #include "tests/support/pose_near.h"
@@ -15,8 +14,6 @@ namespace patrol::slam {
 namespace {
 
 using test::Pose2Near, test::RoomWorld;
-
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 /// 8 m by 6 m with a cupboard and a pillar.
 RoomWorld make_room() {
@@ -57,10 +54,10 @@ TEST(MatchScan, RecoversTenCentimetresAndThreeDegreesToFiveMillimetresAndATenthO
   const RoomWorld room = make_room();
   const GridMap map = make_map(room);
   for (const double sign : {-1.0, 1.0}) {
-    const Pose2 start{kTruth.x + sign * 0.08, kTruth.y - sign * 0.06, kTruth.yaw + sign * 3.0 * kDeg};
+    const Pose2 start{kTruth.x + sign * 0.08, kTruth.y - sign * 0.06, kTruth.yaw + sign * 3.0 * kDegree};
     const auto match = match_scan(map, look(room, kTruth), start, std::nullopt, {});
     ASSERT_TRUE(match);
-    EXPECT_THAT(match->T_map_body, Pose2Near(kTruth, 0.005, 0.1 * kDeg));
+    EXPECT_THAT(match->T_map_body, Pose2Near(kTruth, 0.005, 0.1 * kDegree));
     EXPECT_TRUE(match->converged);
     EXPECT_LE(match->iterations, 8);
     EXPECT_GT(match->matched_share, 0.9);
@@ -92,10 +89,10 @@ TEST(MatchScan, ACorridorTellsAcrossAndHeadingButNotAlong) {
   const RoomWorld corridor = make_corridor();
   const GridMap map = make_map(corridor);
   const Pose2 truth{0.4, 0.2, 0.0};
-  const auto match = match_scan(map, look(corridor, truth), {0.4, 0.25, 1.0 * kDeg}, std::nullopt, {});
+  const auto match = match_scan(map, look(corridor, truth), {0.4, 0.25, 1.0 * kDegree}, std::nullopt, {});
   ASSERT_TRUE(match);
   EXPECT_NEAR(match->T_map_body.y, 0.2, 0.005);
-  EXPECT_NEAR(match->T_map_body.yaw, 0.0, 0.1 * kDeg);
+  EXPECT_NEAR(match->T_map_body.yaw, 0.0, 0.1 * kDegree);
   EXPECT_LT(match->information(0, 0), 0.01 * match->information(1, 1));
 }
 
@@ -134,7 +131,7 @@ TEST(MatchScan, AThirdOfThePointsOnAPersonMovesItByLessThanFiveMillimetres) {
       match_scan(map, look(crowded, kTruth), {kTruth.x + 0.05, kTruth.y, kTruth.yaw}, std::nullopt, {});
   ASSERT_TRUE(match);
   EXPECT_LT(match->matched_share, 0.95);
-  EXPECT_THAT(match->T_map_body, Pose2Near(kTruth, 0.005, 0.1 * kDeg));
+  EXPECT_THAT(match->T_map_body, Pose2Near(kTruth, 0.005, 0.1 * kDegree));
 }
 
 // The steps are two cells, and those two cells seen at the farthest point: a match from there must succeed.
@@ -142,12 +139,12 @@ TEST(SearchPose, ComesWithinReachOfTheMatchFromThirtyCentimetresAndSixDegrees) {
   const RoomWorld room = make_room();
   const GridMap map = make_map(room);
   const auto points = look(room, kTruth);
-  const Pose2 center{kTruth.x + 0.28, kTruth.y - 0.27, kTruth.yaw + 6.0 * kDeg};
+  const Pose2 center{kTruth.x + 0.28, kTruth.y - 0.27, kTruth.yaw + 6.0 * kDegree};
   const Pose2 found = search_pose(map, points, center, {});
-  EXPECT_THAT(found, Pose2Near(kTruth, 0.1, 1.5 * kDeg));
+  EXPECT_THAT(found, Pose2Near(kTruth, 0.1, 1.5 * kDegree));
   const auto match = match_scan(map, points, found, std::nullopt, {});
   ASSERT_TRUE(match);
-  EXPECT_THAT(match->T_map_body, Pose2Near(kTruth, 0.005, 0.1 * kDeg));
+  EXPECT_THAT(match->T_map_body, Pose2Near(kTruth, 0.005, 0.1 * kDegree));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/angles.h"
 #include "core/frames.h"
 #include "core/messages.h"
 #include "core/random.h"
@@ -127,7 +128,7 @@ inline std::vector<WalkStep> make_walk(const WalkOptions& options, std::uint64_t
       const double way = move.position().norm();
       move.x = move.x * (1.0 + options.odometry_scale) + 0.001 * noise.normal(i, 0);
       move.y = move.y + 0.01 * way + 0.001 * noise.normal(i, 1);
-      move.yaw += options.odometry_drift_degpmin * pi / 180.0 / 60.0 * options.period_s + 0.0005 * noise.normal(i, 2);
+      move.yaw += to_rad(options.odometry_drift_degpmin) / 60.0 * options.period_s + 0.0005 * noise.normal(i, 2);
       step.T_odom_body = last.T_odom_body * move;
     }
     step.T_start_body = truth_at(0.0).inverse() * step.T_world_body;

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "core/angles.h"
 #include "core/frames.h"
 #include "core/messages.h"
 #include "core/random.h"
@@ -81,14 +81,13 @@ struct LinedTunnel {
 
   /// In `scanner_level`; a pose that is not level is the compensator's error.
   PanoramicScan scan(const Pose3& T_route_scanner, const ScanOptions& options, std::uint64_t seed) const {
-    constexpr double kRadian = std::numbers::pi / 180.0;
     const RandomStream noise(seed, "test/scanner");
     PanoramicScan scan;
     std::uint64_t beam = 0;
     for (double azimuth = 0.0; azimuth < 360.0; azimuth += options.step_deg) {
       for (double elevation = options.lowest_deg; elevation <= 90.0; elevation += options.step_deg) {
         const auto draw = noise.normals(0, beam++);
-        const double a = azimuth * kRadian, e = elevation * kRadian;
+        const double a = azimuth * kDegree, e = elevation * kDegree;
         const Eigen::Vector3d ray = ray_to(a + options.angle_std_rad * draw[1], e + options.angle_std_rad * draw[2]);
         const double range = range_m(T_route_scanner.position, T_route_scanner.rotation * ray);
         if (!(range < options.end_m)) continue;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/angles.h"
 #include "core/frames.h"
 #include "core/messages.h"
 #include "core/random.h"
@@ -43,7 +44,7 @@ inline LiningStation scan_twice(const LinedTunnel& before, const LinedTunnel& af
   station.scan = after.scan(T_route_second, {.step_deg = step_deg, .range_offset_m = 5e-4 * place[3]}, 2 * seed + 1);
   station.T_map_scanner = T_map_surveyed * T_route_first.inverse() * T_route_second;
   station.T_map_scanner_guess = held_level({station.T_map_scanner.position + Eigen::Vector3d(0.1 * guess[0], 0.1 * guess[1], 0.03 * guess[2]),
-                                            quaternion_from_yaw(std::numbers::pi / 180.0 * guess[3]) * station.T_map_scanner.rotation});
+                                            quaternion_from_yaw(kDegree * guess[3]) * station.T_map_scanner.rotation});
   return station;
 }
 

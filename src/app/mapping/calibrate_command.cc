@@ -1,5 +1,4 @@
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 
@@ -8,6 +7,7 @@
 #include "app/commands.h"
 #include "app/mapping/read_scans.h"
 #include "app/output_directory.h"
+#include "core/angles.h"
 #include "core/error.h"
 #include "io/csv.h"
 #include "io/metrics_json.h"
@@ -104,7 +104,6 @@ std::string table_text(const slam::CalibrationResult& result) {
     const char* unit;
     int decimals;
   };
-  constexpr double kDegPerRad = 180.0 / std::numbers::pi;
   constexpr std::array<Row, 6> kRows = {{{"lidar ahead of the body", 1.0, "m", 4},
                                          {"lidar to its left", 1.0, "m", 4},
                                          {"lidar turned to the left", kDegPerRad, "deg", 3},

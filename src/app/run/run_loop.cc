@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
-#include <numbers>
 #include <utility>
 
 #include "app/stack/patrol_stack.h"
 #include "app/stack/tour_stack.h"
+#include "core/angles.h"
 #include "core/overloaded.h"
 #include "inspect/route_frame.h"
 #include "io/run_log.h"
@@ -69,7 +69,7 @@ LiningReferences references_of(const ScenarioFiles& files) {
 
 Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files) {
   return files.T_site_start * Pose2{scenario.start.ahead_m, scenario.start.left_m,
-                                    scenario.start.turn_deg * std::numbers::pi / 180.0};
+                                    to_rad(scenario.start.turn_deg)};
 }
 
 std::vector<sim::PropSettings> props_of(const Scenario& scenario) {
@@ -144,7 +144,7 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
     const auto is_kidnapped = [&](const KidnapSettings& kidnap) { return from_seconds(kidnap.at_s) <= now; };
     while (outcome.num_kidnaps < kidnaps.size() && is_kidnapped(kidnaps[outcome.num_kidnaps])) {
       const KidnapSettings& kidnap = kidnaps[outcome.num_kidnaps++];
-      twin.put_at({kidnap.x_m, kidnap.y_m, kidnap.heading_deg * std::numbers::pi / 180.0});
+      twin.put_at({kidnap.x_m, kidnap.y_m, to_rad(kidnap.heading_deg)});
     }
     const GroundTruth truth = twin.truth();
     for (const Collision& collision : twin.take_collisions()) log.write(now, collision);

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "core/angles.h"
+
 namespace patrol::app {
 namespace {
 
@@ -122,7 +124,7 @@ std::string figures_text(const WatchedRun& run) {
   if (run.estimate && run.truth) {
     const Pose2 error = run.truth->inverse() * run.estimate->T_map_body;
     const Eigen::Matrix3d& covariance = run.estimate->covariance;
-    text += fmt::format("   error {:.3f} m {:.2f}°   its own 2σ {:.3f} m", error.position().norm(), std::abs(error.yaw) * 180.0 / std::numbers::pi,
+    text += fmt::format("   error {:.3f} m {:.2f}°   its own 2σ {:.3f} m", error.position().norm(), to_deg(std::abs(error.yaw)),
                         2.0 * std::sqrt(covariance(0, 0) + covariance(1, 1)));
   }
   if (run.trust) text += fmt::format("   trust {:.2f}{}", run.trust->trust, run.trust->is_lost ? " LOST" : "");

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include "app/commands.h"
 #include "app/output_directory.h"
 #include "app/scoring/localizability_map.h"
+#include "core/angles.h"
 #include "core/error.h"
 #include "io/csv.h"
 #include "render/heat_map.h"
@@ -26,7 +26,7 @@ double share_of(double std_m) { return std::log10(std::clamp(std_m, 1e-4, 1.0)) 
 io::Table table_of(const LocalizabilityMap& map) {
   io::Table table{.name = "localizability", .columns = {"x_m", "y_m", "weak_std_m", "weak_direction_deg", "strong_std_m", "returns"}, .rows = {}};
   for (const LocalizablePlace& place : map.places) {
-    table.rows.push_back({place.p_world_m.x(), place.p_world_m.y(), place.truth.weak_std_m, place.truth.weak_direction_rad * 180.0 / std::numbers::pi,
+    table.rows.push_back({place.p_world_m.x(), place.p_world_m.y(), place.truth.weak_std_m, to_deg(place.truth.weak_direction_rad),
                           place.truth.strong_std_m, static_cast<std::int64_t>(place.truth.num_returns)});
   }
   return table;

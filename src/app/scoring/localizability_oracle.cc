@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "core/angles.h"
 
 namespace patrol::app {
 namespace {
@@ -14,7 +15,7 @@ score::BeamNoise noise_of(const sim::LidarSettings& lidar, int num_rays) {
   const double range_std_m = std::sqrt(lidar.range_noise_m * lidar.range_noise_m + quantum_m * quantum_m / 12.0);
   const double beams_per_ray = lidar.beams * 360.0 / lidar.fov_deg / num_rays;
   return {.range_std_m = std::max(range_std_m, kLeast_m) / std::sqrt(beams_per_ray),
-          .direction_std_rad = lidar.angle_noise_deg * std::numbers::pi / 180.0 / std::sqrt(beams_per_ray)};
+          .direction_std_rad = to_rad(lidar.angle_noise_deg) / std::sqrt(beams_per_ray)};
 }
 
 }  // namespace

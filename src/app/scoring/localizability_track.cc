@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/symmetric_axes.h"
 #include "io/csv.h"
 
@@ -11,7 +12,6 @@ namespace patrol::app {
 namespace {
 
 constexpr Time kSpacing = std::chrono::milliseconds(500);
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 /// Trust is said of the estimate with the same stamp.
 std::optional<double> trust_at(const std::vector<LocalizationTrust>& trusts, Time stamp) {

@@ -5,12 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/random.h"
 
 namespace patrol::app {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// The way of paper 000's second world.
 double radius_m(double angle_rad, bool is_circle) {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numbers>
 #include <tuple>
 
+#include "core/angles.h"
 #include "inspect/lining/registration.h"
 #include "inspect/lining/robust_mean.h"
 
@@ -102,7 +102,7 @@ class Adjuster {
     const Vector7 from_guess = offset_from_guess(state);
     Vector7 prior;
     prior.head<3>().setConstant(1.0 / (settings_.guess_std_m * settings_.guess_std_m));
-    const double guess_std_rad = settings_.guess_std_deg * std::numbers::pi / 180.0;
+    const double guess_std_rad = to_rad(settings_.guess_std_deg);
     prior.segment<3>(3).setConstant(1.0 / (guess_std_rad * guess_std_rad));
     prior[6] = 1.0 / (settings_.range_offset_std_m * settings_.range_offset_std_m);
     Vector7 step = Vector7::Zero();

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/angles.h"
 #include "inspect/lining/robust_mean.h"
 
 namespace patrol::inspect {
@@ -20,7 +20,7 @@ constexpr double kSlopePrior_m2 = 0.002 * 0.002 / (0.01 * 0.01);
 }  // namespace
 
 ReferenceLining::ReferenceLining(const LiningInMap& lining, const LiningGrid& grid, const std::vector<ThinPoint>& points_map, const LiningSettings& settings)
-    : grid_(grid), arc_per_deg_m_(lining.design.crown_radius_m * std::numbers::pi / 180.0), cells_(static_cast<std::size_t>(grid.cells())) {
+    : grid_(grid), arc_per_deg_m_(to_rad(lining.design.crown_radius_m)), cells_(static_cast<std::size_t>(grid.cells())) {
   for (const ThinPoint& thin : points_map) {
     const LiningPoint point = lining_point(lining, thin.p);
     const int cell = grid.cell_at(point);

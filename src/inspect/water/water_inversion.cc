@@ -9,14 +9,15 @@
 #include <Eigen/Cholesky>
 #include <fmt/format.h>
 
+#include "core/angles.h"
 #include "core/error.h"
+#include "core/particle_weights.h"
 #include "core/random.h"
 #include "inspect/water/sounding_likelihood.h"
 
 namespace patrol::inspect {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
 /// ln rock, ln distance, y/x and z/x of the direction in body, ln radius, ln conductivity of the water.
@@ -100,18 +101,11 @@ double next_step(const std::vector<Particle>& particles, double left) {
   return low;
 }
 
-/// Systematic resampling by weights e^(step ln L).
-std::vector<Particle> resampled(const std::vector<Particle>& particles, double step, double offset) {
-  double top = kNever, total = 0.0;
-  for (const Particle& particle : particles) top = std::max(top, particle.log_likelihood);
-  std::vector<double> cumulative;
-  for (const Particle& particle : particles) cumulative.push_back(total += std::exp(step * (particle.log_likelihood - top)));
+/// Systematic resampling by weights e^(step ln L); `log_weights` are step ln L.
+std::vector<Particle> resampled(const std::vector<Particle>& particles, const std::vector<double>& log_weights, double offset) {
   std::vector<Particle> chosen;
-  const double count = static_cast<double>(particles.size());
-  for (std::size_t i = 0, at = 0; i < particles.size(); ++i) {
-    while (at + 1 < particles.size() && cumulative[at] < (static_cast<double>(i) + offset) / count * total) ++at;
-    chosen.push_back(particles[at]);
-  }
+  chosen.reserve(particles.size());
+  for (const std::size_t parent : resample_systematic(normalized_weights(log_weights), offset)) chosen.push_back(particles[parent]);
   return chosen;
 }
 
@@ -161,7 +155,7 @@ Posterior sample(const WaterSettings& settings, const LogLikelihood& log_likelih
     for (const Particle& particle : posterior.particles) log_weights.push_back(step * particle.log_likelihood);
     posterior.log_evidence += log_mean_exp(log_weights);
     temperature = step >= 1.0 - temperature ? 1.0 : temperature + step;
-    posterior.particles = resampled(posterior.particles, step, random.uniform());
+    posterior.particles = resampled(posterior.particles, log_weights, random.uniform());
     move(posterior.particles, temperature, settings, log_likelihood, random);
   }
   return posterior;

@@ -2,47 +2,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "core/distance_transform.h"
 
 namespace patrol::localize {
-namespace {
-
-/// Whether a neighbour of this occupied cell is not occupied: only then can the cell be the nearest to any but itself.
-bool is_on_edge(const OccupancyGrid& map, Cell cell) {
-  const auto is_solid = [&](int col, int row) { return map.contains({col, row}) && is_occupied(map.at({col, row})); };
-  return !is_solid(cell.col - 1, cell.row) || !is_solid(cell.col + 1, cell.row) || !is_solid(cell.col, cell.row - 1) ||
-         !is_solid(cell.col, cell.row + 1);
-}
-
-void stamp(Grid<float>& squared, Cell center, int reach) {
-  const GridGeometry& geometry = squared.geometry();
-  const int col_begin = std::max(0, center.col - reach), col_end = std::min(geometry.width, center.col + reach + 1);
-  const int row_begin = std::max(0, center.row - reach), row_end = std::min(geometry.height, center.row + reach + 1);
-  for (int row = row_begin; row < row_end; ++row) {
-    const auto across = static_cast<float>((row - center.row) * (row - center.row));
-    float* const line = &squared.at({0, row});
-    for (int col = col_begin; col < col_end; ++col) {
-      const auto along = static_cast<float>((col - center.col) * (col - center.col));
-      line[col] = std::min(line[col], along + across);
-    }
-  }
-}
-
-}  // namespace
 
 Grid<float> distance_to_occupied(const OccupancyGrid& map, double cap_m) {
   const GridGeometry& geometry = map.geometry();
+  std::vector<std::uint8_t> is_obstacle(geometry.size());
+  std::transform(map.values().begin(), map.values().end(), is_obstacle.begin(),
+                 [](std::int8_t percent) { return static_cast<std::uint8_t>(is_occupied(percent)); });
   const double cap_cells = cap_m / geometry.resolution_m;
-  Grid<float> distance(geometry, static_cast<float>(cap_cells * cap_cells));
-  for (int row = 0; row < geometry.height; ++row) {
-    for (int col = 0; col < geometry.width; ++col) {
-      if (!is_occupied(map.at({col, row}))) continue;
-      distance.at({col, row}) = 0.0F;
-      if (is_on_edge(map, {col, row})) stamp(distance, {col, row}, static_cast<int>(cap_cells));
-    }
+  const auto squared_cap = static_cast<float>(cap_cells * cap_cells), resolution_m = static_cast<float>(geometry.resolution_m);
+  const auto to_distance = [=](auto squared) { return resolution_m * std::sqrt(std::min(squared_cap, static_cast<float>(squared))); };
+
+  Grid<float> distance_m(geometry);
+  if (cap_cells < DistanceTransform::kMaxCap_cells) {
+    DistanceTransform::SquaredDistances squared;
+    DistanceTransform(static_cast<int>(cap_cells) + 1).compute(is_obstacle, geometry.width, geometry.height, squared);
+    std::transform(squared.begin(), squared.end(), distance_m.values().begin(), to_distance);
+  } else {
+    const std::vector<double> squared = squared_distances(is_obstacle, geometry.width, geometry.height);
+    std::transform(squared.begin(), squared.end(), distance_m.values().begin(), to_distance);
   }
-  const auto resolution_m = static_cast<float>(geometry.resolution_m);
-  for (float& value : distance.values()) value = resolution_m * std::sqrt(value);
-  return distance;
+  return distance_m;
 }
 
 }  // namespace patrol::localize

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/particle_weights.h"
 #include "localize/amcl/distance_to_occupied.h"
-#include "slam/resampling.h"
 
 namespace patrol::localize {
 namespace {
@@ -85,9 +85,9 @@ GlobalSearch::Candidates GlobalSearch::find(const LevelScan& scan, const std::ve
   for (std::size_t i = 0; i < log_coarse.size(); ++i) {
     log_coarse[i] = places[i / static_cast<std::size_t>(turns)].log_ranges + scan_gain * coarse_.mean_log(ends, coarse_pose(i));
   }
-  const std::vector<double> coarse = slam::normalized_weights(log_coarse);
+  const std::vector<double> coarse = normalized_weights(log_coarse);
   const auto samples = static_cast<std::size_t>(settings_.coarse_samples);
-  std::vector<std::size_t> chosen = slam::resample_systematic(coarse, uniform, samples);
+  std::vector<std::size_t> chosen = resample_systematic(coarse, uniform, samples);
 
   Candidates candidates;
   candidates.half_step_m = 0.5 * settings_.step_m / kFineSteps;
@@ -109,14 +109,14 @@ GlobalSearch::Candidates GlobalSearch::find(const LevelScan& scan, const std::ve
     }
     first = end;
   }
-  candidates.weights = slam::normalized_weights(log_fine);
+  candidates.weights = normalized_weights(log_fine);
   return candidates;
 }
 
 std::vector<Pose2> draw_poses(const GlobalSearch::Candidates& candidates, std::size_t count, const RandomStream& noise, std::uint64_t tick) {
   if (candidates.weights.empty() || count == 0) return {};
   std::vector<Pose2> poses;
-  const std::vector<std::size_t> parents = slam::resample_systematic(candidates.weights, noise.uniform(tick, 0), count);
+  const std::vector<std::size_t> parents = resample_systematic(candidates.weights, noise.uniform(tick, 0), count);
   for (std::size_t i = 0; i < count; ++i) {
     const Pose2& pose = candidates.T_map_body[parents[i]];
     const auto jitter = [&](std::uint64_t axis, double half) { return half * (2.0 * noise.uniform(tick, 1 + 3 * i + axis) - 1.0); };

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/particle_weights.h"
 #include "localize/amcl/distance_to_occupied.h"
-#include "slam/resampling.h"
 
 namespace patrol::localize {
 namespace {
@@ -146,7 +146,7 @@ RefinedPose MonteCarloLocalizer::weigh(const LevelScan& scan, const std::vector<
       cloud_.log_weights[i] += range_log_likelihood(range_excess_m(range, cloud_.T_map_body[i]), settings_.ranges);
     }
   }
-  const std::vector<double> prior_weights = slam::normalized_weights(cloud_.log_weights);
+  const std::vector<double> prior_weights = normalized_weights(cloud_.log_weights);
 
   const ScanLikelihoods fits = sensor_model_->evaluate(scan, cloud_.T_map_body);
   const double gain = std::min(settings_.independent_beams, static_cast<double>(fits.num_beams));
@@ -158,7 +158,7 @@ RefinedPose MonteCarloLocalizer::weigh(const LevelScan& scan, const std::vector<
     likelihood += prior_weights[i] * std::exp(fits.mean_log[i]);
   }
   if (fits.num_beams > 0) fit_.add_scan_likelihood(likelihood);
-  const std::vector<double> weights = slam::normalized_weights(cloud_.log_weights);
+  const std::vector<double> weights = normalized_weights(cloud_.log_weights);
 
   const std::vector<std::size_t> clumps = clumps_of(cloud_.T_map_body, settings_.kld);
   const HeaviestClump heaviest = heaviest_clump(clumps, weights);
@@ -174,11 +174,11 @@ RefinedPose MonteCarloLocalizer::weigh(const LevelScan& scan, const std::vector<
 int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2& T_odom_body) {
   const bool may_search = !last_search_ || to_seconds(scan.stamp - *last_search_) >= settings_.search_period_s;
   const double share = may_search ? fit_.injection_share() : 0.0;
-  const std::vector<double> weights = slam::normalized_weights(cloud_.log_weights);
+  const std::vector<double> weights = normalized_weights(cloud_.log_weights);
   const auto count = static_cast<double>(cloud_.size());
   const std::size_t needed = particles_needed(weights);
   const bool is_wasteful = static_cast<double>(needed) < kWastefulShare * count;
-  if (share > 0.0 || is_wasteful || slam::effective_sample_size(weights) < settings_.resample_threshold * count) resample(weights, needed);
+  if (share > 0.0 || is_wasteful || effective_sample_size(weights) < settings_.resample_threshold * count) resample(weights, needed);
 
   const auto num_injected = static_cast<std::size_t>(share * static_cast<double>(cloud_.size()));
   if (num_injected == 0) return 0;
@@ -202,7 +202,7 @@ void MonteCarloLocalizer::draw_towards(const RefinedPose& refined) {
 
 void MonteCarloLocalizer::resample(const std::vector<double>& weights, std::size_t count) {
   ParticleCloud children;
-  for (const std::size_t parent : slam::resample_systematic(weights, resampling_noise_.uniform(updates_), count)) {
+  for (const std::size_t parent : resample_systematic(weights, resampling_noise_.uniform(updates_), count)) {
     children.add(cloud_.T_map_body[parent], cloud_.way_scale[parent]);
   }
   cloud_ = std::move(children);
@@ -252,7 +252,7 @@ ParticleSet MonteCarloLocalizer::logged_particles(Time stamp) const {
     set.T_map_body.push_back(cloud_.T_map_body[from]);
     log_weights.push_back(cloud_.log_weights[from]);
   }
-  set.weights = slam::normalized_weights(log_weights);
+  set.weights = normalized_weights(log_weights);
   return set;
 }
 

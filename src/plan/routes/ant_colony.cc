@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/angles.h"
 #include "plan/routes/grid_walk.h"
 
 namespace patrol::plan {
@@ -28,7 +29,7 @@ std::vector<double> diffusion_shares(const std::optional<ImprovedColonySettings>
   std::vector<double> shares;
   if (!settings) return shares;
   const Grid<Eigen::Vector2d> forces = potential_forces(settings->field, costs, goal);
-  const double least_cosine = std::cos(settings->half_angle_deg * std::numbers::pi / 180.0);
+  const double least_cosine = std::cos(to_rad(settings->half_angle_deg));
   for (const Eigen::Vector2d& force : forces.values()) {
     const double size = force.norm();
     for (std::size_t direction = 0; direction < 8; ++direction) {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
+
+#include "core/angles.h"
 
 namespace patrol::render {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kClearance_m = 0.25;  // between eye and wall
 constexpr double kFollow_s = 0.12;     // time constant
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/angles.h"
+
 namespace patrol::sim {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr double kRestSprocket_radps = 0.5;  // a tick that comes and goes looks
 constexpr double kBiasTime_s = 5.0;          // to learn the gyroscope's bias at rest
 constexpr double kLevelling_per_s = 0.5;   // of the gyroscope's attitude by the accelerometer
 constexpr double kSettling_s = 0.5;        // after switch-on the accelerometer alone
-const double kFallenCosine = std::cos(60.0 * M_PI / 180.0);
+const double kFallenCosine = std::cos(to_rad(60.0));
 
 double approach(double value, double target, double max_change) {
   return value + std::clamp(target - value, -max_change, max_change);

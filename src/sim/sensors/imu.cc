@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
+
+#include "core/angles.h"
 
 namespace patrol::sim {
 namespace {
@@ -36,7 +37,7 @@ ImuSensor::Triad ImuSensor::make_triad(std::uint64_t seed, const char* name, con
               .walk_std = walk * std::sqrt(tick_s),
               .range = range,
               .resolution = resolution};
-  const double misalignment_rad = settings.misalignment_deg * std::numbers::pi / 180.0;
+  const double misalignment_rad = to_rad(settings.misalignment_deg);
   std::uint64_t draw = 0;
   for (int row = 0; row < 3; ++row) {
     triad.bias[row] = bias * constant.normal(0, draw++);

@@ -10,12 +10,12 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/angles.h"
 #include "core/error.h"
 
 namespace patrol::sim {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPulse_m = 0.065;  // 16 waves of 8 mm, there and back
 constexpr int kRays = 149;

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/convex_polygon.h"
 #include "core/settings.h"
 #include "slam/grid_map.h"
-#include "slam/submaps/convex_hull.h"
 #include "slam/submaps/ndt.h"
 #include "slam/submaps/seen_cells.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "slam/resampling.h"
+#include "core/particle_weights.h"
 
 namespace patrol::slam {
 namespace {

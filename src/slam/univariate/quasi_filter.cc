@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <numbers>
 
-#include "slam/resampling.h"
+#include "core/particle_weights.h"
 
 namespace patrol::slam {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "slam/resampling.h"
+#include "core/particle_weights.h"
 
 namespace patrol::slam {
 

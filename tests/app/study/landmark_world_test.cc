@@ -5,12 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "tests/support/moments.h"
 
 namespace patrol::app {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 double way_m(const LandmarkRun& run) {
   double way = 0.0;

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "core/angles.h"
 #include "core/random.h"
 #include "tests/support/lined_tunnel.h"
 
@@ -86,7 +86,7 @@ TEST(FitDesign, FindsTheLiningThatTheMapHas200mmAsideAnd1DegreeTurned) {
   const Eigen::Vector3d scanner(85.0, 1.0, 0.5);
   const std::vector<ThinPoint> points = seen(lining, 85.0);
   TunnelLining wrong = lining.design;
-  wrong.T_route_start = Pose2{0.0, 0.2, 0.0} * Pose2{85.0, 0.0, 0.0} * Pose2{0.0, 0.0, std::numbers::pi / 180.0} * Pose2{-85.0, 0.0, 0.0} * wrong.T_route_start;
+  wrong.T_route_start = Pose2{0.0, 0.2, 0.0} * Pose2{85.0, 0.0, 0.0} * Pose2{0.0, 0.0, kDegree} * Pose2{-85.0, 0.0, 0.0} * wrong.T_route_start;
   const auto fitted = fit_design(wrong, points, scanner, {});
   ASSERT_TRUE(fitted.has_value());
   EXPECT_NEAR(fitted->invert_m, -0.3, 0.001);

@@ -2,14 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
+#include "core/angles.h"
 #include "tests/support/lined_tunnel.h"
 
 namespace patrol::inspect {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 SurfaceCloud scan_from(const test::LinedTunnel& tunnel, const Pose3& T_route_scanner, std::uint64_t seed) {
   return SurfaceCloud(thin(tunnel.scan(T_route_scanner, {.step_deg = 1.0}, seed).points, 0.1, 1.5));

@@ -6,6 +6,7 @@
 #include <functional>
 #include <numbers>
 
+#include "core/angles.h"
 #include "tests/support/lined_tunnel.h"
 
 namespace patrol::inspect {
@@ -91,7 +92,7 @@ TEST(ConvergenceLines, CommonErrorOfTheRegistrationHardlyTouchesAChord) {
   // Both ends shift alike: what one gains the other loses.
   Adjustment adjustment = ring_18([](double) { return 0.0; });
   for (Patch& patch : adjustment.patches) {
-    const double clock = kGrid.clock_deg(kGrid.sector_of(patch.cell)) * std::numbers::pi / 180.0;
+    const double clock = to_rad(kGrid.clock_deg(kGrid.sector_of(patch.cell)));
     patch.J = Vector7::Zero();
     patch.J[1] = std::sin(clock);
   }

@@ -4,15 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numbers>
 #include <set>
 
+#include "core/angles.h"
 #include "core/error.h"
 
 namespace patrol::inspect {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 AntennaGeometry mount() {
   AntennaGeometry antenna;

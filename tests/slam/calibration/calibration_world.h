@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/angles.h"
 #include "core/random.h"
 #include "slam/calibration/motion_pairs.h"
 
@@ -14,7 +15,7 @@ namespace patrol::test {
 inline const slam::Calibration kWorn{.places_lidar = true,
                                      .lidar_x_m = 0.25,
                                      .lidar_y_m = -0.04,
-                                     .lidar_yaw_rad = 2.0 * std::numbers::pi / 180.0,
+                                     .lidar_yaw_rad = to_rad(2.0),
                                      .distance_scale = 1.03,
                                      .turn_scale = 0.9,
                                      .steering_rad_per_m = 0.02};

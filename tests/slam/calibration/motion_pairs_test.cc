@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/angles.h"
 #include "slam/calibration/calibrate.h"
 #include "tests/slam/calibration/calibration_world.h"
 #include "tests/slam/graph/office_world.h"
@@ -56,7 +57,7 @@ TEST(MotionPairs, StretchesAreHalfAMetreOrAThirdOfARadianAndTheLidarsOwn) {
     EXPECT_LT(pair.begin, pair.end);
   }
   // Straight ahead the lidar, turned by 2 degrees to the left, sees itself move to its right.
-  EXPECT_NEAR(std::atan2(pairs[3].lidar().y, pairs[3].lidar().x), -2.0 * std::numbers::pi / 180.0, 0.005);
+  EXPECT_NEAR(std::atan2(pairs[3].lidar().y, pairs[3].lidar().x), to_rad(-2.0), 0.005);
 }
 
 // The lidar's own motion from its first beam to its last is not the body's: a quarter of a metre ahead it moves sideways while the body turns on the spot.

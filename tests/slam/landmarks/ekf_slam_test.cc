@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/angles.h"
 #include "tests/slam/landmarks/circle_world.h"
 #include "tests/support/pose_near.h"
 
@@ -187,7 +188,7 @@ TEST(EkfSlam, PlainBelievesHalfTheVarianceOfAHeadingThatCannotBeSeen) { EXPECT_L
 
 CircleWorld biased_world() {
   CircleWorld world;
-  world.bias.y() = 2.0 * std::numbers::pi / 180.0 / world.motion.std.y();  // 2 deg/s: 0.40 standard deviations
+  world.bias.y() = to_rad(2.0) / world.motion.std.y();  // 2 deg/s: 0.40 standard deviations
   return world;
 }
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "core/angles.h"
 #include "slam/landmarks/ekf_slam.h"
 #include "tests/slam/landmarks/circle_world.h"
 #include "tests/support/pose_near.h"
@@ -34,7 +34,7 @@ double mean_rmse(const FastSlamSettings& settings, const CircleWorld& world, con
 
 CircleWorld biased_world() {
   CircleWorld world;
-  world.bias.y() = 2.0 * std::numbers::pi / 180.0 / world.motion.std.y();  // 2 deg/s
+  world.bias.y() = to_rad(2.0) / world.motion.std.y();  // 2 deg/s
   return world;
 }
 

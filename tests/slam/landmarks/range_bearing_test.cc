@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "tests/support/pose_near.h"
 
 namespace patrol::slam {
@@ -13,7 +14,6 @@ namespace {
 constexpr double kExactTol = 1e-12;
 constexpr double kStep = 1e-6;           // of the central differences: their error is its square, and rounding 1e-16 / 1e-6
 constexpr double kDifferenceTol = 1e-9;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // A 3-4-5 triangle, seen by a body that faces +y.
 TEST(PredictSight, ThreeAheadAndFourToTheRightIsFiveMetresAway) {

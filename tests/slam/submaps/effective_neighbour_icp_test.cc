@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/submap_points.h"
@@ -15,7 +15,6 @@ namespace {
 using test::make_yard, test::Pose2Near, test::RoomWorld, test::sample_walls;
 using Points = std::vector<Eigen::Vector2d>;
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kExactTol = 1e-12;  // algebra
 
 const Pose2 kTruth = test::kYardTarget.inverse() * test::kYardSource;
@@ -32,7 +31,7 @@ Errors errors_of(const Points& target, const Points& source, const IcpSettings& 
   const IcpPoints prepared(target, settings), laid(source, settings);
   Errors errors;
   for (int i = 0; i < 12; ++i) {
-    const double direction = 60.0 * kDeg * (i % 6), turn = i < 6 ? 3.0 * kDeg : -3.0 * kDeg;
+    const double direction = 60.0 * kDegree * (i % 6), turn = i < 6 ? 3.0 * kDegree : -3.0 * kDegree;
     const Pose2 start{kTruth.x + 0.3 * std::cos(direction), kTruth.y + 0.3 * std::sin(direction), kTruth.yaw + turn};
     const auto result = align_icp(prepared, laid, start, settings);
     if (!result) continue;
@@ -100,7 +99,7 @@ TEST(AlignIcp, RecoversAMotionToANanometreWhereEveryPointHasItsPartner) {
   const Points source = test::yard_source_right_of(-100.0);
   Points target;
   for (const auto& p : source) target.push_back(kTruth * p);
-  const Pose2 start{kTruth.x + 0.02, kTruth.y - 0.03, kTruth.yaw + 0.2 * kDeg};
+  const Pose2 start{kTruth.x + 0.02, kTruth.y - 0.03, kTruth.yaw + 0.2 * kDegree};
   for (const IcpSettings& settings : {IcpSettings{}, kPaper}) {
     const auto result = align_icp(IcpPoints(target, settings), IcpPoints(source, settings), start, settings);
     ASSERT_TRUE(result);
@@ -128,7 +127,7 @@ TEST_P(PartlyOverlapping, PlainIcpIsMetresOffAndEffectiveNeighboursAreNot) {
   EXPECT_LT(paper.largest_m, 0.12);
   const Errors ours = errors_of(target, source, kFromAfar);
   EXPECT_LT(ours.largest_m, 0.02);
-  EXPECT_LT(ours.largest_rad, 0.3 * kDeg);
+  EXPECT_LT(ours.largest_rad, 0.3 * kDegree);
   EXPECT_EQ(ours.num_converged, 12);
   RecordProperty("plain_smallest_error_m", std::to_string(plain.smallest_m));
   RecordProperty("paper_largest_error_m", std::to_string(paper.largest_m));
@@ -165,7 +164,7 @@ TEST(AlignIcp, ACorridorTellsAcrossAndHeadingButNotAlong) {
   const auto result = align_icp(IcpPoints(target, settings), IcpPoints(source, settings), {0.4, 0.1, 0.01}, settings);
   ASSERT_TRUE(result);
   EXPECT_NEAR(result->T_target_source.y, 0.0, 0.005);
-  EXPECT_NEAR(result->T_target_source.yaw, 0.0, 0.1 * kDeg);
+  EXPECT_NEAR(result->T_target_source.yaw, 0.0, 0.1 * kDegree);
   EXPECT_LT(result->information(0, 0), 0.01 * result->information(1, 1));
   // 320 pairs of sigma 3 cm, each across.
   EXPECT_NEAR(result->information(1, 1), 320.0 / (0.03 * 0.03), 0.1 * 320.0 / (0.03 * 0.03));

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/submap_points.h"
@@ -19,7 +19,6 @@ namespace {
 using test::make_yard, test::Pose2Near, test::RoomWorld, test::sample_walls;
 using Points = std::vector<Eigen::Vector2d>;
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kExactTol = 1e-12;  // algebra
 
 const Pose2 kTruth = test::kYardTarget.inverse() * test::kYardSource;
@@ -37,12 +36,12 @@ int num_found(const Points& target, const Points& source, double off_m, double o
   const auto ndt = make_ndt(target, settings);
   int found = 0;
   for (int i = 0; i < 18; ++i) {
-    const double direction = 60.0 * kDeg * (i % 6), turn = off_rad * (i / 6 - 1);
+    const double direction = 60.0 * kDegree * (i % 6), turn = off_rad * (i / 6 - 1);
     const Pose2 start{kTruth.x + off_m * std::cos(direction), kTruth.y + off_m * std::sin(direction), kTruth.yaw + turn};
     const auto result = align_ndt(ndt, source, start, settings);
     if (!result) continue;
     const Pose2 T_error = kTruth.inverse() * result->T_target_source;
-    found += T_error.position().norm() < 0.05 && std::abs(T_error.yaw) < 0.5 * kDeg ? 1 : 0;
+    found += T_error.position().norm() < 0.05 && std::abs(T_error.yaw) < 0.5 * kDegree ? 1 : 0;
   }
   return found;
 }
@@ -125,15 +124,15 @@ TEST(NdtGrid, PointsThatAreNotNumbersOrTooFarApartAreRefused) {
 TEST(AlignNdt, TheBasinIsThreeMetresAndTwentyDegreesWhereAllOverlaps) {
   const Points target = test::yard_target_left_of(100.0), source = test::yard_source_right_of(-100.0);
   EXPECT_GT(overlap(target, source), 0.99);
-  EXPECT_EQ(num_found(target, source, 3.0, 20.0 * kDeg), 18);
-  EXPECT_LT(num_found(target, source, 6.0, 60.0 * kDeg), 9) << "it ends somewhere";
+  EXPECT_EQ(num_found(target, source, 3.0, 20.0 * kDegree), 18);
+  EXPECT_LT(num_found(target, source, 6.0, 60.0 * kDegree), 9) << "it ends somewhere";
 }
 
 TEST(AlignNdt, TheBasinIsOneMetreAndTenDegreesWhereAThirdOverlapsAndMostlyTwoMetres) {
   const Points target = test::yard_target_left_of(3.0), source = test::yard_source_right_of(-3.0);
   EXPECT_NEAR(overlap(target, source), 0.30, 0.01);
-  EXPECT_EQ(num_found(target, source, 1.0, 10.0 * kDeg), 18);
-  EXPECT_GE(num_found(target, source, 2.0, 15.0 * kDeg), 15);
+  EXPECT_EQ(num_found(target, source, 1.0, 10.0 * kDegree), 18);
+  EXPECT_GE(num_found(target, source, 2.0, 15.0 * kDegree), 15);
 }
 
 TEST(AlignNdt, SaysHowWellItFits) {
@@ -142,7 +141,7 @@ TEST(AlignNdt, SaysHowWellItFits) {
   const auto ndt = make_ndt(target, settings);
   const auto result = align_ndt(ndt, source, {kTruth.x + 0.5, kTruth.y - 0.5, kTruth.yaw + 0.1}, settings);
   ASSERT_TRUE(result);
-  EXPECT_THAT(result->T_target_source, Pose2Near(kTruth, 0.01, 0.1 * kDeg));
+  EXPECT_THAT(result->T_target_source, Pose2Near(kTruth, 0.01, 0.1 * kDegree));
   EXPECT_TRUE(result->converged);
   // Along a straight wall a cell's points weigh 1 - |u|/h at u from its node: variance h^2/6, and the mean score is 2 int_0^1 (1 - t) exp(-3 t^2) dt = 0.692.
   EXPECT_NEAR(result->score, 0.692, 0.03);
@@ -164,7 +163,7 @@ TEST(AlignNdt, ACorridorTellsNothingOfAlong) {
   const auto result = align_ndt(make_ndt(target, settings), source, {0.4, 0.2, 0.03}, settings);
   ASSERT_TRUE(result);
   EXPECT_NEAR(result->T_target_source.y, 0.0, 0.005);
-  EXPECT_NEAR(result->T_target_source.yaw, 0.0, 0.1 * kDeg);
+  EXPECT_NEAR(result->T_target_source.yaw, 0.0, 0.1 * kDegree);
   EXPECT_LT(result->information(0, 0), 0.01 * result->information(1, 1));
 }
 

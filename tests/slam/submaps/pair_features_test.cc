@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <utility>
 
+#include "core/angles.h"
 #include "slam/submaps/adaboost.h"
 #include "tests/support/seen_submap.h"
 #include "tests/support/submap_points.h"
@@ -18,7 +18,6 @@ namespace {
 using test::make_yard, test::RoomWorld, test::see_submap, test::SeenSubmap, test::short_walk;
 using Points = std::vector<Eigen::Vector2d>;
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kExactTol = 1e-9;  // algebra, some of it through a histogram
 
 std::vector<double> pair_features(const SubmapShape& target, const SubmapShape& source, const PoseGaussian& T_target_source, const NdtSettings& settings) {
@@ -91,7 +90,7 @@ TEST(PairFeatures, TheCentreIsAsUncertainAsItsArmIsLong) {
 
 TEST(PairFeatures, OfNeighboursSayThatTheyAre) {
   const SubmapShape target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
-  const auto features = pair_features(target, source, prediction_of({kTruth.x + 0.8, kTruth.y - 0.6, kTruth.yaw + 5.0 * kDeg}, 0.7, 4.0 * kDeg), {});
+  const auto features = pair_features(target, source, prediction_of({kTruth.x + 0.8, kTruth.y - 0.6, kTruth.yaw + 5.0 * kDegree}, 0.7, 4.0 * kDegree), {});
   EXPECT_GT(value(features, "hull_overlap"), 0.8);
   EXPECT_GT(value(features, "seen_overlap"), 0.6) << "through the gate and between posts each sees what the other does not";
   EXPECT_LT(value(features, "aligned_mahalanobis"), 3.0) << "0.8 and 0.6 m off, 0.7 m of standard deviation; 1.25 of the angle's";
@@ -106,7 +105,7 @@ TEST(PairFeatures, OfStrangersSayThatTheyAreNot) {
   hall.add_box(-14.0, -9.0, 5.0, 3.0);
   for (int i = -3; i <= 0; ++i) hall.add_post(4.0 * i + 1.0, -2.0, 0.4).add_post(4.0 * i + 1.0, -7.5, 0.4);
   const SubmapShape target = describe_yard(kTarget, 1), source = describe(see_submap(hall, kSource, short_walk(kSource), 2));
-  const auto features = pair_features(target, source, prediction_of(kTruth, 0.7, 4.0 * kDeg), {});
+  const auto features = pair_features(target, source, prediction_of(kTruth, 0.7, 4.0 * kDegree), {});
   EXPECT_GT(value(features, "hull_overlap"), 0.5) << "by the prediction alone they would be neighbours";
   EXPECT_LT(value(features, "aligned_agreement"), 0.7);
 }
@@ -138,7 +137,7 @@ TEST(PairFeatures, FourNeedNoPose) {
 
 // The source's frame lies elsewhere in it: 7 m away, turned by 35 degrees. What is computed from points is the same; maps are drawn anew on other cells.
 TEST(PairFeatures, DoNotDependOnWhereASubmapsFrameLies) {
-  const Pose2 T_source_other{5.0, -5.0, 35.0 * kDeg};
+  const Pose2 T_source_other{5.0, -5.0, 35.0 * kDegree};
   const SubmapShape target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
   const SubmapShape other = describe(see_submap(make_yard(), kSource * T_source_other, short_walk(kSource), 2));
   // The same place of the centre must be as uncertain, whatever the arm: no error of heading.
@@ -202,8 +201,8 @@ LabelledFeatures make_pairs(std::uint64_t seed, int num_pairs) {
     const SubmapShape target = describe(see_submap(site, T_world_target, short_walk(T_world_target), 2 * tick)),
                       source = describe(see_submap(site, T_world_source, short_walk(T_world_source), 2 * tick + 1));
     if (!are_neighbours && (T_world_target.position() - T_world_source.position()).norm() < 12.0) continue;
-    const Pose2 predicted{T_target_source.x + error[0], T_target_source.y + error[1], wrap_angle(T_target_source.yaw + 5.0 * kDeg * error[2])};
-    pairs.examples.push_back(pair_features(target, source, prediction_of(predicted, 1.0, 5.0 * kDeg), {}));
+    const Pose2 predicted{T_target_source.x + error[0], T_target_source.y + error[1], wrap_angle(T_target_source.yaw + 5.0 * kDegree * error[2])};
+    pairs.examples.push_back(pair_features(target, source, prediction_of(predicted, 1.0, 5.0 * kDegree), {}));
     pairs.labels.push_back(are_neighbours ? 1 : -1);
   }
   return pairs;

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "tests/support/submap_points.h"
 
@@ -15,7 +15,6 @@ namespace {
 using test::make_yard, test::sample_walls;
 using Points = std::vector<Eigen::Vector2d>;
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kExactTol = 1e-12;  // algebra
 
 const GridMap kNoMap(0.05, 100.0);
@@ -51,10 +50,10 @@ TEST(SubmapShape, DirectionsTurnWithTheFrame) {
   const Points points = sample_walls(make_yard(), {}, {.spacing_m = 0.11});  // none just so far apart as a neighbourhood reaches
   const SubmapShape here = describe_submap(points, kNoMap, {});
   // 25 degrees are five bins of 5.
-  const SubmapShape turned = describe_submap(moved(points, {1.0, 2.0, 25.0 * kDeg}), kNoMap, {});
+  const SubmapShape turned = describe_submap(moved(points, {1.0, 2.0, 25.0 * kDegree}), kNoMap, {});
   EXPECT_NEAR(circular_correlation(turned.directions, here.directions, 5), 1.0, 1e-9);
   EXPECT_LT(circular_correlation(turned.directions, here.directions, 0), 0.2);
-  const SubmapShape between = describe_submap(moved(points, {1.0, 2.0, 27.5 * kDeg}), kNoMap, {});
+  const SubmapShape between = describe_submap(moved(points, {1.0, 2.0, 27.5 * kDegree}), kNoMap, {});
   EXPECT_GT(circular_correlation(between.directions, here.directions, 5), 0.6) << "half a bin off";
 }
 

@@ -1,4 +1,4 @@
-#include "slam/resampling.h"
+#include "core/particle_weights.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 
-namespace patrol::slam {
+namespace patrol {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -86,4 +86,4 @@ TEST(ResampleSystematic, AWeightOfZeroHasNoChildren) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol

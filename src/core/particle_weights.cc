@@ -1,10 +1,10 @@
-#include "slam/resampling.h"
+#include "core/particle_weights.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-namespace patrol::slam {
+namespace patrol {
 
 std::vector<double> normalized_weights(const std::vector<double>& log_weights) {
   if (log_weights.empty()) return {};
@@ -38,4 +38,4 @@ std::vector<std::size_t> resample_systematic(const std::vector<double>& weights,
   return parents;
 }
 
-}  // namespace patrol::slam
+}  // namespace patrol

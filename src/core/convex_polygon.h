@@ -4,18 +4,19 @@
 
 #include <vector>
 
-namespace patrol::slam {
+namespace patrol {
 
 /// Corners of a convex polygon, counter-clockwise.
 using ConvexPolygon = std::vector<Eigen::Vector2d>;
 
-/// The smallest convex polygon that holds all points (Andrew's monotone chain, 1979). Fewer than three corners if they lie in one place or on one line.
+/// Convex hull of a set of points (Andrew's monotone chain, 1979), without corners on a side. Points that coincide or lie on one line
+/// give fewer than three corners.
 ConvexPolygon convex_hull(std::vector<Eigen::Vector2d> points);
 
-/// m^2.
+/// Area, m^2.
 double area_of(const ConvexPolygon& polygon);
 
-/// What both hold (Sutherland, Hodgman 1974).
+/// Intersection of two convex polygons (Sutherland, Hodgman 1974).
 ConvexPolygon intersection_of(const ConvexPolygon& a, const ConvexPolygon& b);
 
-}  // namespace patrol::slam
+}  // namespace patrol

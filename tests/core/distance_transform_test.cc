@@ -1,4 +1,4 @@
-#include "plan/distance_field.h"
+#include "core/distance_transform.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,10 @@
 
 #include "core/random.h"
 
-namespace patrol::plan {
+namespace patrol {
 namespace {
+
+using SquaredDistances = DistanceTransform::SquaredDistances;
 
 /// About one cell in `sparsity` is an obstacle.
 std::vector<std::uint8_t> make_random(int width, int height, double sparsity, std::uint64_t seed) {
@@ -18,19 +20,28 @@ std::vector<std::uint8_t> make_random(int width, int height, double sparsity, st
   return cells;
 }
 
-/// Every cell against every obstacle.
-SquaredDistances brute_force(const std::vector<std::uint8_t>& cells, int width, int height, int cap) {
-  SquaredDistances result;
+/// Squared distances without a cap, from every cell to every obstacle; `kNoObstacle` without any.
+std::vector<double> brute_force(const std::vector<std::uint8_t>& cells, int width, int height) {
+  std::vector<double> result;
   for (int row = 0; row < height; ++row) {
     for (int col = 0; col < width; ++col) {
-      int nearest = cap * cap + 1;
+      double nearest = kNoObstacle;
       for (int i = 0; i < width * height; ++i) {
         if (cells[static_cast<std::size_t>(i)] == 0) continue;
         const int dx = i % width - col, dy = i / width - row;
-        nearest = std::min(nearest, dx * dx + dy * dy);
+        nearest = std::min(nearest, static_cast<double>(dx * dx + dy * dy));
       }
-      result.push_back(static_cast<std::int16_t>(nearest));
+      result.push_back(nearest);
     }
+  }
+  return result;
+}
+
+/// Squared distances with a cap, as DistanceTransform gives them.
+SquaredDistances brute_force(const std::vector<std::uint8_t>& cells, int width, int height, int cap) {
+  SquaredDistances result;
+  for (const double squared : brute_force(cells, width, height)) {
+    result.push_back(static_cast<std::int16_t>(std::min(squared, cap * cap + 1.0)));
   }
   return result;
 }
@@ -79,5 +90,17 @@ TEST(DistanceTransform, TheSameObjectServesGridsOfAnySize) {
   }
 }
 
+TEST(SquaredDistances, EqualBruteForceOnRandomGrids) {
+  std::uint64_t seed = 500;
+  for (const double sparsity : {1.5, 20.0, 300.0, 1e9}) {
+    for (const auto& [width, height] :
+         {std::pair{37, 23}, std::pair{1, 40}, std::pair{40, 1}, std::pair{1, 1}, std::pair{90, 4}}) {
+      const std::vector<std::uint8_t> cells = make_random(width, height, sparsity, ++seed);
+      ASSERT_EQ(squared_distances(cells, width, height), brute_force(cells, width, height)) << width << 'x' << height;
+    }
+  }
+  EXPECT_TRUE(squared_distances({}, 0, 0).empty());
+}
+
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol

@@ -1,9 +1,9 @@
-#include "slam/submaps/convex_hull.h"
+#include "core/convex_polygon.h"
 
 #include <algorithm>
 #include <utility>
 
-namespace patrol::slam {
+namespace patrol {
 namespace {
 
 /// Twice the area of the triangle; positive if c lies left of the line from a to b.
@@ -61,4 +61,4 @@ ConvexPolygon intersection_of(const ConvexPolygon& a, const ConvexPolygon& b) {
   return both;
 }
 
-}  // namespace patrol::slam
+}  // namespace patrol

@@ -1,10 +1,10 @@
-#include "slam/submaps/convex_hull.h"
+#include "core/convex_polygon.h"
 
 #include <gtest/gtest.h>
 
 #include "core/random.h"
 
-namespace patrol::slam {
+namespace patrol {
 namespace {
 
 constexpr double kExactTol = 1e-12;  // algebra
@@ -60,4 +60,4 @@ TEST(Intersection, OfASquareAndOneTurnedIsAnOctagon) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol
