@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/distance_transform.h"
+#include "plan/footprint.h"
+#include "plan/perception/cell_box.h"
+#include "plan/perception/cell_lattice.h"
+#include "plan/perception/cost.h"
+#include "plan/perception/costmap_settings.h"
+
+namespace patrol::plan {
+
+/// Costmap layer that inflates obstacles by their exact distance: lethal where the robot's inscribed circle would touch, then falling
+/// exponentially.
+class InflationLayer {
+ public:
+  /// Throws InputError if the lethal distance lies beyond the cap of the distance transform.
+  InflationLayer(const CostmapSettings& settings, const Footprint& footprint);
+
+  /// Starts without obstacles.
+  void resize(const CellLattice& lattice);
+  /// Updates the distances around cells that have changed; returns the cells whose distance may change. `is_obstacle` takes a cell of the grid.
+  template <typename Predicate>
+  CellBox update(const CellBox& changed, const Predicate& is_obstacle) {
+    // Distances change up to the cap around what changed, and depend on obstacles up to the cap around those.
+    const CellBox window = changed.grown(2 * transform_.cap_cells(), squared_.geometry());
+    is_obstacle_.resize(static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height()));
+    std::uint8_t* obstacle = is_obstacle_.data();
+    for (int row = window.min.row; row <= window.max.row; ++row) {
+      for (int col = window.min.col; col <= window.max.col; ++col) *obstacle++ = is_obstacle(Cell{col, row});
+    }
+    const CellBox target = changed.grown(transform_.cap_cells(), squared_.geometry());
+    update_distances(window, target);
+    return target;
+  }
+
+  /// Distance to the nearest obstacle's surface, interpolated between cells; at most `max_distance_m`.
+  double distance_m(const Eigen::Vector2d& p_map) const;
+  double max_distance_m() const { return distance_of_.back(); }
+  /// Sets the costs of `count` cells of a row.
+  void set_costs(Cell first, int count, Cost* cost) const;
+
+ private:
+  /// Distances of the cells of `target`, from the obstacles in `window`.
+  void update_distances(const CellBox& window, const CellBox& target);
+
+  DistanceTransform transform_;
+  std::vector<double> distance_of_;  ///< [squared cells], m, to the obstacle's surface
+  std::vector<Cost> cost_of_;        ///< [squared cells]
+  Grid<std::int16_t> squared_;       ///< squared distance to the nearest obstacle, cells
+
+  std::vector<std::uint8_t> is_obstacle_;  ///< in the window of an update
+  DistanceTransform::SquaredDistances window_squared_;
+};
+
+}  // namespace patrol::plan

@@ -1,0 +1,53 @@
+#include "plan/perception/keep_out_layer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/segment.h"
+#include "plan/perception/bilinear.h"
+#include "plan/perception/cell_box.h"
+
+namespace patrol::plan {
+
+KeepOutLayer::KeepOutLayer(const CostmapSettings& settings, std::vector<Polyline> lines_in_map, double max_distance_m)
+    : margin_m_(settings.keep_out_margin_m),
+      inflation_m_(settings.keep_out_inflation_m),
+      reach_m_(settings.keep_out_margin_m + std::max(settings.keep_out_inflation_m, max_distance_m)),
+      lines_(std::move(lines_in_map)) {}
+
+void KeepOutLayer::resize(const CellLattice& lattice) {
+  distance_m_ = Grid<float>(lattice.geometry, static_cast<float>(reach_m_));
+  for (const Polyline& line : lines_) {
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) rasterize(line[i], line[i + 1]);
+  }
+}
+
+void KeepOutLayer::rasterize(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  const GridGeometry& geometry = distance_m_.geometry();
+  CellBox box;
+  box.extend(geometry.cell_at(a.cwiseMin(b).array() - reach_m_));
+  box.extend(geometry.cell_at(a.cwiseMax(b).array() + reach_m_));
+  box = box.grown(0, geometry);
+  for (int row = box.min.row; row <= box.max.row; ++row) {
+    for (int col = box.min.col; col <= box.max.col; ++col) {
+      float& nearest = distance_m_.at({col, row});
+      nearest = std::min(nearest, static_cast<float>(distance_to_segment(geometry.center_of({col, row}), a, b)));
+    }
+  }
+}
+
+double KeepOutLayer::distance_m(const Eigen::Vector2d& p_map) const {
+  return interpolate_bilinear(distance_m_.geometry(), p_map, [this](Cell cell) { return static_cast<double>(distance_m_.at(cell)); });
+}
+
+void KeepOutLayer::raise_costs(Cell first, int count, Cost* cost) const {
+  const float* distance_m = &distance_m_.at(first);
+  const auto margin_m = static_cast<float>(margin_m_), reach_m = static_cast<float>(margin_m_ + inflation_m_);
+  for (int i = 0; i < count; ++i) {
+    if (distance_m[i] >= reach_m) continue;
+    const bool is_lethal = distance_m[i] <= margin_m;
+    cost[i] = std::max(cost[i], is_lethal ? kLethalCost : decaying_cost(distance_m[i] - margin_m, inflation_m_ / 3.0));
+  }
+}
+
+}  // namespace patrol::plan

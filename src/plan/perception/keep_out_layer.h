@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "plan/perception/cell_lattice.h"
+#include "plan/perception/cost.h"
+#include "plan/perception/costmap_settings.h"
+
+namespace patrol::plan {
+
+using Polyline = std::vector<Eigen::Vector2d>;
+
+/// Costmap layer of surveyed lines that the lidar cannot see (full-height kerbs): lethal within a margin, then falling exponentially.
+class KeepOutLayer {
+ public:
+  /// Distances are exact up to the margin plus `max_distance_m`, at least as far as a line costs something.
+  KeepOutLayer(const CostmapSettings& settings, std::vector<Polyline> lines_in_map, double max_distance_m);
+
+  void resize(const CellLattice& lattice);
+  const std::vector<Polyline>& lines() const { return lines_; }
+  /// Distance to the nearest line, interpolated between cells.
+  double distance_m(const Eigen::Vector2d& p_map) const;
+  /// Raises the costs of `count` cells of a row to those of the lines.
+  void raise_costs(Cell first, int count, Cost* cost) const;
+
+ private:
+  void rasterize(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
+
+  double margin_m_, inflation_m_, reach_m_;
+  std::vector<Polyline> lines_;
+  Grid<float> distance_m_;
+};
+
+}  // namespace patrol::plan

@@ -1,0 +1,81 @@
+#include "plan/perception/low_obstacle_layer.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace patrol::plan {
+namespace {
+
+constexpr int kMoving_cells = 3;     ///< a low obstacle this near to one of the scan may be a person's foot
+constexpr int kExplained_cells = 2;  ///< an echo this near to an obstacle of the scan or the map is an echo of that
+
+}  // namespace
+
+void LowObstacleLayer::resize(const CellLattice& lattice) {
+  lattice_ = lattice;
+  is_low_ = Grid<std::uint8_t>(lattice.geometry, 0);
+  for (const Cell cell : low_.obstacles()) is_low_.at(lattice.to_grid(cell)) = 1;
+}
+
+std::vector<Cell> LowObstacleLayer::lattice_cells(const std::vector<Eigen::Vector2d>& p_level, const Pose2& T_map_body,
+                                                  int min_count) const {
+  std::map<std::pair<int, int>, int> counts;  // in an order that does not depend on the points'
+  for (const Eigen::Vector2d& p : p_level) {
+    const Cell cell = lattice_.geometry.cell_at(T_map_body * p);
+    if (!lattice_.geometry.contains(cell)) continue;
+    const Cell lattice = lattice_.to_lattice(cell);
+    ++counts[{lattice.row, lattice.col}];
+  }
+  std::vector<Cell> cells;
+  for (const auto& [key, count] : counts) {
+    if (count >= min_count) cells.push_back({key.second, key.first});
+  }
+  return cells;
+}
+
+CellBox LowObstacleLayer::add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body, const ScanLayer& scan) {
+  const std::vector<Cell> obstacles = lattice_cells(points.obstacles_m, T_map_body, settings_.min_camera_points);
+  std::vector<bool> may_move;
+  for (const Cell cell : obstacles) may_move.push_back(scan.has_obstacle_near(lattice_.to_grid(cell), kMoving_cells));
+  // Cells with obstacle points of the same image are not ground.
+  std::vector<Cell> ground;
+  const std::vector<Cell> doubtful = lattice_cells(points.obstacles_m, T_map_body, 1);
+  for (const Cell cell : lattice_cells(points.ground_m, T_map_body, settings_.min_camera_points)) {
+    if (std::find(doubtful.begin(), doubtful.end(), cell) == doubtful.end()) ground.push_back(cell);
+  }
+  low_.add_image(obstacles, ground, may_move, stamp);
+  low_.forget_old(stamp);
+  return apply_changes();
+}
+
+CellBox LowObstacleLayer::add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body, const ScanLayer& scan,
+                                   const StaticMapLayer& map) {
+  std::vector<Cell> arc = lattice_cells(cone.arc_m, T_map_body, 1);
+  const auto is_explained = [&](Cell lattice) {
+    const Cell cell = lattice_.to_grid(lattice);
+    return scan.has_obstacle_near(cell, kExplained_cells) || map.has_obstacle_near(cell, kExplained_cells);
+  };
+  if (std::any_of(arc.begin(), arc.end(), is_explained)) arc.clear();
+  low_.add_ping(arc, lattice_cells(cone.free_m, T_map_body, 1), stamp);
+  return apply_changes();
+}
+
+CellBox LowObstacleLayer::clear_sonar(const Eigen::Vector2d& p_map, double radius_m) {
+  low_.forget_sonar([&](Cell lattice) {
+    return (lattice_.geometry.center_of(lattice_.to_grid(lattice)) - p_map).norm() <= radius_m;
+  });
+  return apply_changes();
+}
+
+CellBox LowObstacleLayer::apply_changes() {
+  CellBox changed;
+  for (const Cell lattice : low_.take_changed()) {
+    const Cell cell = lattice_.to_grid(lattice);
+    is_low_.at(cell) = low_.is_obstacle(lattice);
+    changed.extend(cell);
+  }
+  return changed;
+}
+
+}  // namespace patrol::plan

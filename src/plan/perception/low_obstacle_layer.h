@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "plan/depth_points.h"
+#include "plan/low_obstacles.h"
+#include "plan/perception/cell_box.h"
+#include "plan/perception/cell_lattice.h"
+#include "plan/perception/scan_layer.h"
+#include "plan/perception/static_map_layer.h"
+#include "plan/sonar_cone.h"
+
+namespace patrol::plan {
+
+/// Costmap layer of obstacles below the lidar's plane, from the depth camera and the ultrasonic ring (low_obstacles.h).
+class LowObstacleLayer {
+ public:
+  explicit LowObstacleLayer(const LowObstaclesSettings& settings) : settings_(settings), low_(settings) {}
+
+  void resize(const CellLattice& lattice);
+  /// Adds the points of a depth image, in level at its stamp; returns the cells that change. Obstacles near those of the scan layer may move.
+  CellBox add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body, const ScanLayer& scan);
+  /// Adds a ping, in level at its stamp; returns the cells that change. Echoes near obstacles of the other layers are left out.
+  CellBox add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body, const ScanLayer& scan, const StaticMapLayer& map);
+  /// Discards the evidence of sonar within a radius; returns the cells that change.
+  CellBox clear_sonar(const Eigen::Vector2d& p_map, double radius_m);
+
+  /// Of a cell inside the grid.
+  bool is_obstacle(Cell cell) const { return is_low_.at(cell) != 0; }
+  bool contains_obstacle(Cell cell) const { return is_low_.contains(cell) && is_obstacle(cell); }
+  std::size_t num_obstacles() const { return low_.num_obstacles(); }
+
+ private:
+  /// Lattice cells inside the grid with at least `min_count` of the points.
+  std::vector<Cell> lattice_cells(const std::vector<Eigen::Vector2d>& p_level, const Pose2& T_map_body, int min_count) const;
+  CellBox apply_changes();
+
+  LowObstaclesSettings settings_;
+  CellLattice lattice_;
+  LowObstacles low_;           ///< on the lattice
+  Grid<std::uint8_t> is_low_;  ///< the obstacles of low_, for quick look-up
+};
+
+}  // namespace patrol::plan

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "plan/perception/cell_box.h"
+#include "plan/perception/cell_lattice.h"
+#include "plan/perception/cost.h"
+#include "plan/perception/costmap_settings.h"
+
+namespace patrol::plan {
+
+/// Costmap layer of the occupancy grid from SLAM or from a file, max-pooled to the costmap's cells.
+class StaticMapLayer {
+ public:
+  explicit StaticMapLayer(const CostmapSettings& settings);
+
+  /// Keeps the map on the new lattice, which must hold the old one.
+  void resize(const CellLattice& lattice);
+  /// Replaces the map, which must lie inside the lattice and have cells at most as large; returns the cells that change.
+  CellBox set_map(const OccupancyGrid& map);
+
+  bool is_obstacle(Cell cell) const { return map_.at(cell) >= occupied_percent_; }
+  /// Whether an obstacle lies at most `reach` columns and rows from a cell, which may lie outside the grid.
+  bool has_obstacle_near(Cell cell, int reach) const;
+  /// Cost of a cell that the map does not know.
+  Cost unknown_cost() const { return unknown_cost_; }
+  /// Raises the costs of `count` cells of a row to those of unknown cells.
+  void raise_costs(Cell first, int count, Cost* cost) const;
+
+ private:
+  OccupancyGrid pooled(const OccupancyGrid& map) const;
+
+  int occupied_percent_;
+  Cost unknown_cost_;
+  CellLattice lattice_;
+  OccupancyGrid map_;
+};
+
+}  // namespace patrol::plan
