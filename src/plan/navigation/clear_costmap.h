@@ -1,0 +1,18 @@
+#pragma once
+
+#include "plan/navigation/recovery_behavior.h"
+
+namespace patrol::plan {
+
+/// Clears the obstacles around the robot that the next messages mark again.
+void clear_around(Costmap& costmap, const Pose2& T_map_body);
+
+/// Recovery that clears the costmap around the robot and does nothing else.
+class ClearCostmap : public RecoveryBehavior {
+ public:
+  const char* sentence() const override { return "Recovery: the robot forgets what it saw about it."; }
+  void begin(Time now, const Pose2& T_map_body, Costmap& costmap) override;
+  std::optional<VelocityCommand> step(Time now, const Pose2& T_map_body) override;
+};
+
+}  // namespace patrol::plan

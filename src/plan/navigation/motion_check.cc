@@ -1,0 +1,22 @@
+#include "plan/navigation/motion_check.h"
+
+#include <algorithm>
+
+namespace patrol::plan {
+namespace {
+
+constexpr double kMinPassable_m = 0.02;  // clearance of a turn in place
+
+}  // namespace
+
+bool is_motion_safe(const Costmap& costmap, const Pose2& T_map_body, const VelocityCommand& command, double time_s) {
+  const double clearance_now = costmap.clearance_m(T_map_body);
+  for (const double part : {0.25, 0.5, 0.75, 1.0}) {
+    const Pose2 there = T_map_body * Pose2{command.vx_mps * time_s * part, command.vy_mps * time_s * part,
+                                           command.yaw_rate_radps * time_s * part};
+    if (costmap.clearance_m(there) < std::min(kMinPassable_m, clearance_now)) return false;
+  }
+  return true;
+}
+
+}  // namespace patrol::plan

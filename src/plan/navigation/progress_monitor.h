@@ -1,0 +1,38 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "core/frames.h"
+#include "core/time.h"
+
+namespace patrol::plan {
+
+/// Observes whether the robot makes progress: leaves the place where it is, and comes nearer to the goal.
+class ProgressMonitor {
+ public:
+  explicit ProgressMonitor(double stuck_s) : stuck_s_(stuck_s) {}
+
+  /// For another goal.
+  void reset();
+  /// Restarts the time at the present place: after a recovery, or while the robot waits for a route.
+  void forget_place() { place_.reset(); }
+  void restart_time(Time now);
+
+  /// Whether the robot has been about the same place for `stuck_s`.
+  bool is_stuck(Time now, const Pose2& T_map_body);
+  /// Whether the way left is shorter than ever to this goal, by enough to count as progress.
+  bool has_come_nearer(double left_m);
+
+ private:
+  struct Place {
+    Eigen::Vector2d p_map;
+    Time since{};
+  };
+
+  double stuck_s_;
+  std::optional<Place> place_;
+  double nearest_left_m_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace patrol::plan

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/time.h"
+#include "plan/costmap.h"
+#include "plan/global_planner.h"
+#include "plan/navigation/navigator_settings.h"
+
+namespace patrol::plan {
+
+/// Searches of the global planner, each with the time that the robot's computer takes for it.
+class RouteSearch {
+ public:
+  struct Result {
+    PlanResult route;
+    bool is_detour = false;  ///< searched because of an obstacle on the path
+  };
+
+  RouteSearch(const NavigatorSettings& settings, std::uint64_t seed);
+
+  /// For another goal: the next search may begin at once.
+  void reset();
+  /// Drops the search that is running.
+  void cancel() { running_.reset(); }
+  bool is_running() const { return running_.has_value(); }
+  void note_new_map() { map_is_new_ = true; }
+  /// Whether the map has changed since the last search, and that was `replan_period_s` ago.
+  bool is_outdated(Time now) const;
+  /// Whether no search is running, and the last one began long enough ago.
+  bool may_begin(Time now) const;
+  /// Begins a search; the costmap grows to hold start and goal.
+  void begin(Time now, Costmap& costmap, const Eigen::Vector2d& p_map_start, const Eigen::Vector2d& p_map_goal, bool is_detour);
+  /// Result of the running search, once the robot's computer has it.
+  std::optional<Result> take(Time now);
+
+ private:
+  struct Running {
+    Result result;
+    Time ready{};
+  };
+
+  GlobalPlanner planner_;
+  double steps_per_s_, replan_period_s_;
+  std::optional<Running> running_;
+  Time begun_at_ = Time::min();  ///< start of the last search
+  bool map_is_new_ = false;
+};
+
+}  // namespace patrol::plan

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "plan/navigation/recovery_behavior.h"
+
+namespace patrol::plan {
+
+/// Recovery that stands still for a time: people walk on.
+class Wait : public RecoveryBehavior {
+ public:
+  explicit Wait(double duration_s) : duration_s_(duration_s) {}
+
+  const char* sentence() const override { return "Recovery: the robot waits."; }
+  void begin(Time now, const Pose2& T_map_body, Costmap& costmap) override;
+  std::optional<VelocityCommand> step(Time now, const Pose2& T_map_body) override;
+
+ private:
+  double duration_s_;
+  Time until_{};
+};
+
+}  // namespace patrol::plan
