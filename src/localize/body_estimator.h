@@ -2,16 +2,15 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/settings.h"
-#include "localize/imu_mount.h"
+#include "localize/frozen_readings.h"
+#include "localize/imu_front_end.h"
 #include "localize/inertial_filter.h"
 #include "localize/leg_odometry.h"
-#include "localize/motion_history.h"
-#include "localize/standstill.h"
+#include "localize/pending_readings.h"
 
 namespace patrol::localize {
 
@@ -104,17 +103,9 @@ class BodyEstimator {
 
   EstimatorHealth health() const;
   /// The filter behind; none before the first IMU reading.
-  const std::optional<InertialFilter>& filter() const { return filter_; }
+  const std::optional<InertialFilter>& filter() const { return imu_.filter(); }
 
  private:
-  /// Counts equal readings in a row.
-  struct Repeats {
-    Eigen::Matrix<double, 3 * kNumLegs, 1> last = Eigen::Matrix<double, 3 * kNumLegs, 1>::Zero();
-    int count = 0;
-
-    bool is_frozen(const Eigen::Matrix<double, 3 * kNumLegs, 1>& reading);
-  };
-
   void advance(Time stamp, const InertialSample& sample);
   /// Uses the leg readings that are due.
   void take_pending();
@@ -124,31 +115,23 @@ class BodyEstimator {
   StanceFeet lowest_feet(const LegSample& sample) const;
   void measure_standstill(const LegSample& sample, const TrunkMotion& then, const StanceFeet& feet);
   void hold_velocity();
-  void remember() { history_.push(now_, filter_->motion()); }
 
   RobotDescription robot_;
   BodyEstimatorSettings settings_;
-  ImuMount imu_mount_;
-
-  std::optional<InertialFilter> filter_;
-  Time now_{};  ///< of the filter's state
-  MotionHistory history_;
+  ImuFrontEnd<InertialFilter> imu_;
 
   ContactDetector contact_;
-  StandstillBiasMeter bias_meter_;
-  std::vector<LegSample> pending_;  ///< in order of stamps, waiting for IMU and foot forces
+  PendingReadings<LegSample> pending_;  ///< waiting for IMU and foot forces
   std::optional<Time> last_contacts_;
   FootTrust trust_{};  ///< then
   std::optional<Time> last_leg_update_;
-  Time last_velocity_hold_{};
   double height_m_ = 0.0;
 
   // Faults.
-  Repeats imu_repeats_, joint_repeats_, contact_repeats_;
+  FrozenReadings<3 * kNumLegs> frozen_joints_;
+  FrozenReadings<kNumLegs> frozen_contacts_;
   bool joints_move_ = false;
-  bool imu_is_silent_ = false;
   bool contacts_are_silent_ = false;
-  std::uint64_t rejected_messages_ = 0;
   std::uint64_t slips_ = 0;
 };
 

@@ -11,9 +11,6 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kMaxStartAcceleration_mps2 = 1.0;  // the start's tilt is read from gravity alone
-constexpr int kFrozenRepeats = 10;                  // equal IMU readings in a row while the belts run
-constexpr Time kMaxImuStep = std::chrono::milliseconds(50);  // a longer gap is not integrated across
 constexpr Time kTickSilence = std::chrono::milliseconds(200);
 constexpr double kStandingStd_mps = 0.002;
 constexpr double kStandstillCreep_m = 1e-5;  // of the belts' ends over a window at rest
@@ -22,8 +19,6 @@ constexpr double kHoldStd_mps = 0.5;         // without the belts the velocity i
 constexpr double kLastingSideways = 0.005;   // share of the way, straight on
 constexpr double kAgreement_mps = 0.15;      // of belts and IMU, after their disagreement,
 constexpr Time kAgreement = std::chrono::milliseconds(300);  // and how long it must last
-constexpr double kAssumedRate_hz = 1000.0;   // upper bound, for the size of the history
-constexpr std::size_t kMaxPending = 256;
 
 const TrackOdometrySettings& checked(const TrackOdometrySettings& settings) {
   validate(settings, "odometry");
@@ -68,110 +63,97 @@ TrackOdometry::TrackOdometry(const RobotDescription& robot, const TrackOdometryS
       settings_(checked(settings)),
       metres_per_tick_(2.0 * std::numbers::pi * robot.tracks->sprocket_radius_m / settings.ticks_per_sprocket_turn),
       track_ends_(track_ends(*robot.tracks)),
-      imu_mount_(robot.T_body("imu")),
-      history_(static_cast<std::size_t>(settings.history_s * kAssumedRate_hz)),
+      imu_(robot.T_body("imu"), {.standstill = {.window_s = settings.standstill_window_s,
+                                                .gyro_noise_radps_per_sqrt_hz = settings.gyro_noise_radps_per_sqrt_hz,
+                                                .foot_std_m = kStandstillCreep_m},
+                                 .history_s = settings.history_s,
+                                 .extrapolation_s = settings.extrapolation_s}),
       slip_watch_({.window_s = settings.slip_window_s, .threshold_mps = settings.slip_disagreement_mps}),
-      bias_meter_({.window_s = settings.standstill_window_s,
-                   .gyro_noise_radps_per_sqrt_hz = settings.gyro_noise_radps_per_sqrt_hz,
-                   .foot_std_m = kStandstillCreep_m}),
       counters_({.metres_per_tick = metres_per_tick_, .max_acceleration_mps2 = settings.max_belt_acceleration_mps2}) {}
 
 void TrackOdometry::add(const Imu& imu) {
-  Eigen::Matrix<double, 6, 1> reading;
-  reading << imu.angular_velocity_radps, imu.linear_acceleration_mps2;
-  imu_repeats_ = reading == last_imu_reading_ ? imu_repeats_ + 1 : 0;
-  last_imu_reading_ = reading;
-  const bool is_frozen = imu_repeats_ >= kFrozenRepeats && !counters_.stand();
-  if (!is_plausible(imu) || is_frozen || (filter_ && imu.stamp <= now_)) {
-    ++rejected_messages_;
-    return;
-  }
-  advance(imu.stamp, imu_mount_.to_body(imu));
+  const std::optional<InertialSample> sample = imu_.accept(imu, !counters_.stand());
+  if (!sample) return;
+  advance(imu.stamp, *sample);
   take_pending();
 }
 
 void TrackOdometry::add(const TrackTicks& ticks) {
-  const TrackTicks* newest = !pending_.empty() ? &pending_.back() : counters_.last() ? &*counters_.last() : nullptr;
-  if ((newest && ticks.stamp <= newest->stamp) || pending_.size() >= kMaxPending) {
-    ++rejected_messages_;
+  const TrackTicks* newest = !pending_.is_empty() ? &pending_.newest() : counters_.last() ? &*counters_.last() : nullptr;
+  if ((newest && ticks.stamp <= newest->stamp) || pending_.is_full()) {
+    imu_.reject();
     return;
   }
-  pending_.push_back(ticks);
+  pending_.insert(ticks);
   take_pending();
 }
 
 void TrackOdometry::advance(Time stamp, const InertialSample& sample) {
-  if (!filter_) {
-    if (std::abs(sample.force_mps2.norm() - kGravity_mps2) > kMaxStartAcceleration_mps2) return;
-    filter_.emplace(filter_settings(settings_, *robot_.tracks), sample);
-    filter_->regain_grip(0.0, settings_.slip_std);
+  using Step = ImuFrontEnd<TrackFilter>::Step;
+  const Time before = imu_.now();
+  const auto make_filter = [this](const InertialSample& first) { return TrackFilter(filter_settings(settings_, *robot_.tracks), first); };
+  const Step step = imu_.advance(stamp, sample, make_filter);
+  if (step == Step::kIgnored) return;
+  if (step == Step::kStarted) {
+    imu_.filter()->regain_grip(0.0, settings_.slip_std);
     started_ = stamp;
-  } else if (stamp - now_ > kMaxImuStep) {
-    filter_->coast(to_seconds(stamp - now_), filter_->yaw_rate_radps());
+  } else if (step == Step::kBridged) {
     slip_watch_.reset();
   } else {
-    const double dt_s = to_seconds(stamp - now_);
-    filter_->predict(dt_s, sample);
-    slip_watch_.add_acceleration(stamp, dt_s, filter_->forward_acceleration_mps2());
+    slip_watch_.add_acceleration(stamp, to_seconds(stamp - before), imu_.filter()->forward_acceleration_mps2());
   }
-  now_ = stamp;
-  imu_is_silent_ = false;
   watch_standstill(sample);
-  has_settled_ = has_settled_ || to_seconds(now_ - started_) > settings_.start_patience_s;
-  remember();
+  has_settled_ = has_settled_ || to_seconds(stamp - started_) > settings_.start_patience_s;
+  imu_.remember();
   if (last_speed_update_ && ticks_are_silent()) hold_velocity();
 }
 
 // Counters are due once the IMU has passed their instant, or is late.
 void TrackOdometry::take_pending() {
-  if (!filter_) {
+  if (!imu_.filter()) {
     pending_.clear();
     return;
   }
-  while (!pending_.empty()) {
-    const TrackTicks ticks = pending_.front();
-    if (ticks.stamp > now_) {
-      if (to_seconds(pending_.back().stamp - now_) <= settings_.imu_patience_s) return;
+  while (!pending_.is_empty()) {
+    const TrackTicks ticks = pending_.oldest();
+    if (ticks.stamp > imu_.now()) {
+      if (to_seconds(pending_.newest().stamp - imu_.now()) <= settings_.imu_patience_s) return;
       coast_to(ticks);
     }
-    pending_.pop_front();
+    pending_.pop_oldest();
     use_ticks(ticks);
   }
 }
 
 void TrackOdometry::coast_to(const TrackTicks& ticks) {
-  imu_is_silent_ = true;
-  bias_meter_.reset();
   slip_watch_.reset();
-  double yaw_rate = filter_->yaw_rate_radps();
+  double yaw_rate = imu_.filter()->yaw_rate_radps();
   if (const auto& last = counters_.last()) {
     const auto turn_ticks = static_cast<double>((ticks.right - last->right) - (ticks.left - last->left));
     yaw_rate = turn_ticks * metres_per_tick_ / to_seconds(ticks.stamp - last->stamp) /
                (robot_.tracks->gauge_m * settings_.turn_ratio);
   }
-  filter_->coast(to_seconds(ticks.stamp - now_), yaw_rate);
-  now_ = ticks.stamp;
-  remember();
+  imu_.coast_to(ticks.stamp, yaw_rate);
 }
 
 void TrackOdometry::use_ticks(const TrackTicks& ticks) {
   const bool is_first = !counters_.last();
   const std::optional<BeltInterval> belts = counters_.add(ticks);
-  const std::optional<TrunkMotion> then = belts ? history_.motion_at(belts->middle()) : std::nullopt;
+  const std::optional<TrunkMotion> then = belts ? imu_.motion_at(belts->middle()) : std::nullopt;
   if (!then) {
-    if (!is_first) ++rejected_messages_;
+    if (!is_first) imu_.reject();
     return;
   }
-  if (!imu_is_silent_ && !watch_grip(*belts)) return;
+  if (!imu_.is_silent() && !watch_grip(*belts)) return;
 
   const double disagreement = yaw_rate_disagreement_radps(*belts, *then);
   const double yaw_rate = std::abs(then->omega_body.z());
-  filter_->wander(0.5 * (std::abs(belts->speed.left_mps) + std::abs(belts->speed.right_mps)) * belts->dt_s(),
+  imu_.filter()->wander(0.5 * (std::abs(belts->speed.left_mps) + std::abs(belts->speed.right_mps)) * belts->dt_s(),
                   yaw_rate * belts->dt_s(), usual_slip_std(yaw_rate, disagreement));
-  filter_->correct_speed(belts->dt_s(), belts->speed.mean_mps(), *then, speed_std(*belts, *then, disagreement));
+  imu_.filter()->correct_speed(belts->dt_s(), belts->speed.mean_mps(), *then, speed_std(*belts, *then, disagreement));
   last_speed_update_ = belts->end;
-  last_speed_ = filter_->motion().v_body;
-  remember();
+  last_speed_ = imu_.filter()->motion().v_body;
+  imu_.remember();
 }
 
 double TrackOdometry::yaw_rate_disagreement_radps(const BeltInterval& belts, const TrunkMotion& then) const {
@@ -180,7 +162,7 @@ double TrackOdometry::yaw_rate_disagreement_radps(const BeltInterval& belts, con
 }
 
 double TrackOdometry::usual_slip_std(double yaw_rate_radps, double disagreement_radps) const {
-  const Eigen::Vector3d up = filter_->up_in_body();
+  const Eigen::Vector3d up = imu_.filter()->up_in_body();
   const Eigen::Vector4d parts(settings_.slip_std, settings_.slip_std_per_radps * yaw_rate_radps,
                               settings_.slip_std_per_tilt * up.head<2>().norm(),
                               settings_.slip_std_per_disagreement * disagreement_radps);
@@ -202,92 +184,80 @@ Eigen::Vector3d TrackOdometry::speed_std(const BeltInterval& belts, const TrunkM
 // Belts that have lost their grip, and counters that stand still while the body goes on, look alike: what they say is not what
 // the body does. The IMU carries on alone until both agree for a while.
 bool TrackOdometry::watch_grip(const BeltInterval& belts) {
-  const double believed = filter_->motion().v_body.x(), belts_mps = belts.smooth.mean_mps();
+  const double believed = imu_.filter()->motion().v_body.x(), belts_mps = belts.smooth.mean_mps();
   if (grip_is_lost_) {
     if (std::abs(belts_mps - believed) > kAgreement_mps) agree_since_.reset();
     else if (!agree_since_) agree_since_ = belts.start;
     if (!agree_since_ || belts.end - *agree_since_ < kAgreement) return false;
     grip_is_lost_ = false;
     slip_watch_.reset();
-    filter_->regain_grip(belts_mps, settings_.slip_std);
+    imu_.filter()->regain_grip(belts_mps, settings_.slip_std);
   }
   const auto evidence = slip_watch_.add_speed(belts.end, belts.speed.mean_mps(), believed);
   if (!evidence) return true;
   ++slip_events_;
   grip_is_lost_ = true;
   agree_since_.reset();
-  filter_->lose_grip(evidence->forward_mps, 0.5 * std::abs(evidence->disagreement_mps) * evidence->duration_s);
-  last_speed_ = filter_->motion().v_body;
-  remember();
+  imu_.filter()->lose_grip(evidence->forward_mps, 0.5 * std::abs(evidence->disagreement_mps) * evidence->duration_s);
+  last_speed_ = imu_.filter()->motion().v_body;
+  imu_.remember();
   return false;
 }
 
 void TrackOdometry::watch_standstill(const InertialSample& sample) {
   if (!counters_.stand() || grip_is_lost_) {
-    bias_meter_.reset();
+    imu_.bias_meter().reset();
     return;
   }
-  const auto reading = bias_meter_.add(now_, track_ends_, sample.rate_radps);
+  const auto reading = imu_.bias_meter().add(imu_.now(), track_ends_, sample.rate_radps);
   if (!reading) return;
   if (reading->bias_radps.cwiseAbs().maxCoeff() > kMaxBiasSigmas * settings_.gyro_bias_std_radps) return;
-  filter_->correct_gyro_bias(reading->bias_radps, reading->variance);
-  filter_->regain_grip(0.0, settings_.slip_std);
-  if (has_settled_ || to_seconds(now_ - counters_.stand_since()) < settings_.settle_s) return;
-  filter_->set_origin();
-  history_.clear();
+  imu_.filter()->correct_gyro_bias(reading->bias_radps, reading->variance);
+  imu_.filter()->regain_grip(0.0, settings_.slip_std);
+  if (has_settled_ || to_seconds(imu_.now() - counters_.stand_since()) < settings_.settle_s) return;
+  imu_.filter()->set_origin();
+  imu_.forget_history();
   has_settled_ = true;
 }
 
 // By the IMU alone the velocity would run away; it stays about what it was when the belts were last heard.
 void TrackOdometry::hold_velocity() {
-  if (now_ - last_velocity_hold_ < kTickSilence) return;
-  last_velocity_hold_ = now_;
-  filter_->correct_velocity(last_speed_, kHoldStd_mps);
-  remember();
+  if (!imu_.is_velocity_hold_due(kTickSilence)) return;
+  imu_.filter()->correct_velocity(last_speed_, kHoldStd_mps);
+  imu_.remember();
 }
 
 std::optional<OdometryEstimate> TrackOdometry::estimate() const {
   if (!has_settled_ || !last_speed_update_) return std::nullopt;
-  const TrunkMotion& motion = filter_->motion();
-  return OdometryEstimate{.stamp = now_,
-                          .T_odom_body = motion.T_odom_body,
-                          .twist = {.linear = motion.v_body, .angular = motion.omega_body},
-                          .planar_covariance = filter_->planar_covariance()};
+  return imu_.estimate();
 }
 
 std::optional<Pose3> TrackOdometry::T_odom_body_at(Time stamp) const {
-  if (history_.empty() || !estimate()) return std::nullopt;
-  if (stamp <= history_.newest()) return history_.pose_at(stamp);
-  const double ahead_s = to_seconds(stamp - history_.newest());
-  if (ahead_s > settings_.extrapolation_s) return std::nullopt;
-  const TrunkMotion& motion = history_.newest_motion();
-  const Eigen::Quaterniond& rotation = motion.T_odom_body.rotation;
-  const double yaw_rate = (rotation * motion.omega_body).z();
-  return Pose3{motion.T_odom_body.position + ahead_s * (rotation * motion.v_body),
-               quaternion_from_yaw(ahead_s * yaw_rate) * rotation};
+  if (!estimate()) return std::nullopt;
+  return imu_.T_odom_body_at(stamp);
 }
 
 // With the belts heard, the velocity's quick errors (steps of the counters, shocks) average out within a tenth of a second; what
 // lasts is slip and the turn's centre, unless the IMU knows better.
 Eigen::Vector3d TrackOdometry::twist_std() const {
-  if (!filter_) return Eigen::Vector3d::Zero();
+  if (!imu_.filter()) return Eigen::Vector3d::Zero();
   constexpr int kVelocity = InertialError::kVelocity, kBias = InertialError::kGyroBias + 2;
-  const auto& P = filter_->covariance();
+  const auto& P = imu_.filter()->covariance();
   Eigen::Vector2d variance = P.diagonal().segment<2>(kVelocity);
-  if (!ticks_are_silent()) variance = variance.cwiseMin(filter_->lasting_velocity_variance());
-  const double sideways = kLastingSideways * filter_->motion().v_body.x();
+  if (!ticks_are_silent()) variance = variance.cwiseMin(imu_.filter()->lasting_velocity_variance());
+  const double sideways = kLastingSideways * imu_.filter()->motion().v_body.x();
   return {std::sqrt(variance.x()), std::hypot(std::sqrt(variance.y()), sideways), std::sqrt(P(kBias, kBias))};
 }
 
-bool TrackOdometry::ticks_are_silent() const { return !last_speed_update_ || now_ - *last_speed_update_ > kTickSilence; }
+bool TrackOdometry::ticks_are_silent() const { return !last_speed_update_ || imu_.now() - *last_speed_update_ > kTickSilence; }
 
 TrackOdometryHealth TrackOdometry::health() const {
-  TrackOdometryHealth health{.imu_is_silent = imu_is_silent_,
+  TrackOdometryHealth health{.imu_is_silent = imu_.is_silent(),
                              .grip_is_lost = grip_is_lost_,
-                             .rejected_messages = rejected_messages_,
+                             .rejected_messages = imu_.rejected_messages(),
                              .slip_events = slip_events_};
   health.ticks_are_silent = ticks_are_silent();
-  if (!filter_) return health;
+  if (!imu_.filter()) return health;
   health.gyro_z_bias_std_radps = twist_std().z();
   return health;
 }

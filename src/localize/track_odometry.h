@@ -1,17 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/settings.h"
 #include "localize/belt_counters.h"
-#include "localize/imu_mount.h"
-#include "localize/motion_history.h"
+#include "localize/imu_front_end.h"
+#include "localize/pending_readings.h"
 #include "localize/slip_watch.h"
-#include "localize/standstill.h"
 #include "localize/track_filter.h"
 
 namespace patrol::localize {
@@ -135,7 +133,7 @@ class TrackOdometry {
 
   TrackOdometryHealth health() const;
   /// The filter behind; none before the first IMU reading.
-  const std::optional<TrackFilter>& filter() const { return filter_; }
+  const std::optional<TrackFilter>& filter() const { return imu_.filter(); }
 
  private:
   void advance(Time stamp, const InertialSample& sample);
@@ -152,35 +150,25 @@ class TrackOdometry {
   void watch_standstill(const InertialSample& sample);
   void hold_velocity();
   bool ticks_are_silent() const;
-  void remember() { history_.push(now_, filter_->motion()); }
 
   RobotDescription robot_;
   TrackOdometrySettings settings_;
   double metres_per_tick_;
   StanceFeet track_ends_;  ///< these stand still while the belts do
-  ImuMount imu_mount_;
+  ImuFrontEnd<TrackFilter> imu_;
 
-  std::optional<TrackFilter> filter_;
-  Time now_{};  ///< of the filter's state
   Time started_{};
   bool has_settled_ = false;
-  MotionHistory history_;
   SlipWatch slip_watch_;
-  StandstillBiasMeter bias_meter_;
 
   BeltCounters counters_;
-  std::deque<TrackTicks> pending_;  ///< in order of stamps, waiting for the IMU
+  PendingReadings<TrackTicks> pending_;  ///< waiting for the IMU
   std::optional<Time> last_speed_update_;
   Eigen::Vector3d last_speed_ = Eigen::Vector3d::Zero();  ///< of the body, when the belts were last believed, m/s
-  Time last_velocity_hold_{};
 
   // Faults.
-  Eigen::Matrix<double, 6, 1> last_imu_reading_ = Eigen::Matrix<double, 6, 1>::Zero();
-  int imu_repeats_ = 0;
   bool grip_is_lost_ = false;
   std::optional<Time> agree_since_;  ///< belts and IMU, after that
-  bool imu_is_silent_ = false;
-  std::uint64_t rejected_messages_ = 0;
   std::uint64_t slip_events_ = 0;
 };
 
