@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "plan/navigator.h"
+#include "plan/navigation/navigator.h"
 #include "tests/support/room_world.h"
 
 namespace patrol::plan {

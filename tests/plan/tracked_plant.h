@@ -4,7 +4,7 @@
 
 #include "core/frames.h"
 #include "core/messages.h"
-#include "plan/dwa.h"
+#include "plan/control/dwa.h"
 
 namespace patrol::plan {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "plan/navigator.h"
+#include "plan/navigation/navigator.h"
 
 namespace patrol::plan {
 

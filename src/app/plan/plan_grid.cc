@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plan/global_planner.h"
+#include "plan/routes/global_planner.h"
 
 namespace patrol::app {
 namespace {

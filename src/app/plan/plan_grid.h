@@ -7,12 +7,12 @@
 
 #include "app/plan/plan_settings.h"
 #include "core/grid.h"
-#include "plan/costmap.h"
+#include "plan/perception/costmap.h"
 
 namespace patrol::app {
 
 /// What the planners get. For a point the map's own cells: lethal what is occupied, or unknown and not to be crossed. For an outline the costmap
-/// that a robot drives by (plan/costmap.h), without live obstacles and keep-out lines, cut to the map; its cells are no finer than the map's.
+/// that a robot drives by (plan/perception/costmap.h), without live obstacles and keep-out lines, cut to the map; its cells are no finer than the map's.
 /// Throws InputError when the outline is too large for the costmap's reach.
 Grid<plan::Cost> make_costs(const OccupancyGrid& occupancy, const PlanBody& body, const plan::CostmapSettings& settings);
 

@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "io/settings_yaml.h"
 #include "io/urdf.h"
-#include "plan/global_planner.h"
+#include "plan/routes/global_planner.h"
 
 namespace patrol::app {
 namespace {

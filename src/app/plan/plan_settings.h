@@ -6,14 +6,14 @@
 
 #include "app/plan/plan_options.h"
 #include "core/settings.h"
-#include "plan/costmap.h"
-#include "plan/footprint.h"
+#include "plan/perception/costmap.h"
+#include "plan/perception/footprint.h"
 #include "plan/routes/planners.h"
 #include "plan/routes/tour_order.h"
 
 namespace patrol::app {
 
-/// Everything that `patrol plan --set` reaches. Defaults are a point's; for a disc routes.cost_weight is the robots' (plan/global_planner.h); for a robot
+/// Everything that `patrol plan --set` reaches. Defaults are a point's; for a disc routes.cost_weight is the robots' (plan/routes/global_planner.h); for a robot
 /// costmap, unknown, routes and speed_mps are those that it drives with (models/<robot>/<robot>.yaml: stack.plan).
 struct PlanSettings {
   std::string planner = "theta_star";  ///< plan/routes/planners.h

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/grid.h"
-#include "plan/costmap.h"
+#include "plan/perception/costmap.h"
 #include "render/frame.h"
 
 namespace patrol::app {

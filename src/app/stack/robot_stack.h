@@ -13,7 +13,7 @@
 #include "core/route.h"
 #include "inspect/navigation_feedback.h"
 #include "localize/map_pose_tracker.h"
-#include "plan/navigator.h"
+#include "plan/navigation/navigator.h"
 #include "plan/sensor_watch.h"
 
 namespace patrol::app {

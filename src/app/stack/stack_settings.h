@@ -14,8 +14,8 @@
 #include "localize/range_filter.h"
 #include "localize/scan_leveler.h"
 #include "localize/track_odometry.h"
-#include "plan/docking.h"
-#include "plan/navigator.h"
+#include "plan/control/docking.h"
+#include "plan/navigation/navigator.h"
 #include "plan/sensor_watch.h"
 #include "slam/mapper.h"
 

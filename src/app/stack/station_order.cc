@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "plan/global_planner.h"
+#include "plan/routes/global_planner.h"
 #include "plan/routes/tour_order.h"
 
 namespace patrol::app {

@@ -7,7 +7,7 @@
 #include "core/robot_description.h"
 #include "core/route.h"
 #include "inspect/mission.h"
-#include "plan/navigator.h"
+#include "plan/navigation/navigator.h"
 
 namespace patrol::app {
 

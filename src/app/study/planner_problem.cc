@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "plan/routes/generated_grids.h"
-#include "plan/global_planner.h"
+#include "plan/routes/global_planner.h"
 
 namespace patrol::app {
 namespace {

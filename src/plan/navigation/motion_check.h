@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/messages.h"
-#include "plan/costmap.h"
+#include "plan/perception/costmap.h"
 
 namespace patrol::plan {
 

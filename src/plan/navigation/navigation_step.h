@@ -5,7 +5,7 @@
 
 #include "core/frames.h"
 #include "core/messages.h"
-#include "plan/global_planner.h"
+#include "plan/routes/global_planner.h"
 
 namespace patrol::plan {
 

@@ -4,14 +4,14 @@
 #include <vector>
 
 #include "core/settings.h"
-#include "plan/depth_points.h"
-#include "plan/differential_approach.h"
-#include "plan/dwa.h"
-#include "plan/global_planner.h"
-#include "plan/paper_dwa.h"
+#include "plan/control/differential_approach.h"
+#include "plan/control/dwa.h"
+#include "plan/control/paper_dwa.h"
+#include "plan/control/pose_regulator.h"
 #include "plan/perception/costmap_settings.h"
-#include "plan/pose_regulator.h"
-#include "plan/sonar_cone.h"
+#include "plan/perception/depth_points.h"
+#include "plan/perception/sonar_cone.h"
+#include "plan/routes/global_planner.h"
 
 namespace patrol::plan {
 
@@ -19,7 +19,7 @@ struct NavigatorSettings {
   std::string drive = "omnidirectional";  ///< or "differential": a robot that cannot step sideways
   std::string global = "theta_star";      ///< planner of the way to the goal (plan/routes/planners.h)
   std::string local_planner = "dwa";      ///< or "paper_dwa": paper 004's, as printed
-  int footprint_rows = 1;             ///< of discs that stand for the outline (plan/footprint.h)
+  int footprint_rows = 1;             ///< of discs that stand for the outline (plan/perception/footprint.h)
   double steps_per_s = 1e7;               ///< cells that the robot's computer looks at in a second: a route comes so much later
   double replan_period_s = 4.0;       ///< a new path after this time, for what the map has learnt
   double check_ahead_m = 6.0;         ///< an obstacle on the path nearer than this calls for a new one at once

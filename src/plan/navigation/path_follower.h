@@ -3,10 +3,10 @@
 #include <memory>
 #include <optional>
 
-#include "plan/costmap.h"
-#include "plan/local_planner.h"
+#include "plan/control/local_planner.h"
 #include "plan/navigation/navigator_settings.h"
-#include "plan/planned_path.h"
+#include "plan/perception/costmap.h"
+#include "plan/routes/planned_path.h"
 
 namespace patrol::plan {
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/messages.h"
-#include "plan/costmap.h"
+#include "plan/perception/costmap.h"
 
 namespace patrol::plan {
 

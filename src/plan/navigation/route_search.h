@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "core/time.h"
-#include "plan/costmap.h"
-#include "plan/global_planner.h"
 #include "plan/navigation/navigator_settings.h"
+#include "plan/perception/costmap.h"
+#include "plan/routes/global_planner.h"
 
 namespace patrol::plan {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/settings.h"
-#include "plan/low_obstacles.h"
+#include "plan/perception/low_obstacles.h"
 
 namespace patrol::plan {
 

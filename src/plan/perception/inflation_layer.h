@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "core/distance_transform.h"
-#include "plan/footprint.h"
 #include "plan/perception/cell_box.h"
 #include "plan/perception/cell_lattice.h"
 #include "plan/perception/cost.h"
 #include "plan/perception/costmap_settings.h"
+#include "plan/perception/footprint.h"
 
 namespace patrol::plan {
 

@@ -3,13 +3,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "plan/depth_points.h"
-#include "plan/low_obstacles.h"
 #include "plan/perception/cell_box.h"
 #include "plan/perception/cell_lattice.h"
+#include "plan/perception/depth_points.h"
+#include "plan/perception/low_obstacles.h"
 #include "plan/perception/scan_layer.h"
+#include "plan/perception/sonar_cone.h"
 #include "plan/perception/static_map_layer.h"
-#include "plan/sonar_cone.h"
 
 namespace patrol::plan {
 

@@ -4,7 +4,7 @@
 
 #include "core/grid.h"
 #include "core/settings.h"
-#include "plan/costmap.h"
+#include "plan/perception/costmap.h"
 
 namespace patrol::plan {
 

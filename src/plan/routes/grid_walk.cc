@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "plan/planned_path.h"
+#include "plan/routes/planned_path.h"
 
 namespace patrol::plan {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/grid.h"
-#include "plan/costmap.h"
+#include "plan/perception/costmap.h"
 
 namespace patrol::plan {
 

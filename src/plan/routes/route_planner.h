@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/grid.h"
-#include "plan/costmap.h"
+#include "plan/perception/costmap.h"
 
 namespace patrol::plan {
 

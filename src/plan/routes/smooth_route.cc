@@ -4,8 +4,8 @@
 #include <array>
 #include <optional>
 
-#include "plan/planned_path.h"
 #include "plan/routes/line_of_sight.h"
+#include "plan/routes/planned_path.h"
 #include "plan/routes/route_planner.h"
 
 namespace patrol::plan {

@@ -6,7 +6,7 @@
 
 #include "app/scenario.h"
 #include "core/error.h"
-#include "plan/global_planner.h"
+#include "plan/routes/global_planner.h"
 
 namespace patrol::app {
 namespace {

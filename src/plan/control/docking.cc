@@ -1,0 +1,164 @@
+#include "plan/control/docking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace patrol::plan {
+namespace {
+
+constexpr double kFacing_rad = 0.05;  // to the line: near enough to set off
+
+}  // namespace
+
+Docking::Docking(const DockingSettings& settings) : settings_(settings), track_(settings.track) {
+  validate(settings_, "docking");
+}
+
+NavigationGoal Docking::staging_goal(const Pose2& T_map_docked) const {
+  return {.T_map_body = T_map_docked * Pose2{-settings_.staging_m, 0.0, 0.0},
+          .position_tol_m = settings_.staging_tol_m,
+          .yaw_tol_rad = settings_.staging_tol_rad};
+}
+
+void Docking::dock(Time now) {
+  track_.reset();
+  start_ = now;
+  tries_ = 1;
+  enter(Phase::kLook, "Looking for the charging post.");
+}
+
+void Docking::undock(Time now, const Pose2& T_odom_body) {
+  start_ = now;
+  T_odom_left_ = T_odom_body;
+  enter(Phase::kUndock, "Leaving the charging post.");
+}
+
+void Docking::stop() { enter(Phase::kIdle, ""); }
+
+void Docking::add(const DockSighting& sighting, const Pose2& T_odom_body) {
+  if (status() == DockingStatus::kDocking && sighting.stamp >= start_) track_.add(sighting, T_odom_body);
+}
+
+std::optional<Pose2> Docking::T_level_docked(const Pose2& T_odom_body) const {
+  if (!track_.T_odom_docked()) return std::nullopt;
+  return T_odom_body.inverse() * *track_.T_odom_docked();
+}
+
+DockingStatus Docking::status() const {
+  switch (phase_) {
+    case Phase::kIdle:
+      return DockingStatus::kIdle;
+    case Phase::kDocked:
+      return DockingStatus::kDocked;
+    case Phase::kUndock:
+      return DockingStatus::kUndocking;
+    case Phase::kFree:
+      return DockingStatus::kFree;
+    case Phase::kFailed:
+      return DockingStatus::kFailed;
+    default:
+      return DockingStatus::kDocking;
+  }
+}
+
+DockingStep Docking::step(Time now, const Pose2& T_odom_body) {
+  VelocityCommand command;
+  if (phase_ == Phase::kUndock) command = leave(T_odom_body);
+  if (status() == DockingStatus::kDocking || status() == DockingStatus::kUndocking) {
+    if (now - start_ > from_seconds(settings_.time_limit_s)) enter(Phase::kFailed, "Docking took too long.");
+  }
+  if (status() == DockingStatus::kDocking) {
+    const double blind_s = to_seconds(now - std::max(start_, track_.last_stamp()));
+    if (blind_s > settings_.give_up_blind_s) {
+      enter(Phase::kFailed, "The charging post is not to be seen.");
+    } else if (track_.num_sightings() >= settings_.min_sightings && blind_s <= settings_.max_blind_s) {
+      const Pose2 T_docked_body = track_.T_odom_docked()->inverse() * T_odom_body;
+      if (phase_ == Phase::kLook) enter(Phase::kTurn, "The charging post is found.");
+      if (phase_ == Phase::kTurn) command = turn_to_line(T_docked_body);
+      if (phase_ == Phase::kDriveIn) command = drive_in(now, T_docked_body);
+      if (phase_ == Phase::kSettle) settle(now, T_docked_body);
+      if (phase_ == Phase::kCorrect) command = correct(now, T_docked_body);
+      if (phase_ == Phase::kBackUp) command = back_up(T_docked_body);
+    }
+  }
+  if (status() == DockingStatus::kFailed || status() == DockingStatus::kDocked) command = {};
+  return {.command = command, .status = status(), .text = std::exchange(text_, {})};
+}
+
+VelocityCommand Docking::turn_to_line(const Pose2& T_docked_body) {
+  const double turn = wrap_angle(line_heading_rad(settings_.line, T_docked_body.y, 1.0) - T_docked_body.yaw);
+  if (std::abs(turn) > kFacing_rad) return {.yaw_rate_radps = yaw_rate_radps(turn)};
+  enter(Phase::kDriveIn, "");
+  return {};
+}
+
+VelocityCommand Docking::drive_in(Time now, const Pose2& T_docked_body) {
+  const double left_m = -T_docked_body.x;
+  if (std::abs(T_docked_body.y) > settings_.funnel_m + settings_.funnel_m_per_m * std::max(0.0, left_m)) {
+    try_again();
+    return {};
+  }
+  if (left_m <= settings_.position_tol_m / 3.0) {
+    standing_since_ = now;
+    enter(Phase::kSettle, "");
+    return {};
+  }
+  LineFollowingSettings line = settings_.line;
+  if (left_m < settings_.square_up_m) line.side_gain_per_m *= left_m / settings_.square_up_m;
+  const double speed = std::clamp(settings_.speed_gain_per_s * left_m, settings_.min_speed_mps, settings_.max_speed_mps);
+  return follow_line(line, T_docked_body, speed);
+}
+
+/// Stands; then says that it is docked, puts right what a little motion can put right, or tries again.
+void Docking::settle(Time now, const Pose2& T_docked_body) {
+  if (now - standing_since_ < from_seconds(settings_.settle_s)) return;
+  if (std::abs(T_docked_body.y) > settings_.position_tol_m) return try_again();
+  const bool is_there = std::abs(T_docked_body.x) <= settings_.position_tol_m;
+  const bool is_square = std::abs(T_docked_body.yaw) <= settings_.yaw_tol_rad;
+  if (is_there && is_square) return enter(Phase::kDocked, "Docked at the charging post.");
+  enter(Phase::kCorrect, "");
+}
+
+/// Half the tolerances are aimed at, so that the motion ends well within them; then it stands again.
+VelocityCommand Docking::correct(Time now, const Pose2& T_docked_body) {
+  if (std::abs(T_docked_body.yaw) > settings_.yaw_tol_rad / 2.0) {
+    return {.yaw_rate_radps = yaw_rate_radps(-T_docked_body.yaw)};
+  }
+  if (std::abs(T_docked_body.x) > settings_.position_tol_m / 2.0) {
+    return {.vx_mps = std::copysign(settings_.min_speed_mps, -T_docked_body.x)};
+  }
+  standing_since_ = now;
+  enter(Phase::kSettle, "");
+  return {};
+}
+
+VelocityCommand Docking::back_up(const Pose2& T_docked_body) {
+  if (-T_docked_body.x < settings_.staging_m) return follow_line(settings_.line, T_docked_body, -settings_.max_speed_mps);
+  enter(Phase::kTurn, "");
+  return {};
+}
+
+VelocityCommand Docking::leave(const Pose2& T_odom_body) {
+  const Pose2 T_left_body = T_odom_left_.inverse() * T_odom_body;
+  if (-T_left_body.x < settings_.undock_m) return follow_line(settings_.line, T_left_body, -settings_.max_speed_mps);
+  enter(Phase::kFree, "Clear of the charging post.");
+  return {};
+}
+
+void Docking::try_again() {
+  if (++tries_ > settings_.max_tries) return enter(Phase::kFailed, "The robot could not get in line with the charging post.");
+  enter(Phase::kBackUp, "Off the line to the charging post: backing up to try again.");
+}
+
+void Docking::enter(Phase phase, const char* text) {
+  phase_ = phase;
+  if (*text != 0) text_ = text;
+}
+
+double Docking::yaw_rate_radps(double turn_rad) const {
+  const double rate = settings_.line.yaw_gain_per_s * std::abs(turn_rad);
+  return std::copysign(std::clamp(rate, settings_.min_yaw_rate_radps, settings_.line.max_yaw_rate_radps), turn_rad);
+}
+
+}  // namespace patrol::plan

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/dock_sighting.h"
+#include "core/messages.h"
+#include "core/navigation_goal.h"
+#include "core/settings.h"
+#include "plan/control/dock_track.h"
+#include "plan/control/line_following.h"
+
+namespace patrol::plan {
+
+struct DockingSettings {
+  double staging_m = 1.35;         ///< from there, straight before the docked pose, the robot drives in
+  double staging_tol_m = 0.1;      ///< as exact as the navigator shall be there
+  double staging_tol_rad = 0.1;
+  double max_speed_mps = 0.2;
+  double min_speed_mps = 0.03;
+  double speed_gain_per_s = 0.5;   ///< speed per metre left
+  double min_yaw_rate_radps = 0.06;
+  double funnel_m = 0.02;          ///< the robot may be so far off the axis at the docked pose, and
+  double funnel_m_per_m = 0.3;     ///< so much farther per metre before it; else it backs up and tries again
+  double square_up_m = 0.15;       ///< over the last stretch the heading goes over to the dock's own
+  double position_tol_m = 0.012;   ///< docked, by its own estimate
+  double yaw_tol_rad = 0.008;
+  double settle_s = 1.0;           ///< stands and looks for so long before it says so
+  int min_sightings = 5;           ///< before it sets off
+  double max_blind_s = 1.0;        ///< without a look it stands still
+  double give_up_blind_s = 10.0;   ///< and gives up
+  int max_tries = 4;
+  double time_limit_s = 120.0;
+  double undock_m = 1.2;           ///< straight back
+  LineFollowingSettings line;
+  DockTrackSettings track;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("staging_m", self.staging_m, between(0.3, 5.0));
+    visit("staging_tol_m", self.staging_tol_m, between(0.01, 1.0));
+    visit("staging_tol_rad", self.staging_tol_rad, between(0.01, 1.0));
+    visit("max_speed_mps", self.max_speed_mps, between(0.02, 1.0));
+    visit("min_speed_mps", self.min_speed_mps, between(0.005, 0.2));
+    visit("speed_gain_per_s", self.speed_gain_per_s, between(0.05, 5.0));
+    visit("min_yaw_rate_radps", self.min_yaw_rate_radps, between(0.005, 1.0));
+    visit("funnel_m", self.funnel_m, between(0.005, 0.5));
+    visit("funnel_m_per_m", self.funnel_m_per_m, between(0.0, 2.0));
+    visit("square_up_m", self.square_up_m, between(0.0, 1.0));
+    visit("position_tol_m", self.position_tol_m, between(0.002, 0.1));
+    visit("yaw_tol_rad", self.yaw_tol_rad, between(0.001, 0.1));
+    visit("settle_s", self.settle_s, between(0.1, 10.0));
+    visit("min_sightings", self.min_sightings, between(1, 100));
+    visit("max_blind_s", self.max_blind_s, between(0.1, 10.0));
+    visit("give_up_blind_s", self.give_up_blind_s, between(0.5, 600.0));
+    visit("max_tries", self.max_tries, between(1, 100));
+    visit("time_limit_s", self.time_limit_s, between(5.0, 3600.0));
+    visit("undock_m", self.undock_m, between(0.1, 5.0));
+    visit("line", self.line);
+    visit("track", self.track);
+  }
+};
+
+enum class DockingStatus { kIdle, kDocking, kDocked, kUndocking, kFree, kFailed };
+
+struct DockingStep {
+  VelocityCommand command;
+  DockingStatus status = DockingStatus::kIdle;
+  std::string text;  ///< one sentence, in the step in which something has changed; else empty
+};
+
+/// Drives a robot on tracks from the staging pose to the charging post, and away from it. It steers by sightings of the post
+/// alone, fused in `odom`: what the map says of the place is not exact enough.
+///
+/// Look, turn to the line, drive in along it with a side error that falls with the way, square up, stand and look again. Off the
+/// line near the post it backs up and tries again; it says when it cannot.
+class Docking {
+ public:
+  /// Throws InputError if a setting breaks its rule.
+  explicit Docking(const DockingSettings& settings);
+
+  /// Where the navigator shall bring the robot before `dock`.
+  NavigationGoal staging_goal(const Pose2& T_map_docked) const;
+
+  void dock(Time now);
+  /// From the pose in which the robot stands; the post need not be seen.
+  void undock(Time now, const Pose2& T_odom_body);
+  void stop();
+
+  /// `T_odom_body` at the sighting's stamp. Only while docking is it heeded.
+  void add(const DockSighting& sighting, const Pose2& T_odom_body);
+  /// Where the docked body is from the body, once the post was seen: where the next scan should show it.
+  std::optional<Pose2> T_level_docked(const Pose2& T_odom_body) const;
+
+  /// Once a control period.
+  DockingStep step(Time now, const Pose2& T_odom_body);
+
+  DockingStatus status() const;
+
+ private:
+  enum class Phase { kIdle, kLook, kTurn, kDriveIn, kSettle, kCorrect, kBackUp, kDocked, kUndock, kFree, kFailed };
+
+  VelocityCommand turn_to_line(const Pose2& T_docked_body);
+  VelocityCommand drive_in(Time now, const Pose2& T_docked_body);
+  void settle(Time now, const Pose2& T_docked_body);
+  VelocityCommand correct(Time now, const Pose2& T_docked_body);
+  VelocityCommand back_up(const Pose2& T_docked_body);
+  VelocityCommand leave(const Pose2& T_odom_body);
+  void try_again();
+  void enter(Phase phase, const char* text);
+  double yaw_rate_radps(double turn_rad) const;
+
+  DockingSettings settings_;
+  DockTrack track_;
+  Phase phase_ = Phase::kIdle;
+  std::string text_;
+  Time start_{};
+  Time standing_since_{};
+  Pose2 T_odom_left_;    ///< where undocking began
+  int tries_ = 0;
+};
+
+}  // namespace patrol::plan

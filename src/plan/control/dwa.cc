@@ -1,0 +1,72 @@
+#include "plan/control/dwa.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace patrol::plan {
+namespace {
+
+constexpr double kMinReach_mps = 0.2;  // the least that counts as being able to get on
+
+/// Evenly from `low` to `high`, both included; zero among them when it lies between.
+std::vector<double> samples(double low, double high, int count) {
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) values.push_back(low + (high - low) * i / (count - 1));
+  if (low < 0.0 && high > 0.0) values.push_back(0.0);
+  return values;
+}
+
+}  // namespace
+
+DynamicWindow::DynamicWindow(const DwaSettings& settings)
+    : settings_(settings), clearance_{.comfortable_m = settings.comfortable_clearance_m} {}
+
+double DynamicWindow::cost(const Rollout& rollout, const RolloutScene& scene) const {
+  return settings_.path_weight * path_distance_(rollout, scene) + settings_.progress_weight * progress_(rollout, scene) +
+         settings_.heading_weight * heading_(rollout, scene) + settings_.clearance_weight * clearance_(rollout, scene) +
+         settings_.change_weight * change_(rollout, scene);
+}
+
+std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, const PlannedPath& path, double along_m,
+                                                     const Pose2& T_map_body, const Twist3& twist,
+                                                     double speed_limit_mps) const {
+  const double top_speed = std::min(settings_.max_speed_mps, speed_limit_mps);
+  const double speed = std::clamp(twist.linear.x(), -settings_.max_reverse_mps, settings_.max_speed_mps);
+  const double yaw_rate = std::clamp(twist.angular.z(), -settings_.max_yaw_rate_radps, settings_.max_yaw_rate_radps);
+  const double speed_window = settings_.max_accel_mps2 * settings_.window_s;
+  const double yaw_window = settings_.max_yaw_accel_radps2 * settings_.window_s;
+  // Braking is always a choice, also from above a limit that has just fallen.
+  const double fastest = std::max(std::min(top_speed, speed + speed_window), std::max(0.0, speed - speed_window));
+  const double slowest = std::min(std::max(0.0, speed - speed_window), fastest);
+
+  // Progress is measured by what is in reach now: to a robot at rest before a narrow place, creeping must not look as useless as
+  // standing.
+  const RolloutScene scene{.path = path,
+                           .along_m = along_m,
+                           .reach_m = std::max(fastest, kMinReach_mps) * settings_.horizon_s,
+                           .twist = twist,
+                           .max_speed_mps = settings_.max_speed_mps,
+                           .max_yaw_rate_radps = settings_.max_yaw_rate_radps};
+  const double clearance_now = costmap.clearance_m(T_map_body);
+  std::optional<VelocityCommand> best;
+  double best_cost = std::numeric_limits<double>::infinity();
+  for (const double vx : samples(slowest, fastest, settings_.speed_samples)) {
+    for (const double yaw : samples(std::max(-settings_.max_yaw_rate_radps, yaw_rate - yaw_window),
+                                    std::min(settings_.max_yaw_rate_radps, yaw_rate + yaw_window),
+                                    settings_.yaw_rate_samples)) {
+      const Rollout rollout = roll_out(costmap, T_map_body, vx, yaw, settings_.horizon_s, settings_.steps);
+      const bool leads_away = clearance_now < 0.0 && costmap.clearance_m(rollout.T_map_body.back()) > clearance_now + 0.02 &&
+                              rollout.min_clearance_m > clearance_now - 0.02;
+      if (rollout.min_clearance_m <= 0.0 && !leads_away) continue;
+      const double total = cost(rollout, scene);
+      if (total < best_cost) {
+        best_cost = total;
+        best = VelocityCommand{.stamp = {}, .vx_mps = vx, .vy_mps = 0.0, .yaw_rate_radps = yaw};
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace patrol::plan

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/settings.h"
+#include "plan/control/local_planner.h"
+#include "plan/control/rollouts/clearance.h"
+#include "plan/control/rollouts/command_change.h"
+#include "plan/control/rollouts/path_distance.h"
+#include "plan/control/rollouts/path_heading.h"
+#include "plan/control/rollouts/progress.h"
+#include "plan/control/rollouts/rollout.h"
+#include "plan/perception/costmap.h"
+
+namespace patrol::plan {
+
+struct DwaSettings {
+  // What the robot can do.
+  double max_speed_mps = 0.8;
+  double max_reverse_mps = 0.2;
+  double max_yaw_rate_radps = 0.9;
+  double max_accel_mps2 = 0.8;
+  double max_yaw_accel_radps2 = 2.5;
+  // What is tried.
+  double window_s = 0.3;    ///< commands are those reachable within this time
+  double horizon_s = 2.0;   ///< how far ahead they are followed
+  int steps = 8;            ///< poses along the horizon
+  int speed_samples = 6;
+  int yaw_rate_samples = 15;
+  // What is preferred.
+  double path_weight = 1.0;
+  double progress_weight = 1.2;
+  double heading_weight = 0.8;
+  double clearance_weight = 1.0;
+  double change_weight = 0.1;
+  double comfortable_clearance_m = 0.4;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("max_speed_mps", self.max_speed_mps, between(0.05, 3.0));
+    visit("max_reverse_mps", self.max_reverse_mps, between(0.0, 3.0));
+    visit("max_yaw_rate_radps", self.max_yaw_rate_radps, between(0.05, 5.0));
+    visit("max_accel_mps2", self.max_accel_mps2, between(0.05, 10.0));
+    visit("max_yaw_accel_radps2", self.max_yaw_accel_radps2, between(0.05, 50.0));
+    visit("window_s", self.window_s, between(0.02, 2.0));
+    visit("horizon_s", self.horizon_s, between(0.2, 10.0));
+    visit("steps", self.steps, between(2, 100));
+    visit("speed_samples", self.speed_samples, between(2, 100));
+    visit("yaw_rate_samples", self.yaw_rate_samples, between(3, 201));
+    visit("path_weight", self.path_weight, at_least(0.0));
+    visit("progress_weight", self.progress_weight, at_least(0.0));
+    visit("heading_weight", self.heading_weight, at_least(0.0));
+    visit("clearance_weight", self.clearance_weight, at_least(0.0));
+    visit("change_weight", self.change_weight, at_least(0.0));
+    visit("comfortable_clearance_m", self.comfortable_clearance_m, between(0.01, 5.0));
+  }
+};
+
+/// The dynamic window approach (Fox, Burgard, Thrun 1997): of the commands that the robot can reach within a moment, the one
+/// whose constant-velocity arc costs least. An arc that comes nearer to an obstacle than the robot's outline allows
+/// is no choice, unless the robot already stands so near and the arc leads away from it.
+class DynamicWindow final : public LocalPlanner {
+ public:
+  explicit DynamicWindow(const DwaSettings& settings);
+
+  std::optional<VelocityCommand> choose(const Costmap& costmap, const PlannedPath& path, double along_m,
+                                        const Pose2& T_map_body, const Twist3& twist, double speed_limit_mps) const override;
+
+ private:
+  double cost(const Rollout& rollout, const RolloutScene& scene) const;
+
+  DwaSettings settings_;
+  PathDistanceCost path_distance_;
+  ProgressCost progress_;
+  PathHeadingCost heading_;
+  ClearanceCost clearance_;
+  CommandChangeCost change_;
+};
+
+}  // namespace patrol::plan

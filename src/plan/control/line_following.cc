@@ -1,0 +1,31 @@
+#include "plan/control/line_following.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace patrol::plan {
+
+double line_heading_rad(const LineFollowingSettings& settings, double side_m, double speed_mps) {
+  const double angle = std::atan(settings.side_gain_per_m * side_m);
+  return -std::copysign(1.0, speed_mps) * std::clamp(angle, -settings.max_angle_rad, settings.max_angle_rad);
+}
+
+VelocityCommand follow_line(const LineFollowingSettings& settings, const Pose2& T_line_body, double speed_mps) {
+  const double turn = wrap_angle(line_heading_rad(settings, T_line_body.y, speed_mps) - T_line_body.yaw);
+  const double yaw_rate = settings.yaw_gain_per_s * turn;
+  return {.stamp = {},
+          .vx_mps = speed_mps * std::max(0.0, std::cos(turn)),
+          .vy_mps = 0.0,
+          .yaw_rate_radps = std::clamp(yaw_rate, -settings.max_yaw_rate_radps, settings.max_yaw_rate_radps)};
+}
+
+double side_after_m(const LineFollowingSettings& settings, double side_m, double way_m) {
+  const double slope = std::tan(settings.max_angle_rad);
+  const double knee_m = slope / settings.side_gain_per_m;  // nearer than this the angle is below its limit
+  const double straight_m = std::max(0.0, (std::abs(side_m) - knee_m) / slope);
+  if (way_m <= straight_m) return std::abs(side_m) - slope * way_m;
+  const double from_m = std::min(std::abs(side_m), knee_m);
+  return from_m * std::exp(-settings.side_gain_per_m * (way_m - straight_m));
+}
+
+}  // namespace patrol::plan

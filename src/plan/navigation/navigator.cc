@@ -1,0 +1,249 @@
+#include "plan/navigation/navigator.h"
+
+#include <cmath>
+#include <utility>
+
+namespace patrol::plan {
+namespace {
+
+constexpr double kPathStep_m = 0.25;    // between poses of the published path
+constexpr double kLookAhead_s = 0.5;    // for which a command of the approach must be safe
+
+/// Height of the body's origin above the ground. Robots on legs have no sensors that need it.
+double body_height_m(const RobotDescription& robot) { return robot.tracks ? robot.tracks->body_height_m : 0.0; }
+
+bool stands_still(const VelocityCommand& command) {
+  return std::abs(command.vx_mps) < 0.03 && std::abs(command.vy_mps) < 0.03 && std::abs(command.yaw_rate_radps) < 0.05;
+}
+
+const NavigatorSettings& checked(const NavigatorSettings& settings) {
+  validate(settings, "plan");
+  return settings;
+}
+
+}  // namespace
+
+Navigator::Navigator(const NavigatorSettings& settings, const RobotDescription& robot,
+                     std::vector<Polyline> keep_out_lines_in_map, std::uint64_t seed)
+    : settings_(checked(settings)),
+      robot_(robot),
+      costmap_(settings.costmap, Footprint(robot.footprint_m, settings.footprint_rows), std::move(keep_out_lines_in_map)),
+      search_(settings, seed),
+      follower_(settings),
+      approach_(settings.differential_approach),
+      recoveries_(settings),
+      progress_(settings.stuck_s) {}
+
+void Navigator::set_map(const OccupancyGrid& map) {
+  costmap_.set_map(map);
+  search_.note_new_map();
+}
+
+void Navigator::add_depth(const DepthImage& image, const Pose3& T_level_body, const Pose2& T_map_body) {
+  const Pose3 T_level_camera = T_level_body * robot_.T_body("depth_camera");
+  costmap_.add_image(find_depth_points(settings_.depth, image, T_level_camera, body_height_m(robot_)), image.stamp, T_map_body);
+}
+
+void Navigator::add_range(const UltrasonicRange& ping, const Pose3& T_level_body, const Pose2& T_map_body) {
+  const Pose3 T_level_transducer = T_level_body * robot_.T_body("ultrasonic_" + std::to_string(ping.transducer));
+  const SonarCone cone =
+      find_sonar_cone(settings_.sonar, ping, T_level_transducer, body_height_m(robot_), settings_.costmap.resolution_m);
+  costmap_.add_ping(cone, ping.stamp, T_map_body);
+}
+
+void Navigator::set_goal(const std::optional<NavigationGoal>& goal) {
+  if (goal == goal_) return;
+  goal_ = goal;
+  state_ = goal ? State::kFollowing : State::kIdle;
+  follower_.clear();
+  search_.reset();
+  recoveries_.reset();
+  progress_.reset();
+  blocked_since_.reset();
+  no_route_since_.reset();
+  trouble_ = NavigationTrouble::kNone;
+  text_.clear();
+  recovery_text_.clear();
+}
+
+NavigationStep Navigator::step(Time now, const Pose2& T_map_body) {
+  NavigationStep step;
+  if (goal_) {
+    check_end(now, T_map_body);
+    step.status = act(now, T_map_body, step);
+  }
+  step.trouble = trouble_;
+  step.text = std::exchange(text_, {});
+  step.recovery = std::exchange(recovery_text_, {});
+  last_ = step.command;
+  return step;
+}
+
+NavigationStatus Navigator::act(Time now, const Pose2& T_map_body, NavigationStep& step) {
+  switch (state_) {
+    case State::kIdle:
+      return NavigationStatus::kIdle;
+    case State::kArrived:
+      return NavigationStatus::kArrived;
+    case State::kFailed:
+      return NavigationStatus::kFailed;
+    case State::kRecovering:
+      return continue_recovery(now, T_map_body, step.command);
+    case State::kFollowing:
+    case State::kApproaching:
+      break;
+  }
+  return navigate(now, T_map_body, step);
+}
+
+/// Ends in kArrived at the goal, or in kFailed when the goal is given up.
+void Navigator::check_end(Time now, const Pose2& T_map_body) {
+  if (state_ == State::kArrived) return;
+  if (is_at_goal(T_map_body)) {
+    state_ = State::kArrived;
+    trouble_ = NavigationTrouble::kNone;
+  } else if (state_ != State::kFailed && is_hopeless(now)) {
+    state_ = State::kFailed;
+    text_ = std::string("The goal is given up. ") + sentence_of(trouble_);
+  }
+}
+
+/// A differential approach, once begun, decides itself when it is completed: it aims at less than the tolerances.
+bool Navigator::is_at_goal(const Pose2& T_map_body) const {
+  return state_ == State::kApproaching ? approach_.is_done() : is_reached(T_map_body, *goal_);
+}
+
+bool Navigator::is_hopeless(Time now) const {
+  return recoveries_.is_exhausted() || (no_route_since_ && now - *no_route_since_ > from_seconds(settings_.no_route_s));
+}
+
+void Navigator::report(NavigationTrouble trouble) {
+  if (trouble != trouble_) text_ = sentence_of(trouble);
+  trouble_ = trouble;
+}
+
+NavigationStatus Navigator::navigate(Time now, const Pose2& T_map_body, NavigationStep& step) {
+  if (progress_.is_stuck(now, T_map_body)) {
+    report(NavigationTrouble::kStuck);
+    return begin_recovery(now, T_map_body, step.command);
+  }
+  search_if_needed(now, T_map_body);
+  take_route(now, T_map_body, step);
+  if (follower_.has_path()) return drive(now, T_map_body, step.command);
+  if (search_.is_running()) return wait_for_route(now);
+  return stand_blocked(now, T_map_body, step.command);
+}
+
+/// Begins to search a route when there is none, or none that will do for long.
+void Navigator::search_if_needed(Time now, const Pose2& T_map_body) {
+  bool is_blocked = false;
+  if (follower_.has_path()) {
+    const double stray_m = follower_.advance(T_map_body);
+    is_blocked = follower_.is_blocked(costmap_);
+    if (is_blocked && settings_.detour_after_s > 0.0 && follower_.is_blocked_by_newcomers_only(costmap_, now)) return;
+    if (!is_blocked && !search_.is_outdated(now) && stray_m <= settings_.stray_m) return;
+  }
+  if (!search_.may_begin(now)) return;
+  search_.begin(now, costmap_, T_map_body.position(), goal_->T_map_body.position(), is_blocked);
+}
+
+/// Takes the route of a completed search.
+void Navigator::take_route(Time now, const Pose2& T_map_body, NavigationStep& step) {
+  const std::optional<RouteSearch::Result> result = search_.take(now);
+  if (!result) return;
+  if (result->route.status != PlanStatus::kFound) {
+    if (result->is_detour) follower_.clear();
+    if (follower_.has_path()) return;
+    if (!no_route_since_) no_route_since_ = now;
+    report(trouble_of(result->route.status));
+    return;
+  }
+  no_route_since_.reset();
+  trouble_ = NavigationTrouble::kNone;
+  follower_.set_path(PlannedPath(result->route.points_m), T_map_body);
+  step.replanned = true;
+  step.is_detour = result->is_detour;
+  step.path = follower_.path().sample(kPathStep_m);
+}
+
+NavigationStatus Navigator::drive(Time now, const Pose2& T_map_body, VelocityCommand& command) {
+  const bool is_differential = settings_.drive == "differential";
+  const double goal_distance_m = (goal_->T_map_body.position() - T_map_body.position()).norm();
+  if (is_differential) choose_approach(goal_distance_m);
+  if (state_ == State::kApproaching) return approach(now, T_map_body, command);
+
+  const VelocityCommand straight = regulate_pose(settings_.approach, T_map_body, *goal_);
+  const bool is_near = !is_differential && goal_distance_m <= settings_.approach_m;
+  const bool is_straight = is_near && is_motion_safe(costmap_, T_map_body, straight, kLookAhead_s);
+  command = is_straight ? straight : follower_.command(costmap_, T_map_body, last_);
+  note_progress(T_map_body);
+  if (stands_still(command) && !is_near) return stand_blocked(now, T_map_body, command);
+  blocked_since_.reset();
+  return NavigationStatus::kDriving;
+}
+
+/// A differential robot approaches the goal from the end of its path on, and may back off from it meanwhile.
+void Navigator::choose_approach(double goal_distance_m) {
+  const bool was_approaching = state_ == State::kApproaching;
+  if (!was_approaching) approach_.reset();
+  const bool is_approaching =
+      was_approaching ? goal_distance_m <= settings_.approach_m + settings_.differential_approach.max_back_off_m
+                      : goal_distance_m <= settings_.approach_m && follower_.left_m() <= settings_.approach_m;
+  state_ = is_approaching ? State::kApproaching : State::kFollowing;
+}
+
+/// The last meter of a differential robot. Where there is no room for it, it tries another way in, then recovers.
+NavigationStatus Navigator::approach(Time now, const Pose2& T_map_body, VelocityCommand& command) {
+  note_progress(T_map_body);
+  command = approach_.step(T_map_body, *goal_);
+  if (!is_motion_safe(costmap_, T_map_body, command, kLookAhead_s)) {
+    approach_.block();
+    return stand_blocked(now, T_map_body, command);
+  }
+  blocked_since_.reset();
+  return NavigationStatus::kDriving;
+}
+
+/// Stands until there is a first route.
+NavigationStatus Navigator::wait_for_route(Time now) {
+  blocked_since_.reset();
+  progress_.restart_time(now);
+  return NavigationStatus::kDriving;
+}
+
+/// Stands; begins a recovery when that has lasted.
+NavigationStatus Navigator::stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command) {
+  command = {};
+  if (!blocked_since_) blocked_since_ = now;
+  if (now - *blocked_since_ < from_seconds(settings_.patience_s)) return NavigationStatus::kBlocked;
+  if (!no_route_since_) report(NavigationTrouble::kPathBlocked);
+  return begin_recovery(now, T_map_body, command);
+}
+
+NavigationStatus Navigator::begin_recovery(Time now, const Pose2& T_map_body, VelocityCommand& command) {
+  command = {};
+  search_.cancel();
+  blocked_since_.reset();
+  progress_.forget_place();
+  recovery_text_ = recoveries_.begin_next(now, T_map_body, costmap_);
+  state_ = State::kRecovering;
+  return NavigationStatus::kRecovering;
+}
+
+/// After a recovery a new path is searched.
+NavigationStatus Navigator::continue_recovery(Time now, const Pose2& T_map_body, VelocityCommand& command) {
+  if (const std::optional<VelocityCommand> recovery = recoveries_.step(now, T_map_body, costmap_)) {
+    command = *recovery;
+  } else {
+    follower_.clear();
+    state_ = State::kFollowing;
+  }
+  return NavigationStatus::kRecovering;
+}
+
+void Navigator::note_progress(const Pose2& T_map_body) {
+  const double goal_distance_m = (goal_->T_map_body.position() - T_map_body.position()).norm();
+  if (progress_.has_come_nearer(goal_distance_m + follower_.path().length_m() - follower_.along_m())) recoveries_.reset();
+}
+
+}  // namespace patrol::plan

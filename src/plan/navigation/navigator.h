@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/messages.h"
+#include "core/navigation_goal.h"
+#include "core/robot_description.h"
+#include "plan/control/differential_approach.h"
+#include "plan/navigation/motion_check.h"
+#include "plan/navigation/navigation_step.h"
+#include "plan/navigation/navigator_settings.h"
+#include "plan/navigation/path_follower.h"
+#include "plan/navigation/progress_monitor.h"
+#include "plan/navigation/recovery_sequence.h"
+#include "plan/navigation/route_search.h"
+#include "plan/perception/costmap.h"
+#include "plan/routes/planned_path.h"
+
+namespace patrol::plan {
+
+/// Navigates the robot to a goal pose: layered costmap, global planner, local planner, and a controller of its own for the last meter.
+/// When blocked it waits, runs recovery behaviors and replans; reports failure when no route exists.
+class Navigator {
+ public:
+  /// `seed`: of the global planners that draw. Throws InputError if a setting breaks its rule or the robot has no footprint.
+  Navigator(const NavigatorSettings& settings, const RobotDescription& robot, std::vector<Polyline> keep_out_lines_in_map, std::uint64_t seed = 0);
+
+  void set_map(const OccupancyGrid& map);
+  void add_scan(const LevelScan& scan, const Pose2& T_map_body) { costmap_.add_scan(scan, T_map_body); }
+  /// `T_level_body`: the body's tilt. Throw InputError if the robot has no such camera or transducer.
+  void add_depth(const DepthImage& image, const Pose3& T_level_body, const Pose2& T_map_body);
+  void add_range(const UltrasonicRange& ping, const Pose3& T_level_body, const Pose2& T_map_body);
+  /// The same goal again changes nothing; none stops the robot.
+  void set_goal(const std::optional<NavigationGoal>& goal);
+
+  /// Once a control period.
+  NavigationStep step(Time now, const Pose2& T_map_body);
+
+  /// Whether the robot can move at a velocity for half a second without touching an obstacle of the costmap.
+  bool is_free(const Pose2& T_map_body, const VelocityCommand& command) const { return is_motion_safe(costmap_, T_map_body, command, 0.5); }
+
+  const Costmap& costmap() const { return costmap_; }
+  const PlannedPath& path() const { return follower_.path(); }
+
+ private:
+  /// kFollowing: toward the goal along a path, or waiting for one; kApproaching: the differential approach drives.
+  enum class State { kIdle, kFollowing, kApproaching, kRecovering, kArrived, kFailed };
+
+  bool is_at_goal(const Pose2& T_map_body) const;
+  bool is_hopeless(Time now) const;
+  void check_end(Time now, const Pose2& T_map_body);
+  NavigationStatus act(Time now, const Pose2& T_map_body, NavigationStep& step);
+
+  // kFollowing and kApproaching.
+  NavigationStatus navigate(Time now, const Pose2& T_map_body, NavigationStep& step);
+  void search_if_needed(Time now, const Pose2& T_map_body);
+  void take_route(Time now, const Pose2& T_map_body, NavigationStep& step);
+  NavigationStatus drive(Time now, const Pose2& T_map_body, VelocityCommand& command);
+  void choose_approach(double goal_distance_m);
+  NavigationStatus approach(Time now, const Pose2& T_map_body, VelocityCommand& command);
+  NavigationStatus wait_for_route(Time now);
+  NavigationStatus stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command);
+  void note_progress(const Pose2& T_map_body);
+
+  // kRecovering.
+  NavigationStatus begin_recovery(Time now, const Pose2& T_map_body, VelocityCommand& command);
+  NavigationStatus continue_recovery(Time now, const Pose2& T_map_body, VelocityCommand& command);
+
+  void report(NavigationTrouble trouble);
+
+  NavigatorSettings settings_;
+  RobotDescription robot_;
+  Costmap costmap_;
+  RouteSearch search_;
+  PathFollower follower_;
+  DifferentialApproach approach_;
+  RecoverySequence recoveries_;
+  ProgressMonitor progress_;
+
+  State state_ = State::kIdle;
+  std::optional<NavigationGoal> goal_;
+  VelocityCommand last_;               ///< the command before
+  std::optional<Time> blocked_since_;
+  std::optional<Time> no_route_since_;
+  NavigationTrouble trouble_ = NavigationTrouble::kNone;
+  std::string text_, recovery_text_;   ///< of the next step
+};
+
+}  // namespace patrol::plan

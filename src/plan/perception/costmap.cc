@@ -1,0 +1,132 @@
+#include "plan/perception/costmap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace patrol::plan {
+namespace {
+
+constexpr double kGrowth_m = 5.0;  ///< added at each growth, so that growth is rare
+
+const CostmapSettings& checked(const CostmapSettings& settings) {
+  validate(settings, "costmap");
+  return settings;
+}
+
+}  // namespace
+
+Costmap::Costmap(const CostmapSettings& settings, const Footprint& footprint, std::vector<Polyline> keep_out_lines_in_map)
+    : settings_(checked(settings)),
+      footprint_(footprint),
+      static_map_(settings),
+      scan_(settings),
+      low_(settings.low),
+      inflation_(settings, footprint),
+      keep_out_(settings, std::move(keep_out_lines_in_map), inflation_.max_distance_m()) {
+  for (const Polyline& line : keep_out_.lines()) {
+    for (const Eigen::Vector2d& p : line) include(p, 1.0);
+  }
+  include(Eigen::Vector2d::Zero(), kGrowth_m);
+}
+
+void Costmap::include(const Eigen::Vector2d& p_map, double margin_m) {
+  const double res = settings_.resolution_m;
+  const auto lattice = [res](double x) { return static_cast<int>(std::floor(x / res)); };
+  const Cell min{lattice(p_map.x() - margin_m), lattice(p_map.y() - margin_m)};
+  const Cell end{lattice(p_map.x() + margin_m) + 1, lattice(p_map.y() + margin_m) + 1};
+  if (geometry().size() == 0) return resize(min, end);
+
+  const Cell old_min = lattice_.origin;
+  const Cell old_end = lattice_.to_lattice({geometry().width, geometry().height});
+  const int extra = static_cast<int>(kGrowth_m / res);
+  const auto low = [extra](int wanted, int now) { return wanted < now ? wanted - extra : now; };
+  const auto high = [extra](int wanted, int now) { return wanted > now ? wanted + extra : now; };
+  const Cell new_min{low(min.col, old_min.col), low(min.row, old_min.row)};
+  const Cell new_end{high(end.col, old_end.col), high(end.row, old_end.row)};
+  if (new_min != old_min || new_end != old_end) resize(new_min, new_end);
+}
+
+void Costmap::resize(Cell min, Cell end) {
+  lattice_ = CellLattice(settings_.resolution_m, min, end);
+  static_map_.resize(lattice_);
+  scan_.resize(lattice_);
+  low_.resize(lattice_);
+  inflation_.resize(lattice_);
+  keep_out_.resize(lattice_);
+  cost_ = Grid<Cost>(lattice_.geometry, kFreeCost);
+  refresh(all_cells(lattice_.geometry));
+}
+
+void Costmap::set_map(const OccupancyGrid& map) {
+  const GridGeometry& source = map.geometry();
+  if (source.resolution_m > settings_.resolution_m * (1.0 + 1e-9)) {
+    throw InputError(fmt::format("costmap.resolution_m = {}: must be at least the map's resolution of {} m",
+                                 settings_.resolution_m, source.resolution_m));
+  }
+  if (source.size() == 0) return;
+  include(source.origin_m, 0.0);
+  include(source.origin_m + source.resolution_m * Eigen::Vector2d(source.width, source.height), 0.0);
+  refresh(static_map_.set_map(map));
+}
+
+void Costmap::add_scan(const LevelScan& scan, const Pose2& T_map_body) {
+  include(T_map_body.position(), settings_.obstacle_range_m + settings_.resolution_m);
+  refresh(scan_.add_scan(scan, T_map_body, static_map_));
+}
+
+void Costmap::add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body) {
+  include(T_map_body.position(), settings_.obstacle_range_m);
+  refresh(low_.add_image(points, stamp, T_map_body, scan_));
+}
+
+void Costmap::add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body) {
+  include(T_map_body.position(), settings_.obstacle_range_m);
+  refresh(low_.add_ping(cone, stamp, T_map_body, scan_, static_map_));
+}
+
+void Costmap::forget_live(const Eigen::Vector2d& p_map, double radius_m) {
+  CellBox changed = low_.clear_sonar(p_map, radius_m);
+  changed.merge(scan_.clear(p_map, radius_m));
+  refresh(changed);
+}
+
+/// Combines the layers around cells whose obstacles have changed.
+void Costmap::refresh(const CellBox& changed) {
+  if (changed.is_empty()) return;
+  const CellBox target = inflation_.update(changed, [this](Cell cell) {
+    return static_map_.is_obstacle(cell) || scan_.is_obstacle(cell) || low_.is_obstacle(cell);
+  });
+  for (int row = target.min.row; row <= target.max.row; ++row) {
+    const Cell first{target.min.col, row};
+    Cost* cost = &cost_.at(first);
+    inflation_.set_costs(first, target.width(), cost);
+    static_map_.raise_costs(first, target.width(), cost);
+    keep_out_.raise_costs(first, target.width(), cost);
+  }
+}
+
+Cost Costmap::cost_at(const Eigen::Vector2d& p_map) const {
+  const Cell cell = geometry().cell_at(p_map);
+  return cost_.contains(cell) ? cost_.at(cell) : static_map_.unknown_cost();
+}
+
+double Costmap::clearance_m(const Pose2& T_map_body) const {
+  const double c = std::cos(T_map_body.yaw), s = std::sin(T_map_body.yaw);
+  double clearance = std::numeric_limits<double>::infinity();
+  for (const Disc& disc : footprint_.discs()) {
+    const Eigen::Vector2d p_map(T_map_body.x + c * disc.center_m.x() - s * disc.center_m.y(),
+                                T_map_body.y + s * disc.center_m.x() + c * disc.center_m.y());
+    const double from_obstacle = obstacle_distance_m(p_map) - disc.radius_m - settings_.safety_margin_m;
+    const double from_line = keep_out_distance_m(p_map) - settings_.keep_out_margin_m;
+    clearance = std::min({clearance, from_obstacle, from_line});
+  }
+  return clearance;
+}
+
+}  // namespace patrol::plan

@@ -1,0 +1,93 @@
+#include "plan/perception/low_obstacles.h"
+
+#include <algorithm>
+
+namespace patrol::plan {
+namespace {
+
+/// A count goes up to twice what makes an obstacle, so that one image or ping more or less does not flip it.
+int raised(int count, int confirmations) { return std::min(count + 1, 2 * confirmations); }
+int lowered(int count) { return std::max(count - 1, 0); }
+
+}  // namespace
+
+void LowObstacles::add_image(const std::vector<Cell>& obstacles, const std::vector<Cell>& ground,
+                             const std::vector<bool>& may_move, Time now) {
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const Key key = to_key(obstacles[i]);
+    Evidence& evidence = cells_[key];
+    evidence.camera = raised(evidence.camera, settings_.confirmations);
+    evidence.camera_until = now + from_seconds(may_move[i] ? settings_.moving_memory_s : settings_.memory_s);
+    judge(key, evidence);
+  }
+  for (const Cell cell : ground) {
+    const Key key = to_key(cell);
+    Evidence& evidence = cells_[key];
+    evidence.camera = lowered(evidence.camera);
+    evidence.sonar = 0;
+    evidence.ground_seen = now;
+    judge(key, evidence);
+  }
+}
+
+void LowObstacles::add_ping(const std::vector<Cell>& arc, const std::vector<Cell>& free, Time now) {
+  for (const Cell cell : arc) {
+    const Key key = to_key(cell);
+    Evidence& evidence = cells_[key];
+    if (!is_vetoed(evidence, now)) evidence.sonar = raised(evidence.sonar, settings_.confirmations);
+    evidence.sonar_until = now + from_seconds(settings_.sonar_memory_s);
+    judge(key, evidence);
+  }
+  for (const Cell cell : free) {
+    const auto found = cells_.find(to_key(cell));
+    if (found == cells_.end()) continue;
+    found->second.sonar = lowered(found->second.sonar);
+    judge(found->first, found->second);
+  }
+}
+
+void LowObstacles::forget_old(Time now) {
+  for (auto it = cells_.begin(); it != cells_.end();) {
+    Evidence& evidence = it->second;
+    if (now > evidence.camera_until) evidence.camera = 0;
+    if (now > evidence.sonar_until) evidence.sonar = 0;
+    judge(it->first, evidence);
+    const bool says_nothing = evidence.camera == 0 && evidence.sonar == 0 && !is_vetoed(evidence, now);
+    it = says_nothing ? cells_.erase(it) : std::next(it);
+  }
+}
+
+bool LowObstacles::is_vetoed(const Evidence& evidence, Time now) const {
+  if (evidence.ground_seen == Time::min()) return false;
+  return now - evidence.ground_seen <= from_seconds(settings_.camera_veto_s);
+}
+
+void LowObstacles::judge(const Key& key, Evidence& evidence) {
+  const int sure = settings_.confirmations;
+  // Once believed, the camera's obstacle stays until its count is gone.
+  const bool by_camera = evidence.camera >= sure || (evidence.is_obstacle && evidence.camera > 0);
+  const bool is_obstacle = by_camera || evidence.sonar >= sure;
+  if (is_obstacle == evidence.is_obstacle) return;
+  evidence.is_obstacle = is_obstacle;
+  if (is_obstacle) {
+    ++num_obstacles_;
+  } else {
+    --num_obstacles_;
+  }
+  changed_.push_back(to_cell(key));
+}
+
+bool LowObstacles::is_obstacle(Cell cell) const {
+  const auto found = cells_.find(to_key(cell));
+  return found != cells_.end() && found->second.is_obstacle;
+}
+
+std::vector<Cell> LowObstacles::obstacles() const {
+  std::vector<Cell> cells;
+  for (const auto& [key, evidence] : cells_) {
+    if (evidence.is_obstacle) cells.push_back(to_cell(key));
+  }
+  return cells;
+}
+
+}  // namespace patrol::plan
