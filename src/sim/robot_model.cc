@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "sim/track_model.h"
 
@@ -149,7 +150,7 @@ void add_joint(mjSpec& spec, const urdf::Joint& joint, mjsBody& body) {
   }
   if (!is_sprocket) {
     hinge->limited = mjLIMITED_TRUE;
-    const double unit = spec.compiler.degree ? 180.0 / M_PI : 1.0;  // a spec holds angles as its world's file writes them
+    const double unit = spec.compiler.degree ? kDegPerRad : 1.0;  // a spec holds angles as its world's file writes them
     hinge->range[0] = joint.limits->lower * unit;
     hinge->range[1] = joint.limits->upper * unit;
   }

@@ -22,6 +22,7 @@ using test::gzipped, test::Pose2Near, test::TemporaryFile, test::TemporaryFolder
 using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testing::Pair, ::testing::StartsWith, ::testing::UnorderedElementsAre;
 
 constexpr double kExactTol = 1e-12;
+constexpr double kRoundedPi = 3.141593;  // as logs write it
 const ScanLogOptions kSkip{.skip_bad_lines = true, .carmen_laser = {}, .scan_topic = {}, .odometry_topic = {}};
 
 std::string repeated(const std::string& word, int count) {
@@ -132,12 +133,12 @@ TEST(CarmenLog, ReadsRobotlaserWithItsOwnAngles) {
   EXPECT_EQ(scan.scan.stamp, 10s + 250ms);
   EXPECT_EQ(scan.scan.ranges_m.size(), 181U);
   EXPECT_NEAR(scan.scan.angle_min_rad, -1.570796, kExactTol);
-  EXPECT_NEAR(scan.scan.angle_increment_rad, 3.141593 / 180.0, kExactTol) << "exact where the field of view says more than six digits";
+  EXPECT_NEAR(scan.scan.angle_increment_rad, kRoundedPi / 180.0, kExactTol) << "exact where the field of view says more than six digits";
   EXPECT_TRUE(scan.scan.intensities.empty());
 }
 
 TEST(CarmenLog, RobotlasersFieldOfViewMayCountBeamsOrGapsOrNeither) {
-  EXPECT_NEAR(read_one(robotlaser("0 -1.570796 3.141593 0.017453 80 0 0", 180)).scan.angle_increment_rad, 3.141593 / 180.0, kExactTol);
+  EXPECT_NEAR(read_one(robotlaser("0 -1.570796 3.141593 0.017453 80 0 0", 180)).scan.angle_increment_rad, kRoundedPi / 180.0, kExactTol);
   EXPECT_NEAR(read_one(robotlaser("0 -1 2 0.01 80 0 0", 10)).scan.angle_increment_rad, 0.01, kExactTol);
   EXPECT_NEAR(read_one(robotlaser("0 -1 2 0 80 0 0", 11)).scan.angle_increment_rad, 0.2, kExactTol);
 }

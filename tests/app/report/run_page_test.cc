@@ -6,6 +6,7 @@
 #include "app/report/error_plots.h"
 #include "app/report/occasions.h"
 #include "app/report/run_map.h"
+#include "core/angles.h"
 #include "render/report/page.h"
 #include "tests/support/small_run.h"
 #include "tests/support/temporary_file.h"
@@ -101,7 +102,7 @@ TEST(ErrorBlocks, ShowTheEstimatesErrorItsBoundAndOdometrys) {
   EXPECT_NEAR(plots[0].curves[0].points.back().y(), 0.1, 1e-9);
   EXPECT_NEAR(plots[0].curves[1].points.back().y(), 2.0 * 0.05, 1e-9);  // 2 sqrt(0.03^2 + 0.04^2)
   EXPECT_NEAR(plots[1].curves[0].points.back().y(), 0.5, 1e-9);         // 5 % of 10 m
-  EXPECT_NEAR(plots[2].curves[1].points.back().y(), 2.0 * 0.01 * 180.0 / M_PI, 1e-9);
+  EXPECT_NEAR(plots[2].curves[1].points.back().y(), to_deg(2.0 * 0.01), 1e-9);
 }
 
 TEST(ErrorBlocks, ShadeFaultsAndWhereTheRobotSaysThatItIsLost) {
