@@ -42,6 +42,9 @@ TEST(Result, EachFieldIsHeldToItsRule) {
   EXPECT_EQ(refusal_with("/robot", ""), "result: robot must have 1 ... 200 bytes");
   EXPECT_EQ(refusal_with("/id", std::string(201, 'x')), "result: id must have 1 ... 200 bytes");
   EXPECT_EQ(refusal_with("/run", "a\nb"), "result: run must be a word");
+  EXPECT_EQ(refusal_with("/robot", "a\xc2\x9b" "31m"), "result: robot must be a word");  // C1: starts a sequence as ESC [ does
+  EXPECT_EQ(refusal_with("/robot", "a\x7f"), "result: robot must be a word");
+  EXPECT_EQ(refusal_with("/robot", "Gr\xc3\xb6\xc3\x9f" "e"), "");
   EXPECT_EQ(refusal_with("/sequence", -1), "result: sequence must not be negative");
   EXPECT_EQ(refusal_with("/time_s", "1"), "result: time_s must be a number");
   EXPECT_EQ(refusal_with("/made_utc", "yesterday"), "result: made_utc must be a time such as 2026-11-22T10:45:33.120Z");
