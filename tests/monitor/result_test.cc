@@ -69,6 +69,8 @@ TEST(Result, AMapMustBeAPngOfItsSize) {
   const char* kTwoByOne = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAAAAADRSSBWAAAAC0lEQVR4nGP4xwAAAf8A/5ijSg0AAAAASUVORK5CYII=";
   EXPECT_EQ(map(kTwoByOne, 2), "");
   EXPECT_EQ(map(kTwoByOne, 3), "result.data: png_base64 must have 3 x 1 pixels, it has 2 x 1");
+  const char* kTwoWithTheTopBit = "iVBORw0KGgoAAAANSUhEUoAAAAIAAAABCAAAAADRSSBW";  // width 0x80000002
+  EXPECT_EQ(map(kTwoWithTheTopBit, 2), "result.data: png_base64 must be a PNG in base64");
   EXPECT_EQ(map("PHNjcmlwdD4=", 2), "result.data: png_base64 must be a PNG in base64");
 }
 
@@ -90,7 +92,8 @@ TEST(Utc, GoesThereAndBackToTheMillisecond) {
   EXPECT_EQ(to_utc(kNoon_ms + 7), "2026-11-21T12:00:00.007Z");
   EXPECT_EQ(from_utc("2026-11-21T12:00:00.007Z"), kNoon_ms + 7);
   EXPECT_EQ(from_utc("1970-01-01T00:00:00.000Z"), 0);
-  for (const char* wrong : {"2026-02-29T12:00:00.000Z", "2026-11-21T24:00:00.000Z", "2026-11-21T12:00:00Z", "2026-11-21 12:00:00.000Z", "2026-11-21T12:00:00.000+"}) {
+  for (const char* wrong : {"2026-02-29T12:00:00.000Z", "2026-11-21T24:00:00.000Z", "2026-11-21T12:00:00Z", "2026-11-21 12:00:00.000Z", "2026-11-21T12:00:00.000+", "+026-11-21T12:00:00.000Z",
+                            "2026- 1-21T12:00:00.000Z", "2026-11-21T+1:00:00.000Z", "2026-11-21T12:00:00. 07Z", "2026-11-21T12:00:00.-07Z"}) {
     EXPECT_THROW(from_utc(wrong), InputError) << wrong;
   }
 }
