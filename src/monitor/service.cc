@@ -75,6 +75,16 @@ int limit_of(const HttpRequest& request, int otherwise) { return static_cast<int
 
 HttpResponse fresh(std::string json) { return {.body = std::move(json), .headers = {{"Cache-Control", "no-store"}}}; }
 
+/// Token of an Authorization header; empty when its scheme is another. Schemes have no case (RFC 9110, 11.1).
+std::string_view bearer_token(std::string_view header) {
+  constexpr std::string_view kScheme = "bearer ";
+  const auto is_same_letter = [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); };
+  if (header.size() < kScheme.size() || !std::equal(kScheme.begin(), kScheme.end(), header.begin(), is_same_letter)) return {};
+  header.remove_prefix(kScheme.size());
+  header.remove_prefix(std::min(header.find_first_not_of(' '), header.size()));
+  return header;
+}
+
 bool is_place_to_post(std::string_view path) { return path == kResults || number_in(path, kAlarms, kAcknowledge).has_value(); }
 
 bool is_place_to_get(std::string_view path) {
@@ -124,10 +134,8 @@ std::optional<HttpResponse> Service::refuse(const HttpRequest& head) {
     no.headers.emplace_back("Allow", allowed);
     return no;
   }
-  constexpr std::string_view kBearer = "Bearer ";
-  const std::string_view shown = head.authorization;
-  if (posts && !(shown.starts_with(kBearer) && is_same_token(shown.substr(kBearer.size()), token_))) {
-    HttpResponse no = refusal(401, shown.empty() ? "a token is needed: Authorization: Bearer ..." : "this is not the token");
+  if (posts && !is_same_token(bearer_token(head.authorization), token_)) {
+    HttpResponse no = refusal(401, head.authorization.empty() ? "a token is needed: Authorization: Bearer ..." : "this is not the token");
     no.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"patrol\"");
     return no;
   }

@@ -53,6 +53,13 @@ TEST_F(Platform, ChangesNeedTheToken) {
   EXPECT_EQ(Json::parse(ask("GET", "/api/robots", "", "").body)["robots"].size(), 0U);
 }
 
+TEST_F(Platform, TheSchemeOfTheTokenHasNoCase) {
+  for (const char* scheme : {"bearer ", "BEARER ", "Bearer  "}) {
+    EXPECT_EQ(ask("POST", "/api/results", "[]", std::string(scheme) + kToken).status, 200) << scheme;
+  }
+  EXPECT_EQ(ask("POST", "/api/results", "[]", std::string("bearerx ") + kToken).status, 401);
+}
+
 TEST_F(Platform, UnknownPathsAre404AndOtherMethods405) {
   for (const char* path : {"/..", "/../token", "/%2e%2e/token", "/token", "/page.css/..", "/api", "/api/results/", "/api/maps/", "/api/maps/-1", "/api/maps/x", "/api/alarms/x/acknowledge", "//", ""}) {
     EXPECT_EQ(ask("GET", path).status, 404) << path;
