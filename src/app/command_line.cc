@@ -279,7 +279,7 @@ void refuse_unknown_command(const CLI::App& app, int argc, const char* const* ar
 }
 
 int report(const std::string& what, ExitCode code) {
-  fmt::print(stderr, "patrol: {}\n", io::on_one_line(what));
+  std::fputs(fmt::format("patrol: {}\n", io::on_one_line(what)).c_str(), stderr);  // unlike fmt::print, it does not throw
   return static_cast<int>(code);
 }
 

@@ -101,12 +101,33 @@ class HttpServer::Connections {
   void stop() { context_.stop(); }
 
  private:
-  /// Stands in `waiting_` while its header is awaited, else in `busy_`.
+  /// Listed in `waiting_` while its header is awaited, else in `busy_`; in neither once it has ended.
   struct Connection {
+    Connection(beast::tcp_stream&& accepted, std::string address, std::list<Connection*>& busy)
+        : stream(std::move(accepted)), peer(std::move(address)), place(busy.insert(busy.end(), this)), list(&busy) {}
+    ~Connection() { list->erase(place); }
+    Connection(const Connection&) = delete;
+    Connection& operator=(const Connection&) = delete;
+
+    void move_to(std::list<Connection*>& other) {
+      other.splice(other.end(), *list, place);
+      list = &other;
+    }
+
     beast::tcp_stream stream;
     std::string peer;
-    std::list<Connection*>::iterator place{};
+    std::list<Connection*>::iterator place;
+    std::list<Connection*>* list;
   };
+
+  /// Writes a log line. A log that throws must end neither a connection nor the server.
+  template <typename... Values>
+  void log(fmt::format_string<const Values&...> form, const Values&... values) noexcept {
+    try {
+      log_(fmt::format(form, values...));
+    } catch (...) {  // the request is worth more than its line
+    }
+  }
 
   asio::awaitable<void> accept() {
     asio::steady_timer pause(context_);
@@ -118,8 +139,12 @@ class HttpServer::Connections {
         co_await pause.async_wait(into(error));
         continue;
       }
-      if (waiting_.size() + busy_.size() >= static_cast<std::size_t>(settings_.max_connections)) close_one();
-      asio::co_spawn(context_, serve(std::move(socket)), asio::detached);
+      try {
+        if (waiting_.size() + busy_.size() >= static_cast<std::size_t>(settings_.max_connections)) close_one();
+        asio::co_spawn(context_, serve(std::move(socket)), asio::detached);
+      } catch (const std::exception& failure) {  // no memory for this one
+        log("a connection given up: {}", failure.what());
+      }
     }
   }
 
@@ -128,8 +153,8 @@ class HttpServer::Connections {
     Connection* waits = first_open(waiting_);
     Connection* one = waits != nullptr ? waits : first_open(busy_);
     if (one == nullptr) return;
-    log_(fmt::format("{} closed: too many connections, and it is the slowest", one->peer));
     one->stream.close();
+    log("{} closed: too many connections, and it is the slowest", one->peer);
   }
 
   static Connection* first_open(const std::list<Connection*>& list) {
@@ -140,16 +165,14 @@ class HttpServer::Connections {
   asio::awaitable<void> serve(asio::ip::tcp::socket socket) {
     Error error;
     const auto endpoint = socket.remote_endpoint(error);
-    Connection connection{.stream = beast::tcp_stream(std::move(socket)), .peer = error ? "?" : endpoint.address().to_string()};
-    connection.place = busy_.insert(busy_.end(), &connection);
+    Connection connection(beast::tcp_stream(std::move(socket)), error ? "?" : endpoint.address().to_string(), busy_);
     try {
       beast::flat_buffer buffer(static_cast<std::size_t>(settings_.max_header_kb) * 1024 + 65536);
       double limit_s = settings_.header_limit_s;
       while (co_await serve_one(connection, buffer, limit_s)) limit_s = settings_.idle_limit_s;
     } catch (const std::exception& failure) {
-      log_(fmt::format("{} given up: {}", connection.peer, failure.what()));
+      log("{} given up: {}", connection.peer, failure.what());
     }
-    busy_.erase(connection.place);
   }
 
   /// A request and its answer. False: the connection is at its end.
@@ -159,13 +182,13 @@ class HttpServer::Connections {
     parser.body_limit(static_cast<std::uint64_t>(1e6 * settings_.max_body_mb));
 
     Error error;
-    waiting_.splice(waiting_.end(), busy_, connection.place);
+    connection.move_to(waiting_);
     connection.stream.expires_after(milliseconds(limit_s));
     co_await http::async_read_header(connection.stream, buffer, parser, into(error));
-    busy_.splice(busy_.end(), waiting_, connection.place);
+    connection.move_to(busy_);
     if (error == http::error::end_of_stream || error == asio::error::connection_reset || error == asio::error::operation_aborted) co_return false;
     if (error == beast::error::timeout) {
-      if (parser.got_some() || buffer.size() > 0) log_(fmt::format("{} given up: no whole header within {} s", connection.peer, limit_s));
+      if (parser.got_some() || buffer.size() > 0) log("{} given up: no whole header within {} s", connection.peer, limit_s);
       co_return false;
     }
     connection.stream.expires_after(milliseconds(settings_.request_limit_s));
@@ -184,7 +207,7 @@ class HttpServer::Connections {
     }
     if (!error) co_await http::async_read(connection.stream, buffer, parser, into(error));
     if (error == beast::error::timeout) {
-      log_(fmt::format("{} given up: {} {}: no whole body within {} s", connection.peer, request.method, request.path, settings_.request_limit_s));
+      log("{} given up: {} {}: no whole body within {} s", connection.peer, request.method, request.path, settings_.request_limit_s);
       co_return false;
     }
     if (error == http::error::body_limit || error == http::error::bad_chunk || error == http::error::bad_chunk_extension) {
@@ -198,7 +221,8 @@ class HttpServer::Connections {
     auto message = to_message(std::move(response), parser.get().version(), parser.get().keep_alive());
     co_await http::async_write(connection.stream, message, into(error));
     if (error == beast::error::timeout) {
-      log_(fmt::format("{} given up: {} {}: the answer was not read within {} s", connection.peer, request.method, request.path, settings_.request_limit_s));
+      log("{} given up: {} {}: the answer was not read within {} s", connection.peer, request.method, request.path,
+          settings_.request_limit_s);
     }
     co_return !error && message.keep_alive();
   }
@@ -215,7 +239,7 @@ class HttpServer::Connections {
   }
 
   void log_refusal(const HttpRequest& request, const HttpResponse& response) {
-    log_(fmt::format("{} {} {} {}: {}", request.peer, response.status, request.method, request.path, response.body));
+    log("{} {} {} {}: {}", request.peer, response.status, request.method, request.path, response.body);
   }
 
   /// Says no and hangs up: what is still coming is thrown away for a moment, or the peer would never see the answer.
@@ -236,10 +260,10 @@ class HttpServer::Connections {
   HttpServerSettings settings_;
   HttpHandler& handler_;
   Log log_;
+  std::list<Connection*> waiting_, busy_;  ///< the longest first; they outlive the connections, which end with the context
   asio::io_context context_;
   asio::ip::tcp::acceptor acceptor_;
   asio::signal_set signals_;
-  std::list<Connection*> waiting_, busy_;  ///< the longest first
 };
 
 HttpServer::HttpServer(const HttpServerSettings& settings, HttpHandler& handler, Log log)

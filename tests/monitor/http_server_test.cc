@@ -72,6 +72,7 @@ class Server : public testing::Test {
     settings.port = 0;
     server_ = std::make_unique<HttpServer>(settings, echo_, [this](const std::string& line) {
       const std::lock_guard lock(mutex_);
+      if (is_log_broken_) throw std::runtime_error("no space left on device");
       log_ += line + "\n";
     });
     thread_ = std::thread([this] { server_->run(); });
@@ -100,6 +101,7 @@ class Server : public testing::Test {
   std::thread thread_;
   std::mutex mutex_;
   std::string log_;
+  bool is_log_broken_ = false;
 };
 
 constexpr HttpServerSettings kSmall{.header_limit_s = 0.3, .request_limit_s = 0.6, .idle_limit_s = 0.5, .max_connections = 20, .max_header_kb = 4, .max_body_mb = 0.01};
@@ -196,6 +198,31 @@ TEST_F(Server, AHundredSilentPeersKeepNobodyWaiting) {
   EXPECT_TRUE(is_alive());
   EXPECT_LT(Clock::now() - from, std::chrono::seconds(1));
   EXPECT_NE(log().find("too many connections"), std::string::npos);
+}
+
+TEST_F(Server, ALogThatThrowsEndsNeitherAConnectionNorTheServer) {
+  HttpServerSettings settings = kSmall;
+  settings.max_connections = 5;
+  settings.header_limit_s = 60.0;
+  start(settings);
+  {
+    const std::lock_guard lock(mutex_);
+    is_log_broken_ = true;
+  }
+  EXPECT_EQ(post("four", "wrong")->status, 401);
+  std::vector<std::unique_ptr<Peer>> silent;
+  for (int i = 0; i < 20; ++i) {
+    silent.push_back(std::make_unique<Peer>(port()));
+    silent.back()->send("GET / HT");
+  }
+  EXPECT_TRUE(is_alive());
+  silent.clear();
+  for (int i = 0; i < 20; ++i) {
+    Peer peer(port());
+    peer.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9000\r\n\r\n");
+    EXPECT_EQ(peer.rest().find("HTTP/1.1 401 "), 0U);
+  }
+  EXPECT_TRUE(is_alive());
 }
 
 TEST_F(Server, AnAddressThatIsTakenIsAWrongInput) {

@@ -1,22 +1,18 @@
+#include <unistd.h>
+
 #include <cstdlib>
 
 #include <fmt/format.h>
 
 #include "app/commands.h"
-#include "io/one_line.h"
 #include "monitor/http_server.h"
+#include "monitor/line_log.h"
 #include "monitor/service.h"
 #include "monitor/store.h"
 #include "monitor/token.h"
 
 namespace patrol::app {
 namespace {
-
-/// One line each, whatever the other side sent.
-void log_line(const std::string& text) {
-  constexpr std::size_t kLongest = 500;
-  fmt::print(stderr, "{} {}\n", monitor::to_utc(monitor::now_ms()), io::on_one_line(text.substr(0, kLongest)));
-}
 
 std::string token_for(const MonitorOptions& options) {
   if (options.token_file) return monitor::load_token(*options.token_file);
@@ -30,12 +26,15 @@ std::string token_for(const MonitorOptions& options) {
 }  // namespace
 
 ExitCode monitor_command(const MonitorOptions& options) {
+  monitor::survive_lost_output();
+  monitor::LineLog log(STDERR_FILENO);
+  const auto log_line = [&log](const std::string& text) { log.write_with_time(text); };
   monitor::Store store(options.data);
   monitor::Service service(store, token_for(options), log_line);
   monitor::HttpServer server({.host = options.host, .port = options.port}, service, log_line);
   const bool has_own_token = !options.token_file && std::getenv("PATROL_TOKEN") == nullptr;
-  fmt::print(stderr, "patrol: monitoring at http://{}:{}/{}\n", options.host, server.port(),
-             has_own_token ? fmt::format(", token in {}", (options.data / "token").string()) : "");
+  log.write(fmt::format("patrol: monitoring at http://{}:{}/{}", options.host, server.port(),
+                        has_own_token ? fmt::format(", token in {}", (options.data / "token").string()) : ""));
   server.run();
   return ExitCode::kDone;
 }
