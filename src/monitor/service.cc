@@ -101,15 +101,17 @@ HttpResponse get(Database& database, const HttpRequest& request) {
             .headers = {{"Cache-Control", "no-cache"}, {"Content-Security-Policy", kPolicy}, {"Referrer-Policy", "no-referrer"}}};
   }
   if (path == "/api/changes") return fresh(changes(database, count(request, "since", 0), now_ms()));
-  if (path == "/api/robots") return fresh(robots(database));
+  if (path == "/api/robots") return fresh(robots(database, {.after = parameter(request, "after"), .limit = limit_of(request, 200)}));
   if (path == "/api/alarms") {
     return fresh(alarms(database, {.only_open = parameter(request, "open") == "1", .before = count(request, "before", 0), .limit = limit_of(request, 100)}));
   }
   if (path == "/api/run") {
-    const auto details = run_details(database, parameter(request, "robot"), parameter(request, "run"));
+    const auto details = run_details(database, parameter(request, "robot"), parameter(request, "run"), count(request, "station", 0));
     return details ? fresh(*details) : refusal(404, "there is no such robot or run");
   }
-  if (path == "/api/lining") return fresh(lining(database, parameter(request, "world")));
+  if (path == "/api/lining") {
+    return fresh(lining(database, parameter(request, "world"), lining_page_from(parameter(request, "after"))));
+  }
   if (path == "/api/water") return fresh(water(database, parameter(request, "world")));
   if (path == "/api/gas") return fresh(gas(database, parameter(request, "world")));
   if (path == "/api/history") {
