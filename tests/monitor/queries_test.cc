@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "monitor/store.h"
+#include "monitor/views.h"
 #include "tests/monitor/sample_results.h"
 #include "tests/support/temporary_file.h"
 
@@ -44,6 +45,30 @@ TEST_F(Queries, ResultsOfAnEarlierRunThatComeLateDoNotMoveTheRobot) {
   const Json robot = Json::parse(robots(database()))["robots"][0];
   EXPECT_EQ(robot["x"], 7.0);
   EXPECT_EQ(robot["run"], "run_1");
+}
+
+TEST_F(Queries, AStampOfTheFutureDoesNotFreezeARobot) {
+  Result ahead = pose_result(1, 9.0), lining_ahead = lining_result(2, 4.0, "run_0");
+  ahead.made_ms = lining_ahead.made_ms = kNoon_ms + 1'000'000'000'000;
+  add({ahead, lining_ahead});
+  Result later = pose_result(4, 3.0), later_lining = lining_result(5, 12.0, "run_1");
+  later.made_ms = later_lining.made_ms = kNoon_ms + 60'000;
+  store_.add({later, later_lining}, kNoon_ms + 60'000);
+  const Json robot = Json::parse(robots(database()))["robots"][0];
+  EXPECT_EQ(robot["x"], 3.0);
+  EXPECT_EQ(robot["run"], "run_1");
+  EXPECT_EQ(robot["made_ms"], kNoon_ms + 60'000);
+  const Json site = Json::parse(lining(database(), "street"));
+  EXPECT_EQ(site["scans"][0]["run"], "run_1");
+  EXPECT_EQ(site["lines"][0]["change_m"], -0.012);
+  EXPECT_EQ(run()["run"], "run_1");
+}
+
+TEST_F(Queries, AStampWithinTheToleranceCountsAsItIs) {
+  Result ahead = pose_result(1, 9.0);
+  ahead.made_ms = kNoon_ms + 50'000 + kClockTolerance_ms;
+  add({ahead});
+  EXPECT_EQ(Json::parse(robots(database()))["robots"][0]["made_ms"], ahead.made_ms);
 }
 
 TEST_F(Queries, ChangesGiveWhatIsNewSinceARevision) {
