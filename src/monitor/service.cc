@@ -19,7 +19,7 @@ namespace {
 using io::Json;
 
 constexpr std::string_view kAlarms = "/api/alarms/", kAcknowledge = "/acknowledge", kMaps = "/api/maps/", kResults = "/api/results";
-constexpr std::size_t kLongestWho = 80, kLongestNote = 500;
+constexpr std::size_t kLongestWho = 80, kLongestNote = 500, kMaxShownHost = 100;
 constexpr const char* kPolicy = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
                                 "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
@@ -125,9 +125,14 @@ HttpResponse get(Database& database, const HttpRequest& request) {
 
 }  // namespace
 
-Service::Service(Store& store, std::string token, HttpServer::Log log) : store_(store), token_(std::move(token)), log_(std::move(log)) {}
+Service::Service(Store& store, std::string token, HttpServer::Log log, HostNames hosts)
+    : store_(store), token_(std::move(token)), log_(std::move(log)), hosts_(std::move(hosts)) {}
 
 std::optional<HttpResponse> Service::refuse(const HttpRequest& head) {
+  if (!hosts_.allow(head.host, head.local)) {
+    const std::string host = head.host.substr(0, kMaxShownHost);
+    return refusal(421, fmt::format("Host '{}': not a name of this platform: must be its address, localhost, or a name of --allow-host", host));
+  }
   const bool posts = is_place_to_post(head.path), gets = is_place_to_get(head.path);
   if (!posts && !gets) return refusal(404, "there is nothing here");
   const std::string allowed = posts ? "POST" : "GET";

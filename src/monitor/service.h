@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "monitor/host_names.h"
 #include "monitor/http_server.h"
 #include "monitor/store.h"
 
@@ -24,7 +25,8 @@ namespace patrol::monitor {
 /// of the page before, `after` its last robot or its `next`, `station` its `next_station`.
 class Service final : public HttpHandler {
  public:
-  Service(Store& store, std::string token, HttpServer::Log log);
+  /// Requests under other host names than `hosts` allows are refused with 421.
+  Service(Store& store, std::string token, HttpServer::Log log, HostNames hosts = HostNames());
 
   std::optional<HttpResponse> refuse(const HttpRequest& head) override;
   HttpResponse answer(const HttpRequest& request) override;
@@ -36,6 +38,7 @@ class Service final : public HttpHandler {
   Store& store_;
   std::string token_;
   HttpServer::Log log_;
+  HostNames hosts_;
 };
 
 }  // namespace patrol::monitor

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "monitor/host_names.h"
 #include "monitor/http_server.h"
 #include "monitor/line_log.h"
 #include "monitor/service.h"
@@ -23,6 +24,13 @@ std::string token_for(const MonitorOptions& options) {
   return monitor::token_of_folder(options.data);
 }
 
+/// Names of the options; the name to listen at is one of them.
+monitor::HostNames hosts_of(const MonitorOptions& options) {
+  std::vector<std::string> names = options.allowed_hosts;
+  if (!options.host.empty()) names.push_back(options.host);
+  return monitor::HostNames(names);
+}
+
 }  // namespace
 
 ExitCode monitor_command(const MonitorOptions& options) {
@@ -30,7 +38,7 @@ ExitCode monitor_command(const MonitorOptions& options) {
   monitor::LineLog log(STDERR_FILENO);
   const auto log_line = [&log](const std::string& text) { log.write_with_time(text); };
   monitor::Store store(options.data);
-  monitor::Service service(store, token_for(options), log_line);
+  monitor::Service service(store, token_for(options), log_line, hosts_of(options));
   monitor::HttpServer server({.host = options.host, .port = options.port}, service, log_line);
   const bool has_own_token = !options.token_file && std::getenv("PATROL_TOKEN") == nullptr;
   log.write(fmt::format("patrol: monitoring at http://{}:{}/{}", options.host, server.port(),
