@@ -51,17 +51,17 @@ TEST_F(Queries, AStampOfTheFutureDoesNotFreezeARobot) {
   Result ahead = pose_result(1, 9.0), lining_ahead = lining_result(2, 4.0, "run_0");
   ahead.made_ms = lining_ahead.made_ms = kNoon_ms + 1'000'000'000'000;
   add({ahead, lining_ahead});
-  Result later = pose_result(4, 3.0), later_lining = lining_result(5, 12.0, "run_1");
+  Result later = result_of("pose", {{"x", 3.0}, {"y", 2.0}, {"yaw", 0.5}}, 4, "run_2"), later_lining = lining_result(5, 12.0, "run_2");
   later.made_ms = later_lining.made_ms = kNoon_ms + 60'000;
   store_.add({later, later_lining}, kNoon_ms + 60'000);
   const Json robot = Json::parse(robots(database()))["robots"][0];
   EXPECT_EQ(robot["x"], 3.0);
-  EXPECT_EQ(robot["run"], "run_1");
+  EXPECT_EQ(robot["run"], "run_2");
   EXPECT_EQ(robot["made_ms"], kNoon_ms + 60'000);
   const Json site = Json::parse(lining(database(), "street"));
-  EXPECT_EQ(site["scans"][0]["run"], "run_1");
+  EXPECT_EQ(site["scans"][0]["run"], "run_2");
   EXPECT_EQ(site["lines"][0]["change_m"], -0.012);
-  EXPECT_EQ(run()["run"], "run_1");
+  EXPECT_EQ(run()["run"], "run_2");
 }
 
 TEST_F(Queries, AStampWithinTheToleranceCountsAsItIs) {
@@ -185,7 +185,7 @@ TEST_F(Queries, ALongLiningComesInPages) {
     const Json page = Json::parse(text);
     for (const Json& scan : page["scans"]) {
       num_cells[scan["seq"].get<std::int64_t>()] += scan["data"]["cells"].size();
-      if (scan["data"]["station"] == "a") for (const Json& cell : scan["data"]["cells"]) cells.emplace(cell["ring"], cell["clock_deg"]);
+      if (scan["data"]["station"] == "a") for (const Json& cell : scan["data"]["cells"]) cells.emplace(cell["ring"].get<int>(), cell["clock_deg"].get<int>());
     }
     num_lines += page["lines"].size();
     for (const Json& ring : page["rings"]) rings.insert(ring[0].get<int>());
