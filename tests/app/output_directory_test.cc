@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::output_directory_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -54,4 +54,4 @@ TEST(OutputDirectory, AFileInItsPlaceIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::output_directory_test

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::atomic_file_test {
 namespace {
 
 using test::read_bytes, test::TemporaryFolder;
@@ -69,4 +69,4 @@ TEST(LoadText, GivesEveryByteAndRefusesWhatIsNoFile) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::atomic_file_test

@@ -5,7 +5,7 @@
 
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::settings_yaml_test {
 namespace {
 
 using test::read_bytes, test::TemporaryFile, test::TemporaryFolder;
@@ -262,4 +262,4 @@ TEST(NearestWord, IsNearOrEmpty) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::settings_yaml_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace patrol::score {
+namespace patrol::score::station_error_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -116,4 +116,4 @@ TEST(StationErrors, TellBeliefTruthAndSurveyApart) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::station_error_test
