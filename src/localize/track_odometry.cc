@@ -15,7 +15,7 @@ constexpr Time kTickSilence = std::chrono::milliseconds(200);
 constexpr double kStandingStd_mps = 0.002;
 constexpr double kStandstillCreep_m = 1e-5;  // of the belts' ends over a window at rest
 constexpr double kMaxBiasSigmas = 5.0;       // a gyro at rest that reads more is being turned
-constexpr double kHoldStd_mps = 0.5;         // without the belts the velocity is at least not this wrong
+constexpr double kTrackHoldStd_mps = 0.5;         // without the belts the velocity is at least not this wrong
 constexpr double kLastingSideways = 0.005;   // share of the way, straight on
 constexpr double kAgreement_mps = 0.15;      // of belts and IMU, after their disagreement,
 constexpr Time kAgreement = std::chrono::milliseconds(300);  // and how long it must last
@@ -223,7 +223,7 @@ void TrackOdometry::watch_standstill(const InertialSample& sample) {
 // By the IMU alone the velocity would run away; it stays about what it was when the belts were last heard.
 void TrackOdometry::hold_velocity() {
   if (!imu_.is_velocity_hold_due(kTickSilence)) return;
-  imu_.filter()->correct_velocity(last_speed_, kHoldStd_mps);
+  imu_.filter()->correct_velocity(last_speed_, kTrackHoldStd_mps);
   imu_.remember();
 }
 

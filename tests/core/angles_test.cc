@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol {
+namespace patrol::angles_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -26,4 +26,4 @@ TEST(Angles, ConstantsAndFunctionsAgree) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::angles_test

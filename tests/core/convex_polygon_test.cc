@@ -4,7 +4,7 @@
 
 #include "core/random.h"
 
-namespace patrol {
+namespace patrol::convex_polygon_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;  // algebra
@@ -60,4 +60,4 @@ TEST(Intersection, OfASquareAndOneTurnedIsAnOctagon) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::convex_polygon_test

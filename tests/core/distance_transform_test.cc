@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 
-namespace patrol {
+namespace patrol::distance_transform_test {
 namespace {
 
 using SquaredDistances = DistanceTransform::SquaredDistances;
@@ -103,4 +103,4 @@ TEST(SquaredDistances, EqualBruteForceOnRandomGrids) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::distance_transform_test

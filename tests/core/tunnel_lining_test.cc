@@ -6,7 +6,7 @@
 
 #include "core/angles.h"
 
-namespace patrol {
+namespace patrol::tunnel_lining_test {
 namespace {
 
 /// Straight for 80 m, then to the left with a radius of 400 m; turned and moved in the route's frame.
@@ -80,4 +80,4 @@ TEST(TunnelLining, RingsAreCountedFromOne) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::tunnel_lining_test

@@ -10,7 +10,7 @@
 #include "tests/support/dock_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::localize {
+namespace patrol::localize::dock_detector_test {
 namespace {
 
 using test::make_dock_profile;
@@ -149,4 +149,4 @@ TEST(DockDetector, RefusesAProfileOfOnePointAndSettingsThatBreakTheirRule) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::dock_detector_test

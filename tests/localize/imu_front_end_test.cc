@@ -6,7 +6,7 @@
 
 #include "localize/inertial_filter.h"
 
-namespace patrol::localize {
+namespace patrol::localize::imu_front_end_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -99,4 +99,4 @@ TEST(ImuFrontEnd, TheVelocityIsHeldOnceAPeriod) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::imu_front_end_test

@@ -6,7 +6,7 @@
 
 #include "localize/frozen_readings.h"
 
-namespace patrol::localize {
+namespace patrol::localize::pending_readings_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -43,4 +43,4 @@ TEST(FrozenReadings, TenRepeatsAreFrozenAndAChangeEndsThem) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::pending_readings_test

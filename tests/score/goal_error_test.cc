@@ -4,7 +4,7 @@
 
 #include "core/angles.h"
 
-namespace patrol::score {
+namespace patrol::score::goal_error_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -52,4 +52,4 @@ TEST(DockingError, CountsDockingsAndFailures) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::goal_error_test

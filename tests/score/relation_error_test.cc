@@ -8,7 +8,7 @@
 #include "core/angles.h"
 #include "core/error.h"
 
-namespace patrol::score {
+namespace patrol::score::relation_error_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -122,4 +122,4 @@ TEST(RelationError, NothingToScoreIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::relation_error_test

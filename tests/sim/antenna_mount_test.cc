@@ -13,7 +13,7 @@
 #include "tests/support/temporary_file.h"
 #include "tests/support/tracked_twin.h"
 
-namespace patrol::sim {
+namespace patrol::sim::antenna_mount_test {
 namespace {
 
 TwinSettings settings_for(const test::TemporaryFile& world) {
@@ -141,4 +141,4 @@ TEST(AntennaMount, RefusesAModelWithoutItsJointsAndASpeedOfNothing) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::antenna_mount_test

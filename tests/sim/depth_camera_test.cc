@@ -11,7 +11,7 @@
 #include "core/angles.h"
 #include "tests/support/moments.h"
 
-namespace patrol::sim {
+namespace patrol::sim::depth_camera_test {
 namespace {
 
 constexpr int kWidth = 80, kHeight = 60, kPixels = kWidth * kHeight;
@@ -191,4 +191,4 @@ TEST(DepthCamera, WithoutNoiseTheSamePixelsAreLost) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::depth_camera_test

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::gas_plume_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -128,4 +128,4 @@ TEST(GasPlume, AnUnknownSiteIsRefusedAndTheKnownOnesAreNamed) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::gas_plume_test

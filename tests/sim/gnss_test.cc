@@ -8,7 +8,7 @@
 #include "core/angles.h"
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::gnss_test {
 namespace {
 
 /// A court of walls 20 m high about the origin, open at the top; 2 m wide in the middle of nothing else.
@@ -125,4 +125,4 @@ TEST(Gnss, AfterALossTheFixComesBackFiveSecondsLater) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::gnss_test

@@ -8,7 +8,7 @@
 #include "core/angles.h"
 #include "tests/support/quadruped_twin.h"
 
-namespace patrol::sim {
+namespace patrol::sim::quadruped_controller_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -133,4 +133,4 @@ TEST(QuadrupedController, TwoRobotsOfTheSameSeedWalkToTheSameBit) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::quadruped_controller_test

@@ -7,7 +7,7 @@
 
 #include "core/angles.h"
 
-namespace patrol::sim {
+namespace patrol::sim::remote_operator_test {
 namespace {
 
 constexpr double kTick_s = 0.02;
@@ -103,4 +103,4 @@ TEST(RemoteOperator, KeepsWithinTwentyCentimetresOfAStraightLegWithAReactionTime
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::remote_operator_test

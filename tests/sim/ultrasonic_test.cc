@@ -14,7 +14,7 @@
 #include "core/random.h"
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::ultrasonic_test {
 namespace {
 
 constexpr float kSilence = std::numeric_limits<float>::infinity();
@@ -261,4 +261,4 @@ TEST(Ultrasonic, ARobotWithoutTransducersAndSlotsTooShortAreRefusedInASentence) 
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::ultrasonic_test

@@ -1,6 +1,7 @@
 #include "app/test/tested_scenario.h"
 
 #include <algorithm>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -15,11 +16,12 @@ namespace {
 bool is_scenario(const std::filesystem::path& file) { return file.extension() == ".yaml" || file.extension() == ".yml"; }
 
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& scenarios) {
-  if (std::filesystem::is_regular_file(scenarios)) return {scenarios};
-  if (!std::filesystem::is_directory(scenarios)) throw InputError(fmt::format("{}: there is no such file or folder", scenarios.string()));
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(scenarios, ignored)) return {scenarios};
+  if (!std::filesystem::is_directory(scenarios, ignored)) throw InputError(fmt::format("{}: there is no such file or folder", scenarios.string()));
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(scenarios)) {
-    if (entry.is_regular_file() && is_scenario(entry.path())) files.push_back(entry.path());
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(scenarios)) {  // does not follow links to folders
+    if (entry.is_regular_file(ignored) && is_scenario(entry.path())) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -90,13 +92,13 @@ void save_test_junit(const std::filesystem::path& file, const std::vector<Tested
 io::Table tests_table(const std::vector<TestedScenario>& tested) {
   io::Table table{.name = "tests", .columns = {"scenario", "end", "exit_code", "message", "metric", "wanted", "got", "is_met"}, .rows = {}};
   for (const TestedScenario& one : tested) {
-    const std::vector<io::Cell> head = {one.name, one.verdict->end, static_cast<std::int64_t>(one.verdict->code), one.verdict->message};
+    const std::vector<io::TableValue> head = {one.name, one.verdict->end, static_cast<std::int64_t>(one.verdict->code), one.verdict->message};
     if (one.verdict->checks.empty()) {
       table.rows.push_back(head);
       table.rows.back().resize(table.columns.size());
     }
     for (const CheckedExpectation& check : one.verdict->checks) {
-      std::vector<io::Cell>& row = table.rows.emplace_back(head);
+      std::vector<io::TableValue>& row = table.rows.emplace_back(head);
       for (const std::string& cell : {check.metric, check.wanted, check.got}) row.emplace_back(cell);
       row.emplace_back(static_cast<std::int64_t>(check.is_met));
     }

@@ -8,7 +8,7 @@
 #include "core/angles.h"
 #include "tests/support/moments.h"
 
-namespace patrol::app {
+namespace patrol::app::landmark_world_test {
 namespace {
 
 double way_m(const LandmarkRun& run) {
@@ -99,4 +99,4 @@ TEST(LandmarkWorld, TheSameSeedGivesTheSameRunAndSwitchingTheBiasOffMovesNoOther
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::landmark_world_test

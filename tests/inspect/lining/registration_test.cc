@@ -5,7 +5,7 @@
 #include "core/angles.h"
 #include "tests/support/lined_tunnel.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::registration_test {
 namespace {
 
 SurfaceCloud scan_from(const test::LinedTunnel& tunnel, const Pose3& T_route_scanner, std::uint64_t seed) {
@@ -52,4 +52,4 @@ TEST(Moved, StepTurnsAboutTheSourcesOriginAndShiftsIt) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::registration_test

@@ -9,7 +9,7 @@
 #include "core/angles.h"
 #include "tests/support/lined_tunnel.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::ring_findings_test {
 namespace {
 
 const LiningInMap kLining{.design = test::LinedTunnel().lining, .invert_m = -0.3};
@@ -114,4 +114,4 @@ TEST(ConvergenceLines, LineWithoutItsMarkIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::ring_findings_test

@@ -9,7 +9,7 @@
 #include "core/angles.h"
 #include "core/error.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::water_sounding_test {
 namespace {
 
 AntennaGeometry mount() {
@@ -144,4 +144,4 @@ TEST(WaterSounding, ServosThatSayNothingAreNotBelievedToBeThere) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::water_sounding_test

@@ -9,7 +9,7 @@
 #include "plan/control/rollouts/path_heading.h"
 #include "plan/control/rollouts/progress.h"
 
-namespace patrol::plan {
+namespace patrol::plan::rollout_costs_test {
 namespace {
 
 using std::numbers::pi;
@@ -108,4 +108,4 @@ TEST(ProgressCost, NearTheEndOnlyWhatIsLeftCounts) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::rollout_costs_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::plan {
+namespace patrol::plan::progress_monitor_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -37,4 +37,4 @@ TEST(ProgressMonitor, HalfAMeterNearerIsProgress) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::progress_monitor_test

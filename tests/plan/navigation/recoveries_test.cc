@@ -7,7 +7,7 @@
 #include "plan/navigation/recovery_sequence.h"
 #include "tests/plan/kinematic_drive.h"
 
-namespace patrol::plan {
+namespace patrol::plan::recoveries_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -111,4 +111,4 @@ TEST(Recoveries, UnknownNamesAreRefusedWithThoseAllowed) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::recoveries_test

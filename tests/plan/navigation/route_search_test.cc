@@ -4,7 +4,7 @@
 
 #include "tests/plan/kinematic_drive.h"
 
-namespace patrol::plan {
+namespace patrol::plan::route_search_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -48,4 +48,4 @@ TEST(RouteSearch, BeginsAtMostTwiceASecondAndIsOutdatedByAMap) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::route_search_test

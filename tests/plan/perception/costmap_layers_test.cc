@@ -6,7 +6,7 @@
 #include "plan/perception/static_map_layer.h"
 #include "tests/support/room_world.h"
 
-namespace patrol::plan {
+namespace patrol::plan::costmap_layers_test {
 namespace {
 
 /// Ten by eight cells of 0.1 m from the map's origin on.
@@ -101,4 +101,4 @@ TEST(KeepOutLayer, RaisesCostsNearItsLinesAndLowersNone) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::costmap_layers_test
