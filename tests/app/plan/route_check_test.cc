@@ -9,7 +9,7 @@
 namespace patrol::app::route_check_test {
 namespace {
 
-using plan::test::draw, plan::test::keeps_clear, plan::test::random_ends, plan::test::random_grid;
+using test::draw, test::keeps_clear, test::random_ends, test::random_grid;
 
 plan::Route route_over(std::vector<Eigen::Vector2d> points) {
   plan::Route route;

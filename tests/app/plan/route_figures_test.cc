@@ -10,7 +10,7 @@
 namespace patrol::app::route_figures_test {
 namespace {
 
-using plan::test::draw, plan::test::length_of, plan::test::random_ends, plan::test::random_grid;
+using test::draw, test::length_of, test::random_ends, test::random_grid;
 
 constexpr double kExactTol = 1e-9;
 

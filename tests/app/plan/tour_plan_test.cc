@@ -11,7 +11,7 @@ namespace patrol::app::tour_plan_test {
 namespace {
 
 using ::testing::ElementsAre;
-using plan::test::draw;
+using test::draw;
 
 constexpr double kExactTol = 1e-9;
 
@@ -44,7 +44,7 @@ TEST(TourPlan, WithAnEndTheOrderIsByTheWayThereAtTheSpeed) {
   EXPECT_THAT(places_of(*tour), ElementsAre(0u, 2u, 3u, 1u, 4u));
   EXPECT_NEAR(tour->order.completion, 18.0, kExactTol);
   EXPECT_NEAR(tour->visits[1].arrives_s, 4.0, kExactTol);
-  EXPECT_NEAR(plan::test::length_of(tour->points_m), 9.0, kExactTol);
+  EXPECT_NEAR(test::length_of(tour->points_m), 9.0, kExactTol);
 }
 
 // At 5.5 from 7 s on, for 3 s; at 8.5 no later than 12 s, which it misses by 1 s: the priority is not to be broken.
@@ -90,9 +90,9 @@ TEST(TourPlan, TheWholeWayIsOnePieceAndAsLongAsItsLegs) {
   ASSERT_TRUE(tour->order.is_found);
   double legs_m = 0.0;
   for (const TourVisit& visit : tour->visits) legs_m += visit.leg_m;
-  EXPECT_NEAR(plan::test::length_of(tour->points_m), legs_m, kExactTol);
+  EXPECT_NEAR(test::length_of(tour->points_m), legs_m, kExactTol);
   EXPECT_EQ(tour->points_m.front(), tour->points_m.back());
-  EXPECT_TRUE(plan::test::keeps_clear(costs, tour->points_m));
+  EXPECT_TRUE(test::keeps_clear(costs, tour->points_m));
 }
 
 }  // namespace
