@@ -60,7 +60,7 @@ ExitCode list_command() {
   print("sensors", allowed<sim::FaultSettings>("sensor"));
   print("lidar presets", allowed<sim::LidarSettings>("preset"));
   print("sensor faults", allowed<sim::FaultSettings>("kind"));
-  print("mapping methods of a run (stack.mapping)", allowed<StackSettings>("mapping"));
+  print("mapping methods of a run (stack.mapping)", allowed<stack::StackSettings>("mapping"));
   print("mapping methods of a log", allowed<slam::MapperSettings>("method"));
   print("localisation methods", {"Monte-Carlo localisation with KLD sampling (stack.localization)"});
   print("sensor models of localisation", allowed<localize::MonteCarloSettings>("sensor_model"));

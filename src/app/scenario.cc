@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "app/stack/known_map.h"
 #include "core/error.h"
 #include "io/drive_json.h"
 #include "io/map_server.h"
@@ -15,6 +14,7 @@
 #include "io/route_json.h"
 #include "io/settings_yaml.h"
 #include "io/urdf.h"
+#include "stack/mission/known_map.h"
 
 namespace patrol::app {
 namespace {
@@ -113,12 +113,12 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   if (!scenario.map.empty()) {
     const std::filesystem::path file = named_file("map", scenario.map);
     files.map = io::load_map(file);
-    check_known_map(file.string(), *files.map);
+    stack::check_known_map(file.string(), *files.map);
   }
   if (!scenario.goals.empty()) {
     const std::filesystem::path file = named_file("goals", scenario.goals);
     files.goals = io::load_nav(file);
-    check_goals(file.string(), files.goals, files.map);
+    stack::check_goals(file.string(), files.goals, files.map);
   }
   if (!scenario.references.empty()) files.references = io::load_station_scans(files.world_xml.parent_path() / scenario.references);
   const RemoteSettings& remote = scenario.remote;

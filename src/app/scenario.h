@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "app/stack/stack_settings.h"
 #include "core/remote_drive.h"
 #include "core/route.h"
 #include "core/settings.h"
@@ -14,6 +13,7 @@
 #include "io/station_scans.h"
 #include "render/light.h"
 #include "sim/twin.h"
+#include "stack/settings/stack_settings.h"
 
 namespace patrol::app {
 
@@ -91,7 +91,7 @@ struct Scenario {
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;      ///< of a robot with legs
   sim::TrackDriveSettings track_drive;     ///< of a robot with tracks
-  StackSettings stack;
+  stack::StackSettings stack;
   std::vector<sim::PropSettings> props;
   sim::LowObstacleSettings low_obstacles;  ///< scattered by the seed, beside the props
   std::vector<sim::LiningMoveSettings> lining;  ///< how its rings have moved
@@ -144,7 +144,7 @@ struct RobotProfile {
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;
   sim::TrackDriveSettings track_drive;
-  StackSettings stack;
+  stack::StackSettings stack;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -19,12 +19,13 @@ MAY_USE = {
     "localize": {"core", "slam"},
     "plan": {"core"},
     "inspect": {"core", "slam"},
+    "stack": {"core", "slam", "localize", "plan", "inspect"},
     "score": {"core"},
     "render": {"core", "io", "sim"},
     "monitor": {"core", "io"},
-    "app": {"core", "io", "sim", "slam", "localize", "plan", "inspect", "score", "render", "monitor"},
+    "app": {"core", "io", "sim", "slam", "localize", "plan", "inspect", "stack", "score", "render", "monitor"},
 }
-STACK = ("slam", "localize", "plan", "inspect")
+STACK = ("slam", "localize", "plan", "inspect", "stack")
 BLIND = STACK + ("score",)  # rooms that never see MuJoCo
 
 

@@ -75,7 +75,7 @@ void Reporter::begin(const ScenarioFiles& files) {
   if (files.map) tell_map({.stamp = {}, .map = *files.map});
 }
 
-void Reporter::see(const StackMessage& message) {
+void Reporter::see(const stack::StackMessage& message) {
   std::visit(Overloaded{
                  [&](const PoseEstimate& estimate) {
                    newest_ = std::max(newest_, estimate.stamp);
