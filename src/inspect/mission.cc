@@ -36,7 +36,7 @@ MissionOutput Mission::step(Time now, const PoseEstimate& pose, NavigationFeedba
   return output;
 }
 
-Event Mission::abort(Time now, const std::string& kind, const std::string& text) {
+Event Mission::abort(Time now, EventKind kind, const std::string& text) {
   now_ = now;
   phase_ = Phase::kOver;
   return event(kind, current_ < route_.stations.size() ? station().name : "", text);
@@ -47,7 +47,7 @@ void Mission::wait(MissionOutput& output) {
   std::vector<std::string> names;
   for (const Station& station : route_.stations) names.push_back(station.name);
   const std::string stations = fmt::format("The mission starts: {} stations, {}.", names.size(), fmt::join(names, ", "));
-  output.events.push_back(event("mission_started", "", about_order_.empty() ? stations : stations + " " + about_order_));
+  output.events.push_back(event(EventKind::kMissionStarted, "", about_order_.empty() ? stations : stations + " " + about_order_));
   phase_ = Phase::kDriving;
   phase_start_ = now_;
 }
@@ -56,13 +56,13 @@ void Mission::drive(NavigationFeedback feedback, MissionOutput& output) {
   if (now_ == phase_start_) return;  // the feedback is about the goal before
   if (feedback == NavigationFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event("station_failed", station().name, fmt::format("No way to {}.", station().name)));
+    output.events.push_back(event(EventKind::kStationFailed, station().name, fmt::format("No way to {}.", station().name)));
     return next_station(output);
   }
   if (feedback != NavigationFeedback::kArrived) return;
-  output.events.push_back(event("station_reached", station().name, fmt::format("At {}.", station().name)));
+  output.events.push_back(event(EventKind::kStationReached, station().name, fmt::format("At {}.", station().name)));
   if (const double late_s = to_seconds(now_) - station().latest_s; late_s > 0.0) {
-    output.events.push_back(event("station_late", station().name, fmt::format("{:.0f} s late at {}.", late_s, station().name), late_s));
+    output.events.push_back(event(EventKind::kStationLate, station().name, fmt::format("{:.0f} s late at {}.", late_s, station().name), late_s));
   }
   if (station().type != "inspect") return next_station(output);
   phase_ = Phase::kMeasuring;
@@ -79,7 +79,7 @@ void Mission::measure(const std::optional<GasReading>& newest_gas, MissionOutput
     next_station(output);
   } else if (now_ >= from + from_seconds(std::max(settings_.measure_s, settings_.max_measure_s))) {
     ++num_failed_;
-    output.events.push_back(event("station_failed", station().name,
+    output.events.push_back(event(EventKind::kStationFailed, station().name,
                                   fmt::format("The methane meter gave {} readings at {}, {} are needed.", gas_.count(),
                                               station().name, settings_.min_readings)));
     next_station(output);
@@ -88,10 +88,10 @@ void Mission::measure(const std::optional<GasReading>& newest_gas, MissionOutput
 
 void Mission::report_gas(MissionOutput& output) {
   const double column = gas_.mean_ppm_m();
-  output.events.push_back(event("gas_measured", station().name,
+  output.events.push_back(event(EventKind::kGasMeasured, station().name,
                                 fmt::format("{}: {:.0f} ppm m of methane.", station().name, column), column));
   if (column - 2.0 * gas_.standard_error_ppm_m() <= settings_.alarm_column_ppm_m) return;
-  Event alarm = event("alarm", station().name, "", column);
+  Event alarm = event(EventKind::kGasAlarm, station().name, "", column);
   alarm.p_map_target = place_on_beam();
   alarm.text = fmt::format("Leak at {}: {:.0f} ppm m of methane, found at ({:.2f}, {:.2f}) m in the map.", station().name,
                            column, alarm.p_map_target.x(), alarm.p_map_target.y());
@@ -116,10 +116,9 @@ void Mission::next_station(MissionOutput& output) {
   }
   phase_ = Phase::kOver;
   if (num_failed_ == 0) {
-    output.events.push_back(event("mission_completed", "", "Every station was inspected."));
+    output.events.push_back(event(EventKind::kMissionCompleted, "", "Every station was inspected."));
   } else {
-    output.events.push_back(event(
-        "mission_failed", "", fmt::format("{} of {} stations were left out.", num_failed_, route_.stations.size())));
+    output.events.push_back(event(EventKind::kMissionFailed, "", fmt::format("{} of {} stations were left out.", num_failed_, route_.stations.size())));
   }
 }
 
@@ -134,7 +133,7 @@ NavigationGoal Mission::goal_at(const Station& station) const {
   return goal;
 }
 
-Event Mission::event(const std::string& kind, const std::string& subject, const std::string& text, double value) const {
+Event Mission::event(EventKind kind, const std::string& subject, const std::string& text, double value) const {
   return {.stamp = now_, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = T_map_body_,
           .p_map_target = T_map_body_.position()};
 }

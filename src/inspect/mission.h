@@ -63,7 +63,7 @@ class Mission {
 
   bool is_over() const { return phase_ == Phase::kOver; }
   /// Ends the mission with an event of this kind, unless it is over.
-  Event abort(Time now, const std::string& kind, const std::string& text);
+  Event abort(Time now, EventKind kind, const std::string& text);
 
  private:
   enum class Phase { kWaiting, kDriving, kMeasuring, kOver };
@@ -75,7 +75,7 @@ class Mission {
   Eigen::Vector2d place_on_beam() const;
   void next_station(MissionOutput& output);
   NavigationGoal goal_at(const Station& station) const;
-  Event event(const std::string& kind, const std::string& subject, const std::string& text, double value = 0.0) const;
+  Event event(EventKind kind, const std::string& subject, const std::string& text, double value = 0.0) const;
   const Station& station() const { return route_.stations[current_]; }
 
   MissionSettings settings_;

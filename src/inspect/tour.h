@@ -95,7 +95,7 @@ class Tour {
   bool is_over() const { return phase_ == Phase::kOver; }
   const std::vector<MarkedGoal>& goals() const { return goals_; }
   /// Ends the tour with an event of this kind, unless it is over.
-  Event abort(Time now, const std::string& kind, const std::string& text);
+  Event abort(Time now, EventKind kind, const std::string& text);
 
  private:
   enum class Phase { kWaiting, kRemote, kUndocking, kDriving, kStanding, kScanning, kHandedOver, kSounding, kDocking, kOver };
@@ -115,7 +115,7 @@ class Tour {
   void end_navigation(TourOutput& output);
   void finish(TourOutput& output);
   void enter(Phase phase);
-  Event event(const std::string& kind, const std::string& subject, const std::string& text, double value = 0.0) const;
+  Event event(EventKind kind, const std::string& subject, const std::string& text, double value = 0.0) const;
   std::string goal_name() const;
   std::string sounding_name() const;
 

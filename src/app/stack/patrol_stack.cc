@@ -65,7 +65,7 @@ void PatrolStack::handle_scan(const LaserScan& raw) {
 }
 
 void PatrolStack::handle_fall(Time now) {
-  if (!mission_.is_over()) abort(now, "fall", "The robot fell.");
+  if (!mission_.is_over()) abort(now, EventKind::kFall, "The robot fell.");
 }
 
 VelocityCommand PatrolStack::control(Time now, const OdometryEstimate& odometry) {

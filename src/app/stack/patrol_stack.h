@@ -20,7 +20,7 @@ class PatrolStack final : public RobotStack {
 
  private:
   void use(const SensorMessage& message) override;
-  void abort(Time now, const char* kind, const std::string& text) override { say(mission_.abort(now, kind, text)); }
+  void abort(Time now, EventKind kind, const std::string& text) override { say(mission_.abort(now, kind, text)); }
   std::optional<OdometryEstimate> odometry() const override { return odometry_.estimate(); }
   OccupancyGrid map() override { return slam_->map(); }
   bool is_mapping() const override { return true; }

@@ -46,9 +46,9 @@ void RobotStack::step(Time now) {
 void RobotStack::watch_sensors(Time now, const Pose2& T_odom_body) {
   const PoseEstimate pose = tracker_.at(now, T_odom_body);
   for (const plan::SensorChange& change : sensor_watch_.step(now, T_odom_body, command_)) {
-    note(now, pose, change.is_back ? "sensor_back" : "sensor_fault", change.text, change.sensor);
+    note(now, pose, change.is_back ? EventKind::kSensorRecovered : EventKind::kSensorFault, change.text, change.sensor);
   }
-  if (sensor_watch_.has_given_up(now) && !mission_is_over()) abort(now, "sensor_lost", "A sensor that driving needs did not come back: the mission is over.");
+  if (sensor_watch_.has_given_up(now) && !mission_is_over()) abort(now, EventKind::kSensorFailed, "A sensor that driving needs did not come back: the mission is over.");
 }
 
 void RobotStack::map_scan(slam::Mapper& slam, const LevelScan& scan, const Pose2& T_odom_body) {
@@ -63,9 +63,9 @@ void RobotStack::map_scan(slam::Mapper& slam, const LevelScan& scan, const Pose2
 plan::NavigationStep RobotStack::navigate(Time now, const PoseEstimate& pose) {
   plan::NavigationStep step = navigator_.step(now, pose.T_map_body);
   if (step.replanned) say(Path{now, step.path});
-  if (step.is_detour) note(now, pose, "replan", "Something stands on the path: a new one is planned.");
-  if (!step.text.empty()) note(now, pose, "navigation", step.text);
-  if (!step.recovery.empty()) note(now, pose, "recovery", step.recovery);
+  if (step.is_detour) note(now, pose, EventKind::kReplan, "Something stands on the path: a new one is planned.");
+  if (!step.text.empty()) note(now, pose, EventKind::kNavigation, step.text);
+  if (!step.recovery.empty()) note(now, pose, EventKind::kRecovery, step.recovery);
   navigation_ = step.status;
   return step;
 }
@@ -81,7 +81,7 @@ inspect::NavigationFeedback RobotStack::navigation_feedback() const {
   }
 }
 
-void RobotStack::note(Time now, const PoseEstimate& pose, const char* kind, const std::string& text, const std::string& subject) {
+void RobotStack::note(Time now, const PoseEstimate& pose, EventKind kind, const std::string& text, const std::string& subject) {
   say(Event{.stamp = now, .kind = kind, .subject = subject, .text = text, .value = 0.0, .T_map_body = pose.T_map_body,
             .p_map_target = pose.T_map_body.position()});
 }

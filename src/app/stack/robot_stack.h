@@ -49,7 +49,7 @@ class RobotStack {
 
   virtual void use(const SensorMessage& message) = 0;
   /// Ends the mission with an event of this kind.
-  virtual void abort(Time now, const char* kind, const std::string& text) = 0;
+  virtual void abort(Time now, EventKind kind, const std::string& text) = 0;
   /// Nobody holds the remote control.
   virtual bool drives_itself() const { return true; }
   virtual std::optional<OdometryEstimate> odometry() const = 0;
@@ -70,7 +70,7 @@ class RobotStack {
   void say(Message&& message) {
     messages_.emplace_back(std::forward<Message>(message));
   }
-  void note(Time now, const PoseEstimate& pose, const char* kind, const std::string& text, const std::string& subject = "");
+  void note(Time now, const PoseEstimate& pose, EventKind kind, const std::string& text, const std::string& subject = "");
 
   localize::MapPoseTracker tracker_;
   plan::Navigator navigator_;

@@ -164,7 +164,7 @@ std::optional<StandingPlace> TourStack::place_at(Time stamp) const {
 }
 
 void TourStack::handle_fall(Time now) {
-  if (!tour_.is_over()) abort(now, "fall", "The robot has rolled over.");
+  if (!tour_.is_over()) abort(now, EventKind::kFall, "The robot has rolled over.");
 }
 
 VelocityCommand TourStack::control(Time now, const OdometryEstimate& odometry) {
@@ -219,7 +219,7 @@ VelocityCommand TourStack::go_to_dock(Time now, const PoseEstimate& pose, const 
 
 VelocityCommand TourStack::move_at_dock(Time now, const Pose2& T_odom_body, const PoseEstimate& pose) {
   const plan::DockingStep step = docking_.step(now, T_odom_body);
-  if (!step.text.empty()) note(now, pose, "docking", step.text);
+  if (!step.text.empty()) note(now, pose, EventKind::kDocking, step.text);
   switch (step.status) {
     case plan::DockingStatus::kDocked:
     case plan::DockingStatus::kFree:

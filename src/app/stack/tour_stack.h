@@ -33,7 +33,7 @@ class TourStack final : public RobotStack {
 
  private:
   void use(const SensorMessage& message) override;
-  void abort(Time now, const char* kind, const std::string& text) override { say(tour_.abort(now, kind, text)); }
+  void abort(Time now, EventKind kind, const std::string& text) override { say(tour_.abort(now, kind, text)); }
   bool drives_itself() const override { return mode_ != inspect::TourMode::kRemote; }
   std::optional<OdometryEstimate> odometry() const override { return odometry_.estimate(); }
   OccupancyGrid map() override { return slam_ ? slam_->map() : *map_; }

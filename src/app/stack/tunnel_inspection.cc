@@ -82,12 +82,12 @@ InspectionFeedback TunnelInspection::scan(Time now) {
   if (now - began_ > from_seconds(settings_.scan_patience_s)) return InspectionFeedback::kFailed;
   if (!new_scan_) return InspectionFeedback::kUnderWay;
   const auto [scan, place] = *std::exchange(new_scan_, std::nullopt);
-  say_event(now, "scan_taken", station_, fmt::format("Panoramic scan of {} points.", scan.points.size()), static_cast<double>(scan.points.size()),
+  say_event(now, EventKind::kScanTaken, station_, fmt::format("Panoramic scan of {} points.", scan.points.size()), static_cast<double>(scan.points.size()),
             place_.T_map_body.position());
   const auto reference = references_.find(station_);
   if (reference == references_.end()) {
     references_.emplace(station_, inspect::make_reference(scan, place.T_map_scanner(T_body_scanner_)));
-    say_event(now, "reference_taken", station_, "The first scan of this place: later ones are compared with it.", 0.0, place_.T_map_body.position());
+    say_event(now, EventKind::kReferenceTaken, station_, "The first scan of this place: later ones are compared with it.", 0.0, place_.T_map_body.position());
     return InspectionFeedback::kDone;
   }
   LiningResult result = lining_->inspect(now, station_, scan, reference->second, place.T_map_scanner(T_body_scanner_));
@@ -116,21 +116,21 @@ InspectionFeedback TunnelInspection::sound(Time now) {
 void TunnelInspection::report(Time now, const LiningResult& result) {
   if (!result.is_registered) return;
   for (const RingFinding& finding : result.findings) {
-    say_event(now, fmt::format("lining_{}", name_of(finding.level)), fmt::format("ring_{}", finding.ring),
+    say_event(now, lining_event(finding.level), fmt::format("ring_{}", finding.ring),
               fmt::format("Ring {} has moved inwards by {:.1f} ± {:.1f} mm at {} o'clock.", finding.ring, 1e3 * finding.inward_m, 1e3 * finding.std_m,
                           clock_text(finding.clock_deg)),
               finding.inward_m, finding.p_map.head<2>());
     warn(now, finding.level);
   }
-  if (result.findings.empty()) say_event(now, "lining_unmoved", station_, "No ring has moved.", 0.0, place_.T_map_body.position());
+  if (result.findings.empty()) say_event(now, EventKind::kLiningUnchanged, station_, "No ring has moved.", 0.0, place_.T_map_body.position());
 }
 
 void TunnelInspection::report(Time now, const WaterResult& result) {
   if (!result.is_found) {
-    say_event(now, "no_water", station_, fmt::format("No water ahead: {} soundings.", result.soundings), 0.0, place_.T_map_body.position());
+    say_event(now, EventKind::kWaterNotFound, station_, fmt::format("No water ahead: {} soundings.", result.soundings), 0.0, place_.T_map_body.position());
     return;
   }
-  say_event(now, fmt::format("water_{}", name_of(result.level)), station_,
+  say_event(now, water_event(result.level), station_,
             fmt::format("Water ahead, {:.1f} m from the antenna ({:.1f} to {:.1f} m), {:.0f} degrees to the {}: a body {:.1f} m across ({:.1f} to {:.1f} m).",
                         result.distance_m, result.distance_low_m, result.distance_high_m, std::abs(result.azimuth_deg),
                         result.azimuth_deg >= 0.0 ? "left" : "right", 2.0 * result.radius_m, 2.0 * result.radius_low_m, 2.0 * result.radius_high_m),
@@ -147,7 +147,7 @@ void TunnelInspection::warn(Time now, WarningLevel level) {
   messages_.emplace_back(WarningCommand{now, true, siren_until_.has_value()});
 }
 
-void TunnelInspection::say_event(Time now, const std::string& kind, const std::string& subject, const std::string& text, double value,
+void TunnelInspection::say_event(Time now, EventKind kind, const std::string& subject, const std::string& text, double value,
                                  const Eigen::Vector2d& p_map) {
   messages_.emplace_back(Event{.stamp = now, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = place_.T_map_body, .p_map_target = p_map});
 }

@@ -56,7 +56,7 @@ class TunnelInspection {
   void report(Time now, const LiningResult& result);
   void report(Time now, const WaterResult& result);
   void warn(Time now, WarningLevel level);
-  void say_event(Time now, const std::string& kind, const std::string& subject, const std::string& text, double value,
+  void say_event(Time now, EventKind kind, const std::string& subject, const std::string& text, double value,
                  const Eigen::Vector2d& p_map);
 
   InspectionSettings settings_;
