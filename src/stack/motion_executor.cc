@@ -57,9 +57,9 @@ VelocityCommand MotionExecutor::navigate(Time now, const std::optional<Navigatio
   navigator_.set_goal(goal);
   plan::NavigationStep step = navigator_.step(now, T_map_body);
   if (step.replanned) output.publish(Path{now, step.path});
-  if (step.is_detour) output.publish_event(now, T_map_body, "replan", "Something stands on the path: a new one is planned.");
-  if (!step.text.empty()) output.publish_event(now, T_map_body, "navigation", step.text);
-  if (!step.recovery.empty()) output.publish_event(now, T_map_body, "recovery", step.recovery);
+  if (step.is_detour) output.publish_event(now, T_map_body, EventKind::kReplan, "Something stands on the path: a new one is planned.");
+  if (!step.text.empty()) output.publish_event(now, T_map_body, EventKind::kNavigation, step.text);
+  if (!step.recovery.empty()) output.publish_event(now, T_map_body, EventKind::kRecovery, step.recovery);
   navigation_ = step.status;
   return step.command;
 }
@@ -83,7 +83,7 @@ VelocityCommand MotionExecutor::go_to_dock(Time now, const Pose2& T_map_body, co
 
 VelocityCommand MotionExecutor::move_at_dock(Time now, const Pose2& T_map_body, const Pose2& T_odom_body, StackOutput& output) {
   const plan::DockingStep step = docking_.step(now, T_odom_body);
-  if (!step.text.empty()) output.publish_event(now, T_map_body, "docking", step.text);
+  if (!step.text.empty()) output.publish_event(now, T_map_body, EventKind::kDocking, step.text);
   docking_feedback_ = feedback_of(step.status);
   return step.command;
 }

@@ -49,7 +49,7 @@ void Stack::handle_scan(const LaserScan& raw) {
 }
 
 void Stack::handle_fall(Time now) {
-  if (!mission_is_over()) output_.publish(parts_.mission->abort(now, "fall", "The robot fell."));
+  if (!mission_is_over()) output_.publish(parts_.mission->abort(now, EventKind::kFall, "The robot fell."));
 }
 
 void Stack::step(Time now) {
@@ -85,10 +85,10 @@ void Stack::publish_map(Time now) {
 void Stack::watch_sensors(Time now, const Pose2& T_odom_body) {
   const Pose2 T_map_body = parts_.pose.pose_at(now, T_odom_body).T_map_body;
   for (const plan::SensorChange& change : parts_.sensor_watch.step(now, T_odom_body, command_)) {
-    output_.publish_event(now, T_map_body, change.is_back ? "sensor_back" : "sensor_fault", change.text, change.sensor);
+    output_.publish_event(now, T_map_body, change.is_back ? EventKind::kSensorRecovered : EventKind::kSensorFault, change.text, change.sensor);
   }
   if (!parts_.sensor_watch.has_given_up(now) || mission_is_over()) return;
-  output_.publish(parts_.mission->abort(now, "sensor_lost", "A sensor that driving needs did not come back: the mission is over."));
+  output_.publish(parts_.mission->abort(now, EventKind::kSensorFailed, "A sensor that driving needs did not come back: the mission is over."));
 }
 
 VelocityCommand Stack::control(const Period& period) {

@@ -26,7 +26,7 @@ std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::e
 Json point(const Eigen::Vector2d& p) { return {p.x(), p.y()}; }
 
 Json to_json(const Event& event) {
-  return {{"kind", event.kind},
+  return {{"kind", kind_text(event)},
           {"subject", io::on_one_line(event.subject)},
           {"text", io::on_one_line(event.text)},
           {"value", std::isfinite(event.value) ? Json(event.value) : Json(nullptr)},

@@ -14,7 +14,7 @@ namespace {
 /// What the robot said that it was a scan of: the first such word after it.
 std::optional<std::string> station_of(const PanoramicScan& scan, const RunRecord& record) {
   const auto taken = std::find_if(record.events.begin(), record.events.end(),
-                                  [&](const Event& event) { return event.kind == "scan_taken" && event.stamp >= scan.stamp; });
+                                  [&](const Event& event) { return event.kind == EventKind::kScanTaken && event.stamp >= scan.stamp; });
   return taken == record.events.end() ? std::nullopt : std::optional(taken->subject);
 }
 

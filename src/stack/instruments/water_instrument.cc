@@ -44,11 +44,11 @@ WaterResult WaterInstrument::estimate(const InspectionContext& context) const {
 
 void WaterInstrument::report(const InspectionContext& context, const WaterResult& result) const {
   if (!result.is_found) {
-    context.publish_event("no_water", station_, fmt::format("No water ahead: {} soundings.", result.soundings), 0.0, context.place.T_map_body.position());
+    context.publish_event(EventKind::kWaterNotFound, station_, fmt::format("No water ahead: {} soundings.", result.soundings), 0.0, context.place.T_map_body.position());
     return;
   }
   context.publish_event(
-      fmt::format("water_{}", name_of(result.level)), station_,
+      water_event(result.level), station_,
       fmt::format("Water ahead, {:.1f} m from the antenna ({:.1f} to {:.1f} m), {:.0f} degrees to the {}: a body {:.1f} m across ({:.1f} to {:.1f} m).",
                   result.distance_m, result.distance_low_m, result.distance_high_m, std::abs(result.azimuth_deg),
                   result.azimuth_deg >= 0.0 ? "left" : "right", 2.0 * result.radius_m, 2.0 * result.radius_low_m, 2.0 * result.radius_high_m),

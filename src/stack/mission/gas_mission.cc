@@ -50,7 +50,7 @@ Task GasMission::task() const {
   return task;
 }
 
-Event GasMission::abort(Time now, const std::string& kind, const std::string& text) {
+Event GasMission::abort(Time now, EventKind kind, const std::string& text) {
   now_ = now;
   phase_ = Phase::kOver;
   return event(kind, current_ < route_.stations.size() ? station().name : "", text);
@@ -61,7 +61,7 @@ void GasMission::wait(MissionOutput& output) {
   std::vector<std::string> names;
   for (const Station& station : route_.stations) names.push_back(station.name);
   const std::string stations = fmt::format("The mission starts: {} stations, {}.", names.size(), fmt::join(names, ", "));
-  output.events.push_back(event("mission_started", "", about_order_.empty() ? stations : stations + " " + about_order_));
+  output.events.push_back(event(EventKind::kMissionStarted, "", about_order_.empty() ? stations : stations + " " + about_order_));
   phase_ = Phase::kDriving;
   phase_start_ = now_;
 }
@@ -70,13 +70,13 @@ void GasMission::drive(NavigationFeedback feedback, MissionOutput& output) {
   if (now_ == phase_start_) return;  // the feedback is about the goal before
   if (feedback == NavigationFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event("station_failed", station().name, fmt::format("No way to {}.", station().name)));
+    output.events.push_back(event(EventKind::kStationFailed, station().name, fmt::format("No way to {}.", station().name)));
     return next_station(output);
   }
   if (feedback != NavigationFeedback::kArrived) return;
-  output.events.push_back(event("station_reached", station().name, fmt::format("At {}.", station().name)));
+  output.events.push_back(event(EventKind::kStationReached, station().name, fmt::format("At {}.", station().name)));
   if (const double late_s = to_seconds(now_) - station().latest_s; late_s > 0.0) {
-    output.events.push_back(event("station_late", station().name, fmt::format("{:.0f} s late at {}.", late_s, station().name), late_s));
+    output.events.push_back(event(EventKind::kStationLate, station().name, fmt::format("{:.0f} s late at {}.", late_s, station().name), late_s));
   }
   if (station().type != "inspect") return next_station(output);
   phase_ = Phase::kMeasuring;
@@ -87,7 +87,7 @@ void GasMission::measure(const InspectionProgress& progress, MissionOutput& outp
   if (progress.feedback == InspectionFeedback::kUnderWay) return;
   if (progress.feedback == InspectionFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event("station_failed", station().name, progress.failure));
+    output.events.push_back(event(EventKind::kStationFailed, station().name, progress.failure));
   }
   next_station(output);
 }
@@ -101,10 +101,9 @@ void GasMission::next_station(MissionOutput& output) {
   }
   phase_ = Phase::kOver;
   if (num_failed_ == 0) {
-    output.events.push_back(event("mission_completed", "", "Every station was inspected."));
+    output.events.push_back(event(EventKind::kMissionCompleted, "", "Every station was inspected."));
   } else {
-    output.events.push_back(event(
-        "mission_failed", "", fmt::format("{} of {} stations were left out.", num_failed_, route_.stations.size())));
+    output.events.push_back(event(EventKind::kMissionFailed, "", fmt::format("{} of {} stations were left out.", num_failed_, route_.stations.size())));
   }
 }
 
@@ -119,7 +118,7 @@ NavigationGoal GasMission::goal_at(const Station& station) const {
   return goal;
 }
 
-Event GasMission::event(const std::string& kind, const std::string& subject, const std::string& text, double value) const {
+Event GasMission::event(EventKind kind, const std::string& subject, const std::string& text, double value) const {
   return {.stamp = now_, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = T_map_body_,
           .p_map_target = T_map_body_.position()};
 }

@@ -54,7 +54,7 @@ class GasMission final : public Mission {
 
   MissionOutput step(Time now, const MissionInput& input) override;
   bool is_over() const override { return phase_ == Phase::kOver; }
-  Event abort(Time now, const std::string& kind, const std::string& text) override;
+  Event abort(Time now, EventKind kind, const std::string& text) override;
   TaskTiming timing() const override { return TaskTiming::kNext; }
   bool starts_at_survey() const override { return true; }
 
@@ -67,7 +67,7 @@ class GasMission final : public Mission {
   void next_station(MissionOutput& output);
   Task task() const;
   NavigationGoal goal_at(const Station& station) const;
-  Event event(const std::string& kind, const std::string& subject, const std::string& text, double value = 0.0) const;
+  Event event(EventKind kind, const std::string& subject, const std::string& text, double value = 0.0) const;
   const Station& station() const { return route_.stations[current_]; }
 
   GasMissionSettings settings_;

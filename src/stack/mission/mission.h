@@ -42,7 +42,7 @@ class Mission {
   virtual MissionOutput step(Time now, const MissionInput& input) = 0;
   virtual bool is_over() const = 0;
   /// Ends the mission, unless it is over, and returns an event of this kind.
-  virtual Event abort(Time now, const std::string& kind, const std::string& text) = 0;
+  virtual Event abort(Time now, EventKind kind, const std::string& text) = 0;
   virtual TaskTiming timing() const = 0;
   /// The robot starts at the surveyed start, the origin of map.
   virtual bool starts_at_survey() const = 0;

@@ -78,15 +78,15 @@ Task TunnelMission::task() const {
 bool TunnelMission::watch_localization(const MissionInput& input, MissionOutput& output) {
   const bool needs_place = phase_ == Phase::kDriving || phase_ == Phase::kStanding || phase_ == Phase::kDocking;
   if (!input.is_lost || !needs_place) {
-    if (lost_since_) output.events.push_back(event("relocalized", "", "The robot knows where it is again.", to_seconds(now_ - *lost_since_)));
+    if (lost_since_) output.events.push_back(event(EventKind::kRelocalized, "", "The robot knows where it is again.", to_seconds(now_ - *lost_since_)));
     lost_since_.reset();
     return false;
   }
   if (!lost_since_) {
     lost_since_ = now_;
-    output.events.push_back(event("lost", "", "The robot does not know where it is: it stands and looks."));
+    output.events.push_back(event(EventKind::kLocalizationLost, "", "The robot does not know where it is: it stands and looks."));
   } else if (now_ - *lost_since_ > from_seconds(settings_.lost_patience_s)) {
-    output.events.push_back(event("cannot_localize", "", fmt::format("The robot cannot tell where it is after {:.0f} s of looking.",
+    output.events.push_back(event(EventKind::kLocalizationFailed, "", fmt::format("The robot cannot tell where it is after {:.0f} s of looking.",
                                                                      settings_.lost_patience_s)));
     ++num_failed_;
     finish(output);
@@ -107,12 +107,12 @@ void TunnelMission::follow_remote(const MissionInput& input, MissionOutput& outp
   if (input.remote && input.remote->mark) {
     goals_.push_back({.number = static_cast<int>(goals_.size()) + 1, .T_map_body = T_map_body_, .type = settings_.type_of_mark(goals_.size())});
     goal_ = goals_.size() - 1;
-    output.events.push_back(event("goal_marked", goal_name(), fmt::format("Marked {}.", goal_name())));
+    output.events.push_back(event(EventKind::kGoalMarked, goal_name(), fmt::format("Marked {}.", goal_name())));
   }
   const bool is_off = now_ - last_remote_ > from_seconds(settings_.remote_silence_s);
   if (!is_off && !(input.remote && input.remote->hand_over)) return;
   output.map_is_made = true;
-  output.events.push_back(event("mapping_done", "", fmt::format("The map is made; {} goals are marked.", goals_.size())));
+  output.events.push_back(event(EventKind::kMappingCompleted, "", fmt::format("The map is made; {} goals are marked.", goals_.size())));
   end_navigation(output);
 }
 
@@ -126,7 +126,7 @@ void TunnelMission::drive(const MissionInput& input, MissionOutput& output) {
   if (now_ == phase_start_) return;  // the feedback is about the goal before
   if (input.navigation == NavigationFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event("goal_failed", goal_name(), fmt::format("No way to {}.", goal_name()), navigation_));
+    output.events.push_back(event(EventKind::kGoalFailed, goal_name(), fmt::format("No way to {}.", goal_name()), navigation_));
     return next_goal(output);
   }
   if (input.navigation != NavigationFeedback::kArrived) return;
@@ -136,10 +136,10 @@ void TunnelMission::drive(const MissionInput& input, MissionOutput& output) {
 
 void TunnelMission::stand(MissionOutput& output) {
   if (now_ - phase_start_ < from_seconds(settings_.stand_s)) return;
-  output.events.push_back(event("goal_reached", goal_name(), fmt::format("At {}.", goal_name()), navigation_));
+  output.events.push_back(event(EventKind::kGoalReached, goal_name(), fmt::format("At {}.", goal_name()), navigation_));
   if (goals_[goal_].type == 'D') return enter(Phase::kScanning);
   if (goals_[goal_].type != 'R' || !has_remote_ || !has_map_) return next_goal(output);
-  output.events.push_back(event("remote_requested", goal_name(), "From here a person drives."));
+  output.events.push_back(event(EventKind::kTeleopRequested, goal_name(), "From here a person drives."));
   last_remote_ = now_;
   enter(Phase::kHandedOver);
 }
@@ -148,7 +148,7 @@ void TunnelMission::scan(const MissionInput& input, MissionOutput& output) {
   if (now_ == phase_start_ || input.inspection.feedback == InspectionFeedback::kUnderWay) return;
   if (input.inspection.feedback == InspectionFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event("inspection_failed", goal_name(), fmt::format("The lining at {} could not be measured.", goal_name()), navigation_));
+    output.events.push_back(event(EventKind::kInspectionFailed, goal_name(), fmt::format("The lining at {} could not be measured.", goal_name()), navigation_));
   }
   next_goal(output);
 }
@@ -162,7 +162,7 @@ void TunnelMission::hand_over(const MissionInput& input, MissionOutput& output) 
   const bool is_over = input.remote && input.remote->hand_over;
   if (!is_over && now_ - last_remote_ <= from_seconds(settings_.driver_patience_s)) return;
   if (!is_over) ++num_failed_;
-  output.events.push_back(event("remote_ended", goal_name(), is_over ? "The robot goes on by itself." : "Nobody drives: the robot goes on by itself."));
+  output.events.push_back(event(EventKind::kTeleopEnded, goal_name(), is_over ? "The robot goes on by itself." : "Nobody drives: the robot goes on by itself."));
   next_goal(output);
 }
 
@@ -171,7 +171,7 @@ void TunnelMission::sound(const MissionInput& input, MissionOutput& output) {
   if (now_ == phase_start_ || input.inspection.feedback == InspectionFeedback::kUnderWay) return;
   if (input.inspection.feedback == InspectionFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event("inspection_failed", sounding_name(), "The antenna could not sound for water.", navigation_));
+    output.events.push_back(event(EventKind::kInspectionFailed, sounding_name(), "The antenna could not sound for water.", navigation_));
   }
   enter(Phase::kHandedOver);
 }
@@ -180,10 +180,10 @@ void TunnelMission::dock(const MissionInput& input, MissionOutput& output) {
   if (now_ == phase_start_ || input.docking == DockingFeedback::kUnderWay) return;
   is_docked_ = input.docking == DockingFeedback::kDone;
   if (is_docked_) {
-    output.events.push_back(event("docked", "", "Docked at the charging post.", navigation_));
+    output.events.push_back(event(EventKind::kDocked, "", "Docked at the charging post.", navigation_));
   } else {
     ++num_failed_;
-    output.events.push_back(event("dock_failed", "", "The robot could not dock.", navigation_));
+    output.events.push_back(event(EventKind::kDockFailed, "", "The robot could not dock.", navigation_));
   }
   start_navigation(output);
 }
@@ -193,7 +193,7 @@ void TunnelMission::start_navigation(MissionOutput& output) {
   ++navigation_;
   goal_ = 0;
   output.relocalization = relocalization();
-  output.events.push_back(event("navigation_started", fmt::format("navigation_{}", navigation_),
+  output.events.push_back(event(EventKind::kNavigationStarted, fmt::format("navigation_{}", navigation_),
                                 fmt::format("Navigation {} of {}: {} goals.", navigation_, settings_.navigations, goals_.size()),
                                 navigation_));
   enter(is_docked_ ? Phase::kUndocking : Phase::kDriving);
@@ -218,14 +218,14 @@ void TunnelMission::end_navigation(MissionOutput& output) {
 void TunnelMission::finish(MissionOutput& output) {
   enter(Phase::kOver);
   if (num_failed_ == 0) {
-    output.events.push_back(event("mission_completed", "", "Every goal was reached."));
+    output.events.push_back(event(EventKind::kMissionCompleted, "", "Every goal was reached."));
     return;
   }
   const std::string count = num_failed_ == 1 ? "One thing" : fmt::format("{} things", num_failed_);
-  output.events.push_back(event("mission_failed", "", count + " went wrong on the way."));
+  output.events.push_back(event(EventKind::kMissionFailed, "", count + " went wrong on the way."));
 }
 
-Event TunnelMission::abort(Time now, const std::string& kind, const std::string& text) {
+Event TunnelMission::abort(Time now, EventKind kind, const std::string& text) {
   now_ = now;
   phase_ = Phase::kOver;
   return event(kind, goal_ < goals_.size() ? goal_name() : "", text);
@@ -236,7 +236,7 @@ void TunnelMission::enter(Phase phase) {
   phase_start_ = now_;
 }
 
-Event TunnelMission::event(const std::string& kind, const std::string& subject, const std::string& text, double value) const {
+Event TunnelMission::event(EventKind kind, const std::string& subject, const std::string& text, double value) const {
   return {.stamp = now_, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = T_map_body_,
           .p_map_target = T_map_body_.position()};
 }

@@ -66,7 +66,7 @@ class TunnelMission final : public Mission {
 
   MissionOutput step(Time now, const MissionInput& input) override;
   bool is_over() const override { return phase_ == Phase::kOver; }
-  Event abort(Time now, const std::string& kind, const std::string& text) override;
+  Event abort(Time now, EventKind kind, const std::string& text) override;
   TaskTiming timing() const override { return TaskTiming::kNow; }
   bool starts_at_survey() const override { return settings_.starts_at_survey; }
   const std::vector<MarkedGoal>& goals() const { return goals_; }
@@ -91,7 +91,7 @@ class TunnelMission final : public Mission {
   void end_navigation(MissionOutput& output);
   void finish(MissionOutput& output);
   void enter(Phase phase);
-  Event event(const std::string& kind, const std::string& subject, const std::string& text, double value = 0.0) const;
+  Event event(EventKind kind, const std::string& subject, const std::string& text, double value = 0.0) const;
   std::string goal_name() const;
   std::string sounding_name() const;
 

@@ -56,18 +56,18 @@ MissionSettings make_settings() {
 /// What the mission did.
 struct MissionRecord {
   std::vector<Event> events;
-  std::vector<std::string> kinds() const {
-    std::vector<std::string> kinds;
+  std::vector<EventKind> kinds() const {
+    std::vector<EventKind> kinds;
     for (const Event& event : events) kinds.push_back(event.kind);
     return kinds;
   }
-  const Event& find(const std::string& kind, const std::string& subject = "") const {
+  const Event& find(EventKind kind, const std::string& subject = "") const {
     for (const Event& event : events) {
       if (event.kind == kind && (subject.empty() || event.subject == subject)) return event;
     }
-    throw std::logic_error("no event " + kind);
+    throw std::logic_error("no event " + std::string(name_of(kind)));
   }
-  int count(const std::string& kind) const {
+  int count(EventKind kind) const {
     return static_cast<int>(
         std::count_if(events.begin(), events.end(), [&](const Event& e) { return e.kind == kind; }));
   }
@@ -115,8 +115,8 @@ TEST(Mission, WalksMeasuresAndCompletesInOrder) {
   Mission mission(make_settings(), make_route(), {});
   const MissionRecord record = run(mission, clean_air);
   EXPECT_THAT(record.kinds(),
-              ElementsAre("mission_started", "station_reached", "gas_measured", "station_reached",
-                          "gas_measured", "station_reached", "mission_completed"));
+              ElementsAre(EventKind::kMissionStarted, EventKind::kStationReached, EventKind::kGasMeasured, EventKind::kStationReached,
+                          EventKind::kGasMeasured, EventKind::kStationReached, EventKind::kMissionCompleted));
   EXPECT_EQ(record.events[1].subject, "first");
   EXPECT_EQ(record.events[3].subject, "second");
   EXPECT_EQ(record.events[5].subject, "home");  // nothing is measured there
@@ -125,7 +125,7 @@ TEST(Mission, WalksMeasuresAndCompletesInOrder) {
 
 TEST(Mission, NamesItsStationsWhenItStarts) {
   Mission mission(make_settings(), make_route(), {}, "They should take 9 s.");
-  EXPECT_EQ(run(mission, clean_air).find("mission_started").text, "The mission starts: 3 stations, first, second, home. They should take 9 s.");
+  EXPECT_EQ(run(mission, clean_air).find(EventKind::kMissionStarted).text, "The mission starts: 3 stations, first, second, home. They should take 9 s.");
 }
 
 // It arrives after three seconds and measures one and a half; the second station opens at the tenth.
@@ -135,10 +135,10 @@ TEST(Mission, WaitsForAStationsWindowAndSaysHowLateItIs) {
   route.stations[1].earliest_s = 10.0;
   Mission mission(make_settings(), route, {});
   const MissionRecord record = run(mission, clean_air);
-  EXPECT_NEAR(record.find("station_late", "first").value, to_seconds(record.find("station_reached", "first").stamp) - 2.0, 1e-9);
-  EXPECT_EQ(record.count("station_late"), 1);
-  EXPECT_LT(to_seconds(record.find("station_reached", "second").stamp), 10.0);
-  EXPECT_NEAR(to_seconds(record.find("gas_measured", "second").stamp), 10.0 + 0.5 + 1.0, kPeriod_s + 1e-9);
+  EXPECT_NEAR(record.find(EventKind::kStationLate, "first").value, to_seconds(record.find(EventKind::kStationReached, "first").stamp) - 2.0, 1e-9);
+  EXPECT_EQ(record.count(EventKind::kStationLate), 1);
+  EXPECT_LT(to_seconds(record.find(EventKind::kStationReached, "second").stamp), 10.0);
+  EXPECT_NEAR(to_seconds(record.find(EventKind::kGasMeasured, "second").stamp), 10.0 + 0.5 + 1.0, kPeriod_s + 1e-9);
 }
 
 TEST(Mission, StandsForItsStartWait) {
@@ -152,7 +152,7 @@ TEST(Mission, StandsForItsStartWait) {
   const MissionOutput output =
       mission.step(from_seconds(1.0), {}, NavigationFeedback::kDriving, std::nullopt);
   ASSERT_TRUE(output.goal);
-  EXPECT_EQ(output.events.at(0).kind, "mission_started");
+  EXPECT_EQ(output.events.at(0).kind, EventKind::kMissionStarted);
   EXPECT_EQ(output.events.at(0).stamp, from_seconds(1.0));
 }
 
@@ -160,8 +160,8 @@ TEST(Mission, StandsForItsStartWait) {
 TEST(Mission, MeasuresForItsTimeAfterSettling) {
   Mission mission(make_settings(), make_route(), {});
   const MissionRecord record = run(mission, clean_air);
-  const Time reached = record.find("station_reached", "first").stamp;
-  EXPECT_EQ(record.find("gas_measured", "first").stamp - reached, from_seconds(1.5));
+  const Time reached = record.find(EventKind::kStationReached, "first").stamp;
+  EXPECT_EQ(record.find(EventKind::kGasMeasured, "first").stamp - reached, from_seconds(1.5));
 }
 
 // Gas that blew past while the robot was still settling does not count.
@@ -173,8 +173,8 @@ TEST(Mission, ReadingsBeforeItHasSettledDoNotCount) {
   };
   Mission mission(make_settings(), make_route(), {});
   const MissionRecord record = run(mission, gas);
-  EXPECT_NEAR(record.find("gas_measured", "first").value, 20.0, 1e-9);
-  EXPECT_EQ(record.count("alarm"), 0);
+  EXPECT_NEAR(record.find(EventKind::kGasMeasured, "first").value, 20.0, 1e-9);
+  EXPECT_EQ(record.count(EventKind::kGasAlarm), 0);
 }
 
 TEST(Mission, HoldsItsPlaceWhileItMeasures) {
@@ -183,7 +183,7 @@ TEST(Mission, HoldsItsPlaceWhileItMeasures) {
   mission.step(from_seconds(1.0), pose, NavigationFeedback::kDriving, std::nullopt);
   const MissionOutput arrived =
       mission.step(from_seconds(2.0), pose, NavigationFeedback::kArrived, std::nullopt);
-  EXPECT_EQ(arrived.events.at(0).kind, "station_reached");
+  EXPECT_EQ(arrived.events.at(0).kind, EventKind::kStationReached);
   const MissionOutput measuring =
       mission.step(from_seconds(2.1), pose, NavigationFeedback::kArrived, std::nullopt);
   ASSERT_TRUE(measuring.goal);
@@ -198,13 +198,13 @@ TEST(Mission, AlarmsOnlyTwoStandardErrorsBeyondTheThreshold) {
   };
   for (const double mean : {150.0, 200.0, 215.0, 225.0}) {
     Mission mission(make_settings(), make_route(), {});
-    EXPECT_EQ(run(mission, with_mean(mean)).count("alarm"), 0) << mean;
+    EXPECT_EQ(run(mission, with_mean(mean)).count(EventKind::kGasAlarm), 0) << mean;
   }
   for (const double mean : {245.0, 300.0, 5000.0}) {
     Mission mission(make_settings(), make_route(), {});
     const MissionRecord record = run(mission, with_mean(mean));
-    EXPECT_EQ(record.count("alarm"), 2) << mean;  // at each station that measures
-    EXPECT_NEAR(record.find("alarm").value, mean, 5.0);
+    EXPECT_EQ(record.count(EventKind::kGasAlarm), 2) << mean;  // at each station that measures
+    EXPECT_NEAR(record.find(EventKind::kGasAlarm).value, mean, 5.0);
   }
 }
 
@@ -220,17 +220,17 @@ TEST(Mission, NeverAlarmsInFiveHundredStationsOfCleanAir) {
       mission,
       [&](int tick, const Pose2&) { return 120.0 + 60.0 * stream.normal(static_cast<std::uint64_t>(tick)); },
       nullptr, 1e5);
-  EXPECT_EQ(record.count("gas_measured"), 500);
-  EXPECT_EQ(record.count("alarm"), 0);
+  EXPECT_EQ(record.count(EventKind::kGasMeasured), 500);
+  EXPECT_EQ(record.count(EventKind::kGasAlarm), 0);
 }
 
 TEST(Mission, AlarmNamesTheStationWithTheLeak) {
   const Gas gas = [](int, const Pose2& T_map_body) { return T_map_body.y > 1.0 ? 900.0 : 20.0; };
   Mission mission(make_settings(), make_route(), {});
   const MissionRecord record = run(mission, gas);
-  ASSERT_EQ(record.count("alarm"), 1);
-  EXPECT_EQ(record.find("alarm").subject, "second");
-  EXPECT_THAT(record.find("alarm").text, HasSubstr("900 ppm m"));
+  ASSERT_EQ(record.count(EventKind::kGasAlarm), 1);
+  EXPECT_EQ(record.find(EventKind::kGasAlarm).subject, "second");
+  EXPECT_THAT(record.find(EventKind::kGasAlarm).text, HasSubstr("900 ppm m"));
 }
 
 // The meter sits 0.3 m before the body's origin at (3, 4) and looks north with the robot; the target lies at
@@ -239,7 +239,7 @@ TEST(Mission, PlacesTheLeakOnTheBeamAtTheTarget) {
   const Gas gas = [](int, const Pose2& T_map_body) { return T_map_body.y > 1.0 ? 900.0 : 20.0; };
   Mission mission(make_settings(), make_route(), {.position = {0.3, 0.0, 0.2}});
   const MissionRecord record = run(mission, gas);
-  EXPECT_THAT(record.find("alarm").p_map_target, VectorNear(Eigen::Vector2d(3.0, 6.0), 1e-9));
+  EXPECT_THAT(record.find(EventKind::kGasAlarm).p_map_target, VectorNear(Eigen::Vector2d(3.0, 6.0), 1e-9));
 }
 
 // The same with the target moved: 1 m aside, its foot on the beam; 9 m away, the beam's end 2.5 m from the
@@ -254,7 +254,7 @@ TEST(Mission, PlacesTheLeakOnTheBeamWhereItIsNearestToTheTarget) {
     route.stations[0].p_route_target = {target.x(), target.y(), 0.0};
     Mission mission(make_settings(), route, {.position = {0.3, 0.0, 0.2}});
     const MissionRecord record = run(mission, [](int, const Pose2&) { return 900.0; });
-    EXPECT_THAT(record.find("alarm").p_map_target, VectorNear(expected, 1e-9)) << target.transpose();
+    EXPECT_THAT(record.find(EventKind::kGasAlarm).p_map_target, VectorNear(expected, 1e-9)) << target.transpose();
   }
 }
 
@@ -264,7 +264,7 @@ TEST(Mission, ABeamTurnedToTheLeftPlacesTheLeakOnTheLeft) {
   route.stations[0].p_route_target = {0.0, 2.0, 0.0};
   Mission mission(make_settings(), route, {.rotation = quaternion_from_yaw(pi / 2.0)});
   const MissionRecord record = run(mission, [](int, const Pose2&) { return 900.0; });
-  EXPECT_THAT(record.find("alarm").p_map_target, VectorNear(Eigen::Vector2d(0.0, 2.0), 1e-9));
+  EXPECT_THAT(record.find(EventKind::kGasAlarm).p_map_target, VectorNear(Eigen::Vector2d(0.0, 2.0), 1e-9));
 }
 
 TEST(Mission, AStationOutOfReachIsLeftOutAndTheMissionFails) {
@@ -272,20 +272,20 @@ TEST(Mission, AStationOutOfReachIsLeftOutAndTheMissionFails) {
   const MissionRecord record = run(mission, clean_air, [](const NavigationGoal& goal) {
     return goal.T_map_body.y < 1.0;
   });  // not "second"
-  EXPECT_THAT(record.kinds(), ElementsAre("mission_started", "station_reached", "gas_measured",
-                                          "station_failed", "station_reached", "mission_failed"));
-  EXPECT_EQ(record.find("station_failed").subject, "second");
-  EXPECT_THAT(record.find("mission_failed").text, HasSubstr("1 of 3 stations"));
+  EXPECT_THAT(record.kinds(), ElementsAre(EventKind::kMissionStarted, EventKind::kStationReached, EventKind::kGasMeasured,
+                                          EventKind::kStationFailed, EventKind::kStationReached, EventKind::kMissionFailed));
+  EXPECT_EQ(record.find(EventKind::kStationFailed).subject, "second");
+  EXPECT_THAT(record.find(EventKind::kMissionFailed).text, HasSubstr("1 of 3 stations"));
 }
 
 // Settled after 0.5 s, given up 3 s later.
 TEST(Mission, AStationWithoutReadingsIsGivenUpAfterItsLimit) {
   Mission mission(make_settings(), make_route(), {});
   const MissionRecord record = run(mission, [](int, const Pose2&) { return std::nan(""); });
-  EXPECT_EQ(record.count("station_failed"), 2);
-  EXPECT_EQ(record.count("gas_measured"), 0);
-  EXPECT_EQ(record.find("station_failed").stamp - record.find("station_reached").stamp, from_seconds(3.5));
-  EXPECT_EQ(record.events.back().kind, "mission_failed");
+  EXPECT_EQ(record.count(EventKind::kStationFailed), 2);
+  EXPECT_EQ(record.count(EventKind::kGasMeasured), 0);
+  EXPECT_EQ(record.find(EventKind::kStationFailed).stamp - record.find(EventKind::kStationReached).stamp, from_seconds(3.5));
+  EXPECT_EQ(record.events.back().kind, EventKind::kMissionFailed);
 }
 
 TEST(Mission, WaitsLongerForASlowInstrument) {
@@ -293,8 +293,8 @@ TEST(Mission, WaitsLongerForASlowInstrument) {
   Mission mission(make_settings(), make_route(), {});
   const MissionRecord record =
       run(mission, [](int tick, const Pose2&) { return tick % 5 == 0 ? 30.0 : std::nan(""); });
-  EXPECT_EQ(record.count("gas_measured"), 2);
-  const Time taken = record.find("gas_measured").stamp - record.find("station_reached").stamp;
+  EXPECT_EQ(record.count(EventKind::kGasMeasured), 2);
+  const Time taken = record.find(EventKind::kGasMeasured).stamp - record.find(EventKind::kStationReached).stamp;
   EXPECT_GT(taken, from_seconds(2.0));
   EXPECT_LE(taken, from_seconds(3.0));
 }
@@ -343,8 +343,8 @@ TEST(Mission, FeedbackAboutTheGoalBeforeDoesNotCount) {
 TEST(Mission, AbortEndsItWithItsEvent) {
   Mission mission(make_settings(), make_route(), {});
   mission.step(from_seconds(1.0), {}, NavigationFeedback::kDriving, std::nullopt);
-  const Event fall = mission.abort(from_seconds(1.5), "fall", "The robot fell.");
-  EXPECT_EQ(fall.kind, "fall");
+  const Event fall = mission.abort(from_seconds(1.5), EventKind::kFall, "The robot fell.");
+  EXPECT_EQ(fall.kind, EventKind::kFall);
   EXPECT_EQ(fall.subject, "first");
   EXPECT_EQ(fall.stamp, from_seconds(1.5));
   EXPECT_TRUE(mission.is_over());
@@ -356,7 +356,7 @@ TEST(Mission, AbortEndsItWithItsEvent) {
 TEST(Mission, EventsSayWhereTheRobotWas) {
   Mission mission(make_settings(), make_route(), {});
   const MissionRecord record = run(mission, clean_air);
-  EXPECT_EQ(record.find("gas_measured", "second").T_map_body.vector(), Eigen::Vector3d(3.0, 4.0, pi / 2.0));
+  EXPECT_EQ(record.find(EventKind::kGasMeasured, "second").T_map_body.vector(), Eigen::Vector3d(3.0, 4.0, pi / 2.0));
 }
 
 TEST(Mission, RefusesAnEmptyRouteAndSettingsThatBreakTheirRule) {

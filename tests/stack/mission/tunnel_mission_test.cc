@@ -36,7 +36,7 @@ class Robot {
       maps += output.map_is_made ? 1 : 0;
     }
   }
-  int count(const std::string& kind) const {
+  int count(EventKind kind) const {
     return static_cast<int>(std::count_if(events.begin(), events.end(), [&](const Event& e) { return e.kind == kind; }));
   }
   const Tour& tour() const { return tour_; }
@@ -56,10 +56,10 @@ TEST(Tour, TenNavigationsOfTwoGoalsReachTwentyAndDockTenTimes) {
   Robot robot(Tour({}, two_goals(), false));
   robot.run(1000.0);
   EXPECT_TRUE(robot.tour().is_over());
-  EXPECT_EQ(robot.count("navigation_started"), 10);
-  EXPECT_EQ(robot.count("goal_reached"), 20);
-  EXPECT_EQ(robot.count("docked"), 10);
-  EXPECT_EQ(robot.count("mission_completed"), 1);
+  EXPECT_EQ(robot.count(EventKind::kNavigationStarted), 10);
+  EXPECT_EQ(robot.count(EventKind::kGoalReached), 20);
+  EXPECT_EQ(robot.count(EventKind::kDocked), 10);
+  EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
   EXPECT_EQ(robot.restarts, 10);
 }
 
@@ -74,10 +74,10 @@ TEST(Tour, MarksGoalsByRemoteControlThenDrivesToThemByItself) {
   robot.run(1.0, RemoteCommand{.hand_over = true});
   EXPECT_EQ(robot.maps, 1);
   robot.run(100.0);
-  EXPECT_EQ(robot.count("goal_marked"), 2);
-  EXPECT_EQ(robot.count("goal_reached"), 2);
-  EXPECT_EQ(robot.count("docked"), 2);
-  EXPECT_EQ(robot.count("mission_completed"), 1);
+  EXPECT_EQ(robot.count(EventKind::kGoalMarked), 2);
+  EXPECT_EQ(robot.count(EventKind::kGoalReached), 2);
+  EXPECT_EQ(robot.count(EventKind::kDocked), 2);
+  EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
 }
 
 TEST(Tour, ARemoteControlThatFallsSilentForTwoSecondsIsOff) {
@@ -87,7 +87,7 @@ TEST(Tour, ARemoteControlThatFallsSilentForTwoSecondsIsOff) {
   robot.run(1.9);
   EXPECT_EQ(robot.output.mode, TourMode::kRemote);
   robot.run(0.3);
-  EXPECT_EQ(robot.count("mapping_done"), 1);
+  EXPECT_EQ(robot.count(EventKind::kMappingCompleted), 1);
   EXPECT_TRUE(robot.tour().is_over());
 }
 
@@ -95,18 +95,18 @@ TEST(Tour, AGoalWithoutAWayIsReportedAndLeftOut) {
   Robot robot(Tour({.navigations = 1}, two_goals(), false));
   robot.navigation = NavigationFeedback::kFailed;
   robot.run(100.0);
-  EXPECT_EQ(robot.count("goal_failed"), 2);
+  EXPECT_EQ(robot.count(EventKind::kGoalFailed), 2);
   EXPECT_EQ(robot.events.back().text, "2 things went wrong on the way.");
-  EXPECT_EQ(robot.count("mission_failed"), 1);
-  EXPECT_EQ(robot.count("mission_completed"), 0);
+  EXPECT_EQ(robot.count(EventKind::kMissionFailed), 1);
+  EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 0);
 }
 
 TEST(Tour, ADockingThatFailsFailsTheMission) {
   Robot robot(Tour({.navigations = 1, .starts_docked = false}, two_goals(), false));
   robot.docking = DockingFeedback::kFailed;
   robot.run(100.0);
-  EXPECT_EQ(robot.count("dock_failed"), 1);
-  EXPECT_EQ(robot.count("mission_failed"), 1);
+  EXPECT_EQ(robot.count(EventKind::kDockFailed), 1);
+  EXPECT_EQ(robot.count(EventKind::kMissionFailed), 1);
 }
 
 TEST(Tour, LostItStandsAndGoesOnOnceItKnows) {
@@ -117,21 +117,21 @@ TEST(Tour, LostItStandsAndGoesOnOnceItKnows) {
   robot.is_lost = true;
   robot.run(10.0);
   EXPECT_EQ(robot.output.mode, TourMode::kStand);
-  EXPECT_EQ(robot.count("lost"), 1);
+  EXPECT_EQ(robot.count(EventKind::kLocalizationLost), 1);
   robot.is_lost = false;
   robot.navigation = NavigationFeedback::kArrived;
   robot.run(10.0);
-  EXPECT_EQ(robot.count("relocalized"), 1);
-  EXPECT_EQ(robot.count("mission_completed"), 1);
+  EXPECT_EQ(robot.count(EventKind::kRelocalized), 1);
+  EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
 }
 
 TEST(Tour, LostForThirtySecondsItSaysThatItCannotTell) {
   Robot robot(Tour({.navigations = 1, .starts_docked = false}, two_goals(), false));
   robot.is_lost = true;
   robot.run(4.0 + 29.0);
-  EXPECT_EQ(robot.count("cannot_localize"), 0);
+  EXPECT_EQ(robot.count(EventKind::kLocalizationFailed), 0);
   robot.run(2.0);
-  EXPECT_EQ(robot.count("cannot_localize"), 1);
+  EXPECT_EQ(robot.count(EventKind::kLocalizationFailed), 1);
   EXPECT_TRUE(robot.tour().is_over());
 }
 
@@ -151,7 +151,7 @@ TEST(Tour, StandsAtAGoalOfTypeDUntilTheLiningIsScanned) {
   EXPECT_EQ(robot.output.station, "goal_1");
   robot.inspection = InspectionFeedback::kDone;
   robot.run(60.0);
-  EXPECT_EQ(robot.count("mission_completed"), 1);
+  EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
 }
 
 TEST(Tour, ARobotThatIsLateToKnowHowItMovesStandsForOneAndAHalfSecondsFromThenOn) {
@@ -167,16 +167,16 @@ TEST(Tour, AScanThatFailsIsReportedAndTheRoundGoesOn) {
   Robot robot(Tour({.navigations = 1}, inspection_goals(), false));
   robot.inspection = InspectionFeedback::kFailed;
   robot.run(60.0);
-  EXPECT_EQ(robot.count("inspection_failed"), 1);
-  EXPECT_EQ(robot.count("goal_reached"), 2);
-  EXPECT_EQ(robot.count("docked"), 1);
-  EXPECT_EQ(robot.count("mission_failed"), 1);
+  EXPECT_EQ(robot.count(EventKind::kInspectionFailed), 1);
+  EXPECT_EQ(robot.count(EventKind::kGoalReached), 2);
+  EXPECT_EQ(robot.count(EventKind::kDocked), 1);
+  EXPECT_EQ(robot.count(EventKind::kMissionFailed), 1);
 }
 
 TEST(Tour, AtAGoalOfTypeRAPersonDrivesMarksAndHandsOverAgain) {
   Robot robot(Tour({.navigations = 1}, inspection_goals(), true, true));
   robot.run(30.0);
-  EXPECT_EQ(robot.count("remote_requested"), 1);
+  EXPECT_EQ(robot.count(EventKind::kTeleopRequested), 1);
   EXPECT_EQ(robot.output.mode, TourMode::kRemote);
   robot.run(10.0, RemoteCommand{.vx_mps = 0.5});
   robot.inspection = InspectionFeedback::kUnderWay;
@@ -187,9 +187,9 @@ TEST(Tour, AtAGoalOfTypeRAPersonDrivesMarksAndHandsOverAgain) {
   robot.run(10.0, RemoteCommand{.vx_mps = 0.5});
   EXPECT_EQ(robot.output.mode, TourMode::kRemote);
   robot.run(60.0, RemoteCommand{.hand_over = true});
-  EXPECT_EQ(robot.count("goal_marked"), 0);
-  EXPECT_EQ(robot.count("docked"), 1);
-  EXPECT_EQ(robot.count("mission_completed"), 1);
+  EXPECT_EQ(robot.count(EventKind::kGoalMarked), 0);
+  EXPECT_EQ(robot.count(EventKind::kDocked), 1);
+  EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
 }
 
 TEST(Tour, NobodyComesFor120SecondsAndItGoesHomeByItselfWithoutCallingItDone) {
@@ -197,8 +197,8 @@ TEST(Tour, NobodyComesFor120SecondsAndItGoesHomeByItselfWithoutCallingItDone) {
   robot.run(5.0 + 119.0);
   EXPECT_EQ(robot.output.mode, TourMode::kRemote);
   robot.run(30.0);
-  EXPECT_EQ(robot.count("docked"), 1);
-  EXPECT_EQ(robot.count("mission_failed"), 1);
+  EXPECT_EQ(robot.count(EventKind::kDocked), 1);
+  EXPECT_EQ(robot.count(EventKind::kMissionFailed), 1);
 }
 
 TEST(Tour, MarksTakeTheTypesThatTheSettingsName) {
