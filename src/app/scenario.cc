@@ -1,6 +1,7 @@
 #include "app/scenario.h"
 
 #include <algorithm>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -49,6 +50,18 @@ std::filesystem::path find_named_file(const std::filesystem::path& world, const 
   if (!std::filesystem::exists(file)) throw InputError(fmt::format("{} = {}: there is no {}", key, name, file.string()));
   if (std::filesystem::is_directory(file)) throw InputError(fmt::format("{} = {}: {} is a folder", key, name, file.string()));
   return file;
+}
+
+/// Adds the frames of the scenario's mounts to the robot's.
+void add_mounts(RobotDescription& robot, const std::vector<MountSettings>& mounts) {
+  constexpr double kRadians = std::numbers::pi / 180.0;
+  for (std::size_t i = 0; i < mounts.size(); ++i) {
+    const MountSettings& mount = mounts[i];
+    const Pose3 T_body_mount{{mount.x_m, mount.y_m, mount.z_m},
+                             quaternion_from_rpy(kRadians * mount.roll_deg, kRadians * mount.pitch_deg, kRadians * mount.yaw_deg)};
+    if (robot.T_body_sensor.emplace(mount.frame, T_body_mount).second) continue;
+    throw InputError(fmt::format("mounts.{}.frame = {}: the robot {} has this frame already: another name is needed", i, mount.frame, robot.name));
+  }
 }
 
 }  // namespace
@@ -106,6 +119,7 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   files.world_xml = find_definition(data_root, "worlds", "world", scenario.world, ".xml");
   files.robot_urdf = find_definition(data_root, "models", "robot", scenario.robot, ".urdf");
   files.robot = io::load_robot_description(files.robot_urdf.string());
+  add_mounts(files.robot, scenario.mounts);
   const auto named_file = [&](const char* key, const std::string& name) { return find_named_file(files.world_xml.parent_path(), key, name); };
   const io::RouteFile route = io::load_route(named_file("mission", scenario.mission));
   files.route = route.route;

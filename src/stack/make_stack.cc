@@ -50,14 +50,6 @@ std::unique_ptr<Mission> make_mission(const StackSettings& settings, const Robot
   return make_gas_mission(settings, robot, site_in_map, start.seed);
 }
 
-GasRules gas_rules(const GasMissionSettings& settings) {
-  return {.settle_s = settings.settle_s,
-          .measure_s = settings.measure_s,
-          .max_measure_s = settings.max_measure_s,
-          .min_readings = settings.min_readings,
-          .alarm_column_ppm_m = settings.alarm_column_ppm_m};
-}
-
 /// Every instrument that the robot carries, and whose design data the survey has.
 InstrumentSet make_instruments(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, StackStart& start) {
   validate(settings.inspection, "inspection");

@@ -7,6 +7,14 @@
 
 namespace patrol::stack {
 
+GasRules gas_rules(const GasMissionSettings& settings) {
+  return {.settle_s = settings.settle_s,
+          .measure_s = settings.measure_s,
+          .max_measure_s = settings.max_measure_s,
+          .min_readings = settings.min_readings,
+          .alarm_column_ppm_m = settings.alarm_column_ppm_m};
+}
+
 GasMission::GasMission(const GasMissionSettings& settings, Route route_in_map, std::string about_order)
     : settings_(settings), route_(std::move(route_in_map)), about_order_(std::move(about_order)) {
   validate(settings, "mission");

@@ -9,6 +9,7 @@
 #include "core/navigation_goal.h"
 #include "core/route.h"
 #include "core/settings.h"
+#include "stack/instruments/gas_instrument.h"
 #include "stack/mission/mission.h"
 
 namespace patrol::stack {
@@ -39,6 +40,9 @@ struct GasMissionSettings {
     visit("yaw_tol_rad", self.yaw_tol_rad, between(0.005, 3.2));
   }
 };
+
+/// Rules of the measurement at a station.
+GasRules gas_rules(const GasMissionSettings& settings);
 
 /// Visits the stations of a route one after another. At a station of type "inspect" the robot stands and measures methane
 /// (gas_instrument.h). A station that cannot be reached or measured is reported and left out. Work at a station with a window waits until
