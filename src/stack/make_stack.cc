@@ -14,9 +14,11 @@ namespace {
 
 bool is_tunnel(const StackSettings& settings) { return settings.mission_type == "tunnel"; }
 
-std::unique_ptr<Mission> make_gas_mission(const StackSettings& settings, const RobotDescription& robot, Route route_in_map, std::uint64_t seed) {
+std::unique_ptr<Mission> make_gas_mission(const StackSettings& settings, const RobotDescription& robot,
+                                          Route route_in_map, std::uint64_t seed) {
   const auto& stations = route_in_map.stations;
-  if (std::any_of(stations.begin(), stations.end(), [](const Station& station) { return station.type == "inspect"; })) robot.T_body("tdlas");
+  if (std::any_of(stations.begin(), stations.end(), [](const Station& station) { return station.type == "inspect"; }))
+    robot.T_body("tdlas");
   std::string about_order;
   if (settings.mission.order == "best" && !route_in_map.stations.empty()) {
     StationOrder order = order_stations(route_in_map, robot, settings.plan, settings.mission, seed);
@@ -32,8 +34,8 @@ void check_goals(const std::vector<MarkedGoal>& goals, const RobotDescription& r
   robot.T_body("scanner");
 }
 
-std::unique_ptr<Mission> make_tunnel_mission(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
-                                             const StackStart& start) {
+std::unique_ptr<Mission> make_tunnel_mission(const StackSettings& settings, const RobotDescription& robot,
+                                             const Route& site_in_map, const StackStart& start) {
   auto mission = std::make_unique<TunnelMission>(settings.tour, start.goals, start.has_remote, start.map.has_value());
   check_goals(start.goals, robot, site_in_map);
   if (!start.map && !start.has_remote && settings.localizer == "automatic") {
@@ -44,29 +46,33 @@ std::unique_ptr<Mission> make_tunnel_mission(const StackSettings& settings, cons
   return mission;
 }
 
-std::unique_ptr<Mission> make_mission(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
-                                      const StackStart& start) {
+std::unique_ptr<Mission> make_mission(const StackSettings& settings, const RobotDescription& robot,
+                                      const Route& site_in_map, const StackStart& start) {
   if (is_tunnel(settings)) return make_tunnel_mission(settings, robot, site_in_map, start);
   return make_gas_mission(settings, robot, site_in_map, start.seed);
 }
 
 /// Every instrument that the robot carries, and whose design data the survey has.
-InstrumentSet make_instruments(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, StackStart& start) {
+InstrumentSet make_instruments(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
+                               StackStart& start) {
   validate(settings.inspection, "inspection");
   std::vector<std::unique_ptr<Instrument>> instruments;
   const auto has = [&](const char* frame) { return robot.T_body_sensor.contains(frame); };
-  if (has("tdlas")) instruments.push_back(std::make_unique<GasInstrument>(gas_rules(settings.mission), robot.T_body("tdlas")));
+  if (has("tdlas"))
+    instruments.push_back(std::make_unique<GasInstrument>(gas_rules(settings.mission), robot.T_body("tdlas")));
   if (has("scanner") && site_in_map.lining) {
-    instruments.push_back(
-        std::make_unique<LiningInstrument>(settings.inspection, *site_in_map.lining, robot.T_body("scanner"), std::move(start.references)));
+    instruments.push_back(std::make_unique<LiningInstrument>(settings.inspection, *site_in_map.lining,
+                                                             robot.T_body("scanner"), std::move(start.references)));
   }
-  if (robot.antenna) instruments.push_back(std::make_unique<WaterInstrument>(settings.inspection.water, *robot.antenna, start.seed));
+  if (robot.antenna)
+    instruments.push_back(std::make_unique<WaterInstrument>(settings.inspection.water, *robot.antenna, start.seed));
   return InstrumentSet(std::move(instruments), settings.inspection.siren_s);
 }
 
 }  // namespace
 
-Stack make_stack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, StackStart start) {
+Stack make_stack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
+                 StackStart start) {
   MotionExecutor motion(settings, robot, site_in_map, start.seed);
   std::unique_ptr<Mission> mission = make_mission(settings, robot, site_in_map, start);
   InstrumentSet instruments = make_instruments(settings, robot, site_in_map, start);

@@ -21,17 +21,23 @@ namespace patrol::stack {
 class MotionExecutor {
  public:
   /// Throws InputError when settings and robot do not go together.
-  MotionExecutor(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, std::uint64_t seed);
+  MotionExecutor(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
+                 std::uint64_t seed);
 
   void set_map(const OccupancyGrid& map) { navigator_.set_map(map); }
   /// Obstacles, and the charging post while the robot docks.
   void add(const LevelScan& scan, const ScanPose& pose);
-  void add(const UltrasonicRange& range, const StandingPlace& place) { navigator_.add_range(range, place.T_level_body, place.T_map_body); }
-  void add(const DepthImage& image, const StandingPlace& place) { navigator_.add_depth(image, place.T_level_body, place.T_map_body); }
+  void add(const UltrasonicRange& range, const StandingPlace& place) {
+    navigator_.add_range(range, place.T_level_body, place.T_map_body);
+  }
+  void add(const DepthImage& image, const StandingPlace& place) {
+    navigator_.add_depth(image, place.T_level_body, place.T_map_body);
+  }
   void add(const RemoteCommand& command) { last_remote_ = command; }
 
   /// Velocity command for a control period; publishes paths and events.
-  VelocityCommand step(Time now, const Task& task, const Pose2& T_map_body, const Pose2& T_odom_body, StackOutput& output);
+  VelocityCommand step(Time now, const Task& task, const Pose2& T_map_body, const Pose2& T_odom_body,
+                       StackOutput& output);
 
   NavigationFeedback navigation() const;
   DockingFeedback docking() const { return docking_feedback_; }
@@ -39,7 +45,8 @@ class MotionExecutor {
   bool follows_remote() const { return motion_ == Motion::kFollowRemote; }
 
  private:
-  VelocityCommand navigate(Time now, const std::optional<NavigationGoal>& goal, const Pose2& T_map_body, StackOutput& output);
+  VelocityCommand navigate(Time now, const std::optional<NavigationGoal>& goal, const Pose2& T_map_body,
+                           StackOutput& output);
   VelocityCommand remote_command(Time now) const;
   VelocityCommand go_to_dock(Time now, const Pose2& T_map_body, const Pose2& T_odom_body, StackOutput& output);
   VelocityCommand move_at_dock(Time now, const Pose2& T_map_body, const Pose2& T_odom_body, StackOutput& output);

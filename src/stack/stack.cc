@@ -69,7 +69,10 @@ void Stack::step(Time now) {
   const auto lap = output_.lap("planning");
   const Pose2 T_odom_body = to_planar(odometry->T_odom_body);
   watch_sensors(now, T_odom_body);
-  command_ = control({.now = now, .odometry = *odometry, .T_odom_body = T_odom_body, .pose = parts_.pose.pose_at(odometry->stamp, T_odom_body)});
+  command_ = control({.now = now,
+                      .odometry = *odometry,
+                      .T_odom_body = T_odom_body,
+                      .pose = parts_.pose.pose_at(odometry->stamp, T_odom_body)});
   if (!parts_.sensor_watch.can_drive() && !parts_.motion.follows_remote()) command_ = {};
   command_.stamp = now;
   output_.publish(command_);
@@ -85,10 +88,12 @@ void Stack::publish_map(Time now) {
 void Stack::watch_sensors(Time now, const Pose2& T_odom_body) {
   const Pose2 T_map_body = parts_.pose.pose_at(now, T_odom_body).T_map_body;
   for (const plan::SensorChange& change : parts_.sensor_watch.step(now, T_odom_body, command_)) {
-    output_.publish_event(now, T_map_body, change.is_back ? EventKind::kSensorRecovered : EventKind::kSensorFault, change.text, change.sensor);
+    output_.publish_event(now, T_map_body, change.is_back ? EventKind::kSensorRecovered : EventKind::kSensorFault,
+                          change.text, change.sensor);
   }
   if (!parts_.sensor_watch.has_given_up(now) || mission_is_over()) return;
-  output_.publish(parts_.mission->abort(now, EventKind::kSensorFailed, "A sensor that driving needs did not come back: the mission is over."));
+  output_.publish(parts_.mission->abort(now, EventKind::kSensorFailed,
+                                        "A sensor that driving needs did not come back: the mission is over."));
 }
 
 VelocityCommand Stack::control(const Period& period) {
@@ -128,7 +133,8 @@ void Stack::relocalize(Relocalization how, const OdometryEstimate& odometry) {
 
 void Stack::inspect(const Period& period) {
   const auto lap = output_.lap("inspection");
-  const StandingPlace here = parts_.pose.place_at(period.odometry.stamp).value_or(StandingPlace{.T_level_body = {}, .T_map_body = period.pose.T_map_body});
+  const StandingPlace here = parts_.pose.place_at(period.odometry.stamp)
+                                 .value_or(StandingPlace{.T_level_body = {}, .T_map_body = period.pose.T_map_body});
   inspection_ = parts_.instruments.step(period.now, task_.inspection, here, output_);
 }
 

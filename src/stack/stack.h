@@ -22,12 +22,12 @@ struct StackParts {
   std::unique_ptr<Mission> mission;
   InstrumentSet instruments;
   plan::SensorWatch sensor_watch;
-  std::optional<Dock> dock;     ///< of the site, in map
-  double map_period_s = 5.0;    ///< between two published maps while the map grows
+  std::optional<Dock> dock;   ///< of the site, in map
+  double map_period_s = 5.0;  ///< between two published maps while the map grows
 };
 
-/// The robot's software: processes sensor messages and gives velocity commands, estimates, a map and events. A recorded log can replace the
-/// simulator, since nothing but sensor messages comes in.
+/// The robot's software: processes sensor messages and gives velocity commands, estimates, a map and events. A recorded
+/// log can replace the simulator, since nothing but sensor messages comes in.
 class Stack {
  public:
   explicit Stack(StackParts parts);

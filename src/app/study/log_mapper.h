@@ -9,7 +9,8 @@
 
 namespace patrol::app {
 
-/// Map and poses that the stack's pose pipeline makes of a recorded log, with other settings than those of the run. Nothing steers by it.
+/// Map and poses that the stack's pose pipeline makes of a recorded log, with other settings than those of the run.
+/// Nothing steers by it.
 class LogMapper {
  public:
   LogMapper(const stack::StackSettings& settings, const RobotDescription& robot, std::uint64_t seed);

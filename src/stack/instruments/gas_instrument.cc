@@ -24,18 +24,20 @@ InspectionProgress GasInstrument::step(const InspectionContext& context) {
   }
   if (context.now < from + from_seconds(std::max(rules_.measure_s, rules_.max_measure_s))) return {};
   return {.feedback = InspectionFeedback::kFailed,
-          .failure = fmt::format("The methane meter gave {} readings at {}, {} are needed.", measurement_.count(), order_.station, rules_.min_readings)};
+          .failure = fmt::format("The methane meter gave {} readings at {}, {} are needed.", measurement_.count(),
+                                 order_.station, rules_.min_readings)};
 }
 
 void GasInstrument::report(const InspectionContext& context) const {
   const double column = measurement_.mean_ppm_m();
   const std::string& station = order_.station;
-  context.publish_event(EventKind::kGasMeasured, station, fmt::format("{}: {:.0f} ppm m of methane.", station, column), column,
-                        context.place.T_map_body.position());
+  context.publish_event(EventKind::kGasMeasured, station, fmt::format("{}: {:.0f} ppm m of methane.", station, column),
+                        column, context.place.T_map_body.position());
   if (column - 2.0 * measurement_.standard_error_ppm_m() <= rules_.alarm_column_ppm_m) return;
   const Eigen::Vector2d p_map = closest_point_on_beam(context.place.T_map_body);
   context.publish_event(EventKind::kGasAlarm, station,
-                        fmt::format("Leak at {}: {:.0f} ppm m of methane, found at ({:.2f}, {:.2f}) m in the map.", station, column, p_map.x(), p_map.y()),
+                        fmt::format("Leak at {}: {:.0f} ppm m of methane, found at ({:.2f}, {:.2f}) m in the map.",
+                                    station, column, p_map.x(), p_map.y()),
                         column, p_map);
 }
 

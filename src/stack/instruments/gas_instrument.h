@@ -15,10 +15,11 @@ struct GasRules {
   double alarm_column_ppm_m = 200.0;
 };
 
-/// Open-path methane meter: averages the columns that it reads while the robot stands, and raises the alarm where the mean exceeds the
-/// threshold by two standard errors.
+/// Open-path methane meter: averages the columns that it reads while the robot stands, and raises the alarm where the
+/// mean exceeds the threshold by two standard errors.
 ///
-/// Events: gas_measured (value: column, ppm m), alarm (value: column; target: the point of the beam nearest to the inspected place).
+/// Events: gas_measured (value: column, ppm m), alarm (value: column; target: the point of the beam nearest to the
+/// inspected place).
 class GasInstrument final : public Instrument {
  public:
   /// `T_body_gas`: the methane meter, which looks along its x axis.

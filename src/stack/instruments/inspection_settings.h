@@ -6,9 +6,9 @@
 
 namespace patrol::stack {
 
-/// Of the instruments' work on a round (tunnel_inspection.h).
+/// Settings of the tunnel's instruments: panoramic scanner, siren, and the evaluation of lining and water.
 struct InspectionSettings {
-  double scan_settle_s = 4.0;      ///< standing still before a panoramic scan: a robot on springs rocks after it has stopped
+  double scan_settle_s = 4.0;      ///< standing before a panoramic scan: a robot on springs rocks after it has stopped
   double scan_patience_s = 600.0;  ///< a panoramic scan that has not come after this has failed
   double siren_s = 10.0;           ///< how long it sounds at an alarm; the light stays on
   inspect::LiningSettings lining;

@@ -21,8 +21,15 @@ struct InspectionContext {
   WarningLight& light;
 
   /// Publishes an event of this control period.
-  void publish_event(EventKind kind, const std::string& subject, const std::string& text, double value, const Eigen::Vector2d& p_map) const {
-    output.publish(Event{.stamp = now, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = place.T_map_body, .p_map_target = p_map});
+  void publish_event(EventKind kind, const std::string& subject, const std::string& text, double value,
+                     const Eigen::Vector2d& p_map) const {
+    output.publish(Event{.stamp = now,
+                         .kind = kind,
+                         .subject = subject,
+                         .text = text,
+                         .value = value,
+                         .T_map_body = place.T_map_body,
+                         .p_map_target = p_map});
   }
 };
 

@@ -12,7 +12,8 @@ void InstrumentSet::add(const SensorMessage& message, const PlaceLookup& place_a
   for (const auto& instrument : instruments_) instrument->add(message, place_at);
 }
 
-InspectionProgress InstrumentSet::step(Time now, const std::optional<InspectionOrder>& order, const StandingPlace& place, StackOutput& output) {
+InspectionProgress InstrumentSet::step(Time now, const std::optional<InspectionOrder>& order,
+                                       const StandingPlace& place, StackOutput& output) {
   light_.step(now, output);
   if (order != order_) {
     if (Instrument* before = order_ ? find(order_->instrument) : nullptr) before->end();
@@ -26,7 +27,8 @@ InspectionProgress InstrumentSet::step(Time now, const std::optional<InspectionO
 }
 
 Instrument* InstrumentSet::find(InstrumentKind kind) const {
-  const auto found = std::find_if(instruments_.begin(), instruments_.end(), [&](const auto& instrument) { return instrument->kind() == kind; });
+  const auto found = std::find_if(instruments_.begin(), instruments_.end(),
+                                  [&](const auto& instrument) { return instrument->kind() == kind; });
   return found == instruments_.end() ? nullptr : found->get();
 }
 

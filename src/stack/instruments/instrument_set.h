@@ -14,9 +14,10 @@ class InstrumentSet {
   InstrumentSet(std::vector<std::unique_ptr<Instrument>> instruments, double siren_s);
 
   void add(const SensorMessage& message, const PlaceLookup& place_at);
-  /// Works on `order` for a control period. A new order starts at once; none ends the one before. An order for an instrument that the
-  /// robot does not have fails.
-  InspectionProgress step(Time now, const std::optional<InspectionOrder>& order, const StandingPlace& place, StackOutput& output);
+  /// Works on `order` for a control period. A new order starts at once; none ends the one before. An order for an
+  /// instrument that the robot does not have fails.
+  InspectionProgress step(Time now, const std::optional<InspectionOrder>& order, const StandingPlace& place,
+                          StackOutput& output);
 
  private:
   Instrument* find(InstrumentKind kind) const;

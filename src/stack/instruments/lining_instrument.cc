@@ -16,8 +16,8 @@ std::string clock_text(double clock_deg) {
 
 }  // namespace
 
-LiningInstrument::LiningInstrument(const InspectionSettings& settings, const TunnelLining& lining_in_map, const Pose3& T_body_scanner,
-                                   LiningReferences references)
+LiningInstrument::LiningInstrument(const InspectionSettings& settings, const TunnelLining& lining_in_map,
+                                   const Pose3& T_body_scanner, LiningReferences references)
     : settings_(settings),
       T_body_scanner_(T_body_scanner),
       inspection_(settings.lining, lining_in_map, T_body_scanner),
@@ -49,17 +49,21 @@ InspectionProgress LiningInstrument::step(const InspectionContext& context) {
   return {.feedback = evaluate(context, scan, place)};
 }
 
-InspectionFeedback LiningInstrument::evaluate(const InspectionContext& context, const PanoramicScan& scan, const StandingPlace& place) {
+InspectionFeedback LiningInstrument::evaluate(const InspectionContext& context, const PanoramicScan& scan,
+                                              const StandingPlace& place) {
   const Eigen::Vector2d p_map = context.place.T_map_body.position();
   const auto num_points = scan.points.size();
-  context.publish_event(EventKind::kScanTaken, station_, fmt::format("Panoramic scan of {} points.", num_points), static_cast<double>(num_points), p_map);
+  context.publish_event(EventKind::kScanTaken, station_, fmt::format("Panoramic scan of {} points.", num_points),
+                        static_cast<double>(num_points), p_map);
   const auto reference = references_.find(station_);
   if (reference == references_.end()) {
     references_.emplace(station_, inspect::make_reference(scan, place.T_map_scanner(T_body_scanner_)));
-    context.publish_event(EventKind::kReferenceTaken, station_, "The first scan of this place: later ones are compared with it.", 0.0, p_map);
+    context.publish_event(EventKind::kReferenceTaken, station_,
+                          "The first scan of this place: later ones are compared with it.", 0.0, p_map);
     return InspectionFeedback::kDone;
   }
-  LiningResult result = inspection_.inspect(context.now, station_, scan, reference->second, place.T_map_scanner(T_body_scanner_));
+  LiningResult result =
+      inspection_.inspect(context.now, station_, scan, reference->second, place.T_map_scanner(T_body_scanner_));
   report(context, result);
   const bool is_registered = result.is_registered;
   context.output.publish(std::move(result));
@@ -70,12 +74,14 @@ void LiningInstrument::report(const InspectionContext& context, const LiningResu
   if (!result.is_registered) return;
   for (const RingFinding& finding : result.findings) {
     context.publish_event(lining_event(finding.level), fmt::format("ring_{}", finding.ring),
-                          fmt::format("Ring {} has moved inwards by {:.1f} ± {:.1f} mm at {} o'clock.", finding.ring, 1e3 * finding.inward_m,
-                                      1e3 * finding.std_m, clock_text(finding.clock_deg)),
+                          fmt::format("Ring {} has moved inwards by {:.1f} ± {:.1f} mm at {} o'clock.", finding.ring,
+                                      1e3 * finding.inward_m, 1e3 * finding.std_m, clock_text(finding.clock_deg)),
                           finding.inward_m, finding.p_map.head<2>());
     context.light.warn(context.now, finding.level, context.output);
   }
-  if (result.findings.empty()) context.publish_event(EventKind::kLiningUnchanged, station_, "No ring has moved.", 0.0, context.place.T_map_body.position());
+  if (result.findings.empty())
+    context.publish_event(EventKind::kLiningUnchanged, station_, "No ring has moved.", 0.0,
+                          context.place.T_map_body.position());
 }
 
 }  // namespace patrol::stack

@@ -17,11 +17,12 @@ using LiningReferences = std::map<std::string, inspect::LiningReference>;
 
 /// 3D scanner: takes a panoramic scan of the tunnel's lining and compares it with the reference scan of the station.
 ///
-/// Events: scan_taken, reference_taken (there was no earlier scan of the station), lining_notice, lining_warning, lining_alarm (subject
-/// "ring_31", value m inwards), lining_unmoved.
+/// Events: scan_taken, reference_taken (there was no earlier scan of the station), lining_notice, lining_warning,
+/// lining_alarm (subject "ring_31", value m inwards), lining_unmoved.
 class LiningInstrument final : public Instrument {
  public:
-  LiningInstrument(const InspectionSettings& settings, const TunnelLining& lining_in_map, const Pose3& T_body_scanner, LiningReferences references);
+  LiningInstrument(const InspectionSettings& settings, const TunnelLining& lining_in_map, const Pose3& T_body_scanner,
+                   LiningReferences references);
 
   InstrumentKind kind() const override { return InstrumentKind::kLining; }
   void add(const SensorMessage& message, const PlaceLookup& place_at) override;

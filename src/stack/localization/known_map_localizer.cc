@@ -4,8 +4,9 @@
 
 namespace patrol::stack {
 
-KnownMapLocalizer::KnownMapLocalizer(const localize::MonteCarloSettings& settings, OccupancyGrid map, const std::vector<UwbAnchor>& anchors_in_map,
-                                     const Pose3& T_body_uwb, std::uint64_t seed)
+KnownMapLocalizer::KnownMapLocalizer(const localize::MonteCarloSettings& settings, OccupancyGrid map,
+                                     const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb,
+                                     std::uint64_t seed)
     : map_(std::move(map)), localizer_(settings, map_, anchors_in_map, T_body_uwb, seed) {}
 
 PoseEstimate KnownMapLocalizer::update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) {

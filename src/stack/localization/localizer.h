@@ -19,7 +19,8 @@ class Localizer {
   virtual ~Localizer() = default;
 
   virtual void add(const RangeWithOdometry& range) = 0;
-  /// Corrects the pose by a scan and publishes the estimate, with what belongs to it. `T_odom_body` at the scan's stamp.
+  /// Corrects the pose by a scan and publishes the estimate, with what belongs to it. `T_odom_body` at the scan's
+  /// stamp.
   virtual PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) = 0;
 
   virtual OccupancyGrid map() = 0;

@@ -32,13 +32,14 @@ std::string method_of(const StackSettings& settings, const LocalizerStart& start
 
 }  // namespace
 
-std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
-                                          const LocalizerStart& start, std::uint64_t seed) {
+std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const RobotDescription& robot,
+                                          const Route& site_in_map, const LocalizerStart& start, std::uint64_t seed) {
   const std::string method = method_of(settings, start);
   const auto refuse = [&](const char* why) { throw InputError(fmt::format("stack.localizer = {}: {}", method, why)); };
   const std::optional<Pose3> T_body_uwb = antenna_of(robot);
-  const auto on_map = [settings = settings.localization, anchors = anchors_above_body(site_in_map.anchors, start.height_above_ground_m),
-                       T_body_uwb, seed](OccupancyGrid map) -> std::unique_ptr<Localizer> {
+  const auto on_map = [settings = settings.localization,
+                       anchors = anchors_above_body(site_in_map.anchors, start.height_above_ground_m), T_body_uwb,
+                       seed](OccupancyGrid map) -> std::unique_ptr<Localizer> {
     return std::make_unique<KnownMapLocalizer>(settings, std::move(map), anchors, T_body_uwb.value_or(Pose3{}), seed);
   };
   if (method == "monte_carlo") {

@@ -4,7 +4,8 @@
 
 namespace patrol::stack {
 
-MapThenLocalize::MapThenLocalize(std::unique_ptr<Localizer> slam, OnMap on_map) : current_(std::move(slam)), on_map_(std::move(on_map)) {}
+MapThenLocalize::MapThenLocalize(std::unique_ptr<Localizer> slam, OnMap on_map)
+    : current_(std::move(slam)), on_map_(std::move(on_map)) {}
 
 void MapThenLocalize::finish_map(const PoseEstimate& pose) {
   if (!current_->is_mapping()) return;

@@ -24,7 +24,9 @@ class MapThenLocalize final : public Localizer {
   bool is_lost() const override { return current_->is_lost(); }
   bool knows_pose() const override { return current_->knows_pose(); }
   void finish_map(const PoseEstimate& pose) override;
-  void start_at(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) override { current_->start_at(T_map_body, covariance); }
+  void start_at(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) override {
+    current_->start_at(T_map_body, covariance);
+  }
   void start_anywhere() override { current_->start_anywhere(); }
 
  private:

@@ -30,7 +30,8 @@ class LeggedOdometry final : public OdometrySource {
     if (!now) return Eigen::Vector3d::Zero();
     const double speed_mps = now->twist.linear.head<2>().norm(), yaw_rate_radps = std::abs(now->twist.angular.z());
     const double way_std_mps = drift.way_std_m_per_m * speed_mps;
-    return {way_std_mps, way_std_mps, drift.turn_std_rad_per_m * speed_mps + drift.turn_std_rad_per_rad * yaw_rate_radps};
+    return {way_std_mps, way_std_mps,
+            drift.turn_std_rad_per_m * speed_mps + drift.turn_std_rad_per_rad * yaw_rate_radps};
   }
 
  private:
@@ -40,7 +41,8 @@ class LeggedOdometry final : public OdometrySource {
 /// Odometry by IMU and the counters of the tracks.
 class TrackedOdometry final : public OdometrySource {
  public:
-  TrackedOdometry(const RobotDescription& robot, const StackSettings& settings) : odometry_(robot, settings.track_odometry) {}
+  TrackedOdometry(const RobotDescription& robot, const StackSettings& settings)
+      : odometry_(robot, settings.track_odometry) {}
 
   void add(const SensorMessage& message) override {
     if (const auto* imu = std::get_if<Imu>(&message)) odometry_.add(*imu);
@@ -60,7 +62,8 @@ class TrackedOdometry final : public OdometrySource {
 std::unique_ptr<OdometrySource> make_odometry_source(const StackSettings& settings, const RobotDescription& robot) {
   if (settings.odometry_source == "tracked") return std::make_unique<TrackedOdometry>(robot, settings);
   if (robot.legs.empty()) {
-    throw InputError(fmt::format("stack.odometry_source = {}: the robot {} has no legs", settings.odometry_source, robot.name));
+    throw InputError(
+        fmt::format("stack.odometry_source = {}: the robot {} has no legs", settings.odometry_source, robot.name));
   }
   return std::make_unique<LeggedOdometry>(robot, settings);
 }

@@ -28,7 +28,8 @@ class OdometrySource {
   virtual Eigen::Vector3d twist_std() const = 0;
 };
 
-/// Makes the source that `settings.odometry_source` names. Throws InputError if the robot does not have what the source needs.
+/// Makes the source that `settings.odometry_source` names. Throws InputError if the robot does not have what the source
+/// needs.
 std::unique_ptr<OdometrySource> make_odometry_source(const StackSettings& settings, const RobotDescription& robot);
 
 }  // namespace patrol::stack

@@ -12,18 +12,20 @@ constexpr double kSurveyedYaw_rad = 0.02;
 }  // namespace
 
 Eigen::Matrix3d PosePipeline::surveyed_covariance() {
-  return Eigen::Vector3d(kSurveyedPosition_m * kSurveyedPosition_m, kSurveyedPosition_m * kSurveyedPosition_m, kSurveyedYaw_rad * kSurveyedYaw_rad)
+  return Eigen::Vector3d(kSurveyedPosition_m * kSurveyedPosition_m, kSurveyedPosition_m * kSurveyedPosition_m,
+                         kSurveyedYaw_rad * kSurveyedYaw_rad)
       .asDiagonal();
 }
 
-PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, LocalizerStart start,
-                           std::uint64_t seed)
+PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
+                           LocalizerStart start, std::uint64_t seed)
     : settle_(from_seconds(settings.settle_s)),
       odometry_(make_odometry_source(settings, robot)),
       leveler_(robot.T_body("lidar"), settings.leveling) {
   start.height_above_ground_m = odometry_->height_above_ground_m();
   localizer_ = make_localizer(settings, robot, site_in_map, start, seed);
-  if (robot.T_body_sensor.contains("uwb")) range_pose_.emplace(settings.range_filter, site_in_map.anchors, robot.T_body("uwb"));
+  if (robot.T_body_sensor.contains("uwb"))
+    range_pose_.emplace(settings.range_filter, site_in_map.anchors, robot.T_body("uwb"));
 }
 
 void PosePipeline::add(const SensorMessage& message, StackOutput& output) {
@@ -36,7 +38,8 @@ void PosePipeline::add_range(const UwbRange& range) {
   const std::optional<Pose3> T_odom_body = odometry_->T_odom_body_at(range.stamp);
   if (!T_odom_body) return;
   if (range_pose_) range_pose_->add(range, *T_odom_body);
-  localizer_->add({.range = range, .T_odom_body = *T_odom_body, .height_above_ground_m = odometry_->height_above_ground_m()});
+  localizer_->add(
+      {.range = range, .T_odom_body = *T_odom_body, .height_above_ground_m = odometry_->height_above_ground_m()});
 }
 
 std::optional<OdometryEstimate> PosePipeline::update_odometry() {
@@ -59,7 +62,8 @@ ScanPose PosePipeline::localize(const LevelScan& scan, StackOutput& output) {
   return {.T_odom_body = T_odom_body, .T_map_body = tracker_.at(scan.stamp, T_odom_body).T_map_body};
 }
 
-/// Begins where the robot first knows its pose; the estimates are published from the first scan on, as the other poses are.
+/// Begins where the robot first knows its pose; the estimates are published from the first scan on, as the other poses
+/// are.
 void PosePipeline::publish_range_pose(const OdometryEstimate& odometry, const PoseEstimate& pose, StackOutput& output) {
   if (!range_pose_ || !range_pose_->has_anchors()) return;
   if (!range_pose_->has_started()) {
@@ -83,7 +87,8 @@ void PosePipeline::restart_at(const Pose2& T_map_body, const OdometryEstimate& o
   localizer_->start_at(T_map_body, surveyed_covariance());
   tracker_ = localize::MapPoseTracker();
   tracker_.correct(odometry.stamp, to_planar(odometry.T_odom_body), T_map_body, surveyed_covariance());
-  if (range_pose_) range_pose_->start_at(odometry, odometry_->height_above_ground_m(), T_map_body, surveyed_covariance());
+  if (range_pose_)
+    range_pose_->start_at(odometry, odometry_->height_above_ground_m(), T_map_body, surveyed_covariance());
 }
 
 }  // namespace patrol::stack

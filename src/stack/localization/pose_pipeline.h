@@ -28,8 +28,10 @@ class PosePipeline {
   /// Covariance of a surveyed pose, at which the robot has been placed.
   static Eigen::Matrix3d surveyed_covariance();
 
-  /// `start.height_above_ground_m` is taken from the odometry source. Throws InputError when settings, robot and map do not go together.
-  PosePipeline(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map, LocalizerStart start, std::uint64_t seed);
+  /// `start.height_above_ground_m` is taken from the odometry source. Throws InputError when settings, robot and map do
+  /// not go together.
+  PosePipeline(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
+               LocalizerStart start, std::uint64_t seed);
 
   /// Every sensor message but the scans, which `level` and `localize` process.
   void add(const SensorMessage& message, StackOutput& output);

@@ -18,7 +18,8 @@ struct MissionInput {
   std::optional<RemoteCommand> remote = {};  ///< command received since the last step
 };
 
-/// What the localizer does now: nothing special, start from the pose at the dock, or start without any knowledge of the pose.
+/// What the localizer does now: nothing special, start from the pose at the dock, or start without any knowledge of the
+/// pose.
 enum class Relocalization { kNone, kAtDock, kAnywhere };
 
 struct MissionOutput {
@@ -28,9 +29,9 @@ struct MissionOutput {
   std::vector<Event> events;
 };
 
-/// Control period to which a mission's task applies. kNow: the task is carried out in the period in which it is given, and the mission
-/// sees the feedback of the period before. kNext: the task is carried out from the next period on, and the mission sees the feedback of
-/// its own period.
+/// Control period to which a mission's task applies. kNow: the task is carried out in the period in which it is given,
+/// and the mission sees the feedback of the period before. kNext: the task is carried out from the next period on, and
+/// the mission sees the feedback of its own period.
 enum class TaskTiming { kNow, kNext };
 
 /// Interface of a mission: the sequence of tasks that the robot carries out by itself.

@@ -13,7 +13,7 @@ enum class Motion { kStand, kFollowRemote, kNavigate, kUndock, kDock };
 /// What a mission asks of the robot in a control period: a motion, and work of an instrument meanwhile.
 struct Task {
   Motion motion = Motion::kStand;
-  std::optional<NavigationGoal> goal;          ///< with kNavigate
+  std::optional<NavigationGoal> goal;  ///< with kNavigate
   std::optional<InspectionOrder> inspection;
 };
 

@@ -7,8 +7,8 @@
 namespace patrol::stack {
 
 /// Everything that the robot's software publishes: estimates, map, commands, events and results.
-using StackMessage =
-    std::variant<OdometryEstimate, PoseEstimate, RangePoseEstimate, LocalizationTrust, ParticleSet, MapUpdate, Path, VelocityCommand, Event, ScanCommand,
-                 AntennaCommand, SoundingCommand, WarningCommand, LiningResult, WaterResult>;
+using StackMessage = std::variant<OdometryEstimate, PoseEstimate, RangePoseEstimate, LocalizationTrust, ParticleSet,
+                                  MapUpdate, Path, VelocityCommand, Event, ScanCommand, AntennaCommand, SoundingCommand,
+                                  WarningCommand, LiningResult, WaterResult>;
 
 }  // namespace patrol::stack

@@ -17,8 +17,14 @@ class StackOutput {
     messages_.emplace_back(std::forward<Message>(message));
   }
   /// Publishes an event at the robot's own place.
-  void publish_event(Time now, const Pose2& T_map_body, EventKind kind, const std::string& text, const std::string& subject = "") {
-    publish(Event{.stamp = now, .kind = kind, .subject = subject, .text = text, .value = 0.0, .T_map_body = T_map_body,
+  void publish_event(Time now, const Pose2& T_map_body, EventKind kind, const std::string& text,
+                     const std::string& subject = "") {
+    publish(Event{.stamp = now,
+                  .kind = kind,
+                  .subject = subject,
+                  .text = text,
+                  .value = 0.0,
+                  .T_map_body = T_map_body,
                   .p_map_target = T_map_body.position()});
   }
   /// Returns the messages since the last call.
