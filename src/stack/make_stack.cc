@@ -81,7 +81,7 @@ Stack make_stack(const StackSettings& settings, const RobotDescription& robot, c
                 .motion = std::move(motion),
                 .mission = std::move(mission),
                 .instruments = std::move(instruments),
-                .sensor_watch = plan::SensorWatch(settings.sensor_watch),
+                .sensor_watch = SensorWatch(settings.sensor_watch),
                 .dock = site_in_map.dock,
                 .map_period_s = start.map_period_s});
 }

@@ -87,7 +87,7 @@ void Stack::publish_map(Time now) {
 
 void Stack::watch_sensors(Time now, const Pose2& T_odom_body) {
   const Pose2 T_map_body = parts_.pose.pose_at(now, T_odom_body).T_map_body;
-  for (const plan::SensorChange& change : parts_.sensor_watch.step(now, T_odom_body, command_)) {
+  for (const SensorChange& change : parts_.sensor_watch.step(now, T_odom_body, command_)) {
     output_.publish_event(now, T_map_body, change.is_back ? EventKind::kSensorRecovered : EventKind::kSensorFault,
                           change.text, change.sensor);
   }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/messages.h"
-#include "plan/sensor_watch.h"
+#include "stack/sensors/sensor_watch.h"
 #include "stack/instruments/instrument_set.h"
 #include "stack/localization/pose_pipeline.h"
 #include "stack/mission/mission.h"
@@ -21,7 +21,7 @@ struct StackParts {
   MotionExecutor motion;
   std::unique_ptr<Mission> mission;
   InstrumentSet instruments;
-  plan::SensorWatch sensor_watch;
+  SensorWatch sensor_watch;
   std::optional<Dock> dock;   ///< of the site, in map
   double map_period_s = 5.0;  ///< between two published maps while the map grows
 };

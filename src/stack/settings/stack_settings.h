@@ -16,7 +16,7 @@
 #include "localize/track_odometry.h"
 #include "plan/docking.h"
 #include "plan/navigator.h"
-#include "plan/sensor_watch.h"
+#include "stack/sensors/sensor_watch.h"
 #include "slam/mapper.h"
 
 namespace patrol::stack {
@@ -39,7 +39,7 @@ struct StackSettings {
   localize::MonteCarloSettings localization;  ///< on a map that is known
   localize::RangeFilterSettings range_filter;  ///< of a robot with tracks and UWB: a second opinion
   plan::NavigatorSettings plan;
-  plan::SensorWatchSettings sensor_watch;
+  SensorWatchSettings sensor_watch;
   localize::DockDetectorSettings dock_detector;
   plan::DockingSettings docking;
   GasMissionSettings mission;

@@ -9,7 +9,7 @@
 #include "core/messages.h"
 #include "core/settings.h"
 
-namespace patrol::plan {
+namespace patrol::stack {
 
 /// When a sensor is no longer believed. Ages are counted from a message's stamp to now: a reading that comes late is as bad as none.
 struct SensorWatchSettings {
@@ -88,4 +88,4 @@ class SensorWatch {
   std::optional<Time> halted_since_;
 };
 
-}  // namespace patrol::plan
+}  // namespace patrol::stack

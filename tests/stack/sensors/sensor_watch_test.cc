@@ -1,4 +1,4 @@
-#include "plan/sensor_watch.h"
+#include "stack/sensors/sensor_watch.h"
 
 #include <functional>
 #include <limits>
@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace patrol::plan {
+namespace patrol::stack {
 namespace {
 
 constexpr Time kPeriod = std::chrono::milliseconds(100);
@@ -177,4 +177,4 @@ TEST(SensorWatch, GivesUpAfterAMinuteWithoutScans) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::stack

@@ -1,4 +1,4 @@
-#include "plan/sensor_watch.h"
+#include "stack/sensors/sensor_watch.h"
 
 #include <cmath>
 #include <type_traits>
@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace patrol::plan {
+namespace patrol::stack {
 namespace {
 
 enum class Pace { kLidar, kMotion, kInstrument, kUnwatched };
@@ -143,4 +143,4 @@ double SensorWatch::age_limit_s(std::size_t kind) const {
   }
 }
 
-}  // namespace patrol::plan
+}  // namespace patrol::stack
