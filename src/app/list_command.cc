@@ -73,7 +73,10 @@ ExitCode list_command() {
   print("sensors", allowed<sim::FaultSettings>("sensor"));
   print("lidar presets", allowed<sim::LidarSettings>("preset"));
   print("sensor faults", allowed<sim::FaultSettings>("kind"));
-  print("mapping methods of a run (stack.mapping)", allowed<StackSettings>("mapping"));
+  print("odometry sources (stack.odometry_source)", allowed<stack::StackSettings>("odometry_source"));
+  print("localizers (stack.localizer)", allowed<stack::StackSettings>("localizer"));
+  print("missions (stack.mission_type)", allowed<stack::StackSettings>("mission_type"));
+  print("mapping methods of a run (stack.mapping)", allowed<stack::StackSettings>("mapping"));
   print("mapping methods of a log", allowed<slam::MapperSettings>("method"));
   print("localisation methods", {"Monte-Carlo localisation with KLD sampling (stack.localization)"});
   print("sensor models of localisation", allowed<localize::MonteCarloSettings>("sensor_model"));

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "app/stack/known_map.h"
+#include "core/angles.h"
 #include "core/error.h"
 #include "io/drive_json.h"
 #include "io/map_server.h"
@@ -17,6 +17,7 @@
 #include "io/route_json.h"
 #include "io/settings_yaml.h"
 #include "io/urdf.h"
+#include "stack/mission/known_map.h"
 
 namespace patrol::app {
 namespace {
@@ -65,6 +66,17 @@ std::filesystem::path find_named_file(const std::filesystem::path& world, const 
   if (!std::filesystem::exists(file)) throw InputError(fmt::format("{} = {}: there is no {}", key, name, file.string()));
   if (std::filesystem::is_directory(file)) throw InputError(fmt::format("{} = {}: {} is a folder", key, name, file.string()));
   return file;
+}
+
+/// Adds the frames of the scenario's mounts to the robot's.
+void add_mounts(RobotDescription& robot, const std::vector<MountSettings>& mounts) {
+  for (std::size_t i = 0; i < mounts.size(); ++i) {
+    const MountSettings& mount = mounts[i];
+    const Pose3 T_body_mount{{mount.x_m, mount.y_m, mount.z_m},
+                             quaternion_from_rpy(kDegree * mount.roll_deg, kDegree * mount.pitch_deg, kDegree * mount.yaw_deg)};
+    if (robot.T_body_sensor.emplace(mount.frame, T_body_mount).second) continue;
+    throw InputError(fmt::format("mounts.{}.frame = {}: the robot {} has this frame already: another name is needed", i, mount.frame, robot.name));
+  }
 }
 
 }  // namespace
@@ -129,6 +141,7 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   files.world_xml = find_definition(data_root, "worlds", "world", scenario.world, ".xml");
   files.robot_urdf = find_definition(data_root, "models", "robot", scenario.robot, ".urdf");
   files.robot = io::load_robot_description(files.robot_urdf.string());
+  add_mounts(files.robot, scenario.mounts);
   const auto named_file = [&](const char* key, const std::string& name) { return find_named_file(files.world_xml.parent_path(), key, name); };
   const io::RouteFile route = io::load_route(named_file("mission", scenario.mission));
   files.route = route.route;
@@ -136,12 +149,12 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   if (!scenario.map.empty()) {
     const std::filesystem::path file = named_file("map", scenario.map);
     files.map = io::load_map(file);
-    check_known_map(file.string(), *files.map);
+    stack::check_known_map(file.string(), *files.map);
   }
   if (!scenario.goals.empty()) {
     const std::filesystem::path file = named_file("goals", scenario.goals);
     files.goals = io::load_nav(file);
-    check_goals(file.string(), files.goals, files.map);
+    stack::check_goals(file.string(), files.goals, files.map);
   }
   if (!scenario.references.empty()) files.references = io::load_station_scans(files.world_xml.parent_path() / scenario.references);
   const RemoteSettings& remote = scenario.remote;

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "app/stack/stack_settings.h"
 #include "core/remote_drive.h"
 #include "core/route.h"
 #include "core/settings.h"
@@ -14,6 +13,7 @@
 #include "io/station_scans.h"
 #include "render/light.h"
 #include "sim/twin.h"
+#include "stack/settings/stack_settings.h"
 
 namespace patrol::app {
 
@@ -61,6 +61,24 @@ struct KidnapSettings {
   }
 };
 
+/// An instrument mounted for this scenario: a frame beside those of the robot's URDF, with neither mass nor shape.
+struct MountSettings {
+  std::string frame;  ///< name of the sensor frame, e.g. "tdlas"
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0;                    ///< in body
+  double roll_deg = 0.0, pitch_deg = 0.0, yaw_deg = 0.0;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("frame", self.frame);
+    visit("x_m", self.x_m, between(-2.0, 2.0));
+    visit("y_m", self.y_m, between(-2.0, 2.0));
+    visit("z_m", self.z_m, between(-2.0, 2.0));
+    visit("roll_deg", self.roll_deg, between(-180.0, 180.0));
+    visit("pitch_deg", self.pitch_deg, between(-90.0, 90.0));
+    visit("yaw_deg", self.yaw_deg, between(-180.0, 180.0));
+  }
+};
+
 /// What is written besides the messages.
 struct LogSettings {
   double truth_rate_hz = 100.0;
@@ -88,10 +106,11 @@ struct Scenario {
   std::string references;  ///< a folder likewise, with the scans of an earlier round (io/station_scans.h)
   RemoteSettings remote;
   StartOffsetSettings start;
+  std::vector<MountSettings> mounts;       ///< instruments beside those of the robot's URDF
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;      ///< of a robot with legs
   sim::TrackDriveSettings track_drive;     ///< of a robot with tracks
-  StackSettings stack;
+  stack::StackSettings stack;
   std::vector<sim::PropSettings> props;
   sim::LowObstacleSettings low_obstacles;  ///< scattered by the seed, beside the props
   std::vector<sim::LiningMoveSettings> lining;  ///< how its rings have moved
@@ -119,6 +138,7 @@ struct Scenario {
     visit("references", self.references);
     visit("remote", self.remote);
     visit("start", self.start);
+    visit("mounts", self.mounts);
     visit("sensors", self.sensors);
     visit("locomotion", self.locomotion);
     visit("track_drive", self.track_drive);
@@ -144,7 +164,7 @@ struct RobotProfile {
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;
   sim::TrackDriveSettings track_drive;
-  StackSettings stack;
+  stack::StackSettings stack;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

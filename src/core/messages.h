@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/event.h"
 #include "core/frames.h"
 #include "core/grid.h"
 #include "core/inspection_result.h"
@@ -237,17 +238,6 @@ struct MapUpdate {
 struct Path {
   Time stamp{};
   std::vector<Pose2> T_map_body;
-};
-
-/// Something that happened in the mission, for the log, the report and the score.
-struct Event {
-  Time stamp{};
-  std::string kind;     ///< e.g. "station_reached", "gas_measured", "alarm", "replan", "fall", "mission_completed"
-  std::string subject;  ///< what it is about, e.g. "regulator_box_2"
-  std::string text;     ///< one sentence for a person
-  double value = 0.0;   ///< the kind's own figure, e.g. ppm m
-  Pose2 T_map_body;     ///< where the robot believed it was
-  Eigen::Vector2d p_map_target = Eigen::Vector2d::Zero();  ///< where it is, m; the robot's own place if it is nowhere else
 };
 
 /// A 2D scan freed of the robot's motion: beams in `level` at `stamp`, ends that hit the ground removed.

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/named_table.h"
 
 /// Settings are plain structs with their defaults in place. Each lists its fields once, in a static function, and from
 /// that list they are read from YAML, written out with every default, and checked (io/settings_yaml.h):
@@ -41,6 +42,14 @@ inline Limits between(double min, double max) { return {.min = min, .max = max, 
 inline Limits one_of(std::initializer_list<std::string> allowed) {
   Limits limits;
   limits.allowed = allowed;
+  return limits;
+}
+
+/// The names of a table of enumerators or factories.
+template <NamedTable Table>
+Limits one_of(const Table& table) {
+  Limits limits;
+  limits.allowed = names_of(table);
   return limits;
 }
 

@@ -112,7 +112,9 @@ void describe(Codec& codec, VelocityCommand& command) {
 template <typename Codec>
 void describe(Codec& codec, Event& event) {
   header(codec, event.stamp, frame_id::kMap);
-  codec(event.kind);
+  std::string kind = kind_text(event);
+  codec(kind);
+  if constexpr (!Codec::kWrites) set_kind(event, kind);
   codec(event.subject);
   codec(event.text);
   codec(event.value);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/event.h"
 #include "io/inspection_json.h"
 #include "io/json_object.h"
 
@@ -43,14 +44,19 @@ namespace {
 
 using io::Json;
 
-/// How much an event matters to those who watch. What the lining and the water say comes with their own results.
-WarningLevel level_of(const std::string& event_kind) {
-  static const std::map<std::string, WarningLevel> kLevels = {
-      {"alarm", WarningLevel::kAlarm},         {"fall", WarningLevel::kAlarm},          {"cannot_localize", WarningLevel::kWarning},
-      {"sensor_fault", WarningLevel::kWarning}, {"dock_failed", WarningLevel::kWarning}, {"inspection_failed", WarningLevel::kWarning},
-      {"mission_failed", WarningLevel::kWarning}, {"station_failed", WarningLevel::kNotice}, {"goal_failed", WarningLevel::kNotice}};
-  const auto level = kLevels.find(event_kind);
-  return level == kLevels.end() ? WarningLevel::kNone : level->second;
+/// Level of an event for the findings page. Lining and water findings come with their own results, which hold their levels.
+WarningLevel finding_level(EventKind kind) {
+  switch (kind) {
+    case EventKind::kLiningNotice:
+    case EventKind::kLiningWarning:
+    case EventKind::kLiningAlarm:
+    case EventKind::kWaterNotice:
+    case EventKind::kWaterWarning:
+    case EventKind::kWaterAlarm:
+      return WarningLevel::kNone;
+    default:
+      return level_of(kind);
+  }
 }
 
 /// Time at which a result counts as made: a robot's clock that is ahead of the platform's must not outdo all that comes later.
@@ -126,23 +132,24 @@ class Entry {
   }
 
   void enter_event(const Json& data) {
-    const std::string kind = data["kind"], subject = data["subject"];
+    const std::string kind_name = data["kind"], subject = data["subject"];
+    const EventKind kind = event_kind_named(kind_name);
     const Eigen::Vector2d p_map(data["position_m"][0].get<double>(), data["position_m"][1].get<double>());
-    add_finding(level_of(kind), kind, subject, data["text"], p_map);
-    if (kind == "gas_measured" && data["value"].is_number()) {
+    add_finding(finding_level(kind), kind_name, subject, data["text"], p_map);
+    if (kind == EventKind::kGasMeasured && data["value"].is_number()) {
       database_.prepared("INSERT OR REPLACE INTO gas VALUES (?1, ?2, ?3, ?4, ?5)")
           .bind(result_.world, subject, made_ms_, run_, data["value"].get<double>())
           .run();
     }
-    if (kind == "goal_marked") {
+    if (kind == EventKind::kGoalMarked) {
       database_.prepared("UPDATE runs SET stations = json_insert(stations, '$[#]', "
                         "json_object('name', ?2, 'type', 'marked', 'position_m', json_array(?3, ?4))) WHERE number = ?1")
           .bind(run_, subject, p_map.x(), p_map.y())
           .run();
     }
-    if (kind == "station_reached" || kind == "goal_reached" || kind == "docked") {
+    if (kind == EventKind::kStationReached || kind == EventKind::kGoalReached || kind == EventKind::kDocked) {
       database_.prepared("UPDATE robots SET at = ?2 WHERE robot = ?1 AND run = ?3")
-          .bind(result_.robot, kind == "docked" ? std::string("dock") : subject, run_)
+          .bind(result_.robot, kind == EventKind::kDocked ? std::string("dock") : subject, run_)
           .run();
     }
   }

@@ -82,7 +82,7 @@ void RunFollower::add(const Path& plan) {
 
 void RunFollower::add(const Event& event) {
   snapshot_.event = event.text;
-  snapshot_.is_alarm = event.kind.ends_with("alarm");
+  snapshot_.is_alarm = class_of(event.kind) == EventClass::kHazard && level_of(event.kind) == WarningLevel::kAlarm;
 }
 
 void RunFollower::add(const GroundTruth& truth) {

@@ -25,7 +25,7 @@ std::map<std::string, Pose2> wanted_poses(const std::vector<Event>& events, cons
   std::map<std::string, Pose2> wanted;
   for (const MarkedGoal& goal : given) wanted["goal_" + std::to_string(goal.number)] = T_world_map * goal.T_map_body;
   for (const Event& event : events) {
-    if (event.kind != "goal_marked") continue;
+    if (event.kind != EventKind::kGoalMarked) continue;
     if (const auto truth = truth_at(T_world_body, event.stamp)) wanted[event.subject] = *truth;
   }
   return wanted;
@@ -52,8 +52,8 @@ std::vector<GoalError> goal_errors(const std::vector<Event>& events, const std::
     GoalError error{.name = name, .arrivals = {}};
     for (const Event& event : events) {
       if (event.subject != name) continue;
-      if (event.kind == "goal_failed") ++error.num_failed;
-      if (event.kind != "goal_reached") continue;
+      if (event.kind == EventKind::kGoalFailed) ++error.num_failed;
+      if (event.kind != EventKind::kGoalReached) continue;
       if (const auto truth = truth_at(T_world_body, event.stamp)) {
         error.arrivals.push_back(arrival(static_cast<int>(event.value), T_world_wanted, *truth));
       }
@@ -66,8 +66,8 @@ std::vector<GoalError> goal_errors(const std::vector<Event>& events, const std::
 GoalError docking_error(const std::vector<Event>& events, const Pose2& T_world_docked, const Trajectory& T_world_body) {
   GoalError error{.name = "dock", .arrivals = {}};
   for (const Event& event : events) {
-    if (event.kind == "dock_failed") ++error.num_failed;
-    if (event.kind != "docked") continue;
+    if (event.kind == EventKind::kDockFailed) ++error.num_failed;
+    if (event.kind != EventKind::kDocked) continue;
     if (const auto truth = truth_at(T_world_body, event.stamp)) {
       error.arrivals.push_back(arrival(static_cast<int>(event.value), T_world_docked, *truth));
     }

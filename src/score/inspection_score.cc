@@ -10,7 +10,7 @@ InspectionScore inspection_score(const std::vector<Event>& events, const Pose2& 
   score.leaks = static_cast<int>(leaks.size());
   std::set<std::string> found;
   for (const Event& event : events) {
-    if (event.kind != "alarm") continue;
+    if (event.kind != EventKind::kGasAlarm) continue;
     Finding finding{.station = event.subject,
                     .column_ppm_m = event.value,
                     .p_world_m = T_world_map * event.p_map_target,

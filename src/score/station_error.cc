@@ -143,7 +143,7 @@ std::vector<StationError> station_errors(const Route& route_in_world, const std:
     error.map_error_m =
         map_displacement_m(built, T_world_map, reference, station.p_route_target.head<2>());
     for (const Event& event : events) {
-      if (event.kind != "station_reached" || event.subject != station.name) continue;
+      if (event.kind != EventKind::kStationReached || event.subject != station.name) continue;
       const std::optional<Pose3> truth = pose_at(T_world_body, event.stamp);
       if (!truth) continue;
       const Pose2 T_world_truth = to_planar(*truth), T_world_estimate = T_world_map * event.T_map_body;

@@ -197,6 +197,9 @@ TEST(Decode, CommandsEventsAndTruthKeepEveryField) {
             std::tie(was.stamp, was.kind, was.subject, was.text, was.value));
   EXPECT_THAT(is.T_map_body, Pose2Near(was.T_map_body, 0.0, kExactTol));
   EXPECT_EQ(is.p_map_target, was.p_map_target);
+  Event foreign = was;
+  set_kind(foreign, "elevator_called");
+  EXPECT_EQ(kind_text(there_and_back(foreign)), "elevator_called");
   EXPECT_THAT(there_and_back(test::sample_truth()).T_world_body,
               Pose3Near(test::sample_pose(), 0.0, kQuaternionTol));
   EXPECT_EQ(there_and_back(test::sample_truth()).twist.angular, test::sample_truth().twist.angular);

@@ -143,7 +143,7 @@ inline VelocityCommand sample_command() {
 }
 inline Event sample_event() {
   return {.stamp = kSampleStamp,
-          .kind = "alarm",
+          .kind = EventKind::kGasAlarm,
           .subject = "regulator_box_2",
           .text = "methane at the box",
           .value = 512.0,

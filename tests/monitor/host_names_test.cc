@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 
-namespace patrol::monitor {
+namespace patrol::monitor::host_names_test {
 namespace {
 
 TEST(HostNames, LoopbackTheBoundAddressAndNamesThatWereGivenAreAllowed) {
@@ -30,4 +30,4 @@ TEST(HostNames, ANameHasNoPort) {
 }
 
 }  // namespace
-}  // namespace patrol::monitor
+}  // namespace patrol::monitor::host_names_test

@@ -8,7 +8,7 @@
 #include <array>
 #include <csignal>
 
-namespace patrol::monitor {
+namespace patrol::monitor::line_log_test {
 namespace {
 
 class LineLogTo : public testing::Test {
@@ -68,4 +68,4 @@ TEST_F(LineLogTo, AFullDeviceOrAClosedDescriptorLosesLines) {
 }
 
 }  // namespace
-}  // namespace patrol::monitor
+}  // namespace patrol::monitor::line_log_test

@@ -103,12 +103,12 @@ TEST_F(RunFollowerTest, BeamsAreFreedOfTheRobotsTurningAndLeaning) {
 
 TEST_F(RunFollowerTest, TellsTheNewestEventAndWhetherItIsAnAlarm) {
   Event event;
-  event.kind = "alarm";
+  event.kind = EventKind::kGasAlarm;
   event.text = "Leak at regulator_box_2.";
   follower.add(event);
   EXPECT_EQ(follower.snapshot().event, "Leak at regulator_box_2.");
   EXPECT_TRUE(follower.snapshot().is_alarm);
-  event.kind = "station_reached";
+  event.kind = EventKind::kStationReached;
   follower.add(event);
   EXPECT_FALSE(follower.snapshot().is_alarm);
 }

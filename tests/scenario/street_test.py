@@ -43,6 +43,15 @@ class Street(unittest.TestCase):
         self.assert_arrives("stack.plan.global=astar", "stack.plan.steps_per_s=1e5")
         self.assertGreater(by_ants, self.metrics()["mission"]["duration_s"] + 1.0)
 
+    def test_drives_to_marked_goals_on_a_known_map(self):
+        """The map stays the one that was given; the errors are of Monte Carlo localization."""
+        done = self.run_patrol("known_map")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        metrics = self.metrics()
+        self.assertEqual([goal["arrivals"] for goal in metrics["goals"]], [1, 1])
+        self.assertEqual(metrics["localization"]["lost_s"], 0.0)
+        self.assertEqual((self.out / "map.pgm").read_bytes(), (SOURCE / "worlds/street/map/map.pgm").read_bytes())
+
     def test_stays_where_it_is_when_its_planner_finds_nothing(self):
         done = self.run_patrol("short", "stack.plan.global=q_learning", "stack.plan.routes.q_learning.episodes=1", "stack.plan.no_route_s=3")
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)

@@ -72,6 +72,14 @@ class Tunnel(unittest.TestCase):
         self.assertTrue(self.metrics()["inspection"]["water"]["findings"][0]["distance_holds"])
         self.assertEqual(sorted(path.name for path in (self.out / "scans").iterdir()), ["goal_1.ply", "goal_2.ply", "goal_3.ply", "scans.json"])
 
+    def test_patrols_for_gas_while_it_maps(self):
+        """Of two places only the leaking one raises the alarm, and the map grows meanwhile."""
+        self.assert_as_expected("gas_patrol")
+        findings = self.metrics()["inspection"]["findings"]
+        self.assertEqual([finding["station"] for finding in findings], ["uwb_anchor_3"])
+        self.assertEqual([station["reached"] for station in self.metrics()["stations"]], [True, True, True])
+        self.assertNotIn("localization", self.metrics())
+
     def test_touches_some_without_ultrasonic_and_camera(self):
         self.run_patrol("low_obstacles", "--set", "sensors.ultrasonic.enabled=false", "--set", "sensors.depth_camera.enabled=false",
                         "--set", "time_limit_s=120")

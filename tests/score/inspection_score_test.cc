@@ -9,7 +9,7 @@ namespace {
 
 Event alarm_at(double x, double y, const std::string& station = "box_2") {
   return {.stamp = {},
-          .kind = "alarm",
+          .kind = EventKind::kGasAlarm,
           .subject = station,
           .text = "",
           .value = 500.0,
@@ -56,7 +56,7 @@ TEST(InspectionScore, PlacesAreTakenFromMapToWorld) {
 
 TEST(InspectionScore, OtherEventsAreNoAlarms) {
   Event measured = alarm_at(10.0, 0.0);
-  measured.kind = "gas_measured";
+  measured.kind = EventKind::kGasMeasured;
   const InspectionScore score = inspection_score({measured}, {}, kLeaks);
   EXPECT_EQ(score.leaks_found, 0);
   EXPECT_TRUE(score.findings.empty());

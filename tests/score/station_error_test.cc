@@ -121,7 +121,7 @@ Station make_station(const std::string& name, const Pose2& T_route_body) {
 
 Event reached(const std::string& name, Time stamp, const Pose2& T_map_body) {
   return {.stamp = stamp,
-          .kind = "station_reached",
+          .kind = EventKind::kStationReached,
           .subject = name,
           .text = "",
           .value = 0.0,

@@ -11,7 +11,7 @@
 #include "io/station_scans.h"
 #include "sim/sensors/panoramic_scanner.h"
 
-namespace patrol::sim {
+namespace patrol::sim::reference_scans_test {
 namespace {
 
 constexpr std::uint64_t kInspectionSeed = 1;  // of worlds/tunnel/scenarios/inspection_round.yaml
@@ -97,4 +97,4 @@ TEST(ReferenceScans, DISABLED_OfTheTunnelAreIndependentOfTheDropoutsOfTheInspect
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::reference_scans_test

@@ -26,7 +26,7 @@ std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::e
 Json point(const Eigen::Vector2d& p) { return {p.x(), p.y()}; }
 
 Json event_json(const Event& event) {
-  return {{"kind", event.kind},
+  return {{"kind", kind_text(event)},
           {"subject", io::on_one_line(event.subject)},
           {"text", io::on_one_line(event.text)},
           {"value", std::isfinite(event.value) ? Json(event.value) : Json(nullptr)},
@@ -75,7 +75,7 @@ void Reporter::begin(const ScenarioFiles& files) {
   if (files.map) tell_map({.stamp = {}, .map = *files.map});
 }
 
-void Reporter::see(const StackMessage& message) {
+void Reporter::see(const stack::StackMessage& message) {
   std::visit(Overloaded{
                  [&](const PoseEstimate& estimate) {
                    newest_ = std::max(newest_, estimate.stamp);

@@ -37,7 +37,7 @@ class Reporter final : public RunObserver {
   Reporter(std::filesystem::path root, ReportedRun run, Platform platform, const ReporterSettings& settings = {});
 
   void begin(const ScenarioFiles& files) override;
-  void see(const StackMessage& message) override;
+  void see(const stack::StackMessage& message) override;
   void see(const GroundTruth&) override {}
   bool go_on(Time, double) override { return true; }
 

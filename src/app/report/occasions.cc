@@ -1,8 +1,6 @@
 #include "app/report/occasions.h"
 
 #include <algorithm>
-#include <array>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -17,9 +15,10 @@ using render::PlotMark;
 
 const std::string kLostText = "The robot says that it is lost.";
 
-Ink ink_of(const std::string& kind) { return is_trouble(kind) ? Ink::kAlarm : Ink::kEvent; }
-
-bool is_for_curves(const std::string& kind) { return is_trouble(kind) || kind == "recovery" || kind == "relocalized"; }
+/// Whether error curves are read against the marks of this lane.
+bool is_for_curves(const render::LanePlot::Lane& lane) {
+  return lane.marks.front().ink == Ink::kAlarm || lane.name == name_of(EventKind::kRecovery) || lane.name == name_of(EventKind::kRelocalized);
+}
 
 render::LanePlot::Lane& lane_named(std::vector<render::LanePlot::Lane>& lanes, const std::string& name) {
   const auto found = std::find_if(lanes.begin(), lanes.end(), [&](const auto& lane) { return lane.name == name; });
@@ -27,27 +26,24 @@ render::LanePlot::Lane& lane_named(std::vector<render::LanePlot::Lane>& lanes, c
   return lanes.emplace_back(render::LanePlot::Lane{.name = name, .marks = {}});
 }
 
-std::string text_of(const Event& event) { return event.text.empty() ? event.kind : event.text; }
+std::string text_of(const Event& event) { return event.text.empty() ? kind_text(event) : event.text; }
 
 }  // namespace
 
-bool is_trouble(const std::string& event_kind) {
-  static constexpr std::array<std::string_view, 8> kTroubles = {"lining_warning", "fall", "lost", "sensor_fault", "sensor_lost", "cannot_localize", "collision", "kidnap"};
-  return event_kind.ends_with("_failed") || event_kind.ends_with("alarm") || std::find(kTroubles.begin(), kTroubles.end(), event_kind) != kTroubles.end();
-}
-
 std::vector<render::LanePlot::Lane> lanes_of(const RunContents& run) {
   std::vector<render::LanePlot::Lane> lanes;
-  const auto add = [&](const std::string& kind, double at_s, const std::string& text) {
-    lane_named(lanes, kind).marks.push_back({.x = at_s, .text = text, .ink = ink_of(kind)});
+  const auto add = [&](const std::string& lane, Ink ink, double at_s, const std::string& text) {
+    lane_named(lanes, lane).marks.push_back({.x = at_s, .text = text, .ink = ink});
   };
-  for (const Event& event : run.record.events) add(event.kind, to_seconds(event.stamp), text_of(event));
+  for (const Event& event : run.record.events) {
+    add(kind_text(event), is_failure(event.kind) ? Ink::kAlarm : Ink::kEvent, to_seconds(event.stamp), text_of(event));
+  }
   for (const Collision& collision : run.record.collisions) {
-    add("collision", to_seconds(collision.stamp), fmt::format("{} touched {}.", collision.first, collision.second));
+    add("collision", Ink::kAlarm, to_seconds(collision.stamp), fmt::format("{} touched {}.", collision.first, collision.second));
   }
   for (const KidnapSettings& kidnap : run.scenario.kidnaps) {
     if (!is_executed(kidnap, run.record.T_world_body)) continue;
-    add("kidnap", kidnap.at_s, fmt::format("The robot is lifted to ({:.1f}, {:.1f}) m.", kidnap.x_m, kidnap.y_m));
+    add("kidnap", Ink::kAlarm, kidnap.at_s, fmt::format("The robot is lifted to ({:.1f}, {:.1f}) m.", kidnap.x_m, kidnap.y_m));
   }
   return lanes;
 }
@@ -55,7 +51,7 @@ std::vector<render::LanePlot::Lane> lanes_of(const RunContents& run) {
 std::vector<PlotMark> marks_of(const RunContents& run) {
   std::vector<PlotMark> marks;
   for (const render::LanePlot::Lane& lane : lanes_of(run)) {
-    if (is_for_curves(lane.name)) marks.insert(marks.end(), lane.marks.begin(), lane.marks.end());
+    if (is_for_curves(lane)) marks.insert(marks.end(), lane.marks.begin(), lane.marks.end());
   }
   return marks;
 }
@@ -79,8 +75,8 @@ std::vector<render::PlotSpan> spans_of(const RunContents& run) {
 render::FoldedTables event_table(const RunContents& run) {
   render::TableBlock table{.caption = "", .columns = {{"s", true}, {"event"}, {"about"}, {"text"}}, .rows = {}};
   for (const Event& event : run.record.events) {
-    const render::Tone tone = is_trouble(event.kind) ? render::Tone::kBad : render::Tone::kPlain;
-    table.rows.push_back({{fmt::format("{:.1f}", to_seconds(event.stamp))}, {event.kind, tone}, {event.subject}, {event.text}});
+    const render::Tone tone = is_failure(event.kind) ? render::Tone::kBad : render::Tone::kPlain;
+    table.rows.push_back({{fmt::format("{:.1f}", to_seconds(event.stamp))}, {kind_text(event), tone}, {event.subject}, {event.text}});
   }
   return {.summary = fmt::format("All {} events", table.rows.size()), .tables = {table}};
 }

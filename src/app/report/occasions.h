@@ -8,9 +8,6 @@
 /// What happened on a run, for plots and tables.
 namespace patrol::app {
 
-/// What went wrong, by the robot's own word or in truth: "alarm", "lost", "goal_failed", "collision", ...
-bool is_trouble(const std::string& event_kind);
-
 /// One lane for each kind of event, in the order of their first; then collisions and kidnaps.
 std::vector<render::LanePlot::Lane> lanes_of(const RunContents& run);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <string_view>
 
 #include "app/report/occasions.h"
 #include "app/report/verdict.h"
@@ -60,12 +59,12 @@ std::vector<MapMark> marks_on_map(const RunContents& run) {
   };
   marks.add("start", Ink::kEvent, to_planar(run.record.T_world_body.front().pose).position());
   for (const Event& event : run.record.events) {
-    const std::string_view kind = event.kind;
-    if (kind == "station_reached" || kind == "goal_marked" || kind == "goal_reached") marks.add(event.subject, Ink::kEvent, truth_at(event.stamp));
-    if (kind == "docked") marks.add("dock", Ink::kEvent, truth_at(event.stamp));
-    if (kind.ends_with("alarm") || kind == "lining_warning") marks.add(kind == "alarm" ? "alarm" : event.subject, Ink::kAlarm, run.T_world_map * event.p_map_target);
-    if (kind.ends_with("_failed")) marks.add(event.subject + " failed", Ink::kAlarm, truth_at(event.stamp));
-    if (kind == "fall") marks.add("fall", Ink::kAlarm, truth_at(event.stamp));
+    const EventKind kind = event.kind;
+    if (kind == EventKind::kStationReached || kind == EventKind::kGoalMarked || kind == EventKind::kGoalReached) marks.add(event.subject, Ink::kEvent, truth_at(event.stamp));
+    if (kind == EventKind::kDocked) marks.add("dock", Ink::kEvent, truth_at(event.stamp));
+    if (class_of(kind) == EventClass::kHazard) marks.add(kind == EventKind::kGasAlarm ? "alarm" : event.subject, Ink::kAlarm, run.T_world_map * event.p_map_target);
+    if (class_of(kind) == EventClass::kTaskFailed) marks.add(event.subject + " failed", Ink::kAlarm, truth_at(event.stamp));
+    if (kind == EventKind::kFall) marks.add("fall", Ink::kAlarm, truth_at(event.stamp));
   }
   for (const Collision& collision : run.record.collisions) marks.add("collision", Ink::kAlarm, truth_at(collision.stamp));
   for (const KidnapSettings& kidnap : run.scenario.kidnaps) {

@@ -48,7 +48,7 @@ class Together final : public RunObserver {
   explicit Together(std::vector<RunObserver*> observers) : observers_(std::move(observers)) {}
 
   void begin(const ScenarioFiles& files) override { for (RunObserver* one : observers_) one->begin(files); }
-  void see(const StackMessage& message) override { for (RunObserver* one : observers_) one->see(message); }
+  void see(const stack::StackMessage& message) override { for (RunObserver* one : observers_) one->see(message); }
   void see(const GroundTruth& truth) override { for (RunObserver* one : observers_) one->see(truth); }
   bool go_on(Time now, double distance_m) override {
     bool goes_on = true;

@@ -5,13 +5,12 @@
 #include <ctime>
 #include <utility>
 
-#include "app/stack/patrol_stack.h"
-#include "app/stack/tour_stack.h"
 #include "core/angles.h"
 #include "core/overloaded.h"
 #include "inspect/route_frame.h"
 #include "io/run_log.h"
 #include "render/depth_renderer.h"
+#include "stack/make_stack.h"
 
 namespace patrol::app {
 namespace {
@@ -57,8 +56,8 @@ sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& f
           .recorded = files.recorded};
 }
 
-LiningReferences references_of(const ScenarioFiles& files) {
-  LiningReferences references;
+stack::LiningReferences references_of(const ScenarioFiles& files) {
+  stack::LiningReferences references;
   for (const io::StationScan& scan : files.references) {
     references.emplace(scan.station, inspect::LiningReference{.T_map_scanner = scan.T_map_scanner, .points = scan.points});
   }
@@ -83,17 +82,17 @@ sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files) {
   return sim::Twin(twin_settings(scenario, files), files.robot, scenario.seed, render::make_depth_renderer);
 }
 
-std::unique_ptr<RobotStack> make_stack(const Scenario& scenario, const ScenarioFiles& files) {
-  const Route route_in_map = inspect::to_map(files.route, files.T_site_start);
-  if (files.robot.tracks) {
-    return std::make_unique<TourStack>(scenario.stack, files.robot, route_in_map,
-                                       TourStart{.map = files.map, .goals = files.goals, .references = references_of(files), .has_remote = files.has_remote()},
-                                       scenario.log.map_period_s, scenario.seed);
-  }
-  return std::make_unique<PatrolStack>(scenario.stack, files.robot, route_in_map, scenario.log.map_period_s, scenario.seed);
+stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
+  return stack::make_stack(scenario.stack, files.robot, inspect::to_map(files.route, files.T_site_start),
+                           {.map = files.map,
+                            .goals = files.goals,
+                            .references = references_of(files),
+                            .has_remote = files.has_remote(),
+                            .map_period_s = scenario.log.map_period_s,
+                            .seed = scenario.seed});
 }
 
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin, RobotStack& stack,
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin, stack::Stack& stack,
                     const std::filesystem::path& log_mcap, RunObserver& observer) {
   const auto wall_start = std::chrono::steady_clock::now();
   const double cpu_start = cpu_seconds();
@@ -111,7 +110,7 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
   std::stable_sort(kidnaps.begin(), kidnaps.end(), [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
 
   const auto write_stack_messages = [&](Time now) {
-    for (const StackMessage& message : stack.take_messages()) {
+    for (const stack::StackMessage& message : stack.take_messages()) {
       const auto lap = clock.lap("log");
       std::visit(Overloaded{[&](const auto& content) { log.write(now, content); },
                             [&]<InstrumentOrder Command>(const Command& order) {
@@ -167,7 +166,7 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
 
   const MapUpdate final_map = stack.final_map(twin.now());
   log.write(twin.now(), final_map);
-  observer.see(StackMessage(final_map));
+  observer.see(stack::StackMessage(final_map));
   log.close();
   outcome.duration = twin.now();
   outcome.faults = twin.sensors().faults();

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "app/scenario.h"
-#include "app/stack/robot_stack.h"
 #include "core/time.h"
+#include "stack/stack.h"
 
 namespace patrol::app {
 
@@ -31,7 +31,7 @@ class RunObserver {
   virtual ~RunObserver() = default;
 
   virtual void begin(const ScenarioFiles&) {}
-  virtual void see(const StackMessage&) {}
+  virtual void see(const stack::StackMessage&) {}
   virtual void see(const GroundTruth&) {}
   /// Twice a simulated second; false stops the run.
   virtual bool go_on(Time now, double distance_m) = 0;
@@ -51,10 +51,10 @@ std::vector<sim::PropSettings> props_of(const Scenario& scenario);
 
 /// Throw InputError when what the scenario names does not go together.
 sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files);
-std::unique_ptr<RobotStack> make_stack(const Scenario& scenario, const ScenarioFiles& files);
+stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files);
 
 /// Runs twin and stack against each other until the mission is over, and writes everything to `log_mcap`.
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin, RobotStack& stack,
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin, stack::Stack& stack,
                     const std::filesystem::path& log_mcap, RunObserver& observer);
 
 }  // namespace patrol::app

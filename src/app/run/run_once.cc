@@ -33,12 +33,12 @@ std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& 
                                   const std::filesystem::path& root, RunObserver& observer) {
   const ScenarioFiles files = load_scenario_files(scenario, data_root);
   sim::Twin twin = make_twin(scenario, files);  // these refuse bad input before anything is written
-  const std::unique_ptr<RobotStack> stack = make_stack(scenario, files);
+  stack::Stack stack = make_stack(scenario, files);
   const RunDirectory directory = begin_run_directory(root);
   io::save_junit(directory.junit(), {unfinished_suite(name, junit_properties(scenario))});
   save_scenario(directory.scenario(), scenario, made_by(name));
 
-  const RunOutcome outcome = run_loop(scenario, files, twin, *stack, directory.log(), observer);
+  const RunOutcome outcome = run_loop(scenario, files, twin, stack, directory.log(), observer);
   if (outcome.end == RunEnd::kInterrupted) return std::nullopt;
 
   io::Metrics metrics = score_run(directory, scenario, files);

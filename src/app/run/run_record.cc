@@ -17,7 +17,7 @@ void append(Trajectory& trajectory, Time stamp, const Pose3& pose) {
 
 }  // namespace
 
-std::size_t RunRecord::num_events(const char* kind) const {
+std::size_t RunRecord::num_events(EventKind kind) const {
   return static_cast<std::size_t>(std::count_if(events.begin(), events.end(), [&](const Event& event) { return event.kind == kind; }));
 }
 

@@ -27,8 +27,8 @@ struct RunRecord {
   OccupancyGrid map;        ///< the last one
   bool is_complete = false; ///< the log has its end
 
-  std::size_t num_events(const char* kind) const;
-  bool has_event(const char* kind) const { return num_events(kind) > 0; }
+  std::size_t num_events(EventKind kind) const;
+  bool has_event(EventKind kind) const { return num_events(kind) > 0; }
   /// Whether the run lasted until the stack had an estimate and a map.
   bool has_estimate() const;
 };

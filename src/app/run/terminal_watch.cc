@@ -42,7 +42,7 @@ void TerminalWatch::begin(const ScenarioFiles& files) {
   T_world_map_ = files.T_site_start;
 }
 
-void TerminalWatch::see(const StackMessage& message) {
+void TerminalWatch::see(const stack::StackMessage& message) {
   std::visit(Overloaded{
                  [&](const PoseEstimate& estimate) {
                    run_.estimate = estimate;

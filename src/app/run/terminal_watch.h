@@ -18,7 +18,7 @@ class TerminalWatch final : public RunObserver {
   TerminalWatch& operator=(const TerminalWatch&) = delete;
 
   void begin(const ScenarioFiles& files) override;
-  void see(const StackMessage& message) override;
+  void see(const stack::StackMessage& message) override;
   void see(const GroundTruth& truth) override;
   bool go_on(Time now, double distance_m) override;
 

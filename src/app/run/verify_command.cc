@@ -18,9 +18,9 @@ ExitCode verify_command(const std::filesystem::path& run) {
   const std::filesystem::path log = again.path() / "log.mcap";
   fmt::print(stderr, "verify: running {} again, seed {}\n", directory.scenario().string(), scenario.seed);
   sim::Twin twin = make_twin(scenario, files);
-  const std::unique_ptr<RobotStack> stack = make_stack(scenario, files);
+  stack::Stack stack = make_stack(scenario, files);
   Unobserved nobody;
-  run_loop(scenario, files, twin, *stack, log, nobody);
+  run_loop(scenario, files, twin, stack, log, nobody);
 
   const std::optional<io::LogDifference> difference = io::first_difference(directory.log(), log);
   if (!difference) {

@@ -142,7 +142,7 @@ std::string watch_frame(const WatchedRun& run, int columns, int rows) {
     const std::size_t at = first + static_cast<std::size_t>(i);
     if (at < run.events.size()) {
       const Event& event = run.events[at];
-      std::string line = fmt::format("{:7.1f} s  {}", to_seconds(event.stamp), event.text.empty() ? event.kind : event.text);
+      std::string line = fmt::format("{:7.1f} s  {}", to_seconds(event.stamp), event.text.empty() ? kind_text(event) : event.text);
       if (line.size() > static_cast<std::size_t>(columns)) line.resize(static_cast<std::size_t>(columns));
       text += line;
     }

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "app/stack/tunnel_inspection.h"
 #include "inspect/lining/reference.h"
 #include "io/run_log.h"
+#include "stack/instruments/standing_place.h"
 
 namespace patrol::app {
 namespace {
@@ -14,15 +14,15 @@ namespace {
 /// What the robot said that it was a scan of: the first such word after it.
 std::optional<std::string> station_of(const PanoramicScan& scan, const RunRecord& record) {
   const auto taken = std::find_if(record.events.begin(), record.events.end(),
-                                  [&](const Event& event) { return event.kind == "scan_taken" && event.stamp >= scan.stamp; });
+                                  [&](const Event& event) { return event.kind == EventKind::kScanTaken && event.stamp >= scan.stamp; });
   return taken == record.events.end() ? std::nullopt : std::optional(taken->subject);
 }
 
-std::optional<StandingPlace> place_of(const PanoramicScan& scan, const std::string& station, const RunRecord& record, double height_m) {
+std::optional<stack::StandingPlace> place_of(const PanoramicScan& scan, const std::string& station, const RunRecord& record, double height_m) {
   const std::optional<Pose3> T_map_body = pose_at(record.T_map_body, scan.stamp), T_odom_body = pose_at(record.T_odom_body, scan.stamp);
   if (!T_map_body || !T_odom_body) return std::nullopt;
   const Eigen::Quaterniond tilt = quaternion_from_yaw(-yaw_of(T_odom_body->rotation)) * T_odom_body->rotation;
-  StandingPlace place{.T_level_body = {{0.0, 0.0, height_m}, tilt}, .T_map_body = to_planar(*T_map_body)};
+  stack::StandingPlace place{.T_level_body = {{0.0, 0.0, height_m}, tilt}, .T_map_body = to_planar(*T_map_body)};
   const auto result = std::find_if(record.linings.begin(), record.linings.end(), [&](const LiningResult& lining) {
     return lining.station == station && lining.stamp >= scan.stamp && lining.is_registered;
   });

@@ -25,10 +25,10 @@ io::Metrics pose_json(const Pose2& T_world_map) {
 
 io::Metrics mission_metrics(const RunRecord& record) {
   io::Metrics metrics;
-  metrics["completed"] = record.has_event("mission_completed");
-  metrics["fell"] = record.has_event("fall");
+  metrics["completed"] = record.has_event(EventKind::kMissionCompleted);
+  metrics["fell"] = record.has_event(EventKind::kFall);
   metrics["collisions"] = record.collisions.size();
-  metrics["sensor_faults_noticed"] = record.num_events("sensor_fault");
+  metrics["sensor_faults_noticed"] = record.num_events(EventKind::kSensorFault);
   metrics["duration_s"] = to_seconds(record.T_world_body.back().stamp);
   metrics["distance_m"] = planar_length_m(record.T_world_body);
   return metrics;
@@ -37,8 +37,8 @@ io::Metrics mission_metrics(const RunRecord& record) {
 io::Metrics navigation_metrics(const RunRecord& record, const ScenarioFiles& files, const TrueMap& truth) {
   io::Metrics metrics;
   metrics["paths"] = record.num_paths;
-  metrics["detours"] = record.num_events("replan");
-  metrics["recoveries"] = record.num_events("recovery");
+  metrics["detours"] = record.num_events(EventKind::kReplan);
+  metrics["recoveries"] = record.num_events(EventKind::kRecovery);
   metrics["clearance"] = to_json(score::driven_clearance(record.T_world_body, files.robot.footprint_m, truth.reference.cells));
   return metrics;
 }
@@ -63,7 +63,7 @@ void save_drive(const RunDirectory& directory, const Scenario& scenario, const R
   io::save_remote(directory.remote(), record.remote);
   std::vector<MarkedGoal> goals;
   for (const Event& event : record.events) {
-    if (event.kind != "goal_marked") continue;
+    if (event.kind != EventKind::kGoalMarked) continue;
     goals.push_back({.number = static_cast<int>(goals.size()) + 1, .T_map_body = event.T_map_body, .type = scenario.stack.tour.type_of_mark(goals.size())});
   }
   if (!goals.empty()) io::save_nav(directory.nav(), goals);

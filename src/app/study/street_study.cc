@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/process_cost.h"
-#include "app/stack/log_mapper.h"
+#include "app/study/log_mapper.h"
 #include "app/study/study_run.h"
 #include "app/temporary_folder.h"
 #include "score/map_error.h"
@@ -51,7 +51,7 @@ struct Mapped {
 };
 
 Mapped map_by(const GridMethod& method, const StudyRun& patrol) {
-  StackSettings settings = patrol.scenario.stack;
+  stack::StackSettings settings = patrol.scenario.stack;
   settings.mapping = method.mapping;
   settings.slam.proposal = method.proposal;
   settings.slam.optimizer = method.optimizer;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,46 +21,44 @@ std::string without_full_stop(std::string sentence) {
   return spoken(std::move(sentence));
 }
 
-/// Of the events worth a look.
-std::optional<MomentKind> kind_of(const std::string& event) {
-  static constexpr std::pair<std::string_view, MomentKind> kKinds[] = {
-      {"fall", MomentKind::kFall},
-      {"lost", MomentKind::kLost},
-      {"cannot_localize", MomentKind::kLost},
-      {"relocalized", MomentKind::kRelocalized},
-      {"sensor_lost", MomentKind::kFailure},
-      {"alarm", MomentKind::kAlarm},
-      {"lining_warning", MomentKind::kAlarm},
-      {"lining_alarm", MomentKind::kAlarm},
-      {"water_alarm", MomentKind::kAlarm},
-      {"inspection_failed", MomentKind::kFailure},
-      {"station_failed", MomentKind::kFailure},
-      {"goal_failed", MomentKind::kFailure},
-      {"dock_failed", MomentKind::kFailure},
-      {"mission_failed", MomentKind::kFailure},
-      {"docked", MomentKind::kDocking},
-      {"station_reached", MomentKind::kGoal},
-      {"goal_reached", MomentKind::kGoal},
-      {"mapping_done", MomentKind::kMission},
-      {"navigation_started", MomentKind::kMission},
-      {"mission_completed", MomentKind::kMission},
-  };
-  for (const auto& [name, kind] : kKinds) {
-    if (event == name) return kind;
+/// Moment that an event makes; none for events that are not worth a look.
+std::optional<MomentKind> moment_of(EventKind kind) {
+  if (class_of(kind) == EventClass::kHazard) return MomentKind::kAlarm;
+  if (class_of(kind) == EventClass::kTaskFailed) return MomentKind::kFailure;
+  switch (kind) {
+    case EventKind::kFall:
+      return MomentKind::kFall;
+    case EventKind::kLocalizationLost:
+    case EventKind::kLocalizationFailed:
+      return MomentKind::kLost;
+    case EventKind::kRelocalized:
+      return MomentKind::kRelocalized;
+    case EventKind::kSensorFailed:
+      return MomentKind::kFailure;
+    case EventKind::kDocked:
+      return MomentKind::kDocking;
+    case EventKind::kStationReached:
+    case EventKind::kGoalReached:
+      return MomentKind::kGoal;
+    case EventKind::kMappingCompleted:
+    case EventKind::kNavigationStarted:
+    case EventKind::kMissionCompleted:
+      return MomentKind::kMission;
+    default:
+      return std::nullopt;
   }
-  return std::nullopt;
 }
 
 std::string title_of(const Event& event) {
-  if (event.kind == "alarm") return fmt::format("Leak at {}: {:.0f} ppm m of methane", spoken(event.subject), event.value);
-  if (event.kind == "relocalized") return fmt::format("Knows where it is again, after {:.1f} s", event.value);
-  if (event.kind == "lost") return "Does not know where it is";
+  if (event.kind == EventKind::kGasAlarm) return fmt::format("Leak at {}: {:.0f} ppm m of methane", spoken(event.subject), event.value);
+  if (event.kind == EventKind::kRelocalized) return fmt::format("Knows where it is again, after {:.1f} s", event.value);
+  if (event.kind == EventKind::kLocalizationLost) return "Does not know where it is";
   return without_full_stop(event.text);
 }
 
 void add_events(const RunHistory& history, const Pose2& T_world_map, Moments& moments) {
   for (const Event& event : history.events) {
-    const std::optional<MomentKind> kind = kind_of(event.kind);
+    const std::optional<MomentKind> kind = moment_of(event.kind);
     if (!kind) continue;
     Moment moment{.at = event.stamp, .kind = *kind, .title = title_of(event)};
     if (*kind == MomentKind::kAlarm) moment.p_world_subject = T_world_map * event.p_map_target;

@@ -79,7 +79,7 @@ TEST_F(Reported, AnEventKeepsItsWordsFigureAndPlace) {
   reporter_.begin(files_);
   Event event;
   event.stamp = std::chrono::seconds(2);
-  event.kind = "alarm";
+  event.kind = EventKind::kGasAlarm;
   event.subject = "well_1";
   event.text = "Leak.";
   event.value = 640.0;

@@ -80,7 +80,7 @@ WaterResult water_at(Time stamp) {
 
 std::string name_of_station(bool is_tunnel, int number) { return fmt::format("{}_{}", is_tunnel ? "station" : "valve_well", number); }
 
-Event event_at(Time stamp, const std::string& kind, const std::string& subject, const std::string& text, double value, const Pose2& at) {
+Event event_at(Time stamp, EventKind kind, const std::string& subject, const std::string& text, double value, const Pose2& at) {
   return {.stamp = stamp, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = at, .p_map_target = at.position() + Eigen::Vector2d(0.5, 2.5)};
 }
 
@@ -111,15 +111,15 @@ class Drive {
  private:
   void arrive(Time stamp, int number, const Pose2& at) {
     const std::string name = name_of_station(is_tunnel_, number);
-    reporter_.see(app::StackMessage(event_at(stamp, "station_reached", name, fmt::format("At {}.", name), 0.0, at)));
+    reporter_.see(app::StackMessage(event_at(stamp, EventKind::kStationReached, name, fmt::format("At {}.", name), 0.0, at)));
     if (is_tunnel_) {
       reporter_.see(app::StackMessage(lining_at(stamp, name, 1 + 12 * (number - 1), 1.5 * number + 0.9 * (variant_ % 8))));
       if (number == 4) reporter_.see(app::StackMessage(water_at(stamp)));
       return;
     }
     const double column = number == 3 ? 640.0 + 10.0 * variant_ : 4.0 + number + variant_ % 5;
-    reporter_.see(app::StackMessage(event_at(stamp, "gas_measured", name, fmt::format("{}: {:.0f} ppm m of methane.", name, column), column, at)));
-    if (column > 200.0) reporter_.see(app::StackMessage(event_at(stamp, "alarm", name, fmt::format("Leak at {}: {:.0f} ppm m of methane.", name, column), column, at)));
+    reporter_.see(app::StackMessage(event_at(stamp, EventKind::kGasMeasured, name, fmt::format("{}: {:.0f} ppm m of methane.", name, column), column, at)));
+    if (column > 200.0) reporter_.see(app::StackMessage(event_at(stamp, EventKind::kGasAlarm, name, fmt::format("Leak at {}: {:.0f} ppm m of methane.", name, column), column, at)));
   }
 
   app::Reporter& reporter_;

@@ -34,8 +34,8 @@ std::vector<std::string> titles_of(const render::Page& page) {
   return titles;
 }
 
-Event event_at(double at_s, const std::string& kind, const std::string& text = "") {
-  return {.stamp = from_seconds(at_s), .kind = kind, .subject = "box", .text = text, .T_map_body = {}};
+Event event_at(double at_s, EventKind kind) {
+  return {.stamp = from_seconds(at_s), .kind = kind, .subject = "box", .text = "", .T_map_body = {}};
 }
 
 TEST(RunPage, BeginsWithTheVerdict) {
@@ -51,8 +51,9 @@ TEST(RunPage, IsTheSameBytesTwice) {
 TEST(RunPage, NamesAndEventsOfARunAreNoMarkup) {
   RunContents run = small_run();
   run.name = run.made_by = run.scenario.mission = "<img src=x>";
-  run.record.events = {event_at(1.0, "</script><b>", "<img src=x>")};
-  run.record.events[0].subject = "<img src=x>";
+  run.record.events = {event_at(1.0, EventKind::kForeign)};
+  run.record.events[0].foreign_kind = "</script><b>";
+  run.record.events[0].subject = run.record.events[0].text = "<img src=x>";
   run.record.collisions = {{.stamp = from_seconds(2.0), .first = "<img src=x>", .second = "</script>"}};
   const std::string html = render::to_html(run_page(run, "report.html"));
   EXPECT_THAT(html, Not(HasSubstr("<img")));
@@ -119,7 +120,7 @@ TEST(ErrorBlocks, ShadeFaultsAndWhereTheRobotSaysThatItIsLost) {
 
 TEST(Occasions, HaveALaneForEachKindAndMarkTroublesOnTheCurves) {
   RunContents run = small_run();
-  run.record.events = {event_at(1.0, "station_reached"), event_at(2.0, "alarm"), event_at(3.0, "station_reached"), event_at(4.0, "recovery")};
+  run.record.events = {event_at(1.0, EventKind::kStationReached), event_at(2.0, EventKind::kGasAlarm), event_at(3.0, EventKind::kStationReached), event_at(4.0, EventKind::kRecovery)};
   run.record.collisions = {{.stamp = from_seconds(5.0), .first = "trunk", .second = "wall"}};
   std::vector<std::string> names;
   for (const auto& lane : lanes_of(run)) names.push_back(lane.name);
@@ -141,7 +142,7 @@ TEST(MapBlocks, DrawThePathsInWorldAndBreakThemWhereTheRobotIsLifted) {
 
 TEST(MapBlocks, MarkAPlaceOnceAndJoinWhatLiesTogether) {
   RunContents run = small_run();
-  run.record.events = {event_at(0.5, "station_reached"), event_at(8.0, "docked"), event_at(8.1, "docked")};
+  run.record.events = {event_at(0.5, EventKind::kStationReached), event_at(8.0, EventKind::kDocked), event_at(8.1, EventKind::kDocked)};
   const std::vector<render::MapMark> marks = blocks_of<render::MapBlock>(map_blocks(run)).at(0).marks;
   ASSERT_EQ(marks.size(), 2u);
   EXPECT_EQ(marks[0].label, "start, box");

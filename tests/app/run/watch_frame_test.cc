@@ -28,7 +28,7 @@ std::size_t lines_of(const std::string& frame) { return static_cast<std::size_t>
 TEST(WatchFrame, FillsTheTerminalExactly) {
   WatchedRun run = in_a_field();
   EXPECT_EQ(lines_of(watch_frame(run, kColumns, kRows)), static_cast<std::size_t>(kRows));
-  for (int i = 0; i < 30; ++i) run.events.push_back({.stamp = {}, .kind = "alarm", .subject = "", .text = std::string(200, 'x'), .T_map_body = {}});
+  for (int i = 0; i < 30; ++i) run.events.push_back({.stamp = {}, .kind = EventKind::kGasAlarm, .subject = "", .text = std::string(200, 'x'), .T_map_body = {}});
   EXPECT_EQ(lines_of(watch_frame(run, kColumns, kRows)), static_cast<std::size_t>(kRows));
 }
 
@@ -60,7 +60,7 @@ TEST(WatchFrame, TellsTheErrorOfTheEstimateBesideItsOwnDeviation) {
 TEST(WatchFrame, TheNewestEventsStay) {
   WatchedRun run = in_a_field();
   for (const char* text : {"first", "second", "third", "fourth", "fifth"}) {
-    run.events.push_back({.stamp = {}, .kind = "", .subject = "", .text = text, .T_map_body = {}});
+    run.events.push_back({.stamp = {}, .subject = "", .text = text, .T_map_body = {}});
   }
   EXPECT_THAT(watch_frame(run, kColumns, kRows), HasSubstr("fifth"));
   EXPECT_THAT(watch_frame(run, kColumns, kRows), Not(HasSubstr("first")));

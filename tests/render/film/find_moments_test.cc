@@ -47,7 +47,7 @@ TEST(FindMoments, TheLargestErrorIsOne) {
 
 TEST(FindMoments, ALiningAlarmIsOneAndLooksAtTheRing) {
   RunHistory history = quiet_minute();
-  history.events.push_back({.stamp = 20s, .kind = "lining_alarm", .subject = "ring_31", .text = "Ring 31 has moved inwards by 12.0 mm.", .T_map_body = {}, .p_map_target = {3.0, 4.0}});
+  history.events.push_back({.stamp = 20s, .kind = EventKind::kLiningAlarm, .subject = "ring_31", .text = "Ring 31 has moved inwards by 12.0 mm.", .T_map_body = {}, .p_map_target = {3.0, 4.0}});
   const std::vector<Moment> moments = moments_of(history);
   ASSERT_THAT(instants(moments, MomentKind::kAlarm), ElementsAre(20s));
   EXPECT_EQ(moments[0].title, "Ring 31 has moved inwards by 12.0 mm");
@@ -100,14 +100,14 @@ TEST(FindMoments, ALeapOfTheTruthIsAKidnapAndNotACorrection) {
 
 TEST(FindMoments, EventsComeWithTheirOwnWords) {
   RunHistory history = quiet_minute();
-  const auto say = [&](Time at, const char* kind, const char* subject, const char* text, double value) {
+  const auto say = [&](Time at, EventKind kind, const char* subject, const char* text, double value) {
     history.events.push_back({.stamp = at, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = {}, .p_map_target = {3.0, 1.0}});
   };
-  say(10s, "goal_reached", "goal_1", "At goal_1.", 1.0);
-  say(20s, "alarm", "box_2", "Leak at box_2: 4070 ppm m.", 4070.2);
-  say(25s, "replan", "", "Something stands on the path.", 0.0);
-  say(30s, "docked", "", "Docked at the charging post.", 1.0);
-  say(40s, "lost", "", "The robot does not know where it is.", 0.0);
+  say(10s, EventKind::kGoalReached, "goal_1", "At goal_1.", 1.0);
+  say(20s, EventKind::kGasAlarm, "box_2", "Leak at box_2: 4070 ppm m.", 4070.2);
+  say(25s, EventKind::kReplan, "", "Something stands on the path.", 0.0);
+  say(30s, EventKind::kDocked, "", "Docked at the charging post.", 1.0);
+  say(40s, EventKind::kLocalizationLost, "", "The robot does not know where it is.", 0.0);
   const std::vector<Moment> moments = find_moments(history, {10.0, 0.0, 0.0});
   std::vector<std::string> titles;
   for (const Moment& moment : moments) titles.push_back(moment.title);

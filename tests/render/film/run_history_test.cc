@@ -27,7 +27,7 @@ TEST(RunHistory, IsWhatTheLogTellsOfTheWholeRun) {
     log.write(now, state);
   }
   log.write(1s, Collision{1s, "trunk", "wall"});
-  log.write(1s, Event{.stamp = 1s, .kind = "docked", .subject = "", .text = "Docked.", .value = 0.0, .T_map_body = {}, .p_map_target = {}});
+  log.write(1s, Event{.stamp = 1s, .kind = EventKind::kDocked, .subject = "", .text = "Docked.", .value = 0.0, .T_map_body = {}, .p_map_target = {}});
   log.close();
   const RunHistory history = read_run_history(folder / "log.mcap", *model, {4.0, 2.0, 0.0});
   EXPECT_EQ(history.num_states, 50);

@@ -1,0 +1,36 @@
+#include "app/study/log_mapper.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/thread_clock.h"
+#include "io/run_log.h"
+
+namespace patrol::app {
+
+LogMapper::LogMapper(const stack::StackSettings& settings, const RobotDescription& robot, std::uint64_t seed)
+    : pipeline_(settings, robot, {}, {}, seed) {}
+
+void LogMapper::map(const std::filesystem::path& log_mcap) {
+  io::LogHandlers handlers;
+  handlers.imu = [&](Time, const Imu& imu) { pipeline_.add(imu, output_); };
+  handlers.joints = [&](Time, const JointState& joints) { pipeline_.add(joints, output_); };
+  handlers.contacts = [&](Time, const FootContacts& contacts) { pipeline_.add(contacts, output_); };
+  handlers.ticks = [&](Time, const TrackTicks& ticks) { pipeline_.add(ticks, output_); };
+  handlers.scan = [&](Time, const LaserScan& scan) { handle(scan); };
+  io::read_run_log(log_mcap, handlers);
+  if (T_map_body_.empty()) throw InputError(fmt::format("{}: no scan in it could be mapped", log_mcap.string()));
+}
+
+void LogMapper::handle(const LaserScan& raw) {
+  pipeline_.update_odometry();
+  const std::optional<LevelScan> scan = pipeline_.level(raw, output_);
+  if (!scan) return;
+  const double start_s = thread_seconds();
+  const stack::ScanPose pose = pipeline_.localize(*scan, output_);
+  seconds_ += thread_seconds() - start_s;
+  T_map_body_.push_back({.stamp = scan->stamp, .pose = to_spatial(pose.T_map_body)});
+  output_.take_messages();
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "core/robot_description.h"
+#include "core/trajectory.h"
+#include "stack/localization/pose_pipeline.h"
+
+namespace patrol::app {
+
+/// Map and poses that the stack's pose pipeline makes of a recorded log, with other settings than those of the run.
+/// Nothing steers by it.
+class LogMapper {
+ public:
+  LogMapper(const stack::StackSettings& settings, const RobotDescription& robot, std::uint64_t seed);
+
+  /// Throws InputError when the log is damaged, or made no map.
+  void map(const std::filesystem::path& log_mcap);
+
+  const Trajectory& T_map_body() const { return T_map_body_; }  ///< at every scan
+  OccupancyGrid map() { return pipeline_.map(); }
+  double seconds() const { return seconds_; }  ///< processor time of SLAM
+
+ private:
+  void handle(const LaserScan& scan);
+
+  stack::PosePipeline pipeline_;
+  stack::StackOutput output_;
+  Trajectory T_map_body_;
+  double seconds_ = 0.0;
+};
+
+}  // namespace patrol::app

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "core/robot_description.h"
+#include "inspect/gas_measurement.h"
+#include "stack/instruments/instrument.h"
+
+namespace patrol::stack {
+
+/// Rules of a methane measurement at a station (settings: gas_mission_settings.h).
+struct GasRules {
+  double settle_s = 0.5;
+  double measure_s = 3.0;
+  double max_measure_s = 8.0;
+  int min_readings = 10;
+  double alarm_column_ppm_m = 200.0;
+};
+
+/// Open-path methane meter: averages the columns that it reads while the robot stands, and raises the alarm where the
+/// mean exceeds the threshold by two standard errors.
+///
+/// Events: gas_measured (value: column, ppm m), alarm (value: column; target: the point of the beam nearest to the
+/// inspected place).
+class GasInstrument final : public Instrument {
+ public:
+  /// `T_body_gas`: the methane meter, which looks along its x axis.
+  GasInstrument(const GasRules& rules, const Pose3& T_body_gas) : rules_(rules), T_body_gas_(T_body_gas) {}
+
+  InstrumentKind kind() const override { return InstrumentKind::kGas; }
+  void add(const SensorMessage& message, const PlaceLookup& place_at) override;
+  void begin(const InspectionOrder& order, Time now) override;
+  InspectionProgress step(const InspectionContext& context) override;
+
+ private:
+  void report(const InspectionContext& context) const;
+  Eigen::Vector2d closest_point_on_beam(const Pose2& T_map_body) const;
+
+  GasRules rules_;
+  Pose3 T_body_gas_;
+  InspectionOrder order_;
+  std::optional<GasReading> newest_;
+  inspect::GasMeasurement measurement_;
+};
+
+}  // namespace patrol::stack

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "core/messages.h"
+#include "stack/instruments/inspection_order.h"
+#include "stack/instruments/standing_place.h"
+#include "stack/instruments/warning_light.h"
+
+namespace patrol::stack {
+
+/// Pose of the body at a recent instant; none outside of what odometry covers.
+using PlaceLookup = std::function<std::optional<StandingPlace>(Time)>;
+
+/// State of the robot in a control period, and the outputs that an instrument may use.
+struct InspectionContext {
+  Time now{};
+  StandingPlace place;
+  StackOutput& output;
+  WarningLight& light;
+
+  /// Publishes an event of this control period.
+  void publish_event(EventKind kind, const std::string& subject, const std::string& text, double value,
+                     const Eigen::Vector2d& p_map) const {
+    output.publish(Event{.stamp = now,
+                         .kind = kind,
+                         .subject = subject,
+                         .text = text,
+                         .value = value,
+                         .T_map_body = place.T_map_body,
+                         .p_map_target = p_map});
+  }
+};
+
+/// Interface of an inspection instrument with its evaluation: it carries out one order after another.
+class Instrument {
+ public:
+  virtual ~Instrument() = default;
+
+  virtual InstrumentKind kind() const = 0;
+  /// Every sensor message; an instrument ignores the types that it does not use.
+  virtual void add(const SensorMessage& message, const PlaceLookup& place_at) = 0;
+  /// Starts an order and drops the one before.
+  virtual void begin(const InspectionOrder& order, Time now) = 0;
+  /// Works on the order. Called once a control period while there is one.
+  virtual InspectionProgress step(const InspectionContext& context) = 0;
+  /// Ends the order, done or not.
+  virtual void end() {}
+};
+
+}  // namespace patrol::stack

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "stack/instruments/instrument.h"
+
+namespace patrol::stack {
+
+/// The robot's instruments; passes each order to the instrument of its kind.
+class InstrumentSet {
+ public:
+  InstrumentSet(std::vector<std::unique_ptr<Instrument>> instruments, double siren_s);
+
+  void add(const SensorMessage& message, const PlaceLookup& place_at);
+  /// Works on `order` for a control period. A new order starts at once; none ends the one before. An order for an
+  /// instrument that the robot does not have fails.
+  InspectionProgress step(Time now, const std::optional<InspectionOrder>& order, const StandingPlace& place,
+                          StackOutput& output);
+
+ private:
+  Instrument* find(InstrumentKind kind) const;
+
+  std::vector<std::unique_ptr<Instrument>> instruments_;
+  WarningLight light_;
+  std::optional<InspectionOrder> order_;
+};
+
+}  // namespace patrol::stack

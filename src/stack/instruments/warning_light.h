@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+
+#include "stack/output/stack_output.h"
+
+namespace patrol::stack {
+
+/// Warning light and siren. The light stays on from the first warning; the siren sounds for a time at every alarm.
+class WarningLight {
+ public:
+  explicit WarningLight(double siren_s) : siren_s_(siren_s) {}
+
+  void warn(Time now, WarningLevel level, StackOutput& output);
+  /// Switches the siren off when its time is over. Call once a control period.
+  void step(Time now, StackOutput& output);
+
+ private:
+  double siren_s_;
+  WarningLevel warned_ = WarningLevel::kNone;
+  std::optional<Time> siren_until_;
+};
+
+}  // namespace patrol::stack

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "localize/amcl/monte_carlo.h"
+#include "stack/localization/localizer.h"
+
+namespace patrol::stack {
+
+/// Monte Carlo localization on a map that does not change.
+class KnownMapLocalizer final : public Localizer {
+ public:
+  /// `anchors_in_map` with heights above the body's origin.
+  KnownMapLocalizer(const localize::MonteCarloSettings& settings, OccupancyGrid map,
+                    const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb, std::uint64_t seed);
+
+  void add(const RangeWithOdometry& range) override { localizer_.add(range.range, range.T_odom_body); }
+  PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override;
+  OccupancyGrid map() override { return map_; }
+  bool is_mapping() const override { return false; }
+  bool is_lost() const override { return trust_.is_lost; }
+  bool knows_pose() const override { return trust_.stamp > Time{} && !trust_.is_lost; }
+  void start_at(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) override {
+    localizer_.start_at(T_map_body, covariance);
+  }
+  void start_anywhere() override { localizer_.start_anywhere(); }
+
+ private:
+  OccupancyGrid map_;
+  localize::MonteCarloLocalizer localizer_;
+  LocalizationTrust trust_{.trust = 1.0};  ///< of the newest scan
+};
+
+}  // namespace patrol::stack

@@ -1,0 +1,56 @@
+#include "stack/localization/make_localizer.h"
+
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "stack/localization/known_map_localizer.h"
+#include "stack/localization/map_then_localize.h"
+#include "stack/localization/slam_localizer.h"
+
+namespace patrol::stack {
+namespace {
+
+std::optional<Pose3> antenna_of(const RobotDescription& robot) {
+  const auto frame = robot.T_body_sensor.find("uwb");
+  return frame == robot.T_body_sensor.end() ? std::nullopt : std::optional(frame->second);
+}
+
+/// Monte Carlo localization counts heights from the body's origin.
+std::vector<UwbAnchor> anchors_above_body(std::vector<UwbAnchor> anchors, double height_above_ground_m) {
+  for (UwbAnchor& anchor : anchors) anchor.p_m.z() -= height_above_ground_m;
+  return anchors;
+}
+
+std::string method_of(const StackSettings& settings, const LocalizerStart& start) {
+  if (settings.localizer != "automatic") return settings.localizer;
+  if (start.map) return "monte_carlo";
+  return start.has_mapping_drive ? "slam_then_monte_carlo" : "slam";
+}
+
+}  // namespace
+
+std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const RobotDescription& robot,
+                                          const Route& site_in_map, const LocalizerStart& start, std::uint64_t seed) {
+  const std::string method = method_of(settings, start);
+  const auto refuse = [&](const char* why) { throw InputError(fmt::format("stack.localizer = {}: {}", method, why)); };
+  const std::optional<Pose3> T_body_uwb = antenna_of(robot);
+  const auto on_map = [settings = settings.localization,
+                       anchors = anchors_above_body(site_in_map.anchors, start.height_above_ground_m), T_body_uwb,
+                       seed](OccupancyGrid map) -> std::unique_ptr<Localizer> {
+    return std::make_unique<KnownMapLocalizer>(settings, std::move(map), anchors, T_body_uwb.value_or(Pose3{}), seed);
+  };
+  if (method == "monte_carlo") {
+    if (!start.map) refuse("there is no map: give one by the key map, or choose slam or slam_then_monte_carlo");
+    return on_map(*start.map);
+  }
+  if (start.map) refuse("a map is given, and another would be made: leave the key map empty, or choose monte_carlo");
+  auto slam = std::make_unique<SlamLocalizer>(make_mapper(settings, seed), site_in_map.anchors, T_body_uwb);
+  if (method == "slam") return slam;
+  if (!start.has_mapping_drive) refuse("there is no drive by remote control that makes the map: choose slam");
+  return std::make_unique<MapThenLocalize>(std::move(slam), on_map);
+}
+
+}  // namespace patrol::stack

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "stack/localization/localizer.h"
+
+namespace patrol::stack {
+
+/// SLAM until the map is finished, Monte Carlo localization on that map from then on.
+class MapThenLocalize final : public Localizer {
+ public:
+  using OnMap = std::function<std::unique_ptr<Localizer>(OccupancyGrid)>;
+
+  /// `on_map` makes the localizer for the finished map.
+  MapThenLocalize(std::unique_ptr<Localizer> slam, OnMap on_map);
+
+  void add(const RangeWithOdometry& range) override { current_->add(range); }
+  PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override {
+    return current_->update(scan, T_odom_body, output);
+  }
+  OccupancyGrid map() override { return current_->map(); }
+  bool is_mapping() const override { return current_->is_mapping(); }
+  bool is_lost() const override { return current_->is_lost(); }
+  bool knows_pose() const override { return current_->knows_pose(); }
+  void finish_map(const PoseEstimate& pose) override;
+  void start_at(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) override {
+    current_->start_at(T_map_body, covariance);
+  }
+  void start_anywhere() override { current_->start_anywhere(); }
+
+ private:
+  std::unique_ptr<Localizer> current_;
+  OnMap on_map_;
+};
+
+}  // namespace patrol::stack

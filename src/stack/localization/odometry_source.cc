@@ -1,0 +1,71 @@
+#include "stack/localization/odometry_source.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "localize/map_pose_tracker.h"
+
+namespace patrol::stack {
+namespace {
+
+/// Odometry by IMU, joint encoders and foot forces.
+class LeggedOdometry final : public OdometrySource {
+ public:
+  LeggedOdometry(const RobotDescription& robot, const StackSettings& settings) : estimator_(robot, settings.odometry) {}
+
+  void add(const SensorMessage& message) override {
+    if (const auto* imu = std::get_if<Imu>(&message)) estimator_.add(*imu);
+    if (const auto* joints = std::get_if<JointState>(&message)) estimator_.add(*joints);
+    if (const auto* contacts = std::get_if<FootContacts>(&message)) estimator_.add(*contacts);
+  }
+  std::optional<OdometryEstimate> estimate() const override { return estimator_.estimate(); }
+  std::optional<Pose3> T_odom_body_at(Time stamp) const override { return estimator_.T_odom_body_at(stamp); }
+  double height_above_ground_m() const override { return estimator_.height_above_ground_m(); }
+  /// By the drift that the pose in map assumes between two corrections.
+  Eigen::Vector3d twist_std() const override {
+    const localize::OdometryDrift drift;
+    const std::optional<OdometryEstimate> now = estimator_.estimate();
+    if (!now) return Eigen::Vector3d::Zero();
+    const double speed_mps = now->twist.linear.head<2>().norm(), yaw_rate_radps = std::abs(now->twist.angular.z());
+    const double way_std_mps = drift.way_std_m_per_m * speed_mps;
+    return {way_std_mps, way_std_mps,
+            drift.turn_std_rad_per_m * speed_mps + drift.turn_std_rad_per_rad * yaw_rate_radps};
+  }
+
+ private:
+  localize::BodyEstimator estimator_;
+};
+
+/// Odometry by IMU and the counters of the tracks.
+class TrackedOdometry final : public OdometrySource {
+ public:
+  TrackedOdometry(const RobotDescription& robot, const StackSettings& settings)
+      : odometry_(robot, settings.track_odometry) {}
+
+  void add(const SensorMessage& message) override {
+    if (const auto* imu = std::get_if<Imu>(&message)) odometry_.add(*imu);
+    if (const auto* ticks = std::get_if<TrackTicks>(&message)) odometry_.add(*ticks);
+  }
+  std::optional<OdometryEstimate> estimate() const override { return odometry_.estimate(); }
+  std::optional<Pose3> T_odom_body_at(Time stamp) const override { return odometry_.T_odom_body_at(stamp); }
+  double height_above_ground_m() const override { return odometry_.height_above_ground_m(); }
+  Eigen::Vector3d twist_std() const override { return odometry_.twist_std(); }
+
+ private:
+  localize::TrackOdometry odometry_;
+};
+
+}  // namespace
+
+std::unique_ptr<OdometrySource> make_odometry_source(const StackSettings& settings, const RobotDescription& robot) {
+  if (settings.odometry_source == "tracked") return std::make_unique<TrackedOdometry>(robot, settings);
+  if (robot.legs.empty()) {
+    throw InputError(
+        fmt::format("stack.odometry_source = {}: the robot {} has no legs", settings.odometry_source, robot.name));
+  }
+  return std::make_unique<LeggedOdometry>(robot, settings);
+}
+
+}  // namespace patrol::stack

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/messages.h"
+#include "core/robot_description.h"
+#include "stack/settings/stack_settings.h"
+
+namespace patrol::stack {
+
+/// Interface of an odometry: pose of the body in `odom` from the robot's proprioceptive sensors.
+class OdometrySource {
+ public:
+  virtual ~OdometrySource() = default;
+
+  /// Every sensor message; a source ignores the types that it does not use.
+  virtual void add(const SensorMessage& message) = 0;
+  /// Newest estimate; none before the source has settled.
+  virtual std::optional<OdometryEstimate> estimate() const = 0;
+  /// Pose at an instant of the last seconds, or slightly after the newest reading; none outside of that.
+  virtual std::optional<Pose3> T_odom_body_at(Time stamp) const = 0;
+  /// Height of the body's origin above the ground, m.
+  virtual double height_above_ground_m() const = 0;
+  /// Standard deviation of the systematic errors of the velocity, in body: ahead m/s, to the left m/s, yaw rate rad/s.
+  virtual Eigen::Vector3d twist_std() const = 0;
+};
+
+/// Makes the source that `settings.odometry_source` names. Throws InputError if the robot does not have what the source
+/// needs.
+std::unique_ptr<OdometrySource> make_odometry_source(const StackSettings& settings, const RobotDescription& robot);
+
+}  // namespace patrol::stack

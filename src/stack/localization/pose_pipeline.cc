@@ -1,0 +1,94 @@
+#include "stack/localization/pose_pipeline.h"
+
+#include <utility>
+
+namespace patrol::stack {
+namespace {
+
+// Accuracy with which a robot stands at its post, or where it was put down.
+constexpr double kSurveyedPosition_m = 0.03;
+constexpr double kSurveyedYaw_rad = 0.02;
+
+}  // namespace
+
+Eigen::Matrix3d PosePipeline::surveyed_covariance() {
+  return Eigen::Vector3d(kSurveyedPosition_m * kSurveyedPosition_m, kSurveyedPosition_m * kSurveyedPosition_m,
+                         kSurveyedYaw_rad * kSurveyedYaw_rad)
+      .asDiagonal();
+}
+
+PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
+                           LocalizerStart start, std::uint64_t seed)
+    : settle_(from_seconds(settings.settle_s)),
+      odometry_(make_odometry_source(settings, robot)),
+      leveler_(robot.T_body("lidar"), settings.leveling) {
+  start.height_above_ground_m = odometry_->height_above_ground_m();
+  localizer_ = make_localizer(settings, robot, site_in_map, start, seed);
+  if (robot.T_body_sensor.contains("uwb"))
+    range_pose_.emplace(settings.range_filter, site_in_map.anchors, robot.T_body("uwb"));
+}
+
+void PosePipeline::add(const SensorMessage& message, StackOutput& output) {
+  if (const auto* range = std::get_if<UwbRange>(&message)) return add_range(*range);
+  const auto lap = output.lap("odometry");
+  odometry_->add(message);
+}
+
+void PosePipeline::add_range(const UwbRange& range) {
+  const std::optional<Pose3> T_odom_body = odometry_->T_odom_body_at(range.stamp);
+  if (!T_odom_body) return;
+  if (range_pose_) range_pose_->add(range, *T_odom_body);
+  localizer_->add(
+      {.range = range, .T_odom_body = *T_odom_body, .height_above_ground_m = odometry_->height_above_ground_m()});
+}
+
+std::optional<OdometryEstimate> PosePipeline::update_odometry() {
+  std::optional<OdometryEstimate> odometry = odometry_->estimate();
+  if (odometry && !first_odometry_) first_odometry_ = odometry->stamp;
+  return odometry;
+}
+
+std::optional<LevelScan> PosePipeline::level(const LaserScan& scan, StackOutput& output) const {
+  if (!has_settled(scan.stamp)) return std::nullopt;
+  const auto lap = output.lap("odometry");
+  return leveler_.level(
+      scan, [this](Time stamp) { return odometry_->T_odom_body_at(stamp); }, odometry_->height_above_ground_m());
+}
+
+ScanPose PosePipeline::localize(const LevelScan& scan, StackOutput& output) {
+  const Pose2 T_odom_body = to_planar(*odometry_->T_odom_body_at(scan.stamp));
+  const PoseEstimate estimate = localizer_->update(scan, T_odom_body, output);
+  tracker_.correct(scan.stamp, T_odom_body, estimate.T_map_body, estimate.covariance);
+  return {.T_odom_body = T_odom_body, .T_map_body = tracker_.at(scan.stamp, T_odom_body).T_map_body};
+}
+
+/// Begins where the robot first knows its pose; the estimates are published from the first scan on, as the other poses
+/// are.
+void PosePipeline::publish_range_pose(const OdometryEstimate& odometry, const PoseEstimate& pose, StackOutput& output) {
+  if (!range_pose_ || !range_pose_->has_anchors()) return;
+  if (!range_pose_->has_started()) {
+    if (!localizer_->knows_pose()) return;
+    range_pose_->start_at(odometry, odometry_->height_above_ground_m(), pose.T_map_body,
+                          localizer_->is_mapping() ? surveyed_covariance() : pose.covariance);
+  }
+  const RangePoseEstimate estimate = range_pose_->predict(odometry, odometry_->twist_std());
+  if (has_settled(odometry.stamp)) output.publish(estimate);
+}
+
+std::optional<StandingPlace> PosePipeline::place_at(Time stamp) const {
+  const std::optional<Pose3> T_odom_body = odometry_->T_odom_body_at(stamp);
+  if (!T_odom_body) return std::nullopt;
+  const Eigen::Quaterniond tilt = quaternion_from_yaw(-yaw_of(T_odom_body->rotation)) * T_odom_body->rotation;
+  return StandingPlace{.T_level_body = {{0.0, 0.0, odometry_->height_above_ground_m()}, tilt},
+                       .T_map_body = tracker_.at(stamp, to_planar(*T_odom_body)).T_map_body};
+}
+
+void PosePipeline::restart_at(const Pose2& T_map_body, const OdometryEstimate& odometry) {
+  localizer_->start_at(T_map_body, surveyed_covariance());
+  tracker_ = localize::MapPoseTracker();
+  tracker_.correct(odometry.stamp, to_planar(odometry.T_odom_body), T_map_body, surveyed_covariance());
+  if (range_pose_)
+    range_pose_->start_at(odometry, odometry_->height_above_ground_m(), T_map_body, surveyed_covariance());
+}
+
+}  // namespace patrol::stack

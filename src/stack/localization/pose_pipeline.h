@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "core/messages.h"
+#include "core/robot_description.h"
+#include "core/route.h"
+#include "localize/map_pose_tracker.h"
+#include "localize/scan_leveler.h"
+#include "stack/instruments/standing_place.h"
+#include "stack/localization/make_localizer.h"
+#include "stack/localization/odometry_source.h"
+#include "stack/localization/range_pose_tracker.h"
+
+namespace patrol::stack {
+
+/// Pose of the body in `map` and in `odom` at a scan.
+struct ScanPose {
+  Pose2 T_odom_body;
+  Pose2 T_map_body;
+};
+
+/// Odometry source, scan leveling and localizer in series: sensor messages to the pose in `map`, and the map.
+class PosePipeline {
+ public:
+  /// Covariance of a surveyed pose, at which the robot has been placed.
+  static Eigen::Matrix3d surveyed_covariance();
+
+  /// `start.height_above_ground_m` is taken from the odometry source. Throws InputError when settings, robot and map do
+  /// not go together.
+  PosePipeline(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
+               LocalizerStart start, std::uint64_t seed);
+
+  /// Every sensor message but the scans, which `level` and `localize` process.
+  void add(const SensorMessage& message, StackOutput& output);
+  /// Newest odometry. Call once a tick: the first estimate starts the time that odometry gets to settle.
+  std::optional<OdometryEstimate> update_odometry();
+  /// None before odometry has settled: the first scan makes the map's origin.
+  std::optional<LevelScan> level(const LaserScan& scan, StackOutput& output) const;
+  /// Corrects the pose by a scan and publishes the estimates.
+  ScanPose localize(const LevelScan& scan, StackOutput& output);
+  /// Publishes the pose by odometry and UWB ranges alone, if the robot and the site have what it needs.
+  void publish_range_pose(const OdometryEstimate& odometry, const PoseEstimate& pose, StackOutput& output);
+
+  PoseEstimate pose_at(Time stamp, const Pose2& T_odom_body) const { return tracker_.at(stamp, T_odom_body); }
+  /// None outside of the time that odometry covers.
+  std::optional<StandingPlace> place_at(Time stamp) const;
+  OccupancyGrid map() { return localizer_->map(); }
+  bool is_mapping() const { return localizer_->is_mapping(); }
+  bool is_lost() const { return localizer_->is_lost(); }
+
+  void finish_map(const PoseEstimate& pose) { localizer_->finish_map(pose); }
+  void start_anywhere() { localizer_->start_anywhere(); }
+  /// Starts at the surveyed start, the origin of map, before the robot has moved.
+  void start_at_survey() { localizer_->start_at(Pose2{}, surveyed_covariance()); }
+  /// Starts again at a surveyed pose; every part forgets the pose before.
+  void restart_at(const Pose2& T_map_body, const OdometryEstimate& odometry);
+
+ private:
+  bool has_settled(Time stamp) const { return first_odometry_ && stamp >= *first_odometry_ + settle_; }
+  void add_range(const UwbRange& range);
+
+  Time settle_;
+  std::unique_ptr<OdometrySource> odometry_;
+  localize::ScanLeveler leveler_;
+  std::unique_ptr<Localizer> localizer_;
+  std::optional<RangePoseTracker> range_pose_;  ///< with a robot that has an antenna
+  localize::MapPoseTracker tracker_;
+  std::optional<Time> first_odometry_;
+};
+
+}  // namespace patrol::stack

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "core/messages.h"
+#include "core/uwb.h"
+#include "localize/range_filter.h"
+
+namespace patrol::stack {
+
+/// Pose by odometry and UWB ranges alone, from the first known pose on: a second estimate that decides nothing.
+class RangePoseTracker {
+ public:
+  RangePoseTracker(const localize::RangeFilterSettings& settings, const std::vector<UwbAnchor>& anchors_in_map,
+                   const Pose3& T_body_uwb)
+      : filter_(settings, anchors_in_map, T_body_uwb), has_anchors_(!anchors_in_map.empty()) {}
+
+  bool has_anchors() const { return has_anchors_; }
+  bool has_started() const { return filter_.has_started(); }
+  void start_at(const OdometryEstimate& odometry, double height_above_ground_m, const Pose2& T_map_body,
+                const Eigen::Matrix3d& covariance) {
+    filter_.start_at({.stamp = odometry.stamp, .T_map_body = T_map_body, .covariance = covariance},
+                     odometry.T_odom_body, height_above_ground_m);
+  }
+  void add(const UwbRange& range, const Pose3& T_odom_body) { filter_.add(range, T_odom_body); }
+  RangePoseEstimate predict(const OdometryEstimate& odometry, const Eigen::Vector3d& twist_std) {
+    filter_.predict(odometry.stamp, odometry.T_odom_body, twist_std);
+    return {filter_.estimate(odometry.stamp, odometry.T_odom_body)};
+  }
+
+ private:
+  localize::RangeFilter filter_;
+  bool has_anchors_;
+};
+
+}  // namespace patrol::stack

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/frames.h"
+#include "core/uwb.h"
+#include "slam/mapper.h"
+#include "stack/localization/localizer.h"
+
+namespace patrol::stack {
+
+/// Localization in the map that is being made.
+class SlamLocalizer final : public Localizer {
+ public:
+  /// `T_body_uwb`: the antenna; none for a robot without one, which ignores ranges.
+  SlamLocalizer(std::unique_ptr<slam::Mapper> mapper, std::vector<UwbAnchor> anchors_in_map,
+                const std::optional<Pose3>& T_body_uwb);
+
+  void add(const RangeWithOdometry& range) override;
+  PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override;
+  OccupancyGrid map() override { return mapper_->map(); }
+  bool is_mapping() const override { return true; }
+  bool is_lost() const override { return false; }
+  bool knows_pose() const override { return true; }
+
+ private:
+  std::unique_ptr<slam::Mapper> mapper_;
+  std::vector<UwbAnchor> anchors_;
+  std::optional<Pose3> T_body_uwb_;
+};
+
+}  // namespace patrol::stack

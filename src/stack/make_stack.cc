@@ -1,0 +1,89 @@
+#include "stack/make_stack.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+#include "stack/instruments/gas_instrument.h"
+#include "stack/instruments/water_instrument.h"
+#include "stack/mission/station_order.h"
+
+namespace patrol::stack {
+namespace {
+
+bool is_tunnel(const StackSettings& settings) { return settings.mission_type == "tunnel"; }
+
+std::unique_ptr<Mission> make_gas_mission(const StackSettings& settings, const RobotDescription& robot,
+                                          Route route_in_map, std::uint64_t seed) {
+  const auto& stations = route_in_map.stations;
+  if (std::any_of(stations.begin(), stations.end(), [](const Station& station) { return station.type == "inspect"; }))
+    robot.T_body("tdlas");
+  std::string about_order;
+  if (settings.mission.order == "best" && !route_in_map.stations.empty()) {
+    StationOrder order = order_stations(route_in_map, robot, settings.plan, settings.mission, seed);
+    route_in_map.stations = std::move(order.stations);
+    about_order = std::move(order.text);
+  }
+  return std::make_unique<GasMission>(settings.mission, std::move(route_in_map), std::move(about_order));
+}
+
+void check_goals(const std::vector<MarkedGoal>& goals, const RobotDescription& robot, const Route& site_in_map) {
+  if (std::none_of(goals.begin(), goals.end(), [](const MarkedGoal& goal) { return goal.type == 'D'; })) return;
+  if (!site_in_map.lining) throw InputError("tour: a goal is of type D, but the site's survey has no lining");
+  robot.T_body("scanner");
+}
+
+std::unique_ptr<Mission> make_tunnel_mission(const StackSettings& settings, const RobotDescription& robot,
+                                             const Route& site_in_map, const StackStart& start) {
+  auto mission = std::make_unique<TunnelMission>(settings.tour, start.goals, start.has_remote, start.map.has_value());
+  check_goals(start.goals, robot, site_in_map);
+  if (!start.map && !start.has_remote && settings.localizer == "automatic") {
+    throw InputError("tour: there is no map, and no remote control to make one");
+  }
+  const bool needs_dock = settings.tour.docks || (settings.tour.starts_docked && !settings.tour.starts_at_survey);
+  if (needs_dock && !site_in_map.dock) throw InputError("tour: docks, but the site's survey has no dock");
+  return mission;
+}
+
+std::unique_ptr<Mission> make_mission(const StackSettings& settings, const RobotDescription& robot,
+                                      const Route& site_in_map, const StackStart& start) {
+  if (is_tunnel(settings)) return make_tunnel_mission(settings, robot, site_in_map, start);
+  return make_gas_mission(settings, robot, site_in_map, start.seed);
+}
+
+/// Every instrument that the robot carries, and whose design data the survey has.
+InstrumentSet make_instruments(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
+                               StackStart& start) {
+  validate(settings.inspection, "inspection");
+  std::vector<std::unique_ptr<Instrument>> instruments;
+  const auto has = [&](const char* frame) { return robot.T_body_sensor.contains(frame); };
+  if (has("tdlas"))
+    instruments.push_back(std::make_unique<GasInstrument>(gas_rules(settings.mission), robot.T_body("tdlas")));
+  if (has("scanner") && site_in_map.lining) {
+    instruments.push_back(std::make_unique<LiningInstrument>(settings.inspection, *site_in_map.lining,
+                                                             robot.T_body("scanner"), std::move(start.references)));
+  }
+  if (robot.antenna)
+    instruments.push_back(std::make_unique<WaterInstrument>(settings.inspection.water, *robot.antenna, start.seed));
+  return InstrumentSet(std::move(instruments), settings.inspection.siren_s);
+}
+
+}  // namespace
+
+Stack make_stack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
+                 StackStart start) {
+  MotionExecutor motion(settings, robot, site_in_map, start.seed);
+  std::unique_ptr<Mission> mission = make_mission(settings, robot, site_in_map, start);
+  InstrumentSet instruments = make_instruments(settings, robot, site_in_map, start);
+  LocalizerStart localizer{.map = std::move(start.map), .has_mapping_drive = is_tunnel(settings) && start.has_remote};
+  return Stack({.pose = PosePipeline(settings, robot, site_in_map, std::move(localizer), start.seed),
+                .motion = std::move(motion),
+                .mission = std::move(mission),
+                .instruments = std::move(instruments),
+                .sensor_watch = SensorWatch(settings.sensor_watch),
+                .dock = site_in_map.dock,
+                .map_period_s = start.map_period_s});
+}
+
+}  // namespace patrol::stack

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/robot_description.h"
+#include "core/route.h"
+#include "stack/instruments/lining_instrument.h"
+#include "stack/settings/stack_settings.h"
+#include "stack/stack.h"
+
+namespace patrol::stack {
+
+/// Data that a stack starts from, beside the survey; all in map.
+struct StackStart {
+  std::optional<OccupancyGrid> map = {};  ///< none: the robot makes its own
+  std::vector<MarkedGoal> goals =
+      {};  ///< none: marked on a drive by remote control, or the mission visits the route's stations
+  LiningReferences references = {};  ///< scans of an earlier round
+  bool has_remote = false;           ///< a person may drive by remote control
+  double map_period_s = 5.0;
+  std::uint64_t seed = 0;
+};
+
+/// Composes a stack: the settings select odometry source, localizer and mission; the robot description and the survey
+/// select the instruments. `site_in_map`: the survey in map, whose origin is the level body pose at the start. Throws
+/// InputError when settings, robot, survey and start do not go together.
+Stack make_stack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
+                 StackStart start);
+
+}  // namespace patrol::stack

@@ -1,0 +1,134 @@
+#include "stack/mission/gas_mission.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace patrol::stack {
+
+GasRules gas_rules(const GasMissionSettings& settings) {
+  return {.settle_s = settings.settle_s,
+          .measure_s = settings.measure_s,
+          .max_measure_s = settings.max_measure_s,
+          .min_readings = settings.min_readings,
+          .alarm_column_ppm_m = settings.alarm_column_ppm_m};
+}
+
+GasMission::GasMission(const GasMissionSettings& settings, Route route_in_map, std::string about_order)
+    : settings_(settings), route_(std::move(route_in_map)), about_order_(std::move(about_order)) {
+  validate(settings, "mission");
+  if (route_.stations.empty()) throw InputError("the route has no station");
+}
+
+MissionOutput GasMission::step(Time now, const MissionInput& input) {
+  now_ = now;
+  T_map_body_ = input.pose.T_map_body;
+  MissionOutput output;
+  switch (phase_) {
+    case Phase::kWaiting:
+      wait(output);
+      break;
+    case Phase::kDriving:
+      drive(input.navigation, output);
+      break;
+    case Phase::kMeasuring:
+      measure(input.inspection, output);
+      break;
+    case Phase::kOver:
+      break;
+  }
+  output.task = task();
+  return output;
+}
+
+/// While measuring, the goal stays: the robot holds its place.
+Task GasMission::task() const {
+  Task task;
+  if (phase_ == Phase::kDriving || phase_ == Phase::kMeasuring) {
+    task.motion = Motion::kNavigate;
+    task.goal = goal_at(station());
+  }
+  if (phase_ == Phase::kMeasuring) {
+    task.inspection = InspectionOrder{.instrument = InstrumentKind::kGas,
+                                      .station = station().name,
+                                      .not_before = phase_start_,
+                                      .p_map_target = station().p_route_target.head<2>()};
+  }
+  return task;
+}
+
+Event GasMission::abort(Time now, EventKind kind, const std::string& text) {
+  now_ = now;
+  phase_ = Phase::kOver;
+  return event(kind, current_ < route_.stations.size() ? station().name : "", text);
+}
+
+void GasMission::wait(MissionOutput& output) {
+  if (now_ < from_seconds(settings_.start_wait_s)) return;
+  std::vector<std::string> names;
+  for (const Station& station : route_.stations) names.push_back(station.name);
+  const std::string stations = fmt::format("The mission starts: {} stations, {}.", names.size(), fmt::join(names, ", "));
+  output.events.push_back(event(EventKind::kMissionStarted, "", about_order_.empty() ? stations : stations + " " + about_order_));
+  phase_ = Phase::kDriving;
+  phase_start_ = now_;
+}
+
+void GasMission::drive(NavigationFeedback feedback, MissionOutput& output) {
+  if (now_ == phase_start_) return;  // the feedback is about the goal before
+  if (feedback == NavigationFeedback::kFailed) {
+    ++num_failed_;
+    output.events.push_back(event(EventKind::kStationFailed, station().name, fmt::format("No way to {}.", station().name)));
+    return next_station(output);
+  }
+  if (feedback != NavigationFeedback::kArrived) return;
+  output.events.push_back(event(EventKind::kStationReached, station().name, fmt::format("At {}.", station().name)));
+  if (const double late_s = to_seconds(now_) - station().latest_s; late_s > 0.0) {
+    output.events.push_back(event(EventKind::kStationLate, station().name, fmt::format("{:.0f} s late at {}.", late_s, station().name), late_s));
+  }
+  if (station().type != "inspect") return next_station(output);
+  phase_ = Phase::kMeasuring;
+  phase_start_ = std::max(now_, from_seconds(station().earliest_s));
+}
+
+void GasMission::measure(const InspectionProgress& progress, MissionOutput& output) {
+  if (progress.feedback == InspectionFeedback::kUnderWay) return;
+  if (progress.feedback == InspectionFeedback::kFailed) {
+    ++num_failed_;
+    output.events.push_back(event(EventKind::kStationFailed, station().name, progress.failure));
+  }
+  next_station(output);
+}
+
+void GasMission::next_station(MissionOutput& output) {
+  ++current_;
+  phase_start_ = now_;
+  if (current_ < route_.stations.size()) {
+    phase_ = Phase::kDriving;
+    return;
+  }
+  phase_ = Phase::kOver;
+  if (num_failed_ == 0) {
+    output.events.push_back(event(EventKind::kMissionCompleted, "", "Every station was inspected."));
+  } else {
+    output.events.push_back(event(EventKind::kMissionFailed, "", fmt::format("{} of {} stations were left out.", num_failed_, route_.stations.size())));
+  }
+}
+
+NavigationGoal GasMission::goal_at(const Station& station) const {
+  NavigationGoal goal{.T_map_body = station.T_route_body,
+                      .position_tol_m = std::min(settings_.position_tol_m, station.accuracy_m),
+                      .yaw_tol_rad = settings_.yaw_tol_rad};
+  if (station.type == "pass") {
+    goal.position_tol_m = station.accuracy_m;
+    goal.yaw_tol_rad = std::numbers::pi;
+  }
+  return goal;
+}
+
+Event GasMission::event(EventKind kind, const std::string& subject, const std::string& text, double value) const {
+  return {.stamp = now_, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = T_map_body_,
+          .p_map_target = T_map_body_.position()};
+}
+
+}  // namespace patrol::stack

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/messages.h"
+#include "core/navigation_goal.h"
+#include "core/route.h"
+#include "core/settings.h"
+#include "stack/instruments/gas_instrument.h"
+#include "stack/mission/mission.h"
+
+namespace patrol::stack {
+
+struct GasMissionSettings {
+  std::string order = "given";        ///< of the stations; or "best": the soonest done, by priorities and windows
+  double expected_speed_mps = 0.7;    ///< on the way, for that
+  double start_wait_s = 4.0;          ///< standing still at first: sensors settle, their biases are learnt
+  double settle_s = 0.5;              ///< after arriving, before the instrument is believed
+  double measure_s = 3.0;             ///< of readings at each station
+  double max_measure_s = 8.0;         ///< then a station without enough readings is "not measured"
+  int min_readings = 10;
+  double alarm_column_ppm_m = 200.0;  ///< methane beyond it is a leak: a hundred metres of clean air
+  double position_tol_m = 0.08;       ///< at a station; never more than the route's own accuracy asks
+  double yaw_tol_rad = 0.06;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("order", self.order, one_of({"given", "best"}));
+    visit("expected_speed_mps", self.expected_speed_mps, between(0.01, 10.0));
+    visit("start_wait_s", self.start_wait_s, between(0.0, 600.0));
+    visit("settle_s", self.settle_s, between(0.0, 60.0));
+    visit("measure_s", self.measure_s, between(0.0, 600.0));
+    visit("max_measure_s", self.max_measure_s, between(0.1, 600.0));
+    visit("min_readings", self.min_readings, between(1, 100000));
+    visit("alarm_column_ppm_m", self.alarm_column_ppm_m, at_least(0.0));
+    visit("position_tol_m", self.position_tol_m, between(0.005, 5.0));
+    visit("yaw_tol_rad", self.yaw_tol_rad, between(0.005, 3.2));
+  }
+};
+
+/// Rules of the measurement at a station.
+GasRules gas_rules(const GasMissionSettings& settings);
+
+/// Visits the stations of a route one after another. At a station of type "inspect" the robot stands and measures methane
+/// (gas_instrument.h). A station that cannot be reached or measured is reported and left out. Work at a station with a window waits until
+/// the window opens.
+///
+/// Events: mission_started (names the stations in their order), station_reached, station_late (value: seconds), station_failed,
+/// mission_completed (every station was done), mission_failed.
+class GasMission final : public Mission {
+ public:
+  /// `route_in_map`: its stations in their order. `about_order`: a sentence for mission_started. Throws InputError if a setting breaks its
+  /// rule or the route has no station.
+  GasMission(const GasMissionSettings& settings, Route route_in_map, std::string about_order = "");
+
+  MissionOutput step(Time now, const MissionInput& input) override;
+  bool is_over() const override { return phase_ == Phase::kOver; }
+  Event abort(Time now, EventKind kind, const std::string& text) override;
+  TaskTiming timing() const override { return TaskTiming::kNext; }
+  bool starts_at_survey() const override { return true; }
+
+ private:
+  enum class Phase { kWaiting, kDriving, kMeasuring, kOver };
+
+  void wait(MissionOutput& output);
+  void drive(NavigationFeedback feedback, MissionOutput& output);
+  void measure(const InspectionProgress& progress, MissionOutput& output);
+  void next_station(MissionOutput& output);
+  Task task() const;
+  NavigationGoal goal_at(const Station& station) const;
+  Event event(EventKind kind, const std::string& subject, const std::string& text, double value = 0.0) const;
+  const Station& station() const { return route_.stations[current_]; }
+
+  GasMissionSettings settings_;
+  Route route_;
+  std::string about_order_;
+  Phase phase_ = Phase::kWaiting;
+  std::size_t current_ = 0;
+  int num_failed_ = 0;
+  Time phase_start_{};
+  Time now_{};
+  Pose2 T_map_body_;
+};
+
+}  // namespace patrol::stack

@@ -1,0 +1,46 @@
+#include "stack/mission/known_map.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace patrol::stack {
+namespace {
+
+constexpr double kFarthestGoal_m = 1000.0;
+
+/// Whether p lies on the map; in numbers, as a cell of a place far off is none.
+bool holds(const GridGeometry& map, const Eigen::Vector2d& p_map) {
+  const Eigen::Array2d along = p_map - map.origin_m;
+  const Eigen::Array2d size = map.resolution_m * Eigen::Array2d(map.width, map.height);
+  return (along >= 0.0).all() && (along < size).all();
+}
+
+std::string extent_of(const GridGeometry& map) {
+  const Eigen::Vector2d end = map.origin_m + map.resolution_m * Eigen::Vector2d(map.width, map.height);
+  return fmt::format("x {:.2f} ... {:.2f} m, y {:.2f} ... {:.2f} m", map.origin_m.x(), end.x(), map.origin_m.y(), end.y());
+}
+
+}  // namespace
+
+void check_known_map(const std::string& file, const OccupancyGrid& map) {
+  const auto has = [&](std::int8_t value) { return std::find(map.values().begin(), map.values().end(), value) != map.values().end(); };
+  if (!has(kFree)) throw InputError(file + ": the map has no free cell to stand on");
+  if (!has(kOccupied)) throw InputError(file + ": the map has no occupied cell to see");
+  if (holds(map.geometry(), Eigen::Vector2d::Zero())) return;
+  throw InputError(fmt::format("{}: the start, at 0, 0, lies outside the map ({})", file, extent_of(map.geometry())));
+}
+
+void check_goals(const std::string& file, const std::vector<MarkedGoal>& goals, const std::optional<OccupancyGrid>& map) {
+  for (const MarkedGoal& goal : goals) {
+    const Eigen::Vector2d p_map = goal.T_map_body.position();
+    const std::string place = fmt::format("{}: goal {}: position {:.6g}, {:.6g} lies", file, goal.number, p_map.x(), p_map.y());
+    const auto refuse = [&](const std::string& what) { throw InputError(place + " " + what); };
+    if (map && !holds(map->geometry(), p_map)) refuse(fmt::format("outside the map ({})", extent_of(map->geometry())));
+    if (!map && p_map.norm() > kFarthestGoal_m) refuse(fmt::format("more than {} m from the start", kFarthestGoal_m));
+  }
+}
+
+}  // namespace patrol::stack

@@ -1,0 +1,71 @@
+#include "stack/mission/station_order.h"
+
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "plan/routes/global_planner.h"
+#include "plan/routes/tour_order.h"
+
+namespace patrol::stack {
+namespace {
+
+constexpr double kMargin_m = 10.0;  ///< of what is looked at around the stations
+
+/// The robot's start, then the stations.
+std::vector<Eigen::Vector2d> places_of(const std::vector<Station>& stations) {
+  std::vector<Eigen::Vector2d> places{Eigen::Vector2d::Zero()};
+  for (const Station& station : stations) places.push_back(station.T_route_body.position());
+  return places;
+}
+
+/// [from][to], m; infinite where there is no way.
+std::vector<std::vector<double>> lengths_between(const std::vector<Eigen::Vector2d>& places, const plan::Costmap& costmap, plan::GlobalPlanner& planner) {
+  std::vector<std::vector<double>> lengths(places.size(), std::vector<double>(places.size(), 0.0));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t j = i + 1; j < places.size(); ++j) {
+      const plan::PlanResult plan = planner.plan(costmap.cost(), places[i], places[j]);
+      lengths[i][j] = lengths[j][i] = plan.status == plan::PlanStatus::kFound ? plan.length_m : std::numeric_limits<double>::infinity();
+    }
+  }
+  return lengths;
+}
+
+plan::TourProblem problem_of(const std::vector<Station>& stations, std::vector<std::vector<double>> lengths_m, const GasMissionSettings& mission) {
+  plan::TourProblem problem{.travel = std::move(lengths_m), .stations = {{.service = mission.start_wait_s}}, .start = 0, .end = {}};
+  for (std::vector<double>& row : problem.travel) {
+    for (double& travel : row) travel /= mission.expected_speed_mps;
+  }
+  for (const Station& station : stations) {
+    if (station.type == "home") problem.end = problem.stations.size();
+    problem.stations.push_back({.service = station.type == "inspect" ? mission.settle_s + mission.measure_s : 0.0,
+                                .earliest = station.earliest_s,
+                                .latest = station.latest_s,
+                                .priority = station.priority});
+  }
+  return problem;
+}
+
+}  // namespace
+
+StationOrder order_stations(const Route& route_in_map, const RobotDescription& robot, const plan::NavigatorSettings& navigation, const GasMissionSettings& mission,
+                            std::uint64_t seed) {
+  plan::Costmap costmap(navigation.costmap, plan::Footprint(robot.footprint_m, navigation.footprint_rows), route_in_map.keep_out_lines);
+  costmap.set_map(OccupancyGrid({.resolution_m = navigation.costmap.resolution_m, .width = 1, .height = 1}, kUnknown));
+  const std::vector<Eigen::Vector2d> places = places_of(route_in_map.stations);
+  for (const Eigen::Vector2d& place : places) costmap.include(place, kMargin_m);
+  plan::GlobalPlanner planner(navigation.global, navigation.routes, seed);
+  const plan::TourOrder order = plan::order_tour(problem_of(route_in_map.stations, lengths_between(places, costmap, planner), mission), {}, seed);
+  if (!order.is_found) return {.stations = route_in_map.stations, .text = "No order reaches all stations: the given one is kept."};
+
+  StationOrder ordered;
+  for (const std::size_t place : order.stations) {
+    if (place > 0) ordered.stations.push_back(route_in_map.stations[place - 1]);
+  }
+  ordered.text = fmt::format("In this order they should take {:.0f} s{}; {}.", order.completion,
+                             order.lateness > 0.0 ? fmt::format(", with {:.0f} s of lateness that cannot be helped", order.lateness) : "",
+                             order.is_exact ? "none is sooner" : fmt::format("the soonest may be up to {:.1f} % sooner", 100.0 * order.gap()));
+  return ordered;
+}
+
+}  // namespace patrol::stack

@@ -1,0 +1,248 @@
+#include "stack/mission/tunnel_mission.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace patrol::stack {
+
+TunnelMission::TunnelMission(const TunnelMissionSettings& settings, std::vector<MarkedGoal> goals, bool has_remote, bool has_map)
+    : settings_(settings), goals_(std::move(goals)), has_remote_(has_remote), has_map_(has_map), is_docked_(settings.starts_docked && !settings.starts_at_survey) {
+  validate(settings, "tour");
+  if (settings.mark_types.find_first_not_of("NVDR") != std::string::npos) {
+    throw InputError(fmt::format("tour.mark_types = {}: must be made of the letters N, V, D, R", settings.mark_types));
+  }
+  if (goals_.empty() && !has_remote) throw InputError("tour: there is no goal, and no remote control to mark one");
+}
+
+MissionOutput TunnelMission::step(Time now, const MissionInput& input) {
+  now_ = now;
+  if (!first_step_) first_step_ = now;
+  T_map_body_ = input.pose.T_map_body;
+  MissionOutput output;
+  if (watch_localization(input, output)) return output;
+  switch (phase_) {
+    case Phase::kWaiting:
+      wait(output);
+      break;
+    case Phase::kRemote:
+      follow_remote(input, output);
+      break;
+    case Phase::kUndocking:
+      undock(input);
+      break;
+    case Phase::kDriving:
+      drive(input, output);
+      break;
+    case Phase::kStanding:
+      stand(output);
+      break;
+    case Phase::kScanning:
+      scan(input, output);
+      break;
+    case Phase::kHandedOver:
+      hand_over(input, output);
+      break;
+    case Phase::kSounding:
+      sound(input, output);
+      break;
+    case Phase::kDocking:
+      dock(input, output);
+      break;
+    case Phase::kOver:
+      break;
+  }
+  output.task = task();
+  return output;
+}
+
+Task TunnelMission::task() const {
+  Task task;
+  if (phase_ == Phase::kRemote || phase_ == Phase::kHandedOver) task.motion = Motion::kFollowRemote;
+  if (phase_ == Phase::kUndocking) task.motion = Motion::kUndock;
+  if (phase_ == Phase::kDocking) task.motion = Motion::kDock;
+  if (phase_ == Phase::kScanning) task.inspection = InspectionOrder{.instrument = InstrumentKind::kLining, .station = goal_name()};
+  if (phase_ == Phase::kSounding) task.inspection = InspectionOrder{.instrument = InstrumentKind::kWater, .station = sounding_name()};
+  if (phase_ != Phase::kDriving) return task;
+  const MarkedGoal& goal = goals_[goal_];
+  const bool stops = goal.type != 'V';
+  task.motion = Motion::kNavigate;
+  task.goal = {.T_map_body = goal.T_map_body,
+               .position_tol_m = stops ? std::min(settings_.position_tol_m, goal.accuracy_m) : goal.accuracy_m,
+               .yaw_tol_rad = stops ? settings_.yaw_tol_rad : std::numbers::pi};
+  return task;
+}
+
+/// True while the robot stands because it does not know where it is.
+bool TunnelMission::watch_localization(const MissionInput& input, MissionOutput& output) {
+  const bool needs_place = phase_ == Phase::kDriving || phase_ == Phase::kStanding || phase_ == Phase::kDocking;
+  if (!input.is_lost || !needs_place) {
+    if (lost_since_) output.events.push_back(event(EventKind::kRelocalized, "", "The robot knows where it is again.", to_seconds(now_ - *lost_since_)));
+    lost_since_.reset();
+    return false;
+  }
+  if (!lost_since_) {
+    lost_since_ = now_;
+    output.events.push_back(event(EventKind::kLocalizationLost, "", "The robot does not know where it is: it stands and looks."));
+  } else if (now_ - *lost_since_ > from_seconds(settings_.lost_patience_s)) {
+    output.events.push_back(event(EventKind::kLocalizationFailed, "", fmt::format("The robot cannot tell where it is after {:.0f} s of looking.",
+                                                                     settings_.lost_patience_s)));
+    ++num_failed_;
+    finish(output);
+  }
+  return true;
+}
+
+void TunnelMission::wait(MissionOutput& output) {
+  if (now_ < from_seconds(settings_.start_wait_s) || now_ < *first_step_ + from_seconds(settings_.start_look_s)) return;
+  if (!has_remote_ || has_map_) return start_navigation(output);
+  last_remote_ = now_;
+  enter(Phase::kRemote);
+}
+
+void TunnelMission::follow_remote(const MissionInput& input, MissionOutput& output) {
+  is_docked_ = false;
+  if (input.remote) last_remote_ = now_;
+  if (input.remote && input.remote->mark) {
+    goals_.push_back({.number = static_cast<int>(goals_.size()) + 1, .T_map_body = T_map_body_, .type = settings_.type_of_mark(goals_.size())});
+    goal_ = goals_.size() - 1;
+    output.events.push_back(event(EventKind::kGoalMarked, goal_name(), fmt::format("Marked {}.", goal_name())));
+  }
+  const bool is_off = now_ - last_remote_ > from_seconds(settings_.remote_silence_s);
+  if (!is_off && !(input.remote && input.remote->hand_over)) return;
+  output.map_is_made = true;
+  output.events.push_back(event(EventKind::kMappingCompleted, "", fmt::format("The map is made; {} goals are marked.", goals_.size())));
+  end_navigation(output);
+}
+
+void TunnelMission::undock(const MissionInput& input) {
+  if (input.docking != DockingFeedback::kDone) return;
+  is_docked_ = false;
+  enter(Phase::kDriving);
+}
+
+void TunnelMission::drive(const MissionInput& input, MissionOutput& output) {
+  if (now_ == phase_start_) return;  // the feedback is about the goal before
+  if (input.navigation == NavigationFeedback::kFailed) {
+    ++num_failed_;
+    output.events.push_back(event(EventKind::kGoalFailed, goal_name(), fmt::format("No way to {}.", goal_name()), navigation_));
+    return next_goal(output);
+  }
+  if (input.navigation != NavigationFeedback::kArrived) return;
+  if (goals_[goal_].type == 'V') return next_goal(output);
+  enter(Phase::kStanding);
+}
+
+void TunnelMission::stand(MissionOutput& output) {
+  if (now_ - phase_start_ < from_seconds(settings_.stand_s)) return;
+  output.events.push_back(event(EventKind::kGoalReached, goal_name(), fmt::format("At {}.", goal_name()), navigation_));
+  if (goals_[goal_].type == 'D') return enter(Phase::kScanning);
+  if (goals_[goal_].type != 'R' || !has_remote_ || !has_map_) return next_goal(output);
+  output.events.push_back(event(EventKind::kTeleopRequested, goal_name(), "From here a person drives."));
+  last_remote_ = now_;
+  enter(Phase::kHandedOver);
+}
+
+void TunnelMission::scan(const MissionInput& input, MissionOutput& output) {
+  if (now_ == phase_start_ || input.inspection.feedback == InspectionFeedback::kUnderWay) return;
+  if (input.inspection.feedback == InspectionFeedback::kFailed) {
+    ++num_failed_;
+    output.events.push_back(event(EventKind::kInspectionFailed, goal_name(), fmt::format("The lining at {} could not be measured.", goal_name()), navigation_));
+  }
+  next_goal(output);
+}
+
+void TunnelMission::hand_over(const MissionInput& input, MissionOutput& output) {
+  if (input.remote) last_remote_ = now_;
+  if (input.remote && input.remote->mark) {
+    ++num_soundings_;
+    return enter(Phase::kSounding);
+  }
+  const bool is_over = input.remote && input.remote->hand_over;
+  if (!is_over && now_ - last_remote_ <= from_seconds(settings_.driver_patience_s)) return;
+  if (!is_over) ++num_failed_;
+  output.events.push_back(event(EventKind::kTeleopEnded, goal_name(), is_over ? "The robot goes on by itself." : "Nobody drives: the robot goes on by itself."));
+  next_goal(output);
+}
+
+void TunnelMission::sound(const MissionInput& input, MissionOutput& output) {
+  if (input.remote) last_remote_ = now_;
+  if (now_ == phase_start_ || input.inspection.feedback == InspectionFeedback::kUnderWay) return;
+  if (input.inspection.feedback == InspectionFeedback::kFailed) {
+    ++num_failed_;
+    output.events.push_back(event(EventKind::kInspectionFailed, sounding_name(), "The antenna could not sound for water.", navigation_));
+  }
+  enter(Phase::kHandedOver);
+}
+
+void TunnelMission::dock(const MissionInput& input, MissionOutput& output) {
+  if (now_ == phase_start_ || input.docking == DockingFeedback::kUnderWay) return;
+  is_docked_ = input.docking == DockingFeedback::kDone;
+  if (is_docked_) {
+    output.events.push_back(event(EventKind::kDocked, "", "Docked at the charging post.", navigation_));
+  } else {
+    ++num_failed_;
+    output.events.push_back(event(EventKind::kDockFailed, "", "The robot could not dock.", navigation_));
+  }
+  start_navigation(output);
+}
+
+void TunnelMission::start_navigation(MissionOutput& output) {
+  if (navigation_ >= settings_.navigations || goals_.empty()) return finish(output);
+  ++navigation_;
+  goal_ = 0;
+  output.relocalization = relocalization();
+  output.events.push_back(event(EventKind::kNavigationStarted, fmt::format("navigation_{}", navigation_),
+                                fmt::format("Navigation {} of {}: {} goals.", navigation_, settings_.navigations, goals_.size()),
+                                navigation_));
+  enter(is_docked_ ? Phase::kUndocking : Phase::kDriving);
+}
+
+Relocalization TunnelMission::relocalization() const {
+  if (settings_.starts_at_survey) return Relocalization::kNone;
+  return settings_.starts_docked ? Relocalization::kAtDock : Relocalization::kAnywhere;
+}
+
+void TunnelMission::next_goal(MissionOutput& output) {
+  ++goal_;
+  if (goal_ < goals_.size()) return enter(Phase::kDriving);
+  end_navigation(output);
+}
+
+void TunnelMission::end_navigation(MissionOutput& output) {
+  if (settings_.docks) return enter(Phase::kDocking);
+  start_navigation(output);
+}
+
+void TunnelMission::finish(MissionOutput& output) {
+  enter(Phase::kOver);
+  if (num_failed_ == 0) {
+    output.events.push_back(event(EventKind::kMissionCompleted, "", "Every goal was reached."));
+    return;
+  }
+  const std::string count = num_failed_ == 1 ? "One thing" : fmt::format("{} things", num_failed_);
+  output.events.push_back(event(EventKind::kMissionFailed, "", count + " went wrong on the way."));
+}
+
+Event TunnelMission::abort(Time now, EventKind kind, const std::string& text) {
+  now_ = now;
+  phase_ = Phase::kOver;
+  return event(kind, goal_ < goals_.size() ? goal_name() : "", text);
+}
+
+void TunnelMission::enter(Phase phase) {
+  phase_ = phase;
+  phase_start_ = now_;
+}
+
+Event TunnelMission::event(EventKind kind, const std::string& subject, const std::string& text, double value) const {
+  return {.stamp = now_, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = T_map_body_,
+          .p_map_target = T_map_body_.position()};
+}
+
+std::string TunnelMission::sounding_name() const { return fmt::format("sounding_{}", num_soundings_); }
+
+std::string TunnelMission::goal_name() const { return fmt::format("goal_{}", goals_[goal_].number); }
+
+}  // namespace patrol::stack

@@ -1,0 +1,112 @@
+#include "stack/motion_executor.h"
+
+#include <chrono>
+#include <utility>
+
+namespace patrol::stack {
+namespace {
+
+constexpr Time kRemoteHold =
+    std::chrono::milliseconds(500);  // time for which a command of the remote control is followed
+
+DockingFeedback feedback_of(plan::DockingStatus status) {
+  switch (status) {
+    case plan::DockingStatus::kDocked:
+    case plan::DockingStatus::kFree:
+      return DockingFeedback::kDone;
+    case plan::DockingStatus::kFailed:
+      return DockingFeedback::kFailed;
+    default:
+      return DockingFeedback::kUnderWay;
+  }
+}
+
+}  // namespace
+
+MotionExecutor::MotionExecutor(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
+                               std::uint64_t seed)
+    : navigator_(settings.plan, robot, site_in_map.keep_out_lines, seed),
+      docking_(settings.docking),
+      dock_(site_in_map.dock) {
+  if (dock_) dock_detector_.emplace(settings.dock_detector, dock_->profile_m);
+}
+
+void MotionExecutor::add(const LevelScan& scan, const ScanPose& pose) {
+  navigator_.add_scan(scan, pose.T_map_body);
+  if (docking_.status() == plan::DockingStatus::kDocking) look_for_dock(scan, pose);
+}
+
+void MotionExecutor::look_for_dock(const LevelScan& scan, const ScanPose& pose) {
+  const Pose2 T_level_expected =
+      docking_.T_level_docked(pose.T_odom_body).value_or(pose.T_map_body.inverse() * dock_->T_route_docked);
+  const std::optional<DockSighting> sighting = dock_detector_->detect(scan, T_level_expected);
+  if (sighting) docking_.add(*sighting, pose.T_odom_body);
+}
+
+VelocityCommand MotionExecutor::step(Time now, const Task& task, const Pose2& T_map_body, const Pose2& T_odom_body,
+                                     StackOutput& output) {
+  const bool is_new = std::exchange(motion_, task.motion) != task.motion;
+  if (is_new) {
+    docking_.stop();
+    docking_feedback_ = DockingFeedback::kUnderWay;
+  }
+  if (motion_ == Motion::kNavigate) return navigate(now, task.goal, T_map_body, output);
+  if (motion_ == Motion::kDock) return go_to_dock(now, T_map_body, T_odom_body, output);
+  navigate(now, std::nullopt, T_map_body, output);
+  if (motion_ == Motion::kFollowRemote) return remote_command(now);
+  if (motion_ != Motion::kUndock) return {};
+  if (is_new) docking_.undock(now, T_odom_body);
+  return move_at_dock(now, T_map_body, T_odom_body, output);
+}
+
+VelocityCommand MotionExecutor::navigate(Time now, const std::optional<NavigationGoal>& goal, const Pose2& T_map_body,
+                                         StackOutput& output) {
+  navigator_.set_goal(goal);
+  plan::NavigationStep step = navigator_.step(now, T_map_body);
+  if (step.replanned) output.publish(Path{now, step.path});
+  if (step.is_detour)
+    output.publish_event(now, T_map_body, EventKind::kReplan, "Something stands on the path: a new one is planned.");
+  if (!step.text.empty()) output.publish_event(now, T_map_body, EventKind::kNavigation, step.text);
+  if (!step.recovery.empty()) output.publish_event(now, T_map_body, EventKind::kRecovery, step.recovery);
+  navigation_ = step.status;
+  return step.command;
+}
+
+VelocityCommand MotionExecutor::remote_command(Time now) const {
+  VelocityCommand command;
+  if (!last_remote_ || now - last_remote_->stamp >= kRemoteHold) return command;
+  command.vx_mps = last_remote_->vx_mps;
+  command.yaw_rate_radps = last_remote_->yaw_rate_radps;
+  return command;
+}
+
+/// Drives to the staging pose before the post, then in.
+VelocityCommand MotionExecutor::go_to_dock(Time now, const Pose2& T_map_body, const Pose2& T_odom_body,
+                                           StackOutput& output) {
+  if (docking_.status() != plan::DockingStatus::kIdle) return move_at_dock(now, T_map_body, T_odom_body, output);
+  const VelocityCommand command = navigate(now, docking_.staging_goal(dock_->T_route_docked), T_map_body, output);
+  if (navigation_ == plan::NavigationStatus::kArrived) docking_.dock(now);
+  if (navigation_ == plan::NavigationStatus::kFailed) docking_feedback_ = DockingFeedback::kFailed;
+  return command;
+}
+
+VelocityCommand MotionExecutor::move_at_dock(Time now, const Pose2& T_map_body, const Pose2& T_odom_body,
+                                             StackOutput& output) {
+  const plan::DockingStep step = docking_.step(now, T_odom_body);
+  if (!step.text.empty()) output.publish_event(now, T_map_body, EventKind::kDocking, step.text);
+  docking_feedback_ = feedback_of(step.status);
+  return step.command;
+}
+
+NavigationFeedback MotionExecutor::navigation() const {
+  switch (navigation_) {
+    case plan::NavigationStatus::kArrived:
+      return NavigationFeedback::kArrived;
+    case plan::NavigationStatus::kFailed:
+      return NavigationFeedback::kFailed;
+    default:
+      return NavigationFeedback::kDriving;
+  }
+}
+
+}  // namespace patrol::stack

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/messages.h"
+#include "core/robot_description.h"
+#include "core/route.h"
+#include "localize/dock_detector.h"
+#include "plan/control/docking.h"
+#include "plan/navigation/navigator.h"
+#include "stack/instruments/standing_place.h"
+#include "stack/localization/pose_pipeline.h"
+#include "stack/mission/task.h"
+#include "stack/output/stack_output.h"
+#include "stack/settings/stack_settings.h"
+
+namespace patrol::stack {
+
+/// Carries out the motion of a task: navigation to a goal, docking, undocking, or commands of the remote control.
+class MotionExecutor {
+ public:
+  /// Throws InputError when settings and robot do not go together.
+  MotionExecutor(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
+                 std::uint64_t seed);
+
+  void set_map(const OccupancyGrid& map) { navigator_.set_map(map); }
+  /// Obstacles, and the charging post while the robot docks.
+  void add(const LevelScan& scan, const ScanPose& pose);
+  void add(const UltrasonicRange& range, const StandingPlace& place) {
+    navigator_.add_range(range, place.T_level_body, place.T_map_body);
+  }
+  void add(const DepthImage& image, const StandingPlace& place) {
+    navigator_.add_depth(image, place.T_level_body, place.T_map_body);
+  }
+  void add(const RemoteCommand& command) { last_remote_ = command; }
+
+  /// Velocity command for a control period; publishes paths and events.
+  VelocityCommand step(Time now, const Task& task, const Pose2& T_map_body, const Pose2& T_odom_body,
+                       StackOutput& output);
+
+  NavigationFeedback navigation() const;
+  DockingFeedback docking() const { return docking_feedback_; }
+  /// A person drives.
+  bool follows_remote() const { return motion_ == Motion::kFollowRemote; }
+
+ private:
+  VelocityCommand navigate(Time now, const std::optional<NavigationGoal>& goal, const Pose2& T_map_body,
+                           StackOutput& output);
+  VelocityCommand remote_command(Time now) const;
+  VelocityCommand go_to_dock(Time now, const Pose2& T_map_body, const Pose2& T_odom_body, StackOutput& output);
+  VelocityCommand move_at_dock(Time now, const Pose2& T_map_body, const Pose2& T_odom_body, StackOutput& output);
+  void look_for_dock(const LevelScan& scan, const ScanPose& pose);
+
+  plan::Navigator navigator_;
+  plan::Docking docking_;
+  std::optional<Dock> dock_;
+  std::optional<localize::DockDetector> dock_detector_;
+  std::optional<RemoteCommand> last_remote_;
+  Motion motion_ = Motion::kStand;
+  plan::NavigationStatus navigation_ = plan::NavigationStatus::kIdle;
+  DockingFeedback docking_feedback_ = DockingFeedback::kUnderWay;
+};
+
+}  // namespace patrol::stack

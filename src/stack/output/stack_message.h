@@ -1,0 +1,14 @@
+#pragma once
+
+#include <variant>
+
+#include "core/messages.h"
+
+namespace patrol::stack {
+
+/// Everything that the robot's software publishes: estimates, map, commands, events and results.
+using StackMessage = std::variant<OdometryEstimate, PoseEstimate, RangePoseEstimate, LocalizationTrust, ParticleSet,
+                                  MapUpdate, Path, VelocityCommand, Event, ScanCommand, AntennaCommand, SoundingCommand,
+                                  WarningCommand, LiningResult, WaterResult>;
+
+}  // namespace patrol::stack

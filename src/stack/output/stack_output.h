@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/part_clock.h"
+#include "stack/output/stack_message.h"
+
+namespace patrol::stack {
+
+/// Messages that the parts of the stack publish, in order, and the processor's time by part.
+class StackOutput {
+ public:
+  template <typename Message>
+  void publish(Message&& message) {
+    messages_.emplace_back(std::forward<Message>(message));
+  }
+  /// Publishes an event at the robot's own place.
+  void publish_event(Time now, const Pose2& T_map_body, EventKind kind, const std::string& text,
+                     const std::string& subject = "") {
+    publish(Event{.stamp = now,
+                  .kind = kind,
+                  .subject = subject,
+                  .text = text,
+                  .value = 0.0,
+                  .T_map_body = T_map_body,
+                  .p_map_target = T_map_body.position()});
+  }
+  /// Returns the messages since the last call.
+  std::vector<StackMessage> take_messages() { return std::exchange(messages_, {}); }
+
+  [[nodiscard]] PartClock::Lap lap(const std::string& part) { return clock_.lap(part); }
+  const PartClock& clock() const { return clock_; }
+
+ private:
+  std::vector<StackMessage> messages_;
+  PartClock clock_;
+};
+
+}  // namespace patrol::stack

@@ -1,0 +1,21 @@
+#include "stack/settings/stack_settings.h"
+
+namespace patrol::stack {
+
+slam::GraphSlamSettings graph_of_a_known_robot() {
+  slam::GraphSlamSettings settings;
+  settings.tracking.motion = {};
+  settings.tracking.keyframe_distance_m = 0.5;
+  settings.tracking.initial_keyframes = 25;
+  settings.cached_submaps = 6;
+  settings.min_hit_share_occupied = 0.5;
+  settings.edge_std_m = 0.003;
+  settings.edge_std_rad = 0.0001;
+  return settings;
+}
+
+std::unique_ptr<slam::Mapper> make_mapper(const StackSettings& settings, std::uint64_t seed) {
+  return settings.mapping == "rbpf" ? slam::make_rbpf_mapper(settings.slam, seed) : slam::make_graph_mapper(settings.graph);
+}
+
+}  // namespace patrol::stack

@@ -1,0 +1,145 @@
+#include "stack/stack.h"
+
+#include <chrono>
+#include <utility>
+
+#include "core/overloaded.h"
+
+namespace patrol::stack {
+namespace {
+
+constexpr Time kControlPeriod = std::chrono::milliseconds(50);
+constexpr Time kOdometryPeriod = std::chrono::milliseconds(20);
+
+}  // namespace
+
+Stack::Stack(StackParts parts) : parts_(std::move(parts)), map_period_(from_seconds(parts_.map_period_s)) {
+  parts_.motion.set_map(parts_.pose.map());  // perhaps empty yet, but its resolution must suit the costmap's
+  if (parts_.mission->starts_at_survey()) parts_.pose.start_at_survey();
+}
+
+void Stack::handle(const SensorMessage& message) {
+  if (!parts_.sensor_watch.hear(message, now_)) return;
+  const auto place_at = [this](Time stamp) { return parts_.pose.place_at(stamp); };
+  std::visit(Overloaded{
+                 [&](const LaserScan& scan) { handle_scan(scan); },
+                 [&](const UltrasonicRange& range) {
+                   if (const auto place = place_at(range.stamp)) parts_.motion.add(range, *place);
+                 },
+                 [&](const DepthImage& image) {
+                   const auto lap = output_.lap("planning");
+                   if (const auto place = place_at(image.stamp)) parts_.motion.add(image, *place);
+                 },
+                 [&](const RemoteCommand& command) {
+                   new_remote_ = command;
+                   parts_.motion.add(command);
+                 },
+                 [&](const auto&) { parts_.pose.add(message, output_); },
+             },
+             message);
+  parts_.instruments.add(message, place_at);
+}
+
+void Stack::handle_scan(const LaserScan& raw) {
+  const std::optional<LevelScan> scan = parts_.pose.level(raw, output_);
+  if (!scan) return;
+  const ScanPose pose = parts_.pose.localize(*scan, output_);
+  const auto lap = output_.lap("planning");
+  parts_.motion.add(*scan, pose);
+}
+
+void Stack::handle_fall(Time now) {
+  if (!mission_is_over()) output_.publish(parts_.mission->abort(now, EventKind::kFall, "The robot fell."));
+}
+
+void Stack::step(Time now) {
+  now_ = now;
+  const std::optional<OdometryEstimate> odometry = parts_.pose.update_odometry();
+  if (!odometry) return;
+  if (now >= next_odometry_) {
+    next_odometry_ += kOdometryPeriod;
+    output_.publish(*odometry);
+  }
+  if (parts_.pose.is_mapping() && now >= next_map_) {
+    next_map_ += map_period_;
+    publish_map(now);
+  }
+  if (now < next_control_) return;
+  next_control_ += kControlPeriod;
+  const auto lap = output_.lap("planning");
+  const Pose2 T_odom_body = to_planar(odometry->T_odom_body);
+  watch_sensors(now, T_odom_body);
+  command_ = control({.now = now,
+                      .odometry = *odometry,
+                      .T_odom_body = T_odom_body,
+                      .pose = parts_.pose.pose_at(odometry->stamp, T_odom_body)});
+  if (!parts_.sensor_watch.can_drive() && !parts_.motion.follows_remote()) command_ = {};
+  command_.stamp = now;
+  output_.publish(command_);
+}
+
+void Stack::publish_map(Time now) {
+  const auto lap = output_.lap("slam");
+  MapUpdate update{now, parts_.pose.map()};
+  parts_.motion.set_map(update.map);
+  output_.publish(std::move(update));
+}
+
+void Stack::watch_sensors(Time now, const Pose2& T_odom_body) {
+  const Pose2 T_map_body = parts_.pose.pose_at(now, T_odom_body).T_map_body;
+  for (const SensorChange& change : parts_.sensor_watch.step(now, T_odom_body, command_)) {
+    output_.publish_event(now, T_map_body, change.is_back ? EventKind::kSensorRecovered : EventKind::kSensorFault,
+                          change.text, change.sensor);
+  }
+  if (!parts_.sensor_watch.has_given_up(now) || mission_is_over()) return;
+  output_.publish(parts_.mission->abort(now, EventKind::kSensorFailed,
+                                        "A sensor that driving needs did not come back: the mission is over."));
+}
+
+VelocityCommand Stack::control(const Period& period) {
+  if (parts_.mission->timing() == TaskTiming::kNow) {
+    advance_mission(period);
+    inspect(period);
+    parts_.pose.publish_range_pose(period.odometry, period.pose, output_);
+    return drive(period);
+  }
+  const VelocityCommand command = drive(period);
+  parts_.pose.publish_range_pose(period.odometry, period.pose, output_);
+  inspect(period);
+  advance_mission(period);
+  return command;
+}
+
+void Stack::advance_mission(const Period& period) {
+  MissionOutput output = parts_.mission->step(period.now, {.pose = period.pose,
+                                                           .is_lost = parts_.pose.is_lost(),
+                                                           .navigation = parts_.motion.navigation(),
+                                                           .docking = parts_.motion.docking(),
+                                                           .inspection = inspection_,
+                                                           .remote = std::exchange(new_remote_, std::nullopt)});
+  for (Event& event : output.events) output_.publish(std::move(event));
+  if (output.map_is_made) {
+    parts_.pose.finish_map(period.pose);
+    publish_map(period.now);
+  }
+  relocalize(output.relocalization, period.odometry);
+  task_ = std::move(output.task);
+}
+
+void Stack::relocalize(Relocalization how, const OdometryEstimate& odometry) {
+  if (how == Relocalization::kAnywhere) parts_.pose.start_anywhere();
+  if (how == Relocalization::kAtDock) parts_.pose.restart_at(parts_.dock->T_route_docked, odometry);
+}
+
+void Stack::inspect(const Period& period) {
+  const auto lap = output_.lap("inspection");
+  const StandingPlace here = parts_.pose.place_at(period.odometry.stamp)
+                                 .value_or(StandingPlace{.T_level_body = {}, .T_map_body = period.pose.T_map_body});
+  inspection_ = parts_.instruments.step(period.now, task_.inspection, here, output_);
+}
+
+VelocityCommand Stack::drive(const Period& period) {
+  return parts_.motion.step(period.now, task_, period.pose.T_map_body, period.T_odom_body, output_);
+}
+
+}  // namespace patrol::stack

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/messages.h"
+#include "stack/sensors/sensor_watch.h"
+#include "stack/instruments/instrument_set.h"
+#include "stack/localization/pose_pipeline.h"
+#include "stack/mission/mission.h"
+#include "stack/motion_executor.h"
+#include "stack/output/stack_output.h"
+
+namespace patrol::stack {
+
+/// Parts that a stack is composed of (make_stack.h selects them).
+struct StackParts {
+  PosePipeline pose;
+  MotionExecutor motion;
+  std::unique_ptr<Mission> mission;
+  InstrumentSet instruments;
+  SensorWatch sensor_watch;
+  std::optional<Dock> dock;   ///< of the site, in map
+  double map_period_s = 5.0;  ///< between two published maps while the map grows
+};
+
+/// The robot's software: processes sensor messages and gives velocity commands, estimates, a map and events. A recorded
+/// log can replace the simulator, since nothing but sensor messages comes in.
+class Stack {
+ public:
+  explicit Stack(StackParts parts);
+
+  void handle(const SensorMessage& message);
+  /// The robot's firmware reports a fall.
+  void handle_fall(Time now);
+  /// Odometry, map, mission and control, each at its own period. Call at every tick.
+  void step(Time now);
+
+  const VelocityCommand& command() const { return command_; }
+  bool mission_is_over() const { return parts_.mission->is_over(); }
+  MapUpdate final_map(Time now) { return {now, parts_.pose.map()}; }
+  /// Messages published since the last call, in order.
+  std::vector<StackMessage> take_messages() { return output_.take_messages(); }
+  const PartClock& clock() const { return output_.clock(); }
+
+ private:
+  /// State in a control period.
+  struct Period {
+    Time now{};
+    OdometryEstimate odometry;
+    Pose2 T_odom_body;
+    PoseEstimate pose;
+  };
+
+  void handle_scan(const LaserScan& scan);
+  void publish_map(Time now);
+  void watch_sensors(Time now, const Pose2& T_odom_body);
+  VelocityCommand control(const Period& period);
+  void advance_mission(const Period& period);
+  void inspect(const Period& period);
+  VelocityCommand drive(const Period& period);
+  void relocalize(Relocalization how, const OdometryEstimate& odometry);
+
+  StackParts parts_;
+  StackOutput output_;
+  Task task_;
+  InspectionProgress inspection_;
+  std::optional<RemoteCommand> new_remote_;
+  VelocityCommand command_;
+  Time now_{};
+  Time map_period_;
+  Time next_control_{}, next_odometry_{}, next_map_{};
+};
+
+}  // namespace patrol::stack

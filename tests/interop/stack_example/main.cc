@@ -1,0 +1,31 @@
+// Feeds the sensor messages of a recorded log to the robot's software, and saves the map that it makes.
+#include <cstdio>
+#include <filesystem>
+
+#include "inspect/route_frame.h"
+#include "io/map_server.h"
+#include "io/route_json.h"
+#include "io/run_log.h"
+#include "io/urdf.h"
+#include "stack/make_stack.h"
+
+int main(int argc, char** argv) {
+  if (argc != 5) return std::puts("usage: stack_example ROBOT.urdf MISSION.json LOG.mcap MAP.yaml"), 2;
+  const patrol::io::RouteFile site = patrol::io::load_route(argv[2]);
+  patrol::stack::Stack stack =
+      patrol::stack::make_stack({}, patrol::io::load_robot_description(argv[1]),
+                                patrol::inspect::to_map(site.route, site.T_site_start), {.seed = 1});
+  patrol::Time now{};
+  const auto feed = [&](patrol::Time log_time, const auto& message) {
+    if (log_time > now) stack.step(now);  // all messages of that tick are there
+    now = log_time;
+    stack.handle(message);
+  };
+  patrol::io::LogHandlers handlers{.scan = feed, .imu = feed, .joints = feed, .contacts = feed, .gas = feed};
+  patrol::io::read_run_log(argv[3], handlers);
+  const patrol::OccupancyGrid map = stack.final_map(now).map;
+  patrol::io::save_map(argv[4], map);
+  std::printf("%zu messages published; map of %d x %d cells\n", stack.take_messages().size(), map.geometry().width,
+              map.geometry().height);
+  return 0;
+}

@@ -1,0 +1,218 @@
+#include "stack/mission/tunnel_mission.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+
+namespace patrol::stack::tunnel_mission_test {
+namespace {
+
+constexpr Time kStep = std::chrono::milliseconds(50);
+
+std::vector<MarkedGoal> two_goals() {
+  return {{.number = 1, .T_map_body = {10.0, 0.0, 0.0}}, {.number = 2, .T_map_body = {20.0, 1.0, 1.0}}};
+}
+
+/// A robot that does at once whatever the tour wants, unless told otherwise.
+class Robot {
+ public:
+  explicit Robot(TunnelMission tour) : tour_(std::move(tour)) {}
+
+  bool is_lost = false;
+  NavigationFeedback navigation = NavigationFeedback::kArrived;
+  DockingFeedback docking = DockingFeedback::kDone;
+  InspectionFeedback inspection = InspectionFeedback::kDone;
+
+  void run(double seconds, std::optional<RemoteCommand> remote = std::nullopt) {
+    for (const Time end = now_ + from_seconds(seconds); now_ < end && !tour_.is_over(); now_ += kStep) {
+      if (output.task.goal) pose_ = output.task.goal->T_map_body;
+      output = tour_.step(now_, {.pose = {.stamp = now_, .T_map_body = pose_}, .is_lost = is_lost, .navigation = navigation,
+                                 .docking = docking, .inspection = {.feedback = inspection}, .remote = remote});
+      if (remote) remote->mark = remote->hand_over = false;
+      for (const Event& event : output.events) events.push_back(event);
+      restarts += output.relocalization != Relocalization::kNone ? 1 : 0;
+      maps += output.map_is_made ? 1 : 0;
+    }
+  }
+  int count(EventKind kind) const {
+    return static_cast<int>(std::count_if(events.begin(), events.end(), [&](const Event& e) { return e.kind == kind; }));
+  }
+  const TunnelMission& tour() const { return tour_; }
+
+  MissionOutput output;
+  std::vector<Event> events;
+  int restarts = 0;
+  int maps = 0;
+
+ private:
+  TunnelMission tour_;
+  Time now_{};
+  Pose2 pose_;
+};
+
+TEST(TunnelMission, TenNavigationsOfTwoGoalsReachTwentyAndDockTenTimes) {
+  Robot robot(TunnelMission({}, two_goals(), false));
+  robot.run(1000.0);
+  EXPECT_TRUE(robot.tour().is_over());
+  EXPECT_EQ(robot.count(EventKind::kNavigationStarted), 10);
+  EXPECT_EQ(robot.count(EventKind::kGoalReached), 20);
+  EXPECT_EQ(robot.count(EventKind::kDocked), 10);
+  EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
+  EXPECT_EQ(robot.restarts, 10);
+}
+
+TEST(TunnelMission, MarksGoalsByRemoteControlThenDrivesToThemByItself) {
+  Robot robot(TunnelMission({.navigations = 1}, {}, true));
+  robot.run(5.0);
+  EXPECT_EQ(robot.output.task.motion, Motion::kFollowRemote);
+  robot.run(1.0, RemoteCommand{.vx_mps = 0.5});
+  robot.run(1.0, RemoteCommand{.mark = true});
+  robot.run(1.0, RemoteCommand{.mark = true});
+  EXPECT_EQ(robot.maps, 0);
+  robot.run(1.0, RemoteCommand{.hand_over = true});
+  EXPECT_EQ(robot.maps, 1);
+  robot.run(100.0);
+  EXPECT_EQ(robot.count(EventKind::kGoalMarked), 2);
+  EXPECT_EQ(robot.count(EventKind::kGoalReached), 2);
+  EXPECT_EQ(robot.count(EventKind::kDocked), 2);
+  EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
+}
+
+TEST(TunnelMission, ARemoteControlThatFallsSilentForTwoSecondsIsOff) {
+  Robot robot(TunnelMission({.navigations = 0, .docks = false}, {}, true));
+  robot.run(4.1);
+  robot.run(1.0, RemoteCommand{.vx_mps = 0.5});
+  robot.run(1.9);
+  EXPECT_EQ(robot.output.task.motion, Motion::kFollowRemote);
+  robot.run(0.3);
+  EXPECT_EQ(robot.count(EventKind::kMappingCompleted), 1);
+  EXPECT_TRUE(robot.tour().is_over());
+}
+
+TEST(TunnelMission, AGoalWithoutAWayIsReportedAndLeftOut) {
+  Robot robot(TunnelMission({.navigations = 1}, two_goals(), false));
+  robot.navigation = NavigationFeedback::kFailed;
+  robot.run(100.0);
+  EXPECT_EQ(robot.count(EventKind::kGoalFailed), 2);
+  EXPECT_EQ(robot.events.back().text, "2 things went wrong on the way.");
+  EXPECT_EQ(robot.count(EventKind::kMissionFailed), 1);
+  EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 0);
+}
+
+TEST(TunnelMission, ADockingThatFailsFailsTheMission) {
+  Robot robot(TunnelMission({.navigations = 1, .starts_docked = false}, two_goals(), false));
+  robot.docking = DockingFeedback::kFailed;
+  robot.run(100.0);
+  EXPECT_EQ(robot.count(EventKind::kDockFailed), 1);
+  EXPECT_EQ(robot.count(EventKind::kMissionFailed), 1);
+}
+
+TEST(TunnelMission, LostItStandsAndGoesOnOnceItKnows) {
+  Robot robot(TunnelMission({.navigations = 1, .starts_docked = false, .docks = false}, two_goals(), false));
+  robot.navigation = NavigationFeedback::kDriving;
+  robot.run(6.0);
+  EXPECT_EQ(robot.output.task.motion, Motion::kNavigate);
+  robot.is_lost = true;
+  robot.run(10.0);
+  EXPECT_EQ(robot.output.task.motion, Motion::kStand);
+  EXPECT_EQ(robot.count(EventKind::kLocalizationLost), 1);
+  robot.is_lost = false;
+  robot.navigation = NavigationFeedback::kArrived;
+  robot.run(10.0);
+  EXPECT_EQ(robot.count(EventKind::kRelocalized), 1);
+  EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
+}
+
+TEST(TunnelMission, LostForThirtySecondsItSaysThatItCannotTell) {
+  Robot robot(TunnelMission({.navigations = 1, .starts_docked = false}, two_goals(), false));
+  robot.is_lost = true;
+  robot.run(4.0 + 29.0);
+  EXPECT_EQ(robot.count(EventKind::kLocalizationFailed), 0);
+  robot.run(2.0);
+  EXPECT_EQ(robot.count(EventKind::kLocalizationFailed), 1);
+  EXPECT_TRUE(robot.tour().is_over());
+}
+
+/// A goal at which the lining is scanned, and one from which a person drives on.
+std::vector<MarkedGoal> inspection_goals() {
+  std::vector<MarkedGoal> goals = two_goals();
+  goals[0].type = 'D';
+  goals[1].type = 'R';
+  return goals;
+}
+
+TEST(TunnelMission, StandsAtAGoalOfTypeDUntilTheLiningIsScanned) {
+  Robot robot(TunnelMission({.navigations = 1}, inspection_goals(), false));
+  robot.inspection = InspectionFeedback::kUnderWay;
+  robot.run(60.0);
+  EXPECT_EQ(robot.output.task.inspection.value().instrument, InstrumentKind::kLining);
+  EXPECT_EQ(robot.output.task.inspection.value().station, "goal_1");
+  robot.inspection = InspectionFeedback::kDone;
+  robot.run(60.0);
+  EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
+}
+
+TEST(TunnelMission, ARobotThatIsLateToKnowHowItMovesStandsForOneAndAHalfSecondsFromThenOn) {
+  TunnelMission tour({.navigations = 1, .starts_docked = false}, two_goals(), false);
+  Time started{};
+  for (Time now = std::chrono::seconds(7); started == Time{}; now += kStep) {
+    if (tour.step(now, {}).mode == Motion::kNavigate) started = now;
+  }
+  EXPECT_NEAR(to_seconds(started), 8.5, 0.06);
+}
+
+TEST(TunnelMission, AScanThatFailsIsReportedAndTheRoundGoesOn) {
+  Robot robot(TunnelMission({.navigations = 1}, inspection_goals(), false));
+  robot.inspection = InspectionFeedback::kFailed;
+  robot.run(60.0);
+  EXPECT_EQ(robot.count(EventKind::kInspectionFailed), 1);
+  EXPECT_EQ(robot.count(EventKind::kGoalReached), 2);
+  EXPECT_EQ(robot.count(EventKind::kDocked), 1);
+  EXPECT_EQ(robot.count(EventKind::kMissionFailed), 1);
+}
+
+TEST(TunnelMission, AtAGoalOfTypeRAPersonDrivesMarksAndHandsOverAgain) {
+  Robot robot(TunnelMission({.navigations = 1}, inspection_goals(), true, true));
+  robot.run(30.0);
+  EXPECT_EQ(robot.count(EventKind::kTeleopRequested), 1);
+  EXPECT_EQ(robot.output.task.motion, Motion::kFollowRemote);
+  robot.run(10.0, RemoteCommand{.vx_mps = 0.5});
+  robot.inspection = InspectionFeedback::kUnderWay;
+  robot.run(10.0, RemoteCommand{.mark = true});
+  EXPECT_EQ(robot.output.task.inspection.value().instrument, InstrumentKind::kWater);
+  EXPECT_EQ(robot.output.task.inspection.value().station, "sounding_1");
+  robot.inspection = InspectionFeedback::kDone;
+  robot.run(10.0, RemoteCommand{.vx_mps = 0.5});
+  EXPECT_EQ(robot.output.task.motion, Motion::kFollowRemote);
+  robot.run(60.0, RemoteCommand{.hand_over = true});
+  EXPECT_EQ(robot.count(EventKind::kGoalMarked), 0);
+  EXPECT_EQ(robot.count(EventKind::kDocked), 1);
+  EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
+}
+
+TEST(TunnelMission, NobodyComesFor120SecondsAndItGoesHomeByItselfWithoutCallingItDone) {
+  Robot robot(TunnelMission({.navigations = 1}, inspection_goals(), true, true));
+  robot.run(5.0 + 119.0);
+  EXPECT_EQ(robot.output.task.motion, Motion::kFollowRemote);
+  robot.run(30.0);
+  EXPECT_EQ(robot.count(EventKind::kDocked), 1);
+  EXPECT_EQ(robot.count(EventKind::kMissionFailed), 1);
+}
+
+TEST(TunnelMission, MarksTakeTheTypesThatTheSettingsName) {
+  Robot robot(TunnelMission({.navigations = 0, .docks = false, .mark_types = "DR"}, {}, true));
+  robot.run(5.0);
+  for (int i = 0; i < 3; ++i) robot.run(0.5, RemoteCommand{.mark = true});
+  ASSERT_EQ(robot.tour().goals().size(), 3u);
+  EXPECT_EQ(robot.tour().goals()[0].type, 'D');
+  EXPECT_EQ(robot.tour().goals()[1].type, 'R');
+  EXPECT_EQ(robot.tour().goals()[2].type, 'N');
+  EXPECT_THROW(TunnelMission({.mark_types = "DX"}, {}, true), InputError);
+}
+
+TEST(TunnelMission, NeitherGoalsNorRemoteControlIsRefused) { EXPECT_THROW(TunnelMission({}, {}, false), InputError); }
+
+}  // namespace
+}  // namespace patrol::stack::tunnel_mission_test

@@ -1,0 +1,55 @@
+#include "stack/settings/stack_settings.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/support/room_world.h"
+
+namespace patrol::stack::stack_settings_test {
+namespace {
+
+/// Along a room for 3 m, by the method that the settings name.
+std::unique_ptr<slam::Mapper> map_room(const StackSettings& settings) {
+  test::RoomWorld room;
+  room.add_box(-3.0, -2.0, 6.0, 4.0);
+  std::unique_ptr<slam::Mapper> mapper = make_mapper(settings, 1);
+  for (int i = 0; i <= 30; ++i) {
+    const Pose2 pose{0.1 * i, 0.0, 0.0};
+    const slam::SlamUpdate update = mapper->update(room.scan(pose, {}), pose);
+    EXPECT_NEAR(update.T_map_body.x, pose.x, 0.02) << i;
+  }
+  return mapper;
+}
+
+TEST(MakeMapper, TheFilterHasAsManyParticlesAsAskedForAndTheGraphNone) {
+  StackSettings settings;
+  settings.mapping = "rbpf";
+  settings.slam.particles = 12;
+  EXPECT_EQ(map_room(settings)->particles().T_map_body.size(), 12U);
+  settings.mapping = "graph";
+  EXPECT_TRUE(map_room(settings)->particles().T_map_body.empty());
+}
+
+TEST(MakeMapper, BothMethodsMapTheSameRoom) {
+  for (const char* method : {"graph", "rbpf"}) {
+    StackSettings settings;
+    settings.mapping = method;
+    const OccupancyGrid map = map_room(settings)->map();
+    EXPECT_EQ(map.at(map.geometry().cell_at({1.0, 1.0})), kFree) << method;
+    EXPECT_NEAR(map.geometry().width * map.geometry().resolution_m, 9.0, 0.2) << method;
+  }
+}
+
+TEST(StackSettings, AMappingMethodThatIsNotThereIsRefusedByName) {
+  StackSettings settings;
+  settings.mapping = "grpah";
+  try {
+    validate(settings, "stack");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("stack.mapping"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace patrol::stack::stack_settings_test

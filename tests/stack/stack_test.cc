@@ -1,0 +1,84 @@
+#include "stack/stack.h"
+
+#include <gtest/gtest.h>
+
+#include "stack/make_stack.h"
+#include "tests/stack/standing_quadruped.h"
+
+namespace patrol::stack::stack_test {
+namespace {
+
+/// Asks for a goal from its fifth step on, and records what it is told.
+class RecordingMission final : public Mission {
+ public:
+  RecordingMission(TaskTiming timing, std::vector<NavigationFeedback>& heard) : timing_(timing), heard_(heard) {}
+
+  MissionOutput step(Time, const MissionInput& input) override {
+    heard_.push_back(input.navigation);
+    MissionOutput output;
+    if (heard_.size() < 5) return output;
+    output.task.motion = Motion::kNavigate;
+    output.task.goal = NavigationGoal{.T_map_body = {}, .position_tol_m = 0.5, .yaw_tol_rad = 3.2};
+    return output;
+  }
+  bool is_over() const override { return is_over_; }
+  Event abort(Time now, EventKind kind, const std::string& text) override {
+    is_over_ = true;
+    return {.stamp = now, .kind = kind, .text = text};
+  }
+  TaskTiming timing() const override { return timing_; }
+  bool starts_at_survey() const override { return true; }
+
+ private:
+  TaskTiming timing_;
+  std::vector<NavigationFeedback>& heard_;
+  bool is_over_ = false;
+};
+
+Stack stack_of(const RobotDescription& robot, std::unique_ptr<Mission> mission, const StackSettings& settings = {}) {
+  return Stack({.pose = PosePipeline(settings, robot, {}, {}, 1),
+                .motion = MotionExecutor(settings, robot, {}, 1),
+                .mission = std::move(mission),
+                .instruments = InstrumentSet({}, 1.0),
+                .sensor_watch = SensorWatch(settings.sensor_watch),
+                .dock = std::nullopt});
+}
+
+// The goal is reached where the robot stands. Either way the mission hears so one step after it has asked.
+TEST(Stack, AMissionHearsOfItsTaskInTheNextStepWhateverItsTiming) {
+  for (const TaskTiming timing : {TaskTiming::kNow, TaskTiming::kNext}) {
+    const RobotDescription robot = quadruped_with_outline();
+    std::vector<NavigationFeedback> heard;
+    Stack stack = stack_of(robot, std::make_unique<RecordingMission>(timing, heard));
+    stand(stack, robot, 2.0);
+    ASSERT_GT(heard.size(), 7U);
+    EXPECT_EQ(heard[4], NavigationFeedback::kDriving);
+    EXPECT_EQ(heard[5], NavigationFeedback::kArrived);
+  }
+}
+
+TEST(Stack, AFallEndsTheMissionOnce) {
+  const RobotDescription robot = quadruped_with_outline();
+  std::vector<NavigationFeedback> heard;
+  Stack stack = stack_of(robot, std::make_unique<RecordingMission>(TaskTiming::kNow, heard));
+  stack.handle_fall(from_seconds(1.0));
+  stack.handle_fall(from_seconds(1.1));
+  const std::vector<Event> events = all_of<Event>(stack.take_messages());
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].kind, EventKind::kFall);
+  EXPECT_TRUE(stack.mission_is_over());
+}
+
+TEST(Stack, PublishesOdometryAndCommandsAtTheirPeriods) {
+  const RobotDescription robot = quadruped_with_outline();
+  std::vector<NavigationFeedback> heard;
+  Stack stack = stack_of(robot, std::make_unique<RecordingMission>(TaskTiming::kNow, heard));
+  const std::vector<StackMessage> messages = stand(stack, robot, 4.0);
+  EXPECT_NEAR(static_cast<double>(all_of<OdometryEstimate>(messages).size()), 4.0 / 0.02, 5.0);
+  EXPECT_NEAR(static_cast<double>(all_of<VelocityCommand>(messages).size()), 4.0 / 0.05, 3.0);
+  EXPECT_NEAR(static_cast<double>(all_of<PoseEstimate>(messages).size()), 3.0 / 0.1,
+              3.0);  // odometry settles for a second
+}
+
+}  // namespace
+}  // namespace patrol::stack::stack_test
