@@ -48,6 +48,15 @@ std::vector<std::string> allowed(const std::string& field) {
   return visitor.values;
 }
 
+/// Name, topic, type and documentation of each sensor of the registry.
+std::vector<std::string> sensor_lines() {
+  std::vector<std::string> lines;
+  for (const SensorInfo& info : kSensorInfos) {
+    lines.push_back(fmt::format("{:<15} {:<16} {:<29} {}", info.name, info.topic, info.ros_type, info.summary));
+  }
+  return lines;
+}
+
 }  // namespace
 
 ExitCode list_command() {
@@ -57,8 +66,8 @@ ExitCode list_command() {
           return file.extension() == ".xml" && file.stem() == file.parent_path().filename();
         }));
   print("robots", files_below(root, "models", [](const auto& file) { return file.extension() == ".urdf"; }));
-  print("sensors", allowed<sim::FaultSettings>("sensor"));
-  print("lidar presets", allowed<sim::LidarSettings>("preset"));
+  print("sensors", sensor_lines());
+  print("lidar presets", allowed<LidarSettings>("preset"));
   print("sensor faults", allowed<sim::FaultSettings>("kind"));
   print("mapping methods of a run (stack.mapping)", allowed<StackSettings>("mapping"));
   print("mapping methods of a log", allowed<slam::MapperSettings>("method"));

@@ -182,4 +182,5 @@ PATROL_ROS_MESSAGE(TransformSet);
 
 }  // namespace patrol::io
 
+#undef PATROL_ROS_SENSOR
 #undef PATROL_ROS_MESSAGE

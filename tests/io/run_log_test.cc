@@ -116,7 +116,7 @@ TEST_F(RunLog, ReadsFromOneTimeToAnother) {
   writer.close();
   int calls = 0;
   LogHandlers handlers;
-  handlers.imu = [&](Time, const Imu&) { ++calls; };
+  handlers.on<Imu>([&](Time, const Imu&) { ++calls; });
   read_run_log(file, handlers, 2s, 3s);
   EXPECT_EQ(calls, 11);
 }

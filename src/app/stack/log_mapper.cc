@@ -13,10 +13,10 @@ LogMapper::LogMapper(const StackSettings& settings, const RobotDescription& robo
 
 void LogMapper::map(const std::filesystem::path& log_mcap) {
   io::LogHandlers handlers;
-  handlers.imu = [&](Time, const Imu& imu) { odometry_.add(imu); };
-  handlers.joints = [&](Time, const JointState& joints) { odometry_.add(joints); };
-  handlers.contacts = [&](Time, const FootContacts& contacts) { odometry_.add(contacts); };
-  handlers.scan = [&](Time, const LaserScan& scan) { handle(scan); };
+  handlers.on<Imu>([&](Time, const Imu& imu) { odometry_.add(imu); });
+  handlers.on<JointState>([&](Time, const JointState& joints) { odometry_.add(joints); });
+  handlers.on<FootContacts>([&](Time, const FootContacts& contacts) { odometry_.add(contacts); });
+  handlers.on<LaserScan>([&](Time, const LaserScan& scan) { handle(scan); });
   io::read_run_log(log_mcap, handlers);
   if (T_map_body_.empty()) throw InputError(fmt::format("{}: no scan in it could be mapped", log_mcap.string()));
 }

@@ -16,7 +16,8 @@ struct Imperfection {
   bool (*is_there)(const Scenario&, const ScenarioFiles&) = [](const Scenario&, const ScenarioFiles&) { return true; };
 };
 
-/// All that the twin has, and two of the stack's own making. A scenario in which one of them is away already is not changed by its overrides.
+/// Error sources of the registry's sensors (core/sensors/<name>.h), other error sources of the twin, and two of the stack. A scenario in which one of
+/// them is away already is not changed by its overrides.
 ///
 /// "Ideal" means: noise, bias, quantisation and loss are zero; a scan is taken in an instant; the lidar is held level; radio passes walls as if
 /// there were none. Two cannot be made ideal and are made small instead, which their names say: belts that slip, and the map's cells.
