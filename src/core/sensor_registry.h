@@ -39,8 +39,8 @@ struct SensorList {
   static constexpr std::array<SensorInfo, sizeof...(Messages)> infos() { return {SensorTraits<Messages>::kInfo...}; }
 };
 
-/// All sensors: the registry. A new sensor is added at the end. Within a tick, sensors are stepped and deliver in this order, those
-/// that the firmware reads first.
+/// All sensors: the registry. A new sensor is added at the end. Within a tick, sensors are stepped and deliver in
+/// this order, those that the firmware reads first.
 using Sensors = SensorList<  //
     LaserScan,               //
     PointCloud,              //

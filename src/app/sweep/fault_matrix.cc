@@ -16,13 +16,10 @@ constexpr double kClockOffset_s = 0.2;
 
 /// Returns whether the scenario gives occasion for the readings of a sensor.
 bool is_triggered(SensorTrigger trigger, const ScenarioFiles& files) {
-  const auto has_goal_of_type = [&](char type) {
-    return std::any_of(files.goals.begin(), files.goals.end(), [=](const MarkedGoal& goal) { return goal.type == type; });
-  };
+  const auto is_scanned = [](const MarkedGoal& goal) { return goal.type == 'D'; };
   switch (trigger) {
     case SensorTrigger::kPeriodic: return true;
-    case SensorTrigger::kScanStation: return has_goal_of_type('D');
-    case SensorTrigger::kWaterStation: return has_goal_of_type('V');
+    case SensorTrigger::kScanStation: return std::any_of(files.goals.begin(), files.goals.end(), is_scanned);
     case SensorTrigger::kTeleoperation: return files.has_remote();
   }
   return true;

@@ -5,22 +5,24 @@
 
 #include "core/robot_description.h"
 
-/// Description of a sensor type. Each header core/sensors/<name>.h holds the message of one sensor, the settings of its simulation
-/// and its registry entry, a specialization of SensorTraits; core/sensor_registry.h lists the messages. Twin, faults, sensor monitor,
-/// log, fault matrix, error budget, settings and `patrol list` derive from that list.
+/// Description of a sensor type. Each header core/sensors/<name>.h holds the message of one sensor, the settings of
+/// its simulation and its registry entry, a specialization of SensorTraits; core/sensor_registry.h lists the
+/// messages. Twin, faults, sensor monitor, log, fault matrix, error budget, settings and `patrol list` derive from
+/// that list.
 namespace patrol {
 
 /// Age limit that the sensor monitor applies to a sensor's messages.
 enum class SensorTimeout { kNone, kLidar, kMotion, kInstrument };
 
-/// Motion by which the sensor monitor recognizes a frozen sensor: readings that repeat while odometry, or the velocity command,
-/// says that the robot moves.
+/// Motion by which the sensor monitor recognizes a frozen sensor: readings that repeat while odometry, or the
+/// velocity command, says that the robot moves.
 enum class FreezeCheck { kNone, kOdometry, kCommand };
 
 /// Occasion on which a sensor publishes.
-enum class SensorTrigger { kPeriodic, kScanStation, kWaterStation, kTeleoperation };
+enum class SensorTrigger { kPeriodic, kScanStation, kTeleoperation };
 
-/// Magnitudes of the faults of a sensor's main reading in the fault matrix: well beyond its noise, as of a damaged sensor.
+/// Magnitudes of the faults of a sensor's main reading in the fault matrix: well beyond its noise, as of a damaged
+/// sensor.
 struct FaultMagnitudes {
   const char* unit = "";  ///< unit of the main reading
   double drift_per_s = 0.0;
@@ -53,14 +55,14 @@ struct ErrorSource {
 ///   template <>
 ///   struct SensorTraits<UwbRange> {
 ///     struct Settings {
-///       UwbSettings uwb;                                   // the member that SensorSuiteSettings has for it; may be empty
+///       UwbSettings uwb;  // the member that SensorSuiteSettings has for it; `Settings` may be empty
 ///     };
-///     static constexpr auto kSettings = &Settings::uwb;    // absent if `Settings` is empty
+///     static constexpr auto kSettings = &Settings::uwb;  // absent if `Settings` is empty
 ///     static constexpr SensorInfo kInfo = {...};
-///     static void add_to_reading(UwbRange& range, double offset);               // offset of the main reading, as by drift and spikes
-///     static bool repeats(const UwbRange& now, const UwbRange& before);         // only with a FreezeCheck
-///     static bool is_fitted(const RobotDescription& robot);                     // absent: on any robot
-///     static std::vector<ErrorSource> error_sources();                          // absent: none
+///     static void add_to_reading(UwbRange& range, double offset);  // main reading, for drift and spikes
+///     static bool repeats(const UwbRange& now, const UwbRange& before);  // only with a FreezeCheck
+///     static bool is_fitted(const RobotDescription& robot);  // absent: on any robot
+///     static std::vector<ErrorSource> error_sources();  // absent: none
 ///   };
 template <typename Message>
 struct SensorTraits;
@@ -83,7 +85,8 @@ bool is_fitted(const RobotDescription& robot) {
   }
 }
 
-/// Returns whether `now` repeats the reading of `before` to the last bit; always false for sensors without a FreezeCheck.
+/// Returns whether `now` repeats the reading of `before` to the last bit; always false for sensors without a
+/// FreezeCheck.
 template <IsSensorMessage Message>
 bool repeats(const Message& now, const Message& before) {
   if constexpr (requires { SensorTraits<Message>::repeats(now, before); }) {

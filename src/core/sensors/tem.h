@@ -73,8 +73,7 @@ struct SensorTraits<TemSounding> {
                                       .topic = "/tem/sounding",
                                       .ros_type = "patrol_msgs/msg/TemSounding",
                                       .summary = "transient-electromagnetic water detector, on command",
-                                      .trigger = SensorTrigger::kWaterStation,
-                                      .not_in_fault_matrix = "used only at water stations, which the fault window of the matrix does not reach"};
+                                      .not_in_fault_matrix = "used only to sound for water, beyond the fault window of the matrix"};
 
   static void add_to_reading(TemSounding& sounding, double offset_tps) {
     for (double& rate_tps : sounding.rate_tps) rate_tps += offset_tps;

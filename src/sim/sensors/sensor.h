@@ -104,8 +104,9 @@ class PeriodicSensor : public Sensor {
   SensorSchedule schedule_;
 };
 
-/// Makes the sensor that publishes `Message`: null if the settings switch it off or the robot cannot carry it. The file of each
-/// sensor specializes it. Throws InputError when an enabled sensor has no frame on the robot, or lacks something in the world.
+/// Makes the sensor that publishes `Message`: null if the settings switch it off or the robot cannot carry it. The
+/// file of each sensor specializes it. Throws InputError when an enabled sensor has no frame on the robot, or lacks
+/// something in the world.
 template <typename Message>
 std::unique_ptr<Sensor> make_sensor(const SensorContext& context);
 

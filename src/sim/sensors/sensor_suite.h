@@ -20,20 +20,22 @@
 
 namespace patrol::sim {
 
-/// All sensors of the robot, made from the registry. A message is delivered its sensor's latency after the reading is complete,
-/// changed by the faults of the scenario.
+/// All sensors of the robot, made from the registry. A message is delivered its sensor's latency after the reading is
+/// complete, changed by the faults of the scenario.
 class SensorSuite {
  public:
-  /// `view` must outlive the suite; `plume` is in world. Throws InputError when an enabled sensor has no frame on the robot, or
-  /// lacks something in the world; and when the depth camera is enabled and there is no `make_depth_imager`.
-  SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics, const mjModel& view,
-              const GasPlume& plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
+  /// `view` must outlive the suite; `plume` is in world. Throws InputError when an enabled sensor has no frame on the
+  /// robot, or lacks something in the world; and when the depth camera is enabled and there is no
+  /// `make_depth_imager`.
+  SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
+              const mjModel& view, const GasPlume& plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
               const DepthImagerFactory& make_depth_imager = {}, const Underground& underground = {});
 
   /// Called once a tick, with kinematics and accelerations of `now` in `data`.
   void step(const mjModel& physics, mjData& data, Time now);
 
-  /// Takes the reading of a sensor that another part of the simulation models: the remote control, the antenna's servos.
+  /// Takes the reading of a sensor that another part of the simulation models: the remote control, the antenna's
+  /// servos.
   template <IsSensorMessage Message>
   void add(const Message& reading) {
     deliver(reading.stamp, latency_s<Message>(settings_), reading);
