@@ -16,6 +16,7 @@
 #include "core/sensors/joint_encoders.h"
 #include "core/sensors/lidar.h"
 #include "core/sensors/lidar3d.h"
+#include "core/sensors/magnetometer.h"
 #include "core/sensors/remote.h"
 #include "core/sensors/scanner.h"
 #include "core/sensors/tdlas.h"
@@ -56,7 +57,8 @@ using Sensors = SensorList<  //
     RemoteCommand,           //
     PanoramicScan,           //
     AntennaState,            //
-    TemSounding              //
+    TemSounding,             //
+    MagneticField            //
     >;
 
 /// Message of any sensor.
