@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/sensors/antenna.h"
+#include "core/sensors/barometer.h"
 #include "core/sensors/depth_camera.h"
 #include "core/sensors/foot_contact.h"
 #include "core/sensors/gnss.h"
@@ -58,7 +59,8 @@ using Sensors = SensorList<  //
     PanoramicScan,           //
     AntennaState,            //
     TemSounding,             //
-    MagneticField            //
+    MagneticField,           //
+    FluidPressure            //
     >;
 
 /// Message of any sensor.
