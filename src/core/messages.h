@@ -10,11 +10,10 @@
 #include "core/frames.h"
 #include "core/grid.h"
 #include "core/inspection_result.h"
-#include "core/sensor_registry.h"
 #include "core/time.h"
 
 /// Messages between the robot's parts, as on a real robot. Those of sensors are in core/sensors/<name>.h, listed in
-/// core/sensor_registry.h. SI units; a stamp is the instant that the content is true of, not the instant of sending.
+/// core/sensors/registry.h. SI units; a stamp is the instant that the content is true of, not the instant of sending.
 namespace patrol {
 
 /// The velocity asked of the robot, in `level`.

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/ground_truth.h"
 #include "core/messages.h"
+#include "core/sensors/registry.h"
 
 /// Our messages as ROS 2 messages: the type that stands for each, and its CDR encoding (little-endian XCDR1 with its
 /// four-byte header). Every pair of `encode` and `decode` is one description of the fields, in ros_messages.cc,

@@ -11,6 +11,7 @@
 #include "core/ground_truth.h"
 #include "core/messages.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "core/trajectory.h"
 #include "io/mcap_writer.h"
 #include "io/ros_messages.h"

@@ -9,6 +9,7 @@
 #include "core/messages.h"
 #include "core/navigation_goal.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "plan/costmap.h"
 #include "plan/differential_approach.h"
 #include "plan/dwa.h"

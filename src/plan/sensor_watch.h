@@ -7,13 +7,14 @@
 
 #include "core/frames.h"
 #include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 
 namespace patrol::plan {
 
 /// When a sensor is no longer believed. Ages are counted from a message's stamp to now: a reading that comes late is as bad as none.
 struct SensorWatchSettings {
-  double lidar_age_s = 0.6;       ///< age limit of sensors with SensorTimeout::kLidar (core/sensor_registry.h)
+  double lidar_age_s = 0.6;       ///< age limit of sensors with SensorTimeout::kLidar (core/sensors/registry.h)
   double motion_age_s = 0.15;     ///< age limit of sensors with SensorTimeout::kMotion
   double instrument_age_s = 5.0;  ///< age limit of sensors with SensorTimeout::kInstrument
   double future_s = 0.05;         ///< a stamp that far ahead of now: the sensor's clock is wrong

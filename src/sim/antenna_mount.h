@@ -9,6 +9,7 @@
 #include "core/messages.h"
 #include "core/random.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 
 namespace patrol::sim {

@@ -1,4 +1,4 @@
-#include "core/sensor_registry.h"
+#include "core/sensors/registry.h"
 
 #include <gtest/gtest.h>
 

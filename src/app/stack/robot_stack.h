@@ -11,6 +11,7 @@
 #include "core/part_clock.h"
 #include "core/robot_description.h"
 #include "core/route.h"
+#include "core/sensors/registry.h"
 #include "inspect/navigation_feedback.h"
 #include "localize/map_pose_tracker.h"
 #include "plan/navigator.h"

@@ -6,7 +6,7 @@
 #include "core/robot_description.h"
 
 /// Description of a sensor type. Each header core/sensors/<name>.h holds the message of one sensor, the settings of
-/// its simulation and its registry entry, a specialization of SensorTraits; core/sensor_registry.h lists the
+/// its simulation and its registry entry, a specialization of SensorTraits; core/sensors/registry.h lists the
 /// messages. Twin, faults, sensor monitor, log, fault matrix, error budget, settings and `patrol list` derive from
 /// that list.
 namespace patrol {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/messages.h"
+#include "core/sensors/registry.h"
 
 namespace patrol::sim {
 

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/sensor_registry.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 #include "core/time.h"
 

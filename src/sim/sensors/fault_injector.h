@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include "core/messages.h"
 #include "core/random.h"
+#include "core/sensors/registry.h"
 #include "sim/sensors/fault.h"
 
 namespace patrol::sim {

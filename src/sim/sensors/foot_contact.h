@@ -7,9 +7,9 @@
 
 #include <mujoco/mujoco.h>
 
-#include "core/messages.h"
 #include "core/random.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 
 namespace patrol::sim {

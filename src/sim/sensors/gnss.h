@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "core/messages.h"
 #include "core/random.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 #include "sim/lidar_scene.h"
 

@@ -4,8 +4,8 @@
 
 #include <mujoco/mujoco.h>
 
-#include "core/messages.h"
 #include "core/random.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 
 namespace patrol::sim {

@@ -6,7 +6,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 
 namespace patrol::sim {

@@ -7,8 +7,8 @@
 
 #include <mujoco/mujoco.h>
 
-#include "core/messages.h"
 #include "core/random.h"
+#include "core/sensors/registry.h"
 
 namespace patrol::sim {
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/messages.h"
 #include "core/random.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 #include "sim/dust.h"
 #include "sim/lidar_scene.h"

@@ -9,6 +9,7 @@
 #include "core/messages.h"
 #include "core/part_clock.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "sim/gas_plume.h"
 #include "sim/lidar_scene.h"
 #include "sim/sensors/depth_camera.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/sensor_registry.h"
+#include "core/sensors/registry.h"
 #include "sim/dust.h"
 
 namespace patrol::sim {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/frames.h"
-#include "core/messages.h"
 #include "core/random.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 #include "core/tem_response.h"
 #include "sim/water_ahead.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/messages.h"
 #include "core/random.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 #include "sim/lidar_scene.h"
 
