@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace patrol::app {
 namespace {
 
@@ -22,13 +24,23 @@ std::vector<Imperfection> imperfections_of_sensors() {
   return all;
 }
 
+/// Settings without latency, of all sensors of the registry that have one.
+std::vector<std::string> latency_overrides() {
+  std::vector<std::string> overrides;
+  Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
+    if constexpr (HasSensorSettings<Message>) {
+      if constexpr (requires(const sim::SensorSuiteSettings& all) { (all.*SensorTraits<Message>::kSettings).latency_s; }) {
+        overrides.push_back(fmt::format("sensors.{}.latency_s=0", SensorTraits<Message>::kInfo.name));
+      }
+    }
+  });
+  return overrides;
+}
+
 std::vector<Imperfection> other_imperfections() {
   return {
       {"belts: slip (friction 2)", {"track_drive.friction=2"}, has_belts},
-      {"latency of all sensors", {"sensors.lidar.latency_s=0", "sensors.imu.latency_s=0", "sensors.joint_encoders.latency_s=0",
-                                  "sensors.foot_contact.latency_s=0", "sensors.hall.latency_s=0", "sensors.uwb.latency_s=0",
-                                  "sensors.ultrasonic.latency_s=0", "sensors.depth_camera.latency_s=0", "sensors.tdlas.latency_s=0",
-                                  "sensors.gnss.latency_s=0"}},
+      {"latency of all sensors", latency_overrides()},
       {"people and vehicles", {"actors=[]"}},
       {"faults", {"faults=[]"}},
       {"put down off the start", {"start.ahead_m=0", "start.left_m=0", "start.turn_deg=0"}},
