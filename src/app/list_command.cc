@@ -50,6 +50,15 @@ std::vector<std::string> allowed(const std::string& field) {
   return visitor.values;
 }
 
+/// Name, topic, type and documentation of each sensor of the registry.
+std::vector<std::string> sensor_lines() {
+  std::vector<std::string> lines;
+  for (const SensorInfo& info : kSensorInfos) {
+    lines.push_back(fmt::format("{:<15} {:<16} {:<29} {}", info.name, info.topic, info.ros_type, info.summary));
+  }
+  return lines;
+}
+
 /// Scenarios, worlds and robots. A program without its data lists everything else.
 void print_data() {
   std::filesystem::path root;
@@ -70,8 +79,8 @@ void print_data() {
 
 ExitCode list_command() {
   print_data();
-  print("sensors", allowed<sim::FaultSettings>("sensor"));
-  print("lidar presets", allowed<sim::LidarSettings>("preset"));
+  print("sensors", sensor_lines());
+  print("lidar presets", allowed<LidarSettings>("preset"));
   print("sensor faults", allowed<sim::FaultSettings>("kind"));
   print("odometry sources (stack.odometry_source)", allowed<stack::StackSettings>("odometry_source"));
   print("localizers (stack.localizer)", allowed<stack::StackSettings>("localizer"));

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -39,9 +39,9 @@ struct Limits {
 inline Limits any() { return {}; }
 inline Limits at_least(double min) { return {.min = min, .allowed = {}}; }
 inline Limits between(double min, double max) { return {.min = min, .max = max, .allowed = {}}; }
-inline Limits one_of(std::initializer_list<std::string> allowed) {
+inline Limits one_of(std::vector<std::string> allowed) {
   Limits limits;
-  limits.allowed = allowed;
+  limits.allowed = std::move(allowed);
   return limits;
 }
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "core/recorded_scan.h"
+#include "core/sensors/recorded_scan.h"
 
 namespace patrol::io {
 

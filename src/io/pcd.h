@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/messages.h"
+#include "core/sensors/registry.h"
 
 /// Point clouds in PCD, the Point Cloud Library's format, version 0.7.
 namespace patrol::io {

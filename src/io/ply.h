@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/messages.h"
+#include "core/sensors/registry.h"
 
 /// Point clouds in PLY, the Stanford triangle format (G. Turk, 1994).
 namespace patrol::io {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/messages.h"
+#include "core/sensors/registry.h"
 
 /// What PLY and PCD have in common: a header of lines, and under it a table of numbers whose columns it names.
 namespace patrol::io {

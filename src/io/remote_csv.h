@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/messages.h"
+#include "core/sensors/registry.h"
 
 namespace patrol::io {
 

@@ -201,3 +201,11 @@ Message decode(std::string_view bytes) {
 #define PATROL_ROS_MESSAGE(Message)                                     \
   template std::string encode(const Message&, const RosNames&);         \
   template Message decode<Message>(std::string_view)
+
+/// Makes both for a sensor's message, with the fields of its ROS type; "" for a type of ros_definitions.cc.
+#define PATROL_ROS_SENSOR(Message, fields)            \
+  template <>                                         \
+  std::string_view ros_message_fields<Message>() {    \
+    return fields;                                    \
+  }                                                   \
+  PATROL_ROS_MESSAGE(Message)

@@ -7,10 +7,13 @@
 
 #include <fmt/format.h>
 
+#include "io/ros_messages.h"
+
 namespace patrol::io {
 namespace {
 
-/// The fields of each type, as in ROS 2's common_interfaces; comments left out. Ours carry their units.
+/// Fields of each type, as in ROS 2's common_interfaces; comments left out. Ours carry their units. Those of a sensor's own type are
+/// beside its codec (ros_message_fields).
 struct Definition {
   std::string_view type, fields;
 };
@@ -32,28 +35,15 @@ constexpr Definition kDefinitions[] = {
     {"geometry_msgs/TransformStamped",
      "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"},
     {"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
-    {"sensor_msgs/LaserScan",
-     "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
-     "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] intensities\n"},
     {"sensor_msgs/PointField",
      "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\nuint8 UINT32=6\nuint8 FLOAT32=7\n"
      "uint8 FLOAT64=8\nstring name\nuint32 offset\nuint8 datatype\nuint32 count\n"},
     {"sensor_msgs/PointCloud2",
      "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\nbool is_bigendian\n"
      "uint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n"},
-    {"sensor_msgs/Imu",
-     "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\n"
-     "geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n"
-     "geometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n"},
-    {"sensor_msgs/JointState",
-     "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n"},
     {"sensor_msgs/NavSatStatus",
      "int8 STATUS_NO_FIX=-1\nint8 STATUS_FIX=0\nint8 STATUS_SBAS_FIX=1\nint8 STATUS_GBAS_FIX=2\nint8 status\n"
      "uint16 SERVICE_GPS=1\nuint16 SERVICE_GLONASS=2\nuint16 SERVICE_COMPASS=4\nuint16 SERVICE_GALILEO=8\nuint16 service\n"},
-    {"sensor_msgs/NavSatFix",
-     "std_msgs/Header header\nsensor_msgs/NavSatStatus status\nfloat64 latitude\nfloat64 longitude\nfloat64 altitude\n"
-     "float64[9] position_covariance\nuint8 COVARIANCE_TYPE_UNKNOWN=0\nuint8 COVARIANCE_TYPE_APPROXIMATED=1\n"
-     "uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2\nuint8 COVARIANCE_TYPE_KNOWN=3\nuint8 position_covariance_type\n"},
     {"nav_msgs/Odometry",
      "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
      "geometry_msgs/TwistWithCovariance twist\n"},
@@ -63,33 +53,6 @@ constexpr Definition kDefinitions[] = {
     {"nav_msgs/Path", "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n"},
     {"nav2_msgs/Particle", "geometry_msgs/Pose pose\nfloat64 weight\n"},
     {"nav2_msgs/ParticleCloud", "std_msgs/Header header\nnav2_msgs/Particle[] particles\n"},
-    {"patrol_msgs/FootContacts",
-     "# Force on each foot's sensor, N, in the order FL, FR, RL, RR.\nstd_msgs/Header header\nfloat64[] force_n\n"},
-    {"patrol_msgs/GasReading",
-     "# Open-path methane meter: column along the beam, length of the beam (inf: no echo), mean as mass of methane.\n"
-     "std_msgs/Header header\nfloat64 column_ppm_m\nfloat64 path_length_m\nfloat64 mean_mg_m3\n"},
-    {"sensor_msgs/Range",
-     "std_msgs/Header header\nuint8 ULTRASOUND=0\nuint8 INFRARED=1\nuint8 radiation_type\nfloat32 field_of_view\n"
-     "float32 min_range\nfloat32 max_range\nfloat32 range\n"},
-    {"patrol_msgs/TrackTicks",
-     "# Counts of the drive motors' Hall sensors since power-up; forwards is positive.\n"
-     "std_msgs/Header header\nint64 left\nint64 right\n"},
-    {"patrol_msgs/UwbRange",
-     "# Two-way range, m, from the robot's antenna to the anchor of that number.\n"
-     "std_msgs/Header header\nint32 anchor\nfloat64 range_m\n"},
-    {"patrol_msgs/DepthImage",
-     "# The fields of a sensor_msgs/Image (16UC1: depth along the optical axis, mm, 0 invalid), and the pinhole's, pixels.\n"
-     "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\nuint8[] data\n"
-     "float64 fx_px\nfloat64 fy_px\nfloat64 cx_px\nfloat64 cy_px\n"},
-    {"patrol_msgs/RemoteCommand",
-     "# What the person at the remote control asks for. Buttons: this place is a goal; the robot goes on by itself.\n"
-     "std_msgs/Header header\nfloat64 vx_mps\nfloat64 yaw_rate_radps\nbool mark\nbool hand_over\n"},
-    {"patrol_msgs/AntennaState",
-     "# What the servos of the antenna mount read back: to the left, then downwards.\n"
-     "std_msgs/Header header\nfloat64 yaw_rad\nfloat64 pitch_rad\n"},
-    {"patrol_msgs/TemSounding",
-     "# After the current is off: -dB/dt along the coil's axis, T/s, at the gates' middles, and its standard deviation.\n"
-     "std_msgs/Header header\nfloat64 moment_am2\nfloat64[] gate_s\nfloat64[] rate_tps\nfloat64[] std_tps\n"},
     {"patrol_msgs/ScanCommand", "# One panoramic scan, now.\nstd_msgs/Header header\n"},
     {"patrol_msgs/AntennaCommand", "# Turn the antenna there.\nstd_msgs/Header header\nfloat64 yaw_rad\nfloat64 pitch_rad\n"},
     {"patrol_msgs/SoundingCommand", "# One sounding, now.\nstd_msgs/Header header\n"},
@@ -127,12 +90,22 @@ constexpr Definition kDefinitions[] = {
      "# The robot's geom `first` touched `second`.\nstd_msgs/Header header\nstring first\nstring second\n"},
 };
 
-/// Empty if the type is not ours.
+/// "sensor_msgs/msg/Imu" -> "sensor_msgs/Imu"; empty if it is no ROS 2 type name.
+std::string short_type(const std::string& type) {
+  const std::size_t middle = type.find("/msg/");
+  return middle == std::string::npos ? "" : type.substr(0, middle) + type.substr(middle + 4);
+}
+
+/// Returns the fields of a type of the table or of a sensor; empty if the type is unknown.
 std::string_view fields_of(std::string_view type) {
   for (const Definition& definition : kDefinitions) {
     if (definition.type == type) return definition.fields;
   }
-  return {};
+  std::string_view fields;
+  Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
+    if (fields.empty() && short_type(kRosType<Message>) == type) fields = ros_message_fields<Message>();
+  });
+  return fields;
 }
 
 /// "sensor_msgs/Imu[]" -> "sensor_msgs/Imu"; empty for primitives.
@@ -155,9 +128,8 @@ void append_used(const std::string& type, std::set<std::string>& done, std::stri
 }  // namespace
 
 std::string ros_definition(const std::string& type) {
-  const std::size_t middle = type.find("/msg/");
-  if (middle == std::string::npos) throw std::logic_error("not a ROS 2 type name: " + type);
-  const std::string short_name = type.substr(0, middle) + type.substr(middle + 4);
+  const std::string short_name = short_type(type);
+  if (short_name.empty()) throw std::logic_error("not a ROS 2 type name: " + type);
   std::string text(fields_of(short_name));
   if (text.empty()) throw std::logic_error("no definition of " + type);
   std::set<std::string> done;

@@ -136,9 +136,13 @@ void describe(Codec& codec, WaterResult& result) {
 
 namespace patrol::io {
 
-PATROL_ROS_MESSAGE(PanoramicScan);
-PATROL_ROS_MESSAGE(AntennaState);
-PATROL_ROS_MESSAGE(TemSounding);
+PATROL_ROS_SENSOR(PanoramicScan, "");
+PATROL_ROS_SENSOR(AntennaState,
+                  "# What the servos of the antenna mount read back: to the left, then downwards.\n"
+                  "std_msgs/Header header\nfloat64 yaw_rad\nfloat64 pitch_rad\n");
+PATROL_ROS_SENSOR(TemSounding,
+                  "# After the current is off: -dB/dt along the coil's axis, T/s, at the gates' middles, and its standard deviation.\n"
+                  "std_msgs/Header header\nfloat64 moment_am2\nfloat64[] gate_s\nfloat64[] rate_tps\nfloat64[] std_tps\n");
 PATROL_ROS_MESSAGE(ScanCommand);
 PATROL_ROS_MESSAGE(AntennaCommand);
 PATROL_ROS_MESSAGE(SoundingCommand);

@@ -7,10 +7,11 @@
 #include "core/error.h"
 #include "core/ground_truth.h"
 #include "core/messages.h"
+#include "core/sensors/registry.h"
 
 /// Our messages as ROS 2 messages: the type that stands for each, and its CDR encoding (little-endian XCDR1 with its
 /// four-byte header). Every pair of `encode` and `decode` is one description of the fields, in ros_messages.cc,
-/// ros_sensor_messages.cc and ros_inspection_messages.cc.
+/// ros_sensor_messages.cc, ros_inspection_messages.cc and, one file for each further sensor, sensors/<name>.cc.
 namespace patrol::io {
 
 /// A transform of /tf and /tf_static.
@@ -25,21 +26,8 @@ struct TransformSet {
 
 template <typename Message>
 inline constexpr const char* kRosType = nullptr;
-template <> inline constexpr const char* kRosType<LaserScan> = "sensor_msgs/msg/LaserScan";
-template <> inline constexpr const char* kRosType<PointCloud> = "sensor_msgs/msg/PointCloud2";
-template <> inline constexpr const char* kRosType<Imu> = "sensor_msgs/msg/Imu";
-template <> inline constexpr const char* kRosType<JointState> = "sensor_msgs/msg/JointState";
-template <> inline constexpr const char* kRosType<FootContacts> = "patrol_msgs/msg/FootContacts";
-template <> inline constexpr const char* kRosType<GasReading> = "patrol_msgs/msg/GasReading";
-template <> inline constexpr const char* kRosType<GnssFix> = "sensor_msgs/msg/NavSatFix";
-template <> inline constexpr const char* kRosType<TrackTicks> = "patrol_msgs/msg/TrackTicks";
-template <> inline constexpr const char* kRosType<UwbRange> = "patrol_msgs/msg/UwbRange";
-template <> inline constexpr const char* kRosType<UltrasonicRange> = "sensor_msgs/msg/Range";
-template <> inline constexpr const char* kRosType<DepthImage> = "patrol_msgs/msg/DepthImage";
-template <> inline constexpr const char* kRosType<RemoteCommand> = "patrol_msgs/msg/RemoteCommand";
-template <> inline constexpr const char* kRosType<PanoramicScan> = "sensor_msgs/msg/PointCloud2";
-template <> inline constexpr const char* kRosType<AntennaState> = "patrol_msgs/msg/AntennaState";
-template <> inline constexpr const char* kRosType<TemSounding> = "patrol_msgs/msg/TemSounding";
+template <IsSensorMessage Message>
+inline constexpr const char* kRosType<Message> = SensorTraits<Message>::kInfo.ros_type;
 template <> inline constexpr const char* kRosType<ScanCommand> = "patrol_msgs/msg/ScanCommand";
 template <> inline constexpr const char* kRosType<AntennaCommand> = "patrol_msgs/msg/AntennaCommand";
 template <> inline constexpr const char* kRosType<SoundingCommand> = "patrol_msgs/msg/SoundingCommand";
@@ -67,6 +55,10 @@ struct RosNames {
 
 template <typename Message>
 std::string encode(const Message& message, const RosNames& names = {});
+
+/// Fields of a sensor message's ROS type as in its .msg file, beside its codec; empty if ros_definitions.cc has them.
+template <IsSensorMessage Message>
+std::string_view ros_message_fields();
 
 /// The bytes are not such a message.
 class DecodeError : public InputError {

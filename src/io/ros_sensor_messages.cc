@@ -197,18 +197,41 @@ void describe(Codec& codec, RemoteCommand& command) {
 
 namespace patrol::io {
 
-PATROL_ROS_MESSAGE(LaserScan);
-PATROL_ROS_MESSAGE(PointCloud);
-PATROL_ROS_MESSAGE(Imu);
-PATROL_ROS_MESSAGE(JointState);
-PATROL_ROS_MESSAGE(FootContacts);
-PATROL_ROS_MESSAGE(GasReading);
-PATROL_ROS_MESSAGE(GnssFix);
-PATROL_ROS_MESSAGE(TrackTicks);
-PATROL_ROS_MESSAGE(UwbRange);
-PATROL_ROS_MESSAGE(UltrasonicRange);
-PATROL_ROS_MESSAGE(DepthImage);
-PATROL_ROS_MESSAGE(RemoteCommand);
+PATROL_ROS_SENSOR(LaserScan,
+                  "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
+                  "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] intensities\n");
+PATROL_ROS_SENSOR(PointCloud, "");
+PATROL_ROS_SENSOR(Imu,
+                  "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\n"
+                  "geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n"
+                  "geometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n");
+PATROL_ROS_SENSOR(JointState,
+                  "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n");
+PATROL_ROS_SENSOR(FootContacts,
+                  "# Force on each foot's sensor, N, in the order FL, FR, RL, RR.\nstd_msgs/Header header\nfloat64[] force_n\n");
+PATROL_ROS_SENSOR(GasReading,
+                  "# Open-path methane meter: column along the beam, length of the beam (inf: no echo), mean as mass of methane.\n"
+                  "std_msgs/Header header\nfloat64 column_ppm_m\nfloat64 path_length_m\nfloat64 mean_mg_m3\n");
+PATROL_ROS_SENSOR(GnssFix,
+                  "std_msgs/Header header\nsensor_msgs/NavSatStatus status\nfloat64 latitude\nfloat64 longitude\nfloat64 altitude\n"
+                  "float64[9] position_covariance\nuint8 COVARIANCE_TYPE_UNKNOWN=0\nuint8 COVARIANCE_TYPE_APPROXIMATED=1\n"
+                  "uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2\nuint8 COVARIANCE_TYPE_KNOWN=3\nuint8 position_covariance_type\n");
+PATROL_ROS_SENSOR(TrackTicks,
+                  "# Counts of the drive motors' Hall sensors since power-up; forwards is positive.\n"
+                  "std_msgs/Header header\nint64 left\nint64 right\n");
+PATROL_ROS_SENSOR(UwbRange,
+                  "# Two-way range, m, from the robot's antenna to the anchor of that number.\n"
+                  "std_msgs/Header header\nint32 anchor\nfloat64 range_m\n");
+PATROL_ROS_SENSOR(UltrasonicRange,
+                  "std_msgs/Header header\nuint8 ULTRASOUND=0\nuint8 INFRARED=1\nuint8 radiation_type\nfloat32 field_of_view\n"
+                  "float32 min_range\nfloat32 max_range\nfloat32 range\n");
+PATROL_ROS_SENSOR(DepthImage,
+                  "# The fields of a sensor_msgs/Image (16UC1: depth along the optical axis, mm, 0 invalid), and the pinhole's, pixels.\n"
+                  "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\nuint8[] data\n"
+                  "float64 fx_px\nfloat64 fy_px\nfloat64 cx_px\nfloat64 cy_px\n");
+PATROL_ROS_SENSOR(RemoteCommand,
+                  "# What the person at the remote control asks for. Buttons: this place is a goal; the robot goes on by itself.\n"
+                  "std_msgs/Header header\nfloat64 vx_mps\nfloat64 yaw_rate_radps\nbool mark\nbool hand_over\n");
 
 }  // namespace patrol::io
 

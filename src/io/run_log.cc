@@ -15,28 +15,6 @@ constexpr const char* kTfStatic = "/tf_static";
 /// How long odometry is kept for the estimates that come later than it.
 constexpr Time kOdometryMemory = std::chrono::seconds(2);
 
-/// What to do with the messages of each topic that someone asked for.
-class Dispatch {
- public:
-  template <typename Message>
-  void add(const LogHandlers::Handler<Message>& handler) {
-    if (!handler) return;
-    by_topic_[kTopic<Message>] = [&handler](const McapMessage& message) {
-      handler(message.log_time, decode<Message>(message.cdr));
-    };
-  }
-
-  std::vector<std::string> topics() const {
-    std::vector<std::string> topics;
-    for (const auto& [topic, handle] : by_topic_) topics.push_back(topic);
-    return topics;
-  }
-  void operator()(const McapMessage& message) const { by_topic_.at(message.channel.topic)(message); }
-
- private:
-  std::map<std::string, std::function<void(const McapMessage&)>> by_topic_;
-};
-
 }  // namespace
 
 RunLogWriter::RunLogWriter(const std::filesystem::path& log_mcap, const RobotDescription& robot)
@@ -75,47 +53,19 @@ void RunLogWriter::write_frames(Time log_time, const PoseEstimate& estimate) {
   writer_.write(channel<TransformSet>(kTf), log_time, encode(frames, names_));
 }
 
+std::vector<std::string> LogHandlers::topics() const {
+  std::vector<std::string> topics;
+  for (const auto& [topic, handle] : by_topic_) topics.push_back(topic);
+  return topics;
+}
+
 bool read_run_log(const std::filesystem::path& log_mcap, const LogHandlers& handlers, Time from, Time to) {
-  Dispatch dispatch;
-  dispatch.add(handlers.scan);
-  dispatch.add(handlers.points);
-  dispatch.add(handlers.imu);
-  dispatch.add(handlers.joints);
-  dispatch.add(handlers.contacts);
-  dispatch.add(handlers.gas);
-  dispatch.add(handlers.gnss);
-  dispatch.add(handlers.ticks);
-  dispatch.add(handlers.uwb);
-  dispatch.add(handlers.ultrasonic);
-  dispatch.add(handlers.depth);
-  dispatch.add(handlers.remote);
-  dispatch.add(handlers.panorama);
-  dispatch.add(handlers.antenna);
-  dispatch.add(handlers.sounding);
-  dispatch.add(handlers.scan_command);
-  dispatch.add(handlers.antenna_command);
-  dispatch.add(handlers.sounding_command);
-  dispatch.add(handlers.warning);
-  dispatch.add(handlers.lining);
-  dispatch.add(handlers.water);
-  dispatch.add(handlers.trust);
-  dispatch.add(handlers.odometry);
-  dispatch.add(handlers.pose);
-  dispatch.add(handlers.range_pose);
-  dispatch.add(handlers.particles);
-  dispatch.add(handlers.map);
-  dispatch.add(handlers.path);
-  dispatch.add(handlers.command);
-  dispatch.add(handlers.event);
-  dispatch.add(handlers.truth);
-  dispatch.add(handlers.state);
-  dispatch.add(handlers.collision);
-  const std::vector<std::string> topics = dispatch.topics();
+  const std::vector<std::string> topics = handlers.topics();
   McapReader reader(log_mcap, {.topics = topics, .from = from, .to = to});
   if (topics.empty()) return reader.is_complete();
   while (const std::optional<McapMessage> message = reader.next()) {
     try {
-      dispatch(*message);
+      handlers.handle(message->channel.topic, message->log_time, message->cdr);
     } catch (const DecodeError& error) {
       throw InputError(fmt::format("{}: {} at {:.9f} s: {}", log_mcap.string(), message->channel.topic,
                                    to_seconds(message->log_time), error.what()));

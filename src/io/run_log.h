@@ -2,36 +2,27 @@
 
 #include <filesystem>
 #include <functional>
-#include <optional>
+#include <map>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/ground_truth.h"
 #include "core/messages.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "core/trajectory.h"
 #include "io/mcap_writer.h"
 #include "io/ros_messages.h"
 
 namespace patrol::io {
 
-/// The topic of each message.
+/// Topic of each message.
 template <typename Message>
 inline constexpr const char* kTopic = nullptr;
-template <> inline constexpr const char* kTopic<LaserScan> = "/scan";
-template <> inline constexpr const char* kTopic<PointCloud> = "/points";
-template <> inline constexpr const char* kTopic<Imu> = "/imu/data";
-template <> inline constexpr const char* kTopic<JointState> = "/joint_states";
-template <> inline constexpr const char* kTopic<FootContacts> = "/foot_contacts";
-template <> inline constexpr const char* kTopic<GasReading> = "/gas";
-template <> inline constexpr const char* kTopic<GnssFix> = "/gnss/fix";
-template <> inline constexpr const char* kTopic<TrackTicks> = "/track_ticks";
-template <> inline constexpr const char* kTopic<UwbRange> = "/uwb/range";
-template <> inline constexpr const char* kTopic<UltrasonicRange> = "/ultrasonic";
-template <> inline constexpr const char* kTopic<DepthImage> = "/depth";
-template <> inline constexpr const char* kTopic<RemoteCommand> = "/remote";
-template <> inline constexpr const char* kTopic<PanoramicScan> = "/scanner/points";
-template <> inline constexpr const char* kTopic<AntennaState> = "/tem/antenna";
-template <> inline constexpr const char* kTopic<TemSounding> = "/tem/sounding";
+template <IsSensorMessage Message>
+inline constexpr const char* kTopic<Message> = SensorTraits<Message>::kInfo.topic;
 template <> inline constexpr const char* kTopic<ScanCommand> = "/scanner/command";
 template <> inline constexpr const char* kTopic<AntennaCommand> = "/tem/antenna_command";
 template <> inline constexpr const char* kTopic<SoundingCommand> = "/tem/command";
@@ -85,43 +76,27 @@ class RunLogWriter {
   Trajectory odometry_;  ///< of late, to place map over odom at an estimate's stamp
 };
 
-/// What to do with each kind of message; those left empty are skipped undecoded.
-struct LogHandlers {
+/// Handlers of the messages of a log; messages without a handler are skipped undecoded.
+class LogHandlers {
+ public:
   template <typename Message>
   using Handler = std::function<void(Time log_time, const Message&)>;
-  Handler<LaserScan> scan = {};
-  Handler<PointCloud> points = {};
-  Handler<Imu> imu = {};
-  Handler<JointState> joints = {};
-  Handler<FootContacts> contacts = {};
-  Handler<GasReading> gas = {};
-  Handler<GnssFix> gnss = {};
-  Handler<TrackTicks> ticks = {};
-  Handler<UwbRange> uwb = {};
-  Handler<UltrasonicRange> ultrasonic = {};
-  Handler<DepthImage> depth = {};
-  Handler<RemoteCommand> remote = {};
-  Handler<PanoramicScan> panorama = {};
-  Handler<AntennaState> antenna = {};
-  Handler<TemSounding> sounding = {};
-  Handler<ScanCommand> scan_command = {};
-  Handler<AntennaCommand> antenna_command = {};
-  Handler<SoundingCommand> sounding_command = {};
-  Handler<WarningCommand> warning = {};
-  Handler<LiningResult> lining = {};
-  Handler<WaterResult> water = {};
-  Handler<LocalizationTrust> trust = {};
-  Handler<OdometryEstimate> odometry = {};
-  Handler<PoseEstimate> pose = {};
-  Handler<RangePoseEstimate> range_pose = {};
-  Handler<ParticleSet> particles = {};
-  Handler<MapUpdate> map = {};
-  Handler<Path> path = {};
-  Handler<VelocityCommand> command = {};
-  Handler<Event> event = {};
-  Handler<GroundTruth> truth = {};
-  Handler<SimState> state = {};
-  Handler<Collision> collision = {};
+
+  /// Sets the handler of a message that has a topic.
+  template <typename Message>
+  LogHandlers& on(Handler<Message> handler) {
+    by_topic_[kTopic<Message>] = [handle = std::move(handler)](Time log_time, std::string_view cdr) {
+      handle(log_time, decode<Message>(cdr));
+    };
+    return *this;
+  }
+
+  std::vector<std::string> topics() const;
+  /// Decodes a message of one of the topics. Throws DecodeError.
+  void handle(const std::string& topic, Time log_time, std::string_view cdr) const { by_topic_.at(topic)(log_time, cdr); }
+
+ private:
+  std::map<std::string, std::function<void(Time, std::string_view)>> by_topic_;
 };
 
 /// Reads a log in order, from one log time to another (both included); returns whether the log is complete: one that was

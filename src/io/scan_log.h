@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/recorded_scan.h"
+#include "core/sensors/recorded_scan.h"
 #include "core/settings.h"
 #include "io/gyro_odometry.h"
 #include "io/scan_sorter.h"

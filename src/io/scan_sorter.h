@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/recorded_scan.h"
+#include "core/sensors/recorded_scan.h"
 
 namespace patrol::io {
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/messages.h"
+#include "core/sensors/registry.h"
 
 namespace patrol::localize {
 

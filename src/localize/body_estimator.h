@@ -5,6 +5,7 @@
 
 #include "core/messages.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 #include "localize/frozen_readings.h"
 #include "localize/imu_front_end.h"

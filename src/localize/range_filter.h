@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 #include "core/uwb.h"
 

@@ -5,6 +5,7 @@
 
 #include "core/frames.h"
 #include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 #include "localize/body_estimator.h"
 

@@ -22,19 +22,19 @@ namespace {
 io::LogHandlers handlers_for(RunFollower& follower, std::function<void(Time)> on_state) {
   const auto feed = [&follower](Time, const auto& message) { follower.add(message); };
   io::LogHandlers handlers;
-  handlers.scan = feed;
-  handlers.odometry = feed;
-  handlers.pose = feed;
-  handlers.particles = feed;
-  handlers.map = feed;
-  handlers.path = feed;
-  handlers.event = feed;
-  handlers.gas = feed;
-  handlers.truth = feed;
-  handlers.state = [&follower, on_state = std::move(on_state)](Time, const SimState& state) {
+  handlers.on<LaserScan>(feed);
+  handlers.on<OdometryEstimate>(feed);
+  handlers.on<PoseEstimate>(feed);
+  handlers.on<ParticleSet>(feed);
+  handlers.on<MapUpdate>(feed);
+  handlers.on<Path>(feed);
+  handlers.on<Event>(feed);
+  handlers.on<GasReading>(feed);
+  handlers.on<GroundTruth>(feed);
+  handlers.on<SimState>([&follower, on_state = std::move(on_state)](Time, const SimState& state) {
     follower.add(state);
     on_state(state.stamp);
-  };
+  });
   return handlers;
 }
 

@@ -8,7 +8,8 @@
 #include <Eigen/Core>
 
 #include "core/ground_truth.h"
-#include "core/messages.h"
+#include "core/grid.h"
+#include "core/sensors/registry.h"
 
 namespace patrol::render {
 

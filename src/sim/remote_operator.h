@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/messages.h"
 #include "core/random.h"
 #include "core/remote_drive.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 
 namespace patrol::sim {

@@ -100,11 +100,9 @@ void Twin::step() {
   const mjModel* model = model_.physics.get();
   {
     const auto lap = clock_.lap("locomotion");
-    locomotion_->step({.imu = sensors_.latest_imu(),
-                       .joints = sensors_.latest_joint_state(),
-                       .feet = sensors_.latest_foot_contacts(),
-                       .ticks = sensors_.latest_track_ticks()},
-                      command_, *model_.physics, *data_);
+    const NewestReadings& newest = sensors_.newest();
+    locomotion_->step({.imu = newest.imu, .joints = newest.joints, .feet = newest.feet, .ticks = newest.ticks}, command_,
+                      *model_.physics, *data_);
     if (antenna_) antenna_->step(*model_.physics, *data_);
   }
   {
@@ -130,7 +128,7 @@ void Twin::step() {
   const auto lap = clock_.lap("sensors");
   sensors_.step(*model, *data_, now_);
   if (antenna_) {
-    if (const auto state = antenna_->read(*data_, now_)) sensors_.hear(*state);
+    if (const auto state = antenna_->read(*data_, now_)) sensors_.add(*state);
   }
 }
 
@@ -151,11 +149,11 @@ void Twin::hold_still() {
 void Twin::hear_remote() {
   if (driver_) {
     if (const auto command = driver_->step(now_, to_planar(truth().T_world_body), actors_.positions(), is_busy())) {
-      sensors_.hear(*command);
+      sensors_.add(*command);
     }
   }
   while (num_replayed_ < recorded_.size() && recorded_[num_replayed_].stamp <= now_) {
-    sensors_.hear(recorded_[num_replayed_++]);
+    sensors_.add(recorded_[num_replayed_++]);
   }
 }
 

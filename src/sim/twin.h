@@ -10,6 +10,7 @@
 #include "core/messages.h"
 #include "core/part_clock.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "sim/actors.h"
 #include "sim/antenna_mount.h"
 #include "sim/gas_plume.h"

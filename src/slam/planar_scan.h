@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/messages.h"
-#include "core/recorded_scan.h"
+#include "core/sensors/recorded_scan.h"
 #include "core/settings.h"
 
 namespace patrol::slam {

@@ -134,7 +134,7 @@ BENCHMARK(RaysAgainstBareEmbree)->UseManualTime()->Unit(benchmark::kMicrosecond)
 /// What a tick of 2 ms costs with everything: bodies moved, 64 beams fired, noise drawn.
 void LidarTick(benchmark::State& state) {
   Street street;
-  sim::Lidar lidar(sim::LidarSettings::of_preset("rplidar_s2"), street.scene, street.T_body_lidar,
+  sim::Lidar lidar(LidarSettings::of_preset("rplidar_s2"), street.scene, street.T_body_lidar,
                    sim::kRayLidar2d, 1, "lidar");
   double update_s = 0.0, all_s = 0.0;
   Time now{};

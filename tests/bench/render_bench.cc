@@ -125,7 +125,7 @@ void DepthFrame(benchmark::State& state, const std::string& world, const std::st
       sim::assemble_model(root + "/worlds/" + world, root + "/models/" + robot, places.front());
   const sim::DataPtr data = sim::make_data(*model.view);
   mj_forward(model.view.get(), data.get());
-  const sim::DepthCameraSettings camera;
+  const DepthCameraSettings camera;
   DepthRenderer renderer(*model.view, sim::lens_of(camera), 0.05, 1.1 * camera.range_max_m);
   sim::SurfaceImage image;
   std::size_t frame = 0;

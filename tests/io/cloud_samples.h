@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "core/error.h"
-#include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "tests/support/temporary_file.h"
 
 /// Point clouds and complaints, for the tests of PLY and PCD.

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/frames.h"
-#include "core/messages.h"
 #include "core/random.h"
+#include "core/sensors/registry.h"
 
 namespace patrol::test {
 

@@ -4,8 +4,8 @@
 
 #include "core/angles.h"
 #include "core/frames.h"
-#include "core/messages.h"
 #include "core/random.h"
+#include "core/sensors/registry.h"
 #include "core/tunnel_lining.h"
 #include "inspect/lining/reference.h"
 #include "tests/support/lined_tunnel.h"

@@ -8,6 +8,7 @@
 #include "core/ground_truth.h"
 #include "core/messages.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "sim/locomotion/quadruped_controller.h"
 #include "sim/model_assembly.h"
 #include "sim/nearby_scenery.h"

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <functional>
 
-#include "core/messages.h"
 #include "core/random.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 
 namespace patrol::test {
 

@@ -7,6 +7,7 @@
 #include "core/frames.h"
 #include "core/messages.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "sim/locomotion/track_drive.h"
 #include "sim/model_assembly.h"
 #include "sim/nearby_scenery.h"

@@ -12,6 +12,7 @@
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/random.h"
+#include "core/sensors/registry.h"
 #include "core/uwb.h"
 #include "slam/grid_map.h"
 #include "slam/map_rendering.h"

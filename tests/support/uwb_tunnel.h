@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/messages.h"
 #include "core/random.h"
+#include "core/sensors/registry.h"
 #include "core/uwb.h"
 
 namespace patrol::test {

@@ -175,15 +175,9 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
   for (const PartClock* part : {&twin.clock(), &stack.clock(), &std::as_const(clock)}) {
     for (const auto& [name, seconds] : part->seconds()) outcome.seconds_by_part[name] += seconds;
   }
-  // The lidar is one of the sensors, and the dearest by far: a part of its own.
-  outcome.seconds_by_part["lidar"] = twin.sensors().lidar_seconds();
-  outcome.seconds_by_part["sensors"] -= twin.sensors().lidar_seconds();
-  if (const double seconds = twin.sensors().depth_camera_seconds(); seconds > 0.0) {
-    outcome.seconds_by_part["depth_camera"] = seconds;
-    outcome.seconds_by_part["sensors"] -= seconds;
-  }
-  if (const double seconds = twin.sensors().scanner_seconds(); seconds > 0.0) {
-    outcome.seconds_by_part["scanner"] = seconds;
+  // Expensive sensors are parts of their own.
+  for (const auto& [name, seconds] : twin.sensors().clock().seconds()) {
+    outcome.seconds_by_part[name] += seconds;
     outcome.seconds_by_part["sensors"] -= seconds;
   }
   return outcome;

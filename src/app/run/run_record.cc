@@ -29,25 +29,25 @@ bool RunRecord::has_estimate() const {
 RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   RunRecord record;
   io::LogHandlers handlers;
-  handlers.range_pose = [&](Time, const RangePoseEstimate& pose) {
+  handlers.on<RangePoseEstimate>([&](Time, const RangePoseEstimate& pose) {
     append(record.T_map_body_by_ranges, pose.stamp, to_spatial(pose.T_map_body));
-  };
-  handlers.pose = [&](Time, const PoseEstimate& pose) {
+  });
+  handlers.on<PoseEstimate>([&](Time, const PoseEstimate& pose) {
     append(record.T_map_body, pose.stamp, to_spatial(pose.T_map_body));
     if (record.covariances.size() < record.T_map_body.size()) record.covariances.push_back(pose.covariance);
-  };
-  handlers.odometry = [&](Time, const OdometryEstimate& odometry) {
+  });
+  handlers.on<OdometryEstimate>([&](Time, const OdometryEstimate& odometry) {
     append(record.T_odom_body, odometry.stamp, odometry.T_odom_body);
-  };
-  handlers.truth = [&](Time, const GroundTruth& truth) { append(record.T_world_body, truth.stamp, truth.T_world_body); };
-  handlers.event = [&](Time, const Event& event) { record.events.push_back(event); };
-  handlers.path = [&](Time, const Path&) { ++record.num_paths; };
-  handlers.collision = [&](Time, const Collision& collision) { record.collisions.push_back(collision); };
-  handlers.trust = [&](Time, const LocalizationTrust& trust) { record.trusts.push_back(trust); };
-  handlers.remote = [&](Time, const RemoteCommand& command) { record.remote.push_back(command); };
-  handlers.lining = [&](Time, const LiningResult& result) { record.linings.push_back(result); };
-  handlers.water = [&](Time, const WaterResult& result) { record.waters.push_back(result); };
-  handlers.map = [&](Time, const MapUpdate& update) { record.map = update.map; };
+  });
+  handlers.on<GroundTruth>([&](Time, const GroundTruth& truth) { append(record.T_world_body, truth.stamp, truth.T_world_body); });
+  handlers.on<Event>([&](Time, const Event& event) { record.events.push_back(event); });
+  handlers.on<Path>([&](Time, const Path&) { ++record.num_paths; });
+  handlers.on<Collision>([&](Time, const Collision& collision) { record.collisions.push_back(collision); });
+  handlers.on<LocalizationTrust>([&](Time, const LocalizationTrust& trust) { record.trusts.push_back(trust); });
+  handlers.on<RemoteCommand>([&](Time, const RemoteCommand& command) { record.remote.push_back(command); });
+  handlers.on<LiningResult>([&](Time, const LiningResult& result) { record.linings.push_back(result); });
+  handlers.on<WaterResult>([&](Time, const WaterResult& result) { record.waters.push_back(result); });
+  handlers.on<MapUpdate>([&](Time, const MapUpdate& update) { record.map = update.map; });
   record.is_complete = io::read_run_log(log_mcap, handlers);
   if (record.T_world_body.empty()) throw InputError(fmt::format("{}: holds no ground truth", log_mcap.string()));
   return record;

@@ -9,7 +9,7 @@ namespace patrol::app {
 namespace {
 
 /// One of n rays stands for the information of as many beams as the lidar has for it.
-score::BeamNoise noise_of(const sim::LidarSettings& lidar, int num_rays) {
+score::BeamNoise noise_of(const LidarSettings& lidar, int num_rays) {
   constexpr double kLeast_m = 0.001;
   const double quantum_m = lidar.range_resolution_m;
   const double range_std_m = std::sqrt(lidar.range_noise_m * lidar.range_noise_m + quantum_m * quantum_m / 12.0);
@@ -20,7 +20,7 @@ score::BeamNoise noise_of(const sim::LidarSettings& lidar, int num_rays) {
 
 }  // namespace
 
-LocalizabilityOracle::LocalizabilityOracle(const mjModel& world, const sim::LidarSettings& lidar, double height_m)
+LocalizabilityOracle::LocalizabilityOracle(const mjModel& world, const LidarSettings& lidar, double height_m)
     : scene_(world),
       height_m_(height_m),
       scan_{.range_max_m = lidar.range_max_m, .grazing_deg = lidar.grazing_deg},

@@ -13,7 +13,7 @@ namespace patrol::app {
 class LocalizabilityOracle {
  public:
   /// `world` must outlive it. `height_m`: of the lidar, in world.
-  LocalizabilityOracle(const mjModel& world, const sim::LidarSettings& lidar, double height_m);
+  LocalizabilityOracle(const mjModel& world, const LidarSettings& lidar, double height_m);
 
   score::Localizability at(const Eigen::Vector2d& p_world_m) const;
 

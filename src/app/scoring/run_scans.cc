@@ -36,7 +36,7 @@ std::vector<io::StationScan> station_scans(const RunDirectory& directory, const 
   std::vector<io::StationScan> scans;
   if (!scenario.sensors.scanner.enabled) return scans;
   io::LogHandlers handlers;
-  handlers.panorama = [&](Time, const PanoramicScan& scan) {
+  handlers.on<PanoramicScan>([&](Time, const PanoramicScan& scan) {
     const std::optional<std::string> station = station_of(scan, record);
     if (!station || std::any_of(scans.begin(), scans.end(), [&](const io::StationScan& known) { return known.station == *station; })) return;
     const auto place = place_of(scan, *station, record, files.robot.tracks ? files.robot.tracks->body_height_m : 0.0);
@@ -44,7 +44,7 @@ std::vector<io::StationScan> station_scans(const RunDirectory& directory, const 
     const Pose3 T_map_scanner = place->T_map_scanner(files.robot.T_body("scanner"));
     scans.push_back({.station = *station, .T_map_scanner = T_map_scanner,
                      .points = inspect::make_reference(scan, T_map_scanner).points});
-  };
+  });
   io::read_run_log(directory.log(), handlers);
   return scans;
 }

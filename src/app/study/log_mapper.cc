@@ -13,11 +13,11 @@ LogMapper::LogMapper(const stack::StackSettings& settings, const RobotDescriptio
 
 void LogMapper::map(const std::filesystem::path& log_mcap) {
   io::LogHandlers handlers;
-  handlers.imu = [&](Time, const Imu& imu) { pipeline_.add(imu, output_); };
-  handlers.joints = [&](Time, const JointState& joints) { pipeline_.add(joints, output_); };
-  handlers.contacts = [&](Time, const FootContacts& contacts) { pipeline_.add(contacts, output_); };
-  handlers.ticks = [&](Time, const TrackTicks& ticks) { pipeline_.add(ticks, output_); };
-  handlers.scan = [&](Time, const LaserScan& scan) { handle(scan); };
+  handlers.on<Imu>([&](Time, const Imu& imu) { pipeline_.add(imu, output_); });
+  handlers.on<JointState>([&](Time, const JointState& joints) { pipeline_.add(joints, output_); });
+  handlers.on<FootContacts>([&](Time, const FootContacts& contacts) { pipeline_.add(contacts, output_); });
+  handlers.on<TrackTicks>([&](Time, const TrackTicks& ticks) { pipeline_.add(ticks, output_); });
+  handlers.on<LaserScan>([&](Time, const LaserScan& scan) { handle(scan); });
   io::read_run_log(log_mcap, handlers);
   if (T_map_body_.empty()) throw InputError(fmt::format("{}: no scan in it could be mapped", log_mcap.string()));
 }

@@ -8,8 +8,8 @@
 
 namespace patrol::app {
 
-/// Every kind of fault of every sensor that the scenario's robot has switched on, and of its remote control if it is driven by one; from
-/// `start_s` on for `duration_s`. How large each is stands in fault_matrix.cc.
+/// Every kind of fault of every sensor of the registry that the scenario uses, from `start_s` on for `duration_s`.
+/// The magnitudes of drift and spikes are in the registry (SensorInfo::fault), the others in fault_matrix.cc.
 std::vector<sim::FaultSettings> fault_matrix(const Scenario& scenario, const ScenarioFiles& files, double start_s, double duration_s);
 
 /// "lidar: drift".

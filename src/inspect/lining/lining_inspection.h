@@ -4,7 +4,7 @@
 
 #include "core/frames.h"
 #include "core/inspection_result.h"
-#include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "core/tunnel_lining.h"
 #include "inspect/lining/lining_settings.h"
 #include "inspect/lining/reference.h"

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/frames.h"
-#include "core/messages.h"
+#include "core/sensors/registry.h"
 
 namespace patrol::inspect {
 

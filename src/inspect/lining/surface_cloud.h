@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/messages.h"
+#include "core/sensors/registry.h"
 
 namespace patrol::inspect {
 

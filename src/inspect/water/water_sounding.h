@@ -5,6 +5,7 @@
 
 #include "core/messages.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "inspect/water/water_settings.h"
 
 namespace patrol::inspect {

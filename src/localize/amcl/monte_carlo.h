@@ -11,6 +11,7 @@
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/random.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 #include "core/uwb.h"
 #include "localize/amcl/beam_model.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/frames.h"
-#include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "core/uwb.h"
 #include "localize/amcl/range_likelihood.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/frames.h"
-#include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 
 namespace patrol::plan {

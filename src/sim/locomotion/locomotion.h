@@ -3,6 +3,7 @@
 #include <mujoco/mujoco.h>
 
 #include "core/messages.h"
+#include "core/sensors/registry.h"
 
 namespace patrol::sim {
 

@@ -4,6 +4,7 @@
 
 #include "core/messages.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 #include "sim/locomotion/force_distribution.h"
 #include "sim/locomotion/gait.h"

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "core/messages.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "sim/locomotion/force_distribution.h"
 
 namespace patrol::sim {

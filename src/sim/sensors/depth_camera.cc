@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "core/angles.h"
+#include "core/error.h"
+#include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
 namespace {
@@ -115,6 +117,39 @@ DepthImage DepthCamera::take(const mjData& data, const Pose3& T_world_camera, Ti
     }
   }
   return image;
+}
+
+namespace {
+
+class DepthCameraOnBody : public PeriodicSensor {
+ public:
+  DepthCameraOnBody(const SensorContext& context, std::unique_ptr<DepthImager> imager)
+      : PeriodicSensor(context.settings.depth_camera.rate_hz),
+        T_body_camera_(context.robot.T_body("depth_camera")),
+        camera_(context.settings.depth_camera, context.settings.dust, std::move(imager), context.seed) {}
+
+ private:
+  void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) override {
+    const auto lap = tick.clock.lap("depth_camera");
+    readings.emplace_back(camera_.take(tick.data, tick.T_world_body * T_body_camera_, tick.now, index));
+  }
+
+  Pose3 T_body_camera_;
+  DepthCamera camera_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Sensor> make_sensor<DepthImage>(const SensorContext& context) {
+  const DepthCameraSettings& settings = context.settings.depth_camera;
+  if (!settings.enabled) return nullptr;
+  validate(settings, "sensors.depth_camera");
+  context.robot.T_body("depth_camera");  // throws if the robot has no such frame
+  if (!context.make_depth_imager) throw InputError("sensors.depth_camera is enabled, but there is no renderer for it here");
+  constexpr double kNear_m = 0.05;  // anything nearer belongs to the housing
+  return std::make_unique<DepthCameraOnBody>(
+      context, context.make_depth_imager(context.view, lens_of(settings), kNear_m, 1.1 * settings.range_max_m));
 }
 
 }  // namespace patrol::sim

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 #include "core/time.h"
 
@@ -21,8 +22,7 @@ struct FaultSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("sensor", self.sensor, one_of({"lidar", "lidar3d", "imu", "joint_encoders", "foot_contact", "tdlas", "gnss", "hall", "uwb",
-                                           "ultrasonic", "depth_camera", "scanner", "antenna", "tem", "remote"}));
+    visit("sensor", self.sensor, one_of(sensor_names()));
     visit("kind", self.kind, one_of({"silence", "freeze", "delay", "jitter", "clock_offset", "drift", "spikes"}));
     visit("start_s", self.start_s, at_least(0.0));
     visit("duration_s", self.duration_s, at_least(0.0));

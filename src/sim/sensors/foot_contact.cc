@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
 
@@ -39,6 +40,33 @@ FootContacts FootContactSensor::read(const mjModel& model, const mjData& data, T
     force = std::clamp(force, -settings_.range_n, settings_.range_n);
   }
   return contacts;
+}
+
+namespace {
+
+class SensorsOnFeet : public Sensor {
+ public:
+  explicit SensorsOnFeet(const SensorContext& context)
+      : is_enabled_(context.settings.foot_contact.enabled && is_fitted<FootContacts>(context.robot)),
+        schedule_(context.settings.foot_contact.rate_hz),
+        feet_(context.settings.foot_contact, context.physics, context.robot.legs, context.seed) {}
+
+  void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
+    tick.newest.feet = feet_.read(tick.physics, tick.data, tick.now, tick.count);
+    if (is_enabled_ && schedule_.is_due(tick.now)) readings.emplace_back(tick.newest.feet);
+  }
+
+ private:
+  bool is_enabled_;
+  SensorSchedule schedule_;
+  FootContactSensor feet_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Sensor> make_sensor<FootContacts>(const SensorContext& context) {
+  return std::make_unique<SensorsOnFeet>(context);
 }
 
 }  // namespace patrol::sim

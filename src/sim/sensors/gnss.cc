@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/angles.h"
+#include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
 namespace {
@@ -58,6 +59,33 @@ GnssFix Gnss::read(const LidarScene& scene, const Eigen::Vector3d& p_world_anten
   fix.longitude_deg = settings_.datum_longitude_deg + enu.x() / parallel_m / kDegree;
   fix.altitude_m = enu.z();
   return fix;
+}
+
+namespace {
+
+class GnssOnBody : public PeriodicSensor {
+ public:
+  explicit GnssOnBody(const SensorContext& context)
+      : PeriodicSensor(context.settings.gnss.rate_hz),
+        scene_(context.scene),
+        T_body_gnss_(context.robot.T_body("gnss")),
+        gnss_(context.settings.gnss, context.seed) {}
+
+ private:
+  void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) override {
+    readings.emplace_back(gnss_.read(scene_, tick.T_world_body * T_body_gnss_.position, tick.now, index));
+  }
+
+  const LidarScene& scene_;
+  Pose3 T_body_gnss_;
+  Gnss gnss_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Sensor> make_sensor<GnssFix>(const SensorContext& context) {
+  return context.settings.gnss.enabled ? std::make_unique<GnssOnBody>(context) : nullptr;
 }
 
 }  // namespace patrol::sim

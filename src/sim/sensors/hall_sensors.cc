@@ -1,9 +1,9 @@
 #include "sim/sensors/hall_sensors.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "core/error.h"
+#include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
 namespace {
@@ -15,8 +15,6 @@ int address_of(const mjModel& model, const std::string& joint_name) {
 }
 
 }  // namespace
-
-double HallSettings::ticks_per_rad() const { return ticks_per_motor_turn * gear_ratio / (2.0 * std::numbers::pi); }
 
 HallSensors::HallSensors(const HallSettings& settings, const mjModel& model,
                          const std::vector<std::string>& sprocket_joints, std::uint64_t seed)
@@ -40,6 +38,34 @@ std::int64_t HallSensors::advance(Counter& counter, std::uint64_t side, double a
     if (missed_.uniform(counter.passed, side) >= settings_.missed_tick_probability) counter.count += step;
   }
   return counter.count;
+}
+
+namespace {
+
+class HallOnMotors : public Sensor {
+ public:
+  explicit HallOnMotors(const SensorContext& context)
+      : is_enabled_(context.settings.hall.enabled),
+        schedule_(context.settings.hall.rate_hz),
+        hall_(context.settings.hall, context.physics, context.robot.joint_names, context.seed) {}
+
+  void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
+    tick.newest.ticks = hall_.read(tick.data, tick.now);
+    if (is_enabled_ && schedule_.is_due(tick.now)) readings.emplace_back(tick.newest.ticks);
+  }
+
+ private:
+  bool is_enabled_;
+  SensorSchedule schedule_;
+  HallSensors hall_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Sensor> make_sensor<TrackTicks>(const SensorContext& context) {
+  if (!is_fitted<TrackTicks>(context.robot)) return nullptr;
+  return std::make_unique<HallOnMotors>(context);
 }
 
 }  // namespace patrol::sim

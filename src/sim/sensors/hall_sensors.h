@@ -7,36 +7,11 @@
 
 #include <mujoco/mujoco.h>
 
-#include "core/messages.h"
 #include "core/random.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 
 namespace patrol::sim {
-
-/// Hall sensors in the drive motors: they count the edges that the rotor's magnets make as they pass. Three sensors on a rotor of
-/// four pole pairs, every edge counted, make 24 a revolution; the gear multiplies them. (Data sheets of flat brushless motors of
-/// this class, e.g. maxon's EC flat family: 7 to 11 pole pairs and 3 sensors; ours is the coarser end.)
-struct HallSettings {
-  bool enabled = true;
-  double rate_hz = 50.0;                ///< of the messages; the firmware reads at every tick
-  int ticks_per_motor_turn = 24;
-  double gear_ratio = 30.0;             ///< motor turns per turn of the sprocket
-  double missed_tick_probability = 0.0; ///< of each edge, not to be counted
-  double latency_s = 0.0;
-
-  /// Counts per radian of the sprocket.
-  double ticks_per_rad() const;
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("enabled", self.enabled);
-    visit("rate_hz", self.rate_hz, between(1.0, 500.0));
-    visit("ticks_per_motor_turn", self.ticks_per_motor_turn, between(1, 10000));
-    visit("gear_ratio", self.gear_ratio, between(1.0, 1000.0));
-    visit("missed_tick_probability", self.missed_tick_probability, between(0.0, 1.0));
-    visit("latency_s", self.latency_s, between(0.0, 10.0));
-  }
-};
 
 /// Counts both sprockets' turns. An edge that is missed is missed for good: counter and firmware are one.
 class HallSensors {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/angles.h"
+#include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
 namespace {
@@ -72,6 +73,31 @@ Imu ImuSensor::read(const mjModel& model, mjData& data, Time now, std::uint64_t 
   mj_objectVelocity(&model, &data, mjOBJ_SITE, site_, velocity, 1);
   mj_objectAcceleration(&model, &data, mjOBJ_SITE, site_, acceleration, 1);
   return corrupt(Eigen::Vector3d(velocity), Eigen::Vector3d(acceleration + 3), now, tick);
+}
+
+namespace {
+
+class ImuOnBody : public Sensor {
+ public:
+  explicit ImuOnBody(const SensorContext& context)
+      : is_enabled_(context.settings.imu.enabled), schedule_(context.settings.imu.rate_hz), imu_(context.settings.imu, context.physics, context.seed) {}
+
+  void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
+    tick.newest.imu = imu_.read(tick.physics, tick.data, tick.now, tick.count);
+    if (is_enabled_ && schedule_.is_due(tick.now)) readings.emplace_back(tick.newest.imu);
+  }
+
+ private:
+  bool is_enabled_;
+  SensorSchedule schedule_;
+  ImuSensor imu_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Sensor> make_sensor<Imu>(const SensorContext& context) {
+  return std::make_unique<ImuOnBody>(context);
 }
 
 }  // namespace patrol::sim

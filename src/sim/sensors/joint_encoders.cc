@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
 
@@ -37,6 +38,33 @@ JointState JointEncoders::read(const mjData& data, Time now) {
     last_.effort_nm[joint] = data.qfrc_actuator[dof_[joint]];
   }
   return last_;
+}
+
+namespace {
+
+class EncodersOnLegs : public Sensor {
+ public:
+  explicit EncodersOnLegs(const SensorContext& context)
+      : is_enabled_(context.settings.joint_encoders.enabled && is_fitted<JointState>(context.robot)),
+        schedule_(context.settings.joint_encoders.rate_hz),
+        encoders_(context.settings.joint_encoders, context.physics, context.robot.joint_names) {}
+
+  void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
+    tick.newest.joints = encoders_.read(tick.data, tick.now);
+    if (is_enabled_ && schedule_.is_due(tick.now)) readings.emplace_back(tick.newest.joints);
+  }
+
+ private:
+  bool is_enabled_;
+  SensorSchedule schedule_;
+  JointEncoders encoders_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Sensor> make_sensor<JointState>(const SensorContext& context) {
+  return std::make_unique<EncodersOnLegs>(context);
 }
 
 }  // namespace patrol::sim

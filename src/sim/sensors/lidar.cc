@@ -7,6 +7,7 @@
 
 #include "core/angles.h"
 #include "core/error.h"
+#include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
 namespace {
@@ -28,23 +29,6 @@ Pose3 move_between(const Pose3& a, const Pose3& b, double fraction) {
 }
 
 }  // namespace
-
-LidarSettings LidarSettings::of_preset(const std::string& name) {
-  LidarSettings s;
-  s.preset = name;
-  if (name == "utm30lx") {
-    s.rate_hz = 40.0, s.beams = 1081, s.fov_deg = 270.25, s.range_min_m = 0.1, s.range_resolution_m = 0.001;
-    s.beam_width_deg = 0.25;
-  } else if (name == "tim571") {
-    s.rate_hz = 15.0, s.beams = 811, s.fov_deg = 270.33, s.range_max_m = 25.0, s.dark_range_m = 8.0;
-    s.range_noise_m = 0.01, s.range_resolution_m = 0.001, s.beam_width_deg = 0.33;
-  } else if (name == "vlp16") {
-    s.rate_hz = 10.0, s.beams = 1800, s.rings = 16, s.elevation_min_deg = -15.0, s.elevation_max_deg = 15.0;
-    s.range_min_m = 0.5, s.range_max_m = 100.0, s.range_resolution_m = 0.002, s.dark_range_m = 50.0;
-    s.beam_width_deg = 0.17;
-  }
-  return s;
-}
 
 Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3& T_body_lidar,
              RayMask own_housing, std::uint64_t seed, const std::string& name, const DustSettings& dust)
@@ -227,6 +211,39 @@ Lidar::Return Lidar::echo(const RayHit& hit, const Eigen::Vector3d& direction, d
                                   settings_.dark_range_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1));
   if (settings_.dark_range_m > 0.0 && dust_.clear_distance_m(range_m) > reach_m) return {kInfinity, 0.0};
   return {range_m, 255.0 * std::min(1.0, reflectivity * cosine)};
+}
+
+namespace {
+
+class LidarOnBody : public Sensor {
+ public:
+  LidarOnBody(const SensorContext& context, const LidarSettings& settings, const std::string& frame, RayMask housing)
+      : lidar_(settings, context.scene, context.robot.T_body(frame), housing, context.seed, frame, context.settings.dust) {}
+
+  void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
+    if (tick.is_first()) return;
+    const auto lap = tick.clock.lap("lidar");
+    lidar_.advance(tick.last, tick.now, tick.T_world_body_last, tick.T_world_body);
+    for (LaserScan& scan : lidar_.take_scans()) readings.emplace_back(std::move(scan));
+    for (PointCloud& cloud : lidar_.take_clouds()) readings.emplace_back(std::move(cloud));
+  }
+
+ private:
+  Lidar lidar_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Sensor> make_sensor<LaserScan>(const SensorContext& context) {
+  const LidarSettings& settings = context.settings.lidar;
+  return settings.enabled ? std::make_unique<LidarOnBody>(context, settings, "lidar", kRayLidar2d) : nullptr;
+}
+
+template <>
+std::unique_ptr<Sensor> make_sensor<PointCloud>(const SensorContext& context) {
+  const LidarSettings& settings = context.settings.lidar3d;
+  return settings.enabled ? std::make_unique<LidarOnBody>(context, settings, "lidar3d", kRayLidar3d) : nullptr;
 }
 
 }  // namespace patrol::sim

@@ -10,6 +10,8 @@
 
 #include "core/angles.h"
 
+#include "sim/sensors/sensor.h"
+
 namespace patrol::sim {
 namespace {
 
@@ -168,6 +170,35 @@ PanoramicScanner::Echo PanoramicScanner::mix_over_width(const Pose3& T_world_sca
 double PanoramicScanner::range_std_m(const Echo& echo) const {
   const double grey_m = settings_.grey_noise_m * std::sqrt(dust_.clear_distance_m(echo.range_m) / 10.0) * 0.1 / echo.light;
   return std::hypot(settings_.range_noise_m, grey_m);
+}
+
+namespace {
+
+class ScannerOnBody : public Sensor {
+ public:
+  explicit ScannerOnBody(const SensorContext& context)
+      : scanner_(context.settings.scanner, context.scene, context.robot.T_body("scanner"), context.seed, context.settings.dust) {}
+
+  void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
+    if (!scanner_.is_busy()) return;
+    const auto lap = tick.clock.lap("scanner");
+    scanner_.advance(tick.last, tick.now, tick.T_world_body_last, tick.T_world_body);
+    for (PanoramicScan& scan : scanner_.take_scans()) readings.emplace_back(std::move(scan));
+  }
+  void command(const InstrumentCommand& command, Time now, const Pose3& T_world_body) override {
+    if (std::holds_alternative<ScanCommand>(command)) scanner_.begin(now, T_world_body);
+  }
+  bool is_busy() const override { return scanner_.is_busy(); }
+
+ private:
+  PanoramicScanner scanner_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Sensor> make_sensor<PanoramicScan>(const SensorContext& context) {
+  return context.settings.scanner.enabled ? std::make_unique<ScannerOnBody>(context) : nullptr;
 }
 
 }  // namespace patrol::sim

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/sensors/sensor.h"
+
 namespace patrol::sim {
 
 Tdlas::Tdlas(const TdlasSettings& settings, std::uint64_t seed)
@@ -29,6 +31,35 @@ GasReading Tdlas::read(const LidarScene& scene, const GasPlume& plume, const Pos
   reading.path_length_m = length_m;
   reading.mean_mg_m3 = reading.column_ppm_m / std::max(length_m, 0.1) * kMethaneDensity_kgpm3;  // ppm x kg/m3 = mg/m3
   return reading;
+}
+
+namespace {
+
+class TdlasOnBody : public PeriodicSensor {
+ public:
+  explicit TdlasOnBody(const SensorContext& context)
+      : PeriodicSensor(context.settings.tdlas.rate_hz),
+        scene_(context.scene),
+        plume_(context.plume),
+        T_body_tdlas_(context.robot.T_body("tdlas")),
+        tdlas_(context.settings.tdlas, context.seed) {}
+
+ private:
+  void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) override {
+    readings.emplace_back(tdlas_.read(scene_, plume_, tick.T_world_body * T_body_tdlas_, tick.now, index));
+  }
+
+  const LidarScene& scene_;
+  GasPlume plume_;
+  Pose3 T_body_tdlas_;
+  Tdlas tdlas_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Sensor> make_sensor<GasReading>(const SensorContext& context) {
+  return context.settings.tdlas.enabled ? std::make_unique<TdlasOnBody>(context) : nullptr;
 }
 
 }  // namespace patrol::sim

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
 namespace {
@@ -107,6 +108,41 @@ TemSounding Tem::sound(const Eigen::Vector3d& p_world, const Eigen::Matrix3d& ax
     sounding.std_tps.push_back(std::hypot(noise_tps, relative_tps));
   }
   return sounding;
+}
+
+namespace {
+
+class TemOnMount : public Sensor {
+ public:
+  explicit TemOnMount(const SensorContext& context)
+      : coil_(mj_name2id(&context.physics, mjOBJ_BODY, "tem")),
+        tem_(context.settings.tem, context.underground.rock, context.underground.water, context.seed) {}
+
+  void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
+    if (!tem_.is_sounding()) return;
+    const mjtNum* position = tick.data.xpos + 3 * coil_;
+    const mjtNum* q = tick.data.xquat + 4 * coil_;
+    const Pose3 T_world_tem{Eigen::Vector3d(position), Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
+    const std::optional<TemSounding> sounding = tem_.step(T_world_tem, tick.now);
+    if (sounding) readings.emplace_back(*sounding);
+  }
+  void command(const InstrumentCommand& command, Time now, const Pose3&) override {
+    if (std::holds_alternative<SoundingCommand>(command)) tem_.start(now);
+  }
+  bool is_busy() const override { return tem_.is_sounding(); }
+
+ private:
+  int coil_;  ///< body of the link `tem`
+  Tem tem_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Sensor> make_sensor<TemSounding>(const SensorContext& context) {
+  if (!context.settings.tem.enabled) return nullptr;
+  if (!context.robot.antenna) throw InputError("robot " + context.robot.name + ": there is no link named tem_mount");
+  return std::make_unique<TemOnMount>(context);
 }
 
 }  // namespace patrol::sim

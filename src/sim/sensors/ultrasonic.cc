@@ -12,6 +12,7 @@
 
 #include "core/angles.h"
 #include "core/error.h"
+#include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
 namespace {
@@ -166,6 +167,29 @@ std::vector<UltrasonicRange> UltrasonicRing::ping(const Pose3& T_world_body, Tim
                       .range_m = reading(distance_m, tick, fired[mine])});
   }
   return ranges;
+}
+
+namespace {
+
+class UltrasonicOnBody : public PeriodicSensor {
+ public:
+  explicit UltrasonicOnBody(const SensorContext& context)
+      : PeriodicSensor(context.settings.ultrasonic.ping_rate_hz),
+        ring_(context.settings.ultrasonic, context.scene, context.robot, context.seed) {}
+
+ private:
+  void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) override {
+    for (const UltrasonicRange& range : ring_.ping(tick.T_world_body, tick.now, index)) readings.emplace_back(range);
+  }
+
+  UltrasonicRing ring_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Sensor> make_sensor<UltrasonicRange>(const SensorContext& context) {
+  return context.settings.ultrasonic.enabled ? std::make_unique<UltrasonicOnBody>(context) : nullptr;
 }
 
 }  // namespace patrol::sim

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "sim/mujoco.h"
+#include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
 namespace {
@@ -115,6 +116,34 @@ std::optional<UwbRange> Uwb::read(const LidarScene& scene, const Eigen::Vector3d
   }
   range.range_m = std::max(range.range_m, 0.0);
   return range;
+}
+
+namespace {
+
+class UwbOnBody : public PeriodicSensor {
+ public:
+  explicit UwbOnBody(const SensorContext& context)
+      : PeriodicSensor(context.settings.uwb.rate_hz),
+        scene_(context.scene),
+        T_body_uwb_(context.robot.T_body("uwb")),
+        uwb_(context.settings.uwb, context.view, context.seed) {}
+
+ private:
+  void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) override {
+    const auto range = uwb_.read(scene_, tick.T_world_body * T_body_uwb_.position, tick.now, index);
+    if (range) readings.emplace_back(*range);
+  }
+
+  const LidarScene& scene_;
+  Pose3 T_body_uwb_;
+  Uwb uwb_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Sensor> make_sensor<UwbRange>(const SensorContext& context) {
+  return context.settings.uwb.enabled ? std::make_unique<UwbOnBody>(context) : nullptr;
 }
 
 }  // namespace patrol::sim

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/recorded_scan.h"
+#include "core/sensors/recorded_scan.h"
 #include "core/settings.h"
 
 namespace patrol::slam {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/recorded_scan.h"
+#include "core/sensors/recorded_scan.h"
 #include "core/settings.h"
 #include "slam/calibration/calibration.h"
 #include "slam/graph/scan_tracker.h"

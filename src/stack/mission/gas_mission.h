@@ -8,6 +8,7 @@
 #include "core/messages.h"
 #include "core/navigation_goal.h"
 #include "core/route.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 #include "stack/instruments/gas_instrument.h"
 #include "stack/mission/mission.h"

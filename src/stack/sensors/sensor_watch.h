@@ -7,15 +7,16 @@
 
 #include "core/frames.h"
 #include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "core/settings.h"
 
 namespace patrol::stack {
 
 /// When a sensor is no longer believed. Ages are counted from a message's stamp to now: a reading that comes late is as bad as none.
 struct SensorWatchSettings {
-  double lidar_age_s = 0.6;       ///< and of the depth camera
-  double motion_age_s = 0.15;     ///< IMU, joint encoders, foot sensors, belts
-  double instrument_age_s = 5.0;  ///< gas meter, GNSS, UWB, ultrasonic ring
+  double lidar_age_s = 0.6;       ///< age limit of sensors with SensorTimeout::kLidar (core/sensors/registry.h)
+  double motion_age_s = 0.15;     ///< age limit of sensors with SensorTimeout::kMotion
+  double instrument_age_s = 5.0;  ///< age limit of sensors with SensorTimeout::kInstrument
   double future_s = 0.05;         ///< a stamp that far ahead of now: the sensor's clock is wrong
   double frozen_path_m = 0.1;     ///< readings that stay alike to the last bit while the robot moves so far, or turns so far
   double frozen_turn_rad = 0.1;

@@ -29,7 +29,7 @@ TEST(SettingsDifferences, NamePathDefaultAndValue) {
 
 TEST(SettingsDifferences, AnotherPresetIsOneDifferenceAndItsOverridesAreMore) {
   Scenario scenario;
-  scenario.sensors.lidar = sim::LidarSettings::of_preset("utm30lx");
+  scenario.sensors.lidar = LidarSettings::of_preset("utm30lx");
   EXPECT_EQ(settings_differences(Scenario{}, scenario), (Differences{{"sensors.lidar.preset", "rplidar_s2", "utm30lx"}}));
   scenario.sensors.lidar.range_noise_m = 0.5;
   const Differences differences = settings_differences(Scenario{}, scenario);

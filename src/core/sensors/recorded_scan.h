@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/frames.h"
-#include "core/messages.h"
+#include "core/sensors/lidar.h"
 
 namespace patrol {
 

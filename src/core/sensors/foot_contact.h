@@ -1,0 +1,66 @@
+#pragma once
+
+#include <vector>
+
+#include "core/sensors/sensor_traits.h"
+#include "core/settings.h"
+#include "core/time.h"
+
+namespace patrol {
+
+/// Force on each foot's sensor, in the order of RobotDescription::legs.
+struct FootContacts {
+  Time stamp{};
+  std::vector<double> force_n;
+};
+
+/// Force sensors in the feet: strain gauges with an offset that each foot keeps for the run.
+struct FootContactSettings {
+  bool enabled = true;
+  double rate_hz = 250.0;      ///< of the messages; the firmware reads at every tick
+  double noise_n = 1.0;        ///< standard deviation
+  double offset_n = 1.0;       ///< standard deviation
+  double resolution_n = 0.5;
+  double range_n = 500.0;
+  double latency_s = 0.0;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("enabled", self.enabled);
+    visit("rate_hz", self.rate_hz, between(1.0, 500.0));
+    visit("noise_n", self.noise_n, at_least(0.0));
+    visit("offset_n", self.offset_n, at_least(0.0));
+    visit("resolution_n", self.resolution_n, at_least(0.0));
+    visit("range_n", self.range_n, at_least(1.0));
+    visit("latency_s", self.latency_s, between(0.0, 10.0));
+  }
+};
+
+template <>
+struct SensorTraits<FootContacts> {
+  struct Settings {
+    FootContactSettings foot_contact;
+  };
+  static constexpr auto kSettings = &Settings::foot_contact;
+  static constexpr SensorInfo kInfo = {.name = "foot_contact",
+                                      .topic = "/foot_contacts",
+                                      .ros_type = "patrol_msgs/msg/FootContacts",
+                                      .summary = "force sensors of the feet",
+                                      .timeout = SensorTimeout::kMotion,
+                                      .freeze_check = FreezeCheck::kCommand,
+                                      .is_read_by_firmware = true,
+                                      .fault = {.unit = "N", .drift_per_s = 10.0, .spike = 100.0}};
+
+  /// Main reading: the first foot.
+  static void add_to_reading(FootContacts& contacts, double offset_n) {
+    if (!contacts.force_n.empty()) contacts.force_n.front() += offset_n;
+  }
+  static bool repeats(const FootContacts& now, const FootContacts& before) { return now.force_n == before.force_n; }
+  static bool is_fitted(const RobotDescription& robot) { return !robot.legs.empty(); }
+  static std::vector<ErrorSource> error_sources() {
+    return {{"foot contact: noise",
+             {"sensors.foot_contact.noise_n=0", "sensors.foot_contact.offset_n=0", "sensors.foot_contact.resolution_n=0"}}};
+  }
+};
+
+}  // namespace patrol

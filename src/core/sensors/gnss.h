@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstdint>
+
+#include "core/sensors/sensor_traits.h"
+#include "core/settings.h"
+#include "core/time.h"
+
+namespace patrol {
+
+enum class GnssStatus : std::uint8_t { kNone, kFloat, kFix };
+
+/// Antenna position in WGS 84.
+struct GnssFix {
+  Time stamp{};
+  GnssStatus status = GnssStatus::kNone;
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  double altitude_m = 0.0;
+  Eigen::Vector3d position_std_m = Eigen::Vector3d::Zero();  ///< east, north, up
+};
+
+/// An RTK receiver. Defaults after u-blox's ZED-F9P data sheet (1 cm + 1 ppm when fixed).
+struct GnssSettings {
+  bool enabled = true;
+  double rate_hz = 5.0;
+  double fix_noise_m = 0.01;       ///< horizontal standard deviation; vertical twice that
+  double float_noise_m = 0.4;
+  double error_time_s = 20.0;      ///< correlation time of the error
+  double fix_sky = 0.75;           ///< share of the sky that must be open for a fixed solution
+  double float_sky = 0.45;         ///< and for a float one
+  double fix_delay_s = 5.0;        ///< a fix comes back only after so long under an open sky
+  double datum_latitude_deg = 29.21;    ///< WGS 84 of the world's origin
+  double datum_longitude_deg = 119.46;
+  double latency_s = 0.1;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("enabled", self.enabled);
+    visit("rate_hz", self.rate_hz, between(0.1, 50.0));
+    visit("fix_noise_m", self.fix_noise_m, at_least(0.0));
+    visit("float_noise_m", self.float_noise_m, at_least(0.0));
+    visit("error_time_s", self.error_time_s, at_least(0.1));
+    visit("fix_sky", self.fix_sky, between(0.0, 1.0));
+    visit("float_sky", self.float_sky, between(0.0, 1.0));
+    visit("fix_delay_s", self.fix_delay_s, at_least(0.0));
+    visit("datum_latitude_deg", self.datum_latitude_deg, between(-85.0, 85.0));
+    visit("datum_longitude_deg", self.datum_longitude_deg, between(-180.0, 180.0));
+    visit("latency_s", self.latency_s, between(0.0, 10.0));
+  }
+};
+
+template <>
+struct SensorTraits<GnssFix> {
+  struct Settings {
+    GnssSettings gnss;
+  };
+  static constexpr auto kSettings = &Settings::gnss;
+  static constexpr SensorInfo kInfo = {.name = "gnss",
+                                      .topic = "/gnss/fix",
+                                      .ros_type = "sensor_msgs/msg/NavSatFix",
+                                      .summary = "RTK GNSS receiver",
+                                      .timeout = SensorTimeout::kInstrument,
+                                      .fault = {.unit = "m", .drift_per_s = 0.2, .spike = 5.0}};
+
+  /// Main reading: the altitude.
+  static void add_to_reading(GnssFix& fix, double offset_m) { fix.altitude_m += offset_m; }
+};
+
+}  // namespace patrol

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "core/sensors/sensor_traits.h"
+#include "core/settings.h"
+#include "core/time.h"
+
+namespace patrol {
+
+/// Counts of the Hall sensors on the drive motors since power-up; forwards is positive.
+struct TrackTicks {
+  Time stamp{};
+  std::int64_t left = 0;
+  std::int64_t right = 0;
+};
+
+/// Hall sensors in the drive motors: they count the edges that the rotor's magnets make as they pass. Three sensors on a rotor of
+/// four pole pairs, every edge counted, make 24 a revolution; the gear multiplies them. (Data sheets of flat brushless motors of
+/// this class, e.g. maxon's EC flat family: 7 to 11 pole pairs and 3 sensors; ours is the coarser end.)
+struct HallSettings {
+  bool enabled = true;
+  double rate_hz = 50.0;                ///< of the messages; the firmware reads at every tick
+  int ticks_per_motor_turn = 24;
+  double gear_ratio = 30.0;             ///< motor turns per turn of the sprocket
+  double missed_tick_probability = 0.0; ///< of each edge, not to be counted
+  double latency_s = 0.0;
+
+  /// Counts per radian of the sprocket.
+  double ticks_per_rad() const { return ticks_per_motor_turn * gear_ratio / (2.0 * std::numbers::pi); }
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("enabled", self.enabled);
+    visit("rate_hz", self.rate_hz, between(1.0, 500.0));
+    visit("ticks_per_motor_turn", self.ticks_per_motor_turn, between(1, 10000));
+    visit("gear_ratio", self.gear_ratio, between(1.0, 1000.0));
+    visit("missed_tick_probability", self.missed_tick_probability, between(0.0, 1.0));
+    visit("latency_s", self.latency_s, between(0.0, 10.0));
+  }
+};
+
+template <>
+struct SensorTraits<TrackTicks> {
+  struct Settings {
+    HallSettings hall;
+  };
+  static constexpr auto kSettings = &Settings::hall;
+  static constexpr SensorInfo kInfo = {.name = "hall",
+                                      .topic = "/track_ticks",
+                                      .ros_type = "patrol_msgs/msg/TrackTicks",
+                                      .summary = "Hall counters of the drive motors",
+                                      .timeout = SensorTimeout::kMotion,
+                                      .freeze_check = FreezeCheck::kCommand,
+                                      .is_needed_to_drive = true,
+                                      .is_read_by_firmware = true,
+                                      .fault = {.unit = "counts", .drift_per_s = 50.0, .spike = 500.0}};
+
+  /// Main reading: the left track.
+  static void add_to_reading(TrackTicks& ticks, double offset_counts) { ticks.left += std::llround(offset_counts); }
+  static bool repeats(const TrackTicks& now, const TrackTicks& before) {
+    return now.left == before.left && now.right == before.right;
+  }
+  static bool is_fitted(const RobotDescription& robot) { return robot.tracks.has_value(); }
+  static std::vector<ErrorSource> error_sources() {
+    return {{"Hall ticks: missed", {"sensors.hall.missed_tick_probability=0"}}};
+  }
+};
+
+}  // namespace patrol

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/sensors/sensor_traits.h"
+#include "core/settings.h"
+#include "core/time.h"
+
+namespace patrol {
+
+/// Specific force and rate, in `imu` (REP 145): at rest, level, the acceleration reads +g on z.
+struct Imu {
+  Time stamp{};
+  Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
+  Eigen::Vector3d linear_acceleration_mps2 = Eigen::Vector3d::Zero();
+};
+
+/// An inertial measuring unit (IEEE Std 952 error model). Defaults: Analog Devices ADIS16448 data sheet, rounded.
+struct ImuSettings {
+  bool enabled = true;
+  double rate_hz = 250.0;                         ///< of the messages; the firmware reads at every tick
+  double gyro_noise_radps_rthz = 2.3e-4;          ///< angle random walk, 0.66 deg/sqrt(h) and vibration
+  double gyro_bias_radps = 0.002;                 ///< standard deviation of the constant part
+  double gyro_bias_walk_radps2_rthz = 1.0e-5;     ///< rate random walk
+  double accel_noise_mps2_rthz = 0.002;
+  double accel_bias_mps2 = 0.03;
+  double accel_bias_walk_mps3_rthz = 1.0e-4;
+  double scale_error = 0.001;                     ///< standard deviation, of each axis
+  double misalignment_deg = 0.05;                 ///< standard deviation, of each axis
+  double gyro_range_radps = 17.4;
+  double accel_range_mps2 = 176.0;
+  double gyro_resolution_radps = 7.0e-4;
+  double accel_resolution_mps2 = 0.0082;
+  double latency_s = 0.0;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("enabled", self.enabled);
+    visit("rate_hz", self.rate_hz, between(1.0, 500.0));
+    visit("gyro_noise_radps_rthz", self.gyro_noise_radps_rthz, at_least(0.0));
+    visit("gyro_bias_radps", self.gyro_bias_radps, at_least(0.0));
+    visit("gyro_bias_walk_radps2_rthz", self.gyro_bias_walk_radps2_rthz, at_least(0.0));
+    visit("accel_noise_mps2_rthz", self.accel_noise_mps2_rthz, at_least(0.0));
+    visit("accel_bias_mps2", self.accel_bias_mps2, at_least(0.0));
+    visit("accel_bias_walk_mps3_rthz", self.accel_bias_walk_mps3_rthz, at_least(0.0));
+    visit("scale_error", self.scale_error, between(0.0, 0.5));
+    visit("misalignment_deg", self.misalignment_deg, between(0.0, 10.0));
+    visit("gyro_range_radps", self.gyro_range_radps, at_least(0.1));
+    visit("accel_range_mps2", self.accel_range_mps2, at_least(1.0));
+    visit("gyro_resolution_radps", self.gyro_resolution_radps, at_least(0.0));
+    visit("accel_resolution_mps2", self.accel_resolution_mps2, at_least(0.0));
+    visit("latency_s", self.latency_s, between(0.0, 10.0));
+  }
+};
+
+template <>
+struct SensorTraits<Imu> {
+  struct Settings {
+    ImuSettings imu;
+  };
+  static constexpr auto kSettings = &Settings::imu;
+  static constexpr SensorInfo kInfo = {.name = "imu",
+                                      .topic = "/imu/data",
+                                      .ros_type = "sensor_msgs/msg/Imu",
+                                      .summary = "inertial measuring unit",
+                                      .timeout = SensorTimeout::kMotion,
+                                      .freeze_check = FreezeCheck::kOdometry,
+                                      .is_read_by_firmware = true,
+                                      .fault = {.unit = "rad/s", .drift_per_s = 0.005, .spike = 1.0}};
+
+  /// Main reading: the yaw rate.
+  static void add_to_reading(Imu& imu, double offset_radps) { imu.angular_velocity_radps.z() += offset_radps; }
+  static bool repeats(const Imu& now, const Imu& before) {
+    return now.angular_velocity_radps == before.angular_velocity_radps && now.linear_acceleration_mps2 == before.linear_acceleration_mps2;
+  }
+  static std::vector<ErrorSource> error_sources() {
+    return {{"gyro",
+             {"sensors.imu.gyro_noise_radps_rthz=0", "sensors.imu.gyro_bias_radps=0", "sensors.imu.gyro_bias_walk_radps2_rthz=0",
+              "sensors.imu.gyro_resolution_radps=0"}},
+            {"accelerometer",
+             {"sensors.imu.accel_noise_mps2_rthz=0", "sensors.imu.accel_bias_mps2=0", "sensors.imu.accel_bias_walk_mps3_rthz=0",
+              "sensors.imu.accel_resolution_mps2=0"}},
+            {"IMU: scale and alignment", {"sensors.imu.scale_error=0", "sensors.imu.misalignment_deg=0"}}};
+  }
+};
+
+}  // namespace patrol

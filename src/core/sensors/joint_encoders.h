@@ -1,0 +1,64 @@
+#pragma once
+
+#include <vector>
+
+#include "core/sensors/sensor_traits.h"
+#include "core/settings.h"
+#include "core/time.h"
+
+namespace patrol {
+
+/// Joint encoders in the order of RobotDescription::joint_names.
+struct JointState {
+  Time stamp{};
+  std::vector<double> position_rad;
+  std::vector<double> velocity_radps;
+  std::vector<double> effort_nm;
+};
+
+/// Absolute magnetic encoders on the joints, 14 bit, with the drive's own filtered speed.
+struct JointEncoderSettings {
+  bool enabled = true;
+  double rate_hz = 250.0;          ///< of the messages; the firmware reads at every tick
+  int counts_per_turn = 16384;
+  double speed_filter_s = 0.003;   ///< time constant of the speed, made from differences of counts
+  double latency_s = 0.0;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("enabled", self.enabled);
+    visit("rate_hz", self.rate_hz, between(1.0, 500.0));
+    visit("counts_per_turn", self.counts_per_turn, between(16, 1 << 24));
+    visit("speed_filter_s", self.speed_filter_s, between(0.0, 0.1));
+    visit("latency_s", self.latency_s, between(0.0, 10.0));
+  }
+};
+
+template <>
+struct SensorTraits<JointState> {
+  struct Settings {
+    JointEncoderSettings joint_encoders;
+  };
+  static constexpr auto kSettings = &Settings::joint_encoders;
+  static constexpr SensorInfo kInfo = {.name = "joint_encoders",
+                                      .topic = "/joint_states",
+                                      .ros_type = "sensor_msgs/msg/JointState",
+                                      .summary = "joint encoders of the legs",
+                                      .timeout = SensorTimeout::kMotion,
+                                      .freeze_check = FreezeCheck::kCommand,
+                                      .is_needed_to_drive = true,
+                                      .is_read_by_firmware = true,
+                                      .fault = {.unit = "rad", .drift_per_s = 0.01, .spike = 0.3}};
+
+  /// Main reading: the first joint.
+  static void add_to_reading(JointState& joints, double offset_rad) {
+    if (!joints.position_rad.empty()) joints.position_rad.front() += offset_rad;
+  }
+  static bool repeats(const JointState& now, const JointState& before) { return now.position_rad == before.position_rad; }
+  static bool is_fitted(const RobotDescription& robot) { return !robot.legs.empty(); }
+  static std::vector<ErrorSource> error_sources() {
+    return {{"joint encoders: counts", {"sensors.joint_encoders.counts_per_turn=1000000"}}};
+  }
+};
+
+}  // namespace patrol

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/sensors/sensor_traits.h"
+#include "core/settings.h"
+#include "core/time.h"
+
+namespace patrol {
+
+/// One revolution of a 2D lidar. Ranges follow REP 117: -Inf too close, +Inf no return, NaN invalid.
+struct LaserScan {
+  Time stamp{};  ///< instant of beam 0
+  double angle_min_rad = 0.0;        ///< of beam 0, in `lidar`, about z
+  double angle_increment_rad = 0.0;  ///< from beam to beam
+  double time_increment_s = 0.0;     ///< from beam to beam
+  double scan_time_s = 0.0;          ///< from scan to scan
+  double range_min_m = 0.0;
+  double range_max_m = 0.0;
+  std::vector<float> ranges_m;     ///< [beam]
+  std::vector<float> intensities;  ///< [beam], 0 ... 255, or empty
+};
+
+/// A spinning lidar, of one ring or several. Defaults are those of the preset.
+struct LidarSettings {
+  std::string preset = "rplidar_s2";
+  bool enabled = true;
+  double rate_hz = 10.0;  ///< revolutions
+  int beams = 3200;       ///< firings per revolution (over the field of view)
+  int rings = 1;
+  double fov_deg = 360.0;          ///< horizontal, symmetric about the front
+  double elevation_min_deg = 0.0;  ///< of the lowest ring
+  double elevation_max_deg = 0.0;  ///< of the highest ring
+  double range_min_m = 0.05;
+  double range_max_m = 30.0;
+  double range_noise_m = 0.015;       ///< standard deviation
+  double range_resolution_m = 0.013;  ///< quantisation
+  double angle_noise_deg = 0.01;      ///< standard deviation of a beam's direction
+  double beam_width_deg =
+      0.12;                    ///< over it a beam's light is spread (across the ring): mixed pixels at edges
+  double dropout = 0.002;      ///< share of beams that are lost for no reason
+  double grazing_deg = 85.0;   ///< beams that meet a surface flatter than this are lost
+  double dark_range_m = 10.0;  ///< range on a surface of 10 % reflectivity
+  double rain_rate = 0.0;      ///< chance per metre that a drop or a grain of dust reflects the beam
+  double latency_s = 0.005;    ///< from the last beam to the message
+  bool motion_distortion = true;  ///< false: the whole revolution is seen from where it ends
+  bool stabilized = false;        ///< true: held level whatever the body does, by an ideal gimbal; the stack must know (leveling.stabilized)
+
+  /// From public data sheets: "rplidar_s2" (Slamtec RPLIDAR S2: 10 Hz, 32,000 samples/s, 0.05-30 m, 10 m on
+  /// 10 %,
+  /// +-30 mm, 13 mm steps), "utm30lx" (Hokuyo UTM-30LX: 40 Hz, 0.25 deg over 270 deg, 0.1-30 m, +-30 mm, 1 mm
+  /// steps), "tim571" (SICK TiM571: 15 Hz, 0.33 deg over 270 deg, 0.05-25 m, 8 m on 10 %, 20 mm), "vlp16"
+  /// (Velodyne VLP-16: 10 Hz, 16 rings over +-15 deg, 1,800 firings, 100 m, +-30 mm, 2 mm steps, 3 mrad
+  /// wide). A stated "+-" is read as two standard deviations. The widths of the others' beams are not in
+  /// their sheets: about the angle from beam to beam is assumed.
+  static LidarSettings of_preset(const std::string& name, bool enabled = true);
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("preset", self.preset, one_of({"rplidar_s2", "utm30lx", "tim571", "vlp16"}));
+    visit("enabled", self.enabled);
+    visit("rate_hz", self.rate_hz, between(0.5, 100.0));
+    visit("beams", self.beams, between(4, 100000));
+    visit("rings", self.rings, between(1, 128));
+    visit("fov_deg", self.fov_deg, between(1.0, 360.0));
+    visit("elevation_min_deg", self.elevation_min_deg, between(-90.0, 90.0));
+    visit("elevation_max_deg", self.elevation_max_deg, between(-90.0, 90.0));
+    visit("range_min_m", self.range_min_m, at_least(0.0));
+    visit("range_max_m", self.range_max_m, between(0.1, 400.0));
+    visit("range_noise_m", self.range_noise_m, at_least(0.0));
+    visit("range_resolution_m", self.range_resolution_m, at_least(0.0));
+    visit("angle_noise_deg", self.angle_noise_deg, between(0.0, 10.0));
+    visit("beam_width_deg", self.beam_width_deg, between(0.0, 5.0));
+    visit("dropout", self.dropout, between(0.0, 1.0));
+    visit("grazing_deg", self.grazing_deg, between(0.0, 90.0));
+    visit("dark_range_m", self.dark_range_m, at_least(0.0));
+    visit("rain_rate", self.rain_rate, between(0.0, 1.0));
+    visit("latency_s", self.latency_s, between(0.0, 10.0));
+    visit("motion_distortion", self.motion_distortion);
+    visit("stabilized", self.stabilized);
+  }
+};
+
+template <>
+struct SensorTraits<LaserScan> {
+  struct Settings {
+    LidarSettings lidar = LidarSettings::of_preset("rplidar_s2");
+  };
+  static constexpr auto kSettings = &Settings::lidar;
+  static constexpr SensorInfo kInfo = {.name = "lidar",
+                                      .topic = "/scan",
+                                      .ros_type = "sensor_msgs/msg/LaserScan",
+                                      .summary = "2D lidar",
+                                      .timeout = SensorTimeout::kLidar,
+                                      .freeze_check = FreezeCheck::kOdometry,
+                                      .is_needed_to_drive = true,
+                                      .fault = {.unit = "m", .drift_per_s = 0.02, .spike = 1.0}};
+
+  static void add_to_reading(LaserScan& scan, double offset_m) {
+    for (float& range_m : scan.ranges_m) range_m += static_cast<float>(offset_m);
+  }
+  static bool repeats(const LaserScan& now, const LaserScan& before);
+  static std::vector<ErrorSource> error_sources();
+};
+
+}  // namespace patrol

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/sensors/lidar.h"
+#include "core/sensors/sensor_traits.h"
+#include "core/time.h"
+
+namespace patrol {
+
+struct CloudPoint {
+  float x, y, z;     ///< m, in `lidar3d`
+  float intensity;   ///< 0 ... 255
+  float time_s;      ///< after the cloud's stamp
+  std::uint16_t ring;
+};
+
+/// One revolution of a 3D lidar; only returns are kept.
+struct PointCloud {
+  Time stamp{};  ///< instant of the first firing
+  std::vector<CloudPoint> points;
+};
+
+template <>
+struct SensorTraits<PointCloud> {
+  struct Settings {
+    LidarSettings lidar3d = LidarSettings::of_preset("vlp16", false);
+  };
+  static constexpr auto kSettings = &Settings::lidar3d;
+  static constexpr SensorInfo kInfo = {.name = "lidar3d",
+                                      .topic = "/points",
+                                      .ros_type = "sensor_msgs/msg/PointCloud2",
+                                      .summary = "3D lidar",
+                                      .timeout = SensorTimeout::kLidar,
+                                      .fault = {.unit = "m", .drift_per_s = 0.02, .spike = 1.0}};
+
+  static void add_to_reading(PointCloud& cloud, double offset_m) {
+    for (CloudPoint& point : cloud.points) point.x += static_cast<float>(offset_m);
+  }
+};
+
+}  // namespace patrol

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "core/sensors/sensor_traits.h"
+#include "core/settings.h"
+#include "core/time.h"
+
+namespace patrol {
+
+/// A two-way ultra-wideband range from the robot's antenna (frame `uwb`) to one anchor. A range that was lost is not sent.
+struct UwbRange {
+  Time stamp{};
+  int anchor = 0;  ///< number of the anchor in the site's survey
+  double range_m = 0.0;
+};
+
+/// Ultra-wideband two-way ranging, after Decawave's DW1000: data sheet (ranges to about 10 cm) and application note APS011
+/// "Sources of error in DW1000 based two-way ranging schemes" (bias). A range whose path is blocked is too long by an
+/// exponential excess: Alsindi, Alavi, Pahlavan, "Measurement and modeling of ultrawideband TOA-based ranging in indoor
+/// multipath environments", IEEE Trans. Vehicular Technology 58(3), 2009, and Bellusci et al., "Modeling distance and
+/// bandwidth dependency of TOA-based UWB ranging error for positioning", 2009: Gaussian in sight, Gaussian and exponential
+/// out of sight. Rates of loss are assumptions.
+struct UwbSettings {
+  bool enabled = false;
+  double rate_hz = 30.0;            ///< polls in all; the anchors within reach take turns
+  double range_max_m = 60.0;        ///< anchors farther away do not answer and are not asked
+  double range_noise_m = 0.07;      ///< standard deviation, in sight
+  double bias_scale = 1.0;          ///< of the bias by distance; 0: the firmware corrects it
+  double loss = 0.02;               ///< share of polls close by that get no answer
+  double blocked_loss = 0.3;        ///< share lost of those whose path is blocked, besides
+  double blocked_excess_m = 0.4;    ///< mean of the exponential excess of a blocked path
+  double latency_s = 0.01;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("enabled", self.enabled);
+    visit("rate_hz", self.rate_hz, between(0.1, 500.0));
+    visit("range_max_m", self.range_max_m, between(1.0, 1000.0));
+    visit("range_noise_m", self.range_noise_m, at_least(0.0));
+    visit("bias_scale", self.bias_scale, between(-5.0, 5.0));
+    visit("loss", self.loss, between(0.0, 1.0));
+    visit("blocked_loss", self.blocked_loss, between(0.0, 1.0));
+    visit("blocked_excess_m", self.blocked_excess_m, at_least(0.0));
+    visit("latency_s", self.latency_s, between(0.0, 10.0));
+  }
+};
+
+template <>
+struct SensorTraits<UwbRange> {
+  struct Settings {
+    UwbSettings uwb;
+  };
+  static constexpr auto kSettings = &Settings::uwb;
+  static constexpr SensorInfo kInfo = {.name = "uwb",
+                                      .topic = "/uwb/range",
+                                      .ros_type = "patrol_msgs/msg/UwbRange",
+                                      .summary = "ultra-wideband ranges to surveyed anchors",
+                                      .timeout = SensorTimeout::kInstrument,
+                                      .fault = {.unit = "m", .drift_per_s = 0.05, .spike = 3.0}};
+
+  static void add_to_reading(UwbRange& range, double offset_m) { range.range_m += offset_m; }
+  static std::vector<ErrorSource> error_sources() {
+    return {{"UWB: range noise", {"sensors.uwb.range_noise_m=0"}},
+            {"UWB: bias by distance", {"sensors.uwb.bias_scale=0"}},
+            {"UWB: blocked paths", {"sensors.uwb.blocked_loss=0", "sensors.uwb.blocked_excess_m=0"}},
+            {"UWB: loss", {"sensors.uwb.loss=0"}}};
+  }
+};
+
+}  // namespace patrol

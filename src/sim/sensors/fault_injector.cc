@@ -1,0 +1,61 @@
+#include "sim/sensors/fault_injector.h"
+
+#include <cmath>
+
+namespace patrol::sim {
+namespace {
+
+constexpr double kSpikeProbability = 0.1;  // of a message, while the fault lasts
+
+void add_to_reading(SensorMessage& message, double offset) {
+  const auto add = [&]<typename Message>(Message& content) { SensorTraits<Message>::add_to_reading(content, offset); };
+  std::visit(add, message);
+}
+
+void set_stamp(SensorMessage& message, Time stamp) {
+  std::visit([&](auto& content) { content.stamp = stamp; }, message);
+}
+
+}  // namespace
+
+FaultInjector::FaultInjector(const std::vector<FaultSettings>& faults, std::uint64_t seed)
+    : spikes_(seed, "fault/spikes"), jitter_(seed, "fault/jitter") {
+  for (const FaultSettings& fault : faults) reports_.push_back({.fault = fault});
+}
+
+bool FaultInjector::apply(Time ready, Time& due, SensorMessage& message) {
+  if (reports_.empty()) return true;
+  const std::string_view sensor = kSensorInfos[message.index()].name;
+  std::optional<SensorMessage>& last_good = last_good_[message.index()];
+  bool is_frozen = false;
+  for (FaultReport& report : reports_) {
+    const FaultSettings& fault = report.fault;
+    if (fault.sensor != sensor || !fault.is_active(ready)) continue;
+    if (!change(report, ready, due, message)) return false;
+    if (fault.kind == "freeze" && last_good) is_frozen = true;
+  }
+  if (!is_frozen) last_good = message;
+  return true;
+}
+
+/// Applies one fault that is active. Returns false when the message is lost.
+bool FaultInjector::change(FaultReport& report, Time ready, Time& due, SensorMessage& message) {
+  const FaultSettings& fault = report.fault;
+  const std::optional<SensorMessage>& last_good = last_good_[message.index()];
+  const bool is_spiked = fault.kind == "spikes" && spikes_.uniform(spike_count_++) < kSpikeProbability;
+  report.is_executed |= (fault.kind != "spikes" || is_spiked) && (fault.kind != "freeze" || last_good);
+  if (fault.kind == "silence") return false;
+  if (fault.kind == "delay") due += from_seconds(fault.magnitude);
+  if (fault.kind == "jitter") due += from_seconds(std::abs(fault.magnitude * jitter_.normal(jitter_count_++)));
+  if (fault.kind == "clock_offset") set_stamp(message, stamp_of(message) + from_seconds(fault.magnitude));
+  if (fault.kind == "drift") add_to_reading(message, fault.magnitude * (to_seconds(ready) - fault.start_s));
+  if (is_spiked) add_to_reading(message, fault.magnitude);
+  if (fault.kind == "freeze" && last_good) {
+    const Time stamp = stamp_of(message);
+    message = *last_good;
+    set_stamp(message, stamp);
+  }
+  return true;
+}
+
+}  // namespace patrol::sim

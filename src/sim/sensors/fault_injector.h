@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "core/random.h"
+#include "core/sensors/registry.h"
+#include "sim/sensors/fault.h"
+
+namespace patrol::sim {
+
+/// Outcome of a fault that a scenario declares.
+struct FaultReport {
+  FaultSettings fault;
+  bool is_executed = false;  ///< at least one message was changed
+};
+
+/// Applies the faults of a scenario to sensor messages.
+class FaultInjector {
+ public:
+  FaultInjector(const std::vector<FaultSettings>& faults, std::uint64_t seed);
+
+  /// Changes a message that is complete at `ready` and due at `due`. Returns false when the message is lost.
+  bool apply(Time ready, Time& due, SensorMessage& message);
+
+  const std::vector<FaultReport>& reports() const { return reports_; }
+
+ private:
+  bool change(FaultReport& report, Time ready, Time& due, SensorMessage& message);
+
+  std::vector<FaultReport> reports_;
+  std::array<std::optional<SensorMessage>, std::variant_size_v<SensorMessage>> last_good_;  ///< [sensor], for a freeze
+  RandomStream spikes_, jitter_;
+  std::uint64_t spike_count_ = 0, jitter_count_ = 0;
+};
+
+}  // namespace patrol::sim

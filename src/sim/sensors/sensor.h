@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <mujoco/mujoco.h>
+
+#include "core/messages.h"
+#include "core/part_clock.h"
+#include "core/robot_description.h"
+#include "core/sensors/registry.h"
+#include "sim/gas_plume.h"
+#include "sim/lidar_scene.h"
+#include "sim/sensors/depth_camera.h"
+#include "sim/sensors/sensor_suite_settings.h"
+#include "sim/water_ahead.h"
+
+namespace patrol::sim {
+
+/// Everything from which a sensor is built. Only `scene` and `view` may be kept, by reference.
+struct SensorContext {
+  const SensorSuiteSettings& settings;
+  const RobotDescription& robot;
+  const mjModel& physics;
+  const mjModel& view;
+  const LidarScene& scene;
+  const GasPlume& plume;
+  const Underground& underground;
+  const DepthImagerFactory& make_depth_imager;
+  std::uint64_t seed;
+};
+
+/// Newest reading of each sensor that the firmware reads directly; empty where the robot has no such sensor.
+struct NewestReadings {
+  Imu imu;
+  JointState joints;
+  FootContacts feet;
+  TrackTicks ticks;
+};
+
+/// State of the simulation at a tick, with kinematics, accelerations and the lidar scene of `now`.
+struct SensorTick {
+  const mjModel& physics;
+  mjData& data;
+  std::uint64_t count;  ///< ticks before this one
+  Time now;
+  Pose3 T_world_body;
+  Time last;                 ///< instant of the tick before; `now` at the first one
+  Pose3 T_world_body_last;  ///< at `last`
+  NewestReadings& newest;
+  PartClock& clock;  ///< for sensors whose computing time is reported by itself
+
+  bool is_first() const { return count == 0; }
+};
+
+/// One sensor of the robot.
+class Sensor {
+ public:
+  virtual ~Sensor() = default;
+
+  /// Called once a tick; appends the readings that are complete to `readings`.
+  virtual void step(const SensorTick& tick, std::vector<SensorMessage>& readings) = 0;
+
+  /// Passes on a command of the stack; `now` and the pose are of the newest tick.
+  virtual void command(const InstrumentCommand&, Time /*now*/, const Pose3& /*T_world_body*/) {}
+
+  /// Returns whether the sensor is taking a measurement for which the robot must stand still.
+  virtual bool is_busy() const { return false; }
+};
+
+/// Instants of a constant rate, from time 0 on.
+class SensorSchedule {
+ public:
+  explicit SensorSchedule(double rate_hz) : rate_hz_(rate_hz) {}
+
+  /// Returns whether the next reading is due, and counts it.
+  bool is_due(Time now) {
+    if (now < from_seconds(static_cast<double>(count_) / rate_hz_)) return false;
+    ++count_;
+    return true;
+  }
+  /// Number of the reading that was due last, from 0.
+  std::uint64_t index() const { return count_ - 1; }
+
+ private:
+  double rate_hz_;
+  std::uint64_t count_ = 0;
+};
+
+/// Sensor that takes a reading at a constant rate.
+class PeriodicSensor : public Sensor {
+ public:
+  explicit PeriodicSensor(double rate_hz) : schedule_(rate_hz) {}
+
+  void step(const SensorTick& tick, std::vector<SensorMessage>& readings) final {
+    if (schedule_.is_due(tick.now)) read(tick, schedule_.index(), readings);
+  }
+
+ protected:
+  /// Takes reading number `index`.
+  virtual void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) = 0;
+
+ private:
+  SensorSchedule schedule_;
+};
+
+/// Makes the sensor that publishes `Message`: null if the settings switch it off or the robot cannot carry it. The
+/// file of each sensor specializes it. Throws InputError when an enabled sensor has no frame on the robot, or lacks
+/// something in the world.
+template <typename Message>
+std::unique_ptr<Sensor> make_sensor(const SensorContext& context);
+
+}  // namespace patrol::sim
