@@ -127,7 +127,7 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   }
   if (!remote.drive.empty()) files.drive = io::load_drive(named_file("remote.drive", remote.drive));
   if (!remote.recorded.empty()) files.recorded = io::load_remote(named_file("remote.recorded", remote.recorded));
-  const bool waits_for_remote = std::any_of(files.goals.begin(), files.goals.end(), [](const MarkedGoal& goal) { return goal.type == 'R'; });
+  const bool waits_for_remote = std::any_of(files.goals.begin(), files.goals.end(), [](const MarkedGoal& goal) { return goal.type == GoalType::kOperator; });
   if (files.map && files.has_remote() && !waits_for_remote) {
     throw InputError(fmt::format("map = {}: a map is given, and by remote control another would be made: only one of them can be used, unless "
                                  "a goal of type R waits for the remote control",

@@ -20,7 +20,7 @@ std::string clock_text(double clock_deg) {
   return fmt::format("{}:{:02}", hour, half_hours % 2 * 30);
 }
 
-bool asks_for(const std::vector<MarkedGoal>& goals, char type) {
+bool asks_for(const std::vector<MarkedGoal>& goals, GoalType type) {
   return std::any_of(goals.begin(), goals.end(), [&](const MarkedGoal& goal) { return goal.type == type; });
 }
 
@@ -39,8 +39,8 @@ TunnelInspection::TunnelInspection(const InspectionSettings& settings, const Rob
       inversion_(settings.water),
       seed_(seed) {
   validate(settings, "inspection");
-  if (asks_for(goals, 'D') && !lining_in_map) throw InputError("tour: a goal is of type D, but the site's survey has no lining");
-  if (asks_for(goals, 'D')) robot.T_body("scanner");
+  if (asks_for(goals, GoalType::kScan) && !lining_in_map) throw InputError("tour: a goal is of type D, but the site's survey has no lining");
+  if (asks_for(goals, GoalType::kScan)) robot.T_body("scanner");
   if (!lining_in_map || !robot.T_body_sensor.contains("scanner")) return;
   T_body_scanner_ = robot.T_body("scanner");
   lining_.emplace(settings.lining, *lining_in_map, T_body_scanner_);
