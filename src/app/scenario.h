@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/stack/stack_settings.h"
+#include "core/boosted_stumps.h"
 #include "core/remote_drive.h"
 #include "core/route.h"
 #include "core/settings.h"
@@ -185,6 +186,7 @@ struct ScenarioFiles {
   std::vector<MarkedGoal> goals;        ///< in map
   std::vector<io::StationScan> references;
   std::optional<OccupancyGrid> map;
+  BoostedStumps neighbor_model;  ///< classifier of pairs of submaps; empty for SLAM methods that need none
 
   bool has_remote() const { return !drive.empty() || !recorded.empty(); }
 };

@@ -87,10 +87,10 @@ std::unique_ptr<RobotStack> make_stack(const Scenario& scenario, const ScenarioF
   const Route route_in_map = inspect::to_map(files.route, files.T_site_start);
   if (files.robot.tracks) {
     return std::make_unique<TourStack>(scenario.stack, files.robot, route_in_map,
-                                       TourStart{.map = files.map, .goals = files.goals, .references = references_of(files), .has_remote = files.has_remote()},
+                                       TourStart{.map = files.map, .goals = files.goals, .references = references_of(files), .has_remote = files.has_remote(), .neighbor_model = files.neighbor_model},
                                        scenario.log.map_period_s, scenario.seed);
   }
-  return std::make_unique<PatrolStack>(scenario.stack, files.robot, route_in_map, scenario.log.map_period_s, scenario.seed);
+  return std::make_unique<PatrolStack>(scenario.stack, files.robot, route_in_map, scenario.log.map_period_s, scenario.seed, files.neighbor_model);
 }
 
 RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin, RobotStack& stack,

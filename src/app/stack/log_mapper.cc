@@ -9,7 +9,7 @@
 namespace patrol::app {
 
 LogMapper::LogMapper(const StackSettings& settings, const RobotDescription& robot, std::uint64_t seed)
-    : odometry_(robot, settings.odometry), leveler_(robot.T_body("lidar"), settings.leveling), slam_(make_mapper(settings, seed)), settle_(from_seconds(settings.settle_s)) {}
+    : odometry_(robot, settings.odometry), leveler_(robot.T_body("lidar"), settings.leveling), slam_(make_mapper(settings, {}, seed)), settle_(from_seconds(settings.settle_s)) {}
 
 void LogMapper::map(const std::filesystem::path& log_mcap) {
   io::LogHandlers handlers;

@@ -19,11 +19,11 @@ inspect::Mission make_mission(const StackSettings& settings, const RobotDescript
 }  // namespace
 
 PatrolStack::PatrolStack(const StackSettings& settings, const RobotDescription& robot, const Route& route_in_map,
-                       double map_period_s, std::uint64_t seed)
+                       double map_period_s, std::uint64_t seed, const BoostedStumps& neighbours)
     : RobotStack(settings, robot, route_in_map, map_period_s, seed),
       odometry_(robot, settings.odometry),
       leveler_(robot.T_body("lidar"), settings.leveling),
-      slam_(make_mapper(settings, seed)),
+      slam_(make_mapper(settings, neighbours, seed)),
       mission_(make_mission(settings, robot, route_in_map, seed)) {
   navigator_.set_map(slam_->map());  // empty yet, but its resolution must suit the costmap's
 }

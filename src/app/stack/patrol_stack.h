@@ -13,7 +13,7 @@ class PatrolStack final : public RobotStack {
   /// `route` in map, whose origin is the level body pose at the start. Throws InputError when settings, robot and route do
   /// not go together.
   PatrolStack(const StackSettings& settings, const RobotDescription& robot, const Route& route_in_map, double map_period_s,
-              std::uint64_t seed);
+              std::uint64_t seed, const BoostedStumps& neighbours = {});
 
   void handle_fall(Time now) override;
   bool mission_is_over() const override { return mission_.is_over(); }

@@ -46,7 +46,7 @@ TourStack::TourStack(const StackSettings& settings, const RobotDescription& robo
     localizer_.emplace(settings.localization, *map_, anchors_above_body(), robot.T_body("uwb"), seed);
     navigator_.set_map(*map_);
   } else {
-    slam_ = make_mapper(settings, seed);
+    slam_ = make_mapper(settings, start.neighbor_model, seed);
     navigator_.set_map(slam_->map());  // empty yet, but its resolution must suit the costmap's
   }
 }

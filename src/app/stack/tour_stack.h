@@ -17,6 +17,7 @@ struct TourStart {
   std::vector<MarkedGoal> goals;     ///< none: marked on that drive
   LiningReferences references;       ///< scans of an earlier round
   bool has_remote = false;
+  BoostedStumps neighbor_model = {};     ///< classifier of pairs of submaps, for SLAM methods that need it
 };
 
 /// The tracked robot's: maps while it is driven by remote control, then localises on that map and navigates by itself. Track
