@@ -44,7 +44,7 @@ TEST(TrackedRbpf, FollowsTenMetresToThreeCentimetresAndKeepsAPoseForEveryScan) {
 
 // With `odometry: given` the filter sees the odometry itself: no matching from scan to scan comes before.
 TEST(TrackedRbpf, WithGivenOdometryIsTheFilterAlone) {
-  TrackedRbpfSettings settings{.odometry = "given"};
+  TrackedRbpfSettings settings{.odometry = "given", .tracking = {}};
   TrackedRbpf rbpf(settings, 1);
   FilteredPath filter(settings.filter, 1);
   map_drive(rbpf);

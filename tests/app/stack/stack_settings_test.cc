@@ -1,5 +1,8 @@
 #include "app/stack/stack_settings.h"
 
+#include <set>
+#include <string_view>
+
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -19,6 +22,26 @@ std::unique_ptr<slam::Mapper> map_room(const StackSettings& settings) {
     EXPECT_NEAR(update.T_map_body.x, pose.x, 0.02) << i;
   }
   return mapper;
+}
+
+template <typename Table>
+void expect_documented(const Table& table) {
+  std::set<std::string_view> names;
+  for (const auto& row : table) {
+    EXPECT_TRUE(names.insert(row.name).second) << row.name << " is a duplicate";
+    EXPECT_FALSE(row.summary.empty()) << row.name;
+    EXPECT_NE(row.summary.back(), '.') << row.name << ": a line of `patrol list` has no full stop";
+  }
+}
+
+TEST(Algorithms, HaveUniqueNamesAndADocumentationLine) {
+  expect_documented(slam::mapping_methods());
+  expect_documented(slam::kRbpfOdometries);
+  expect_documented(slam::optimizers());
+  expect_documented(slam::resamplers());
+  expect_documented(localize::sensor_models());
+  expect_documented(plan::route_planners());
+  expect_documented(plan::local_planners());
 }
 
 TEST(MakeMapper, TheFilterHasAsManyParticlesAsAskedForAndTheGraphNone) {
