@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/boosted_stumps.h"
 #include "core/robot_description.h"
 #include "core/route.h"
 #include "stack/instruments/lining_instrument.h"
@@ -19,6 +20,7 @@ struct StackStart {
       {};  ///< none: marked on a drive by remote control, or the mission visits the route's stations
   LiningReferences references = {};  ///< scans of an earlier round
   bool has_remote = false;           ///< a person may drive by remote control
+  BoostedStumps neighbor_model = {};  ///< classifier of pairs of submaps, for SLAM methods that need it
   double map_period_s = 5.0;
   std::uint64_t seed = 0;
 };

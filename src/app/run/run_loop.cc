@@ -88,6 +88,7 @@ stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
                             .goals = files.goals,
                             .references = references_of(files),
                             .has_remote = files.has_remote(),
+                            .neighbor_model = files.neighbor_model,
                             .map_period_s = scenario.log.map_period_s,
                             .seed = scenario.seed});
 }

@@ -16,7 +16,7 @@ constexpr double kClockOffset_s = 0.2;
 
 /// Returns whether the scenario gives occasion for the readings of a sensor.
 bool is_triggered(SensorTrigger trigger, const ScenarioFiles& files) {
-  const auto is_scanned = [](const MarkedGoal& goal) { return goal.type == 'D'; };
+  const auto is_scanned = [](const MarkedGoal& goal) { return goal.type == GoalType::kScan; };
   switch (trigger) {
     case SensorTrigger::kPeriodic: return true;
     case SensorTrigger::kScanStation: return std::any_of(files.goals.begin(), files.goals.end(), is_scanned);

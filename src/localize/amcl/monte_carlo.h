@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/grid.h"
 #include "core/messages.h"
+#include "core/named_table.h"
 #include "core/random.h"
 #include "core/sensors/registry.h"
 #include "core/settings.h"
@@ -29,6 +31,11 @@
 #include "localize/amcl/trust.h"
 
 namespace patrol::localize {
+
+struct MonteCarloSettings;
+
+/// The sensor models of a scan; `make` takes the settings of its own section.
+std::span<const NamedFactory<std::unique_ptr<SensorModel>(const MonteCarloSettings&, const OccupancyGrid&, const LineField&)>> sensor_models();
 
 struct MonteCarloSettings {
   std::string sensor_model = "likelihood_field";
@@ -55,7 +62,7 @@ struct MonteCarloSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("sensor_model", self.sensor_model, one_of({"likelihood_field", "beam"}));
+    visit("sensor_model", self.sensor_model, one_of(sensor_models()));
     visit("independent_beams", self.independent_beams, between(1.0, 10000.0));
     visit("scan_fit_tol", self.scan_fit_tol, between(0.0, 1.0));
     visit("update_distance_m", self.update_distance_m, between(0.0, 10.0));

@@ -1,6 +1,7 @@
 #include "plan/navigation/path_follower.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -15,14 +16,21 @@ Twist3 twist_of(const VelocityCommand& command) {
   return {.linear = {command.vx_mps, command.vy_mps, 0.0}, .angular = {0.0, 0.0, command.yaw_rate_radps}};
 }
 
-std::unique_ptr<LocalPlanner> make_local_planner(const NavigatorSettings& settings) {
-  if (settings.local_planner == "paper_dwa") return std::make_unique<PaperDwa>(settings.paper_local);
-  return std::make_unique<DynamicWindow>(settings.local);
-}
+using LocalPlannerFactory = NamedFactory<std::unique_ptr<LocalPlanner>(const NavigatorSettings&)>;
+
+constexpr std::array kLocalPlanners = std::to_array<LocalPlannerFactory>({
+    {"dwa", "Dynamic window approach over forward simulated arcs",
+     [](const NavigatorSettings& settings) -> std::unique_ptr<LocalPlanner> { return std::make_unique<DynamicWindow>(settings.local); }},
+    {"paper_dwa", "Dynamic window approach of paper 004, as printed",
+     [](const NavigatorSettings& settings) -> std::unique_ptr<LocalPlanner> { return std::make_unique<PaperDwa>(settings.paper_local); }},
+});
 
 }  // namespace
 
-PathFollower::PathFollower(const NavigatorSettings& settings) : settings_(settings), local_planner_(make_local_planner(settings)) {}
+std::span<const LocalPlannerFactory> local_planners() { return kLocalPlanners; }
+
+PathFollower::PathFollower(const NavigatorSettings& settings)
+    : settings_(settings), local_planner_(row_named(kLocalPlanners, settings.local_planner, "plan.local_planner").make(settings)) {}
 
 void PathFollower::set_path(PlannedPath path, const Pose2& T_map_body) {
   path_ = std::move(path);

@@ -40,7 +40,7 @@ TEST(FaultMatrix, OnARobotWithEverythingItHasEverySensorOfTheRegistryThatGivesNo
   files.robot.legs.resize(4);
   files.robot.tracks.emplace();
   files.goals.resize(1);
-  files.goals.front().type = 'D';
+  files.goals.front().type = GoalType::kScan;
   files.recorded.resize(1);
   std::set<std::string> in_matrix;
   for (const sim::FaultSettings& fault : fault_matrix(scenario, files, 12.0, 8.0)) in_matrix.insert(fault.sensor);
