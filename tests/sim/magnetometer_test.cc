@@ -13,7 +13,6 @@
 namespace patrol::sim::magnetometer_test {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::uint64_t kReadings = 20000;
 
 MagnetometerSettings ideal() {

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "app/scoring/score_run.h"
+#include "core/angles.h"
 #include "io/csv.h"
 #include "io/map_server.h"
 #include "io/nav_json.h"
@@ -10,8 +11,6 @@
 
 namespace patrol::app {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 void save_trajectories(const RunDirectory& directory, const RunRecord& record) {
   io::save_tum(directory.estimate(), record.T_map_body, "base_link in map, as the stack believed");

@@ -5,12 +5,11 @@
 #include <numbers>
 #include <string_view>
 
+#include "core/angles.h"
 #include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Eigen::Vector3d geomagnetic_field_t(const MagnetometerSettings& settings) {
   const double inclination = settings.inclination_deg * kDegree, declination = settings.declination_deg * kDegree;
