@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/angles.h"
 #include "io/ros_messages.h"
 #include "tests/sim/small_world.h"
 
