@@ -9,7 +9,8 @@
 
 namespace patrol::slam {
 
-/// Particles enough for a building; what tracking leaves of odometry's errors; nothing that depends on legs.
+/// Filter settings for scan-to-scan odometry: enough particles for a building, small motion noise, no leg-specific
+/// errors.
 GridSlamSettings tracked_filter();
 
 struct TrackedRbpfSettings {
@@ -23,9 +24,9 @@ struct TrackedRbpfSettings {
   }
 };
 
-/// A Rao-Blackwellised particle filter (grid_slam.h) whose odometry is what matching from scan to scan makes of the wheels': the particles then have only its
-/// small errors to make up for, and wheels that lie do not lead all of them astray. Plain Gmapping, with a better odometry; no loop is closed
-/// but by particles that happen to have come back right.
+/// Rao-Blackwellized particle filter (grid_slam.h) on odometry from scan-to-scan matching instead of wheel odometry.
+/// The particles need to represent only its small errors, and gross errors of the wheel odometry do not misplace all of
+/// them. Equals Gmapping with better odometry; loops are closed only by particles that return to the correct pose.
 class TrackedRbpf {
  public:
   TrackedRbpf(const TrackedRbpfSettings& settings, std::uint64_t seed);
@@ -33,7 +34,7 @@ class TrackedRbpf {
   SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
   void finish() {}
 
-  /// [scan]: of the particle that is the best now, with the whole way that it has come.
+  /// Trajectory of the currently best particle, [scan].
   std::vector<Pose2> path() const { return filtered_.path(); }
   OccupancyGrid map() const { return filtered_.map(); }
   ParticleSet particles() const { return filtered_.particles(); }

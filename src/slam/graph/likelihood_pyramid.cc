@@ -7,9 +7,9 @@
 namespace patrol::slam {
 namespace {
 
-constexpr int kReach = 2;  ///< cells around a surface that still count
+constexpr int kReach = 2;  ///< radius in cells around a surface with nonzero likelihood
 
-/// By the squared distance in cells from a surface.
+/// Value at a squared distance, in cells, from a surface.
 int near_surface(int squared_distance) { return static_cast<int>(std::lround(LikelihoodPyramid::kOnSurface * std::exp(-0.5 * squared_distance))); }
 
 }  // namespace
@@ -23,7 +23,7 @@ Cell LikelihoodPyramid::cell_of(const Eigen::Vector2d& p_map) const {
   return {static_cast<int>(std::floor(p_map.x() / resolution_m_)), static_cast<int>(std::floor(p_map.y() / resolution_m_))};
 }
 
-// Empty, to hold all that the map knows and what counts around it.
+// Returns an empty level that covers the observed cells and the margin around them.
 LikelihoodPyramid::Level LikelihoodPyramid::extent_of(const GridMap& map) const {
   constexpr int kMax = std::numeric_limits<int>::max();
   int low_col = kMax, low_row = kMax, high_col = -kMax, high_row = -kMax;
@@ -69,7 +69,8 @@ LikelihoodPyramid::Level LikelihoodPyramid::draw_finest(const GridMap& map) cons
   return finest;
 }
 
-// A cell and its neighbours are four by four of the level below, of whose cells each but the finest's speaks for two by two.
+// A cell and its neighbors cover 4 x 4 cells of the level below. Above the finest level each of those already covers 2
+// x 2, so every second one suffices.
 LikelihoodPyramid::Level LikelihoodPyramid::halved(const Level& fine, bool is_of_finest) {
   Level coarse;
   coarse.first_col = (fine.first_col >> 1) - 1, coarse.first_row = (fine.first_row >> 1) - 1;
