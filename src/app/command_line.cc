@@ -256,7 +256,8 @@ void add_monitor(CLI::App& app, Call& call) {
   MonitorOptions& monitor = call.monitor;
   CLI::App* command = app.add_subcommand("monitor", "The monitoring platform: takes results from robots and shows them, until it is interrupted");
   command->add_option("--port", monitor.port, "Port to listen at; 0: any that is free")->capture_default_str();
-  command->add_option("--host", monitor.host, "Address to listen at; 0.0.0.0: of every network")->capture_default_str();
+  command->add_option("--host", monitor.host, "Address or host name to listen at; 0.0.0.0: of every network")->capture_default_str();
+  command->add_option("--allow-host", monitor.allowed_hosts, "Host name under which it is reached, besides its address; may be repeated");
   command->add_option("--data", monitor.data, "Directory of what it keeps")->capture_default_str();
   command->add_option("--token", monitor.token_file, "File of the token (default: PATROL_TOKEN, else one is made in the directory)");
   command->callback([&] { call.chosen = [&] { return monitor_command(call.monitor); }; });
@@ -288,7 +289,7 @@ void refuse_unknown_command(const CLI::App& app, int argc, const char* const* ar
 
 /// Does not throw when standard error cannot be written.
 int report(const std::string& what, ExitCode code) {
-  std::fputs(fmt::format("patrol: {}\n", io::on_one_line(what)).c_str(), stderr);
+  std::fputs(fmt::format("patrol: {}\n", io::on_one_line(what)).c_str(), stderr);  // fmt::print would throw on failure
   return static_cast<int>(code);
 }
 

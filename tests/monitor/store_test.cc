@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include "core/error.h"
 #include "tests/monitor/sample_results.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::monitor {
+namespace patrol::monitor::store_test {
 namespace {
 
 using namespace patrol::test;
@@ -56,6 +58,22 @@ TEST(Store, WhatItKeptIsThereWhenItIsOpenedAgain) {
   EXPECT_EQ(again.add({pose_result(1)}, kNoon_ms), std::vector{Stored::kKnown});
 }
 
+TEST(Store, ItsFilesAreReadableByTheirOwnerOnly) {
+  const TemporaryFolder folder;
+  const mode_t mask = ::umask(0);
+  Store store(folder.path());
+  store.add({pose_result(1)}, kNoon_ms);
+  ::umask(mask);
+  int num_files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    struct stat info{};
+    ASSERT_EQ(::stat(entry.path().c_str(), &info), 0);
+    EXPECT_EQ(info.st_mode & 0777U, 0600U) << entry.path();
+    ++num_files;
+  }
+  EXPECT_GE(num_files, 4);  // lock, database, write-ahead log and its index
+}
+
 TEST(Store, ASecondOneOnTheSameFolderIsRefused) {
   const TemporaryFolder folder;
   const Store store(folder.path());
@@ -93,4 +111,4 @@ TEST(Store, ANameOfSqlIsAName) {
 }
 
 }  // namespace
-}  // namespace patrol::monitor
+}  // namespace patrol::monitor::store_test

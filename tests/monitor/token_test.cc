@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::monitor {
+namespace patrol::monitor::token_test {
 namespace {
 
 TEST(Token, IsMadeOnceForItsOwnersEyesAlone) {
@@ -15,6 +15,16 @@ TEST(Token, IsMadeOnceForItsOwnersEyesAlone) {
   const std::string token = token_of_folder(folder.path());
   EXPECT_EQ(token.size(), 64U);
   EXPECT_EQ(token_of_folder(folder.path()), token);
+  struct stat info{};
+  ASSERT_EQ(::stat((folder / "token").c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777U, 0600U);
+}
+
+TEST(Token, IsItsOwnersAloneAlthoughAnotherFileWasLeftInItsPlace) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "token.part", "");
+  ASSERT_EQ(::chmod((folder / "token.part").c_str(), 0644), 0);
+  token_of_folder(folder.path());
   struct stat info{};
   ASSERT_EQ(::stat((folder / "token").c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 0777U, 0600U);
@@ -35,4 +45,4 @@ TEST(Token, OnlyTheWholeIsTheSame) {
 }
 
 }  // namespace
-}  // namespace patrol::monitor
+}  // namespace patrol::monitor::token_test

@@ -51,7 +51,7 @@ std::string to_text(const ProblemReport& report) {
   const std::size_t count = report.solved.size(), failed = num_failed(report);
   std::string text = fmt::format("{}: {} problems by {}\nroutes             {} found, each checked against every lethal cell\n", report.file_name, count,
                                  report.settings.planner, summary.num_found);
-  text += fmt::format("published lengths  {} agree to {} cells{}, worst difference {:.3g} cells\n", summary.num_agree, kPublishedTol,
+  text += fmt::format("published lengths  {} agree to their last digit{}, worst difference {:.3g} cells\n", summary.num_agree,
                       must_agree(report.settings.planner) ? "" : " (need not)", summary.worst_difference);
   if (!summary.ratios.empty()) {
     text += fmt::format("length / optimum   mean {:.6f}, median {:.6f}, least {:.6f}, worst {:.6f}\n", mean_of(summary.ratios),
@@ -95,11 +95,11 @@ io::Table problem_table(const ProblemReport& report) {
                   .rows = {}};
   for (const SolvedProblem& solved : report.solved) {
     const io::MovingAiProblem& problem = solved.problem;
-    const auto whole = [](std::int64_t value) { return io::Cell(value); };
+    const auto whole = [](std::int64_t value) { return io::TableValue(value); };
     const auto from_top = [&](Cell cell) { return whole(problem.height - 1 - cell.row); };
     table.rows.push_back({whole(problem.line), whole(problem.bucket), whole(problem.start.col), from_top(problem.start), whole(problem.goal.col),
                           from_top(problem.goal), problem.optimal_length, std::string(status_name(solved.status)),
-                          solved.is_found() ? io::Cell(solved.length) : io::Cell(), solved.ratio() ? io::Cell(*solved.ratio()) : io::Cell(),
+                          solved.is_found() ? io::TableValue(solved.length) : io::TableValue(), solved.ratio() ? io::TableValue(*solved.ratio()) : io::TableValue(),
                           whole(solved.num_turns), whole(solved.num_expanded), solved.failure.value_or("")});
   }
   return table;
