@@ -6,16 +6,17 @@
 
 namespace patrol::slam {
 
-/// Corners of a convex polygon, counter-clockwise.
+/// Corners of a convex polygon, counterclockwise.
 using ConvexPolygon = std::vector<Eigen::Vector2d>;
 
-/// The smallest convex polygon that holds all points (Andrew's monotone chain, 1979). Fewer than three corners if they lie in one place or on one line.
+/// Convex hull by the monotone chain algorithm [Andrew79]. Fewer than three corners if the points are coincident or
+/// collinear.
 ConvexPolygon convex_hull(std::vector<Eigen::Vector2d> points);
 
-/// m^2.
+/// Area in m^2.
 double area_of(const ConvexPolygon& polygon);
 
-/// What both hold (Sutherland, Hodgman 1974).
+/// Intersection of two convex polygons [Sutherland74].
 ConvexPolygon intersection_of(const ConvexPolygon& a, const ConvexPolygon& b);
 
 }  // namespace patrol::slam
