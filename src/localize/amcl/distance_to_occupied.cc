@@ -6,7 +6,8 @@
 namespace patrol::localize {
 namespace {
 
-/// Whether a neighbour of this occupied cell is not occupied: only then can the cell be the nearest to any but itself.
+/// Returns whether a neighbor of this occupied cell is free or unknown; only then can the cell be nearest to another
+/// cell.
 bool is_on_edge(const OccupancyGrid& map, Cell cell) {
   const auto is_solid = [&](int col, int row) { return map.contains({col, row}) && is_occupied(map.at({col, row})); };
   return !is_solid(cell.col - 1, cell.row) || !is_solid(cell.col + 1, cell.row) || !is_solid(cell.col, cell.row - 1) ||
