@@ -76,7 +76,7 @@ class GridMap {
   /// Adds a beam that ended at `p_map`.
   void add_hit(const Eigen::Vector2d& p_map);
   /// Adds `weight` beams that were free from `from_map` to `to_map`. In a cell with hits, a pass counts only if the
-  /// beam runs near the mean of the hits: a beam along a wall, within its cells, does not clear the wall.
+  /// beam runs near the mean of the hits. A beam along a wall, within its cells, thus does not clear the wall.
   /// `stop_at_surface` ends the ray at the first surface, because a beam without a return may have met a dark surface.
   void add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2d& to_map, int weight, bool stop_at_surface);
 

@@ -19,9 +19,10 @@ struct LocalLine {
   double distance_m(const Eigen::Vector2d& p_map) const { return normal_map.dot(p_map - point_map); }
 };
 
-/// Fits a line by the principal axes of the mean hits of all surface cells at most `radius_cells` columns and rows from
-/// p's cell, weighted by their hits. The weights place a wall on the border of two cells at the mean of its hits, not
-/// between the cells. Returns none if there are fewer than three cells or if their extent is too small.
+/// Fits a line by the principal axes of the mean hits of the surface cells around p, weighted by their hits. The
+/// neighborhood extends `radius_cells` columns and rows from p's cell. The weights place a wall on the border of two
+/// cells at the mean of its hits, not between the cells. Returns none if there are fewer than three cells or if their
+/// extent is too small.
 std::optional<LocalLine> fit_local_line(const GridMap& map, const Eigen::Vector2d& p_map, int radius_cells);
 
 }  // namespace patrol::slam

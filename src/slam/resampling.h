@@ -9,7 +9,7 @@ namespace patrol::slam {
 std::vector<double> normalized_weights(const std::vector<double>& log_weights);
 
 /// Effective sample size, 1 / sum of w^2 for weights that sum to one: N if all are equal, 1 if one particle has all the
-/// weight [Liu96; Doucet01].
+/// weight [Liu96], [Doucet01].
 double effective_sample_size(const std::vector<double>& weights);
 
 /// Systematic resampling [Thrun05, table 4.4, "low variance sampler"]. Returns [new particle] -> index of its parent.

@@ -56,11 +56,11 @@ struct MatchResult {
 /// Registers points to the map by Gauss-Newton on their distances to the local lines of the map (local_line.h). The
 /// lines are fitted again in every iteration.
 ///
-/// Deviation from Gmapping, which climbs a likelihood of distances to the mean hits of the cells by steps along each
-/// axis ([Grisetti07]; [Thrun05, section 6.4]): distances to lines do not pull along a wall, where only the cell
-/// pattern varies. They have derivatives: a few iterations converge to a fraction of a millimeter, and the normal
-/// equations give the covariance. Points are weighted by a Cauchy kernel; rough surfaces, corners and cells with few
-/// hits have smaller weights.
+/// Deviation from Gmapping ([Grisetti07]; [Thrun05, section 6.4]), which climbs a likelihood of distances to the mean
+/// hits of the cells by steps along each axis. Distances to lines do not pull along a wall, where only the cell pattern
+/// varies. They have derivatives: a few iterations converge to a fraction of a millimeter, and the normal equations
+/// give the covariance. Points are weighted by a Cauchy kernel; rough surfaces, corners and cells with few hits have
+/// smaller weights.
 ///
 /// With a `prior`, its squared Mahalanobis distance is part of the sum, so that odometry constrains the direction along
 /// a corridor. Returns none if too few points matched a surface.
@@ -75,7 +75,7 @@ double scan_log_likelihood(const GridMap& map, const std::vector<MatchPoint>& po
 /// both.
 std::vector<double> point_log_likelihoods(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body, const ScanMatcherSettings& settings);
 
-/// Correlative scan matching on one level [Olson09]: returns the pose in the window around `T_map_center` with the most
+/// Correlative scan matching on one level [Olson09]. Returns the pose in the window around `T_map_center` with the most
 /// points on or next to a surface cell. Used after odometry slip; the result is within the convergence range of
 /// match_scan.
 Pose2 search_pose(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_center,

@@ -69,8 +69,8 @@ ScanLikelihoods BeamModel::evaluate(const LevelScan& scan, const std::vector<Pos
   return result;
 }
 
-// Sphere tracing [Hart96]: each step is the distance to the nearest occupied center minus twice half a cell diagonal,
-// one for the position within the cell and one for the extent of the wall cell.
+// Sphere tracing [Hart96]: each step is the distance to the nearest occupied center minus one cell diagonal. Half of it
+// accounts for the position within the cell, half for the extent of the wall cell.
 double BeamModel::expected_range_m(const Eigen::Vector2d& p_map_origin, double angle_rad) const {
   const GridGeometry& geometry = distance_m_.geometry();
   const Eigen::Vector2d direction(std::cos(angle_rad), std::sin(angle_rad));

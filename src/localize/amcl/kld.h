@@ -31,7 +31,7 @@ struct KldSettings {
 };
 
 /// Number of particles that approximates a belief over `bins` bins to `max_error`, within the limits of the settings
-/// [Fox03, equation 7; chi-square quantile by Wilson and Hilferty].
+/// [Fox03, equation 7]. The chi-square quantile is that of Wilson and Hilferty.
 int kld_particles(std::size_t bins, const KldSettings& settings);
 
 /// Set of occupied bins of position and heading.

@@ -42,8 +42,7 @@ BeamEnds select_beam_ends(const LevelScan& scan, int max_beams);
 ///
 /// Deviations from [Thrun05]:
 /// - Near surfaces, d is the distance to the line through the cells (line_field.h). Map noise makes walls ragged, and
-///   hundreds of beams would match that pattern at the same wrong position scan after scan, although the tunnel is
-///   smooth.
+///   hundreds of beams would match that pattern at the same wrong position in every scan.
 /// - The mixture is scaled to 1 at d = 0, with z_rand = `random_share` and z_hit = 1 - z_rand: a constant factor.
 /// - Log likelihoods are quantized to 256 levels, 0.012 apart for z_rand = 0.05. The map of a tunnel then fits in the
 ///   processor cache, and integer sums do not depend on their order.

@@ -27,8 +27,8 @@ struct OdometryModelSettings {
 
 /// Propagates all particles by the odometry increment T_before_now over `dt_s`, with sampled errors.
 ///
-/// slam/motion_model.h gives the independent error of a step. Scale errors, in contrast, persist over many steps, so
-/// that in a featureless corridor the standard deviation must grow with the distance, not with its square root. Each
+/// slam/motion_model.h gives the independent error of a step. Scale errors, in contrast, persist over many steps. In a
+/// featureless corridor the standard deviation must therefore grow with the distance, not with its square root. Each
 /// particle therefore has its own scale error (a Gauss-Markov process over the distance), which ranges and features
 /// also estimate.
 void move_particles(ParticleCloud& cloud, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings,

@@ -61,7 +61,7 @@ struct RefinedPose {
 RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const slam::PoseGaussian& prior, const Pose2& T_map_start,
                         const PoseRefinementSettings& settings);
 
-/// Proposal distribution given a particle and the scan match, both normally distributed: the improved proposal of
+/// Proposal distribution given a particle and the scan match, both normally distributed. It is the improved proposal of
 /// [Grisetti07], with one scan match for all particles near it. Along degenerate directions a particle is unchanged
 /// except for its spread.
 class ScanProposal {

@@ -71,12 +71,12 @@ struct CalibrationResult {
   Calibration calibration() const;
 };
 
-/// Estimates the lidar pose in the body and the odometry parameters from segments: planar hand-eye calibration, X L = B
+/// Estimates the lidar pose in the body and the odometry parameters from segments. Planar hand-eye calibration: X L = B
 /// X with L the lidar motion and B the body motion [Censi13, section III].
 ///
 /// - Deviation from [Censi13]: the residual is the odometry predicted from the lidar motion minus the recorded
-///   odometry. Odometry has much larger errors than matching, and errors of the dependent variable do not bias a scale,
-///   as those of the independent variable would (errors in variables).
+///   odometry. Odometry has much larger errors than matching. Errors of the dependent variable do not bias a scale, as
+///   those of the independent variable would (errors in variables).
 /// - Iteratively reweighted Gauss-Newton: first with Cauchy weights, then with Tukey's biweight, which gives outliers
 ///   no weight (wheel slip, logs with reversed direction). The scales of the translational and rotational odometry
 ///   noise are estimated in each iteration (median of the absolute residuals).

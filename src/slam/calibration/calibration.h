@@ -9,16 +9,16 @@ namespace patrol::slam {
 
 /// Calibration of the odometry and lidar pose of a log. The defaults leave the log unchanged.
 ///
-/// An odometry increment from scan to scan, with m its translation rotated to the mean heading (so that the chord of an
-/// arc lies along x), becomes
+/// For an odometry increment from scan to scan, m is its translation in the frame of its mean heading, so that the
+/// chord of an arc lies along x. The increment becomes
 ///
 ///   translation  distance_scale * m      rotation  turn_scale * turn + steering_rad_per_m * m_x
 ///
 /// These are the three parameters of a differential drive with wrong wheel radii and wheel base [Censi13, eq. 1].
-/// Deviation from [Censi13]: the translation that unequal wheels cause during a turn in place is omitted, because it
-/// cannot be distinguished from a different lidar position. The lidar pose is relative to the point that moves as
-/// odometry reports. On a tracked vehicle, which turns about its instantaneous center of rotation, that point differs
-/// slightly from the body origin.
+/// Deviation from [Censi13]: the translation of unequal wheels during a turn in place is omitted. It cannot be
+/// distinguished from a different lidar position. The lidar pose is relative to the point that moves as odometry
+/// reports. On a tracked vehicle, which turns about its instantaneous center of rotation, that point differs slightly
+/// from the body origin.
 struct Calibration {
   bool places_lidar = false;        ///< true: the following lidar pose replaces that of the log
   double lidar_x_m = 0.0;           ///< lidar pose in body

@@ -47,8 +47,8 @@ struct MotionPairSettings {
 };
 
 /// Divides a log into segments. The lidar is tracked in its own frame by scan matching (scan_tracker.h), with odometry
-/// as initial guess, corrected by the prior calibration `known`. The covariance of a segment includes the matches only:
-/// along a featureless corridor it is large, so that the odometry that the tracker follows there has no weight.
+/// as initial guess, corrected by the prior calibration `known`. The covariance of a segment includes the matches only.
+/// Along a featureless corridor it is large, so that the odometry that the tracker follows there has no weight.
 class MotionPairs {
  public:
   MotionPairs(const MotionPairSettings& settings, const PlanarScanSettings& scan, const Calibration& known);

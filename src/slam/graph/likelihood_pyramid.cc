@@ -23,8 +23,8 @@ Cell LikelihoodPyramid::cell_of(const Eigen::Vector2d& p_map) const {
   return {static_cast<int>(std::floor(p_map.x() / resolution_m_)), static_cast<int>(std::floor(p_map.y() / resolution_m_))};
 }
 
-// Returns an empty level that covers all tiles, plus a margin of `kReach` cells. Mean hits are up to half a map cell from
-// the cell centers, and slightly more after rounding to float, so the extent of the centers alone would be too small.
+// Returns an empty level that covers all tiles, plus a margin of `kReach` cells. Mean hits are up to half a map cell
+// from the cell centers, and slightly more after rounding to float. The extent of the centers alone would be too small.
 LikelihoodPyramid::Level LikelihoodPyramid::extent_of(const GridMap& map) const {
   constexpr int kMax = std::numeric_limits<int>::max();
   int low_col = kMax, low_row = kMax, high_col = -kMax, high_row = -kMax;

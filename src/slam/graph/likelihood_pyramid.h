@@ -11,9 +11,9 @@
 namespace patrol::slam {
 
 /// Multiresolution likelihood of points for searches over many poses. Values: 100 on a surface, decreasing around it; 0
-/// in unobserved cells; negative in free cells, so that a wall in free space lowers a score. A cell of level l covers
-/// 2^l x 2^l finest cells. It holds the maximum over itself and its right and upper neighbors: an upper bound for a
-/// point and all its translations by less than a cell.
+/// in unobserved cells; negative in free cells, to penalize walls in free space. A cell of level l covers 2^l x 2^l
+/// finest cells. It holds the maximum over itself and its right and upper neighbors. That is an upper bound for a point
+/// and all its translations by less than a cell.
 class LikelihoodPyramid {
  public:
   LikelihoodPyramid(const GridMap& map, double resolution_m, int num_levels);

@@ -35,9 +35,9 @@ class NodeRanges {
   explicit NodeRanges(const RangeUpdateSettings& settings) : settings_(settings) {}
 
   /// Adds a range. `T_node_then` is the body pose at the measurement relative to the newest or second-newest node. The
-  /// range is reduced to the node by the difference of the predicted ranges at the current node pose. For a node error
-  /// of 10 cm at 10 m from the anchor and 1 m from the node, the reduction errs by 1 to 10 mm. `direction`, in map: see
-  /// NodeRange.
+  /// range is reduced to the node by the difference of the predicted ranges at the current node pose. The error of the
+  /// reduction is 1 to 10 mm for a node error of 10 cm, 10 m from the anchor and 1 m from the node. `direction`, in
+  /// map: see NodeRange.
   void add(int node, const Pose2& T_map_node, const Pose2& T_node_then, const RangeSighting& sighting, const std::optional<Eigen::Vector2d>& direction = {});
 
   const std::vector<NodeRange>& ranges() const { return ranges_; }  ///< in ascending node order

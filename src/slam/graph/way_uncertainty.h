@@ -15,8 +15,9 @@ struct UncertainWay {
 };
 
 /// Relative poses and covariances of all nodes in the frame of `place`, [place]. Each covariance is that along the path
-/// of least uncertainty (Dijkstra's search), an upper bound of the marginal covariance of the whole graph [Olson08,
-/// section 4.2]. The uncertainty of a path counts one radian as ten meters. Unreachable nodes have infinite covariance.
+/// of least uncertainty, found by Dijkstra's search. It is an upper bound of the marginal covariance of the whole graph
+/// [Olson08, section 4.2]. The uncertainty of a path counts one radian as ten meters. Unreachable nodes have infinite
+/// covariance.
 std::vector<PoseGaussian> positions_from(int place, const std::vector<Pose2>& T_map_place, const std::vector<UncertainWay>& ways);
 
 /// Propagates the covariance of `here` along an edge to `there`. `way_covariance` is in the frame of `here`; the poses

@@ -22,8 +22,8 @@ struct EkfSlamSettings {
 /// observations of the same landmarks seem to constrain the heading. The filter becomes overconfident [Julier01;
 /// Huang08].
 ///
-/// Invariant variant: the error is a rotation and translation of the whole map about its origin, p = exp(dtheta) p_hat
-/// + dp, for the body and every landmark (right-invariant error on SE_{n+1}(2) [Barrau15]). The Jacobian of an
+/// Invariant variant: the error is a rotation and translation of the whole map about its origin. It is p = exp(dtheta)
+/// p_hat + dp for the body and every landmark (right-invariant error on SE_{n+1}(2) [Barrau15]). The Jacobian of an
 /// observation with respect to the heading is then exactly zero for every estimate, and unobservable directions gain no
 /// information.
 class EkfSlam : public LandmarkSlam {

@@ -136,7 +136,7 @@ FastSlam::Proposal FastSlam::propose(const Particle& particle, const Control& co
 }
 
 // A particle that is attracted toward another one takes the other's trajectory and map, and a fraction of its last
-// increment, because maps cannot be interpolated.
+// increment. Maps cannot be interpolated.
 void FastSlam::reproduce(const Control& control, const std::vector<Offspring>& offspring) {
   std::vector<Particle> children;
   children.reserve(offspring.size());

@@ -26,7 +26,7 @@ struct FastSlamSettings {
 ///
 ///   1.0     sample the increment from odometry, weight with the observation [Montemerlo02]
 ///   2.0     sample the increment given odometry and observation [Montemerlo03]
-///   swarms  sample as in 1.0, optimize the increments by the observation, weight as in 1.0 [Wu25; Cui21]
+///   swarms  sample as in 1.0, optimize the increments by the observation, weight as in 1.0 [Wu25], [Cui21]
 ///
 /// A particle's position is its increment xi of two coordinates, the errors of speed and turn in standard deviations:
 /// pose = move(before, control + diag(std) xi). The fitness by the observation is -1/2 sum (nu^T S^-1 nu + log |S|)

@@ -18,7 +18,7 @@ struct Landmark {
 };
 
 /// Innovation of an observation with respect to an estimated landmark, at a pose without uncertainty. In closed form,
-/// because this is the innermost loop of every swarm: with u the direction to the landmark and n perpendicular to it, H
+/// because this is the innermost loop of every swarm. With u the direction to the landmark and n perpendicular to it, H
 /// = [u^T; n^T / r].
 struct SightFit {
   double range, bearing;       ///< innovation, m and rad

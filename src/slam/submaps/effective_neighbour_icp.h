@@ -79,17 +79,17 @@ struct IcpResult {
 /// deviation of the k-th distance from it.
 ///
 /// Deviations from [Yu23]: the sign in eq. 8 is illegible, and the text continues "when D_k - D_(k-1) < 0 take
-/// a_(k-1)". Here D_k = L(k) - a_k, so the rule selects the first maximum of the deviation, which is the global maximum
-/// on a convex curve. Measured curves have ripples that would end the search at the second pair, so the global maximum
-/// is used; among equal ones the last. If no distance is below the chord, all pairs are kept.
+/// a_(k-1)". Here D_k = L(k) - a_k. The rule then selects the first maximum of the deviation, which is the global
+/// maximum on a convex curve. Measured curves have ripples that would end the search at the second pair, so the global
+/// maximum is used; among equal ones the last. If no distance is below the chord, all pairs are kept.
 double effective_threshold(const std::vector<double>& sorted_distances);
 
-/// Rigid motion that minimizes the sum of squared distances of point pairs, in closed form [Yu23, eqs. 9 to 12]: center
-/// both sets, estimate the rotation, then T = mu_p - R mu_q. At least one pair is required.
+/// Rigid motion that minimizes the sum of squared distances of point pairs, in closed form [Yu23, eqs. 9 to 12]. Both
+/// sets are centered, then the rotation is estimated, then T = mu_p - R mu_q. At least one pair is required.
 Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target, const std::vector<Eigen::Vector2d>& points_source);
 
-/// ICP [Besl92] on effective neighbors [Yu23, section 2.2]. Every source point is paired with its nearest target point,
-/// and pairs beyond the threshold are dropped, in every iteration; points outside the overlap thus have no influence.
+/// ICP [Besl92] on effective neighbors [Yu23, section 2.2]. In every iteration, each source point is paired with its
+/// nearest target point, and pairs beyond the threshold are dropped. Points outside the overlap thus have no influence.
 /// Returns none if fewer than `min_pairs` remain.
 ///
 /// Deviations from [Yu23], all of which can be switched off:
@@ -97,7 +97,7 @@ Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target, const 
 /// - The threshold has a lower bound; otherwise fully overlapping submaps would be matched on their best pairs only and
 ///   converge early.
 /// - The threshold has an upper bound. Without it, the bend of the curve is meters off if most points have no partner
-///   (a switchyard), and the match is worse than its start.
+///   (a switchyard). The match is then worse than its start.
 /// - Final steps use distances to lines where the target is linear and to points elsewhere (Generalized-ICP in the
 ///   plane [Segal09]). Near pairs have larger weights, because the points of two submaps are different samples of the
 ///   walls and would otherwise lock onto each other's pattern.

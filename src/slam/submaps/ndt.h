@@ -41,17 +41,17 @@ struct NdtScore {
 
 /// Normal distributions transform of points at one cell size ([Biber03]; [Yu23, eqs. 4, 5]).
 ///
-/// The four grids of [Biber03], shifted by half a cell each, form one lattice of nodes half a cell apart, with a cell
-/// around each node. A point belongs to the four cells that contain it, with bilinear weights that sum to 1 and vanish
-/// on the cell border. The score is therefore continuous, and its gradient exact.
+/// The four grids of [Biber03], shifted by half a cell each, form one lattice: nodes half a cell apart with a cell
+/// around each. A point belongs to the four cells that contain it, with bilinear weights that sum to 1 and vanish on
+/// the cell border. The score is therefore continuous, and its gradient exact.
 class NdtGrid {
  public:
   /// `points_target` in target, m. Standard deviations of a normal below `min_std_m` are increased to it. Throws
   /// InputError if a point is not finite or if the lattice exceeds 4,000 nodes along an axis.
   NdtGrid(const std::vector<Eigen::Vector2d>& points_target, double cell_m, double min_std_m);
 
-  /// Sum over the points of exp(-1/2 q^T Sigma^-1 q), with q relative to the mean of the cell [Biber03, eq. 6] and
-  /// bilinear weights over the four cells.
+  /// Sum over the points of exp(-1/2 q^T Sigma^-1 q), with q relative to the mean of the cell [Biber03, eq. 6]. The
+  /// four cells of a point have bilinear weights.
   ///
   /// Deviation from [Yu23, eq. 6], which sums the logarithms: for a single normal that is an unbounded parabola. Points
   /// without a partner, frequent in partly overlapping submaps, would then dominate. Without the logarithm their
@@ -90,8 +90,8 @@ struct NdtResult {
 
 /// Pose of maximum score near `T_start`, for coarse matching [Yu23, eq. 6]: Gauss-Newton with Levenberg-Marquardt
 /// damping; steps that lower the score are rejected. Every level starts from `T_start` and from all results of the
-/// coarser level, because wide cells have a large capture range but are biased in partial overlaps. The result with the
-/// highest score on the finest level is returned. Returns none if no cell responds to any source point.
+/// coarser level: wide cells have a large capture range but are biased in partial overlaps. The result with the highest
+/// score on the finest level is returned. Returns none if no cell responds to any source point.
 std::optional<NdtResult> align_ndt(const std::vector<NdtGrid>& target, const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_start,
                                    const NdtSettings& settings);
 

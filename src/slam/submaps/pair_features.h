@@ -27,7 +27,7 @@ namespace patrol::slam {
 ///   direction_predicted    correlation of the direction histograms at the predicted rotation: -1 ... 1
 ///   point_ratio            smaller number of points relative to the larger; independent of the pose
 ///   radius_ratio           smaller radius relative to the larger; independent of the pose
-///   score_predicted        NDT score on the second-coarsest cells at the prediction, minimum of both directions: 0 ... 1
+///   score_predicted        NDT score on the second-coarsest cells as predicted, minimum of both directions: 0 ... 1
 ///   score_aligned          NDT score on the finest cells at the NDT result, minimum of both directions: 0 ... 1
 ///   aligned_mahalanobis    distance of the NDT result from the prediction, in standard deviations; at most 30
 ///   aligned_agreement      mutual_agreement at the NDT result

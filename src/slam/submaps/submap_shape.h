@@ -55,8 +55,8 @@ SubmapShape describe_submap(const std::vector<Eigen::Vector2d>& points_submap, c
 /// Difference of two histograms with equal numbers of bins, each of sum 1: 0 equal ... 1 disjoint.
 double histogram_difference(const std::vector<double>& a, const std::vector<double>& b);
 
-/// Pearson correlation of a with b rotated by `shift` bins, cyclic (bin 0 of b is aligned with bin `shift` of a): -1
-/// ... 1; 0 if either histogram is uniform.
+/// Pearson correlation of a with b rotated cyclically by `shift` bins: -1 ... 1; 0 if either histogram is uniform. Bin
+/// 0 of b is aligned with bin `shift` of a.
 double circular_correlation(const std::vector<double>& a, const std::vector<double>& b, int shift);
 
 }  // namespace patrol::slam

@@ -16,6 +16,7 @@ struct BatSettings {
 
 /// Bat algorithm [Yang10, eqs. 2-6]: bats move with velocities relative to the best one, or search around it.
 /// Improvements are accepted with a probability that decreases with every acceptance.
+/// Deviation from [Yang10]: the pulse rate is the probability of the local search, not of skipping it.
 class BatOptimizer : public SwarmOptimizer {
  public:
   explicit BatOptimizer(const BatSettings& settings) : settings_(settings) {}

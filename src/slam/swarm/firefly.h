@@ -33,7 +33,7 @@ struct ImprovedFireflySettings {
   double noise_variance = 1.0;
 };
 
-/// Improved firefly algorithm [Cui21]: a firefly moves toward its neighbor in the order of brightness, with a random
+/// Improved firefly algorithm [Cui21]: a firefly moves toward its brighter neighbor in brightness order, with a random
 /// step alpha = exp(-R I_i / I_j) (eqs. 3, 4).
 ///
 /// Interpretation of [Cui21]: eq. 2 defines the brightness I as a distance between predicted and newest observation and

@@ -8,8 +8,8 @@ namespace patrol::slam {
 /// random angle otherwise. The sensitivity range decreases from 2 to 0.
 ///
 /// Improved variant [Wu25]: after each generation the best cat tries a Cauchy mutation (eq. 1). The S best positions of
-/// the previous generation replace the S worst, S = ceil((N - 1) sin(pi t / 2 T)) (eq. 2), if the fitness of the
-/// replaced member increases.
+/// the previous generation replace the S worst where that increases the fitness of the replaced member. S = ceil((N -
+/// 1) sin(pi t / 2 T)) (eq. 2).
 class SandCatOptimizer : public SwarmOptimizer {
  public:
   SandCatOptimizer(int iterations, bool is_improved) : iterations_(iterations), is_improved_(is_improved) {}

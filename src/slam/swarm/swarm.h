@@ -12,7 +12,7 @@ namespace patrol::slam {
 
 /// Position of a swarm member in problem-specific coordinates, at most four. In SLAM: whitened odometry increment since
 /// the last pose, with zero at the odometry and unit variance per coordinate. The update rules of the sources multiply
-/// positions and therefore depend on the origin; in map coordinates the result would depend on the start pose of the
+/// positions and therefore depend on the origin. In map coordinates the result would depend on the start pose of the
 /// robot.
 using Position = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 4, 1>;
 

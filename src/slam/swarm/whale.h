@@ -4,7 +4,7 @@
 
 namespace patrol::slam {
 
-/// Whale optimization algorithm [Mirjalili16]: each whale encircles the best one (eqs. 2.1-2.4), moves on a spiral
+/// Whale optimization algorithm [Mirjalili16]. Each whale encircles the best one (eqs. 2.1-2.4), moves on a spiral
 /// around it (eq. 2.5) or follows a random one (eqs. 2.7, 2.8).
 class WhaleOptimizer : public SwarmOptimizer {
  public:

@@ -27,7 +27,8 @@ ExactFilter::ExactFilter(const GrowthModel& model, const ExactFilterSettings& se
 }
 
 // With the mean at distance d from a node, the density k nodes from there is exp(-d^2 / 2 Q) exp(-k^2 cell^2 / 2 Q)
-// exp(d cell / Q)^k, which needs no exponential in the loop. `predicted` has a margin of the kernel size at both ends.
+// exp(d cell / Q)^k. This form needs no exponential in the loop. `predicted` has a margin of the kernel size at both
+// ends.
 void ExactFilter::spread(double mean, double mass, std::vector<double>& predicted) const {
   const double process_var = model_.settings().process_var;
   const double place = (mean - nodes_.front()) / cell_;

@@ -37,7 +37,7 @@ class GrowthFilter : public UnivariateFilter {
 };
 
 /// Settings of IFA-PF in [Cui21, section 2]: beta_0 = gamma = 1, one generation per step, stepwise resampling at every
-/// step with beta = 0.8 and mu = 0.01 (the defaults of StepwiseResampling).
+/// step. The latter has the defaults of StepwiseResampling, beta = 0.8 and mu = 0.01.
 ParticleFilterSettings ifa_settings_of_paper();
 
 }  // namespace patrol::slam

@@ -31,12 +31,11 @@ struct GrowthRun {
   std::vector<double> observations;
 };
 
-/// Univariate nonstationary growth model ([Netto78; Gordon93]; [Cui21, eq. 9]), dimensionless:
+/// Univariate nonstationary growth model ([Netto78], [Gordon93], [Cui21, eq. 9]), dimensionless:
 ///   x(t) = 0.5 x(t-1) + 25 x(t-1) / (1 + x(t-1)^2) + 8 cos(1.2 (t-1)) + w,   w ~ N(0, Q)
 ///   y(t) = x(t)^2 / 20 + v,                                                  v ~ N(0, R)
-/// An observation does not distinguish x from -x.
-/// Deviation from [Cui21], which prints 1 - x^2 in the denominator instead of 1 + x^2 as in the other sources: with the
-/// minus sign the state jumps by thousands near 1 and -1.
+/// An observation does not distinguish x from -x. Deviation from [Cui21], which prints 1 - x^2 in the denominator
+/// instead of 1 + x^2 as in the other sources. With the minus sign the state jumps by thousands near 1 and -1.
 class GrowthModel {
  public:
   /// Throws InputError if a setting is invalid.
