@@ -19,8 +19,8 @@ struct EkfSlamSettings {
 /// only.
 ///
 /// Plain variant: the error is the difference of coordinates. The Jacobians depend on the estimate, so that repeated
-/// observations of the same landmarks seem to constrain the heading. The filter becomes overconfident [Julier01;
-/// Huang08].
+/// observations of the same landmarks seem to constrain the heading. The filter becomes overconfident [Julier01],
+/// [Huang08].
 ///
 /// Invariant variant: the error is a rotation and translation of the whole map about its origin. It is p = exp(dtheta)
 /// p_hat + dp for the body and every landmark (right-invariant error on SE_{n+1}(2) [Barrau15]). The Jacobian of an
