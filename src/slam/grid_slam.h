@@ -23,21 +23,21 @@ struct GridSlamSettings {
   double resolution_m = 0.05;
   double max_extent_m = 400.0;            ///< side of the mapped square around the origin
   int min_hits_occupied = 2;              ///< published map only: cells with fewer hits are treated as outliers
-  /// published map only: minimum ratio of hits to hits plus passes; below it the cell was occupied by a moving object
+  /// Published map only: minimum ratio of hits to hits plus passes; below it the cell was occupied by a moving object.
   double min_hit_share_occupied = 0.5;
   // Map updates.
   double keyframe_distance_m = 0.5;
   double keyframe_angle_rad = 0.12;
-  /// scans tilted by more are neither matched nor integrated, for example on a ramp between inclined walls
+  /// Scans tilted by more are neither matched nor integrated, for example on a ramp between inclined walls.
   double max_tilt_rad = 1.6;
   int initial_keyframes = 25;  ///< the first N scans are all keyframes, because the map heading depends on them
   // Filter; the cost is proportional to the number of particles.
   int particles = 8;
   double likelihood_gain = 0.2;  ///< tempering factor: fraction of the points with independent errors (proposal.h)
   std::string proposal = "scan_match";    ///< scan_match; or motion: sample from odometry only, as in FastSLAM
-  /// optimizer applied to the odometry samples, with the resampler of its source; only with `proposal: motion`
+  /// Optimizer applied to the odometry samples, with the resampler of its source; only with `proposal: motion`.
   std::string optimizer = "none";
-  /// resample if the effective sample size is below this fraction of the number of particles
+  /// Resample if the effective sample size is below this fraction of the number of particles.
   double resample_threshold = 0.5;
   MotionModelSettings motion;
   RangeUpdateSettings ranges;

@@ -6,7 +6,7 @@
 namespace patrol::slam {
 
 struct MotionModelSettings {
-  /// standard deviation of the distance along the motion; for leg odometry: scale error
+  /// Standard deviation of the distance along the motion; for leg odometry: scale error.
   double along_std_m_per_m = 0.01;
   double across_std_m_per_m = 0.01;        ///< standard deviation across the motion: lateral slip
   double turn_std_rad_per_rad = 0.04;      ///< standard deviation of the yaw change per yaw change

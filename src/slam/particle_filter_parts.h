@@ -19,7 +19,7 @@ struct ParticleFilterSettings {
   int optimizer_iterations = 5;
   double firefly_absorption = 0.01;       ///< gamma, per square of the unit of the positions
   std::string resampler = "systematic";
-  /// resample if the effective sample size is below this fraction of the number of particles
+  /// Resample if the effective sample size is below this fraction of the number of particles.
   double resample_threshold = 0.5;
 
   template <typename Self, typename Visitor>

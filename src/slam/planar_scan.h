@@ -8,9 +8,9 @@ namespace patrol::slam {
 
 struct PlanarScanSettings {
   double min_range_m = 0.05;      ///< nearer returns are from the robot itself
-  /// beams that end farther away clear free space up to here; their end points are too sparse for walls
+  /// Beams that end farther away clear free space up to here; their end points are too sparse for walls.
   double max_range_m = 40.0;
-  /// distance cleared by a beam without a return; small, since glass and black fabric give no return either
+  /// Distance cleared by a beam without a return; small, since glass and black fabric give no return either.
   double no_return_free_m = 0.0;
 
   template <typename Self, typename Visitor>

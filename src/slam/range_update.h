@@ -36,7 +36,7 @@ struct RangeSighting {
 struct RangeInnovation {
   double excess_m = 0.0;  ///< measured minus predicted range
   double variance_m2 = 0.0;
-  /// gradient of the predicted range with respect to x, y, yaw of the current body pose
+  /// Gradient of the predicted range with respect to x, y, yaw of the current body pose.
   Eigen::Vector3d by_pose = Eigen::Vector3d::Zero();
 };
 

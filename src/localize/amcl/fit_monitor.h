@@ -7,10 +7,10 @@ namespace patrol::localize {
 struct FitMonitorSettings {
   double slow_rate = 0.02;        ///< filter constant of the long-term average of the scan likelihood, per update
   double fast_rate = 0.2;         ///< filter constant of the short-term average, per update
-  /// injection begins if the short-term average is below the long-term average divided by this ratio
+  /// Injection begins if the short-term average is below the long-term average divided by this ratio.
   double fast_over_slow = 1.5;
   double range_rate = 0.1;        ///< filter constant of the average range likelihood, per range
-  /// inlier ratio of the scan below which particles are injected, regardless of the averages
+  /// Inlier ratio of the scan below which particles are injected, regardless of the averages.
   double min_scan_fit = 0.4;
   double min_range_fit = 0.25;    ///< mean range likelihood below which particles are injected
   double max_injection = 0.5;     ///< maximum fraction of injected particles

@@ -14,7 +14,7 @@ struct KldSettings {
   double bin_m = 0.5;
   double bin_rad = 0.1745;      ///< 10 degrees
   double max_error = 0.05;      ///< maximum Kullback-Leibler distance between particles and belief
-  /// upper quantile of the normal distribution for the probability of keeping max_error: 0.99
+  /// Upper quantile of the normal distribution for the probability of keeping max_error: 0.99.
   double quantile = 2.326;
   int min_particles = 300;
   int max_particles = 5000;

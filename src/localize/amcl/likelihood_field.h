@@ -14,7 +14,7 @@
 namespace patrol::localize {
 
 struct LikelihoodFieldSettings {
-  /// standard deviation of a beam's end from the nearest surface: range noise, map error and tilt
+  /// Standard deviation of a beam's end from the nearest surface: range noise, map error and tilt.
   double hit_std_m = 0.1;
   double random_share = 0.05;   ///< likelihood of an end far from all surfaces relative to one on a surface
   int max_beams = 180;          ///< maximum number of evaluated beams; the cost is proportional to it

@@ -31,15 +31,15 @@ namespace patrol::localize {
 
 struct MonteCarloSettings {
   std::string sensor_model = "likelihood_field";
-  /// tempering: effective number of independent beams of a scan, however many are evaluated
+  /// Tempering: effective number of independent beams of a scan, however many are evaluated.
   double independent_beams = 20.0;
-  /// tolerance of the mean log likelihood per beam for errors of map and model: 3 cm for a standard deviation of 0.1 m
+  /// Tolerance of the mean log likelihood per beam for errors of map and model: 3 cm for a standard deviation of 0.1 m.
   double scan_fit_tol = 0.05;
   double update_distance_m = 0.2;      ///< distance traveled between particle updates
   double update_angle_rad = 0.05;      ///< yaw change between particle updates
   double update_period_s = 1.0;        ///< maximum time between particle updates while lost
   double max_tilt_rad = 0.1;  ///< scans tilted by more, for example on a ramp, are not used unless the robot is lost
-  /// resample if the effective sample size is below this fraction of the number of particles
+  /// Resample if the effective sample size is below this fraction of the number of particles.
   double resample_threshold = 0.5;
   int min_particles_when_lost = 2000;  ///< with few particles, hypotheses would disappear by chance
   double range_memory_s = 2.0;         ///< maximum age of ranges used in a global search
@@ -84,7 +84,7 @@ struct MonteCarloSettings {
 struct LocalizationUpdate {
   PoseEstimate estimate;
   LocalizationTrust trust;
-  /// true: the particles were updated; false: only the pose was predicted and matched to the map
+  /// True: the particles were updated; false: only the pose was predicted and matched to the map.
   bool is_weighed = false;
   std::optional<ParticleSet> particles;  ///< regular subset of the updated particles, for the log
   int num_particles = 0;       ///< current number of particles

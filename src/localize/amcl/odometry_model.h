@@ -12,7 +12,7 @@
 namespace patrol::localize {
 
 struct OdometryModelSettings {
-  /// standard deviation of the persistent scale error of the distance: track wear, steady slip
+  /// Standard deviation of the persistent scale error of the distance: track wear, steady slip.
   double way_scale_std = 0.02;
   double way_scale_memory_m = 50.0;   ///< correlation length of the scale error
   slam::MotionModelSettings noise;    ///< independent error of each step

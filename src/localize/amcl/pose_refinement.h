@@ -18,7 +18,7 @@ struct PoseRefinementSettings {
   double point_angle_std_rad = 0.0015;  ///< standard deviation of the direction of a point
   double kernel_m = 0.08;  ///< scale of the Cauchy kernel; residuals beyond it are down-weighted as outliers
   double likelihood_gain = 0.1;         ///< tempering factor: fraction of the points with independent errors
-  /// a line constrains the weak direction only if the sine of its angle to that direction is larger
+  /// A line constrains the weak direction only if the sine of its angle to that direction is larger.
   double min_facing = 0.15;
   double map_std_m = 0.01;              ///< standard deviation of the map itself, which is not reduced by averaging
   double map_std_rad = 0.001;

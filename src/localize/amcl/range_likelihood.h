@@ -8,8 +8,8 @@
 namespace patrol::localize {
 
 struct RangeLikelihoodSettings {
-  /// standard deviation of a LOS range; larger than that of the radio, because consecutive ranges have correlated
-  /// errors
+  /// Standard deviation of a LOS range; larger than that of the radio, because consecutive ranges have correlated
+  /// errors.
   double range_std_m = 0.15;
   double blocked_share = 0.1;     ///< likelihood of a marginal NLOS path relative to that of an exact range
   double blocked_excess_m = 0.5;  ///< mean NLOS bias
@@ -32,7 +32,7 @@ double range_log_likelihood(double excess_m, const RangeLikelihoodSettings& sett
 /// Range with its geometry relative to the current body.
 struct AnchoredRange {
   Eigen::Vector3d p_map_anchor = Eigen::Vector3d::Zero();   ///< m
-  /// position of the antenna at the stamp of the range, in the current level body frame, m
+  /// Position of the antenna at the stamp of the range, in the current level body frame, m.
   Eigen::Vector3d p_body_antenna = Eigen::Vector3d::Zero();
   double range_m = 0.0;
 };

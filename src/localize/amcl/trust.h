@@ -16,7 +16,7 @@ struct TrustSettings {
   double decided_weight = 0.95;   ///< cluster weight from which on its factor is 1
   double undecided_weight = 0.5;  ///< cluster weight up to which its factor is 0
   double lost_below = 0.1;        ///< the robot becomes lost below this confidence
-  /// a lost robot recovers above this confidence, if the cluster weight is at least decided_weight
+  /// A lost robot recovers above this confidence, if the cluster weight is at least decided_weight.
   double found_above = 0.2;
 
   template <typename Self, typename Visitor>

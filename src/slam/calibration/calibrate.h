@@ -57,7 +57,7 @@ struct CalibratedParameter {
 
 struct CalibrationResult {
   std::array<CalibratedParameter, 6> parameters;
-  /// covariance of the observable parameters; zero elsewhere
+  /// Covariance of the observable parameters; zero elsewhere.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   int num_stretches = 0;
   int num_rejected = 0;          ///< number of rejected segments: odometry outliers or wrong matches

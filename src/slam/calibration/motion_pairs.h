@@ -18,7 +18,7 @@ struct MotionPair {
   Time begin{}, end{};
   std::vector<Pose2> lidar_steps;  ///< motion of the lidar from scan to scan, as matched
   Pose2 odometry;                  ///< recorded motion of the body from the first scan to the last
-  /// covariance of the composed lidar steps: x, y, yaw in the lidar frame at the begin of the segment
+  /// Covariance of the composed lidar steps: x, y, yaw in the lidar frame at the begin of the segment.
   Eigen::Matrix3d lidar_covariance = Eigen::Matrix3d::Zero();
 
   Pose2 lidar() const {
@@ -31,7 +31,7 @@ struct MotionPair {
 struct MotionPairSettings {
   double stretch_m = 0.5;      ///< a segment ends when lidar or odometry has moved by this distance
   double stretch_rad = 0.35;   ///< or rotated by this angle
-  /// standard deviation of the systematic error of a match, independent of the number of points
+  /// Standard deviation of the systematic error of a match, independent of the number of points.
   double match_std_m = 0.002;
   double match_std_rad = 0.0005;
   ScanTrackerSettings tracking;

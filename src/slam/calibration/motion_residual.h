@@ -13,10 +13,10 @@ using CalibrationVector = Eigen::Matrix<double, 6, 1>;
 
 /// Difference between predicted and recorded odometry of a segment.
 struct MotionResidual {
-  /// predicted minus recorded odometry: x, y, yaw in the body frame at the begin of the segment
+  /// Predicted minus recorded odometry: x, y, yaw in the body frame at the begin of the segment.
   Eigen::Vector3d error;
   Eigen::Matrix<double, 3, 6> jacobian;  ///< derivative with respect to CalibrationVector
-  /// covariances of the error; the odometry covariance before scaling
+  /// Covariances of the error; the odometry covariance before scaling.
   Eigen::Matrix3d lidar_covariance, odometry_covariance;
 
   Eigen::Matrix3d covariance(double move_noise, double turn_noise) const {

@@ -25,15 +25,15 @@ struct GraphSlamSettings {
   double drift_std_rad_per_m = 0.004;
   double drift_std_rad_per_rad = 0.01;
   int max_loop_candidates = 4;  ///< maximum number of older submaps that each new one is matched with, nearest first
-  /// maximum distance between the mean positions of two submaps, plus two standard deviations
+  /// Maximum distance between the mean positions of two submaps, plus two standard deviations.
   double max_loop_distance_m = 10.0;
   SubmapMatcherSettings loops;
   PoseGraphSolverSettings solver;
-  /// standard deviation of the systematic error of a match, independent of the number of points
+  /// Standard deviation of the systematic error of a match, independent of the number of points.
   double edge_std_m = 0.01;
   double edge_std_rad = 0.001;
   double open_share = 0.02;  ///< a direction is degenerate if its information is below this fraction of the largest
-  /// final optimization: number of passes that match every keyframe with the submaps around it
+  /// Final optimization: number of passes that match every keyframe with the submaps around it.
   int refinement_rounds = 2;
   int max_refinement_submaps = 3;    ///< maximum number of submaps matched with each keyframe
   double min_refinement_share = 0.6; ///< minimum inlier ratio of a keyframe in a submap

@@ -19,7 +19,7 @@ struct NodeRange {
   double range_m = 0.0;
   int count = 0;
   Pose2 T_map_read;  ///< node pose at which the ranges were linearized
-  /// unit vector in map along which the range constrains the node; none: the range constrains the whole pose
+  /// Unit vector in map along which the range constrains the node; none: the range constrains the whole pose.
   std::optional<Eigen::Vector2d> direction = {};
 
   /// Pose at which the range is evaluated: the linearization pose moved along `direction`, or the node pose itself.

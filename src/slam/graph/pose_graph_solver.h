@@ -9,7 +9,7 @@ namespace patrol::slam {
 struct PoseGraphSolverSettings {
   int max_iterations = 50;
   bool doubts_loops = true;
-  /// scale of the Cauchy kernel, in standard deviations; used for loop closures if doubts_loops, and always for ranges
+  /// Scale of the Cauchy kernel, in standard deviations; used for loop closures if doubts_loops, and always for ranges.
   double loop_kernel = 3.0;
 
   template <typename Self, typename Visitor>

@@ -46,14 +46,14 @@ struct ScanTrackerSettings {
 
 struct TrackedScan {
   Pose2 T_local_body;
-  /// information of the scan alone, in `local`; zero: no match
+  /// Information of the scan alone, in `local`; zero: no match.
   Eigen::Matrix3d match_information = Eigen::Matrix3d::Zero();
-  /// covariance of the odometry since the last match, updated with this match; in `local`
+  /// Covariance of the odometry since the last match, updated with this match; in `local`.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double matched_share = 0.0;
   bool is_keyframe = false;
-  /// index of the matched submap: 0, 1, ...; a keyframe is part of it, including the last one, after which the next
-  /// submap takes over
+  /// Index of the matched submap: 0, 1, ...; a keyframe is part of it, including the last one, after which the next
+  /// submap takes over.
   int submap = 0;
   bool is_submap_start = false;  ///< keyframe that begins a new map
 };
@@ -66,7 +66,7 @@ struct TrackedScan {
 ///
 /// Robust against failures of wheel odometry (slip, frozen or reversed readings). Alternative start poses are the
 /// previous motion, no motion, the reversed motion, and a window search. An alternative replaces the odometry
-/// prediction if it explains the scan better by more than the Student's t prior of odometry costs.
+/// prediction if its gain in scan likelihood exceeds its loss under the Student's t prior of odometry.
 class ScanTracker {
  public:
   explicit ScanTracker(const ScanTrackerSettings& settings);

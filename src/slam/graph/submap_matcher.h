@@ -14,12 +14,12 @@ struct SubmapMatcherSettings {
   double max_window_m = 15.0;         ///< maximum half width of the search window
   double max_window_rad = 0.8;
   int search_points = 300;
-  /// minimum overlap ratio: points in observed cells of the other map, in both directions
+  /// Minimum overlap ratio: points in observed cells of the other map, in both directions.
   double min_known_share = 0.35;
-  /// minimum inlier ratio: points in the overlap that lie on a surface of the other map, in both directions
+  /// Minimum inlier ratio: points in the overlap that lie on a surface of the other map, in both directions.
   double min_matched_share = 0.75;
   double min_matched_length_m = 8.0;  ///< minimum length of matched surface
-  /// the match is rejected if a distinct pose scores more than this fraction of the best score
+  /// The match is rejected if a distinct pose scores more than this fraction of the best score.
   double ambiguity = 0.9;
   double ambiguity_distance_m = 0.8;  ///< poses at least this far from the best are distinct
   double ambiguity_angle_rad = 0.35;
@@ -41,7 +41,7 @@ struct SubmapMatcherSettings {
 
 struct SubmapMatch {
   Pose2 T_target_source;
-  /// information of x, y, yaw in target, with independent points
+  /// Information of x, y, yaw in target, with independent points.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double score = 0.0;          ///< score of the search
   double known_share = 0.0;    ///< overlap ratio, minimum of both directions

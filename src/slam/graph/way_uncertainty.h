@@ -10,7 +10,7 @@ namespace patrol::slam {
 struct UncertainWay {
   int from = 0;
   int to = 0;
-  /// covariance of x, y, yaw of `to` in the frame of `from`; m, m, rad
+  /// Covariance of x, y, yaw of `to` in the frame of `from`; m, m, rad.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 

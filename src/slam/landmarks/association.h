@@ -9,8 +9,8 @@ namespace patrol::slam {
 struct AssociationSettings {
   bool is_known = true;          ///< true: observations contain the landmark number
   double gate = 9.21;  ///< maximum squared Mahalanobis distance of a match: 99 % of chi^2 with 2 degrees of freedom
-  /// minimum squared Mahalanobis distance from all landmarks of a new landmark; observations between the two limits are
-  /// ignored
+  /// Minimum squared Mahalanobis distance from all landmarks of a new landmark; observations between the two limits are
+  /// ignored.
   double new_landmark = 25.0;
 };
 

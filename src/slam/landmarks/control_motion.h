@@ -20,7 +20,7 @@ struct ControlMotion {
   double wheelbase_m = 2.0;                           ///< wheelbase of a car
   double step_s = 0.1;
   int parts = 1;  ///< number of substeps of the integration; a turning car follows an arc
-  /// standard deviation of each control's error in a step, in its unit
+  /// Standard deviation of each control's error in a step, in its unit.
   Eigen::Vector2d std = Eigen::Vector2d(0.1, 0.087);
 
   Pose2 move(const Pose2& T_map_body, const Control& control) const;
@@ -49,7 +49,7 @@ void move_in_place(const ControlMotion& motion, const Scalar* control, Scalar* p
 /// Derivatives of (x, y, yaw) after a step.
 struct ControlMotionJacobian {
   Eigen::Matrix3d pose = Eigen::Matrix3d::Identity();  ///< derivative with respect to (x, y, yaw) before the step
-  /// derivative with respect to the control
+  /// Derivative with respect to the control.
   Eigen::Matrix<double, 3, 2> control = Eigen::Matrix<double, 3, 2>::Zero();
 };
 

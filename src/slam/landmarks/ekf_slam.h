@@ -10,7 +10,7 @@ namespace patrol::slam {
 /// landmarks-100x80): no other method is more accurate, and its covariance is consistent.
 struct EkfSlamSettings {
   double noise_scale = 1.0;                  ///< scale factor of the stated standard deviations of odometry
-  /// the bias is part of the state: about half of the noise of one step; 0: no bias
+  /// The bias is part of the state: about half of the noise of one step; 0: no bias.
   OdometryBiasSettings bias{.std = 0.4};
   bool is_invariant = true;
 };

@@ -14,7 +14,7 @@ namespace patrol::slam {
 
 struct FastSlamSettings {
   int particles = 10;
-  /// scale factor of the stated standard deviations of odometry; larger values cover unmodeled errors
+  /// Scale factor of the stated standard deviations of odometry; larger values cover unmodeled errors.
   double noise_scale = 1.0;
   bool draws_from_observation = false;  ///< true: FastSLAM 2.0; false: 1.0
   OdometryBiasSettings bias{};       ///< bias estimated by each particle; off by default

@@ -28,7 +28,7 @@ struct LabelledFeatures {
 struct BoostingResult {
   BoostedStumps model;
   std::vector<double> errors;   ///< [stump], weighted error in its boosting round; below 1/2
-  /// weighted fraction of examples misclassified by the model, with the initial weights; ties are errors
+  /// Weighted fraction of examples misclassified by the model, with the initial weights; ties are errors.
   double training_error = 0.0;
   double error_bound = 1.0;     ///< upper bound of the training error: product over the stumps of 2 sqrt(e (1 - e))
 };

@@ -13,7 +13,7 @@ namespace patrol::slam {
 
 struct IcpSettings {
   bool use_effective_neighbours = true;  ///< false: all pairs, as in ICP [Besl92]
-  /// lower bound of the threshold: below about one point spacing, distances reflect the point pattern
+  /// Lower bound of the threshold: below about one point spacing, distances reflect the point pattern.
   double min_threshold_m = 0.1;
   double max_threshold_m = 0.3;  ///< upper bound of the threshold: coarse matching leaves smaller errors
   bool refine_on_lines = true;   ///< after point-to-point convergence, continue with point-to-line distances

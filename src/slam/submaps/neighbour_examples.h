@@ -11,10 +11,10 @@ namespace patrol::slam {
 
 struct NeighbourExampleSettings {
   int predictions = 3;                ///< number of predictions per submap pair
-  /// standard deviation of the predicted position, sampled between these bounds, uniform in the logarithm
+  /// Standard deviation of the predicted position, sampled between these bounds, uniform in the logarithm.
   double min_prediction_std_m = 0.05;
   double max_prediction_std_m = 3.0;
-  /// standard deviation of the predicted heading per standard deviation of the position
+  /// Standard deviation of the predicted heading per standard deviation of the position.
   double prediction_rad_per_m = 0.05;
   double blunder_share = 0.2;         ///< fraction of gross errors: predictions with four times the stated error
   double max_match_m = 0.15;          ///< maximum distance of a correct match from ground truth

@@ -11,7 +11,7 @@ namespace patrol::slam {
 /// Throws InputError naming the first point that is not finite.
 void check_finite(const std::vector<Eigen::Vector2d>& points);
 
-/// k-d tree over points in the plane (nanoflann). Ties are resolved deterministically.
+/// K-d tree over points in the plane (nanoflann). Ties are resolved deterministically.
 class PointTree {
  public:
   /// Throws InputError if a point is not finite.
@@ -38,9 +38,9 @@ class PointTree {
 
 /// Normal of the local surface around a point.
 struct SurfaceNormal {
-  /// unit normal, on either side; zero if fewer than three points are nearby
+  /// Unit normal, on either side; zero if fewer than three points are nearby.
   Eigen::Vector2d normal = Eigen::Vector2d::Zero();
-  /// linearity: 1 on a straight wall; 0 if as wide as long (corner, bush) or without neighbors
+  /// Linearity: 1 on a straight wall; 0 if as wide as long (corner, bush) or without neighbors.
   double straightness = 0.0;
 };
 

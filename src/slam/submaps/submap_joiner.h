@@ -12,7 +12,7 @@ namespace patrol::slam {
 
 struct SubmapJoinerSettings {
   double min_margin = 0.2;         ///< minimum classifier margin (-1 ... 1) of neighbors
-  /// the match is rejected if fine matching moves a submap farther from the coarse pose
+  /// The match is rejected if fine matching moves a submap farther from the coarse pose.
   double max_fine_shift_m = 0.5;
   double max_fine_shift_rad = 0.1;
   double min_agreement = 0.6;      ///< minimum inlier ratio (mutual_agreement)
@@ -56,7 +56,7 @@ SurfaceMatch match_surfaces(const SubmapSurfaces& target, const SubmapSurfaces& 
 
 struct SubmapJoint {
   Pose2 T_target_source;
-  /// information of x, y, yaw in target, with independent points
+  /// Information of x, y, yaw in target, with independent points.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double margin = 0.0;
   double agreement = 0.0;

@@ -26,10 +26,10 @@ struct SubmapRbpfSettings {
   double drift_std_rad_per_rad = 0.005;
   int max_candidates = 8;        ///< maximum number of older submaps compared with each new one, nearest first
   double joint_gain = 0.2;       ///< tempering factor: fraction of the matched points with independent errors
-  /// standard deviation of the systematic error of a match, independent of the number of points
+  /// Standard deviation of the systematic error of a match, independent of the number of points.
   double joint_std_m = 0.02;
   double joint_std_rad = 0.002;
-  /// narrow kernel: each submap has many constraints, of which few may be correct
+  /// Narrow kernel: each submap has many constraints, of which only a few need to be inliers.
   PoseGraphSolverSettings solver = {.max_iterations = 50, .doubts_loops = true, .loop_kernel = 0.3};
   int min_hits_occupied = 2;
   double min_hit_share_occupied = 0.3;

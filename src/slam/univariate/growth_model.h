@@ -12,7 +12,7 @@ struct GrowthModelSettings {
   double initial_state = 0.0;    ///< x(0), known to every filter
   double process_var = 1.0;      ///< Q
   double observation_var = 1.0;  ///< R
-  /// sign of x^2 in the denominator [Cui21, eq. 9]: 1; or -1 as printed, which diverges near x = 1 and x = -1
+  /// Sign of x^2 in the denominator [Cui21, eq. 9]: 1; or -1 as printed, which diverges near x = 1 and x = -1.
   int denominator_sign = 1;
 
   template <typename Self, typename Visitor>

@@ -11,10 +11,10 @@ namespace patrol::slam {
 
 struct QuasiFilterSettings {
   int particles = 100;
-  /// true: auxiliary particle filter that uses the newest observation in selection and proposal; false: bootstrap
-  /// filter with quasi-random points
+  /// True: auxiliary particle filter that uses the newest observation in selection and proposal; false: bootstrap
+  /// filter with quasi-random points.
   bool looks_ahead = true;
-  /// factor on the proposal variance with `looks_ahead`: wide tails keep the weights bounded
+  /// Factor on the proposal variance with `looks_ahead`: wide tails keep the weights bounded.
   double proposal_inflation = 1.5;
 
   template <typename Self, typename Visitor>
