@@ -6,12 +6,12 @@
 namespace patrol {
 namespace {
 
-/// Twice the area of the triangle; positive if c lies left of the line from a to b.
+/// Twice the signed area of the triangle; positive if c is left of the line from a to b.
 double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// The hull's right side as seen on the way along `points`, without its last point.
+/// Right side of the hull along the order of `points`, without its last point.
 ConvexPolygon half_hull(const std::vector<Eigen::Vector2d>& points) {
   ConvexPolygon side;
   for (const Eigen::Vector2d& p : points) {
@@ -22,7 +22,7 @@ ConvexPolygon half_hull(const std::vector<Eigen::Vector2d>& points) {
   return side;
 }
 
-/// The part left of the line from a to b.
+/// Part of the polygon left of the line from a to b.
 ConvexPolygon clipped(const ConvexPolygon& polygon, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   ConvexPolygon kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {

@@ -9,7 +9,7 @@
 
 namespace patrol::slam {
 
-/// A particle filter on grids, and where it believes now that every scan was taken.
+/// Grid RBPF plus the pose of every scan relative to its keyframe.
 class FilteredPath {
  public:
   FilteredPath(const GridSlamSettings& settings, std::uint64_t seed) : filter_(settings, seed) {}
@@ -19,17 +19,17 @@ class FilteredPath {
   void finish() {}
 
   const GridSlam& filter() const { return filter_; }
-  /// [scan]: of the particle that is the best now, with the whole way that it has come.
+  /// Trajectory of the currently best particle, [scan].
   std::vector<Pose2> path() const;
-  /// [keyframe]: the number of its scan.
+  /// Scan index of each keyframe, [keyframe].
   const std::vector<std::size_t>& node_scans() const { return keyframe_scans_; }
   OccupancyGrid map() const { return filter_.map(); }
   ParticleSet particles() const { return filter_.particles(); }
-  /// Keyframes, one after the other; nothing weighs the edges.
+  /// Chain of keyframes; the edges have identity information.
   PoseGraph graph() const;
 
  private:
-  /// A scan beside the keyframe before it.
+  /// Pose of a scan relative to the preceding keyframe.
   struct TrackedPose {
     std::size_t keyframe;
     Pose2 T_keyframe_body;

@@ -7,7 +7,7 @@ namespace patrol::slam {
 namespace {
 
 constexpr std::uint16_t kMaxCount = std::numeric_limits<std::uint16_t>::max();
-constexpr double kPassTolInCells = 0.2;  // a beam this near to the mean of the hits would have been stopped by a surface
+constexpr double kPassTolInCells = 0.2;  // a beam this close to the mean hit would have been stopped by a surface
 
 std::uint16_t add_saturated(std::uint16_t count, int more) {
   return static_cast<std::uint16_t>(std::min(static_cast<int>(kMaxCount), count + more));
@@ -48,7 +48,7 @@ void GridMap::add_hit(const Eigen::Vector2d& p_map) {
   has_surface_ = true;
 }
 
-// Amanatides and Woo, "A fast voxel traversal algorithm for ray tracing", Eurographics 1987.
+// Voxel traversal [Amanatides87].
 void GridMap::add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2d& to_map, int weight, bool stop_at_surface) {
   const Eigen::Vector2d way = to_map - from_map;
   const double length_m = way.norm();
@@ -112,7 +112,7 @@ GridTile* GridMap::writable_tile(int tile_col, int tile_row) {
   return tile.get();
 }
 
-// Grows by some tiles more than asked, so that a walk does not copy the pointers at every step.
+// Grows by a margin of tiles, so that the pointers are not copied at every step.
 void GridMap::grow_to_hold(int tile_col, int tile_row) {
   constexpr int kMargin = 16;
   const bool is_inside = tile_col >= first_col_ && tile_col < first_col_ + num_cols_ && tile_row >= first_row_ &&

@@ -15,22 +15,23 @@
 
 namespace patrol::slam {
 
-/// What beams have said about a cell: how many ended in it, how many went through, and where in it they ended on average
-/// (Grisetti, Stachniss, Burgard 2007 match against that mean, which is finer than the cell).
+/// Beam statistics of a cell: number of beams that ended in it, number that passed through, and the mean end point.
+/// Matching against the mean is more accurate than against the cell [Grisetti07].
 struct GridCell {
-  float mean_x_m = 0.0F;  ///< mean of the hits, from the cell's centre
+  float mean_x_m = 0.0F;  ///< mean of the hits relative to the cell center
   float mean_y_m = 0.0F;
   std::uint16_t hits = 0;
   std::uint16_t passes = 0;
 
-  /// At least a fifth of the beams ended here. A wall is also grazed by beams that end farther along, so half would lose
-  /// walls; a person who has moved on is let go after four times as many passes as hits, and one who comes into a cell
-  /// known to be free is believed only after a while.
+  /// True if at least a fifth of the beams ended here. Beams that graze a wall and end farther along it also count as
+  /// passes, so a threshold of one half would erase walls. A moving object is cleared after more than four times as
+  /// many passes as hits. An object in a cell observed as free appears only after as many hits as exceed a quarter of
+  /// the passes.
   bool is_surface() const { return hits > 0 && 4U * hits >= passes; }
   bool is_known() const { return hits > 0 || passes > 0; }
 };
 
-/// A square of cells that particles share until one of them writes.
+/// Square block of cells, shared between particles and copied on write.
 struct GridTile {
   static constexpr int kBits = 5;
   static constexpr int kSize = 1 << kBits;
@@ -43,11 +44,12 @@ struct GridTile {
   void update_surface_bit(int col, int row);
 };
 
-/// A particle's map: a growing rectangle of tiles. Copying one copies pointers only; a tile is copied when it is written
-/// and another map still holds it. Cell (0, 0) has its lower-left corner at the origin of `map`; cells may be negative.
+/// Map of a particle: a growing rectangle of tiles, copied on write. Copying a map copies pointers only; a tile is
+/// copied when it is modified and another map refers to it. Cell (0, 0) has its lower-left corner at the origin of
+/// `map`; indices may be negative.
 class GridMap {
  public:
-  /// Nothing farther than half of `max_extent_m` from the origin along either axis is kept.
+  /// Hits and rays farther than half of `max_extent_m` from the origin along either axis are ignored.
   GridMap(double resolution_m, double max_extent_m);
 
   double resolution_m() const { return resolution_m_; }
@@ -59,30 +61,30 @@ class GridMap {
     return resolution_m_ * Eigen::Vector2d(cell.col + 0.5, cell.row + 0.5);
   }
 
-  /// Null where nothing was ever seen near.
+  /// Returns null in tiles without observations.
   const GridCell* find(Cell cell) const;
   bool is_surface(Cell cell) const { return is_surface_within(cell, 0); }
-  /// Whether a surface cell lies at most `radius` columns and rows away; radius < 16.
+  /// Returns whether a surface cell is at most `radius` columns and rows away; radius < 16.
   bool is_surface_within(Cell cell, int radius) const {
     return visit_surface(cell, radius, [](const GridTile&, int, int, Cell) { return true; });
   }
-  /// Calls `visit(mean, hits)` for every surface cell at most `radius` columns and rows away: the mean of its hits, in map,
-  /// and their number.
+  /// Calls `visit(mean, hits)` for every surface cell at most `radius` columns and rows away, with the mean of its hits
+  /// in map and their number.
   template <typename Visitor>
   void for_each_surface_near(Cell cell, int radius, Visitor&& visit) const;
 
-  /// A beam ended at `p_map`.
+  /// Adds a beam that ended at `p_map`.
   void add_hit(const Eigen::Vector2d& p_map);
-  /// `weight` beams were free from `from_map` to `to_map`. A surface cell is passed only where the beam comes near to the
-  /// mean of its hits: a beam that skims along a wall within the wall's cells does not deny the wall.
-  /// `stop_at_surface`: believe the beam only until the first surface (one without echo may have met something dark).
+  /// Adds `weight` beams that were free from `from_map` to `to_map`. In a cell with hits, a pass counts only if the
+  /// beam runs near the mean of the hits. A beam along a wall, within its cells, thus does not clear the wall.
+  /// `stop_at_surface` ends the ray at the first surface, because a beam without a return may have met a dark surface.
   void add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2d& to_map, int weight, bool stop_at_surface);
 
   bool has_surface() const { return has_surface_; }
-  /// Calls `visit(first_cell, tile)` for every tile, from low rows to high.
+  /// Calls `visit(first_cell, tile)` for every tile, in ascending row order.
   template <typename Visitor>
   void for_each_tile(Visitor&& visit) const;
-  /// Tiles that no other map holds: what this particle really costs.
+  /// Number of tiles not shared with another map: the actual memory cost of this particle.
   std::size_t num_own_tiles() const;
   std::size_t num_tiles() const;
 
@@ -102,14 +104,14 @@ class GridMap {
 
   double resolution_m_;
   double inverse_resolution_;
-  int max_tile_;  ///< tiles from -max_tile_ to max_tile_ - 1 are kept
-  int first_col_ = 0, first_row_ = 0, num_cols_ = 0, num_rows_ = 0;  ///< of the tiles
+  int max_tile_;  ///< tiles from -max_tile_ to max_tile_ - 1 exist
+  int first_col_ = 0, first_row_ = 0, num_cols_ = 0, num_rows_ = 0;  ///< tile rectangle
   std::vector<std::shared_ptr<GridTile>> tiles_;                     ///< [row][col]
   bool has_surface_ = false;
 };
 
-// Visits surface cells until the visitor says true. One word of bits holds a row of a tile, so that the mostly empty
-// neighbourhood costs a few instructions a row.
+// Visits surface cells until the visitor returns true. One word of bits covers a row of a tile, so that the mostly
+// empty neighborhood costs a few instructions per row.
 template <typename Visitor>
 bool GridMap::visit_surface(Cell cell, int radius, Visitor&& visit) const {
   const int col_end = cell.col + radius, row_end = cell.row + radius;

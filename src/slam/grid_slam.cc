@@ -88,7 +88,8 @@ Proposal GridSlam::move_by_odometry(const std::vector<MatchPoint>& points, const
   const Proposal best{.posterior = {.mean = particles_[best_].T_map_body, .covariance = predictions[best_].covariance}};
   update.resampled = renew_particles(step, parts_, particles().weights, random, log_weights);
   for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].log_weight = log_weights[i];
-  if (update.resampled) {  // whatever the resampler made of it, the best particle's way goes on in the one that stands nearest
+  if (update.resampled) {
+    // After resampling, the trajectory of the best particle continues in the nearest one.
     const auto distance_m = [&](const Particle& particle) { return (particle.T_map_body.position() - best.posterior.mean.position()).norm(); };
     best_ = static_cast<std::size_t>(std::min_element(particles_.begin(), particles_.end(), [&](const Particle& a, const Particle& b) { return distance_m(a) < distance_m(b); }) -
                                      particles_.begin());
@@ -103,7 +104,7 @@ GridSlam::Prediction GridSlam::predict(const Particle& particle, const Pose2& T_
   return prediction;
 }
 
-// All particles use the same ranges, or those that doubt one would be favoured.
+// Use the same ranges for all particles; otherwise particles that reject a range would be favored.
 void GridSlam::accept_ranges(const Pose2& T_odom_body, Time stamp) {
   if (settings_.ranges.enabled) {
     for (const RangeSighting& sighting : new_ranges_) {
@@ -116,7 +117,7 @@ void GridSlam::accept_ranges(const Pose2& T_odom_body, Time stamp) {
   new_ranges_.clear();
 }
 
-// The best particle's pose now. If the match fails, odometry may have slipped: look around.
+// Returns the current pose of the best particle. If the match fails, odometry may have slipped: search a window.
 Proposal GridSlam::track(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp) const {
   const Particle& particle = particles_[best_];
   const PoseGaussian prediction = predict(particle, T_odom_body, stamp).pose;
@@ -137,7 +138,7 @@ bool GridSlam::is_keyframe_due(const Pose2& T_map_body) const {
          std::abs(T_keyframe_body.yaw) >= settings_.keyframe_angle_rad;
 }
 
-// Each particle starts its match where the best one's motion since the keyframe takes it: nearer than odometry does.
+// The match of each particle starts from the best particle's motion since the keyframe, which is closer than odometry.
 std::vector<Proposal> GridSlam::propose(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp) const {
   const Pose2 T_keyframe_body = particles_[best_].T_map_body.inverse() * T_map_last_;
   std::vector<Proposal> proposals;
@@ -160,7 +161,7 @@ void GridSlam::move_particles(const std::vector<Proposal>& proposals) {
   }
 }
 
-// Also gives the effective sample size.
+// Selects the particle with the largest weight and returns the effective sample size.
 double GridSlam::choose_best() {
   const ParticleSet set = particles();
   best_ = static_cast<std::size_t>(std::max_element(set.weights.begin(), set.weights.end()) - set.weights.begin());
@@ -176,13 +177,13 @@ bool GridSlam::resample_if_needed(double num_effective) {
     children.push_back(particles_[parent]);
     children.back().log_weight = 0.0;
   }
-  // The heaviest particle has at least one child: its share is no less than 1 / N.
+  // The particle with the largest weight has at least one child, because its weight is at least 1 / N.
   best_ = static_cast<std::size_t>(std::find(parents.begin(), parents.end(), best_) - parents.begin());
   particles_ = std::move(children);
   return true;
 }
 
-// Particles part only after the start is mapped: until then they are one.
+// Until the initial keyframes are mapped there is a single particle; it is then copied.
 void GridSlam::integrate(const LevelScan& scan) {
   for (Particle& particle : particles_) {
     integrate_scan(scan, particle.T_map_body, settings_.integration, particle.map);

@@ -19,22 +19,26 @@
 namespace patrol::slam {
 
 struct GridSlamSettings {
-  // What the map is.
+  // Map representation.
   double resolution_m = 0.05;
-  double max_extent_m = 400.0;            ///< nothing is mapped farther than half of this from the origin
-  int min_hits_occupied = 2;              ///< fewer hits in a cell are stray, for the published map only
-  double min_hit_share_occupied = 0.5;    ///< a smaller share of the beams that came by is something that moved on, likewise
-  // When the map is written.
+  double max_extent_m = 400.0;            ///< side of the mapped square around the origin
+  int min_hits_occupied = 2;              ///< published map only: cells with fewer hits are treated as outliers
+  /// Published map only: minimum ratio of hits to hits plus passes; below it the cell was occupied by a moving object.
+  double min_hit_share_occupied = 0.5;
+  // Map updates.
   double keyframe_distance_m = 0.5;
   double keyframe_angle_rad = 0.12;
-  double max_tilt_rad = 1.6;              ///< a scan tilted by more is neither matched nor written, as on a ramp between walls that lean
-  int initial_keyframes = 25;             ///< so many first scans are all written: the heading of everything after hangs on them
-  // What is believed; more particles cost time in proportion.
+  /// Scans tilted by more are neither matched nor integrated, for example on a ramp between inclined walls.
+  double max_tilt_rad = 1.6;
+  int initial_keyframes = 25;  ///< the first N scans are all keyframes, because the map heading depends on them
+  // Filter; the cost is proportional to the number of particles.
   int particles = 8;
-  double likelihood_gain = 0.2;           ///< share of the points that err independently (proposal.h)
-  std::string proposal = "scan_match";    ///< motion: FastSLAM's, drawn from odometry alone
-  std::string optimizer = "none";         ///< that moves what was drawn from odometry, with its paper's resampler; for `proposal: motion` alone
-  double resample_threshold = 0.5;        ///< resample when the effective sample size falls below this share of the particles
+  double likelihood_gain = 0.2;  ///< tempering factor: fraction of the points with independent errors (proposal.h)
+  std::string proposal = "scan_match";    ///< scan_match; or motion: sample from odometry only, as in FastSLAM
+  /// Optimizer applied to the odometry samples, with the resampler of its source; only with `proposal: motion`.
+  std::string optimizer = "none";
+  /// Resample if the effective sample size is below this fraction of the number of particles.
+  double resample_threshold = 0.5;
   MotionModelSettings motion;
   RangeUpdateSettings ranges;
   ScanMatcherSettings matching;
@@ -62,41 +66,45 @@ struct GridSlamSettings {
   }
 };
 
-/// Grid mapping with a Rao-Blackwellised particle filter and improved proposals (Grisetti, Stachniss, Burgard 2007).
+/// Grid mapping with a Rao-Blackwellized particle filter and improved proposals [Grisetti07].
 ///
-///   every scan     odometry -> match against the best particle's map -> pose; tilted far, odometry alone
-///   ranges         judged by the best particle's prediction; part of every particle's, until the next keyframe has used them
-///   a keyframe     each particle: predict, match on its own map, draw, weigh -> resample -> write the scan into each map
+///   every scan     odometry -> match against the best particle's map -> pose; odometry only if the tilt is too large
+///   range          gated with the best particle's prediction; used by every particle until the next keyframe
+///   keyframe       each particle: predict, match on its own map, sample, weight -> resample -> integrate the scan
 ///
-/// Departures from Gmapping, and why. Every scan is matched, but only keyframes are written and weighed: the pose is
-/// always fresh, and the cost of the particles is paid twice a metre. Matching is to lines through the cells' mean hits
-/// (scan_matcher.h), the proposal is Laplace's (proposal.h). No separate rejection of moving things: a cell known to be
-/// free is believed to be surface only after many hits (GridCell), so a walker never becomes something to match with.
+/// Deviations from Gmapping:
+/// - Every scan is matched, but only keyframes are integrated and weighted. The pose is always current, and the cost of
+///   the particles arises only twice per meter.
+/// - Scans are matched to lines through the mean hits of the cells (scan_matcher.h); the proposal uses Laplace's
+///   approximation (proposal.h).
+/// - Dynamic obstacles are not rejected separately. A cell observed as free becomes a surface only after many hits
+///   (GridCell), so pedestrians do not become part of the surface.
 ///
-/// With `proposal: motion` it is FastSLAM on grids as papers 000 and 001 start from: particles are drawn from odometry and weighed by the scan, an
-/// optimiser may move them in between, and ISCSO and IFA resample as their papers say (grid_step.h).
+/// With `proposal: motion` it is FastSLAM on grids, the baseline of [Wu25] and [Cui21]: particles are sampled from
+/// odometry and weighted by the scan. An optimizer may move them in between; ISCSO and IFA use the resamplers of their
+/// sources (grid_step.h).
 class GridSlam {
  public:
-  /// Throws InputError if a setting breaks its rule. `T_map_start` is where the first scan is taken.
+  /// Throws InputError if a setting is invalid. `T_map_start` is the pose of the first scan.
   GridSlam(const GridSlamSettings& settings, std::uint64_t seed, const Pose2& T_map_start = {});
 
-  /// A UWB range of before the next scan. It holds the particles where the scans leave a direction open, as along a lined tunnel;
-  /// one that went round a corner is left out.
+  /// Adds a UWB range measured before the next scan. Ranges constrain the particles along directions that scans leave
+  /// degenerate, for example along a lined tunnel. NLOS ranges are rejected by the gate.
   void add(const RangeSighting& sighting) { new_ranges_.push_back(sighting); }
 
-  /// `T_odom_body` at the scan's stamp.
+  /// Processes a scan; `T_odom_body` is the odometry at its stamp.
   SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
 
-  /// Of the best particle.
+  /// Map of the best particle.
   OccupancyGrid map() const;
   const GridMap& best_map() const { return particles_[best_].map; }
-  /// [keyframe]: the way that the best particle has come.
+  /// Trajectory of the best particle, [keyframe].
   std::vector<Pose2> best_path() const;
-  /// As of the last keyframe.
+  /// Particles at the last keyframe.
   ParticleSet particles() const;
 
  private:
-  /// Where a particle should be by odometry and ranges, and how probable those ranges are there.
+  /// Pose predicted by odometry and ranges, and the log probability density of the ranges.
   struct Prediction {
     PoseGaussian pose;
     double log_density = 0.0;
@@ -115,17 +123,17 @@ class GridSlam {
   Prediction predict(const Particle& particle, const Pose2& T_odom_body, Time stamp) const;
 
   GridSlamSettings settings_;
-  ParticleFilterParts parts_;  ///< of what is drawn from odometry
+  ParticleFilterParts parts_;  ///< components for particles sampled from odometry
   RandomStream proposal_noise_, resampling_noise_;
-  std::vector<Particle> particles_;  ///< one until the start is mapped, then as many as asked
-  std::size_t best_ = 0;             ///< the particle of the largest weight
-  std::uint64_t keyframes_ = 0;      ///< so far
+  std::vector<Particle> particles_;  ///< one until the initial keyframes are mapped, then `settings.particles`
+  std::size_t best_ = 0;             ///< index of the particle with the largest weight
+  std::uint64_t keyframes_ = 0;      ///< number of keyframes
 
-  Pose2 T_map_last_;       ///< the estimate at the newest scan
+  Pose2 T_map_last_;       ///< estimate at the newest scan
   Pose2 T_odom_last_;      ///< odometry at the newest scan
   Pose2 T_odom_keyframe_;  ///< odometry at the last keyframe
   Time keyframe_stamp_{};
-  std::vector<RangeSighting> new_ranges_;  ///< not yet judged
+  std::vector<RangeSighting> new_ranges_;  ///< not yet gated
   std::vector<RangeSighting> ranges_;      ///< accepted since the last keyframe
 };
 

@@ -13,12 +13,12 @@
 
 namespace patrol::slam {
 
-/// Grid mapping's particles at one keyframe, as a particle filter sees them (ParticleProblem): FastSLAM on grids, and its swarms (paper 000). A position is
-/// the whitened error of odometry since the last keyframe, pose = prediction + L xi with L L^T the prediction's covariance; each particle judges it by
-/// the scan on its own map.
+/// Particles of grid mapping at one keyframe, as a ParticleProblem: FastSLAM on grids with swarm optimization [Wu25]. A
+/// position is the whitened odometry error xi since the last keyframe: pose = prediction + L xi, with L L^T the
+/// covariance of the prediction. The fitness of a position is the likelihood of the scan on the particle's own map.
 class GridStep {
  public:
-  /// `predictions` [particle]. `particles`, `points` and `settings` must outlive this.
+  /// `predictions` [particle]. `particles`, `points` and `settings` must outlive this object.
   GridStep(std::vector<Particle>& particles, std::vector<PoseGaussian> predictions, const std::vector<MatchPoint>& points, double likelihood_gain,
            const ScanMatcherSettings& settings);
 
@@ -26,7 +26,8 @@ class GridStep {
   Position draw(std::size_t particle, RandomSequence& random) const;
   double log_fitness(std::size_t particle, const Position& position) const;
   double settle(std::size_t particle, const Position& position);
-  /// A particle that is drawn towards another takes its map, and a share of its increment.
+  /// Replaces the particles by their offspring. A particle that is attracted toward another one takes the other's map
+  /// and a fraction of its increment.
   void reproduce(const std::vector<Offspring>& offspring);
 
  private:
@@ -38,7 +39,7 @@ class GridStep {
   const std::vector<MatchPoint>& points_;
   double likelihood_gain_;
   const ScanMatcherSettings& settings_;
-  std::vector<Position> positions_;  ///< [particle], where it settled
+  std::vector<Position> positions_;  ///< [particle], final position of each particle
 };
 
 }  // namespace patrol::slam

@@ -20,7 +20,7 @@ std::optional<LocalLine> fit_local_line(const GridMap& map, const Eigen::Vector2
   });
   if (num_cells < 3) return std::nullopt;
 
-  // The 2 x 2 scatter matrix in closed form: its smaller eigenvalue is the roughness, the eigenvector the normal.
+  // 2 x 2 scatter matrix in closed form: the smaller eigenvalue is the roughness, its eigenvector the normal.
   const double mx = sx / n, my = sy / n;
   const double cxx = sxx / n - mx * mx, cxy = sxy / n - mx * my, cyy = syy / n - my * my;
   const double half_difference = 0.5 * (cxx - cyy);
@@ -29,7 +29,7 @@ std::optional<LocalLine> fit_local_line(const GridMap& map, const Eigen::Vector2
   const double across = std::max(0.0, middle - root), along = middle + root;
   const double min_along = 0.25 * map.resolution_m() * map.resolution_m();
   if (along < min_along) return std::nullopt;
-  // (cxy, across - cxx) and (across - cyy, cxy) are both along the eigenvector; the longer one is well conditioned.
+  // (cxy, across - cxx) and (across - cyy, cxy) are both parallel to the eigenvector; the longer is better conditioned.
   Eigen::Vector2d normal =
       half_difference > 0.0 ? Eigen::Vector2d(cxy, -half_difference - root) : Eigen::Vector2d(half_difference - root, cxy);
   const double length = normal.norm();

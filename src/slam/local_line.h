@@ -8,20 +8,21 @@
 
 namespace patrol::slam {
 
-/// The piece of surface around a point: a line through the mean hits of the cells near it.
+/// Local surface around a point: a line through the mean hits of the cells nearby.
 struct LocalLine {
-  Eigen::Vector2d point_map;   ///< weighted mean of the cells' means
-  Eigen::Vector2d normal_map;  ///< unit; either side
-  double roughness_var_m2;     ///< scatter across the line
-  double straightness;         ///< 1: a straight wall; 0: as wide as long (a corner, a bush)
-  int num_hits;                ///< behind it
+  Eigen::Vector2d point_map;   ///< weighted mean of the mean hits of the cells
+  Eigen::Vector2d normal_map;  ///< unit normal, on either side
+  double roughness_var_m2;     ///< variance across the line
+  double straightness;         ///< linearity: 1 for a straight wall; 0 if as wide as long (corner, bush)
+  int num_hits;                ///< number of hits in the fit
 
   double distance_m(const Eigen::Vector2d& p_map) const { return normal_map.dot(p_map - point_map); }
 };
 
-/// Principal axes of the cells' means at most `radius_cells` columns and rows from p's cell, each weighted by its hits: a
-/// wall on the border of two cells lies where the shares of its hits say, not between the cells. None if fewer than
-/// three cells, or all in one place, are there.
+/// Fits a line by the principal axes of the mean hits of the surface cells around p, weighted by their hits. The
+/// neighborhood extends `radius_cells` columns and rows from p's cell. The weights place a wall on the border of two
+/// cells at the mean of its hits, not between the cells. Returns none if there are fewer than three cells or if their
+/// extent is too small.
 std::optional<LocalLine> fit_local_line(const GridMap& map, const Eigen::Vector2d& p_map, int radius_cells);
 
 }  // namespace patrol::slam

@@ -10,16 +10,16 @@ namespace patrol::slam {
 namespace {
 
 constexpr int kThinningRadius = 2;        // cells
-constexpr double kMinStraightness = 0.6;  // what is not a line is drawn as it was hit
+constexpr double kMinStraightness = 0.6;  // below it, hits are rendered without projection
 
-/// Where the surface in this cell really is.
+/// Projects the mean hit of a cell onto the local line, if the surface is linear.
 Eigen::Vector2d surface_point(const GridMap& map, const Eigen::Vector2d& mean) {
   const std::optional<LocalLine> line = fit_local_line(map, mean, kThinningRadius);
   if (!line || line->straightness < kMinStraightness) return mean;
   return mean - line->distance_m(mean) * line->normal_map;
 }
 
-/// The smallest rectangle of cells that holds all that is known.
+/// Smallest rectangle of cells that contains all observed cells.
 GridGeometry known_extent(const GridMap& map) {
   constexpr int kFar = std::numeric_limits<int>::max();
   int col_min = kFar, row_min = kFar, col_max = -kFar, row_max = -kFar;

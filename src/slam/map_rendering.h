@@ -5,12 +5,12 @@
 
 namespace patrol::slam {
 
-/// The map as others see it: unknown, free or occupied, cut to what is known.
+/// Renders the map as an occupancy grid (unknown, free, occupied), cropped to the observed cells.
 ///
-/// Noise spreads the hits of a wall over two or three cells across it. Each surface cell's mean is therefore moved onto the
-/// line of its neighbourhood, and only the cell it then lies in is occupied: walls are one cell thick and lie where
-/// the average of all hits lies. Cells with fewer than `min_hits` are stray, and those where
-/// fewer than `min_hit_share` of all beams ended are what has moved on.
+/// Noise spreads the hits of a wall over two or three cells across it. The mean hit of each surface cell is therefore
+/// projected onto the local line, and only the cell that contains the projection is occupied. Walls are thus one cell
+/// thick and located at the average of all hits. Cells with fewer than `min_hits` hits are outliers. Cells where the
+/// ratio of hits to all beams is below `min_hit_share` were occupied by moving objects.
 OccupancyGrid render_map(const GridMap& map, int min_hits, double min_hit_share = 0.0);
 
 }  // namespace patrol::slam

@@ -9,7 +9,8 @@
 namespace patrol::slam {
 namespace {
 
-/// Any class with a mapper's members, behind the interface; ranges and particles where it has them.
+/// Adapter from a mapping class to the Mapper interface. Ranges and particles are forwarded only if the class supports
+/// them.
 template <typename Method>
 class MapperOf final : public Mapper {
  public:

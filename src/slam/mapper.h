@@ -48,27 +48,28 @@ struct MapperSettings {
   }
 };
 
-/// What maps from scans and odometry, by whatever method: online, and when no scan will follow once more over all of them.
+/// Interface of a 2D SLAM back end: online updates, plus a final optimization over all scans in `finish()`.
 class Mapper {
  public:
   virtual ~Mapper() = default;
 
-  /// A UWB range of before the next scan. A method that has no use for them leaves them out.
+  /// Adds a UWB range measured before the next scan. Methods without range updates ignore it.
   virtual void add(const RangeSighting& sighting) = 0;
-  /// Where the body is now, in map, whose origin is where the first scan was taken; `T_odom_body` at the scan's stamp. A method that does not know how surely
-  /// leaves the covariance zero.
+  /// Processes a scan and returns the current pose in map. The origin of map is the pose of the first scan;
+  /// `T_odom_body` is the odometry at the stamp of the scan. Methods without a covariance estimate leave the covariance
+  /// zero.
   virtual SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body) = 0;
-  /// No scan will follow.
+  /// Finishes mapping after the last scan.
   virtual void finish() = 0;
 
-  /// [scan]: of every scan that was given, as is believed now.
+  /// Current pose estimates of all scans, [scan].
   virtual std::vector<Pose2> path() const = 0;
   virtual OccupancyGrid map() = 0;
-  /// As of the last keyframe; empty, of a method that has none.
+  /// Particles at the last keyframe; empty for methods without particles.
   virtual ParticleSet particles() const = 0;
-  /// Keyframes and what is known of how they lie to each other. A method without loop closures has odometry's edges only.
+  /// Keyframes and the relative pose constraints between them. Methods without loop closure return odometry edges only.
   virtual PoseGraph graph() const = 0;
-  /// [node of the graph]: the number of the scan that was taken there.
+  /// Index of the scan taken at each node, [node of the graph].
   virtual std::vector<std::size_t> node_scans() const = 0;
 };
 

@@ -8,15 +8,15 @@
 
 namespace patrol::slam {
 
-/// A point of a scan to be laid on the map.
+/// Scan point for registration to the map.
 struct MatchPoint {
-  Eigen::Vector2d p_body;  ///< in level
-  double range_m;          ///< from the lidar
+  Eigen::Vector2d p_body;  ///< in level (gravity-aligned body frame)
+  double range_m;          ///< distance from the lidar
 };
 
-/// Hits, evenly spread in space rather than in angle: neighbouring beams that end within `spacing_m` of the first of them
-/// become one point, their mean. A near wall then counts by its length, not by its angle, so that the far ones, which
-/// tell the heading, are heard; and all beams' noise is averaged. If more than `max_points` are left, every so many.
+/// Downsamples the hits of a scan uniformly in space: consecutive beams that end within `spacing_m` of the first of
+/// them are averaged. A near wall is thus weighted by its length, not by its angle; far walls, which constrain the
+/// heading, keep their weight. If more than `max_points` remain, a regular subset is returned.
 std::vector<MatchPoint> select_match_points(const LevelScan& scan, double spacing_m, int max_points);
 
 }  // namespace patrol::slam

@@ -13,7 +13,7 @@ PoseGaussian predict_motion(const Pose2& T_map_before, const Pose2& T_before_now
   const double across_std = settings.across_std_m_per_m * way_m;
   const auto square = [](double value) { return value * value; };
 
-  // Along and across the way, turned into map.
+  // Unit vectors along and across the motion, in map.
   const Eigen::Rotation2Dd R_map_before(T_map_before.yaw);
   const Eigen::Vector2d along = way_m > 0.0 ? Eigen::Vector2d(R_map_before * (move_body / way_m)) : Eigen::Vector2d::UnitX();
   const Eigen::Vector2d across(-along.y(), along.x());

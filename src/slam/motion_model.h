@@ -6,12 +6,13 @@
 namespace patrol::slam {
 
 struct MotionModelSettings {
-  double along_std_m_per_m = 0.01;         ///< error along the way; leg odometry: scale
-  double across_std_m_per_m = 0.01;        ///< and across it: sideways slip
-  double turn_std_rad_per_rad = 0.04;      ///< of the turn
-  double turn_std_rad_per_m = 0.003;       ///< gained by walking
-  double turn_std_rad_per_s = 0.0015;      ///< gained by standing about: the gyro's bias
-  double min_std_m = 0.003;                ///< sway of the trunk, however short the way
+  /// Standard deviation of the distance along the motion; for leg odometry: scale error.
+  double along_std_m_per_m = 0.01;
+  double across_std_m_per_m = 0.01;        ///< standard deviation across the motion: lateral slip
+  double turn_std_rad_per_rad = 0.04;      ///< standard deviation of the yaw change per yaw change
+  double turn_std_rad_per_m = 0.003;       ///< standard deviation of yaw per distance traveled
+  double turn_std_rad_per_s = 0.0015;      ///< standard deviation of yaw per time: gyro bias
+  double min_std_m = 0.003;                ///< minimum standard deviation of the position: sway of the trunk
   double min_std_rad = 0.002;
 
   template <typename Self, typename Visitor>
@@ -26,12 +27,12 @@ struct MotionModelSettings {
   }
 };
 
-/// Where odometry says that the body is now, if it was at `T_map_before` and odometry has seen it move by `T_before_now`
-/// in `dt_s`.
+/// Predicts the body pose from `T_map_before` and the odometry increment `T_before_now` over `dt_s`.
 ///
-/// As Thrun, Burgard, Fox, Probabilistic Robotics (2005), section 5.4, in two things different: the legs walk sideways, so
-/// the motion is one move rather than turn, move, turn; and the deviations grow with the way and not with its root,
-/// because the errors of legs and gyro last (scale, bias) rather than average out.
+/// Deviations from [Thrun05, section 5.4]:
+/// - the increment is one motion instead of rotation, translation, rotation, because legs also move sideways;
+/// - the standard deviations, not the variances, grow linearly with the distance: the errors of legs and gyro (scale,
+///   bias) are correlated and do not average out.
 PoseGaussian predict_motion(const Pose2& T_map_before, const Pose2& T_before_now, double dt_s,
                             const MotionModelSettings& settings);
 

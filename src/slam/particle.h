@@ -8,7 +8,7 @@
 
 namespace patrol::slam {
 
-/// The way that a particle has come, shared by all its descendants: a list from the newest keyframe back.
+/// Node of a particle's trajectory, a linked list from the newest keyframe backward that all descendants share.
 struct PathStep {
   Pose2 T_map_body;
   std::shared_ptr<PathStep> before;
@@ -16,18 +16,18 @@ struct PathStep {
   PathStep(const Pose2& pose, std::shared_ptr<PathStep> earlier) : T_map_body(pose), before(std::move(earlier)) {}
   PathStep(const PathStep&) = delete;
   PathStep& operator=(const PathStep&) = delete;
-  /// One after the other: a way of a hundred thousand steps must not be let go by as many calls within each other.
+  /// Frees the list in a loop: recursion over a trajectory of 100,000 steps would overflow the stack.
   ~PathStep() {
     while (before && before.use_count() == 1) before = std::move(before->before);
   }
 };
 
-/// One hypothesis: where the body was at the last keyframe, and the map that follows from its path.
+/// Particle of the grid RBPF: body pose at the last keyframe and the map that follows from its trajectory.
 struct Particle {
   Pose2 T_map_body;
   double log_weight = 0.0;
   GridMap map;
-  std::shared_ptr<PathStep> path = nullptr;  ///< at every keyframe so far
+  std::shared_ptr<PathStep> path = nullptr;  ///< trajectory: poses at all keyframes
 };
 
 }  // namespace patrol::slam

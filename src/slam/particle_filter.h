@@ -11,21 +11,21 @@
 
 namespace patrol::slam {
 
-/// A set of particles at one step of its problem: a state to be estimated, and the newest observation.
+/// Set of particles at one step of an estimation problem, with the state to be estimated and the newest observation.
 template <typename Problem>
 concept ParticleProblem = requires(Problem problem, const Problem& seen, std::size_t particle, const Position& position, RandomSequence& random,
                                    const std::vector<Offspring>& offspring) {
   { seen.size() } -> std::convertible_to<std::size_t>;
-  /// A draw from the particle's proposal.
+  /// Sample of the particle's proposal distribution.
   { seen.draw(particle, random) } -> std::convertible_to<Position>;
-  /// What an optimiser improves on.
+  /// Objective of the swarm optimizer, for one particle at a position.
   { seen.log_fitness(particle, position) } -> std::convertible_to<double>;
-  /// The particle goes there and takes the observation in; gives the change of its log weight.
+  /// Moves the particle to the position, includes the observation and returns the increment of its log weight.
   { problem.settle(particle, position) } -> std::convertible_to<double>;
   problem.reproduce(offspring);
 };
 
-/// Draws, moves and weighs every particle. `log_weights` [particle] are carried from step to step.
+/// Samples, optimizes and weights every particle. `log_weights` [particle] are accumulated from step to step.
 template <ParticleProblem Problem>
 void advance_particles(Problem& problem, const ParticleFilterParts& parts, RandomSequence& random, std::vector<double>& log_weights) {
   std::vector<Position> positions;
@@ -40,7 +40,8 @@ void advance_particles(Problem& problem, const ParticleFilterParts& parts, Rando
   for (std::size_t i = 0; i < problem.size(); ++i) log_weights[i] += problem.settle(i, positions[i]);
 }
 
-/// Whether the particles were made anew, since too few of them carried the weight. `weights` are those of `log_weights`, normalised.
+/// Resamples if the effective sample size is below the threshold; returns whether it did. `weights` are the normalized
+/// weights that correspond to `log_weights`, which are reset to zero.
 template <ParticleProblem Problem>
 bool renew_particles(Problem& problem, const ParticleFilterParts& parts, const std::vector<double>& weights, RandomSequence& random,
                      std::vector<double>& log_weights) {

@@ -32,13 +32,14 @@ struct ResamplerRow {
 std::span<const OptimizerRow> optimizers();
 std::span<const ResamplerRow> resamplers();
 
-/// The interchangeable parts of a particle filter, by name.
+/// Names and parameters of the interchangeable components of a particle filter.
 struct ParticleFilterSettings {
   std::string optimizer = "none";
   int optimizer_iterations = 5;
-  double firefly_absorption = 0.01;       ///< gamma, per square of the positions' unit
+  double firefly_absorption = 0.01;       ///< gamma, per square of the unit of the positions
   std::string resampler = "systematic";
-  double resample_threshold = 0.5;        ///< when the effective sample size falls below this share of the particles
+  /// Resample if the effective sample size is below this fraction of the number of particles.
+  double resample_threshold = 0.5;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -50,16 +51,17 @@ struct ParticleFilterSettings {
   }
 };
 
-/// An optimizer with the resampler of its publication. Throws InputError for an unknown optimizer.
+/// Optimizer with the resampler of its source: low-weight optimization for ISCSO [Wu25], stepwise resampling for IFA
+/// [Cui21], systematic resampling for all others.
 ParticleFilterSettings settings_of_paper(const std::string& optimizer);
 
 struct ParticleFilterParts {
-  std::shared_ptr<const SwarmOptimizer> optimizer;  ///< none: particles stay where they were drawn
+  std::shared_ptr<const SwarmOptimizer> optimizer;  ///< null: particles keep the sampled positions
   Resampler resample = resample_evenly;
   double resample_threshold = 0.5;
 };
 
-/// Throws InputError if a setting breaks its rule.
+/// Throws InputError if a setting is invalid.
 ParticleFilterParts make_parts(const ParticleFilterSettings& settings);
 
 }  // namespace patrol::slam

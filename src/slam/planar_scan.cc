@@ -6,7 +6,7 @@
 namespace patrol::slam {
 namespace {
 
-/// Of a small motion, at an even pace.
+/// Fraction of a small motion at constant velocity.
 Pose2 part_of(const Pose2& motion, double share) { return {share * motion.x, share * motion.y, share * motion.yaw}; }
 
 }  // namespace

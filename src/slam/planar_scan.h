@@ -7,9 +7,11 @@
 namespace patrol::slam {
 
 struct PlanarScanSettings {
-  double min_range_m = 0.05;      ///< nearer ones see the robot itself
-  double max_range_m = 40.0;      ///< beams that end farther away are free so far, and their ends are left out: there they lie too far apart to be walls
-  double no_return_free_m = 0.0;  ///< as far as a beam without return is taken to be free: glass and black cloth give none either
+  double min_range_m = 0.05;      ///< nearer returns are from the robot itself
+  /// Beams that end farther away clear free space up to here; their end points are too sparse for walls.
+  double max_range_m = 40.0;
+  /// Distance cleared by a beam without a return; small, since glass and black fabric give no return either.
+  double no_return_free_m = 0.0;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -19,8 +21,8 @@ struct PlanarScanSettings {
   }
 };
 
-/// The scan of a lidar that is level, on a robot that nobody knows more of: as seen from where the body was at its first beam. The others are moved by what
-/// odometry says of the time in between, where the log says when they were fired.
+/// Converts a recorded scan of a horizontal lidar to a LevelScan in the body frame at its first beam. If the log gives
+/// the motion during the scan (`T_first_last`), each beam is motion-compensated.
 LevelScan planar_scan(const RecordedScan& recorded, const PlanarScanSettings& settings);
 
 }  // namespace patrol::slam

@@ -6,18 +6,18 @@
 
 namespace patrol::slam {
 
-/// A normally distributed pose of the body in map; covariance of x, y, yaw in map (m, m, rad).
+/// Normally distributed body pose in map, with the covariance of x, y, yaw in map (m, m, rad).
 struct PoseGaussian {
   Pose2 mean;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 
-  /// (dx, dy, dyaw) from the mean, in map, the angle wrapped.
+  /// Difference (dx, dy, dyaw) of a pose from the mean, in map; the angle is wrapped.
   Eigen::Vector3d offset_of(const Pose2& T_map_body) const {
     return {T_map_body.x - mean.x, T_map_body.y - mean.y, wrap_angle(T_map_body.yaw - mean.yaw)};
   }
 };
 
-/// The pose moved by (dx, dy, dyaw) in map.
+/// Returns the pose perturbed by (dx, dy, dyaw) in map.
 inline Pose2 shifted(const Pose2& T_map_body, const Eigen::Vector3d& offset) {
   return {T_map_body.x + offset.x(), T_map_body.y + offset.y(), wrap_angle(T_map_body.yaw + offset.z())};
 }

@@ -11,7 +11,8 @@ RangeInnovation range_innovation(const PoseGaussian& now, const Pose2& T_odom_bo
   const PredictedRange predicted = predict_uwb_range(sighting.anchor, T_map_then, sighting.p_level_antenna, settings.calibration);
   const Eigen::Vector2d back = T_map_then.position() - now.mean.position();
   RangeInnovation innovation{.excess_m = sighting.range_m - predicted.range_m, .variance_m2 = 0.0, .by_pose = predicted.by_pose};
-  innovation.by_pose.z() += predicted.by_pose.y() * back.x() - predicted.by_pose.x() * back.y();  // a turn now swings then
+  // lever arm: rotating the current pose moves the earlier one
+  innovation.by_pose.z() += predicted.by_pose.y() * back.x() - predicted.by_pose.x() * back.y();
   innovation.variance_m2 = innovation.by_pose.dot(now.covariance * innovation.by_pose) + settings.range_std_m * settings.range_std_m;
   return innovation;
 }

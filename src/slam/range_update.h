@@ -10,10 +10,10 @@ namespace patrol::slam {
 
 struct RangeUpdateSettings {
   bool enabled = true;
-  double range_std_m = 0.15;   ///< of a clear range: the radio's noise, and what the calibration leaves of its bias
-  double gate_std = 3.0;       ///< a range farther off than so many standard deviations went round a corner
-  double gate_excess_std = 2.0;  ///< the same for one that is too long, as those are
-  UwbCalibration calibration = {};  ///< the radio's; not for the scenario
+  double range_std_m = 0.15;   ///< standard deviation of a LOS range: radio noise and residual calibration bias
+  double gate_std = 3.0;       ///< ranges shorter than predicted by more standard deviations are rejected
+  double gate_excess_std = 2.0;  ///< ranges longer than predicted by more standard deviations are rejected as NLOS
+  UwbCalibration calibration = {};  ///< bias calibration of the radio; not a scenario setting
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -24,30 +24,32 @@ struct RangeUpdateSettings {
   }
 };
 
-/// A UWB range, and where the odometry had the body then.
+/// UWB range with the odometry at its time.
 struct RangeSighting {
-  UwbAnchor anchor;  ///< in map, its height above map's ground
+  UwbAnchor anchor;  ///< anchor in map, height above the ground of map
   double range_m = 0.0;
   Pose2 T_odom_body;
-  Eigen::Vector3d p_level_antenna = Eigen::Vector3d::Zero();  ///< its height above the ground
+  Eigen::Vector3d p_level_antenna = Eigen::Vector3d::Zero();  ///< antenna in level, height above the ground
 };
 
-/// How a range compares with what a pose predicts.
+/// Difference between a measured and a predicted range.
 struct RangeInnovation {
-  double excess_m = 0.0;  ///< measured minus predicted
+  double excess_m = 0.0;  ///< measured minus predicted range
   double variance_m2 = 0.0;
-  Eigen::Vector3d by_pose = Eigen::Vector3d::Zero();  ///< gradient of the predicted range by x, y, yaw of the body now
+  /// Gradient of the predicted range with respect to x, y, yaw of the current body pose.
+  Eigen::Vector3d by_pose = Eigen::Vector3d::Zero();
 };
 
-/// `T_odom_body`: now. The way since the sighting is taken from odometry, as exact.
+/// Computes the innovation of a range. `T_odom_body` is the current odometry; the motion since the measurement is taken
+/// from odometry without error.
 RangeInnovation range_innovation(const PoseGaussian& now, const Pose2& T_odom_body, const RangeSighting& sighting,
                                  const RangeUpdateSettings& settings);
 
-/// Whether the range is that of the straight way.
+/// Returns whether the range passes the gate of line-of-sight ranges.
 bool is_plausible(const RangeInnovation& innovation, const RangeUpdateSettings& settings);
 
-/// Corrects the pose by each range in turn (Kalman's equations); returns the log of the ranges' probability density, for a
-/// particle's weight.
+/// Corrects the pose with each range in sequence (Kalman update). Returns the log probability density of the ranges,
+/// which is the increment of a particle's log weight.
 double update_with_ranges(const std::vector<RangeSighting>& sightings, const Pose2& T_odom_body,
                           const RangeUpdateSettings& settings, PoseGaussian& now);
 

@@ -9,7 +9,7 @@
 namespace patrol::slam {
 namespace {
 
-/// Of the averages of stepwise resampling: of equal weights, all stay.
+/// Relative rounding tolerance of stepwise resampling: particles of equal weight all survive.
 constexpr double kRounding = 1e-12;
 
 std::size_t drawn_from(const std::vector<double>& weights, double uniform) {

@@ -7,9 +7,9 @@
 namespace patrol::slam {
 
 struct ScanIntegrationSettings {
-  int free_ray_stride = 6;          ///< every so many beams one is followed through the free cells, and counts for all of them
-  double free_margin_m = 0.15;      ///< free rays end this much before their hit: they must not wear away the wall they hit
-  double max_free_range_m = 30.0;   ///< nothing is learnt about free space beyond
+  int free_ray_stride = 6;          ///< one of every N beams is traced through free space, with weight N
+  double free_margin_m = 0.15;      ///< free rays end this far before the hit, so that they do not clear the wall
+  double max_free_range_m = 30.0;   ///< maximum range of free-space updates
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -19,7 +19,7 @@ struct ScanIntegrationSettings {
   }
 };
 
-/// Writes a scan, taken at `T_map_body`, into the map.
+/// Integrates a scan taken at `T_map_body` into the map.
 void integrate_scan(const LevelScan& scan, const Pose2& T_map_body, const ScanIntegrationSettings& settings, GridMap& map);
 
 }  // namespace patrol::slam

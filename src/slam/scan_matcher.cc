@@ -13,28 +13,28 @@ namespace {
 
 constexpr double kStepTol_m = 2e-4;
 constexpr double kStepTol_rad = 1e-5;
-constexpr int kMinPoints = 6;  // three would do for three unknowns; noise wants some more
+constexpr int kMinPoints = 6;  // three points suffice for three unknowns; the margin is for noise
 
-/// The sum of squares and its derivatives at a pose; the scan's part only.
+/// Normal equations of the scan terms at a pose, without the prior.
 struct NormalEquations {
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   double log_likelihood = 0.0;
-  int num_known = 0;    ///< points that fell on cells of which anything is known
-  int num_matched = 0;  ///< of these, near a surface
+  int num_known = 0;    ///< points in observed cells
+  int num_matched = 0;  ///< points near a surface, out of num_known
 };
 
 double squared(double value) { return value * value; }
 
-/// What one point says.
+/// Contribution of one point to the normal equations.
 struct PointTerm {
-  std::optional<LocalLine> line;  ///< none: no surface is near
-  Eigen::Vector2d arm;            ///< from the body, turned into map
+  std::optional<LocalLine> line;  ///< none: no surface nearby
+  Eigen::Vector2d arm;            ///< vector from the body to the point, rotated into map
   double residual_m = 0.0, variance = 0.0, weight = 0.0;
   double log_likelihood = 0.0;
 };
 
-/// None where nothing is known of the map.
+/// Returns none in unobserved cells.
 std::optional<PointTerm> term_of(const GridMap& map, const MatchPoint& point, const Eigen::Matrix2d& R, const Eigen::Vector2d& t, const ScanMatcherSettings& settings) {
   const double kernel_var = squared(settings.kernel_m);
   PointTerm term{.line = {}, .arm = R * point.p_body};
@@ -76,7 +76,7 @@ NormalEquations linearize(const GridMap& map, const std::vector<MatchPoint>& poi
   return sum;
 }
 
-/// How many points lie on a surface cell or next to one.
+/// Number of points on or next to a surface cell.
 int count_on_surface(const GridMap& map, const std::vector<Eigen::Vector2d>& turned, const Eigen::Vector2d& shift) {
   int count = 0;
   for (const Eigen::Vector2d& point : turned) count += map.is_surface_within(map.cell_at(point + shift), 1) ? 1 : 0;
@@ -99,7 +99,7 @@ std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<Matc
     Eigen::Matrix3d H = sum.H + prior_information;
     Eigen::Vector3d b = sum.b;
     if (prior) b += prior_information * prior->offset_of(result.T_map_body);
-    H.diagonal() += Eigen::Vector3d::Constant(1e-9 * H.trace());  // without prior a direction may be free
+    H.diagonal() += Eigen::Vector3d::Constant(1e-9 * H.trace());  // without a prior a direction may be degenerate
     const Eigen::Vector3d step = -H.ldlt().solve(b);
     if (!step.allFinite()) return std::nullopt;
 
@@ -138,7 +138,7 @@ Pose2 search_pose(const GridMap& map, const std::vector<MatchPoint>& points, con
   const std::size_t stride = std::max<std::size_t>(1, points.size() / static_cast<std::size_t>(settings.search_points));
   double far_m = 1.0;
   for (const MatchPoint& point : points) far_m = std::max(far_m, point.p_body.norm());
-  // A cell and its neighbours reach 1.5 cells each way: steps of two cells miss nothing, seen from the farthest point too.
+  // A cell and its neighbors cover 1.5 cells each way: steps of two cells skip nothing, also at the farthest point.
   const double step_m = 2.0 * map.resolution_m(), step_rad = 2.0 * map.resolution_m() / far_m;
   const int steps = static_cast<int>(std::ceil(settings.search_window_m / step_m));
   const int turns = static_cast<int>(std::ceil(settings.search_window_rad / step_rad));
@@ -154,7 +154,7 @@ Pose2 search_pose(const GridMap& map, const std::vector<MatchPoint>& points, con
     for (int i = -steps; i <= steps; ++i) {
       for (int j = -steps; j <= steps; ++j) {
         const Eigen::Vector2d shift = T_map_center.position() + step_m * Eigen::Vector2d(i, j);
-        // Of equally good poses the nearest to the centre.
+        // Prefer the pose closest to the center among equal counts.
         const double tie = 1e-3 * (std::abs(i) + std::abs(j) + std::abs(turn));
         const double score = count_on_surface(map, turned, shift) - tie;
         if (score > best_score) best_score = score, best = {shift.x(), shift.y(), wrap_angle(yaw)};

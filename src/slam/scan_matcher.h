@@ -13,15 +13,15 @@
 namespace patrol::slam {
 
 struct ScanMatcherSettings {
-  int max_points = 800;                  ///< of a scan that are matched
-  double point_spacing_m = 0.08;         ///< beams nearer together than this are averaged
-  double point_std_m = 0.015;            ///< of a point's range
-  double point_angle_std_rad = 0.0005;   ///< of its direction
-  double kernel_m = 0.05;                ///< from here on a point counts as an outlier, gradually
-  int surface_radius_cells = 3;          ///< neighbourhood that makes a piece of surface; also how far off a point may start
+  int max_points = 800;                  ///< maximum number of scan points that are matched
+  double point_spacing_m = 0.08;         ///< consecutive beams that end within this distance are averaged
+  double point_std_m = 0.015;            ///< standard deviation of the range of a point
+  double point_angle_std_rad = 0.0005;   ///< standard deviation of the direction of a point
+  double kernel_m = 0.05;  ///< scale of the Cauchy kernel; residuals beyond it are down-weighted as outliers
+  int surface_radius_cells = 3;          ///< neighborhood of the line fit; also the largest initial distance of a point
   int max_iterations = 8;
-  double min_matched_share = 0.3;        ///< fewer matched points are no match
-  double search_window_m = 0.3;          ///< of the coarse search, each way
+  double min_matched_share = 0.3;        ///< matches with a smaller inlier ratio are rejected
+  double search_window_m = 0.3;          ///< coarse search: half width along x and y
   double search_window_rad = 0.12;
   int search_points = 200;
 
@@ -43,39 +43,41 @@ struct ScanMatcherSettings {
 
 struct MatchResult {
   Pose2 T_map_body;
-  /// Of the scan alone, as if its points were independent; x, y, yaw in map. A small eigenvalue is a direction in which
-  /// the map says nothing (along a corridor).
+  /// Information of the scan alone for x, y, yaw in map, with independent points. A small eigenvalue marks a direction
+  /// that the map leaves degenerate, for example along a corridor.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  double log_likelihood = 0.0;  ///< of the scan at the pose, up to a constant
-  double matched_share = 0.0;   ///< points with a surface near, of those that fell where the map knows anything
+  double log_likelihood = 0.0;  ///< log likelihood of the scan at the pose, up to a constant
+  double matched_share = 0.0;   ///< inlier ratio: points near a surface / points in observed cells
   int num_matched = 0;
   int iterations = 0;
   bool converged = false;
 };
 
-/// Lays points on the map by Gauss-Newton on their distances to the local lines of the map (local_line.h), found anew in
-/// every iteration.
+/// Registers points to the map by Gauss-Newton on their distances to the local lines of the map (local_line.h). The
+/// lines are fitted again in every iteration.
 ///
-/// Gmapping climbs a likelihood of distances to the cells' mean hits by steps along each axis (Grisetti et al. 2007;
-/// Thrun et al. 2005, section 6.4). Distances to lines leave out the pull along a wall, which is only the pattern of
-/// cells, and have derivatives: a few iterations reach a fraction of a millimetre, and the sum of squares is the
-/// covariance too. Points count by a Cauchy kernel; rough surfaces, corners and young cells count less.
+/// Deviation from Gmapping ([Grisetti07]; [Thrun05, section 6.4]), which climbs a likelihood of distances to the mean
+/// hits of the cells by steps along each axis. Distances to lines do not pull along a wall, where only the cell pattern
+/// varies. They have derivatives: a few iterations converge to a fraction of a millimeter, and the normal equations
+/// give the covariance. Points are weighted by a Cauchy kernel; rough surfaces, corners and cells with few hits have
+/// smaller weights.
 ///
-/// With a `prior` its squared Mahalanobis distance is part of the sum, so that a corridor's length is left to odometry.
-/// None if too few points met a surface.
+/// With a `prior`, its squared Mahalanobis distance is part of the sum, so that odometry constrains the direction along
+/// a corridor. Returns none if too few points matched a surface.
 std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_start,
                                       const std::optional<PoseGaussian>& prior, const ScanMatcherSettings& settings);
 
-/// Log likelihood of a scan at a pose, up to a constant; unlike a match's, points on cells of which nothing is known count as far from all surfaces, or
-/// else a search would do best to leave the map.
+/// Log likelihood of a scan at a pose, up to a constant. Unlike in match_scan, points in unobserved cells have the loss
+/// of points far from all surfaces; otherwise a search would prefer poses outside the map.
 double scan_log_likelihood(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body, const ScanMatcherSettings& settings);
 
-/// [point]: the same for each point alone; NaN where the map knows nothing. Two poses are fairly compared by the points of which it knows something under both.
+/// Log likelihood of each point, [point]; NaN in unobserved cells. Compare two poses by the points that are not NaN at
+/// both.
 std::vector<double> point_log_likelihoods(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body, const ScanMatcherSettings& settings);
 
-/// The pose in the window around `T_map_center` that puts most points on a surface cell or beside one: correlative matching
-/// (Olson, "Real-time correlative scan matching", ICRA 2009) on one level. For when odometry has slipped; ends within
-/// reach of match_scan.
+/// Correlative scan matching on one level [Olson09]. Returns the pose in the window around `T_map_center` with the most
+/// points on or next to a surface cell. Used after odometry slip; the result is within the convergence range of
+/// match_scan.
 Pose2 search_pose(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_center,
                   const ScanMatcherSettings& settings);
 

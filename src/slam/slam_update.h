@@ -6,13 +6,13 @@
 
 namespace patrol::slam {
 
-/// What a scan has told of where the body is.
+/// Result of processing one scan.
 struct SlamUpdate {
   Pose2 T_map_body;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in map; m, m, rad
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< covariance of x, y, yaw in map; m, m, rad
   bool is_keyframe = false;
-  double effective_sample_size = 0.0;  ///< of particles, at the last keyframe, before any resampling
-  double match_score = 0.0;            ///< share of the scan's points that met a surface, 0 ... 1; 0: odometry alone
+  double effective_sample_size = 0.0;  ///< effective number of particles at the last keyframe, before resampling
+  double match_score = 0.0;  ///< fraction of the scan points that matched a surface, 0 ... 1; 0: odometry only
   bool resampled = false;
 };
 

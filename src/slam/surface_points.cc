@@ -27,7 +27,7 @@ std::vector<Eigen::Vector2d> surface_points(const GridMap& map) {
 }
 
 std::vector<Eigen::Vector2d> facings_of(const std::vector<Eigen::Vector2d>& points, const GridMap& map, double radius_m) {
-  constexpr double kLeastOneSided = 0.3;  // half a disc is 0.64
+  constexpr double kLeastOneSided = 0.3;  // 0.64 for a half disc
   const int reach = static_cast<int>(std::ceil(radius_m / map.resolution_m()));
   std::vector<Eigen::Vector2d> facings;
   facings.reserve(points.size());

@@ -13,7 +13,8 @@
 
 namespace patrol::slam {
 
-/// Particles enough for a building; what tracking leaves of odometry's errors; nothing that depends on legs.
+/// Filter settings for scan-to-scan odometry: enough particles for a building, small motion noise, no leg-specific
+/// errors.
 GridSlamSettings tracked_filter();
 
 /// Odometry that predicts the particles of `rbpf`.
@@ -54,7 +55,7 @@ class TrackedRbpf {
   SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
   void finish() {}
 
-  /// [scan]: of the particle that is the best now, with the whole way that it has come.
+  /// Trajectory of the currently best particle, [scan].
   std::vector<Pose2> path() const { return filtered_.path(); }
   OccupancyGrid map() const { return filtered_.map(); }
   ParticleSet particles() const { return filtered_.particles(); }

@@ -10,10 +10,10 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kFieldCap_m = 1.0;  // longest stride along a ray
+constexpr double kFieldCap_m = 1.0;  // longest step along a ray
 
 struct PolarBeam {
-  double angle_rad, range_m;  ///< from the lidar; +Inf: no echo
+  double angle_rad, range_m;  ///< from the lidar; +Inf: no return
 };
 
 std::vector<PolarBeam> polar_beams(const LevelScan& scan, int max_beams) {
@@ -36,7 +36,7 @@ double beam_log_likelihood(double range_m, double expected_m, const BeamModelSet
   const double sum = settings.hit_share + settings.short_share + settings.max_share + settings.random_share;
   const double max_m = settings.max_range_m;
   if (!(range_m < max_m)) {
-    // Nothing within reach to hit is the best reason for no echo.
+    // An expected range beyond the maximum explains a missing return.
     const double out_of_reach = expected_m < max_m ? 0.0 : settings.hit_share;
     return std::log((settings.max_share + out_of_reach + settings.random_share / max_m) / sum);
   }
@@ -69,8 +69,8 @@ ScanLikelihoods BeamModel::evaluate(const LevelScan& scan, const std::vector<Pos
   return result;
 }
 
-// Strides as long as nothing can be in the way (Hart, "Sphere tracing", The Visual Computer 1996): the distance to the nearest
-// occupied centre less half a cell's diagonal, twice, for where we and the wall are in our cells.
+// Sphere tracing [Hart96]: each step is the distance to the nearest occupied center minus one cell diagonal. Half of it
+// accounts for the position within the cell, half for the extent of the wall cell.
 double BeamModel::expected_range_m(const Eigen::Vector2d& p_map_origin, double angle_rad) const {
   const GridGeometry& geometry = distance_m_.geometry();
   const Eigen::Vector2d direction(std::cos(angle_rad), std::sin(angle_rad));

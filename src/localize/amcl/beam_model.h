@@ -11,14 +11,14 @@
 
 namespace patrol::localize {
 
-/// Shares of the mixture; they are divided by their sum.
+/// Weights of the mixture components, normalized by their sum, and their parameters.
 struct BeamModelSettings {
   double hit_share = 0.75;
-  double short_share = 0.1;     ///< somebody stands in the way
-  double max_share = 0.1;       ///< no echo
+  double short_share = 0.1;     ///< unmapped obstacle in front of the surface
+  double max_share = 0.1;       ///< no return
   double random_share = 0.05;
   double hit_std_m = 0.1;
-  double short_mean_m = 5.0;    ///< of the exponential distribution of what stands in the way: 1 / lambda_short
+  double short_mean_m = 5.0;    ///< mean of the exponential distribution of unmapped obstacles: 1 / lambda_short
   double max_range_m = 30.0;
   int max_beams = 60;
 
@@ -35,19 +35,19 @@ struct BeamModelSettings {
   }
 };
 
-/// log p(z | z_expected) of one range, 1/m, or of no echo (+Inf) (Thrun et al. 2005, table 6.1 with equations 6.4 to 6.11).
+/// Returns log p(z | z_expected) of one range, 1/m, or of no return (+Inf) [Thrun05, table 6.1, equations 6.4 to 6.11].
 double beam_log_likelihood(double range_m, double expected_m, const BeamModelSettings& settings);
 
-/// The beam model: what every beam should have measured is found by following it through the map. Dearer than the likelihood
-/// field and less smooth, but it knows that a wall cannot be seen through another.
+/// Beam model: the expected range of every beam is found by ray casting in the map. More expensive and less smooth than
+/// the likelihood field, but it accounts for occlusion.
 class BeamModel final : public SensorModel {
  public:
   BeamModel(const BeamModelSettings& settings, const OccupancyGrid& map);
 
-  /// Likelihoods are divided by that of a perfect range at 0 m, so that 0 is about the best.
+  /// Likelihoods are relative to that of an exact range at 1 m, so that 0 is approximately the maximum.
   ScanLikelihoods evaluate(const LevelScan& scan, const std::vector<Pose2>& T_map_body) const override;
 
-  /// The way to the first occupied cell, at most `max_range_m`, m; within a cell of the truth.
+  /// Distance to the first occupied cell, at most `max_range_m`, m; accurate to one cell.
   double expected_range_m(const Eigen::Vector2d& p_map_origin, double angle_rad) const;
 
  private:

@@ -6,7 +6,7 @@
 
 namespace patrol::localize {
 
-/// As map_server reads its thresholds.
+/// Occupancy thresholds of ROS map_server.
 inline bool is_occupied(std::int8_t percent) { return percent >= 65; }
 inline bool is_free(std::int8_t percent) { return percent >= 0 && percent < 25; }
 

@@ -5,7 +5,7 @@
 namespace patrol::localize {
 namespace {
 
-/// 0 at the floor and above, 1 at nothing.
+/// Relative shortfall: 0 at the floor and above, 1 at value 0.
 double shortfall(double value, double floor) { return floor > 0.0 ? std::clamp(1.0 - value / floor, 0.0, 1.0) : 0.0; }
 
 }  // namespace

@@ -5,13 +5,15 @@
 namespace patrol::localize {
 
 struct FitMonitorSettings {
-  double slow_rate = 0.02;        ///< of the long average of the scan's likelihood, per update
-  double fast_rate = 0.2;         ///< of the short one
-  double fast_over_slow = 1.5;    ///< injection begins when the short one falls below the long one over this
-  double range_rate = 0.1;        ///< of the average over ranges, per range
-  double min_scan_fit = 0.4;      ///< share of the scan on surfaces below which particles are injected, however long it has been so
-  double min_range_fit = 0.25;    ///< the same for the mean likelihood of ranges
-  double max_injection = 0.5;     ///< share of the particles
+  double slow_rate = 0.02;        ///< filter constant of the long-term average of the scan likelihood, per update
+  double fast_rate = 0.2;         ///< filter constant of the short-term average, per update
+  /// Injection begins if the short-term average is below the long-term average divided by this ratio.
+  double fast_over_slow = 1.5;
+  double range_rate = 0.1;        ///< filter constant of the average range likelihood, per range
+  /// Inlier ratio of the scan below which particles are injected, regardless of the averages.
+  double min_scan_fit = 0.4;
+  double min_range_fit = 0.25;    ///< mean range likelihood below which particles are injected
+  double max_injection = 0.5;     ///< maximum fraction of injected particles
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -25,29 +27,30 @@ struct FitMonitorSettings {
   }
 };
 
-/// Notices that the measurements no longer fit to where the particles are, and says what share of them to replace.
+/// Monitors the measurement likelihood of the particles and computes the fraction of particles to replace.
 ///
-/// Augmented MCL (Thrun et al. 2005, table 8.3): short against long average of the measurements' likelihood, injection
-/// max(0, 1 - nu w_fast / w_slow) with nu > 1 against false alarms (Gutmann and Fox, IROS 2002). Two floors stand beside
-/// it: the long average forgets what a good fit is like, and along a tunnel a kidnap shows in the ranges alone.
+/// Augmented MCL [Thrun05, table 8.3]: compares the short-term with the long-term average of the likelihood. The
+/// injection is max(0, 1 - nu w_fast / w_slow), with nu > 1 against false alarms [Gutmann02]. Extension: two absolute
+/// thresholds, because the long-term average adapts to a poor fit, and because kidnapping along a tunnel is visible in
+/// the ranges only.
 class FitMonitor {
  public:
   explicit FitMonitor(const FitMonitorSettings& settings) : settings_(settings) {}
 
-  /// Likelihood of a scan, mean over the particles, next to the best possible one, 0 ... 1.
+  /// Adds the likelihood of a scan, averaged over the particles, relative to the maximum, 0 ... 1.
   void add_scan_likelihood(double likelihood);
-  /// Share of a scan that lies on surfaces of the map, 0 ... 1.
+  /// Adds the fraction of a scan on surfaces of the map, 0 ... 1.
   void add_scan_fit(double share) { scan_fit_ += settings_.fast_rate * (share - scan_fit_); }
-  /// Likelihood of one range next to the best possible one, 0 ... 1.
+  /// Adds the likelihood of a range relative to the maximum, 0 ... 1.
   void add_range(double likelihood) { range_fit_ += settings_.range_rate * (likelihood - range_fit_); }
-  /// Forgets: the robot has been placed anew.
+  /// Clears all averages after the pose was set externally.
   void reset() { *this = FitMonitor(settings_); }
 
   double scan_fit() const { return scan_fit_; }
   double range_fit() const { return range_fit_; }
-  /// 1 while the ranges fit as well as they should, falling to 0 with them.
+  /// Range factor of the confidence: 1 while the mean range likelihood is sufficient, decreasing to 0 with it.
   double range_trust() const;
-  /// Share of the particles to replace, 0 ... max_injection.
+  /// Fraction of the particles to replace, 0 ... max_injection.
   double injection_share() const;
 
  private:

@@ -11,11 +11,12 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kNegligible = 12.0;  // log-likelihood below the best that a sample need not look at
-constexpr int kFineSteps = 4;         // a coarse step is this many fine ones along x and y
-constexpr int kFineTurns = 5;         // and this many in heading
+// difference in log likelihood to the best position beyond which positions are skipped
+constexpr double kNegligible = 12.0;
+constexpr int kFineSteps = 4;         // fine steps per coarse step along x and y
+constexpr int kFineTurns = 5;         // fine steps per coarse step in heading
 
-/// Middle of part `i` of `parts` equal parts of a step that is centred on 0.
+/// Center of part `i` of `parts` equal parts of a step centered on 0.
 double part_of_step(int i, int parts, double step) { return ((i + 0.5) / parts - 0.5) * step; }
 
 RangeLikelihoodSettings widened(RangeLikelihoodSettings settings, double step_m) {
@@ -47,14 +48,14 @@ GlobalSearch::GlobalSearch(const GlobalSearchSettings& settings, const Likelihoo
     }
   }
   if (!free_places_.empty()) return;
-  for (int row = 0; row < geometry.height; ++row) {  // a map too small for the grid
+  for (int row = 0; row < geometry.height; ++row) {  // the map is too small for the grid
     for (int col = 0; col < geometry.width; ++col) {
       if (is_free(map.at({col, row}))) free_places_.push_back(geometry.center_of({col, row}));
     }
   }
 }
 
-// The antenna's lever is left out here: the coarse step is longer.
+// Ignores the lever arm of the antenna, which is shorter than the coarse step.
 std::vector<GlobalSearch::Place> GlobalSearch::places_by_range(const std::vector<AnchoredRange>& ranges,
                                                                const RangeLikelihoodSettings& settings) const {
   std::vector<Place> places;
@@ -97,7 +98,7 @@ GlobalSearch::Candidates GlobalSearch::find(const LevelScan& scan, const std::ve
     const std::size_t cell = chosen[first];
     std::size_t end = first;
     while (end < chosen.size() && chosen[end] == cell) ++end;
-    // How much more often the cell was drawn than its weight asks for stands for the neighbours that were not.
+    // Importance weight of the sampled cell: number of samples relative to the expected number.
     const double log_share = std::log(static_cast<double>(end - first) / (static_cast<double>(samples) * coarse[cell]));
     const Pose2 center = coarse_pose(cell);
     for (int part = 0; part < kFineSteps * kFineSteps * kFineTurns; ++part) {

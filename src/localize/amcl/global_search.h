@@ -15,11 +15,11 @@
 namespace patrol::localize {
 
 struct GlobalSearchSettings {
-  double step_m = 0.4;             ///< of the coarse grid of positions
-  double step_rad = 0.105;         ///< and of headings: 6 degrees
+  double step_m = 0.4;             ///< spacing of the coarse position grid
+  double step_rad = 0.105;         ///< spacing of the coarse heading grid: 6 degrees
   int max_beams = 60;
-  int coarse_samples = 1000;       ///< cells of the coarse grid that are looked at closely
-  double min_clearance_m = 0.2;    ///< the body stands no nearer to a wall
+  int coarse_samples = 1000;       ///< number of samples of coarse cells that are refined
+  double min_clearance_m = 0.2;    ///< minimum distance of the body from walls
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -31,11 +31,12 @@ struct GlobalSearchSettings {
   }
 };
 
-/// Finds where on the whole map a scan, and the UWB ranges if there are any, may have been taken.
+/// Global localization by one scan and, if available, UWB ranges on the whole map.
 ///
-/// Two levels, as in correlative matching (Olson, ICRA 2009): every free place and heading of a coarse grid on a blurred field;
-/// then, sampled in proportion to that likelihood, fine grids on the filter's own field. Sampling, not the best so many:
-/// in a tunnel that looks alike everywhere all places stay candidates, and the filter stays honestly undecided.
+/// Two levels, as in correlative matching [Olson09]: first all free positions and headings of a coarse grid on a
+/// blurred field. Then fine grids on the filter's field, at coarse cells sampled in proportion to their likelihood.
+/// Sampling is used instead of the N best cells: in a repetitive tunnel all similar positions remain candidates, so the
+/// belief stays multimodal.
 class GlobalSearch {
  public:
   GlobalSearch(const GlobalSearchSettings& settings, const LikelihoodFieldSettings& field, const OccupancyGrid& map, const LineField& lines);
@@ -43,9 +44,10 @@ class GlobalSearch {
   struct Candidates {
     std::vector<Pose2> T_map_body;
     std::vector<double> weights;  ///< sum 1
-    double half_step_m = 0.0, half_step_rad = 0.0;  ///< each stands for the poses this near
+    double half_step_m = 0.0, half_step_rad = 0.0;  ///< half width of the cell that each candidate represents
   };
-  /// `independent_beams`: a scan says as much as so many beams that err independently. Empty if the map has no free place.
+  /// Searches the map. `independent_beams` is the tempering factor: the effective number of independent beams of a
+  /// scan. Returns no candidates if the map has no free cell.
   Candidates find(const LevelScan& scan, const std::vector<AnchoredRange>& ranges, const RangeLikelihoodSettings& range_settings,
                   double independent_beams, double uniform) const;
 
@@ -58,10 +60,10 @@ class GlobalSearch {
 
   GlobalSearchSettings settings_;
   LikelihoodField coarse_, fine_;
-  std::vector<Eigen::Vector2d> free_places_;  ///< in map, m
+  std::vector<Eigen::Vector2d> free_places_;  ///< free positions of the coarse grid, in map, m
 };
 
-/// `count` poses drawn from candidates, each moved at random within its step.
+/// Samples `count` poses from the candidates, uniform within the cell of each candidate.
 std::vector<Pose2> draw_poses(const GlobalSearch::Candidates& candidates, std::size_t count, const RandomStream& noise, std::uint64_t tick);
 
 }  // namespace patrol::localize

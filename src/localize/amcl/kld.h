@@ -13,8 +13,9 @@ namespace patrol::localize {
 struct KldSettings {
   double bin_m = 0.5;
   double bin_rad = 0.1745;      ///< 10 degrees
-  double max_error = 0.05;      ///< Kullback-Leibler distance between particles and belief ...
-  double quantile = 2.326;      ///< ... that is kept with this upper quantile of the normal distribution: 0.99
+  double max_error = 0.05;      ///< maximum Kullback-Leibler distance between particles and belief
+  /// Upper quantile of the normal distribution for the probability of keeping max_error: 0.99.
+  double quantile = 2.326;
   int min_particles = 300;
   int max_particles = 5000;
 
@@ -29,22 +30,21 @@ struct KldSettings {
   }
 };
 
-/// The number of particles with which a belief that fills `bins` bins is approximated to `max_error`, within the limits of
-/// the settings (Fox, "Adapting the sample size in particle filters through KLD-sampling", IJRR 2003, equation 7:
-/// the chi-square quantile by Wilson and Hilferty).
+/// Number of particles that approximates a belief over `bins` bins to `max_error`, within the limits of the settings
+/// [Fox03, equation 7]. The chi-square quantile is that of Wilson and Hilferty.
 int kld_particles(std::size_t bins, const KldSettings& settings);
 
-/// The bins of position and heading that poses fall into.
+/// Set of occupied bins of position and heading.
 class PoseBins {
  public:
-  /// The circle is cut into equal bins, as near to `bin_rad` as goes.
+  /// Divides the circle into equal bins with a size close to `bin_rad`.
   explicit PoseBins(const KldSettings& settings);
 
-  /// Number of the pose's bin; bins are numbered in the order in which they are first met.
+  /// Adds a pose and returns the index of its bin; bins are indexed in order of first use.
   std::size_t add(const Pose2& pose);
   std::size_t size() const { return keys_.size(); }
-  /// Which clump of touching bins each belongs to (corners count; headings close round the circle): [bin] -> the smallest
-  /// number of a bin of its clump.
+  /// Clusters of adjacent bins, including diagonal neighbors; headings are cyclic. Returns [bin] -> smallest bin index
+  /// of its cluster.
   std::vector<std::size_t> clumps() const;
 
  private:
@@ -58,7 +58,7 @@ class PoseBins {
   Key key_of(const Pose2& pose) const;
 
   double inverse_bin_m_;
-  int num_turns_;  ///< bins round the circle
+  int num_turns_;  ///< number of heading bins
   std::unordered_map<Key, std::size_t, Hash> bins_;
   std::vector<Key> keys_;  ///< [bin]
 };

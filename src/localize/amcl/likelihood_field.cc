@@ -9,11 +9,12 @@
 namespace patrol::localize {
 namespace {
 
-constexpr std::size_t kBlock = 64;  // ends that are turned before they are looked up
+constexpr std::size_t kBlock = 64;  // number of ends that are rotated before the lookup
 constexpr int kMaxLevel = 255;
-constexpr double kMinStraightness = 0.6;  // what is not a line is as far as its cells
+constexpr double kMinStraightness = 0.6;  // below it, the distance to the cells is used
 
-/// Distance from a cell's centre to the surface, m. Past the end of a wall, where its line runs on, the cells still tell.
+/// Distance from the center of a cell to the surface, m. Beyond the end of a wall, where its line continues, the
+/// distance to the cells bounds it from below.
 double distance_to_surface(const Eigen::Vector2d& center, double to_cells_m, double resolution_m, const LineField& lines) {
   const SurfaceLine* line = lines.find(center);
   if (!line || line->straightness < kMinStraightness) return to_cells_m;
@@ -68,7 +69,7 @@ ScanLikelihoods LikelihoodField::evaluate(const LevelScan& scan, const std::vect
   return result;
 }
 
-// In single precision and in blocks: turning and clamping goes four ends at a time, and no beam takes a branch.
+// Single precision and blocks: rotation and clamping are vectorized for four ends, without branches.
 double LikelihoodField::mean_log(const BeamEnds& ends, const Pose2& T_map_body) const {
   if (ends.size() == 0) return 0.0;
   const auto c = static_cast<float>(inverse_resolution_ * std::cos(T_map_body.yaw));

@@ -10,7 +10,7 @@
 namespace patrol::localize {
 namespace {
 
-/// The surfaces of the map, each occupied cell hit once in its middle. The cells inside of a thick wall are no surface.
+/// Surface cells of the map, with one hit at each center. Cells inside thick walls are excluded.
 slam::GridMap surfaces_of(const OccupancyGrid& map) {
   const GridGeometry& geometry = map.geometry();
   const Eigen::Vector2d far = geometry.origin_m.cwiseAbs() +

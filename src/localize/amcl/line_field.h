@@ -9,32 +9,32 @@
 
 namespace patrol::localize {
 
-/// A short piece of a surface of the map.
+/// Local line of a surface of the map.
 struct SurfaceLine {
   Eigen::Vector2d point_map;
-  Eigen::Vector2d normal_map;  ///< unit, either side
-  double roughness_var_m2;     ///< scatter of the cells across the line
-  double straightness;         ///< 1 a straight wall ... 0 as wide as long
+  Eigen::Vector2d normal_map;  ///< unit normal, on either side
+  double roughness_var_m2;     ///< variance of the cells across the line
+  double straightness;         ///< linearity: 1 for a straight wall ... 0 if as wide as long
 };
 
-/// For every place near a surface of a map that does not change, the line through the occupied cells round it
-/// (slam/local_line.h), fitted once. A scan is laid on the map some twenty times a second for hours; the lines of a
-/// tunnel of 150 m take a tenth of a second and a few megabytes.
+/// Precomputed local lines of a static map: for every cell near a surface, the line through the surrounding occupied
+/// cells (slam/local_line.h). Scans are matched about twenty times per second for hours. The lines of a tunnel of 150 m
+/// take 0.1 s and a few megabytes.
 class LineField {
  public:
-  /// Lines reach `radius_cells` columns and rows from where they are asked for.
+  /// Lines are fitted to the occupied cells within `radius_cells` columns and rows.
   LineField(const OccupancyGrid& map, int radius_cells);
 
-  /// Null where no surface is near.
+  /// Returns null if no surface is nearby.
   const SurfaceLine* find(const Eigen::Vector2d& p_map) const;
-  /// How far off a surface a point may lie and still find its line, m.
+  /// Maximum distance of a point from a surface whose line is found, m.
   double reach_m() const { return reach_m_; }
 
  private:
   static constexpr std::int32_t kNone = -1;
 
   double reach_m_;
-  Grid<std::int32_t> index_;  ///< of each cell's line
+  Grid<std::int32_t> index_;  ///< index of each cell's line in lines_
   std::vector<SurfaceLine> lines_;
 };
 

@@ -16,13 +16,13 @@
 namespace patrol::localize {
 namespace {
 
-// How finely particles tell poses apart: the likelihood's tolerance and their number leave so much open.
+// Pose resolution of the particles, limited by the likelihood tolerance and their number.
 const Eigen::Vector3d kLeastStd(0.02, 0.02, 0.003);
 constexpr int kLineRadius_cells = 6;
-constexpr int kMinPoints = 10;           // of a scan that may be judged
-constexpr double kNear_m = 3.0;          // to the pose: a scan laid on the map there says something about a particle here
-constexpr double kWastefulShare = 0.67;  // so few of the particles would do
-constexpr Time kRangesBeforeStart = std::chrono::seconds(2);  // that the first weighing may use
+constexpr int kMinPoints = 10;           // minimum number of scan points for the scan fit
+constexpr double kNear_m = 3.0;  // maximum distance from the pose within which the scan match applies to a particle
+constexpr double kWastefulShare = 0.67;  // resample if fewer than this fraction of the particles suffices
+constexpr Time kRangesBeforeStart = std::chrono::seconds(2);  // maximum age of ranges used in the first particle update
 
 const OccupancyGrid& checked(const OccupancyGrid& map) {
   const auto& cells = map.values();
@@ -139,7 +139,7 @@ bool MonteCarloLocalizer::is_due(const Pose2& T_before_now, Time stamp) const {
          (is_lost_ && to_seconds(stamp - last_weighing_) >= settings_.update_period_s);
 }
 
-// A range is held against the belief with the belief's own doubt added to the range's.
+// The variance of the predicted pose is added to that of the range.
 void MonteCarloLocalizer::judge_ranges(const std::vector<AnchoredRange>& ranges, const slam::PoseGaussian& belief) {
   for (const AnchoredRange& range : ranges) {
     const Eigen::Vector2d to_anchor = (range.p_map_anchor.head<2>() - belief.mean.position()).stableNormalized();
@@ -150,7 +150,7 @@ void MonteCarloLocalizer::judge_ranges(const std::vector<AnchoredRange>& ranges,
   }
 }
 
-// The pose comes from the belief before the scan and the scan, each once.
+// The pose combines the belief before the scan with the scan, each used once.
 RefinedPose MonteCarloLocalizer::weigh(const LevelScan& scan, const std::vector<AnchoredRange>& ranges) {
   for (const AnchoredRange& range : ranges) {
     for (std::size_t i = 0; i < cloud_.size(); ++i) {
@@ -161,7 +161,7 @@ RefinedPose MonteCarloLocalizer::weigh(const LevelScan& scan, const std::vector<
 
   const ScanLikelihoods fits = sensor_model_->evaluate(scan, cloud_.T_map_body);
   const double gain = std::min(settings_.independent_beams, static_cast<double>(fits.num_beams));
-  // What fits as well as the best but for the model's own error is as good.
+  // Differences within the tolerance of map and model do not affect the weights.
   const double good = *std::max_element(fits.mean_log.begin(), fits.mean_log.end()) - settings_.scan_fit_tol;
   double likelihood = 0.0;
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
@@ -199,8 +199,8 @@ int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2&
   return static_cast<int>(poses.size());
 }
 
-// Every other particle about the pose is drawn to where the scan fits best. The others, left to the odometry and the likelihood
-// field alone, keep the match from being believed when it has settled in the wrong place.
+// Samples the scan proposal for every other particle near the pose. The rest, which depend on odometry and likelihood
+// field only, protect against a converged but wrong match.
 void MonteCarloLocalizer::draw_towards(const RefinedPose& refined) {
   const ScanProposal proposal(refined, kLeastStd.cwiseAbs2().asDiagonal());
   for (std::size_t i = 0; i < cloud_.size(); i += 2) {
@@ -219,8 +219,8 @@ void MonteCarloLocalizer::resample(const std::vector<double>& weights, std::size
   cloud_ = std::move(children);
 }
 
-// Draws one after the other until there are as many as the bins that they fill ask for (Fox 2003, table 3); the draws
-// themselves are then made again systematically, which scatters less.
+// Samples sequentially until the number of particles suffices for the occupied bins [Fox03, table 3]. Systematic
+// resampling then repeats the sampling with less variance.
 std::size_t MonteCarloLocalizer::particles_needed(const std::vector<double>& weights) const {
   std::vector<double> cumulative(weights.size());
   std::partial_sum(weights.begin(), weights.end(), cumulative.begin());

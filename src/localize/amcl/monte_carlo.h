@@ -39,16 +39,19 @@ std::span<const NamedFactory<std::unique_ptr<SensorModel>(const MonteCarloSettin
 
 struct MonteCarloSettings {
   std::string sensor_model = "likelihood_field";
-  double independent_beams = 20.0;     ///< a scan says as much as so many beams that err independently; more beams only average
-  double scan_fit_tol = 0.05;          ///< mean log-likelihood of a beam by which maps and models err: 3 cm at a deviation of 0.1 m
-  double update_distance_m = 0.2;      ///< particles are weighed after so much way,
-  double update_angle_rad = 0.05;      ///< or such a turn,
-  double update_period_s = 1.0;        ///< or, as long as the robot is lost, after this time
-  double max_tilt_rad = 0.1;           ///< a scan tilted by more, on a ramp, says nothing to a robot that knows where it is
-  double resample_threshold = 0.5;     ///< resample when the effective sample size falls below this share of the particles
-  int min_particles_when_lost = 2000;  ///< few particles forget one possible place after the other by chance
-  double range_memory_s = 2.0;         ///< ranges this old are still used to search with
-  double search_period_s = 1.0;        ///< at most one global search in this time
+  /// Tempering: effective number of independent beams of a scan, however many are evaluated.
+  double independent_beams = 20.0;
+  /// Tolerance of the mean log likelihood per beam for errors of map and model: 3 cm for a standard deviation of 0.1 m.
+  double scan_fit_tol = 0.05;
+  double update_distance_m = 0.2;      ///< distance traveled between particle updates
+  double update_angle_rad = 0.05;      ///< yaw change between particle updates
+  double update_period_s = 1.0;        ///< maximum time between particle updates while lost
+  double max_tilt_rad = 0.1;  ///< scans tilted by more, for example on a ramp, are not used unless the robot is lost
+  /// Resample if the effective sample size is below this fraction of the number of particles.
+  double resample_threshold = 0.5;
+  int min_particles_when_lost = 2000;  ///< with few particles, hypotheses would disappear by chance
+  double range_memory_s = 2.0;         ///< maximum age of ranges used in a global search
+  double search_period_s = 1.0;        ///< minimum time between global searches
   int max_logged_particles = 300;
   OdometryModelSettings odometry;
   LikelihoodFieldSettings likelihood_field;
@@ -89,38 +92,40 @@ struct MonteCarloSettings {
 struct LocalizationUpdate {
   PoseEstimate estimate;
   LocalizationTrust trust;
-  bool is_weighed = false;     ///< the particles were; otherwise the pose was only carried on and the scan laid on the map
-  std::optional<ParticleSet> particles;  ///< if they were weighed: every so many of them, for the log
-  int num_particles = 0;       ///< that there are now
-  int num_injected = 0;        ///< of these, put where a global search found room for hope
-  double clump_weight = 0.0;   ///< share of the belief behind the estimate
-  double matched_share = 0.0;  ///< of the scan's points on the map's surfaces
+  /// True: the particles were updated; false: only the pose was predicted and matched to the map.
+  bool is_weighed = false;
+  std::optional<ParticleSet> particles;  ///< regular subset of the updated particles, for the log
+  int num_particles = 0;       ///< current number of particles
+  int num_injected = 0;        ///< number of particles replaced by samples of a global search
+  double clump_weight = 0.0;   ///< weight of the particle cluster behind the estimate
+  double matched_share = 0.0;  ///< fraction of the scan points on surfaces of the map
 };
 
-/// Adaptive Monte-Carlo localisation on a map that is known (Thrun, Burgard, Fox, Probabilistic Robotics, 2005, chapter 8; KLD
-/// sampling: Fox, IJRR 2003), with UWB ranges as weights and not as positions.
+/// Adaptive Monte Carlo localization on a known map [Thrun05, chapter 8] with KLD sampling [Fox03]. UWB ranges enter as
+/// weights, not as positions.
 ///
-///   every scan      carry the belief on by odometry -> lay the scan on the map -> pose, covariance, trust
-///   after some way  move particles -> weigh by ranges -> weigh by scan -> lay the scan on the map -> resample, inject
+///   every scan       predict the Gaussian by odometry -> match the scan to the map -> pose, covariance, confidence
+///   particle update  propagate -> weight by ranges -> weight by scan -> match the scan to the map -> resample, inject
 ///
-/// Particles carry what has more than one summit: the start, a kidnap, both directions of a tunnel. The pose itself
-/// is the Gaussian posterior of the heaviest clump of particles, as it was before the scan, and the scan
-/// (pose_refinement.h): millimetres where the map tells the place, and the particles' own width where it does not.
+/// The particle set represents multimodal beliefs: global localization, kidnapping, both directions of a tunnel. The
+/// published pose is a Gaussian: the prior is the dominant particle cluster before the scan, the update a scan match
+/// (pose_refinement.h). Accuracy: millimeters where the scan constrains the pose, otherwise the spread of the cluster.
 class MonteCarloLocalizer {
  public:
-  /// Anchors in map, their heights above the body's origin: the ground is taken to be level. Throws InputError if a setting breaks its rule, or the map is empty or has no free or no occupied cell.
+  /// Anchors are in map, with heights above the body origin, for level ground. Throws InputError if a setting is
+  /// invalid, or if the map is empty or has no free or no occupied cell.
   MonteCarloLocalizer(const MonteCarloSettings& settings, const OccupancyGrid& map, const std::vector<UwbAnchor>& anchors_in_map,
                       const Pose3& T_body_uwb, std::uint64_t seed);
 
-  /// The body is near `T_map_body`; covariance of x, y, yaw in map.
+  /// Sets the initial pose; covariance of x, y, yaw in map.
   void start_at(const Pose2& T_map_body, const Eigen::Matrix3d& covariance);
-  /// The body may be anywhere on the map: the next scan is looked for everywhere.
+  /// Starts global localization: the next scan is searched for on the whole map.
   void start_anywhere();
 
-  /// `T_odom_body` at the range's stamp. Ranges of anchors that the survey does not know are ignored, and so are those that are
-  /// not finite and positive. The newest of each anchor is weighed with the next scan that is.
+  /// Adds a UWB range; `T_odom_body` is the odometry at its stamp. Ranges of unknown anchors and ranges that are not
+  /// finite and positive are ignored. The newest range of each anchor is used in the next particle update.
   void add(const UwbRange& range, const Pose3& T_odom_body) { ranges_.add(range, T_odom_body); }
-  /// `T_odom_body` at the scan's stamp.
+  /// Processes a scan; `T_odom_body` is the odometry at its stamp.
   LocalizationUpdate update(const LevelScan& seen, const Pose2& T_odom_body);
 
   const ParticleCloud& particles() const { return cloud_; }
@@ -148,12 +153,13 @@ class MonteCarloLocalizer {
 
   ParticleCloud cloud_;
   bool starts_anywhere_ = true;
-  std::uint64_t starts_ = 0;   ///< so far
-  std::uint64_t updates_ = 0;  ///< that weighed the particles, so far
-  slam::PoseGaussian belief_;  ///< of the heaviest clump at the last weighing, its scan and ranges included
+  std::uint64_t starts_ = 0;   ///< number of starts
+  std::uint64_t updates_ = 0;  ///< number of particle updates
+  /// Gaussian of the dominant cluster at the last particle update, including its scan and ranges
+  slam::PoseGaussian belief_;
   double clump_weight_ = 0.0;
   bool is_lost_ = true;
-  std::optional<Pose2> T_odom_last_;  ///< at the last weighing; none before the first
+  std::optional<Pose2> T_odom_last_;  ///< odometry at the last particle update; none before the first
   Time last_weighing_{};
   Time last_scan_{};
   std::optional<Time> last_search_;

@@ -27,7 +27,7 @@ void move_particles(ParticleCloud& cloud, const Pose2& T_before_now, double dt_s
 slam::PoseGaussian moved(const slam::PoseGaussian& before, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings) {
   slam::PoseGaussian now = slam::predict_motion(before.mean, T_before_now, dt_s, settings.noise);
   const Eigen::Vector2d way = now.mean.position() - before.mean.position();
-  Eigen::Matrix3d swing = Eigen::Matrix3d::Identity();  // an error of heading swings the way round
+  Eigen::Matrix3d swing = Eigen::Matrix3d::Identity();  // Jacobian: a heading error rotates the increment
   swing(0, 2) = -way.y(), swing(1, 2) = way.x();
   now.covariance += swing * before.covariance * swing.transpose();
   now.covariance.topLeftCorner<2, 2>() += settings.way_scale_std * settings.way_scale_std * way * way.transpose();

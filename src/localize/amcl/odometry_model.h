@@ -12,9 +12,10 @@
 namespace patrol::localize {
 
 struct OdometryModelSettings {
-  double way_scale_std = 0.02;        ///< of an error of the way's length that lasts: track wear, steady slip
-  double way_scale_memory_m = 50.0;   ///< the way over which it becomes another
-  slam::MotionModelSettings noise;    ///< what is new in every step
+  /// Standard deviation of the persistent scale error of the distance: track wear, steady slip.
+  double way_scale_std = 0.02;
+  double way_scale_memory_m = 50.0;   ///< correlation length of the scale error
+  slam::MotionModelSettings noise;    ///< independent error of each step
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -24,16 +25,17 @@ struct OdometryModelSettings {
   }
 };
 
-/// Moves every particle by what odometry has seen, T_before_now in `dt_s`, and draws its error.
+/// Propagates all particles by the odometry increment T_before_now over `dt_s`, with sampled errors.
 ///
-/// slam/motion_model.h says how large a step's own error is. It is not all: an error of scale is the same in step after
-/// step, so that in a corridor without features the belief has to widen with the way and not with its root, as it does
-/// when every step errs anew. So each particle carries its own scale (a Gauss-Markov process over the way), and what
-/// ranges and features say about positions tells the scales apart too.
+/// slam/motion_model.h gives the independent error of a step. Scale errors, in contrast, persist over many steps. In a
+/// featureless corridor the standard deviation must therefore grow with the distance, not with its square root. Each
+/// particle therefore has its own scale error (a Gauss-Markov process over the distance), which ranges and features
+/// also estimate.
 void move_particles(ParticleCloud& cloud, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings,
                     const RandomStream& noise, std::uint64_t tick);
 
-/// The same for a normally distributed pose whose scale is not known better than at the start.
+/// Propagates a normally distributed pose by an odometry increment, with the stationary distribution of the scale
+/// error.
 slam::PoseGaussian moved(const slam::PoseGaussian& before, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings);
 
 }  // namespace patrol::localize

@@ -9,11 +9,11 @@
 
 namespace patrol::localize {
 
-/// Hypotheses of where the body is. The arrays are parallel, [particle].
+/// Set of weighted pose hypotheses. The arrays are parallel, [particle].
 struct ParticleCloud {
   std::vector<Pose2> T_map_body;
-  std::vector<double> way_scale;    ///< what odometry's way has to be multiplied with, less 1
-  std::vector<double> log_weights;  ///< up to a constant that all share
+  std::vector<double> way_scale;    ///< scale error of the odometry distance: true / measured - 1
+  std::vector<double> log_weights;  ///< up to a constant common to all particles
 
   std::size_t size() const { return T_map_body.size(); }
   void add(const Pose2& pose, double scale, double log_weight = 0.0) {
@@ -21,17 +21,17 @@ struct ParticleCloud {
   }
 };
 
-/// Which clump of the belief each particle belongs to (PoseBins::clumps): [particle] -> number of the clump.
+/// Clusters of the particles (PoseBins::clumps): [particle] -> cluster number.
 std::vector<std::size_t> clumps_of(const std::vector<Pose2>& T_map_body, const KldSettings& settings);
 
 struct HeaviestClump {
   std::size_t number = 0;
-  double weight = 0.0;  ///< its share of the belief, 0 ... 1
+  double weight = 0.0;  ///< sum of the particle weights in the cluster, 0 ... 1
 };
-/// `weights`: [particle], sum 1.
+/// Finds the cluster of largest weight. `weights`: [particle], sum 1.
 HeaviestClump heaviest_clump(const std::vector<std::size_t>& clumps, const std::vector<double>& weights);
 
-/// Mean and covariance of one clump's particles. The mean of the headings is that of their directions.
+/// Mean and covariance of the particles of one cluster. The mean heading is a circular mean.
 slam::PoseGaussian gaussian_of(const std::vector<Pose2>& T_map_body, const std::vector<double>& weights,
                                const std::vector<std::size_t>& clumps, std::size_t clump);
 

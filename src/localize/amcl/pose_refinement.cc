@@ -17,15 +17,15 @@ constexpr double kStepTol_rad = 1e-5;
 
 double squared(double value) { return value * value; }
 
-/// A point and its line at some pose.
+/// Residual of a point relative to its line.
 struct Residual {
   double distance_m;
-  double weight;           ///< inverse variance, and less for outliers
-  Eigen::Vector2d normal;  ///< of the line, in map
-  double turn;             ///< d distance / d yaw, m
+  double weight;           ///< inverse variance, reduced for outliers
+  Eigen::Vector2d normal;  ///< normal of the line, in map
+  double turn;             ///< derivative of the distance with respect to yaw, m
 };
 
-/// Those of the points that are near a surface.
+/// Residuals of the points near a surface.
 std::vector<Residual> residuals_at(const LineField& lines, const std::vector<slam::MatchPoint>& points, const Pose2& T_map_body,
                                    const PoseRefinementSettings& settings) {
   std::vector<Residual> residuals;
@@ -52,7 +52,7 @@ struct NormalEquations {
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
 };
 
-/// The unit vector along which the lines face least, taken all together.
+/// Unit vector along which the lines constrain the position least.
 Eigen::Vector2d weak_axis(const std::vector<Residual>& residuals) {
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (const Residual& residual : residuals) sum += residual.weight * residual.normal * residual.normal.transpose();

@@ -12,17 +12,18 @@
 namespace patrol::localize {
 
 struct PoseRefinementSettings {
-  int max_points = 400;                 ///< of a scan that are laid on the map
-  double point_spacing_m = 0.1;         ///< beams nearer together than this are averaged
-  double point_std_m = 0.03;            ///< of a point's range, and of the map's cells
-  double point_angle_std_rad = 0.0015;  ///< of its direction
-  double kernel_m = 0.08;               ///< from here on a point counts as an outlier, gradually
-  double likelihood_gain = 0.1;         ///< share of the points that err independently
-  double min_facing = 0.15;             ///< a line that faces the weak direction by no more (a sine) says nothing about it
-  double map_std_m = 0.01;              ///< of the map itself, which no number of scans averages away
+  int max_points = 400;                 ///< maximum number of scan points matched to the map
+  double point_spacing_m = 0.1;         ///< consecutive beams that end within this distance are averaged
+  double point_std_m = 0.03;            ///< standard deviation of the range of a point and of the map cells
+  double point_angle_std_rad = 0.0015;  ///< standard deviation of the direction of a point
+  double kernel_m = 0.08;  ///< scale of the Cauchy kernel; residuals beyond it are down-weighted as outliers
+  double likelihood_gain = 0.1;         ///< tempering factor: fraction of the points with independent errors
+  /// A line constrains the weak direction only if the sine of its angle to that direction is larger.
+  double min_facing = 0.15;
+  double map_std_m = 0.01;              ///< standard deviation of the map itself, which is not reduced by averaging
   double map_std_rad = 0.001;
   int max_iterations = 8;
-  double min_matched_share = 0.3;       ///< fewer points on surfaces are no match
+  double min_matched_share = 0.3;       ///< matches with a smaller inlier ratio are rejected
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -41,39 +42,39 @@ struct PoseRefinementSettings {
 };
 
 struct RefinedPose {
-  slam::PoseGaussian posterior;  ///< of the pose, given the prior and the scan
-  /// Of the scan alone, x, y, yaw in map, with the gain; zero in a direction in which the map says nothing.
+  slam::PoseGaussian posterior;  ///< pose given the prior and the scan
+  /// Information of the scan alone for x, y, yaw in map, tempered; zero in degenerate directions.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  int num_points = 0;            ///< of the scan that were laid on the map
-  double matched_share = 0.0;    ///< of these, on a surface: within twice the kernel
-  bool is_matched = false;       ///< otherwise the posterior is the prior
+  int num_points = 0;            ///< number of matched scan points
+  double matched_share = 0.0;    ///< inlier ratio: fraction of these within twice the kernel of a surface
+  bool is_matched = false;       ///< false: the posterior is the prior
 };
 
-/// The Gaussian posterior of a prior and a scan on the map: Gauss-Newton on the points' distances to the lines of the map,
-/// as slam/scan_matcher.h does while the map grows, from `T_map_start`.
+/// Gaussian posterior of a prior and a scan matched to a known map. Gauss-Newton on the distances of the points to the
+/// lines of the map, as in slam/scan_matcher.h, from `T_map_start`.
 ///
-/// In a degenerate corridor every line is parallel to the way, but noise in the map turns each a few degrees, and hundreds
-/// of them would tell the place along the way to centimetres: wrongly, and the same wrong place scan after scan. So a line
-/// counts in the weaker direction only if it clearly faces it. What is left there is what the map knows, and in a
-/// featureless tunnel that is nothing: the direction stays with the prior ("solution remapping", Zhang, Kaess, Singh, "On
-/// degeneracy of optimization-based state estimation problems", ICRA 2016; there by eigenvalue, here line by line).
+/// In a degenerate corridor all lines are parallel to it, but map noise rotates each by a few degrees. Hundreds of them
+/// would constrain the position along the corridor to centimeters, at the same wrong position scan after scan. A line
+/// therefore constrains the weaker direction only if it clearly faces it. In a featureless tunnel no line does, and
+/// that direction keeps the prior (solution remapping [Zhang16]).
+/// Deviation from [Zhang16]: the projection is applied per line, not per eigenvalue.
 RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const slam::PoseGaussian& prior, const Pose2& T_map_start,
                         const PoseRefinementSettings& settings);
 
-/// Draws poses from what a particle and the scan say together, both normally distributed: the improved proposal of Grisetti,
-/// Stachniss, Burgard (IEEE T-RO 2007), with one scan match for all particles near it. Along a direction that the scan leaves
-/// open a particle stays where it is.
+/// Proposal distribution given a particle and the scan match, both normally distributed. It is the improved proposal of
+/// [Grisetti07], with one scan match for all particles near it. Along degenerate directions a particle is unchanged
+/// except for its spread.
 class ScanProposal {
  public:
   /// `spread`: covariance of a particle about its pose; x, y, yaw.
   ScanProposal(const RefinedPose& refined, const Eigen::Matrix3d& spread);
 
-  /// `unit` is standard normal.
+  /// Samples a pose; `unit` is a standard normal vector.
   Pose2 draw(const Pose2& particle, const Eigen::Vector3d& unit) const;
 
  private:
   Pose2 matched_;
-  Eigen::Matrix3d gain_, root_;  ///< of the way to the match, and of the posterior's covariance
+  Eigen::Matrix3d gain_, root_;  ///< gain on the offset to the match; root of the covariance of the proposal
 };
 
 }  // namespace patrol::localize

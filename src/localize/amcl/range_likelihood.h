@@ -8,9 +8,11 @@
 namespace patrol::localize {
 
 struct RangeLikelihoodSettings {
-  double range_std_m = 0.15;      ///< of a range in plain view; more than the radio's, because neighbouring ranges err together
-  double blocked_share = 0.1;     ///< likelihood of a path just barely blocked, next to a true range
-  double blocked_excess_m = 0.5;  ///< mean of what a blocked path adds
+  /// Standard deviation of a LOS range; larger than that of the radio, because consecutive ranges have correlated
+  /// errors.
+  double range_std_m = 0.15;
+  double blocked_share = 0.1;     ///< likelihood of a marginal NLOS path relative to that of an exact range
+  double blocked_excess_m = 0.5;  ///< mean NLOS bias
   double outlier_share = 0.02;    ///< likelihood of any other range
 
   template <typename Self, typename Visitor>
@@ -22,19 +24,20 @@ struct RangeLikelihoodSettings {
   }
 };
 
-/// log(likelihood / largest) of a range that is longer than expected by `excess_m`: a normal distribution, an exponential
-/// tail of blocked paths, which only lengthen, and a floor that bounds what one bad range may do. The beam model's
-/// mixture (Thrun et al. 2005, section 6.3) with its short returns turned into long ones.
+/// Returns log(likelihood / maximum) of a range with innovation `excess_m`. The mixture has a normal distribution, an
+/// exponential tail for the positive bias of NLOS paths, and a floor that bounds the influence of outliers. It is the
+/// beam model's mixture [Thrun05, section 6.3] with the short returns replaced by long ones.
 double range_log_likelihood(double excess_m, const RangeLikelihoodSettings& settings);
 
-/// A range as it is compared with poses of the body now.
+/// Range with its geometry relative to the current body.
 struct AnchoredRange {
   Eigen::Vector3d p_map_anchor = Eigen::Vector3d::Zero();   ///< m
-  Eigen::Vector3d p_body_antenna = Eigen::Vector3d::Zero();  ///< where the antenna was at the range's stamp, in the level body of now, m
+  /// Position of the antenna at the stamp of the range, in the current level body frame, m.
+  Eigen::Vector3d p_body_antenna = Eigen::Vector3d::Zero();
   double range_m = 0.0;
 };
 
-/// The range less the distance from the anchor to the antenna, if the level body is at `T_map_body`, m.
+/// Measured range minus the distance from anchor to antenna for the level body at `T_map_body`, m.
 double range_excess_m(const AnchoredRange& range, const Pose2& T_map_body);
 
 }  // namespace patrol::localize

@@ -10,7 +10,7 @@ RangeMemory::RangeMemory(const std::vector<UwbAnchor>& anchors_in_map, const Pos
 
 void RangeMemory::add(const UwbRange& range, const Pose3& T_odom_body) {
   if (!p_map_anchor_.contains(range.anchor) || !std::isfinite(range.range_m) || !(range.range_m > 0.0)) return;
-  // The bias is a function of the true distance, and so flat that two steps find it.
+  // The bias is a function of the true distance; two fixed-point iterations suffice, because it varies slowly.
   const double nearly_m = range.range_m - uwb_bias_at(calibration_, range.range_m).bias_m;
   newest_[range.anchor] = {.stamp = range.stamp,
                            .T_odom_body = to_planar(T_odom_body),

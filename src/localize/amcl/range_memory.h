@@ -12,15 +12,15 @@
 
 namespace patrol::localize {
 
-/// The newest range of each anchor, and where odometry had the body when it was taken.
+/// Buffer of the newest range of each anchor, with the odometry pose at its time.
 class RangeMemory {
  public:
-  /// Anchors in map, heights above the body's origin.
+  /// Anchors in map, with heights above the body origin.
   RangeMemory(const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb);
 
-  /// Ranges of anchors that the survey does not know are ignored, and those that are not finite and positive.
+  /// Adds a range. Ranges of unknown anchors and ranges that are not finite and positive are ignored.
   void add(const UwbRange& range, const Pose3& T_odom_body);
-  /// Those taken after `since`, as seen from the body when odometry has it at `T_odom_now`; by number of the anchor.
+  /// Returns the ranges newer than `since` in the body frame at `T_odom_now`, sorted by anchor number.
   std::vector<AnchoredRange> taken_after(Time since, const Pose2& T_odom_now) const;
 
  private:
@@ -28,7 +28,7 @@ class RangeMemory {
     Time stamp{};
     Pose2 T_odom_body;
     Eigen::Vector3d p_level_antenna = Eigen::Vector3d::Zero();
-    double distance_m = 0.0;  ///< what was read, less what a clear range reads too much
+    double distance_m = 0.0;  ///< measured range minus the LOS bias
   };
 
   std::map<int, Eigen::Vector3d> p_map_anchor_;

@@ -7,14 +7,14 @@
 
 namespace patrol::localize {
 
-/// How well a scan fits to each of many poses.
+/// Likelihoods of a scan at many poses.
 struct ScanLikelihoods {
-  /// [pose] mean over the beams of log(likelihood / largest likelihood): 0 the best, at every beam.
+  /// [pose], mean over the beams of log(likelihood / maximum likelihood); 0 is the maximum of every beam.
   std::vector<double> mean_log;
-  int num_beams = 0;  ///< that were looked at; 0: the scan says nothing, all poses fit alike
+  int num_beams = 0;  ///< number of evaluated beams; 0: the scan has no information, all poses are equal
 };
 
-/// p(z | x, m) of a 2D scan (Thrun, Burgard, Fox, Probabilistic Robotics, 2005, chapter 6).
+/// Interface of a sensor model p(z | x, m) of a 2D scan [Thrun05, chapter 6].
 class SensorModel {
  public:
   virtual ~SensorModel() = default;

@@ -8,7 +8,7 @@
 namespace patrol::localize {
 namespace {
 
-/// 0 at `low`, 1 at `high`, straight between and level outside.
+/// Linear ramp: 0 up to `low`, 1 from `high` on.
 double ramp(double value, double low, double high) {
   if (high <= low) return value < low ? 0.0 : 1.0;
   return std::clamp((value - low) / (high - low), 0.0, 1.0);

@@ -8,15 +8,16 @@
 namespace patrol::localize {
 
 struct TrustSettings {
-  double sure_std_m = 0.05;       ///< weakest deviation up to which trust is 1,
-  double doubtful_std_m = 0.25;   ///< at which it is 0.5,
-  double hopeless_std_m = 1.0;    ///< and from which on it is 0
-  double good_fit = 0.6;          ///< share of the scan on the map's surfaces from which on the map fits
-  double bad_fit = 0.3;           ///< and up to which it does not
-  double decided_weight = 0.95;   ///< share of the belief behind the pose from which on it is decided,
-  double undecided_weight = 0.5;  ///< and up to which it is not
-  double lost_below = 0.1;        ///< less trust than this is being lost
-  double found_above = 0.2;       ///< who was lost is found with more than this, and only when the pose is decided
+  double sure_std_m = 0.05;       ///< largest principal standard deviation up to which its factor is 1
+  double doubtful_std_m = 0.25;   ///< standard deviation at which the factor is 0.5
+  double hopeless_std_m = 1.0;    ///< standard deviation from which on the factor is 0
+  double good_fit = 0.6;          ///< inlier ratio of the scan from which on its factor is 1
+  double bad_fit = 0.3;           ///< inlier ratio of the scan up to which its factor is 0
+  double decided_weight = 0.95;   ///< cluster weight from which on its factor is 1
+  double undecided_weight = 0.5;  ///< cluster weight up to which its factor is 0
+  double lost_below = 0.1;        ///< the robot becomes lost below this confidence
+  /// A lost robot recovers above this confidence, if the cluster weight is at least decided_weight.
+  double found_above = 0.2;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -32,16 +33,17 @@ struct TrustSettings {
   }
 };
 
-/// What there is to judge a pose by.
+/// Evidence for the confidence of a pose estimate.
 struct BeliefEvidence {
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in map
-  double clump_weight = 0.0;  ///< share of the belief that stands behind the pose
-  double scan_fit = 0.0;      ///< share of the scan's points that lie on the map's surfaces
-  double range_fit = 1.0;     ///< 1: the UWB ranges are as the pose has them; 0: none is
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< covariance of x, y, yaw in map
+  double clump_weight = 0.0;  ///< weight of the particle cluster behind the pose
+  double scan_fit = 0.0;      ///< fraction of the scan points on surfaces of the map
+  double range_fit = 1.0;     ///< 1: the UWB ranges agree with the pose; 0: no range agrees
 };
 
-/// trust = how narrow x how well founded: piecewise linear in the deviation along the weakest direction, times the fits and the
-/// clump's share. A degenerate corridor shows in the first, a kidnap in the others. Being lost has hysteresis.
+/// Computes the localization confidence: a piecewise linear function of the largest principal standard deviation, times
+/// factors for scan fit, range fit and cluster weight. The first detects degenerate corridors, the others kidnapping.
+/// The lost state has hysteresis.
 LocalizationTrust assess_trust(Time stamp, const BeliefEvidence& evidence, bool was_lost, const TrustSettings& settings);
 
 }  // namespace patrol::localize

@@ -19,12 +19,12 @@ constexpr std::size_t kNumParameters = kCalibrationParameters.size();
 using Vector6 = CalibrationVector;
 using Matrix6 = Eigen::Matrix<double, kNumParameters, kNumParameters>;
 
-constexpr double kPerMedian = 1.4826;    ///< standard deviation over the median absolute value, of a Gaussian
-constexpr double kLeastNoise = 1e-6;     ///< of a log without any
-constexpr double kCauchy = 2.5;          ///< standard deviations, while what is right is still looked for
+constexpr double kPerMedian = 1.4826;    ///< ratio of standard deviation to median absolute value of a Gaussian
+constexpr double kLeastNoise = 1e-6;     ///< lower bound of the noise scales, for logs without noise
+constexpr double kCauchy = 2.5;  ///< scale of the Cauchy weights in standard deviations, for the first iterations
 constexpr int kCauchyIterations = 15;
 constexpr std::size_t kRuns = 60, kFewestRuns = 20, kStretchesPerRun = 4;
-/// Loose enough to weigh nothing, so that also what the log does not tell can be solved for.
+/// Prior standard deviations, wide enough to have no influence, that keep unobservable parameters solvable.
 const Vector6 kLooseStd{1.0, 1.0, 0.5, 0.5, 0.5, 0.5};
 
 double median(std::vector<double> values) {
@@ -33,7 +33,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Tukey's biweight, or Cauchy's weight, at a distance of so many standard deviations; and its derivative over the distance.
+/// Weight of Tukey's biweight or Cauchy's kernel at a distance in standard deviations, and its derivative divided by
+/// the distance.
 struct Weight {
   double weight, slope_over_distance;
 };
@@ -43,13 +44,13 @@ Weight tukey(double distance, double limit) {
 }
 Weight cauchy(double distance) { return {1.0 / (1.0 + distance * distance / (kCauchy * kCauchy)), 0.0}; }
 
-/// The estimate, and what it stands on.
+/// State of the estimation.
 class Calibrator {
  public:
   Calibrator(const std::vector<MotionPair>& pairs, const Vector6& before, const CalibratorSettings& settings)
       : pairs_(pairs), before_(before), parameters_(before), settings_(settings) {}
 
-  /// From the values before, with those that are held staying at them.
+  /// Estimates the parameters from the initial values; held parameters keep them.
   void solve(const std::array<bool, kNumParameters>& is_held) {
     parameters_ = before_;
     move_noise_ = turn_noise_ = 1.0;
@@ -70,7 +71,7 @@ class Calibrator {
     weigh(false);
   }
 
-  /// As the curvature has it, and as the scores of runs of stretches have it.
+  /// Covariance from the curvature, and from the scores of groups of segments (sandwich estimator).
   Matrix6 curvature_covariance(const std::array<bool, kNumParameters>& is_held) const { return inverse_of(curvature(false), is_held); }
   Matrix6 covariance(const std::array<bool, kNumParameters>& is_held) const {
     const std::size_t runs = std::min(kRuns, pairs_.size() / kStretchesPerRun);
@@ -119,7 +120,8 @@ class Calibrator {
     for (const MotionPair& pair : pairs_) residuals_.push_back(motion_residual(pair, parameters_, settings_.odometry));
   }
 
-  /// By what matching knows better than odometry does: elsewhere the residual is small because the tracker believed odometry.
+  /// Uses only components that matching constrains better than odometry; elsewhere the tracker followed odometry, so
+  /// the residual is too small.
   void estimate_noise() {
     std::vector<double> moves, turns;
     for (const MotionResidual& residual : residuals_) {
@@ -143,7 +145,7 @@ class Calibrator {
     }
   }
 
-  /// J^T W J; with `is_exact` the derivative of the gradient, in which the weights move too.
+  /// Curvature J^T W J; with `is_exact` the derivative of the gradient including that of the weights.
   Matrix6 curvature(bool is_exact) const {
     Matrix6 H = loose_information();
     for (std::size_t k = 0; k < residuals_.size(); ++k) {
@@ -167,13 +169,14 @@ class Calibrator {
   double move_noise_ = 1.0, turn_noise_ = 1.0;
   int iterations_ = 0;
   bool converged_ = false;
-  std::vector<MotionResidual> residuals_;           ///< [stretch]
-  std::vector<Eigen::Matrix3d> information_;  ///< [stretch]
-  std::vector<double> distances_;             ///< [stretch], standard deviations
-  std::vector<Weight> weights_;               ///< [stretch]
+  std::vector<MotionResidual> residuals_;           ///< [segment]
+  std::vector<Eigen::Matrix3d> information_;  ///< [segment]
+  std::vector<double> distances_;             ///< [segment], standard deviations
+  std::vector<Weight> weights_;               ///< [segment]
 };
 
-/// The one that the log tells worst, of those that it tells worse than it should; none is left to hold.
+/// Returns the free parameter with the largest ratio of standard deviation to limit, if the ratio exceeds 1; otherwise
+/// none.
 std::optional<std::size_t> worst_of(const Matrix6& covariance, const Vector6& max_std, const std::array<bool, kNumParameters>& is_held) {
   std::optional<std::size_t> worst;
   double worst_ratio = 1.0;

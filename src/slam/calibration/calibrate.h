@@ -12,8 +12,8 @@
 namespace patrol::slam {
 
 struct CalibratorSettings {
-  int min_stretches = 20;  ///< fewer say nothing
-  /// How odometry's errors grow with a stretch; how large they are at all is found from the log.
+  int min_stretches = 20;  ///< minimum number of segments
+  /// Odometry noise model of a segment. Its scale is estimated from the log.
   MotionModelSettings odometry{.along_std_m_per_m = 0.02,
                                .across_std_m_per_m = 0.02,
                                .turn_std_rad_per_rad = 0.03,
@@ -21,9 +21,9 @@ struct CalibratorSettings {
                                .turn_std_rad_per_s = 0.0,
                                .min_std_m = 0.003,
                                .min_std_rad = 0.002};
-  double outlier_std = 5.0;  ///< a stretch that is so many standard deviations off is none of odometry's ordinary errors
+  double outlier_std = 5.0;  ///< segments with larger errors, in standard deviations, are outliers of odometry
   int max_iterations = 100;
-  // What would be known less well than this is not taken from the log.
+  // Parameters with a larger standard deviation are not estimated.
   double max_std_lidar_m = 0.05;
   double max_std_lidar_rad = 0.02;
   double max_std_distance_scale = 0.02;
@@ -44,49 +44,54 @@ struct CalibratorSettings {
   }
 };
 
-/// In the order of CalibrationResult::parameters; named as in Calibration.
+/// Parameter names as in Calibration, in the order of CalibrationResult::parameters.
 inline constexpr std::array<const char*, 6> kCalibrationParameters = {"lidar_x_m",      "lidar_y_m",  "lidar_yaw_rad",
                                                                       "distance_scale", "turn_scale", "steering_rad_per_m"};
 
 struct CalibratedParameter {
-  double before = 0.0;  ///< as the log has it
-  double value = 0.0;   ///< the same, when it is not observable
-  double std = 0.0;     ///< of what the log says; a large one when that is next to nothing
+  double before = 0.0;  ///< value in the log
+  double value = 0.0;   ///< estimate; equals `before` if not observable
+  double std = 0.0;     ///< standard deviation from the log; large if the log does not constrain the parameter
   bool is_observable = false;
 };
 
 struct CalibrationResult {
   std::array<CalibratedParameter, 6> parameters;
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< of the observable ones; zero elsewhere
+  /// Covariance of the observable parameters; zero elsewhere.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   int num_stretches = 0;
-  int num_rejected = 0;          ///< of these: odometry slipped or lied, or the match was wrong
-  std::vector<double> errors;    ///< [stretch], standard deviations
-  double move_noise = 0.0;       ///< odometry's errors over those of CalibratorSettings::odometry
+  int num_rejected = 0;          ///< number of rejected segments: odometry outliers or wrong matches
+  std::vector<double> errors;    ///< [segment], standard deviations
+  double move_noise = 0.0;       ///< scale of the translational odometry noise relative to CalibratorSettings::odometry
   double turn_noise = 0.0;
   int iterations = 0;
   bool converged = false;
 
-  /// The lidar's place is given if any of it was observable.
+  /// Returns the calibration; it overrides the lidar pose if any component of it is observable.
   Calibration calibration() const;
 };
 
-/// The lidar's place in the body and odometry's scales that let the stretches agree: hand-eye calibration in the plane, X L = B X with L the lidar's motion
-/// and B the body's (Censi et al. 2013, section III, with what odometry says of B on the other side of the equation).
+/// Estimates the lidar pose in the body and the odometry parameters from segments. Planar hand-eye calibration: X L = B
+/// X with L the lidar motion and B the body motion [Censi13, section III].
 ///
-/// - The residual is odometry as the lidar's motion foretells it less odometry as recorded. Odometry errs far more than matching does, and an error of what is
-///   explained shrinks no scale, as one of what explains would (errors in variables).
-/// - Gauss-Newton, reweighted: Cauchy's weights at first, then Tukey's biweight, which gives no weight to what is far off: wheels that spin, logs that say
-///   forwards for backwards. The size of odometry's errors, of moves and of turns, is estimated on the way (median of the absolute residuals).
-/// - A parameter that the log would tell worse than the settings ask keeps its value and takes no part; the worst goes first. A way without turns does not
-///   tell the lever arm, and a circle does not tell steering from the scale of turns: then the second is right if the first is.
-/// - Standard deviations come from the scores of runs of stretches, so that they hold also where errors last longer than a stretch (White's sandwich, in
-///   clusters); where the log has fewer than twenty runs, from the curvature alone. They know nothing
-///   of odometry that errs otherwise than by these numbers: where it does, stretches of other lengths give other numbers.
+/// - Deviation from [Censi13]: the residual is the odometry predicted from the lidar motion minus the recorded
+///   odometry. Odometry has much larger errors than matching. Errors of the dependent variable do not bias a scale, as
+///   those of the independent variable would (errors in variables).
+/// - Iteratively reweighted Gauss-Newton: first with Cauchy weights, then with Tukey's biweight, which gives outliers
+///   no weight (wheel slip, logs with reversed direction). The scales of the translational and rotational odometry
+///   noise are estimated in each iteration (median of the absolute residuals).
+/// - A parameter whose standard deviation exceeds the limit of the settings keeps its value and is excluded, the worst
+///   first. Without turns, the lever arm is unobservable. On a circle, steering and turn scale cannot be separated: the
+///   turn scale is then correct only if the steering is.
+/// - Standard deviations follow from the scores of groups of consecutive segments, and thus also hold for errors longer
+///   than a segment (White's sandwich estimator, clustered). With fewer than twenty groups they follow from the
+///   curvature alone. They do not cover odometry errors outside the model; in that case segments of other lengths give
+///   different results.
 ///
-/// Not estimated: the lidar's own scale, with which odometry's is compared, and a difference of the two clocks: at a steady speed scans that are stamped late by
-/// dt look like a lidar that sits speed * dt farther back.
+/// Not estimated: the scale of the lidar, which is the reference for the odometry, and the offset between the two
+/// clocks. At constant speed, scans stamped late by dt are equivalent to a lidar mounted speed * dt farther back.
 ///
-/// Throws InputError for fewer than `min_stretches`.
+/// Throws InputError for fewer than `min_stretches` segments.
 CalibrationResult calibrate(const std::vector<MotionPair>& pairs, const Pose2& T_body_lidar_before, const CalibratorSettings& settings);
 
 }  // namespace patrol::slam

@@ -11,7 +11,7 @@ Pose2 corrected_step(const Pose2& T_before_now, const Calibration& calibration) 
 
 void CalibratedScans::correct(RecordedScan& recorded) {
   if (calibration_.places_lidar) recorded.T_body_lidar = calibration_.T_body_lidar();
-  if (!calibration_.changes_odometry()) return;  // to the bit as the log has it
+  if (!calibration_.changes_odometry()) return;  // keep the log bit-identical
   const Pose2 T_odom_now = recorded.T_odom_body;
   T_corrected_last_ = T_odom_last_ ? T_corrected_last_ * corrected_step(T_odom_last_->inverse() * T_odom_now, calibration_) : T_odom_now;
   T_odom_last_ = T_odom_now;

@@ -7,24 +7,26 @@
 
 namespace patrol::slam {
 
-/// What is wrong with a log's odometry and with the place of its lidar. The defaults change nothing.
+/// Calibration of the odometry and lidar pose of a log. The defaults leave the log unchanged.
 ///
-/// A step of odometry from scan to scan, with m its move seen from the middle of its turn (an arc's chord then lies along x), becomes
+/// For an odometry increment from scan to scan, m is its translation in the frame of its mean heading, so that the
+/// chord of an arc lies along x. The increment becomes
 ///
-///   move  distance_scale * m      turn  turn_scale * turn + steering_rad_per_m * m_x
+///   translation  distance_scale * m      rotation  turn_scale * turn + steering_rad_per_m * m_x
 ///
-/// the three numbers of a differential drive whose two radii and track are not what its software takes them for (Censi, Franchi, Marchionni, Oriolo,
-/// "Simultaneous calibration of odometry and sensor parameters for mobile robots", IEEE T-RO 29(2), 2013, eq. 1), but for the move that unequal wheels make while
-/// turning on the spot: nothing tells it from a lidar that sits elsewhere. The lidar's place is that seen from the point that moves as odometry says; on tracks,
-/// which turn about where they grip, that is not quite the body's origin.
+/// These are the three parameters of a differential drive with wrong wheel radii and wheel base [Censi13, eq. 1].
+/// Deviation from [Censi13]: the translation of unequal wheels during a turn in place is omitted. It cannot be
+/// distinguished from a different lidar position. The lidar pose is relative to the point that moves as odometry
+/// reports. On a tracked vehicle, which turns about its instantaneous center of rotation, that point differs slightly
+/// from the body origin.
 struct Calibration {
-  bool places_lidar = false;        ///< the lidar sits where the next three say, not where the log has it
-  double lidar_x_m = 0.0;           ///< in body
+  bool places_lidar = false;        ///< true: the following lidar pose replaces that of the log
+  double lidar_x_m = 0.0;           ///< lidar pose in body
   double lidar_y_m = 0.0;
   double lidar_yaw_rad = 0.0;
-  double distance_scale = 1.0;      ///< true way over odometry's
-  double turn_scale = 1.0;          ///< true turn over odometry's
-  double steering_rad_per_m = 0.0;  ///< turned to the left for each metre ahead that odometry counts, unknown to it
+  double distance_scale = 1.0;      ///< true distance / odometry distance
+  double turn_scale = 1.0;          ///< true yaw change / odometry yaw change
+  double steering_rad_per_m = 0.0;  ///< unmeasured yaw change to the left per meter of odometry
 
   Pose2 T_body_lidar() const { return {lidar_x_m, lidar_y_m, lidar_yaw_rad}; }
   bool changes_odometry() const { return distance_scale != 1.0 || turn_scale != 1.0 || steering_rad_per_m != 0.0; }
@@ -41,15 +43,15 @@ struct Calibration {
   }
 };
 
-/// The true step of the body, of one that odometry saw. The step must be less than half a turn.
+/// Returns the corrected increment of the body for an odometry increment of less than half a turn.
 Pose2 corrected_step(const Pose2& T_before_now, const Calibration& calibration);
 
-/// Puts a calibration over a log's scans as they come, one after the other.
+/// Applies a calibration to the scans of a log in sequence.
 class CalibratedScans {
  public:
   explicit CalibratedScans(const Calibration& calibration) : calibration_(calibration) {}
 
-  /// Odometry goes on from where the first scan has it.
+  /// Corrects a scan in place. The corrected odometry starts at that of the first scan.
   void correct(RecordedScan& recorded);
 
  private:

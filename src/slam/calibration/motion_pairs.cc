@@ -7,7 +7,7 @@
 namespace patrol::slam {
 namespace {
 
-/// Of a match alone, in local: where it says nothing, 10 m and 10 rad.
+/// Covariance of a match alone, in local: 10 m and 10 rad along directions without information.
 Eigen::Matrix3d match_covariance(const TrackedScan& tracked, const MotionPairSettings& settings) {
   const auto square = [](double value) { return value * value; };
   const Eigen::Matrix3d loose = Eigen::Vector3d(1e-2, 1e-2, 1e-2).asDiagonal();
@@ -15,7 +15,7 @@ Eigen::Matrix3d match_covariance(const TrackedScan& tracked, const MotionPairSet
   return (settings.tracking.likelihood_gain * tracked.match_information + loose).inverse() + systematic;
 }
 
-/// Of b seen from a, when a and b are known independently in local.
+/// Covariance of b in the frame of a, for independent estimates of a and b in local.
 Eigen::Matrix3d relative_covariance(const Pose2& T_local_a, const Eigen::Matrix3d& of_a, const Pose2& T_local_b, const Eigen::Matrix3d& of_b) {
   const Pose2 T_a_b = T_local_a.inverse() * T_local_b;
   Eigen::Matrix3d by_b = Eigen::Matrix3d::Identity();
@@ -45,7 +45,7 @@ void MotionPairs::add(const RecordedScan& recorded) {
   const TrackedScan tracked = tracker_.update(planar_scan(guess, scan_), T_odom_lidar);
   lidar_steps_.push_back(T_local_last_.inverse() * tracked.T_local_body);
   T_local_last_ = tracked.T_local_body;
-  if (!(tracked.matched_share > 0.0)) return;  // a stretch ends where both of its ends are known
+  if (!(tracked.matched_share > 0.0)) return;  // both ends of a segment must be matched
 
   const Place now{.stamp = recorded.scan.stamp, .T_odom_body = recorded.T_odom_body, .T_local_lidar = tracked.T_local_body, .covariance = match_covariance(tracked, settings_)};
   if (!begin_) return begin(now);

@@ -13,12 +13,13 @@
 
 namespace patrol::slam {
 
-/// A stretch of the way as the lidar and as odometry saw it.
+/// Segment of the trajectory with its lidar and odometry motion.
 struct MotionPair {
   Time begin{}, end{};
-  std::vector<Pose2> lidar_steps;  ///< of the lidar in itself, from scan to scan, as matched
-  Pose2 odometry;                  ///< of the body, as recorded, from the first scan to the last
-  Eigen::Matrix3d lidar_covariance = Eigen::Matrix3d::Zero();  ///< of the steps together: x, y, yaw in the lidar at the stretch's begin
+  std::vector<Pose2> lidar_steps;  ///< motion of the lidar from scan to scan, as matched
+  Pose2 odometry;                  ///< recorded motion of the body from the first scan to the last
+  /// Covariance of the composed lidar steps: x, y, yaw in the lidar frame at the begin of the segment.
+  Eigen::Matrix3d lidar_covariance = Eigen::Matrix3d::Zero();
 
   Pose2 lidar() const {
     Pose2 whole;
@@ -28,9 +29,10 @@ struct MotionPair {
 };
 
 struct MotionPairSettings {
-  double stretch_m = 0.5;      ///< a stretch is full when either has moved so far
-  double stretch_rad = 0.35;   ///< or turned so far
-  double match_std_m = 0.002;  ///< of a match, however many points it has
+  double stretch_m = 0.5;      ///< a segment ends when lidar or odometry has moved by this distance
+  double stretch_rad = 0.35;   ///< or rotated by this angle
+  /// Standard deviation of the systematic error of a match, independent of the number of points.
+  double match_std_m = 0.002;
   double match_std_rad = 0.0005;
   ScanTrackerSettings tracking;
 
@@ -44,9 +46,9 @@ struct MotionPairSettings {
   }
 };
 
-/// Cuts a log into stretches. The lidar is followed in its own frame by matching (scan_tracker.h), with odometry as a first guess, put right as far as
-/// `known` says; how far the matches alone know each stretch is in its covariance: along a bare corridor they do not, and odometry's word, which the
-/// tracker took there, counts for nothing.
+/// Divides a log into segments. The lidar is tracked in its own frame by scan matching (scan_tracker.h), with odometry
+/// as initial guess, corrected by the prior calibration `known`. The covariance of a segment includes the matches only.
+/// Along a featureless corridor it is large, so that the odometry that the tracker follows there has no weight.
 class MotionPairs {
  public:
   MotionPairs(const MotionPairSettings& settings, const PlanarScanSettings& scan, const Calibration& known);
@@ -60,7 +62,7 @@ class MotionPairs {
     Time stamp{};
     Pose2 T_odom_body;
     Pose2 T_local_lidar;
-    Eigen::Matrix3d covariance;  ///< of T_local_lidar, in local
+    Eigen::Matrix3d covariance;  ///< covariance of T_local_lidar, in local
   };
   void begin(const Place& place);
 

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kNumDerivatives = 6;
 using Jet = ceres::Jet<double, kNumDerivatives>;
 
-/// A pose whose angle is not wrapped, to take derivatives through.
+/// Pose without angle wrapping, for automatic differentiation.
 struct Motion {
   Jet x, y, yaw;
 
@@ -21,7 +21,7 @@ struct Motion {
   }
 };
 
-/// The inverse of corrected_step: what odometry makes of a true step.
+/// Inverse of corrected_step: the odometry increment for a true step.
 Motion as_odometry_sees(const Motion& step, const Jet& distance_scale, const Jet& turn_scale, const Jet& steering) {
   const Jet half = 0.5 * step.yaw;
   const Jet c = cos(half), s = sin(half);
@@ -49,7 +49,7 @@ MotionResidual motion_residual(const MotionPair& pair, const CalibrationVector& 
   Eigen::Matrix3d R_body_lidar = Eigen::Matrix3d::Identity();
   R_body_lidar.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(parameters[2]).toRotationMatrix();
   residual.lidar_covariance = R_body_lidar * pair.lidar_covariance * R_body_lidar.transpose();
-  // Not of the motion as recorded, whose error would choose its own weight.
+  // Use the predicted motion; an error of the recorded one would change its own weight.
   residual.odometry_covariance = predict_motion({}, {foretold.x.a, foretold.y.a, wrap_angle(foretold.yaw.a)}, 0.0, odometry).covariance;
   return residual;
 }

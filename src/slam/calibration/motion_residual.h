@@ -7,14 +7,17 @@
 
 namespace patrol::slam {
 
-/// lidar_x_m, lidar_y_m, lidar_yaw_rad, distance_scale, turn_scale, steering_rad_per_m of a Calibration.
+/// Parameter vector: lidar_x_m, lidar_y_m, lidar_yaw_rad, distance_scale, turn_scale, steering_rad_per_m of a
+/// Calibration.
 using CalibrationVector = Eigen::Matrix<double, 6, 1>;
 
-/// How far a stretch is from what a calibration says of it.
+/// Difference between predicted and recorded odometry of a segment.
 struct MotionResidual {
-  Eigen::Vector3d error;                  ///< x, y, yaw of odometry foretold less recorded, in the body at the stretch's begin
-  Eigen::Matrix<double, 3, 6> jacobian;  ///< by CalibrationVector
-  Eigen::Matrix3d lidar_covariance, odometry_covariance;  ///< of the error, before the latter is scaled
+  /// Predicted minus recorded odometry: x, y, yaw in the body frame at the begin of the segment.
+  Eigen::Vector3d error;
+  Eigen::Matrix<double, 3, 6> jacobian;  ///< derivative with respect to CalibrationVector
+  /// Covariances of the error; the odometry covariance before scaling.
+  Eigen::Matrix3d lidar_covariance, odometry_covariance;
 
   Eigen::Matrix3d covariance(double move_noise, double turn_noise) const {
     const Eigen::Vector3d noise(move_noise, move_noise, turn_noise);
@@ -22,8 +25,8 @@ struct MotionResidual {
   }
 };
 
-/// X L X^-1 is the body's motion where L is the lidar's and X the lidar's place; of that, step by step, what odometry would make. `odometry`: how its errors
-/// grow.
+/// Predicts the odometry of a segment from the lidar motion. X L X^-1 is the body motion, with L the lidar motion and X
+/// the lidar pose. The inverse of the odometry correction is applied step by step. `odometry` is the noise model.
 MotionResidual motion_residual(const MotionPair& pair, const CalibrationVector& parameters, const MotionModelSettings& odometry);
 
 }  // namespace patrol::slam

@@ -7,17 +7,17 @@
 namespace patrol::slam {
 namespace {
 
-/// The points turned, in cells of the finest level.
+/// Rotated points in cells of the finest level.
 struct TurnedPoints {
   double yaw_rad = 0.0;
   std::vector<Cell> cells;
 };
 
-/// A square of 2^level x 2^level shifts, in cells from the window's lower left.
+/// Square of 2^level x 2^level translations, in cells from the lower left corner of the window.
 struct Candidate {
   int turn = 0;
   int col = 0, row = 0;
-  int bound = 0;  ///< sum over the points
+  int bound = 0;  ///< upper bound of the sum of point values
 };
 
 class Search {
@@ -87,7 +87,7 @@ class Search {
     return {corner_m_.x() + candidate.col * cell_m_, corner_m_.y() + candidate.row * cell_m_, turned_[static_cast<std::size_t>(candidate.turn)].yaw_rad};
   }
 
-  /// With all its shifts.
+  /// Returns whether all translations of the candidate are excluded.
   bool is_excluded(const Candidate& candidate, int level) const {
     if (!exclusion_) return false;
     const Pose2 pose = pose_of(candidate);

@@ -10,14 +10,14 @@
 
 namespace patrol::slam {
 
-/// Poses around a centre.
+/// Square of positions and range of angles around a center pose.
 struct SearchWindow {
   Pose2 T_map_center;
   double half_width_m = 1.0;
   double half_angle_rad = 0.2;
 };
 
-/// A pose and its neighbourhood that are left out, to see what else is there.
+/// Neighborhood of a pose that is excluded from a search, to find a second-best match.
 struct SearchExclusion {
   Pose2 T_map_center;
   double radius_m = 1.0;
@@ -26,12 +26,13 @@ struct SearchExclusion {
 
 struct SearchResult {
   Pose2 T_map_points;
-  double score = 0.0;  ///< mean of the points' likelihoods, 1 when all lie on surfaces; negative: in free space
+  double score = 0.0;  ///< mean likelihood of the points, 1 if all are on surfaces; negative: in free space
 };
 
-/// The pose of the window under which the points fit the map best, of all that score more than `min_score`: exactly, by branch and bound over
-/// ever smaller squares of positions (Hess et al., ICRA 2016, algorithm 3). Steps are a cell of the finest level, and the angle by which the
-/// farthest point moves a cell. None if there is none, or no point is given.
+/// Returns the pose with the highest score in the window, if the score exceeds `min_score`. Exact branch and bound over
+/// nested squares of positions [Hess16, algorithm 3]. The step is one cell of the finest level in position, and in
+/// angle the rotation that moves the farthest point by one cell. Returns none if no pose qualifies or there are no
+/// points.
 std::optional<SearchResult> search_window(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>& points, const SearchWindow& window,
                                           double min_score, const std::optional<SearchExclusion>& exclusion = std::nullopt);
 

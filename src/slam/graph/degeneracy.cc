@@ -6,10 +6,10 @@ namespace patrol::slam {
 
 std::optional<Eigen::Vector2d> open_direction(const Eigen::Matrix3d& information, double open_share) {
   if (information(2, 2) <= 0.0) return std::nullopt;
-  // What is left of the position's when the heading is free (Schur's complement).
+  // Information of the position with free heading (Schur complement).
   const Eigen::Vector2d with_yaw = information.topRightCorner<2, 1>();
   const Eigen::Matrix2d position = information.topLeftCorner<2, 2>() - with_yaw * with_yaw.transpose() / information(2, 2);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(position);  // the smaller eigenvalue first
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(position);  // ascending eigenvalues
   if (axes.eigenvalues()[0] >= open_share * axes.eigenvalues()[1]) return std::nullopt;
   return Eigen::Vector2d(axes.eigenvectors().col(0));
 }

@@ -6,12 +6,14 @@
 
 namespace patrol::slam {
 
-/// The direction in which a match says next to nothing of the position, as along a smooth wall: in which it says less than `open_share` of what it says in
-/// the best one, whatever the heading (Zhang, Kaess, Singh, "On degeneracy of optimization-based state estimation problems", ICRA 2016, with a ratio in place
-/// of their threshold). A unit vector in the frame of `information`, which is of x, y, yaw; none if there is none.
+/// Returns the degenerate direction of a match, for example along a smooth wall [Zhang16]. A direction is degenerate if
+/// its information, with free heading, is below `open_share` of that in the best direction. Result: unit vector in the
+/// frame of `information`, which is for x, y, yaw; none if both directions are constrained.
+///
+/// Deviation from [Zhang16]: a ratio of eigenvalues instead of an absolute threshold.
 std::optional<Eigen::Vector2d> open_direction(const Eigen::Matrix3d& information, double open_share);
 
-/// The information with all taken out that concerns the position along `direction`.
+/// Removes all information about the position along `direction`.
 Eigen::Matrix3d without_direction(const Eigen::Matrix3d& information, const Eigen::Vector2d& direction);
 
 }  // namespace patrol::slam

@@ -4,8 +4,9 @@
 
 namespace patrol::slam {
 
-/// Information of an edge that comes of a match: the match's, but never more than `std_m` and `std_rad` leave, which it errs by however many points it
-/// has; and ten metres and ten radians where it says nothing. Of x, y, yaw in the edge's `from`, as `match_information` is.
+/// Converts the information of a match to that of an edge. The systematic error `std_m`, `std_rad` bounds it from
+/// above, however many points the match has. Directions without information get 10 m and 10 rad. Both matrices are for
+/// x, y, yaw in the frame of the edge's `from`.
 inline Eigen::Matrix3d edge_information(const Eigen::Matrix3d& match_information, double std_m, double std_rad) {
   const Eigen::Matrix3d loose = Eigen::Vector3d(1e-2, 1e-2, 1e-2).asDiagonal();
   const Eigen::Matrix3d systematic = Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();

@@ -1,4 +1,4 @@
-// The end of GraphSlam's work: every keyframe matched with the submaps around it.
+// Final optimization of GraphSlam: matches every keyframe with the submaps around it.
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +19,7 @@ void GraphSlam::finish() {
   is_finished_ = true;
 }
 
-// [submap]: the keyframes that lie within its reach and are no part of it.
+// Returns [submap]: the keyframes within the search radius that are not part of the submap.
 std::vector<std::vector<int>> GraphSlam::keyframes_around_submaps() const {
   std::vector<Eigen::Vector2d> middles;
   for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) middles.push_back(middle_of(s));
@@ -36,7 +36,7 @@ std::vector<std::vector<int>> GraphSlam::keyframes_around_submaps() const {
   return keyframes_of;
 }
 
-// Submap by submap, so that each is drawn once.
+// Iterates over submaps, so that each is rendered once.
 void GraphSlam::refine() {
   const std::vector<std::vector<int>> keyframes_of = keyframes_around_submaps();
   for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) {
@@ -56,7 +56,7 @@ void GraphSlam::refine() {
   }
 }
 
-// A keyframe matched with a submap that lies nearly right.
+// Matches a keyframe with a submap from a good initial pose.
 std::optional<MatchResult> GraphSlam::refined(const DrawnSubmap& submap, const Keyframe& keyframe, const Pose2& T_submap_body) const {
   const ScanMatcherSettings& matching = settings_.tracking.matching;
   const std::vector<MatchPoint> points = select_match_points(keyframe.scan, matching.point_spacing_m, matching.max_points);

@@ -67,7 +67,7 @@ void GraphSlam::add_keyframe(const LevelScan& scan, const TrackedScan& tracked) 
   while (finished_submaps_ < tracked.submap) close_loops(finished_submaps_++);
 }
 
-// Of the newest node with the submap that it was matched with.
+// Adds an edge between the newest node and its matched submap.
 void GraphSlam::add_match_edge(const TrackedScan& tracked) {
   const int first = submaps_[static_cast<std::size_t>(tracked.submap)].first, node = static_cast<int>(graph_.T_map_node.size()) - 1;
   const Pose2& T_local_first = keyframes_[static_cast<std::size_t>(first)].T_local_body;
@@ -82,13 +82,13 @@ Eigen::Matrix3d GraphSlam::weight_of(const Eigen::Matrix3d& match_information) c
   return edge_information(known_by(match_information), settings_.edge_std_m, settings_.edge_std_rad);
 }
 
-// What a match says in an open direction is noise.
+// Information along a degenerate direction is noise: project it out.
 Eigen::Matrix3d GraphSlam::known_by(const Eigen::Matrix3d& match_information) const {
   const std::optional<Eigen::Vector2d> open = open_direction(match_information, settings_.open_share);
   return settings_.tracking.likelihood_gain * (open ? without_direction(match_information, *open) : match_information);
 }
 
-// Odometry adds uncertainty, the match takes it away.
+// Propagates the covariance with odometry and updates it with the match.
 void GraphSlam::believe(const TrackedScan& tracked, Time stamp) {
   const Pose2 T_local_last = path_.empty() ? tracked.T_local_body : path_.back().T_local_body, T_map_now = T_map_body(tracked.T_local_body);
   if (!path_.empty()) {
@@ -117,7 +117,7 @@ void GraphSlam::accept_ranges(const TrackedScan& tracked, const Pose2& T_odom_bo
   }
 }
 
-// As a smoother of fixed lag: since the submap before the one that scans are matched with.
+// Fixed-lag smoothing: free nodes begin at the submap before the matched one.
 void GraphSlam::lay_by_ranges(int submap) {
   solve(graph_, settings_.solver, ranges_, std::max(1, submaps_[static_cast<std::size_t>(std::max(0, submap - 1))].first));
   laid_until_ = static_cast<int>(keyframes_.size()) - 1;
@@ -130,7 +130,7 @@ Eigen::Vector2d GraphSlam::middle_of(int submap) const {
   return sum / (range.last - range.first + 1);
 }
 
-// By the way from each to the next, on which the tracker drifts, and by the loops that are closed.
+// Uses the drift between consecutive submaps and the loop closures.
 std::vector<PoseGaussian> GraphSlam::positions_around(int submap) const {
   std::vector<Pose2> T_map_submaps;
   for (int s = 0; s < finished_submaps_; ++s) T_map_submaps.push_back(T_map_submap(s));
@@ -142,7 +142,7 @@ std::vector<PoseGaussian> GraphSlam::positions_around(int submap) const {
   return positions_from(submap, T_map_submaps, ways);
 }
 
-// Of the next submap's place as seen from this one.
+// Covariance of the next submap's pose in this submap's frame.
 Eigen::Matrix3d GraphSlam::drift_after(int submap) const {
   double length_m = 0.0, turn_rad = 0.0;
   for (int k = submaps_[static_cast<std::size_t>(submap)].first; k < submaps_[static_cast<std::size_t>(submap) + 1].first; ++k) {
@@ -154,12 +154,13 @@ Eigen::Matrix3d GraphSlam::drift_after(int submap) const {
   return Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();
 }
 
-// Older ones, nearest first, as far as drift may have taken this one.
+// Returns older submaps within the search radius, which includes the drift, nearest first.
 std::vector<int> GraphSlam::submaps_near(int source, const std::vector<PoseGaussian>& around) const {
   const Eigen::Vector2d middle = middle_of(source);
-  std::vector<std::pair<double, int>> near;  // by how far they are
+  std::vector<std::pair<double, int>> near;  // sorted by distance
   for (int target = 0; target < source; ++target) {
-    if (submaps_[static_cast<std::size_t>(target)].last >= submaps_[static_cast<std::size_t>(source)].first) continue;  // neighbours in time
+    // overlapping submaps
+    if (submaps_[static_cast<std::size_t>(target)].last >= submaps_[static_cast<std::size_t>(source)].first) continue;
     const Eigen::Matrix3d& covariance = around[static_cast<std::size_t>(target)].covariance;
     const double reach_m = settings_.max_loop_distance_m + 2.0 * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
     const double distance_m = (middle_of(target) - middle).norm();
@@ -172,7 +173,7 @@ void GraphSlam::close_loops(int source) {
   const std::vector<PoseGaussian> around = positions_around(source);
   bool has_closed = false;
   for (const int target : submaps_near(source, around)) {
-    const PoseGaussian prediction = inverse_of(around[static_cast<std::size_t>(target)]);  // of the source in the target
+    const PoseGaussian prediction = inverse_of(around[static_cast<std::size_t>(target)]);  // pose of source in target
     const SubmapMatchResult result = match_submaps(*drawn(target), *drawn(source), prediction, settings_.loops, settings_.tracking.matching);
     loop_counts_.add(result.failure);
     if (!result.match) continue;
@@ -201,7 +202,7 @@ std::vector<std::size_t> GraphSlam::node_scans() const {
   return scans;
 }
 
-// A scan between two keyframes is moved with both, by how near it is to each.
+// Poses between two keyframes are interpolated between the corrections of both, by the distance to each.
 std::vector<Pose2> GraphSlam::path() const {
   std::vector<Pose2> T_map_body;
   for (std::size_t i = 0; i < path_.size(); ++i) {

@@ -20,30 +20,33 @@ namespace patrol::slam {
 
 struct GraphSlamSettings {
   ScanTrackerSettings tracking;
-  // Where a submap may lie, as far as the way from one to the other says.
+  // Odometry drift between consecutive submaps, for the prediction of loop closures.
   double drift_std_m_per_m = 0.02;
   double drift_std_rad_per_m = 0.004;
   double drift_std_rad_per_rad = 0.01;
-  int max_loop_candidates = 4;       ///< for each new submap: the nearest older ones
-  double max_loop_distance_m = 10.0; ///< between the middles of their ways, beyond what is uncertain
+  int max_loop_candidates = 4;  ///< maximum number of older submaps that each new one is matched with, nearest first
+  /// Maximum distance between the mean positions of two submaps, plus two standard deviations.
+  double max_loop_distance_m = 10.0;
   SubmapMatcherSettings loops;
   PoseGraphSolverSettings solver;
-  double edge_std_m = 0.01;          ///< of a match's systematic error, however many points it has
+  /// Standard deviation of the systematic error of a match, independent of the number of points.
+  double edge_std_m = 0.01;
   double edge_std_rad = 0.001;
-  double open_share = 0.02;          ///< a direction in which a match says less than this share of what it says in the best one is open
-  int refinement_rounds = 2;         ///< at the end: every keyframe is matched with the submaps around it
-  int max_refinement_submaps = 3;    ///< of each keyframe
-  double min_refinement_share = 0.6; ///< of a keyframe's points that meet the submap's surfaces
-  double max_refinement_m = 0.3;     ///< a keyframe that would move farther has been matched wrongly
+  double open_share = 0.02;  ///< a direction is degenerate if its information is below this fraction of the largest
+  /// Final optimization: number of passes that match every keyframe with the submaps around it.
+  int refinement_rounds = 2;
+  int max_refinement_submaps = 3;    ///< maximum number of submaps matched with each keyframe
+  double min_refinement_share = 0.6; ///< minimum inlier ratio of a keyframe in a submap
+  double max_refinement_m = 0.3;     ///< matches that move a keyframe farther are rejected
   double max_refinement_rad = 0.1;
-  int cached_submaps = 16;           ///< drawn at a time
+  int cached_submaps = 16;           ///< maximum number of rendered submaps in the cache
   int min_hits_occupied = 2;
   double min_hit_share_occupied = 0.3;
-  // Online.
-  double max_tilt_rad = 1.6;         ///< a scan tilted by more is taken for blind, as on a ramp between walls that lean
-  double redraw_shift_m = 0.03;      ///< the map is drawn anew when what a keyframe sees ten metres away has moved farther
+  // Online only.
+  double max_tilt_rad = 1.6;  ///< scans tilted by more are not used, for example on a ramp between inclined walls
+  double redraw_shift_m = 0.03;      ///< the map is rendered again if a keyframe or its view at 10 m has moved by more
   RangeUpdateSettings ranges;
-  int range_keyframes = 4;           ///< so often the newest submaps are laid by the ranges
+  int range_keyframes = 4;           ///< run the fixed-lag smoothing with UWB ranges every N keyframes
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -73,54 +76,58 @@ struct GraphSlamSettings {
   }
 };
 
-/// What became of the search for loops.
+/// Numbers of loop closure searches by result.
 struct LoopCounts {
   int searched = 0, closed = 0, not_found = 0, ambiguous = 0, no_overlap = 0, mismatched = 0;
 
   void add(MatchFailure failure);
 };
 
-/// Mapping by submaps and a pose graph, of the class of Cartographer (Hess, Kohler, Rapp, Andor, "Real-time loop closure in 2D lidar SLAM", ICRA 2016).
+/// Graph SLAM with submaps, similar to Cartographer [Hess16].
 ///
-///   every scan     follow it within a map of the last metres (scan_tracker.h)
-///   a keyframe     a node: an edge of odometry to the one before, one of its match to the submap that it was matched with
-///   ranges         where the scan leaves a direction open, belong to the node around which they were read, and hold it in that direction; every few nodes
-///                  the newest submaps are laid by them, the older ones staying where they are
-///   a submap full  look for the older ones around it, as far as drift may have taken it (submap_matcher.h); where one fits, and fits in one way only,
-///                  an edge from submap to submap; solve the graph
-///   the end        draw all submaps anew, match every keyframe with those around it that it is no part of, solve
+///   every scan     track it in a map of the last meters (scan_tracker.h)
+///   keyframe       node: an odometry edge to the previous node and a match edge to the matched submap
+///   range          where the scan leaves a direction degenerate: constrain the current node in that direction;
+///                  every N keyframes optimize the newest submaps with the ranges, older ones are fixed
+///   submap full    search the older ones within the drift of odometry (submap_matcher.h); for an unambiguous match
+///                  add an edge from submap to submap and optimize the graph
+///   finish         render all submaps again, match every keyframe with the surrounding submaps, optimize
 ///
-/// Differences, and why. Submaps are matched with submaps rather than scans with submaps: ten metres of walls are told from others where a scan is not.
-/// How far to look comes from the graph, and a second place that fits as well makes the first worthless. Matches are weighed by what they saw: along
-/// a corridor a closure ties nothing. Submaps are not kept but drawn from their scans, at the poses that are believed now; so memory grows by scans only.
+/// Deviations from [Hess16]:
+/// - Submaps are matched with submaps, not scans with submaps: ten meters of walls are distinctive where a scan is not.
+/// - The search window follows from the graph, and a second-best match of similar score rejects the best.
+/// - Edges are weighted with the information of the match: along a corridor a loop closure does not constrain.
+/// - Submaps are not stored but rendered from their scans at the current poses, so memory grows with the scans only.
 class GraphSlam {
  public:
   explicit GraphSlam(const GraphSlamSettings& settings);
 
-  /// A UWB range of before the next scan. One that went round a corner is left out (range_update.h), and so is all of them where scans tell the place.
+  /// Adds a UWB range measured before the next scan. It is rejected if NLOS (range_update.h), and unused if the scan
+  /// constrains both directions.
   void add(const RangeSighting& sighting) { new_ranges_.push_back(sighting); }
-  /// `T_odom_body` at the scan's stamp. The covariance is that of the pose in a map that is exact.
+  /// Processes a scan; `T_odom_body` is the odometry at its stamp. The covariance is that of the pose in a map without
+  /// errors.
   SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
-  /// No scan will follow.
+  /// Finishes mapping after the last scan: closes the remaining loops and refines all keyframes.
   void finish();
 
-  /// [scan]: of every scan that was given, as is believed now.
+  /// Current pose estimates of all scans, [scan].
   std::vector<Pose2> path() const;
   const PoseGraph& graph() const { return graph_; }
-  /// [keyframe]: the number of its scan.
+  /// Scan index of each keyframe, [keyframe].
   std::vector<std::size_t> node_scans() const;
   const LoopCounts& loop_counts() const { return loop_counts_; }
   OccupancyGrid map();
 
  private:
-  /// A scan beside the keyframe before it.
+  /// Tracked pose of a scan and its preceding keyframe.
   struct TrackedPose {
     int keyframe;
     Pose2 T_local_body;
   };
 
   struct LoopEdge {
-    int target, source;  ///< submaps
+    int target, source;  ///< submap indices
     int edge;
   };
 
@@ -156,11 +163,11 @@ class GraphSlam {
   LoopCounts loop_counts_;
   LiveMap live_map_;
   bool is_finished_ = false;
-  PoseGaussian now_;  ///< in map
+  PoseGaussian now_;  ///< current pose in map
   Time stamp_{};
-  std::vector<RangeSighting> new_ranges_;  ///< not yet judged
+  std::vector<RangeSighting> new_ranges_;  ///< not yet gated
   NodeRanges ranges_;
-  int laid_until_ = 0;  ///< the newest node that they have moved
+  int laid_until_ = 0;  ///< newest node moved by the ranges
 };
 
 }  // namespace patrol::slam

@@ -7,9 +7,9 @@
 namespace patrol::slam {
 namespace {
 
-constexpr int kReach = 2;  ///< cells around a surface that still count
+constexpr int kReach = 2;  ///< radius in cells around a surface with nonzero likelihood
 
-/// By the squared distance in cells from a surface.
+/// Value at a squared distance, in cells, from a surface.
 int near_surface(int squared_distance) { return static_cast<int>(std::lround(LikelihoodPyramid::kOnSurface * std::exp(-0.5 * squared_distance))); }
 
 }  // namespace
@@ -23,8 +23,8 @@ Cell LikelihoodPyramid::cell_of(const Eigen::Vector2d& p_map) const {
   return {static_cast<int>(std::floor(p_map.x() / resolution_m_)), static_cast<int>(std::floor(p_map.y() / resolution_m_))};
 }
 
-// Zeros over all tiles, widened by `kReach`. Means of hits lie up to half a map cell from the centers, and slightly more after
-// rounding to float: an extent of the centers alone would not hold the cells of means at the tiles' edges.
+// Returns an empty level that covers all tiles, plus a margin of `kReach` cells. Mean hits are up to half a map cell
+// from the cell centers, and slightly more after rounding to float. The extent of the centers alone would be too small.
 LikelihoodPyramid::Level LikelihoodPyramid::extent_of(const GridMap& map) const {
   constexpr int kMax = std::numeric_limits<int>::max();
   int low_col = kMax, low_row = kMax, high_col = -kMax, high_row = -kMax;
@@ -72,7 +72,8 @@ LikelihoodPyramid::Level LikelihoodPyramid::draw_finest(const GridMap& map) cons
   return finest;
 }
 
-// A cell and its neighbours are four by four of the level below, of whose cells each but the finest's speaks for two by two.
+// A cell and its neighbors cover 4 x 4 cells of the level below. Above the finest level each of those already covers 2
+// x 2, so every second one suffices.
 LikelihoodPyramid::Level LikelihoodPyramid::halved(const Level& fine, bool is_of_finest) {
   Level coarse;
   coarse.first_col = (fine.first_col >> 1) - 1, coarse.first_row = (fine.first_row >> 1) - 1;

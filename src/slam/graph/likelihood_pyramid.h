@@ -10,9 +10,10 @@
 
 namespace patrol::slam {
 
-/// How well a point fits a map, for searches over many poses: 100 on a surface, falling off around it; 0 where nothing is known; negative where beams
-/// went through, so that a wall in free space speaks against a pose. Level l has cells of 2^l of the finest and holds the largest value in its cell and
-/// its right and upper neighbours: an upper bound for a point and all its shifts by less than a cell.
+/// Multiresolution likelihood of points for searches over many poses. Values: 100 on a surface, decreasing around it; 0
+/// in unobserved cells; negative in free cells, to penalize walls in free space. A cell of level l covers 2^l x 2^l
+/// finest cells. It holds the maximum over itself and its right and upper neighbors. That is an upper bound for a point
+/// and all its translations by less than a cell.
 class LikelihoodPyramid {
  public:
   LikelihoodPyramid(const GridMap& map, double resolution_m, int num_levels);
@@ -21,7 +22,7 @@ class LikelihoodPyramid {
   double resolution_m() const { return resolution_m_; }
   double cell_m(int level) const { return resolution_m_ * (1 << level); }
 
-  /// At a place in the map, in cells of the finest level from the map's origin.
+  /// Value at a position in map, given in cells of the finest level from the origin of map.
   int value(int level, int col, int row) const {
     return levels_[static_cast<std::size_t>(level)].find(col >> level, row >> level);
   }
@@ -36,7 +37,7 @@ class LikelihoodPyramid {
 
     void clear() { values.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0); }
     std::int8_t& at(int col, int row) { return values[static_cast<std::size_t>((row - first_row) * width + col - first_col)]; }
-    /// 0 outside.
+    /// Returns 0 outside the level.
     int find(int col, int row) const {
       const int c = col - first_col, r = row - first_row;
       return c < 0 || r < 0 || c >= width || r >= height ? 0 : values[static_cast<std::size_t>(r * width + c)];

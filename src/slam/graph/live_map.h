@@ -7,18 +7,20 @@
 
 namespace patrol::slam {
 
-/// The map of all keyframes, each written once where it was believed then, and all anew when some of them have moved since.
+/// Map of all keyframes for online use: new keyframes are integrated once, and the whole map is rendered again if
+/// earlier ones have moved.
 class LiveMap {
  public:
   explicit LiveMap(const MapDrawing& drawing) : drawing_(drawing), map_(drawing.resolution_m, drawing.max_extent_m) {}
 
-  /// Of all keyframes; those that were written are left as they are unless one has moved farther than `max_shift_m`, what it sees ten metres away counted.
+  /// Returns the map of all keyframes. It is rendered again if a keyframe has moved by more than `max_shift_m`, which
+  /// includes the effect of its yaw at 10 m.
   const GridMap& draw(const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, double max_shift_m);
 
  private:
   MapDrawing drawing_;
   GridMap map_;
-  std::vector<Pose2> written_at_;  ///< [keyframe]
+  std::vector<Pose2> written_at_;  ///< [keyframe], pose at integration
 };
 
 }  // namespace patrol::slam

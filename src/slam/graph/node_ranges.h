@@ -11,33 +11,36 @@
 
 namespace patrol::slam {
 
-/// The mean of the ranges from one anchor around one node of a pose graph, as if all had been read at the node.
+/// Mean of the ranges from one anchor near one node of a pose graph, reduced to the node's pose.
 struct NodeRange {
   int node = 0;
-  UwbAnchor anchor;  ///< in map
+  UwbAnchor anchor;  ///< anchor in map
   Eigen::Vector3d p_level_antenna = Eigen::Vector3d::Zero();
   double range_m = 0.0;
   int count = 0;
-  Pose2 T_map_read;  ///< where the node was believed
-  std::optional<Eigen::Vector2d> direction = {};  ///< in map: all that it is asked about, the rest being known; none: all of the pose
+  Pose2 T_map_read;  ///< node pose at which the ranges were linearized
+  /// Unit vector in map along which the range constrains the node; none: the range constrains the whole pose.
+  std::optional<Eigen::Vector2d> direction = {};
 
-  /// What the range speaks of, were the node there.
+  /// Pose at which the range is evaluated: the linearization pose moved along `direction`, or the node pose itself.
   Pose2 T_map_judged(const Pose2& T_map_node) const;
 };
 
-/// What holds a graph where scans leave a direction open: UWB ranges. They err by decimetres that they share with their neighbours, where a scan errs by
-/// millimetres; so they speak of that direction alone. Gathered at its nodes so that they are no more than nodes times anchors.
+/// UWB range factors of a pose graph, for directions that scans leave degenerate. Consecutive ranges have correlated
+/// errors of decimeters, scans errors of millimeters; ranges therefore constrain the degenerate direction only. They
+/// are averaged per node and anchor, which bounds their number.
 class NodeRanges {
  public:
   NodeRanges() = default;
   explicit NodeRanges(const RangeUpdateSettings& settings) : settings_(settings) {}
 
-  /// `T_node_then`: where the body was at the sighting, as seen from the newest node or the one before. The way between them is taken out by its difference
-  /// in predicted range, with the node where it is believed now: 10 cm off, 10 m from the anchor and a metre from the node that errs by a millimetre or ten.
-  /// `direction`, in map: see NodeRange.
+  /// Adds a range. `T_node_then` is the body pose at the measurement relative to the newest or second-newest node. The
+  /// range is reduced to the node by the difference of the predicted ranges at the current node pose. The error of the
+  /// reduction is 1 to 10 mm for a node error of 10 cm, 10 m from the anchor and 1 m from the node. `direction`, in
+  /// map: see NodeRange.
   void add(int node, const Pose2& T_map_node, const Pose2& T_node_then, const RangeSighting& sighting, const std::optional<Eigen::Vector2d>& direction = {});
 
-  const std::vector<NodeRange>& ranges() const { return ranges_; }  ///< by node, the oldest first
+  const std::vector<NodeRange>& ranges() const { return ranges_; }  ///< in ascending node order
   const UwbCalibration& calibration() const { return settings_.calibration; }
   double std_m(const NodeRange& range) const;
 

@@ -41,7 +41,7 @@ class EdgeCost : public ceres::SizedCostFunction<3, 3, 3> {
   Eigen::Matrix3d root_;
 };
 
-/// (predicted range - range) / standard deviation.
+/// Residual of a range: (predicted range - range) / standard deviation.
 class RangeCost : public ceres::SizedCostFunction<1, 3> {
  public:
   RangeCost(const NodeRange& range, double std_m, const UwbCalibration& calibration) : range_(range), std_m_(std_m), calibration_(calibration) {}
@@ -60,7 +60,7 @@ class RangeCost : public ceres::SizedCostFunction<1, 3> {
  private:
   NodeRange range_;
   double std_m_;
-  const UwbCalibration& calibration_;  ///< the solver's caller's
+  const UwbCalibration& calibration_;  ///< owned by the caller of the solver
 };
 
 }  // namespace
@@ -71,7 +71,7 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
 
   ceres::CauchyLoss kernel(settings.loop_kernel);
   ceres::Problem::Options problem_options;
-  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // one kernel for all
+  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // one kernel for all residual blocks
   ceres::Problem problem(problem_options);
   const auto node = [&](int index) {
     if (index < 0 || static_cast<std::size_t>(index) >= poses.size()) throw std::invalid_argument("an edge names node " + std::to_string(index) + ", which is not there");
@@ -95,7 +95,7 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.max_num_iterations = settings.max_iterations;
   options.function_tolerance = 1e-9;
-  options.num_threads = 1;  // the same sums in the same order
+  options.num_threads = 1;  // keeps the order of floating-point sums, so that results are reproducible
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);

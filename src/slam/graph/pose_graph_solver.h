@@ -9,7 +9,8 @@ namespace patrol::slam {
 struct PoseGraphSolverSettings {
   int max_iterations = 50;
   bool doubts_loops = true;
-  double loop_kernel = 3.0;  ///< standard deviations from which on a loop closure counts as an outlier, gradually; a range always
+  /// Scale of the Cauchy kernel, in standard deviations; used for loop closures if doubts_loops, and always for ranges.
+  double loop_kernel = 3.0;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -20,20 +21,20 @@ struct PoseGraphSolverSettings {
 };
 
 struct PoseGraphSolution {
-  double initial_cost = 0.0;  ///< half the sum of squares, loop closures and ranges by their kernel
+  double initial_cost = 0.0;  ///< half the sum of squared residuals, after the kernels
   double final_cost = 0.0;
   int iterations = 0;
   bool converged = false;
 };
 
-/// Moves all nodes from `first_free` on to where the edges, and ranges to what stands in map, want them most: sparse least squares, with Cauchy's kernel on
-/// ranges, and on loop closures unless they are to be believed. The others stay where they are.
-/// Throws std::invalid_argument when an edge names a node that is not there.
+/// Optimizes the poses of all nodes from `first_free` on, with the edges and the ranges to fixed anchors in map. Sparse
+/// nonlinear least squares with Cauchy kernels on ranges and, if `doubts_loops` is set, on loop closures. Nodes before
+/// `first_free` are fixed. Throws std::invalid_argument if an edge refers to an unknown node.
 PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings, const NodeRanges& ranges = {}, int first_free = 1);
 
-/// What an edge lacks: (x, y, yaw) of its measurement's inverse times where the nodes stand.
+/// Residual of an edge: (x, y, yaw) of the relative pose of its nodes minus the measurement, in the frame of `from`.
 Eigen::Vector3d edge_error(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node);
-/// Its squared Mahalanobis length.
+/// Squared Mahalanobis norm of the residual of an edge.
 double squared_error(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node);
 
 }  // namespace patrol::slam

@@ -8,12 +8,12 @@
 namespace patrol::slam {
 namespace {
 
-/// Odometry's tail: as if of Student's t with so many degrees of freedom.
+/// Degrees of freedom of Student's t distribution of the odometry error.
 constexpr double kTail = 4.0;
-/// Who has been wrong is doubted for a while: his variance grows to what the scan said, and falls back from scan to scan.
+/// Decay per scan of the inflated odometry variance, after odometry contradicted a match.
 constexpr double kForget = 0.8;
 constexpr double kMostDoubt = 400.0;
-/// A match of fewer of the points is worth a search for a better one.
+/// A match with a smaller inlier ratio triggers a window search.
 constexpr double kGoodShare = 0.6;
 
 double log_student(const PoseGaussian& prediction, const Pose2& pose) {
@@ -23,7 +23,7 @@ double log_student(const PoseGaussian& prediction, const Pose2& pose) {
 
 bool is_apart(const Pose2& a, const Pose2& b) { return (a.position() - b.position()).norm() > 0.03 || std::abs(wrap_angle(a.yaw - b.yaw)) > 0.02; }
 
-/// A motion as it would be after another time.
+/// Scales a motion to another duration at constant velocity.
 Pose2 scaled(const Pose2& motion, double factor) { return {factor * motion.x, factor * motion.y, factor * motion.yaw}; }
 
 }  // namespace
@@ -55,7 +55,7 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
   return tracked;
 }
 
-// From where odometry has it, and from wherever else it may be.
+// Matches from the odometry prediction and from alternative start poses.
 ScanTracker::Hypothesis ScanTracker::follow(const std::vector<MatchPoint>& points, const Step& step, const PoseGaussian& prediction) const {
   if (!older_.has_surface() || points.empty()) return {.T_local_body = prediction.mean, .match = {}};
   Hypothesis best = try_from(prediction.mean, points, prediction, true);
@@ -75,7 +75,8 @@ ScanTracker::Hypothesis ScanTracker::follow(const std::vector<MatchPoint>& point
 
 void ScanTracker::doubt_odometry(const PoseGaussian& prediction, const Pose2& T_local_body) {
   const Eigen::Vector3d offset = prediction.offset_of(T_local_body);
-  const double squared = offset.dot(prediction.covariance.inverse() * offset);  // 3 on average, where the doubt is as it should be
+  // 3 on average if the variance is correct
+  const double squared = offset.dot(prediction.covariance.inverse() * offset);
   odometry_doubt_ = std::clamp(std::max(kForget * odometry_doubt_, odometry_doubt_ * squared / 3.0), 1.0, kMostDoubt);
 }
 
@@ -99,7 +100,7 @@ bool ScanTracker::is_keyframe_due(const Pose2& T_local_body) const {
 
 ScanTracker::Hypothesis ScanTracker::try_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points, const PoseGaussian& prediction,
                                               bool is_odometry) const {
-  // Where odometry has failed it still keeps what the scan leaves open from running away.
+  // A wide prior keeps degenerate directions bounded when odometry has failed.
   PoseGaussian prior = prediction;
   if (!is_odometry) {
     prior.mean = T_local_start;
@@ -113,7 +114,7 @@ ScanTracker::Hypothesis ScanTracker::try_from(const Pose2& T_local_start, const 
   return hypothesis;
 }
 
-// By the points that both see in known places: the others would reward who stays where the map is.
+// Compares at points in observed cells of both poses; other points would favor poses with fewer observed cells.
 bool ScanTracker::is_better(const Hypothesis& a, const Hypothesis& b) const {
   double gain = 0.0;
   for (std::size_t i = 0; i < a.log_likelihoods.size(); ++i) {

@@ -13,19 +13,19 @@ namespace patrol::slam {
 
 struct ScanTrackerSettings {
   double resolution_m = 0.05;
-  double max_extent_m = 4000.0;          ///< nothing is kept farther than half of this from the start
+  double max_extent_m = 4000.0;          ///< side of the mapped square around the start
   double keyframe_distance_m = 0.25;
   double keyframe_angle_rad = 0.15;
-  int initial_keyframes = 10;            ///< so many first scans are all written
-  int submap_keyframes = 60;             ///< that are written into a map before the next takes its place; maps overlap by half
-  double likelihood_gain = 0.2;          ///< share of the points that err independently
+  int initial_keyframes = 10;            ///< the first N scans are all keyframes
+  int submap_keyframes = 60;             ///< number of keyframes per map; consecutive maps overlap by half
+  double likelihood_gain = 0.2;          ///< tempering factor: fraction of the points with independent errors
   MotionModelSettings motion{.along_std_m_per_m = 0.05,
                              .across_std_m_per_m = 0.03,
                              .turn_std_rad_per_rad = 0.1,
                              .turn_std_rad_per_m = 0.03,
                              .turn_std_rad_per_s = 0.003,
                              .min_std_m = 0.005,
-                             .min_std_rad = 0.005};  ///< of wheels that nobody calibrated
+                             .min_std_rad = 0.005};  ///< for uncalibrated wheel odometry
   ScanMatcherSettings matching;
   ScanIntegrationSettings integration;
 
@@ -46,22 +46,27 @@ struct ScanTrackerSettings {
 
 struct TrackedScan {
   Pose2 T_local_body;
-  Eigen::Matrix3d match_information = Eigen::Matrix3d::Zero();  ///< of the scan alone, in `local`; zero: no match
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();         ///< of odometry since the last match, with this one; in `local`
+  /// Information of the scan alone, in `local`; zero: no match.
+  Eigen::Matrix3d match_information = Eigen::Matrix3d::Zero();
+  /// Covariance of the odometry since the last match, updated with this match; in `local`.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double matched_share = 0.0;
   bool is_keyframe = false;
-  int submap = 0;                ///< that it was matched with: 0, 1, ...; a keyframe is part of it, the last one too, with which the next takes its place
-  bool is_submap_start = false;  ///< a keyframe that is the first of a new map
+  /// Index of the matched submap: 0, 1, ...; a keyframe is part of it, including the last one, after which the next
+  /// submap takes over.
+  int submap = 0;
+  bool is_submap_start = false;  ///< keyframe that begins a new map
 };
 
-/// Follows the robot from scan to scan by matching against a map of the last metres: locally true, and drifting with the way
-/// (the local half of Hess et al., "Real-time loop closure in 2D lidar SLAM", ICRA 2016). `local` begins where the first scan was taken.
+/// Tracks the robot by matching each scan against a map of the last meters: locally consistent, drifting with distance.
+/// Corresponds to local SLAM of [Hess16]. The origin of `local` is the pose of the first scan.
 ///
-/// Two maps are written at a time, the second begun when the first is half full; scans are matched with the older, so that there is always one
-/// of half the length or more.
+/// Two maps are updated at a time; the second begins when the first is half full. Scans are matched with the older map,
+/// which thus always has at least half the full length.
 ///
-/// Old wheels lie: odometry may slip, stand still or say forwards for backwards. It is believed as far as its Gaussian goes and no farther: where the
-/// motion of a moment ago, none, the opposite, or a search all round, explains the scan so much better that odometry must have failed, that is taken.
+/// Robust against failures of wheel odometry (slip, frozen or reversed readings). Alternative start poses are the
+/// previous motion, no motion, the reversed motion, and a window search. An alternative replaces the odometry
+/// prediction if its gain in scan likelihood exceeds its loss under the Student's t prior of odometry.
 class ScanTracker {
  public:
   explicit ScanTracker(const ScanTrackerSettings& settings);
@@ -76,13 +81,13 @@ class ScanTracker {
     std::vector<double> log_likelihoods = {};  ///< [point]
   };
 
-  /// Where odometry is carried on from.
+  /// Reference pose from which odometry is integrated: the last match.
   struct Fix {
     Time stamp{};
     Pose2 T_local_body, T_odom_body;
   };
 
-  /// From the scan before to this one, as odometry has it.
+  /// Odometry increment since the previous scan.
   struct Step {
     double seconds = 0.0;
     Pose2 T_last_odom;
@@ -101,10 +106,10 @@ class ScanTracker {
   int older_keyframes_ = 0, newer_keyframes_ = 0, keyframes_ = 0, submap_ = 0;
   std::optional<Time> stamp_;
   Pose2 T_local_last_, T_odom_last_, T_local_keyframe_;
-  Fix matched_;       ///< the last scan that was matched
-  Pose2 T_last_now_;  ///< the motion from the scan before to the last
+  Fix matched_;       ///< last matched scan
+  Pose2 T_last_now_;  ///< last motion between two scans
   double last_step_s_ = 0.0;
-  double odometry_doubt_ = 1.0;  ///< factor of its variance
+  double odometry_doubt_ = 1.0;  ///< scale factor of the odometry variance
 };
 
 }  // namespace patrol::slam

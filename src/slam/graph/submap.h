@@ -13,33 +13,33 @@
 
 namespace patrol::slam {
 
-/// A scan that was kept, and where it was taken.
+/// Stored scan with its tracked pose.
 struct Keyframe {
   LevelScan scan;
   Pose2 T_local_body;
 };
 
-/// A piece of the map, made of successive keyframes, in the frame of the first of them.
+/// Range of consecutive keyframes that forms a submap; its frame is that of the first keyframe.
 struct Submap {
-  int first = 0;  ///< keyframe, and node of the pose graph
-  int last = 0;   ///< inclusive
+  int first = 0;  ///< index of the first keyframe, which is its node in the pose graph
+  int last = 0;   ///< index of the last keyframe, inclusive
 };
 
-/// How scans are made a map.
+/// Settings for rendering scans into a map.
 struct MapDrawing {
   double resolution_m = 0.05;
-  double max_extent_m = 4000.0;  ///< nothing is kept farther than half of this from the map's origin
+  double max_extent_m = 4000.0;  ///< side of the mapped square around the origin
   ScanIntegrationSettings integration = {};
 };
 
-/// A submap drawn, to be matched with.
+/// Submap rendered for matching: grid map, surface points and likelihood pyramid.
 class DrawnSubmap {
  public:
-  /// `T_map_node` [keyframe].
+  /// Renders the keyframes of `submap` at `T_map_node` [keyframe].
   DrawnSubmap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, const MapDrawing& drawing);
 
   const GridMap& map() const { return map_; }
-  /// (surface_points.h), with which another submap is searched.
+  /// Downsampled surfaces (surface_points.h), used to match this submap with another.
   const std::vector<MatchPoint>& surface_points() const { return surface_points_; }
   double point_spacing_m() const { return 2.0 * map_.resolution_m(); }
   const LikelihoodPyramid& pyramid() const { return pyramid_; }
@@ -50,7 +50,7 @@ class DrawnSubmap {
   LikelihoodPyramid pyramid_;
 };
 
-/// The submaps drawn last, a limited number.
+/// Cache of the most recently used rendered submaps.
 class SubmapCache {
  public:
   explicit SubmapCache(std::size_t capacity) : capacity_(capacity) {}
@@ -65,7 +65,7 @@ class SubmapCache {
     std::shared_ptr<const DrawnSubmap> drawn;
   };
   std::size_t capacity_;
-  std::vector<Entry> entries_;  ///< the newest last
+  std::vector<Entry> entries_;  ///< in order of use, the newest last
 };
 
 template <typename Draw>

@@ -15,7 +15,7 @@ std::vector<Eigen::Vector2d> thinned(const std::vector<MatchPoint>& points, std:
   return chosen;
 }
 
-/// How the surfaces of one lie on the map of another.
+/// Agreement of the surfaces of one submap with the map of another.
 struct Overlap {
   double known_share = 0.0;
   double matched_share = 0.0;

@@ -10,15 +10,18 @@
 namespace patrol::slam {
 
 struct SubmapMatcherSettings {
-  double min_search_score = 0.35;     ///< of the points' mean likelihood, for a search's result to be looked at
-  double max_window_m = 15.0;         ///< of the search, each way: more has to be found otherwise
+  double min_search_score = 0.35;     ///< minimum mean likelihood of the points in the search
+  double max_window_m = 15.0;         ///< maximum half width of the search window
   double max_window_rad = 0.8;
   int search_points = 300;
-  double min_known_share = 0.35;      ///< of either's points, that lie where the other knows something
-  double min_matched_share = 0.75;    ///< and of these, that meet a surface of the other, for both
-  double min_matched_length_m = 8.0;  ///< of surface that meets
-  double ambiguity = 0.9;             ///< another pose that scores more than this share of the best makes the match worthless
-  double ambiguity_distance_m = 0.8;  ///< so far off it is another pose
+  /// Minimum overlap ratio: points in observed cells of the other map, in both directions.
+  double min_known_share = 0.35;
+  /// Minimum inlier ratio: points in the overlap that lie on a surface of the other map, in both directions.
+  double min_matched_share = 0.75;
+  double min_matched_length_m = 8.0;  ///< minimum length of matched surface
+  /// The match is rejected if a distinct pose scores more than this fraction of the best score.
+  double ambiguity = 0.9;
+  double ambiguity_distance_m = 0.8;  ///< poses at least this far from the best are distinct
   double ambiguity_angle_rad = 0.35;
 
   template <typename Self, typename Visitor>
@@ -38,13 +41,14 @@ struct SubmapMatcherSettings {
 
 struct SubmapMatch {
   Pose2 T_target_source;
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in target, as if all points were independent
-  double score = 0.0;          ///< of the search
-  double known_share = 0.0;    ///< the smaller of both directions
-  double matched_share = 0.0;  ///< likewise
+  /// Information of x, y, yaw in target, with independent points.
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  double score = 0.0;          ///< score of the search
+  double known_share = 0.0;    ///< overlap ratio, minimum of both directions
+  double matched_share = 0.0;  ///< inlier ratio, minimum of both directions
 };
 
-/// Why two submaps were not joined.
+/// Reason for rejecting a submap match.
 enum class MatchFailure { kNone, kNotFound, kAmbiguous, kNoOverlap, kMismatch };
 
 struct SubmapMatchResult {
@@ -52,13 +56,14 @@ struct SubmapMatchResult {
   MatchFailure failure = MatchFailure::kNone;
 };
 
-/// Where a match with a submap begins, and how far it may go where the surfaces leave it open: 0.2 m and 0.05 rad.
+/// Prior of a match with a submap. It bounds degenerate directions with standard deviations of 0.2 m and 0.05 rad.
 inline PoseGaussian start_of_match(const Pose2& T_submap_start) {
   return {.mean = T_submap_start, .covariance = Eigen::Vector3d(0.2 * 0.2, 0.2 * 0.2, 0.05 * 0.05).asDiagonal()};
 }
 
-/// Where the source lies in the target, searched within three standard deviations of the prediction: branch and bound for the coarse pose, another for a
-/// rival as good, then Gauss-Newton on lines, then a look whether each one's surfaces lie on the other's wherever the other has looked.
+/// Matches two submaps within three standard deviations of the prediction. A branch-and-bound search gives the coarse
+/// pose, a second one checks for an ambiguous match, and Gauss-Newton on lines refines the pose. Finally, the surfaces
+/// of each submap must lie on surfaces of the other wherever the other has observed cells.
 SubmapMatchResult match_submaps(const DrawnSubmap& target, const DrawnSubmap& source, const PoseGaussian& prediction,
                                 const SubmapMatcherSettings& settings, const ScanMatcherSettings& matching);
 

@@ -6,25 +6,28 @@
 
 namespace patrol::slam {
 
-/// Two places between which something was measured; walked either way.
+/// Undirected edge between two nodes with the covariance of their relative pose.
 struct UncertainWay {
   int from = 0;
   int to = 0;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw of the one as seen from the other, in its frame; m, m, rad
+  /// Covariance of x, y, yaw of `to` in the frame of `from`; m, m, rad.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-/// [place]: where each lies as seen from `place`, and how surely, along the way to it that leaves least uncertain: Dijkstra's search, in place of the
-/// covariance of the whole graph, which is not smaller (Olson, "Robust and efficient robotic mapping", MIT 2008, section 4.2). A radian counts as ten metres.
-/// Places that no way leads to are infinitely uncertain.
+/// Relative poses and covariances of all nodes in the frame of `place`, [place]. Each covariance is that along the path
+/// of least uncertainty, found by Dijkstra's search. It is an upper bound of the marginal covariance of the whole graph
+/// [Olson08, section 4.2]. The uncertainty of a path counts one radian as ten meters. Unreachable nodes have infinite
+/// covariance.
 std::vector<PoseGaussian> positions_from(int place, const std::vector<Pose2>& T_map_place, const std::vector<UncertainWay>& ways);
 
-/// How surely `there` is known, where what is uncertain at `here` and on the way from it is; `way_covariance` as seen from here. Both in one frame, as is the result.
+/// Propagates the covariance of `here` along an edge to `there`. `way_covariance` is in the frame of `here`; the poses
+/// and the result are in one common frame.
 Eigen::Matrix3d carried_on(const PoseGaussian& here, const Pose2& there, const Eigen::Matrix3d& way_covariance);
 
-/// T_a_b and its covariance in a, given those of T_b_a in b.
+/// Inverts T_b_a with its covariance in b to T_a_b with its covariance in a.
 PoseGaussian inverse_of(const PoseGaussian& T_b_a);
 
-/// Of x, y, yaw, with the position's axes turned by so much.
+/// Rotates the position axes of a matrix of x, y, yaw by `yaw_rad`.
 Eigen::Matrix3d turned(const Eigen::Matrix3d& matrix, double yaw_rad);
 
 }  // namespace patrol::slam

@@ -7,16 +7,19 @@
 namespace patrol::slam {
 
 struct AssociationSettings {
-  bool is_known = true;          ///< sights tell which landmark they are of
-  double gate = 9.21;            ///< squared Mahalanobis distance up to which a sight may be of a landmark: 99 % of chi^2 with 2
-  double new_landmark = 25.0;    ///< beyond which of all of them it is of a new one; between the two it is left out
+  bool is_known = true;          ///< true: observations contain the landmark number
+  double gate = 9.21;  ///< maximum squared Mahalanobis distance of a match: 99 % of chi^2 with 2 degrees of freedom
+  /// Minimum squared Mahalanobis distance from all landmarks of a new landmark; observations between the two limits are
+  /// ignored.
+  double new_landmark = 25.0;
 };
 
-/// A sight that is of no landmark, and not good for a new one either.
+/// Result for an observation that matches no landmark and does not start a new one.
 inline constexpr int kUnmatched = -1;
 
-/// [sight] -> number of the landmark, one beyond all that are known for a new one, or kUnmatched. Unknown: each sight takes the landmark
-/// under which it is most probable (maximum likelihood, Montemerlo et al. 2003), no landmark twice.
+/// Data association, [observation] -> index of the landmark, the next free index for a new landmark, or kUnmatched.
+/// With unknown association, each observation is assigned to the landmark of maximum likelihood [Montemerlo03], and
+/// each landmark at most once.
 std::vector<int> associate(const LandmarkMap& map, const Pose2& T_map_body, const std::vector<RangeBearing>& seen, const RangeBearingNoise& noise,
                            const AssociationSettings& settings);
 

@@ -9,7 +9,8 @@
 namespace patrol::slam {
 namespace {
 
-/// How far a pose may lie from where the corrected control takes the one before: nothing, but that would have no derivative.
+/// Standard deviation of a pose relative to the prediction of the corrected control. The constraint is exact in theory;
+/// a small value keeps it differentiable.
 constexpr double kTight = 1e-4;  // m, rad
 
 template <typename Scalar>
@@ -17,7 +18,7 @@ Scalar wrapped(const Scalar& angle) {
   return atan2(sin(angle), cos(angle));
 }
 
-/// `error`: of the control, in standard deviations.
+/// Motion residual; `error` is the control error in standard deviations.
 struct MotionCost {
   ControlMotion motion;
   Control control;
@@ -74,7 +75,7 @@ BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& 
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = 200;  // from a guess that is metres off it needs 55
+  options.max_num_iterations = 200;  // a guess with an error of meters needs 55 iterations
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
 

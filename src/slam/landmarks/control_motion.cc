@@ -22,7 +22,8 @@ ControlMotionJacobian jacobian_of(const ControlMotion& motion, const Pose2& T_ma
     const double direction = T_map_body.yaw + part * turn_rad + bend_rad, c = std::cos(direction), s = std::sin(direction);
     const Eigen::Vector2d forward(c, s), sideways(-s, c);
     jacobian.pose.topRightCorner<2, 1>() += length_m * sideways;
-    jacobian.control.topRows<2>() += length_m * sideways * jacobian.control.row(2);  // by the heading that the parts before have made
+    // effect of the heading change of earlier substeps
+    jacobian.control.topRows<2>() += length_m * sideways * jacobian.control.row(2);
     jacobian.control.topLeftCorner<2, 1>() += dt * forward;
     jacobian.control.topRightCorner<2, 1>() += length_m * bend_by_control * sideways;
     jacobian.control.row(2) += turn_by_control.transpose();

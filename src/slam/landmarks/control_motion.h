@@ -6,30 +6,31 @@
 
 namespace patrol::slam {
 
-/// How a vehicle turns what it is told into a path.
+/// Kinematics of the vehicle: meaning of the second control.
 enum class Steering {
-  kYawRate,    ///< a quadruped or a pair of tracks: speed, and yaw rate, rad/s
-  kAckermann,  ///< a car: speed of the front wheel, and its steering angle, rad
+  kYawRate,    ///< quadruped or tracked vehicle: speed and yaw rate, rad/s
+  kAckermann,  ///< car: speed of the front wheel and steering angle, rad
 };
 
-/// Motion as measured: (speed in m/s, yaw rate in rad/s or steering angle in rad), for one step.
+/// Measured motion in one step: (speed in m/s, yaw rate in rad/s or steering angle in rad).
 using Control = Eigen::Vector2d;
 
 struct ControlMotion {
   Steering steering = Steering::kYawRate;
-  double wheelbase_m = 2.0;                           ///< of a car
+  double wheelbase_m = 2.0;                           ///< wheelbase of a car
   double step_s = 0.1;
-  int parts = 1;                                      ///< that a step is reckoned in: a car that turns does not go straight for long
-  Eigen::Vector2d std = Eigen::Vector2d(0.1, 0.087);  ///< of each control's error in a step, in its unit
+  int parts = 1;  ///< number of substeps of the integration; a turning car follows an arc
+  /// Standard deviation of each control's error in a step, in its unit.
+  Eigen::Vector2d std = Eigen::Vector2d(0.1, 0.087);
 
   Pose2 move(const Pose2& T_map_body, const Control& control) const;
-  /// `increment`: the control's error in standard deviations.
+  /// Applies the control plus an error. `increment` is the error of the control in standard deviations.
   Pose2 move_off(const Pose2& T_map_body, const Control& control, const Eigen::Vector2d& increment) const {
     return move(T_map_body, control + std.cwiseProduct(increment));
   }
 };
 
-/// One step of `pose` (x, y, yaw), for numbers of any kind; the yaw is not wrapped.
+/// Integrates one step of `pose` (x, y, yaw) in place, for any scalar type; the yaw is not wrapped.
 template <typename Scalar>
 void move_in_place(const ControlMotion& motion, const Scalar* control, Scalar* pose) {
   using std::cos, std::sin;
@@ -47,8 +48,9 @@ void move_in_place(const ControlMotion& motion, const Scalar* control, Scalar* p
 
 /// Derivatives of (x, y, yaw) after a step.
 struct ControlMotionJacobian {
-  Eigen::Matrix3d pose = Eigen::Matrix3d::Identity();                         ///< by (x, y, yaw) before it
-  Eigen::Matrix<double, 3, 2> control = Eigen::Matrix<double, 3, 2>::Zero();  ///< by the control
+  Eigen::Matrix3d pose = Eigen::Matrix3d::Identity();  ///< derivative with respect to (x, y, yaw) before the step
+  /// Derivative with respect to the control.
+  Eigen::Matrix<double, 3, 2> control = Eigen::Matrix<double, 3, 2>::Zero();
 };
 
 ControlMotionJacobian jacobian_of(const ControlMotion& motion, const Pose2& T_map_body, const Control& control);

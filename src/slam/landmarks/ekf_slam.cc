@@ -7,10 +7,10 @@
 namespace patrol::slam {
 namespace {
 
-/// A quarter turn: the derivative of a rotation at zero.
+/// Rotation by 90 degrees: the derivative of a rotation at zero.
 const Eigen::Matrix2d kTurn = (Eigen::Matrix2d() << 0.0, -1.0, 1.0, 0.0).finished();
 
-/// p moved by the exponential of (dtheta, dp) on SE(2).
+/// Transforms p by the exponential of (dtheta, dp) on SE(2).
 Eigen::Vector2d moved(const Eigen::Vector2d& p, double dtheta, const Eigen::Vector2d& dp) {
   const double s = std::sin(dtheta), c = std::cos(dtheta);
   const double a = std::abs(dtheta) < 1e-9 ? 1.0 : s / dtheta, b = std::abs(dtheta) < 1e-9 ? 0.5 * dtheta : (1.0 - c) / dtheta;
@@ -40,7 +40,8 @@ LandmarkSlamEstimate EkfSlam::step(const Control& control, const std::vector<Ran
   return summary();
 }
 
-// error after = F error before + G noise, with F = 1 but for the columns of the heading (plain only) and of the bias.
+// Propagates the covariance: error after = F error before + G noise. F is the identity except for the columns of the
+// heading (plain variant only) and of the bias.
 void EkfSlam::predict(const Control& control) {
   const Control corrected = control + motion_.std.cwiseProduct(bias_.mean);
   const Eigen::Vector2d p_before = T_map_body_.position();
@@ -102,7 +103,7 @@ void EkfSlam::add_landmark(const RangeBearing& sight) {
 
   const Eigen::Matrix2d by_sight = predict_sight(T_map_body_, landmarks_.back()).by_landmark.inverse();
   const Eigen::Index n = P_.rows();
-  Eigen::Matrix2Xd by_state = Eigen::Matrix2Xd::Zero(2, n);  // of the new landmark's error
+  Eigen::Matrix2Xd by_state = Eigen::Matrix2Xd::Zero(2, n);  // Jacobian of the new landmark's error
   by_state.middleCols<2>(kPosition).setIdentity();
   if (!settings_.is_invariant) by_state.col(kYaw) = kTurn * (landmarks_.back() - T_map_body_.position());
   const Eigen::Matrix2Xd cross = by_state * P_;
@@ -115,7 +116,7 @@ void EkfSlam::add_landmark(const RangeBearing& sight) {
 
 LandmarkSlamEstimate EkfSlam::summary() const {
   LandmarkSlamEstimate estimate{.T_map_body = T_map_body_};
-  Eigen::Matrix3d by_error = Eigen::Matrix3d::Zero();  // x, y, yaw by the rows yaw, x, y
+  Eigen::Matrix3d by_error = Eigen::Matrix3d::Zero();  // Jacobian of x, y, yaw with respect to the rows yaw, x, y
   by_error(2, 0) = 1.0;
   by_error.topRightCorner<2, 2>().setIdentity();
   if (settings_.is_invariant) by_error.topLeftCorner<2, 1>() = kTurn * T_map_body_.position();

@@ -6,21 +6,26 @@
 
 namespace patrol::slam {
 
-/// The defaults are our best method for landmarks (patrol study landmarks-circle, landmarks-100x80): as accurate as any, and it knows how accurate it is.
+/// Settings of EkfSlam. The defaults are the recommended method for landmarks (patrol study landmarks-circle,
+/// landmarks-100x80): no other method is more accurate, and its covariance is consistent.
 struct EkfSlamSettings {
-  double noise_scale = 1.0;                  ///< of odometry's stated deviations
-  OdometryBiasSettings bias{.std = 0.4};     ///< a part of the state: about half of the noise of one step; 0: odometry is believed to have none
+  double noise_scale = 1.0;                  ///< scale factor of the stated standard deviations of odometry
+  /// The bias is part of the state: about half of the noise of one step; 0: no bias.
+  OdometryBiasSettings bias{.std = 0.4};
   bool is_invariant = true;
 };
 
-/// SLAM with one extended Kalman filter for pose, bias of odometry and all landmarks together (Smith, Self, Cheeseman 1990). Known association.
+/// SLAM with one extended Kalman filter for the pose, the odometry bias and all landmarks [Smith90]. Known association
+/// only.
 ///
-/// Plain: the error is the difference of coordinates. Its Jacobians are taken where the estimate happens to be, so that the filter believes
-/// that it learns its heading from looking at the same landmarks twice, and ends overconfident (Julier, Uhlmann 2001; Huang et al. 2008).
+/// Plain variant: the error is the difference of coordinates. The Jacobians depend on the estimate, so that repeated
+/// observations of the same landmarks seem to constrain the heading. The filter becomes overconfident [Julier01],
+/// [Huang08].
 ///
-/// Invariant: the error is what a rotation and shift of the whole map about its origin leaves: p = exp(dtheta) p_hat + dp, the same for the body and
-/// every landmark (right-invariant error on SE_{n+1}(2); Barrau, Bonnabel, "An EKF-SLAM algorithm with consistency properties", 2015). Then a sight's
-/// Jacobian by the heading is exactly zero, whatever the estimate, and what cannot be observed is never learnt.
+/// Invariant variant: the error is a rotation and translation of the whole map about its origin. It is p = exp(dtheta)
+/// p_hat + dp for the body and every landmark (right-invariant error on SE_{n+1}(2) [Barrau15]). The Jacobian of an
+/// observation with respect to the heading is then exactly zero for every estimate, and unobservable directions gain no
+/// information.
 class EkfSlam : public LandmarkSlam {
  public:
   EkfSlam(const EkfSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise);
@@ -30,7 +35,7 @@ class EkfSlam : public LandmarkSlam {
   const OdometryBias& bias() const { return bias_; }
 
  private:
-  // Rows of the covariance: yaw, x, y, bias of speed, bias of turn, then x, y of each landmark in the order in which they were first seen.
+  // Rows of the covariance: yaw, x, y, speed bias, turn bias, then x, y of each landmark in order of discovery.
   static constexpr Eigen::Index kYaw = 0, kPosition = 1, kBias = 3, kLandmarks = 5;
 
   void predict(const Control& control);
@@ -44,8 +49,8 @@ class EkfSlam : public LandmarkSlam {
   RangeBearingNoise noise_;
   Pose2 T_map_body_;
   OdometryBias bias_;
-  std::vector<Eigen::Vector2d> landmarks_;  ///< in map, in the order in which they were first seen
-  std::vector<int> order_;                  ///< [landmark's number] -> index of the former, or kUnmatched
+  std::vector<Eigen::Vector2d> landmarks_;  ///< positions in map, in order of discovery
+  std::vector<int> order_;                  ///< [landmark number] -> index in landmarks_, or kUnmatched
   Eigen::MatrixXd P_;
 };
 

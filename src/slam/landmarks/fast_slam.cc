@@ -11,7 +11,7 @@
 
 namespace patrol::slam {
 
-/// The particles at one step, as the filter sees them (ParticleProblem).
+/// Particles at one step, as a ParticleProblem.
 class FastSlam::Step {
  public:
   Step(FastSlam& slam, const Control& control, const std::vector<RangeBearing>& seen) : slam_(slam), control_(control), seen_(seen) {
@@ -74,8 +74,8 @@ class FastSlam::Step {
   FastSlam& slam_;
   const Control& control_;
   const std::vector<RangeBearing>& seen_;
-  std::vector<std::vector<int>> matches_;  ///< [particle][sight], of one particle for all where the association is known
-  std::vector<Proposal> proposals_;        ///< [particle], for 2.0
+  std::vector<std::vector<int>> matches_;  ///< [particle][observation]; only one row with known association
+  std::vector<Proposal> proposals_;        ///< [particle], for FastSLAM 2.0
 };
 
 FastSlam::FastSlam(const FastSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise, ParticleFilterParts parts,
@@ -108,7 +108,7 @@ double FastSlam::log_likelihood(const Particle& particle, const Pose2& T_map_bod
   return likelihood.log_density();
 }
 
-// Gauss-Newton from what odometry says; landmarks that are seen for the first time say nothing of the pose.
+// Gauss-Newton from the odometry prediction; newly observed landmarks do not constrain the pose.
 FastSlam::Proposal FastSlam::propose(const Particle& particle, const Control& control, const std::vector<RangeBearing>& seen,
                                      const std::vector<int>& matches) const {
   constexpr int kIterations = 2;
@@ -135,7 +135,8 @@ FastSlam::Proposal FastSlam::propose(const Particle& particle, const Control& co
   return {.mean = mean, .root = root, .log_normalizer = -std::log(root(0, 0) * root(1, 1))};
 }
 
-// A particle that is drawn towards another takes its way and its map, and a share of its last increment: maps cannot be mixed.
+// A particle that is attracted toward another one takes the other's trajectory and map, and a fraction of its last
+// increment. Maps cannot be interpolated.
 void FastSlam::reproduce(const Control& control, const std::vector<Offspring>& offspring) {
   std::vector<Particle> children;
   children.reserve(offspring.size());
@@ -168,7 +169,8 @@ LandmarkSlamEstimate FastSlam::summary() const {
   return estimate;
 }
 
-// Where the association is known, landmark i is the same in all particles: their weighted mean. Else the heaviest particle's.
+// With known association, index i is the same landmark in all particles: return the weighted mean. Otherwise return the
+// landmarks of the particle with the largest weight.
 std::vector<std::optional<Eigen::Vector2d>> FastSlam::landmarks() const {
   const std::vector<double> weights = normalized_weights(log_weights_);
   const std::size_t best = static_cast<std::size_t>(std::max_element(weights.begin(), weights.end()) - weights.begin());

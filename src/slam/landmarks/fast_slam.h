@@ -14,33 +14,37 @@ namespace patrol::slam {
 
 struct FastSlamSettings {
   int particles = 10;
-  double noise_scale = 1.0;          ///< of odometry's stated deviations: more stands in for what is not modelled
-  bool draws_from_observation = false;  ///< FastSLAM 2.0, else 1.0
-  OdometryBiasSettings bias{};       ///< learnt by each particle; off by default
-  double prior_share = 0.0;          ///< lambda: how much an optimiser minds going far from what odometry says (1: as Bayes would)
+  /// Scale factor of the stated standard deviations of odometry; larger values cover unmodeled errors.
+  double noise_scale = 1.0;
+  bool draws_from_observation = false;  ///< true: FastSLAM 2.0; false: 1.0
+  OdometryBiasSettings bias{};       ///< bias estimated by each particle; off by default
+  double prior_share = 0.0;          ///< lambda: weight of the odometry prior in the optimizer's fitness (1: Bayesian)
   AssociationSettings association{};
 };
 
-/// FastSLAM: particles are paths, and on each landmarks are independent, with Kalman filters of their own.
+/// FastSLAM: each particle is a trajectory with independent landmarks, each estimated by a Kalman filter.
 ///
-///   1.0  draw the increment from odometry, weigh by the observation      Montemerlo, Thrun, Koller, Wegbreit, AAAI 2002
-///   2.0  draw it from odometry and the observation together              Montemerlo et al., IJCAI 2003
-///   swarms  draw as 1.0, let an optimiser move the increments towards what the observation likes, weigh as 1.0   papers 000, 001
+///   1.0     sample the increment from odometry, weight with the observation [Montemerlo02]
+///   2.0     sample the increment given odometry and observation [Montemerlo03]
+///   swarms  sample as in 1.0, optimize the increments by the observation, weight as in 1.0 [Wu25], [Cui21]
 ///
-/// A particle's position is its increment xi of two coordinates, errors of speed and of turn in standard deviations:
-/// pose = move(before, control + diag(std) xi). The observation's part of the fitness is -1/2 sum (nu^T S^-1 nu + log |S|) with the innovation nu
-/// (eq. 5 of paper 000 prints no square, and one variance). The weight after a swarm's move is the likelihood alone, as the papers have it:
-/// what the move did to the distribution is not undone, and the filter ends overconfident. For 2.0 the weight is exact.
+/// A particle's position is its increment xi of two coordinates, the errors of speed and turn in standard deviations:
+/// pose = move(before, control + diag(std) xi). The fitness by the observation is -1/2 sum (nu^T S^-1 nu + log |S|)
+/// with the innovation nu.
+///
+/// Interpretation of [Wu25]: eq. 5 prints no square and a single variance.
+/// As in the sources, the weight after a swarm's move is the likelihood alone. It does not correct for the changed
+/// sampling distribution, so the filter is overconfident. For 2.0 the weight is exact.
 class FastSlam : public LandmarkSlam {
  public:
-  /// `motion.std` and `noise` are what the robot believes of its odometry and of its sensor.
+  /// `motion.std` and `noise` are the assumed noise of odometry and sensor.
   FastSlam(const FastSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise, ParticleFilterParts parts,
            std::uint64_t seed);
 
   LandmarkSlamEstimate step(const Control& control, const std::vector<RangeBearing>& seen) override;
   std::vector<std::optional<Eigen::Vector2d>> landmarks() const override;
 
-  /// [particle], as of before the last resampling.
+  /// Particles before the last resampling, [particle].
   const std::vector<Pose2>& poses() const { return poses_; }
   const std::vector<double>& weights() const { return weights_; }
 
@@ -51,10 +55,10 @@ class FastSlam : public LandmarkSlam {
     OdometryBias bias;
     LandmarkMap map;
   };
-  /// What 2.0 draws from: normal, in increments.
+  /// Normal proposal distribution of FastSLAM 2.0, in increments.
   struct Proposal {
     Eigen::Vector2d mean;
-    Eigen::Matrix2d root;  ///< lower triangular, root root^T is the covariance
+    Eigen::Matrix2d root;  ///< lower triangular; root root^T is the covariance
     double log_normalizer = 0.0;
   };
   class Step;

@@ -10,24 +10,25 @@
 
 namespace patrol::slam {
 
-/// A landmark's place in map, normally distributed.
+/// Normally distributed landmark position in map.
 struct Landmark {
   Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< zero: not seen yet
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< zero: not observed yet
   bool is_seen = false;
 };
 
-/// How well a sight fits what is believed of a landmark, seen from a pose that is taken for certain. In closed form: with u the direction to the
-/// landmark and n across it, H = [u^T; n^T / r], and this is the innermost loop of every swarm.
+/// Innovation of an observation with respect to an estimated landmark, at a pose without uncertainty. In closed form,
+/// because this is the innermost loop of every swarm. With u the direction to the landmark and n perpendicular to it, H
+/// = [u^T; n^T / r].
 struct SightFit {
-  double range, bearing;       ///< the innovation, m and rad
+  double range, bearing;       ///< innovation, m and rad
   double ux, uy, r;            ///< direction and distance of the landmark, m
-  double PH00, PH01;           ///< P H^T, the covariance of the landmark's place and its sight
+  double PH00, PH01;           ///< P H^T, cross covariance of landmark position and observation
   double PH10, PH11;
   double S00, S01, S11, det;   ///< S = H P H^T + R, and its determinant
-  double squared_distance;     ///< Mahalanobis
+  double squared_distance;     ///< squared Mahalanobis distance
 
-  /// Without log 2 pi.
+  /// Log density of the observation without the log 2 pi term.
   double log_density() const { return -0.5 * (squared_distance + std::log(det)); }
   Eigen::Vector2d innovation() const { return {range, bearing}; }
   Eigen::Matrix2d S_inverse() const { return (Eigen::Matrix2d() << S11, -S01, -S01, S00).finished() / det; }
@@ -56,7 +57,7 @@ inline SightFit fit_sight(const Pose2& T_map_body, const Landmark& landmark, con
   return fit;
 }
 
-/// How probable sights are together, with one logarithm for all.
+/// Joint log density of several observations with a single logarithm.
 class SightLikelihood {
  public:
   SightLikelihood(const Pose2& T_map_body, const RangeBearingNoise& noise) : T_map_body_(T_map_body), noise_(noise) {}
@@ -68,7 +69,7 @@ class SightLikelihood {
     if (determinants_ < 1e-200) flush();
   }
 
-  /// -1/2 sum (nu^T S^-1 nu + log |S|)
+  /// Returns -1/2 sum (nu^T S^-1 nu + log |S|).
   double log_density() const { return -0.5 * (squared_distance_ + log_determinants_ + std::log(determinants_)); }
 
  private:
@@ -82,7 +83,7 @@ class SightLikelihood {
   double squared_distance_ = 0.0, determinants_ = 1.0, log_determinants_ = 0.0;
 };
 
-/// Landmarks of one particle, each with an extended Kalman filter of its own (FastSLAM 1.0: Montemerlo et al., AAAI 2002).
+/// Landmarks of one particle, each estimated by an extended Kalman filter (FastSLAM 1.0 [Montemerlo02]).
 class LandmarkMap {
  public:
   const std::vector<Landmark>& landmarks() const { return landmarks_; }
@@ -90,8 +91,9 @@ class LandmarkMap {
   bool has(int index) const { return static_cast<std::size_t>(index) < landmarks_.size() && landmarks_[static_cast<std::size_t>(index)].is_seen; }
   const Landmark& at(int index) const { return landmarks_[static_cast<std::size_t>(index)]; }
 
-  /// Takes the sight in: a new landmark begins where it was seen. `index` may be one beyond all. The logarithm of the sight's density, without
-  /// log 2 pi; zero for a new landmark's, which says nothing of the pose.
+  /// Updates a landmark with an observation; a new landmark is initialized at the observed position. `index` may be one
+  /// beyond the last. Returns the log density of the observation without the log 2 pi term; zero for a new landmark,
+  /// which does not constrain the pose.
   double update(int index, const Pose2& T_map_body, const RangeBearing& seen, const RangeBearingNoise& noise);
 
  private:

@@ -7,30 +7,31 @@
 
 namespace patrol::slam {
 
-/// What is known of a lasting error of odometry before anything is seen.
+/// Prior of a constant or slowly varying error of odometry.
 struct OdometryBiasSettings {
-  double std = 0.0;       ///< in standard deviations of odometry's noise; 0: odometry is believed to have none
-  double walk_std = 0.0;  ///< how far it wanders in one step
+  double std = 0.0;       ///< standard deviation of the bias, in standard deviations of the odometry noise; 0: no bias
+  double walk_std = 0.0;  ///< standard deviation of the random walk per step
 };
 
-/// The bias of odometry, normally distributed, in standard deviations of its noise. A particle's own path tells it exactly what its
-/// increments were; given the path the bias is linear and Gaussian, and a Kalman filter carries all that is known of it (Rao-Blackwell).
+/// Normally distributed odometry bias, in standard deviations of the odometry noise. The trajectory of a particle gives
+/// its increments exactly. Conditioned on it the bias is linear Gaussian, so a Kalman filter estimates it
+/// (Rao-Blackwellization).
 struct OdometryBias {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
 
   explicit OdometryBias(const OdometryBiasSettings& settings = {}) { covariance.diagonal().setConstant(settings.std * settings.std); }
 
-  /// Of the next increment: bias and noise of unit variance.
+  /// Covariance of the next increment: bias plus noise of unit variance.
   Eigen::Matrix2d increment_covariance() const { return covariance + Eigen::Matrix2d::Identity(); }
 
-  /// Lower triangular, root root^T is the covariance (Cholesky).
+  /// Cholesky factor of increment_covariance(), lower triangular: root root^T is the covariance.
   Eigen::Matrix2d increment_root() const {
     const double l00 = std::sqrt(1.0 + covariance(0, 0)), l10 = covariance(1, 0) / l00;
     return (Eigen::Matrix2d() << l00, 0.0, l10, std::sqrt(1.0 + covariance(1, 1) - l10 * l10)).finished();
   }
 
-  /// An increment xi = bias + noise was taken.
+  /// Updates the bias with an increment xi = bias + noise.
   void learn(const Eigen::Vector2d& increment, const OdometryBiasSettings& settings) {
     const Eigen::Matrix2d K = covariance * increment_covariance().inverse();
     mean += K * (increment - mean);

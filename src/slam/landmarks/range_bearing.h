@@ -9,9 +9,9 @@
 
 namespace patrol::slam {
 
-/// A landmark as seen from the body.
+/// Range-bearing observation of a landmark from the body.
 struct RangeBearing {
-  int landmark = 0;  ///< which one it is; used where the association is known
+  int landmark = 0;  ///< landmark number; used with known association only
   double range_m = 0.0;
   double bearing_rad = 0.0;
 
@@ -25,11 +25,11 @@ struct RangeBearingNoise {
   Eigen::Matrix2d covariance() const { return Eigen::Vector2d(range_std_m * range_std_m, bearing_std_rad * bearing_std_rad).asDiagonal(); }
 };
 
-/// What would be seen of a landmark at `p_map`, and the derivatives.
+/// Predicted observation of a landmark at `p_map`, with derivatives.
 struct PredictedSight {
   Eigen::Vector2d sight;                 ///< range, bearing
-  Eigen::Matrix2d by_landmark;           ///< by the landmark's x, y
-  Eigen::Matrix<double, 2, 3> by_pose;   ///< by the body's x, y, yaw
+  Eigen::Matrix2d by_landmark;           ///< derivative with respect to x, y of the landmark
+  Eigen::Matrix<double, 2, 3> by_pose;   ///< derivative with respect to x, y, yaw of the body
 };
 
 inline PredictedSight predict_sight(const Pose2& T_map_body, const Eigen::Vector2d& p_map) {
@@ -43,12 +43,12 @@ inline PredictedSight predict_sight(const Pose2& T_map_body, const Eigen::Vector
   return predicted;
 }
 
-/// Seen minus predicted, the bearing wrapped.
+/// Observed minus predicted range and bearing; the bearing is wrapped.
 inline Eigen::Vector2d innovation_of(const RangeBearing& seen, const PredictedSight& predicted) {
   return {seen.range_m - predicted.sight.x(), wrap_angle(seen.bearing_rad - predicted.sight.y())};
 }
 
-/// Where a sight says that the landmark is.
+/// Position of the landmark given by an observation.
 inline Eigen::Vector2d landmark_of(const Pose2& T_map_body, const RangeBearing& seen) {
   const double direction = T_map_body.yaw + seen.bearing_rad;
   return {T_map_body.x + seen.range_m * std::cos(direction), T_map_body.y + seen.range_m * std::sin(direction)};

@@ -11,9 +11,9 @@
 namespace patrol::slam {
 namespace {
 
-constexpr double kChance = 0.5 - 1e-9;  // a stump with more wrong votes teaches nothing that rounding would not
+constexpr double kChance = 0.5 - 1e-9;  // stumps with larger errors differ from chance only by rounding
 
-using Order = std::vector<std::size_t>;  ///< examples by one feature's value, ascending
+using Order = std::vector<std::size_t>;  ///< example indices in ascending order of one feature
 
 void check(const LabelledFeatures& training) {
   if (training.examples.size() != training.labels.size()) {
@@ -52,13 +52,13 @@ std::vector<double> first_weights(const std::vector<int>& labels, bool balance_c
   return weights;
 }
 
-/// A stump without its vote, and its share of wrong ones.
+/// Stump without weight, and its weighted error.
 struct StumpCandidate {
   DecisionStump stump;
   double error = 1.0;
 };
 
-/// Goes through the thresholds from below all values upwards; `wrong` is the weight of wrong votes of "+1 above".
+/// Tries all thresholds in ascending order; `wrong` is the weighted error of the vote "+1 above".
 StumpCandidate best_of_feature(std::size_t feature, const Order& order, const LabelledFeatures& training, const std::vector<double>& weights) {
   StumpCandidate best;
   double wrong = 0.0, all = 0.0;
@@ -96,7 +96,7 @@ bool is_wrong(const DecisionStump& stump, const LabelledFeatures& training, std:
   return stump.vote(training.examples[example]) != training.labels[example];
 }
 
-/// Share of wrong votes, summed without the cancellations of going through the thresholds.
+/// Weighted error, summed directly to avoid the cancellation of the incremental sums.
 double error_of(const DecisionStump& stump, const LabelledFeatures& training, const std::vector<double>& weights) {
   double wrong = 0.0, all = 0.0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -106,7 +106,7 @@ double error_of(const DecisionStump& stump, const LabelledFeatures& training, co
   return wrong / all;
 }
 
-/// The wrong ones are half of all then.
+/// Scales the weights so that the misclassified examples have half of the total.
 void reweigh(const DecisionStump& stump, double error, const LabelledFeatures& training, std::vector<double>& weights) {
   for (std::size_t i = 0; i < weights.size(); ++i) weights[i] *= 0.5 / (is_wrong(stump, training, i) ? error : 1.0 - error);
 }

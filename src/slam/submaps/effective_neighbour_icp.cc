@@ -9,9 +9,9 @@
 namespace patrol::slam {
 namespace {
 
-constexpr double kIcpTurnArm_m = 10.0;  // where a step's turn is judged
+constexpr double kIcpTurnArm_m = 10.0;  // distance at which the rotation of a step is evaluated
 
-/// A source point, where it is now, and its nearest target point.
+/// Source point and its nearest target point, with their distance at the current pose.
 struct Pair {
   std::size_t source = 0;
   std::size_t target = 0;
@@ -19,10 +19,11 @@ struct Pair {
 };
 
 bool is_seen_from_one_side(const Eigen::Vector2d& facing_target, const Eigen::Vector2d& facing_source, double yaw_rad) {
-  return facing_target.dot(Pose2{0.0, 0.0, yaw_rad} * facing_source) >= 0.0;  // zero: nobody knows
+  return facing_target.dot(Pose2{0.0, 0.0, yaw_rad} * facing_source) >= 0.0;  // zero: normal unknown
 }
 
-/// Each source point with the nearest target point that was not seen from the other side; where the nearest was, another is looked for in its reach.
+/// Pairs each source point with the nearest target point whose normal is not opposite, within `max_threshold_m` if it
+/// is not the nearest of all.
 std::vector<Pair> nearest_pairs(const IcpPoints& target, const IcpPoints& source, const Pose2& T_target_source, const IcpSettings& settings) {
   std::vector<Pair> pairs;
   pairs.reserve(source.points().size());
@@ -68,8 +69,8 @@ Pose2 motion_of(const std::vector<Pair>& pairs, const std::vector<Eigen::Vector2
   return fit_rigid_motion(p, q);
 }
 
-/// The pairs' distances, across the target's walls where it has some and either way where it is round, as if all were independent: H of x, y, yaw in target
-/// and the right side of H step = b.
+/// Normal equations H step = b of the pairs for x, y, yaw in target, with independent pairs. Distances are taken across
+/// linear surfaces and in both directions elsewhere.
 struct LineEquations {
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -97,7 +98,7 @@ LineEquations linearize(const std::vector<Pair>& pairs, const IcpPoints& target,
   return sum;
 }
 
-/// Gauss-Newton on the distances across walls; damped, so that nothing moves along a corridor.
+/// Gauss-Newton step on the distances, with damping against motion along a corridor.
 Pose2 step_on_lines(const LineEquations& lines, const Pose2& T_target_source) {
   constexpr double kDamping = 1e-2;
   const double shift = lines.H(0, 0) + lines.H(1, 1);
@@ -143,7 +144,7 @@ Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target, const 
     mu_p += points_target[i] / count;
     mu_q += points_source[i] / count;
   }
-  // Eq. 11 has its minimum where sum p' x R q' = 0; the paper iterates to it by Gauss-Newton, in the plane it is one arc tangent.
+  // The minimum of eq. 11 is at sum p' x R q' = 0. The source uses Gauss-Newton; in the plane it is one arc tangent.
   double dot = 0.0, cross = 0.0;
   for (std::size_t i = 0; i < points_target.size(); ++i) {
     const Eigen::Vector2d p = points_target[i] - mu_p, q = points_source[i] - mu_q;

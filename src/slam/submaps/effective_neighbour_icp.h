@@ -12,17 +12,18 @@
 namespace patrol::slam {
 
 struct IcpSettings {
-  bool use_effective_neighbours = true;  ///< false: all pairs, plain ICP
-  double min_threshold_m = 0.1;  ///< pairs nearer than this are effective in any case: below about a spacing a distance is the points' pattern
-  double max_threshold_m = 0.3;  ///< and pairs farther apart are not: a coarse matching leaves less than this
-  bool refine_on_lines = true;   ///< goes on with the distances across the target's walls, once those from point to point have converged
-  double line_threshold_m = 0.1; ///< the farthest that pairs may be apart then
-  double line_kernel_m = 0.04;   ///< and those that are so far apart count half
+  bool use_effective_neighbours = true;  ///< false: all pairs, as in ICP [Besl92]
+  /// Lower bound of the threshold: below about one point spacing, distances reflect the point pattern.
+  double min_threshold_m = 0.1;
+  double max_threshold_m = 0.3;  ///< upper bound of the threshold: coarse matching leaves smaller errors
+  bool refine_on_lines = true;   ///< after point-to-point convergence, continue with point-to-line distances
+  double line_threshold_m = 0.1; ///< upper bound of the threshold in point-to-line steps
+  double line_kernel_m = 0.04;   ///< distance at which a pair has half weight in point-to-line steps
   int max_iterations = 100;
-  double step_tol_m = 1e-5;     ///< a smaller step ends it; seen 10 m away
-  int min_pairs = 10;           ///< fewer are no match
-  double point_std_m = 0.03;    ///< of a point across its wall, for the information
-  double normal_radius_m = 0.3; ///< neighbourhood whose principal axis is a wall's normal
+  double step_tol_m = 1e-5;     ///< convergence: displacement by a step, at 10 m from the origin
+  int min_pairs = 10;           ///< matches with fewer pairs are rejected
+  double point_std_m = 0.03;    ///< standard deviation of a point across its wall, for the information
+  double normal_radius_m = 0.3; ///< radius of the neighborhood whose principal axis gives the normal
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -40,10 +41,10 @@ struct IcpSettings {
   }
 };
 
-/// Points that are laid on others, or on which others are laid: made once, matched often.
+/// Target or source points of an alignment, prepared once for several alignments.
 class IcpPoints {
  public:
-  /// `facings` [point]: from which side it was seen (surface_points.h); without any, points are points.
+  /// `facings` [point]: free-space normals (surface_points.h); empty: pairs are not gated by normals.
   IcpPoints(std::vector<Eigen::Vector2d> points, const IcpSettings& settings, std::vector<Eigen::Vector2d> facings = {})
       : tree_(std::move(points)), normals_(surface_normals(tree_, settings.normal_radius_m)), facings_(std::move(facings)) {
     facings_.resize(tree_.points().size(), Eigen::Vector2d::Zero());
@@ -62,36 +63,44 @@ class IcpPoints {
 
 struct IcpResult {
   Pose2 T_target_source;
-  /// Of x, y, yaw in target, of the pairs across the target's walls, as if all were independent. Along a corridor it is next to none, though pairs of
-  /// points hold each other there too.
+  /// Information of x, y, yaw in target, from independent pairs with their distances across the target's walls. Near
+  /// zero along a corridor, although point pairs resist motion there too.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  int num_pairs = 0;         ///< effective ones, at the end
-  double threshold_m = 0.0;  ///< the longest distance of an effective pair
-  double rms_m = 0.0;        ///< of their distances
+  int num_pairs = 0;         ///< number of effective pairs in the last iteration
+  double threshold_m = 0.0;  ///< largest distance of an effective pair
+  double rms_m = 0.0;        ///< root mean square of the distances of the effective pairs
   int iterations = 0;
   bool converged = false;
 };
 
-/// The distance up to which pairs are effective neighbours (paper 002, eqs. 7 and 8), of distances sorted in ascending order, at least one.
+/// Threshold distance of effective neighbors [Yu23, eqs. 7, 8]. The input is sorted in ascending order and not empty.
 ///
-/// Eq. 7 is the chord from the first to the last, L(k) = (a_n - a_1) / (n - 1) (k - 1) + a_1, eq. 8 the departure of the k-th from it. The sign of eq. 8 cannot
-/// be read; the text goes on "when D_k - D_(k-1) < 0 take a_(k-1)". With D_k = L(k) - a_k, how far the k-th lies below the chord, that is where the
-/// departure stops growing: on a curve that bends upwards only, its largest value. Real curves have ripples, the first of which would end it at the second
-/// pair already, so the largest departure of all is taken; of equal ones the last. Where none lies below the chord there is no bend, and all are kept.
+/// Eq. 7 is the chord from the first to the last distance, L(k) = (a_n - a_1) / (n - 1) (k - 1) + a_1. Eq. 8 is the
+/// deviation of the k-th distance from it.
+///
+/// Deviations from [Yu23]: the sign in eq. 8 is illegible, and the text continues "when D_k - D_(k-1) < 0 take
+/// a_(k-1)". Here D_k = L(k) - a_k. The rule then selects the first maximum of the deviation, which is the global
+/// maximum on a convex curve. Measured curves have ripples that would end the search at the second pair, so the global
+/// maximum is used; among equal ones the last. If no distance is below the chord, all pairs are kept.
 double effective_threshold(const std::vector<double>& sorted_distances);
 
-/// The rigid motion with the smallest sum of squared distances from source to target points, pair by pair, in closed form (paper 002, eqs. 9 to 12: both
-/// centred, then the rotation, then T = mu_p - R mu_q). At least one pair.
+/// Rigid motion that minimizes the sum of squared distances of point pairs, in closed form [Yu23, eqs. 9 to 12]. Both
+/// sets are centered, then the rotation is estimated, then T = mu_p - R mu_q. At least one pair is required.
 Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target, const std::vector<Eigen::Vector2d>& points_source);
 
-/// Iterated closest points (Besl, McKay 1992) on effective neighbours (paper 002, section 2.2): every source point with its nearest target point, the pairs
-/// past the threshold dropped, anew in every iteration, so that what lies beyond the common part does not pull. None if fewer than `min_pairs` are left.
+/// ICP [Besl92] on effective neighbors [Yu23, section 2.2]. In every iteration, each source point is paired with its
+/// nearest target point, and pairs beyond the threshold are dropped. Points outside the overlap thus have no influence.
+/// Returns none if fewer than `min_pairs` remain.
 ///
-/// Four things are not the paper's, and can be switched off: pairs that were seen from opposite sides are none, or a wall's two faces come to lie on each
-/// other; the least threshold, without which submaps that overlap wholly are matched on their best pairs only and stop half way; the largest, without which the bend of the curve lies metres off where most points have no partner (a switchyard), and the
-/// match is worse than the one that it began at; and the steps at the end on lines where the target is straight and on points where it is not (Segal, Haehnel,
-/// Thrun, "Generalized-ICP", RSS 2009, in the plane), near pairs counting most, since two submaps' points are never the same pieces of wall, and lock like
-/// two combs.
+/// Deviations from [Yu23], all of which can be switched off:
+/// - Pairs with opposite free-space normals are rejected; otherwise the two sides of a wall would be aligned.
+/// - The threshold has a lower bound; otherwise fully overlapping submaps would be matched on their best pairs only and
+///   converge early.
+/// - The threshold has an upper bound. Without it, the bend of the curve is meters off if most points have no partner
+///   (a switchyard). The match is then worse than its start.
+/// - Final steps use distances to lines where the target is linear and to points elsewhere (Generalized-ICP in the
+///   plane [Segal09]). Near pairs have larger weights, because the points of two submaps are different samples of the
+///   walls and would otherwise lock onto each other's pattern.
 std::optional<IcpResult> align_icp(const IcpPoints& target, const IcpPoints& source, const Pose2& T_start, const IcpSettings& settings);
 
 }  // namespace patrol::slam

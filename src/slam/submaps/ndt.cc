@@ -17,14 +17,14 @@ namespace patrol::slam {
 namespace {
 
 constexpr double kMostNodes = 4000.0;  // along either axis
-constexpr double kNdtTurnArm_m = 10.0;        // where a step's turn is judged
-constexpr double kMinWeight = 1e-6;    // a cell whose points all lie on its border has no shape
+constexpr double kNdtTurnArm_m = 10.0;        // distance at which the rotation of a step is evaluated
+constexpr double kMinWeight = 1e-6;    // a cell whose points are all on its border has no covariance
 
-/// One of the four nodes around a point.
+/// One of the four nodes around a point, with its bilinear weight.
 struct NodeShare {
   Cell node;
   double weight;             ///< 0 ... 1
-  Eigen::Vector2d gradient;  ///< of the weight, 1/m
+  Eigen::Vector2d gradient;  ///< gradient of the weight, 1/m
 };
 
 std::array<NodeShare, 4> shares_of(const Eigen::Vector2d& from_origin_m, double spacing_m) {
@@ -37,7 +37,7 @@ std::array<NodeShare, 4> shares_of(const Eigen::Vector2d& from_origin_m, double 
            {{col + 1, row + 1}, a * b, {slope * b, slope * a}}}};
 }
 
-/// The lattice that holds all points. Nodes lie on multiples of the spacing, so that it is the same wherever else points are.
+/// Lattice that covers all points. Nodes are at multiples of the spacing, independent of the points.
 GridGeometry lattice_of(const std::vector<Eigen::Vector2d>& points, double spacing_m) {
   check_finite(points);
   if (points.empty()) return {.resolution_m = spacing_m};
@@ -55,14 +55,14 @@ GridGeometry lattice_of(const std::vector<Eigen::Vector2d>& points, double spaci
           .origin_m = spacing_m * first.matrix()};
 }
 
-/// Sums of a cell's points, each by its weight, from the node.
+/// Weighted sums of the points of a cell, relative to the node.
 struct CellSums {
   double weight = 0.0;
   Eigen::Vector2d first = Eigen::Vector2d::Zero();
   Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
 };
 
-/// Inverse of the covariance, both of whose standard deviations are made at least `min_std_m`.
+/// Inverse of the covariance, with both standard deviations at least `min_std_m`.
 Eigen::Matrix2d floored_information(const Eigen::Matrix2d& covariance, double min_std_m) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
   axes.computeDirect(covariance);
@@ -103,7 +103,7 @@ NdtGrid::NdtGrid(const std::vector<Eigen::Vector2d>& points_target, double cell_
 }
 
 void NdtGrid::add(const Eigen::Vector2d& p_target, const Eigen::Vector2d& arm, NdtScore& sum) const {
-  Eigen::Matrix<double, 2, 3> J;  // of the point by the pose
+  Eigen::Matrix<double, 2, 3> J;  // Jacobian of the point with respect to the pose
   J << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x();
   for (const NodeShare& share : shares_of(p_target - origin_m_, node_spacing_m_)) {
     if (!cell_of_node_.contains(share.node)) continue;
@@ -122,7 +122,7 @@ NdtScore NdtGrid::score(const std::vector<Eigen::Vector2d>& points_source, const
   NdtScore sum;
   const double c = std::cos(T_target_source.yaw), s = std::sin(T_target_source.yaw);
   const Eigen::Vector2d t = T_target_source.position();
-  // Far beyond the lattice a node's number would not fit an int.
+  // Node indices of points far outside the lattice would overflow an int.
   const GridGeometry& lattice = cell_of_node_.geometry();
   const Eigen::Vector2d low = origin_m_.array() - node_spacing_m_;
   const Eigen::Vector2d high = origin_m_ + node_spacing_m_ * Eigen::Vector2d(lattice.width, lattice.height);
@@ -150,7 +150,7 @@ std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& points,
 
 namespace {
 
-/// Where a climb stands.
+/// State of one optimization.
 struct Climb {
   Pose2 T_target_source;
   NdtScore score;
@@ -162,7 +162,7 @@ Pose2 stepped(const Pose2& T_target_source, const Eigen::Vector3d& step) {
   return {T_target_source.x + step.x(), T_target_source.y + step.y(), wrap_angle(T_target_source.yaw + step.z())};
 }
 
-/// Levenberg and Marquardt: the damping falls with every step taken and grows until a step climbs.
+/// Levenberg-Marquardt: the damping decreases after accepted steps and increases after rejected ones.
 Climb climb(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, const Pose2& T_start, const NdtSettings& settings) {
   constexpr double kMostDamping = 1e7;
   Climb at{.T_target_source = T_start, .score = grid.score(points, T_start)};
@@ -187,7 +187,7 @@ Climb climb(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, con
   return at;
 }
 
-/// Whether one of the climbs ended here: points 10 m away are moved by less than a hundredth of a cell.
+/// Returns whether another result is equal within a hundredth of a cell at 10 m from the origin.
 bool is_near_any(const Pose2& T_target_source, const std::vector<Climb>& climbs, double cell_m) {
   return std::ranges::any_of(climbs, [&](const Climb& other) {
     const Pose2& T = other.T_target_source;
@@ -195,7 +195,7 @@ bool is_near_any(const Pose2& T_target_source, const std::vector<Climb>& climbs,
   });
 }
 
-/// How the score falls off around its top, by the differences of its gradient half a node either way; never negative.
+/// Negative Hessian of the score by central differences of the gradient over half a node, made positive semidefinite.
 Eigen::Matrix3d measured_information(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, const Pose2& T_target_source) {
   const double step_m = 0.25 * grid.cell_m();
   const Eigen::Vector3d steps(step_m, step_m, step_m / kNdtTurnArm_m);
@@ -216,7 +216,7 @@ std::optional<NdtResult> align_ndt(const std::vector<NdtGrid>& target, const std
                                    const NdtSettings& settings) {
   const std::vector<Eigen::Vector2d> points = thinned(points_source, settings.max_points);
   if (points.empty()) return std::nullopt;
-  // Each level climbs from the start and from all that the coarser ones have found.
+  // Start every level from `T_start` and from all results of the coarser level.
   std::vector<Climb> found;
   int iterations = 0;
   for (const NdtGrid& grid : target) {

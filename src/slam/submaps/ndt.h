@@ -13,11 +13,13 @@
 namespace patrol::slam {
 
 struct NdtSettings {
-  std::vector<double> cells_m = {8.0, 4.0, 2.0, 1.0, 0.5};  ///< sides of the cells, level by level, coarse first
-  double min_std_per_cell = 0.15;  ///< a normal is at least this wide in any direction, in sides of its cell: how far a wall is felt
-  int max_points = 800;            ///< of the source; if it has more, every so many
-  int max_iterations = 60;         ///< on each level
-  double step_tol_per_cell = 5e-4; ///< a step that moves points 10 m away by less than this, in sides of the cell, ends a level
+  std::vector<double> cells_m = {8.0, 4.0, 2.0, 1.0, 0.5};  ///< cell sizes of the levels, coarse to fine
+  /// Minimum standard deviation of a cell's normal, relative to the cell size; determines the capture range of a wall.
+  double min_std_per_cell = 0.15;
+  int max_points = 800;            ///< maximum number of source points; a regular subset of more points is used
+  int max_iterations = 60;         ///< maximum number of iterations per level
+  /// Convergence of a level: displacement by a step at 10 m from the origin, relative to the cell size.
+  double step_tol_per_cell = 5e-4;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -29,28 +31,31 @@ struct NdtSettings {
   }
 };
 
-/// The score of points at a pose and its derivatives by x, y, yaw of T_target_source.
+/// Score of points at a pose, with derivatives with respect to x, y, yaw of T_target_source.
 struct NdtScore {
   double value = 0.0;                                   ///< sum over the points, each 0 ... 1
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();   ///< exact
-  Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();  ///< of -value, approximated so that it is never negative (Gauss-Newton)
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();   ///< exact gradient
+  /// Gauss-Newton approximation of the Hessian of -value, positive semidefinite
+  Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
 };
 
-/// The normal distributions transform of points (Biber, Strasser, "The normal distributions transform: a new approach to laser scan matching", IROS 2003;
-/// paper 002, eqs. 4, 5) at one size of cells.
+/// Normal distributions transform of points at one cell size ([Biber03]; [Yu23, eqs. 4, 5]).
 ///
-/// Biber's four grids, each shifted by half a cell, are one lattice of nodes here, half a cell apart, with a cell around each. A point counts in the four
-/// cells that hold it by bilinear weights, which are 1 together and 0 on a cell's border: so the score has no jumps, and its gradient is what it says.
+/// The four grids of [Biber03], shifted by half a cell each, form one lattice: nodes half a cell apart with a cell
+/// around each. A point belongs to the four cells that contain it, with bilinear weights that sum to 1 and vanish on
+/// the cell border. The score is therefore continuous, and its gradient exact.
 class NdtGrid {
  public:
-  /// `points_target` in target, m. A normal whose smaller standard deviation is below `min_std_m` is widened to it. Throws InputError when a point is not
-  /// finite, or when they lie more than 4,000 nodes apart.
+  /// `points_target` in target, m. Standard deviations of a normal below `min_std_m` are increased to it. Throws
+  /// InputError if a point is not finite or if the lattice exceeds 4,000 nodes along an axis.
   NdtGrid(const std::vector<Eigen::Vector2d>& points_target, double cell_m, double min_std_m);
 
-  /// Sum over the points of exp(-1/2 q^T Sigma^-1 q), q from the mean of the cell (Biber's score, his eq. 6), by bilinear weights over the four cells.
+  /// Sum over the points of exp(-1/2 q^T Sigma^-1 q), with q relative to the mean of the cell [Biber03, eq. 6]. The
+  /// four cells of a point have bilinear weights.
   ///
-  /// Paper 002's eq. 6 has the sum of the logarithms instead. Of one normal alone that is a parabola without bound, and the points that have no partner, of
-  /// which partly overlapping submaps have most, would pull hardest. Without the logarithm they are not felt.
+  /// Deviation from [Yu23, eq. 6], which sums the logarithms: for a single normal that is an unbounded parabola. Points
+  /// without a partner, frequent in partly overlapping submaps, would then dominate. Without the logarithm their
+  /// influence vanishes.
   NdtScore score(const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_target_source) const;
 
   double cell_m() const { return 2.0 * node_spacing_m_; }
@@ -64,31 +69,33 @@ class NdtGrid {
   void add(const Eigen::Vector2d& p_target, const Eigen::Vector2d& arm, NdtScore& sum) const;
 
   double node_spacing_m_;
-  Eigen::Vector2d origin_m_;  ///< of node (0, 0)
-  Grid<int> cell_of_node_;    ///< -1: nothing is there
+  Eigen::Vector2d origin_m_;  ///< position of node (0, 0)
+  Grid<int> cell_of_node_;    ///< -1: no cell
   std::vector<NormalCell> cells_;
 };
 
-/// A submap's transform at every size of cells, coarse first: made once, matched often.
+/// Computes the transforms of a submap at all cell sizes, coarse to fine.
 std::vector<NdtGrid> make_ndt(const std::vector<Eigen::Vector2d>& points_target, const NdtSettings& settings);
 
 struct NdtResult {
   Pose2 T_target_source;
-  /// Of x, y, yaw in target: how the finest level's score falls off around the pose, as if all points were independent. Measured by differences, not the
-  /// curvature of Gauss-Newton, in which a wall's cells hold a point along the wall as well: along a corridor there is next to none.
+  /// Information of x, y, yaw in target: negative Hessian of the score of the finest level, with independent points.
+  /// Computed by finite differences instead of the Gauss-Newton curvature, in which the cells of a wall also constrain
+  /// points along the wall. Along a corridor it is near zero.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  double score = 0.0;  ///< mean over the source's points on the finest level, 0 ... 1; a point without a partner counts 0
-  int iterations = 0;  ///< of all levels together
-  bool converged = false;  ///< on the finest level
+  double score = 0.0;  ///< mean over the source points on the finest level, 0 ... 1; points without a partner have 0
+  int iterations = 0;  ///< sum over all levels
+  bool converged = false;  ///< convergence on the finest level
 };
 
-/// The pose of largest score near `T_start` (paper 002's coarse matching, eq. 6): Gauss-Newton with Levenberg's damping, which takes no step that lowers
-/// the score. Every level climbs from the start and from all poses that the coarser ones ended at, since wide cells see far but are pulled off where
-/// submaps overlap in part only; the pose that the finest level scores highest is taken. None if no point of the source is felt by any of its cells.
+/// Pose of maximum score near `T_start`, for coarse matching [Yu23, eq. 6]: Gauss-Newton with Levenberg-Marquardt
+/// damping; steps that lower the score are rejected. Every level starts from `T_start` and from all results of the
+/// coarser level: wide cells have a large capture range but are biased in partial overlaps. The result with the highest
+/// score on the finest level is returned. Returns none if no cell responds to any source point.
 std::optional<NdtResult> align_ndt(const std::vector<NdtGrid>& target, const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_start,
                                    const NdtSettings& settings);
 
-/// At most `max_points` of the points, evenly taken: every so many.
+/// Regular subset of at most `max_points` points.
 std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& points, int max_points);
 
 }  // namespace patrol::slam

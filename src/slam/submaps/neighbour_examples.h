@@ -10,12 +10,14 @@
 namespace patrol::slam {
 
 struct NeighbourExampleSettings {
-  int predictions = 3;                ///< of each pair that may be asked about
-  double min_prediction_std_m = 0.05; ///< how far off a pair's place is predicted: drawn between these, evenly by the logarithm
+  int predictions = 3;                ///< number of predictions per submap pair
+  /// Standard deviation of the predicted position, sampled between these bounds, uniform in the logarithm.
+  double min_prediction_std_m = 0.05;
   double max_prediction_std_m = 3.0;
-  double prediction_rad_per_m = 0.05; ///< and its heading, of that
-  double blunder_share = 0.2;         ///< of the predictions are off by four times what they say
-  double max_match_m = 0.15;          ///< a match this near to the truth is right
+  /// Standard deviation of the predicted heading per standard deviation of the position.
+  double prediction_rad_per_m = 0.05;
+  double blunder_share = 0.2;         ///< fraction of gross errors: predictions with four times the stated error
+  double max_match_m = 0.15;          ///< maximum distance of a correct match from ground truth
   double max_match_rad = 0.02;
 
   template <typename Self, typename Visitor>
@@ -30,11 +32,12 @@ struct NeighbourExampleSettings {
   }
 };
 
-/// Adds examples of pairs of submaps, by their features (pair_features.h), where the truth of their places is known: neighbours (+1) are those whose match
-/// from the prediction on is right, all others are not (-1). So what is learnt is whom the matching can join, not who happens to overlap.
+/// Adds the features (pair_features.h) of submap pairs with labels from ground truth. Neighbors (+1) are pairs whose
+/// match from the prediction is correct; all others are -1. The classifier thus learns which pairs can be matched, not
+/// which overlap.
 ///
-/// Predictions are the truth and an error as large as the prediction says, or, for some, much larger. Pairs that lie so far apart that nobody would ask are
-/// left out. `T_world_submap` [submap that is full].
+/// Predictions are ground truth plus an error as large as stated or, for a fraction of them, four times as large. Pairs
+/// too far apart to be candidates are skipped. `T_world_submap` [full submap].
 void add_neighbour_examples(const SubmapRbpf& built, const std::vector<Pose2>& T_world_submap, const SubmapSurfaceSettings& surfaces, const NeighbourExampleSettings& settings,
                             std::uint64_t seed, LabelledFeatures& examples);
 

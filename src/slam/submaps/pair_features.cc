@@ -14,7 +14,7 @@ namespace {
 constexpr double kMostDeviations = 30.0;
 constexpr double kLeastSeenShare = 0.1;
 
-/// In standard deviations; a direction without any counts as one of a micrometre (or microradian).
+/// Mahalanobis distance. A direction of zero variance counts as one with a standard deviation of 1 um or 1 urad.
 template <int N>
 double mahalanobis(const Eigen::Matrix<double, N, 1>& offset, const Eigen::Matrix<double, N, N>& covariance) {
   const Eigen::Matrix<double, N, N> regular = covariance + 1e-12 * Eigen::Matrix<double, N, N>::Identity();
@@ -22,7 +22,7 @@ double mahalanobis(const Eigen::Matrix<double, N, 1>& offset, const Eigen::Matri
   return squared < kMostDeviations * kMostDeviations ? std::sqrt(std::max(0.0, squared)) : kMostDeviations;
 }
 
-/// Covariance of where the source's centre lies in target.
+/// Covariance of the source's center in target.
 Eigen::Matrix2d center_covariance(const SubmapShape& source, const PoseGaussian& T_target_source) {
   const Eigen::Vector2d arm = T_target_source.mean * source.center - T_target_source.mean.position();
   Eigen::Matrix<double, 2, 3> J;
@@ -48,7 +48,7 @@ double seen_overlap(const SubmapShape& target, const SubmapShape& source, const 
   return fewer > 0 ? std::min(1.0, static_cast<double>(common) / fewer) : 0.0;
 }
 
-/// Between whole bins the correlation is taken to be linear.
+/// Correlation at a rotation, interpolated linearly between bins.
 double direction_at(const SubmapShape& target, const SubmapShape& source, double yaw_rad) {
   const double shift = yaw_rad / std::numbers::pi * static_cast<double>(target.directions.size());
   const int before = static_cast<int>(std::floor(shift));
@@ -71,12 +71,12 @@ double score_on(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points,
   return grid.score(points, T_grid_points).value / static_cast<double>(points.size());
 }
 
-/// The smaller of both directions, on one level of each.
+/// NDT score on one level, minimum of both directions.
 double score_both_ways(const SubmapShape& target, const SubmapShape& source, const Pose2& T_target_source, std::size_t level) {
   return std::min(score_on(target.ndt[level], source.points, T_target_source), score_on(source.ndt[level], target.points, T_target_source.inverse()));
 }
 
-/// Of the points that lie where `seen` knows something, the share with a surface near; none if too few do.
+/// Inlier ratio of points in the observed cells; 0 if too few points are in observed cells.
 double agreement_of(const SeenCells& seen, const std::vector<Eigen::Vector2d>& points, const Pose2& T_seen_points) {
   int known = 0, on_surface = 0;
   for (const Eigen::Vector2d& p : points) {

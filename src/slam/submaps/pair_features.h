@@ -10,44 +10,47 @@
 
 namespace patrol::slam {
 
-/// What tells whether two submaps are neighbours, that is hold a part of the world in common: for AdaBoost (paper 002, section 3, which says that the
-/// features of a pair are learnt from but not which). Lengths are in the two submaps' radii together, so that the size of a submap does not matter. None
-/// depends on where in the world or in their own frames the submaps lie; what is read from cells, histograms of directions and matching does so by less
-/// than their resolution.
+/// Names of the features of a submap pair. AdaBoost classifies from them whether the submaps are neighbors, that is,
+/// overlap [Yu23, section 3]. The source does not list its features.
 ///
-///   center_distance        of the two centres as predicted, in radii together
-///   center_mahalanobis     the same in standard deviations of the prediction; at most 30
-///   center_std             the prediction's largest standard deviation of the one centre in the other submap, in radii together
-///   hull_overlap           common area of the convex hulls as predicted, of the smaller one's
-///   seen_overlap           cells seen by both as predicted, of those that the one saw who saw fewer
-///   distance_difference    of the histograms of distances between points: 0 ... 1; needs no pose
-///   direction_correlation  of the histograms of the walls' directions, the best of all turns: -1 ... 1; needs no pose
-///   direction_predicted    the same at the turn predicted
-///   point_ratio            points of the one with fewer, of the other's; needs no pose
-///   radius_ratio           smaller radius, of the larger; needs no pose
-///   score_predicted        NDT score on the second coarsest cells as predicted, the smaller of both directions: 0 ... 1
-///   score_aligned          NDT score on the finest cells at the pose that NDT finds from the prediction on, likewise
-///   aligned_mahalanobis    how far that pose is from the prediction, in standard deviations; at most 30
-///   aligned_agreement      mutual_agreement there
+/// Lengths are relative to the sum of the two submap radii, so that the submap size does not matter. No feature depends
+/// on the world pose or on the frames of the submaps. Features from cells, direction histograms and matching depend on
+/// them by less than their resolution.
+///
+///   center_distance        distance between the two predicted centers, relative to the sum of radii
+///   center_mahalanobis     that distance in standard deviations of the prediction; at most 30
+///   center_std             largest standard deviation of the predicted center, relative to the sum of radii
+///   hull_overlap           common area of the predicted convex hulls, relative to the smaller hull
+///   seen_overlap           number of cells observed by both as predicted, relative to the smaller number
+///   distance_difference    difference of the distance histograms: 0 ... 1; independent of the pose
+///   direction_correlation  maximum correlation of the direction histograms: -1 ... 1; independent of the pose
+///   direction_predicted    correlation of the direction histograms at the predicted rotation: -1 ... 1
+///   point_ratio            smaller number of points relative to the larger; independent of the pose
+///   radius_ratio           smaller radius relative to the larger; independent of the pose
+///   score_predicted        NDT score on the second-coarsest cells as predicted, minimum of both directions: 0 ... 1
+///   score_aligned          NDT score on the finest cells at the NDT result, minimum of both directions: 0 ... 1
+///   aligned_mahalanobis    distance of the NDT result from the prediction, in standard deviations; at most 30
+///   aligned_agreement      mutual_agreement at the NDT result
 inline constexpr std::array<const char*, 14> kPairFeatures = {
     "center_distance",     "center_mahalanobis", "center_std",   "hull_overlap",    "seen_overlap",  "distance_difference", "direction_correlation",
     "direction_predicted", "point_ratio",        "radius_ratio", "score_predicted", "score_aligned", "aligned_mahalanobis", "aligned_agreement"};
 
 std::vector<std::string> pair_feature_names();
 
-/// Of the one's points that lie where the other has looked, the share that lie on a surface of the other; the smaller of both directions. 0 if fewer than a
-/// tenth of either's points lie where the other has looked.
+/// Inlier ratio of two submaps: points on a surface of the other / points in observed cells of the other, minimum of
+/// both directions. 0 if fewer than a tenth of the points of either are in observed cells of the other.
 double mutual_agreement(const SubmapShape& target, const SubmapShape& source, const Pose2& T_target_source);
 
-/// Whether their centres may lie within both radii of each other, two standard deviations off the prediction.
+/// Returns whether the distance of the centers, minus two standard deviations of the prediction, is below the sum of
+/// the radii.
 bool may_be_neighbours(const SubmapShape& target, const SubmapShape& source, const PoseGaussian& T_target_source);
 
 struct SubmapComparison {
-  std::vector<double> features;      ///< [feature] as above, all finite
-  std::optional<NdtResult> aligned;  ///< none if the submaps do not feel each other
+  std::vector<double> features;      ///< [feature] in the order of kPairFeatures, all finite
+  std::optional<NdtResult> aligned;  ///< none if no cell of the target responds to the source
 };
 
-/// `T_target_source` as predicted by odometry or the graph. Takes one NDT matching.
+/// Computes the features of a pair with one NDT alignment. `T_target_source` is predicted by odometry or the graph.
 SubmapComparison compare_submaps(const SubmapShape& target, const SubmapShape& source, const PoseGaussian& T_target_source, const NdtSettings& settings);
 
 }  // namespace patrol::slam

@@ -14,7 +14,7 @@
 namespace patrol::slam {
 namespace {
 
-/// What nanoflann asks of a set of points.
+/// Adapter of a point set for nanoflann.
 struct Cloud {
   std::vector<Eigen::Vector2d> points;
 
@@ -84,7 +84,7 @@ SurfaceNormal normal_of(const PointTree& tree, const std::vector<PointTree::Neig
   }
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
   axes.computeDirect(scatter);
-  if (!(axes.eigenvalues()[1] > 0.0)) return {};  // all in one place
+  if (!(axes.eigenvalues()[1] > 0.0)) return {};  // coincident points
   return {.normal = axes.eigenvectors().col(0), .straightness = 1.0 - std::max(0.0, axes.eigenvalues()[0]) / axes.eigenvalues()[1]};
 }
 

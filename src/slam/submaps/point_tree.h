@@ -11,10 +11,10 @@ namespace patrol::slam {
 /// Throws InputError naming the first point that is not finite.
 void check_finite(const std::vector<Eigen::Vector2d>& points);
 
-/// A k-d tree over points in the plane (nanoflann). Equal distances are settled the same way every time.
+/// K-d tree over points in the plane (nanoflann). Ties are resolved deterministically.
 class PointTree {
  public:
-  /// Throws InputError when a point is not finite.
+  /// Throws InputError if a point is not finite.
   explicit PointTree(std::vector<Eigen::Vector2d> points);
   ~PointTree();
   PointTree(PointTree&&) noexcept;
@@ -26,9 +26,9 @@ class PointTree {
     std::size_t index = 0;
     double squared_distance_m2 = 0.0;
   };
-  /// The tree must not be empty.
+  /// Returns the nearest point; the tree must not be empty.
   Neighbour nearest(const Eigen::Vector2d& p) const;
-  /// All within the radius, nearest first.
+  /// Returns all points within the radius, nearest first.
   std::vector<Neighbour> within(const Eigen::Vector2d& p, double radius_m) const;
 
  private:
@@ -36,13 +36,15 @@ class PointTree {
   std::unique_ptr<Index> index_;
 };
 
-/// The piece of surface around a point.
+/// Normal of the local surface around a point.
 struct SurfaceNormal {
-  Eigen::Vector2d normal = Eigen::Vector2d::Zero();  ///< unit, either side; zero if fewer than three points are near
-  double straightness = 0.0;  ///< 1: on a straight wall; 0: as wide as long (a corner, a bush), or nothing near
+  /// Unit normal, on either side; zero if fewer than three points are nearby.
+  Eigen::Vector2d normal = Eigen::Vector2d::Zero();
+  /// Linearity: 1 on a straight wall; 0 if as wide as long (corner, bush) or without neighbors.
+  double straightness = 0.0;
 };
 
-/// [point of the tree]: the principal axis across the points within the radius.
+/// Normals of the points of the tree, [point]: the principal axis of smallest variance of the points within the radius.
 std::vector<SurfaceNormal> surface_normals(const PointTree& tree, double radius_m);
 
 }  // namespace patrol::slam

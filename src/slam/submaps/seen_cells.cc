@@ -18,7 +18,7 @@ void for_each_known_cell(const GridMap& map, Visitor&& visit) {
   });
 }
 
-/// Cells that hold all that the map knows; their borders lie on multiples of `cell_m`.
+/// Grid that covers all observed cells; its borders are at multiples of `cell_m`.
 GridGeometry geometry_of(const GridMap& map, double cell_m) {
   const GridGeometry everywhere{.resolution_m = cell_m};
   constexpr int kMost = std::numeric_limits<int>::max();

@@ -9,20 +9,20 @@
 
 namespace patrol::slam {
 
-/// What a submap has seen, on coarser cells than its map's: where it has looked, and where it met a surface.
+/// Observed cells of a submap, coarser than those of its map, with free and surface cells.
 class SeenCells {
  public:
   enum class State : std::uint8_t { kUnknown, kFree, kSurface };
 
   SeenCells(const GridMap& map, double cell_m);
 
-  /// Unknown outside of all that was seen.
+  /// State of the cell; unknown outside the grid.
   State at(const Eigen::Vector2d& p_map) const;
-  /// Whether p's cell or one of the eight around it holds a surface.
+  /// Returns whether the cell of p or one of its eight neighbors is a surface.
   bool is_surface_near(const Eigen::Vector2d& p_map) const;
 
   int num_known() const { return num_known_; }
-  /// Calls `visit(center)` for every cell that is known.
+  /// Calls `visit(center)` for every observed cell.
   template <typename Visitor>
   void for_each_known(Visitor&& visit) const {
     for (int row = 0; row < cells_.geometry().height; ++row) {

@@ -12,11 +12,11 @@
 namespace patrol::slam {
 
 struct SubmapBuilderSettings {
-  double max_way_m = 12.0;  ///< that the robot has come when a submap is full
-  int max_keyframes = 150;  ///< or so many scans have been written
+  double max_way_m = 12.0;  ///< distance traveled at which a submap is full
+  int max_keyframes = 150;  ///< number of keyframes at which a submap is full
   GridSlamSettings filter = short_ways();
 
-  /// Few particles, and near to where tracking has them: over a few metres they have little to make up for.
+  /// Filter settings for submaps of a few meters on scan-to-scan odometry: few particles and small motion noise.
   static GridSlamSettings short_ways();
 
   template <typename Self, typename Visitor>
@@ -27,24 +27,24 @@ struct SubmapBuilderSettings {
   }
 };
 
-/// One submap in the making: a particle filter of its own, which ends with it (paper 002, section 1), so that particles and their maps stay small. Frame
-/// `submap` is the body's where the first scan was taken.
+/// Builder of one submap with a particle filter of its own [Yu23, section 1], which keeps particles and their maps
+/// small. The frame `submap` is the body pose of the first scan.
 class SubmapBuilder {
  public:
   SubmapBuilder(const SubmapBuilderSettings& settings, std::uint64_t seed) : settings_(settings), filtered_(settings.filter, seed) {}
 
-  /// Where the body is, in submap.
+  /// Processes a scan and returns the body pose in submap.
   Pose2 update(const LevelScan& scan, const Pose2& T_odom_body);
   bool is_full() const { return way_m_ >= settings_.max_way_m || static_cast<int>(scans_.size()) >= settings_.max_keyframes; }
 
-  /// By odometry, so far: all of the way, and all turns together, either way.
+  /// Distance traveled and sum of absolute yaw changes by odometry.
   double way_m() const { return way_m_; }
   double turn_rad() const { return turn_rad_; }
 
-  // As the best particle has it by now, in submap:
+  // Estimates of the currently best particle, in submap:
   std::vector<Pose2> path() const { return filtered_.path(); }  ///< [scan]
   const GridMap& map() const { return filtered_.filter().best_map(); }
-  /// Takes the scans out: none may follow.
+  /// Moves the scans out with their poses; no update may follow.
   std::vector<Keyframe> take_keyframes();
 
  private:

@@ -14,7 +14,7 @@ bool has_rival(const SubmapSurfaces& target, const SubmapSurfaces& source, const
   const double std_m = std::sqrt(std::max(prediction.covariance(0, 0), prediction.covariance(1, 1))), std_rad = std::sqrt(prediction.covariance(2, 2));
   const SearchWindow here{.T_map_center = T_target_source, .half_width_m = target.pyramid.resolution_m(), .half_angle_rad = 0.01};
   const std::optional<SearchResult> found = search_window(target.pyramid, source.shape.points, here, 0.0);
-  if (!found) return true;  // what fits nothing is no better than any other
+  if (!found) return true;  // no surface fits: every other pose is as good
   const SearchWindow around{.T_map_center = prediction.mean,
                             .half_width_m = std::min(settings.max_window_m, 3.0 * std_m),
                             .half_angle_rad = std::min(settings.max_window_rad, 3.0 * std_rad)};

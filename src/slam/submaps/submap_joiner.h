@@ -11,14 +11,15 @@
 namespace patrol::slam {
 
 struct SubmapJoinerSettings {
-  double min_margin = 0.2;         ///< a vote above this, -1 ... 1, says that two submaps are neighbours
-  double max_fine_shift_m = 0.5;   ///< fine matching that moves a submap farther has left the place that was recognised
+  double min_margin = 0.2;         ///< minimum classifier margin (-1 ... 1) of neighbors
+  /// The match is rejected if fine matching moves a submap farther from the coarse pose.
+  double max_fine_shift_m = 0.5;
   double max_fine_shift_rad = 0.1;
-  double min_agreement = 0.6;      ///< of either's points that lie where the other has looked, that meet a surface there
-  double max_window_m = 15.0;      ///< around the prediction, each way, that is searched for a rival
+  double min_agreement = 0.6;      ///< minimum inlier ratio (mutual_agreement)
+  double max_window_m = 15.0;      ///< maximum half width of the search for a second-best match around the prediction
   double max_window_rad = 0.8;
-  double rival_share = 0.9;        ///< another pose that fits more than so much as well makes the match worthless
-  double rival_distance_m = 0.8;   ///< so far off it is another
+  double rival_share = 0.9;  ///< the match is rejected if a distinct pose scores more than this fraction of its score
+  double rival_distance_m = 0.8;   ///< poses at least this far from the match are distinct
   double rival_angle_rad = 0.35;
 
   template <typename Self, typename Visitor>
@@ -35,27 +36,28 @@ struct SubmapJoinerSettings {
   }
 };
 
-/// Why two submaps were not joined.
+/// Reason for rejecting a submap pair.
 enum class JoinFailure {
   kNone,
-  kStrangers,  ///< not recognised as neighbours
-  kMismatch,   ///< coarse and fine matching do not agree, or surfaces lie where the other has seen none
-  kAmbiguous,  ///< another place would do as well
+  kStrangers,  ///< not recognized as neighbors
+  kMismatch,   ///< coarse and fine matching disagree, or the inlier ratio is too small
+  kAmbiguous,  ///< a second-best match has a similar score
 };
 
-/// Two submaps looked at together: what tells whether they are neighbours, and how they lie if they are.
+/// Features and relative poses of a submap pair.
 struct SurfaceMatch {
-  std::vector<double> features;          ///< pair_features.h
+  std::vector<double> features;          ///< features of pair_features.h
   std::optional<NdtResult> coarse;
-  std::optional<IcpResult> fine;         ///< from there on
+  std::optional<IcpResult> fine;         ///< refined from `coarse`
 };
 
-/// Coarse matching by normal distributions from the prediction on, fine matching on effective neighbours from there (paper 002, section 2).
+/// Matches coarsely by normal distributions from the prediction, then finely on effective neighbors [Yu23, section 2].
 SurfaceMatch match_surfaces(const SubmapSurfaces& target, const SubmapSurfaces& source, const PoseGaussian& T_target_source, const SubmapSurfaceSettings& settings);
 
 struct SubmapJoint {
   Pose2 T_target_source;
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in target, as if all points were independent
+  /// Information of x, y, yaw in target, with independent points.
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double margin = 0.0;
   double agreement = 0.0;
 };
@@ -65,11 +67,13 @@ struct JoinResult {
   JoinFailure failure = JoinFailure::kNone;
 };
 
-/// Whether the two are neighbours, and how they lie to each other: recognised by `model` (paper 002, section 3), matched coarsely by normal distributions and
-/// finely on effective neighbours (section 2).
+/// Decides whether two submaps are neighbors and estimates their relative pose. `model` classifies the pair [Yu23,
+/// section 3]; the pose is matched coarsely by normal distributions and finely on effective neighbors (section 2).
 ///
-/// Not in the paper: the matching may not leave the place that was recognised, both must agree on what is free and what is not, and no other place within
-/// three standard deviations of the prediction may fit as well. Bays that are all alike are otherwise joined one off.
+/// Extensions of [Yu23], which prevent matches shifted by one bay between identical bays:
+/// - the fine match must stay near the coarse match;
+/// - both submaps must agree on free and occupied cells;
+/// - no other pose within three standard deviations of the prediction may score similarly.
 JoinResult join_submaps(const SubmapSurfaces& target, const SubmapSurfaces& source, const PoseGaussian& T_target_source, const BoostedStumps& model,
                         const SubmapSurfaceSettings& surfaces, const SubmapJoinerSettings& settings);
 

@@ -14,14 +14,14 @@
 namespace patrol::slam {
 namespace {
 
-/// Of the next submap's first scan in the frame of the one before.
+/// Covariance of the next submap's first scan in the frame of the previous submap.
 Eigen::Matrix3d drift_over(const SubmapBuilder& submap, const SubmapRbpfSettings& settings) {
   const double std_m = settings.drift_std_m_per_m * submap.way_m() + 1e-3;
   const double std_rad = settings.drift_std_rad_per_m * submap.way_m() + settings.drift_std_rad_per_rad * submap.turn_rad() + 1e-4;
   return Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();
 }
 
-/// Each submap draws its own numbers.
+/// Derives an independent random seed for each submap.
 std::uint64_t seed_of_submap(std::uint64_t seed, std::size_t submap) {
   return static_cast<std::uint64_t>(RandomStream(seed, "slam/submap").uniform(submap) * 0x1p53);
 }
@@ -43,7 +43,7 @@ Pose2 SubmapRbpf::update(const LevelScan& scan, const Pose2& T_odom_body) {
   if (builder_->is_full()) {
     close_submap();
     begin_submap();
-    T_submap_body = builder_->update(scan, T_local_body);  // the last scan of the one is the first of the next
+    T_submap_body = builder_->update(scan, T_local_body);  // the last scan of a submap is the first of the next
   }
   ++num_scans_;
   return graph_.T_map_node.back() * T_submap_body;
@@ -63,7 +63,7 @@ void SubmapRbpf::close_submap() {
   join_neighbours(static_cast<int>(submaps_.size()) - 1);
 }
 
-// The next submap begins where this one ends.
+// Starts the next submap at the end of this one and adds an odometry edge.
 void SubmapRbpf::follow_on(const SubmapBuilder& before) {
   const int from = static_cast<int>(graph_.T_map_node.size()) - 1;
   const Pose2 T_submap_next = before.path().back();
@@ -75,7 +75,7 @@ void SubmapRbpf::follow_on(const SubmapBuilder& before) {
 
 std::vector<PoseGaussian> SubmapRbpf::positions_around(int submap) const { return positions_from(submap, graph_.T_map_node, ways_); }
 
-// The nearest of the older ones.
+// Returns the nearest older submaps that may be neighbors.
 std::vector<int> SubmapRbpf::candidates_for(int source, const std::vector<PoseGaussian>& around) const {
   std::vector<std::pair<double, int>> near;
   for (int target = 0; target < source; ++target) {
@@ -111,12 +111,12 @@ void SubmapRbpf::join_neighbours(int source) {
 void SubmapRbpf::finish() {
   if (!builder_) return;
   close_submap();
-  graph_.T_map_node.pop_back();  // nothing follows
+  graph_.T_map_node.pop_back();  // remove the node of a next submap
   graph_.edges.erase(std::remove_if(graph_.edges.begin(), graph_.edges.end(), [&](const PoseGraphEdge& edge) { return edge.to == static_cast<int>(graph_.T_map_node.size()); }),
                      graph_.edges.end());
 }
 
-// A scan that ends one submap and begins the next counts to the next.
+// A scan that ends one submap and begins the next is assigned to the next.
 std::vector<Pose2> SubmapRbpf::path() const {
   std::vector<Pose2> T_map_body;
   const auto add = [&](std::size_t submap, const std::vector<Pose2>& T_submap_body, std::size_t count) {

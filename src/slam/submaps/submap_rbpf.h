@@ -20,15 +20,17 @@ struct SubmapRbpfSettings {
   SubmapBuilderSettings submaps;
   SubmapSurfaceSettings surfaces;
   SubmapJoinerSettings joints;
-  // How far a submap may lie off where the one before says that it begins.
+  // Odometry drift over a submap, for the prediction of loop closures.
   double drift_std_m_per_m = 0.003;
   double drift_std_rad_per_m = 0.0005;
   double drift_std_rad_per_rad = 0.005;
-  int max_candidates = 8;        ///< for each new submap: the nearest older ones
-  double joint_gain = 0.2;       ///< share of a match's points that err independently
-  double joint_std_m = 0.02;     ///< of a match's systematic error, however many points it has
+  int max_candidates = 8;        ///< maximum number of older submaps compared with each new one, nearest first
+  double joint_gain = 0.2;       ///< tempering factor: fraction of the matched points with independent errors
+  /// Standard deviation of the systematic error of a match, independent of the number of points.
+  double joint_std_m = 0.02;
   double joint_std_rad = 0.002;
-  PoseGraphSolverSettings solver = {.max_iterations = 50, .doubts_loops = true, .loop_kernel = 0.3};  ///< many joints hold each submap: few must be believed
+  /// Narrow kernel: each submap has many constraints, of which only a few need to be inliers.
+  PoseGraphSolverSettings solver = {.max_iterations = 50, .doubts_loops = true, .loop_kernel = 0.3};
   int min_hits_occupied = 2;
   double min_hit_share_occupied = 0.3;
 
@@ -51,47 +53,48 @@ struct SubmapRbpfSettings {
   }
 };
 
-/// Mapping by submaps of a particle filter (paper 002).
+/// Mapping with submaps built by a particle filter [Yu23].
 ///
-///   every scan     follow it (scan_tracker.h); the particles of the submap in the making start from there (submap_builder.h)
-///   a submap full  its best particle is the submap, and the particles start anew; the older ones that may lie near are compared with it, and those that are
-///                  recognised as neighbours are joined to it (submap_joiner.h); solve the graph of submaps, which doubts joints that do not fit
-///   the end        draw the scans of all submaps where they lie
+///   every scan     track it (scan_tracker.h); the particles of the open submap start from there (submap_builder.h)
+///   submap full    its best particle becomes the submap and the filter restarts; compare the submap with nearby older
+///                  ones, connect recognized neighbors by constraints (submap_joiner.h) and optimize the submap graph,
+///                  with a robust kernel on the constraints
+///   finish         render the scans of all submaps at their poses
 ///
-/// The paper compares when the robot has come home; here a submap is compared when it is full, so that the next is looked for where it should be. Memory: the
-/// particles' maps end with their submap, what stays is a list of scans and of surfaces.
+/// Deviation from [Yu23]: submaps are compared when they are full, not at the end of the loop, so that the next one is
+/// predicted correctly. Memory: the particle maps are freed with their submap; scans and surfaces are kept.
 class SubmapRbpf {
  public:
-  /// `neighbours` recognises neighbouring submaps by their features (pair_features.h).
-  /// Throws InputError when a setting breaks its rule.
+  /// `neighbours` classifies submap pairs by their features (pair_features.h). Throws InputError if a setting is
+  /// invalid.
   SubmapRbpf(const SubmapRbpfSettings& settings, BoostedStumps neighbours, std::uint64_t seed);
 
-  /// Where the body is now, in map.
+  /// Processes a scan and returns the current body pose in map.
   Pose2 update(const LevelScan& scan, const Pose2& T_odom_body);
-  /// No scan will follow.
+  /// Finishes mapping after the last scan.
   void finish();
 
-  /// [scan]: of every scan that was given, as is believed now.
+  /// Current pose estimates of all scans, [scan].
   std::vector<Pose2> path() const;
-  /// Nodes are the submaps.
+  /// Pose graph whose nodes are the submaps.
   const PoseGraph& graph() const { return graph_; }
   std::vector<std::size_t> node_scans() const { return first_scans_; }
   OccupancyGrid map() const;
 
-  /// Two submaps that were compared.
+  /// Result of comparing two submaps.
   struct Comparison {
     int target = 0, source = 0;
-    PoseGaussian T_target_source;  ///< as was predicted
+    PoseGaussian T_target_source;  ///< predicted relative pose
     JoinResult result;
   };
   const std::vector<Comparison>& comparisons() const { return comparisons_; }
-  /// [submap]: the number of its first scan.
+  /// Index of the first scan of each submap, [submap].
   const std::vector<std::size_t>& first_scans() const { return first_scans_; }
-  /// [submap that is full]: by what it is compared; none if it saw next to nothing.
+  /// Surfaces of a full submap; none if too few surface points were observed.
   const std::optional<SubmapSurfaces>& surfaces_of(int submap) const { return submaps_[static_cast<std::size_t>(submap)].surfaces; }
 
  private:
-  /// A submap that is full: from now on it is rigid.
+  /// Full submap, rigid from then on.
   struct Submap {
     std::vector<Keyframe> keyframes;
     std::vector<Pose2> T_submap_body;  ///< [scan]
@@ -110,10 +113,10 @@ class SubmapRbpf {
   std::uint64_t seed_;
   ScanTracker tracker_;
   std::optional<SubmapBuilder> builder_;
-  std::vector<Submap> submaps_;  ///< full ones
+  std::vector<Submap> submaps_;  ///< full submaps
   std::vector<std::size_t> first_scans_;
   std::size_t num_scans_ = 0;
-  PoseGraph graph_;  ///< its nodes are the submaps, the one in the making the last
+  PoseGraph graph_;  ///< nodes are the submaps, the last one is the open submap
   std::vector<UncertainWay> ways_;
   std::vector<Comparison> comparisons_;
 };

@@ -30,7 +30,7 @@ void normalize(std::vector<double>& histogram) {
   for (double& share : histogram) share = sum > 0.0 ? share / sum : 1.0 / static_cast<double>(histogram.size());
 }
 
-/// Adds to the two bins whose middles lie about `place`, in bins from the first one's middle.
+/// Distributes `weight` linearly over the two bins around `place`, which is in bins from the center of the first bin.
 void add_around_circle(std::vector<double>& histogram, double place, double weight) {
   const auto count = static_cast<double>(histogram.size());
   const double wrapped = place - count * std::floor(place / count);
@@ -45,7 +45,7 @@ std::vector<double> distance_histogram(const std::vector<Eigen::Vector2d>& point
   const double last = static_cast<double>(settings.distance_bins - 1);
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      // Between the middles of two bins a distance counts in both: a rounding moves no whole count.
+      // Linear distribution over two bins avoids jumps of whole counts by rounding.
       const double place = std::min(last, (points[i] - points[j]).norm() / settings.distance_bin_m);
       const auto bin = static_cast<std::size_t>(place);
       const double fraction = place - static_cast<double>(bin);
@@ -101,7 +101,7 @@ double circular_correlation(const std::vector<double>& a, const std::vector<doub
     ab += u * v;
     bb += v * v;
   }
-  constexpr double kEven = 1e-24;  // of shares: rounding
+  constexpr double kEven = 1e-24;  // rounding tolerance of a uniform histogram
   return aa > kEven && bb > kEven ? ab / std::sqrt(aa * bb) : 0.0;
 }
 

@@ -14,11 +14,11 @@
 namespace patrol::slam {
 
 struct SubmapShapeSettings {
-  int max_points = 300;            ///< of a submap that are compared; if it has more, every so many
-  double normal_radius_m = 0.4;    ///< neighbourhood whose principal axis is a wall's direction
-  double distance_bin_m = 1.0;     ///< of the histogram of distances between points
-  int distance_bins = 40;          ///< the last holds all that is farther
-  int direction_bins = 36;         ///< of half a turn
+  int max_points = 300;            ///< maximum number of compared points; a regular subset of larger submaps is used
+  double normal_radius_m = 0.4;    ///< radius of the neighborhood whose principal axis is the direction of the wall
+  double distance_bin_m = 1.0;     ///< bin width of the histogram of distances between points
+  int distance_bins = 40;          ///< number of distance bins; the last one includes all larger distances
+  int direction_bins = 36;         ///< number of direction bins over half a turn
   double seen_cell_m = 0.25;
   NdtSettings ndt;
 
@@ -34,26 +34,29 @@ struct SubmapShapeSettings {
   }
 };
 
-/// What is kept of a submap to compare it with others: made once. All in submap.
+/// Descriptor of a submap for comparison with others, computed once. All coordinates are in submap.
 struct SubmapShape {
-  std::vector<Eigen::Vector2d> points;  ///< of its surfaces, thinned
-  std::size_t num_points = 0;           ///< before
+  std::vector<Eigen::Vector2d> points;  ///< downsampled surface points
+  std::size_t num_points = 0;           ///< before downsampling
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< mean of the points
-  double radius_m = 0.0;                ///< root mean square distance of the points from the centre
-  ConvexPolygon hull;                   ///< of the points
-  std::vector<double> distances;        ///< [bin], shares of all pairs of points (the shape distribution D2 of Osada et al., ACM Trans. Graphics 2002)
-  std::vector<double> directions;       ///< [bin] of half a turn from x on, shares of the walls' directions; points that lie on no wall count little
+  double radius_m = 0.0;                ///< root mean square distance of the points from the center
+  ConvexPolygon hull;                   ///< convex hull of the points
+  std::vector<double> distances;        ///< [bin], fractions of all pairs of points: shape distribution D2 [Osada02]
+  /// [bin] over half a turn from x on, fractions of the wall directions; points off straight walls have small weights
+  std::vector<double> directions;
   SeenCells seen;
   std::vector<NdtGrid> ndt;
 };
 
-/// `points_submap`: at least three, finite. Throws InputError otherwise.
+/// Computes the descriptor of a submap. `points_submap` must be at least three finite points; throws InputError
+/// otherwise.
 SubmapShape describe_submap(const std::vector<Eigen::Vector2d>& points_submap, const GridMap& map, const SubmapShapeSettings& settings);
 
-/// Shares that lie in different bins: 0 alike ... 1 nothing in common. Histograms of the same number of bins, each of sum 1.
+/// Difference of two histograms with equal numbers of bins, each of sum 1: 0 equal ... 1 disjoint.
 double histogram_difference(const std::vector<double>& a, const std::vector<double>& b);
 
-/// Pearson's correlation of a with b turned on by `shift` bins (b's bin 0 lies on a's bin `shift`), around the circle: -1 ... 1; 0 if either is even.
+/// Pearson correlation of a with b rotated cyclically by `shift` bins: -1 ... 1; 0 if either histogram is uniform. Bin
+/// 0 of b is aligned with bin `shift` of a.
 double circular_correlation(const std::vector<double>& a, const std::vector<double>& b, int shift);
 
 }  // namespace patrol::slam

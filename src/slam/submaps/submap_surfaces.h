@@ -10,10 +10,10 @@
 namespace patrol::slam {
 
 struct SubmapSurfaceSettings {
-  int min_points = 30;  ///< of surface: what has fewer is not compared with others
+  int min_points = 30;  ///< minimum number of surface points of a submap that is compared with others
   SubmapShapeSettings shape;
   IcpSettings icp;
-  double facing_radius_m = 0.2;  ///< around a point, where it is looked for what is free
+  double facing_radius_m = 0.2;  ///< radius of the free cells that determine the free-space normal of a point
   double pyramid_cell_m = 0.1;
 
   template <typename Self, typename Visitor>
@@ -26,14 +26,14 @@ struct SubmapSurfaceSettings {
   }
 };
 
-/// What a submap is compared and matched by; in submap.
+/// Representations of a submap for comparison and matching, in submap.
 struct SubmapSurfaces {
   SubmapShape shape;
   IcpPoints points;
   LikelihoodPyramid pyramid;
 };
 
-/// None if next to nothing was seen.
+/// Returns none if there are too few surface points.
 std::optional<SubmapSurfaces> describe_surfaces(const GridMap& map, const SubmapSurfaceSettings& settings);
 
 }  // namespace patrol::slam

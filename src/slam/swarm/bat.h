@@ -6,16 +6,17 @@ namespace patrol::slam {
 
 struct BatSettings {
   int iterations = 5;
-  double max_frequency = 1.0;     ///< pull towards the best bat, at most
-  double loudness = 0.9;          ///< chance to take a better place, at first
-  double loudness_decay = 0.9;    ///< each time that it does
-  double pulse_rate = 0.5;        ///< chance to fly by velocity rather than to look around the best bat, in the end
+  double max_frequency = 1.0;     ///< maximum attraction to the best bat
+  double loudness = 0.9;          ///< initial probability of accepting an improvement
+  double loudness_decay = 0.9;    ///< factor per accepted improvement
+  double pulse_rate = 0.5;        ///< final probability of a local search around the best bat
   double pulse_growth = 0.9;
-  double local_step = 0.1;        ///< of looking around, in the positions' unit
+  double local_step = 0.1;        ///< step of the local search, in the unit of the positions
 };
 
-/// Bat algorithm (Yang, "A new metaheuristic bat-inspired algorithm", NICSO 2010, eqs. 2-6): bats fly with velocities towards the best
-/// one, or look around it. A place is taken with a chance that falls each time.
+/// Bat algorithm [Yang10, eqs. 2-6]: bats move with velocities relative to the best one, or search around it.
+/// Improvements are accepted with a probability that decreases with every acceptance.
+/// Deviation from [Yang10]: the pulse rate is the probability of the local search, not of skipping it.
 class BatOptimizer : public SwarmOptimizer {
  public:
   explicit BatOptimizer(const BatSettings& settings) : settings_(settings) {}

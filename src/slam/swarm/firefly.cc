@@ -5,7 +5,7 @@
 namespace patrol::slam {
 namespace {
 
-/// beta_0 exp(-gamma r^2) (x_j - x_i), the flight from one towards another.
+/// Attraction beta_0 exp(-gamma r^2) (x_j - x_i) from one position toward another.
 Position flight(const Position& from, const Position& to, double attractiveness, double absorption) {
   return attractiveness * std::exp(-absorption * (to - from).squaredNorm()) * (to - from);
 }

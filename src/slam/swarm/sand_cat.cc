@@ -6,7 +6,7 @@
 namespace patrol::slam {
 namespace {
 
-/// Eq. 1 of paper 000, coordinate by coordinate.
+/// Cauchy mutation of each coordinate [Wu25, eq. 1].
 Position mutated(Position position, RandomSequence& random) {
   for (double& coordinate : position) coordinate += coordinate * random.cauchy();
   return position;

@@ -4,12 +4,12 @@
 
 namespace patrol::slam {
 
-/// Sand cat swarm optimisation (Seyyedabbasi, Kiani, "Sand cat swarm optimization", Engineering with Computers 2023): cats search around
-/// the best one while their hearing reaches far, and pounce on it at a random angle when it does not. Reach falls from 2 to 0.
+/// Sand cat swarm optimization [Seyyedabbasi23]: cats explore around the best one while |R| > 1 and attack it at a
+/// random angle otherwise. The sensitivity range decreases from 2 to 0.
 ///
-/// Improved (Wu et al., Journal of Electronic Measurement and Instrumentation 2025, paper 000): after each generation the best cat tries
-/// a Cauchy mutation (eq. 1), and the S best of the generation before stand in for the S worst, S = ceil((N - 1) sin(pi t / 2 T)) (eq. 2),
-/// which each judges on its own map.
+/// Improved variant [Wu25]: after each generation the best cat tries a Cauchy mutation (eq. 1). The S best positions of
+/// the previous generation replace the S worst where that increases the fitness of the replaced member. S = ceil((N -
+/// 1) sin(pi t / 2 T)) (eq. 2).
 class SandCatOptimizer : public SwarmOptimizer {
  public:
   SandCatOptimizer(int iterations, bool is_improved) : iterations_(iterations), is_improved_(is_improved) {}

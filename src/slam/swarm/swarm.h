@@ -10,32 +10,33 @@
 
 namespace patrol::slam {
 
-/// Where a member of a swarm stands, in coordinates that the problem chooses, at most four. For SLAM they are the whitened increment of
-/// odometry since the last pose: zero is what odometry said, and each has unit variance. The moves of the papers multiply positions, so
-/// that they depend on where the origin is; in map coordinates that would be where the robot happened to start.
+/// Position of a swarm member in problem-specific coordinates, at most four. In SLAM: whitened odometry increment since
+/// the last pose, with zero at the odometry and unit variance per coordinate. The update rules of the sources multiply
+/// positions and therefore depend on the origin. In map coordinates the result would depend on the start pose of the
+/// robot.
 using Position = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 4, 1>;
 
-/// Logarithm of how well a position explains the newest observation, the greater the better. Members may judge the same position
-/// differently: in SLAM each particle has a map of its own.
+/// Log fitness of a position given the newest observation; larger is better. It may differ between members: in SLAM
+/// each particle has its own map.
 using Fitness = std::function<double(std::size_t member, const Position& position)>;
 
 struct Swarm {
   std::vector<Position> positions;  ///< [member]
-  std::vector<double> fitness;      ///< [member], of its position
+  std::vector<double> fitness;      ///< [member], fitness of its position
 
   std::size_t size() const { return positions.size(); }
   std::size_t best() const;
-  /// Members from the best to the worst.
+  /// Returns the member indices in descending order of fitness.
   std::vector<std::size_t> ranking() const;
-  /// Moves the member there if that is better for it (greedy acceptance). Whether it did. What nothing speaks for is not taken: where there is nothing
-  /// to see yet, all positions are alike, and the longest jump would be as good as any.
+  /// Moves the member to the candidate if the fitness increases (greedy acceptance); returns whether it did. Equal
+  /// fitness is rejected: without observations all positions are equal, and arbitrary jumps would be accepted.
   bool accept(std::size_t member, const Position& candidate, const Fitness& judge);
 };
 
-/// Positions with their fitness.
+/// Evaluates the fitness of all positions.
 Swarm make_swarm(std::vector<Position> positions, const Fitness& judge);
 
-/// Moves a swarm towards better fitness. No member ends worse than it began.
+/// Interface of a swarm optimizer. The fitness of no member decreases.
 class SwarmOptimizer {
  public:
   virtual ~SwarmOptimizer() = default;

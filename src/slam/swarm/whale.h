@@ -4,8 +4,8 @@
 
 namespace patrol::slam {
 
-/// Whale optimisation (Mirjalili, Lewis, "The whale optimization algorithm", Advances in Engineering Software 2016): each whale encircles
-/// the best one (eq. 2.1-2.4), swims a spiral round it (eq. 2.5) or follows another (eq. 2.7-2.8).
+/// Whale optimization algorithm [Mirjalili16]. Each whale encircles the best one (eqs. 2.1-2.4), moves on a spiral
+/// around it (eq. 2.5) or follows a random one (eqs. 2.7, 2.8).
 class WhaleOptimizer : public SwarmOptimizer {
  public:
   explicit WhaleOptimizer(int iterations) : iterations_(iterations) {}

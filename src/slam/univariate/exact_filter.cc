@@ -9,8 +9,8 @@
 namespace patrol::slam {
 namespace {
 
-constexpr double kReachStds = 8.0;        // of the process noise; exp(-8^2 / 2) = 1e-14
-constexpr double kSmallestShare = 1e-18;  // of the greatest mass: what is smaller sends nothing
+constexpr double kReachStds = 8.0;        // standard deviations of the process noise; exp(-8^2 / 2) = 1e-14
+constexpr double kSmallestShare = 1e-18;  // of the maximum mass; smaller masses are not propagated
 
 }  // namespace
 
@@ -26,8 +26,9 @@ ExactFilter::ExactFilter(const GrowthModel& model, const ExactFilterSettings& se
   for (int k = 0; k <= reach; ++k) bell_.push_back(std::exp(-0.5 * k * k * cell_ * cell_ / process_var));
 }
 
-// With the mean d ahead of a node, the density k nodes from there is exp(-d^2 / 2 Q) exp(-k^2 cell^2 / 2 Q) exp(d cell / Q)^k: no exponential
-// in the loop. `predicted` has room for the whole bell beyond both ends.
+// With the mean at distance d from a node, the density k nodes from there is exp(-d^2 / 2 Q) exp(-k^2 cell^2 / 2 Q)
+// exp(d cell / Q)^k. This form needs no exponential in the loop. `predicted` has a margin of the kernel size at both
+// ends.
 void ExactFilter::spread(double mean, double mass, std::vector<double>& predicted) const {
   const double process_var = model_.settings().process_var;
   const double place = (mean - nodes_.front()) / cell_;

@@ -11,7 +11,7 @@
 
 namespace patrol::slam {
 
-/// The particles at one step, as the core sees them (ParticleProblem).
+/// Particles at one step, as a ParticleProblem.
 class GrowthFilter::Step {
  public:
   Step(GrowthFilter& filter, double observation)

@@ -10,10 +10,10 @@
 
 namespace patrol::slam {
 
-/// Particle filters of the growth model on the common core: the bootstrap filter (Gordon, Salmond, Smith 1993), or with an optimiser the swarm
-/// filters of paper 001, section 2. A particle's position is its state itself. An optimiser improves on the likelihood, which -x has as x does, and
-/// the weight after its move is the likelihood again: as the papers have it, what was known before is forgotten wherever particles are moved far.
-/// The estimate is the weighted mean before resampling.
+/// Particle filters of the growth model: the bootstrap filter [Gordon93] or, with an optimizer, the swarm filters of
+/// [Cui21, section 2]. The position of a particle is its state. The optimizer maximizes the likelihood, which is equal
+/// for x and -x, and the weight after its move is the likelihood, as in [Cui21]. Moving particles far thus discards the
+/// prior. The estimate is the weighted mean before resampling.
 class GrowthFilter : public UnivariateFilter {
  public:
   /// Throws InputError for less than one particle.
@@ -21,7 +21,7 @@ class GrowthFilter : public UnivariateFilter {
 
   UnivariateEstimate step(double observation) override;
 
-  /// [particle], as of before the last resampling.
+  /// Particles before the last resampling, [particle].
   const std::vector<double>& states() const { return states_; }
   const std::vector<double>& weights() const { return weights_; }
 
@@ -36,8 +36,8 @@ class GrowthFilter : public UnivariateFilter {
   std::vector<double> states_, weights_;
 };
 
-/// IFA-PF as paper 001, section 2, sets it: beta_0 = gamma = 1, one generation a step, stepwise resampling at every step with beta = 0.8 and
-/// mu = 0.01 (the defaults of StepwiseResampling).
+/// Settings of IFA-PF in [Cui21, section 2]: beta_0 = gamma = 1, one generation per step, stepwise resampling at every
+/// step. The latter has the defaults of StepwiseResampling, beta = 0.8 and mu = 0.01.
 ParticleFilterSettings ifa_settings_of_paper();
 
 }  // namespace patrol::slam

@@ -9,10 +9,11 @@ namespace patrol::slam {
 
 struct GrowthModelSettings {
   int steps = 100;
-  double initial_state = 0.0;    ///< x(0), which every filter knows
+  double initial_state = 0.0;    ///< x(0), known to every filter
   double process_var = 1.0;      ///< Q
   double observation_var = 1.0;  ///< R
-  int denominator_sign = 1;      ///< of x^2 in eq. 9: 1, or -1 as it is printed, which explodes near x = 1 and x = -1
+  /// Sign of x^2 in the denominator [Cui21, eq. 9]: 1; or -1 as printed, which diverges near x = 1 and x = -1.
+  int denominator_sign = 1;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -24,39 +25,39 @@ struct GrowthModelSettings {
   }
 };
 
-/// [step - 1] for steps 1 ... n: x(0) is not among them.
+/// Simulated run, [step - 1] for steps 1 ... n; x(0) is not included.
 struct GrowthRun {
   std::vector<double> states;
   std::vector<double> observations;
 };
 
-/// The univariate nonstationary growth model (Netto et al. 1978; Gordon, Salmond, Smith 1993; paper 001, eq. 9), without units:
+/// Univariate nonstationary growth model ([Netto78], [Gordon93], [Cui21, eq. 9]), dimensionless:
 ///   x(t) = 0.5 x(t-1) + 25 x(t-1) / (1 + x(t-1)^2) + 8 cos(1.2 (t-1)) + w,   w ~ N(0, Q)
 ///   y(t) = x(t)^2 / 20 + v,                                                  v ~ N(0, R)
-/// An observation does not tell x from -x. Paper 001 prints 1 - x^2 in the denominator, where all others have 1 + x^2: a misprint, or else the
-/// state leaps by thousands whenever it passes near 1 or -1.
+/// An observation does not distinguish x from -x. Deviation from [Cui21], which prints 1 - x^2 in the denominator
+/// instead of 1 + x^2 as in the other sources. With the minus sign the state jumps by thousands near 1 and -1.
 class GrowthModel {
  public:
-  /// Throws InputError if a setting breaks its rule.
+  /// Throws InputError if a setting is invalid.
   explicit GrowthModel(const GrowthModelSettings& settings = {});
 
-  /// The mean of x(step), given x(step - 1): drift(state) + forcing(step). The first step is 1.
+  /// Mean of x(step) given x(step - 1): drift(state) + forcing(step). The first step is 1.
   double transition(double state, int step) const { return drift(state) + forcing(step); }
   double drift(double state) const;
   double forcing(int step) const;
-  /// The mean of y, given x.
+  /// Mean of y given x.
   double observation_of(double state) const;
-  /// log p(y | x).
+  /// Returns log p(y | x).
   double log_likelihood(double observation, double state) const;
 
-  /// The same seed gives the same run.
+  /// Simulates a run, reproducible by the seed.
   GrowthRun simulate(std::uint64_t seed) const;
 
   const GrowthModelSettings& settings() const { return settings_; }
 
  private:
   GrowthModelSettings settings_;
-  double log_normalizer_ = 0.0;  ///< of p(y | x)
+  double log_normalizer_ = 0.0;  ///< normalization term of log p(y | x)
 };
 
 }  // namespace patrol::slam

@@ -51,7 +51,7 @@ UnivariateEstimate QuasiFilter::step(double observation) {
   return summarize(states_, weights_);
 }
 
-/// In the order of what they lead to.
+/// Returns the branches sorted by expected state.
 std::vector<QuasiFilter::Branch> QuasiFilter::grow_branches(double observation) const {
   const double forcing = model_.forcing(steps_);
   std::vector<Branch> branches;
@@ -80,7 +80,7 @@ QuasiFilter::Branch QuasiFilter::look_ahead(double expected, double observation)
           .log_evidence = -0.5 * (surprise * surprise / evidence_var + std::log(evidence_var))};
 }
 
-/// p(y | x) p(x | parent) / (q(x) p(y | parent)); without looking ahead, p(y | x).
+/// Log of p(y | x) p(x | parent) / (q(x) p(y | parent)); without looking ahead, of p(y | x).
 double QuasiFilter::log_weight(const Branch& branch, double state, double observation) const {
   const double log_prior = -0.5 * square_of(state - branch.expected) / model_.settings().process_var;
   const double log_proposal = -0.5 * square_of((state - branch.proposal_mean) / branch.proposal_std) - std::log(branch.proposal_std);

@@ -11,8 +11,11 @@ namespace patrol::slam {
 
 struct QuasiFilterSettings {
   int particles = 100;
-  bool looks_ahead = true;           ///< chooses and draws with the newest observation in view; else a bootstrap filter with quasi-random points
-  double proposal_inflation = 1.5;   ///< of the proposal's variance when looking ahead: tails wide enough that no weight grows without bound
+  /// True: auxiliary particle filter that uses the newest observation in selection and proposal; false: bootstrap
+  /// filter with quasi-random points.
+  bool looks_ahead = true;
+  /// Factor on the proposal variance with `looks_ahead`: wide tails keep the weights bounded.
+  double proposal_inflation = 1.5;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -22,35 +25,40 @@ struct QuasiFilterSettings {
   }
 };
 
-/// Sequential quasi-Monte Carlo (Gerber, Chopin, "Sequential quasi-Monte Carlo", JRSS-B 77, 2015) for the growth model: instead of a random number
-/// for its parent and another for its noise, each particle has one point of an even set in the unit square. Particles stand in order, so that
-/// points side by side have parents side by side. The i-th of N points is ((i + s) / N, frac(i phi + s')), phi the golden section: a lattice of
-/// low discrepancy for any N whose first coordinates come sorted; the shifts s, s' are drawn anew each step, which leaves all sums unbiased.
+/// Sequential quasi-Monte Carlo [Gerber15] for the growth model. Instead of two independent random numbers for parent
+/// and noise, each particle has one point of a low-discrepancy set in the unit square. Particles are sorted, so that
+/// neighboring points have neighboring parents. The i-th of N points is ((i + s) / N, frac(i phi + s')), phi the golden
+/// section. This lattice has low discrepancy for any N, and its first coordinates are sorted. The shifts s, s' are
+/// sampled in each step, which keeps all sums unbiased.
 ///
-/// Looking ahead (Pitt, Shephard, "Filtering via simulation: auxiliary particle filters", JASA 1999): parents are chosen by weight times
-/// p(y | parent), y being nearly normal of mean (m^2 + Q) / 20 and variance R + m^2 Q / 100 + Q^2 / 200 round m = f(parent); and x is drawn from
-/// p(x | parent, y), approximated as the extended Kalman filter does after one Gauss-Newton iteration. Weights make up for both approximations.
+/// With `looks_ahead` [Pitt99], parents are selected by weight times p(y | parent). y is approximated as normal with
+/// mean (m^2 + Q) / 20 and variance R + m^2 Q / 100 + Q^2 / 200, m = f(parent). x is sampled from an approximation of
+/// p(x | parent, y), an extended Kalman filter update with one Gauss-Newton iteration. The weights correct for both
+/// approximations.
 ///
-/// Departures: the points are that lattice, not a scrambled Sobol sequence; the order is that of f(parent), on which alone the next state depends,
-/// not that of the parent. One linearisation is too few where the model explodes (denominator_sign -1): there it is no better than others.
+/// Deviations from [Gerber15]:
+/// - the points form that lattice, not a scrambled Sobol sequence;
+/// - particles are sorted by f(parent), on which alone the next state depends, not by the parent.
+/// One linearization is insufficient where the model diverges (denominator_sign -1); there it is no better than other
+/// filters.
 class QuasiFilter : public UnivariateFilter {
  public:
-  /// Throws InputError if a setting breaks its rule.
+  /// Throws InputError if a setting is invalid.
   QuasiFilter(const QuasiFilterSettings& settings, const GrowthModel& model, std::uint64_t seed);
 
   UnivariateEstimate step(double observation) override;
 
-  /// [particle]
+  /// States of the particles, [particle].
   const std::vector<double>& states() const { return states_; }
   const std::vector<double>& weights() const { return weights_; }
 
  private:
-  /// What a particle may lead to.
+  /// Parent candidate with the proposal distribution of its offspring.
   struct Branch {
     double expected = 0.0;                            ///< f(parent)
     double proposal_mean = 0.0, proposal_std = 1.0;
-    double log_evidence = 0.0;                        ///< about log p(y | parent)
-    double weight = 0.0;                              ///< to be chosen as a parent
+    double log_evidence = 0.0;                        ///< approximation of log p(y | parent)
+    double weight = 0.0;                              ///< selection probability of the parent
   };
 
   Branch look_ahead(double expected, double observation) const;

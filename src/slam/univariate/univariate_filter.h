@@ -5,20 +5,20 @@
 namespace patrol::slam {
 
 struct UnivariateEstimate {
-  double mean = 0.0;                   ///< of the state, given all observations so far
+  double mean = 0.0;                   ///< posterior mean of the state given all observations
   double variance = 0.0;
-  double effective_sample_size = 0.0;  ///< of the particles; of the exact filter, which has none, 0
+  double effective_sample_size = 0.0;  ///< effective number of particles; 0 for the exact filter
 };
 
-/// Of weighted states. `weights` sum to one.
+/// Mean and variance of weighted states. `weights` sum to one.
 UnivariateEstimate summarize(const std::vector<double>& states, const std::vector<double>& weights);
 
-/// A filter of one coordinate: it sees observations, never the state.
+/// Interface of a filter of a scalar state from observations.
 class UnivariateFilter {
  public:
   virtual ~UnivariateFilter() = default;
 
-  /// One step of the model, then its observation.
+  /// Predicts one step of the model and updates with its observation.
   virtual UnivariateEstimate step(double observation) = 0;
 };
 
