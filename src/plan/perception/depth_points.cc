@@ -8,12 +8,12 @@
 namespace patrol::plan {
 namespace {
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoDepth = std::numeric_limits<float>::quiet_NaN();
 
 /// A pixel's point: height in level, and place in the plane.
 struct Point {
   float x = 0.0F, y = 0.0F;
-  float z = kNone;  ///< NaN where nothing was measured
+  float z = kNoDepth;  ///< NaN where nothing was measured
   bool is_valid() const { return !std::isnan(z); }
 };
 
@@ -22,7 +22,7 @@ template <std::size_t N>
 float median(std::array<float, N> values) {
   const auto end = std::partition(values.begin(), values.end(), [](float value) { return !std::isnan(value); });
   const auto count = end - values.begin();
-  if (count < 2) return kNone;
+  if (count < 2) return kNoDepth;
   const auto middle = values.begin() + (count - 1) / 2;
   std::nth_element(values.begin(), middle, end);
   return *middle;
@@ -36,9 +36,9 @@ class PointImage {
     const Eigen::Vector3f t = T_level_camera.position.cast<float>();
     points_.resize(image.depth_mm.size());
     const auto depth_at = [&](int row, int col) {
-      if (col < 0 || col >= image.width) return kNone;
+      if (col < 0 || col >= image.width) return kNoDepth;
       const std::uint16_t mm = image.depth_mm[index(row, col)];
-      return mm == 0 ? kNone : 1e-3F * static_cast<float>(mm);
+      return mm == 0 ? kNoDepth : 1e-3F * static_cast<float>(mm);
     };
     for (int row = 0; row < image.height; ++row) {
       const auto up = static_cast<float>((image.cy_px - row) / image.fy_px);
@@ -61,8 +61,8 @@ class PointImage {
       const int there = col + i - 2;
       const Point point = there < 0 || there >= width_ ? Point{} : at(row, there);
       const auto slot = static_cast<std::size_t>(i);
-      x[slot] = point.is_valid() ? point.x : kNone;
-      y[slot] = point.is_valid() ? point.y : kNone;
+      x[slot] = point.is_valid() ? point.x : kNoDepth;
+      y[slot] = point.is_valid() ? point.y : kNoDepth;
       z[slot] = point.z;
     }
     return {median(x), median(y), median(z)};
