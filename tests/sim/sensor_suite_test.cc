@@ -276,5 +276,32 @@ TEST(Fault, JitterOf20MillisecondsDelaysBy16OnAverage) {
   EXPECT_NEAR(delay_s.mean(), 0.02 * std::sqrt(2.0 / M_PI) + 0.001, 4.0 * 0.02 * 0.603 / std::sqrt(delay_s.count));
 }
 
+TEST(SensorSuite, MagnetometerAndBarometerPublishAtTheirRatesWhenSwitchedOnAndAreOffByDefault) {
+  SensorSuiteSettings settings = quiet();
+  EXPECT_TRUE(stand(settings, 1.0).arrivals.empty());
+  settings.magnetometer.enabled = settings.barometer.enabled = true;
+  const Ride ride = stand(settings, 1.999, {fault("barometer", "spikes", 0.0, 9.0, 1e6)});
+  EXPECT_EQ(ride.of<MagneticField>().size(), 100u);
+  EXPECT_EQ(ride.of<FluidPressure>().size(), 10u);
+  EXPECT_EQ(ride.of<MagneticField>().front().at, from_seconds(0.01)) << "after its latency";
+  RobotDescription robot = make_robot();
+  robot.T_body_sensor.erase("imu");
+  EXPECT_THROW(stand(settings, 0.1, {}, robot), InputError);
+}
+
+TEST(DeliveryQueue, DeliversInOrderOfTheInstantDueAndAtOneInstantInTheOrderPutIn) {
+  DeliveryQueue queue;
+  const auto tagged = [](int anchor) { return UwbRange{.stamp = {}, .anchor = anchor}; };
+  queue.push(from_seconds(2.0), tagged(1));
+  queue.push(from_seconds(1.0), tagged(2));
+  queue.push(from_seconds(2.0), tagged(3));
+  queue.push(from_seconds(3.0), tagged(4));
+  std::vector<int> order;
+  for (const SensorMessage& message : queue.take_due(from_seconds(2.0))) order.push_back(std::get<UwbRange>(message).anchor);
+  EXPECT_EQ(order, (std::vector<int>{2, 1, 3}));
+  EXPECT_TRUE(queue.take_due(from_seconds(2.5)).empty());
+  EXPECT_EQ(queue.take_due(from_seconds(3.0)).size(), 1u);
+}
+
 }  // namespace
 }  // namespace patrol::sim::sensor_suite_test
