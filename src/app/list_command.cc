@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,9 @@
 #include "app/commands.h"
 #include "app/scenario.h"
 #include "app/study/study.h"
+#include "core/event.h"
+#include "core/named_table.h"
+#include "core/route.h"
 #include "plan/routes/planners.h"
 #include "slam/mapper.h"
 
@@ -28,6 +32,15 @@ std::vector<std::string> files_below(const std::filesystem::path& root, const st
 void print(const char* title, const std::vector<std::string>& lines) {
   fmt::print("{}\n", title);
   for (const std::string& line : lines) fmt::print("  {}\n", line);
+}
+
+/// Names of a table's rows with their documentation lines.
+template <NamedTable Table>
+void print_table(const char* title, const Table& table) {
+  std::size_t width = 0;
+  for (const auto& row : table) width = std::max(width, row.name.size());
+  fmt::print("{}\n", title);
+  for (const auto& row : table) fmt::print("  {:<{}}  {}\n", row.name, width, row.summary);
 }
 
 /// Collects what the settings allow for one field.
@@ -63,12 +76,17 @@ ExitCode list_command() {
   print("odometry sources (stack.odometry_source)", allowed<stack::StackSettings>("odometry_source"));
   print("localizers (stack.localizer)", allowed<stack::StackSettings>("localizer"));
   print("missions (stack.mission_type)", allowed<stack::StackSettings>("mission_type"));
-  print("mapping methods of a run (stack.mapping)", allowed<stack::StackSettings>("mapping"));
-  print("mapping methods of a log", allowed<slam::MapperSettings>("method"));
+  print_table("SLAM methods (stack.mapping; patrol slam --method)", slam::mapping_methods());
+  print_table("odometry of the method rbpf (stack.slam.odometry)", slam::kRbpfOdometries);
+  print_table("optimizers of particles (stack.slam.optimizer)", slam::optimizers());
+  print_table("resamplers of particles", slam::resamplers());
   print("localisation methods", {"Monte-Carlo localisation with KLD sampling (stack.localization)"});
-  print("sensor models of localisation", allowed<localize::MonteCarloSettings>("sensor_model"));
-  print("global planners (stack.plan.global; patrol plan --planner)", plan::route_planner_names());
-  print("local planners (stack.plan.local_planner)", allowed<plan::NavigatorSettings>("local_planner"));
+  print_table("sensor models of localization (stack.localization.sensor_model)", localize::sensor_models());
+  print_table("global planners (stack.plan.global; patrol plan --planner)", plan::route_planners());
+  print_table("local planners (stack.plan.local_planner)", plan::local_planners());
+  print_table("station types (mission)", kStationTypes);
+  print_table("goal types (goals; stack.tour.mark_types)", kGoalTypes);
+  print_table("event kinds", std::span(kEventKinds).subspan(1));  // without foreign kinds
   print("studies", study_names());
   return ExitCode::kDone;
 }

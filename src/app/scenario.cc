@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "app/mapping/neighbour_model.h"
 #include "core/error.h"
 #include "io/drive_json.h"
 #include "io/map_server.h"
@@ -111,6 +112,7 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
   if (!scenario.references.empty()) {
     for (const std::filesystem::path& file : io::station_scan_files(world / scenario.references)) files.push_back(file);
   }
+  if (needs_neighbor_model(scenario.stack.mapping)) files.push_back(data_root / kNeighbourModel);
   return files;
 }
 
@@ -134,6 +136,7 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
     files.goals = io::load_nav(file);
     stack::check_goals(file.string(), files.goals, files.map);
   }
+  files.neighbor_model = neighbours_for(scenario.stack.mapping, data_root);
   if (!scenario.references.empty()) files.references = io::load_station_scans(files.world_xml.parent_path() / scenario.references);
   const RemoteSettings& remote = scenario.remote;
   if (!remote.drive.empty() && !remote.recorded.empty()) {
@@ -141,7 +144,7 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   }
   if (!remote.drive.empty()) files.drive = io::load_drive(named_file("remote.drive", remote.drive));
   if (!remote.recorded.empty()) files.recorded = io::load_remote(named_file("remote.recorded", remote.recorded));
-  const bool waits_for_remote = std::any_of(files.goals.begin(), files.goals.end(), [](const MarkedGoal& goal) { return goal.type == 'R'; });
+  const bool waits_for_remote = std::any_of(files.goals.begin(), files.goals.end(), [](const MarkedGoal& goal) { return goal.type == GoalType::kOperator; });
   if (files.map && files.has_remote() && !waits_for_remote) {
     throw InputError(fmt::format("map = {}: a map is given, and by remote control another would be made: only one of them can be used, unless "
                                  "a goal of type R waits for the remote control",

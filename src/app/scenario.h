@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/boosted_stumps.h"
 #include "core/remote_drive.h"
 #include "core/route.h"
 #include "core/settings.h"
@@ -205,6 +206,7 @@ struct ScenarioFiles {
   std::vector<MarkedGoal> goals;        ///< in map
   std::vector<io::StationScan> references;
   std::optional<OccupancyGrid> map;
+  BoostedStumps neighbor_model;  ///< classifier of pairs of submaps; empty for SLAM methods that need none
 
   bool has_remote() const { return !drive.empty() || !recorded.empty(); }
 };

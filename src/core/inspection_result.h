@@ -2,11 +2,14 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/frames.h"
+#include "core/named_table.h"
 #include "core/time.h"
 
 /// What the robot found out about the tunnel: for the log, the report and the monitoring platform.
@@ -15,19 +18,15 @@ namespace patrol {
 /// How much it matters. A notice is written down; a warning switches the light on, an alarm the siren too.
 enum class WarningLevel : std::uint8_t { kNone, kNotice, kWarning, kAlarm };
 
-inline const char* name_of(WarningLevel level) {
-  switch (level) {
-    case WarningLevel::kNone:
-      return "none";
-    case WarningLevel::kNotice:
-      return "notice";
-    case WarningLevel::kWarning:
-      return "warning";
-    case WarningLevel::kAlarm:
-      return "alarm";
-  }
-  return "none";
-}
+inline constexpr std::array kWarningLevels = std::to_array<NamedValue<WarningLevel>>({
+    {WarningLevel::kNone, "none", "Nothing to report"},
+    {WarningLevel::kNotice, "notice", "Written to the log"},
+    {WarningLevel::kWarning, "warning", "Switches the warning light on"},
+    {WarningLevel::kAlarm, "alarm", "Switches the warning light and the siren on"},
+});
+static_assert(is_in_order(kWarningLevels));
+
+constexpr std::string_view name_of(WarningLevel level) { return row_of(kWarningLevels, level).name; }
 
 /// A ring's lining in one direction, against the reference scan. Inwards is positive.
 struct LiningCell {

@@ -20,6 +20,14 @@ struct NamedValue {
   std::string_view summary;  ///< one line of documentation
 };
 
+/// Row of a table of algorithms. `make` builds the algorithm from the settings of its family.
+template <typename Make>
+struct NamedFactory {
+  std::string_view name;     ///< text in settings and on the command line
+  std::string_view summary;  ///< one line of documentation
+  Make* make;
+};
+
 /// A range of rows that have at least a `name` and a `summary`.
 template <typename Table>
 concept NamedTable = std::ranges::forward_range<const Table> && requires(const Table& table) {

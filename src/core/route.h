@@ -2,23 +2,52 @@
 
 #include <Eigen/Core>
 
+#include <array>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/frames.h"
+#include "core/named_table.h"
 #include "core/tunnel_lining.h"
 #include "core/uwb.h"
 
 namespace patrol {
+
+/// Task of the robot at a station of the route.
+enum class StationType : std::uint8_t { kInspect, kPass, kHome };
+
+inline constexpr std::array kStationTypes = std::to_array<NamedValue<StationType>>({
+    {StationType::kInspect, "inspect", "Stop, point the instrument at the target and measure"},
+    {StationType::kPass, "pass", "Walk past without a stop"},
+    {StationType::kHome, "home", "Stop and end the mission"},
+});
+static_assert(is_in_order(kStationTypes));
+
+constexpr std::string_view name_of(StationType type) { return row_of(kStationTypes, type).name; }
+
+/// Task of the robot at a goal; the letters are those of nav.json (paper 004, table 1).
+enum class GoalType : std::uint8_t { kStop, kVia, kScan, kOperator };
+
+inline constexpr std::array kGoalTypes = std::to_array<NamedValue<GoalType>>({
+    {GoalType::kStop, "N", "Stop there"},
+    {GoalType::kVia, "V", "Pass without a stop"},
+    {GoalType::kScan, "D", "Stop and scan the lining"},
+    {GoalType::kOperator, "R", "Stop until an operator has driven the robot and handed over control again"},
+});
+static_assert(is_in_order(kGoalTypes));
+
+constexpr std::string_view name_of(GoalType type) { return row_of(kGoalTypes, type).name; }
 
 /// A place of the inspection route, in the route's frame: `site`, the frame of the survey, or `map`. The robot's start pose in
 /// `site` is surveyed too, and joins the two (inspect/route_frame.h).
 struct Station {
   int number = 0;
   std::string name;  ///< e.g. "regulator_box_2"
-  std::string type;  ///< "inspect": stop, aim, measure gas; "pass": walk by; "home": stop and end
+  StationType type = StationType::kInspect;
   Pose2 T_route_body;  ///< where the robot shall stand
   Eigen::Vector3d p_route_target = Eigen::Vector3d::Zero();  ///< what the instrument looks at, m
   double accuracy_m = 0.2;  ///< how near the standing place counts as reached
@@ -47,7 +76,7 @@ struct Route {
 struct MarkedGoal {
   int number = 0;
   Pose2 T_map_body;
-  char type = 'N';          ///< 'N' stop there, 'V' pass by, 'D' scan the lining, 'R' stop until a person has driven and handed over again
+  GoalType type = GoalType::kStop;
   double accuracy_m = 0.1;  ///< how near counts as reached
 };
 

@@ -45,11 +45,7 @@ double clock_of(const JsonObject& object) {
 }
 
 WarningLevel level_of(const JsonObject& object) {
-  const std::string name = object.word("level");
-  for (const WarningLevel level : {WarningLevel::kNone, WarningLevel::kNotice, WarningLevel::kWarning, WarningLevel::kAlarm}) {
-    if (name == name_of(level)) return level;
-  }
-  object.fail("level must be one of none, notice, warning, alarm");
+  return object.choice("level", kWarningLevels);
 }
 
 Time stamp_of(const JsonObject& object) {

@@ -106,6 +106,10 @@ std::vector<Eigen::Vector2d> JsonObject::polyline(const char* key) const {
   return line;
 }
 
+void JsonObject::fail_choice(const char* key, const std::string& name, const std::vector<std::string>& allowed) const {
+  fail(fmt::format("{} = {}: must be one of {}", key, name, fmt::join(allowed, ", ")));
+}
+
 void JsonObject::fail(const std::string& what) const { throw InputError(place_ + ": " + what); }
 
 }  // namespace patrol::io

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/frames.h"
+#include "core/named_table.h"
 
 namespace patrol::io {
 
@@ -28,6 +29,13 @@ class JsonObject {
   int whole(const char* key) const;
   double number(const char* key) const;  ///< finite
   std::string word(const char* key) const;  ///< without control characters
+  /// Value of the table's row of that name.
+  template <NamedTable Table>
+  auto choice(const char* key, const Table& table) const {
+    const std::string name = word(key);
+    if (const auto* row = find_named(table, name)) return row->value;
+    fail_choice(key, name, names_of(table));
+  }
   bool flag(const char* key) const;
   std::vector<double> numbers(const char* key, std::size_t count) const;
   /// From `position` (x, y, z) and `orientation` (quaternion x, y, z, w of length 1, upright).
@@ -38,6 +46,7 @@ class JsonObject {
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
+  [[noreturn]] void fail_choice(const char* key, const std::string& name, const std::vector<std::string>& allowed) const;
   std::vector<double> numbers_of(const Json& json, const std::string& what, std::size_t count) const;
 
   std::string place_;

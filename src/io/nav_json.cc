@@ -13,16 +13,10 @@ namespace patrol::io {
 namespace {
 
 constexpr std::size_t kMostGoals = 1000;
-constexpr const char* kTypes = "NVDR";
 
 MarkedGoal read_goal(const std::string& place, const Json& json) {
   const JsonObject reader(place, json, {"number", "position", "orientation", "type", "accuracy"});
-  MarkedGoal goal{.number = reader.whole("number"), .T_map_body = reader.pose(), .type = 'N', .accuracy_m = reader.number("accuracy")};
-  const std::string type = reader.word("type");
-  if (type.size() != 1 || std::string(kTypes).find(type[0]) == std::string::npos) {
-    reader.fail(fmt::format("type = {}: must be N (stop there), V (pass by), D (scan the lining) or R (wait for the remote control)", type));
-  }
-  goal.type = type[0];
+  MarkedGoal goal{.number = reader.whole("number"), .T_map_body = reader.pose(), .type = reader.choice("type", kGoalTypes), .accuracy_m = reader.number("accuracy")};
   if (goal.accuracy_m <= 0.0) reader.fail("accuracy must be positive");
   return goal;
 }
@@ -52,7 +46,7 @@ void save_nav(const std::filesystem::path& file, const std::vector<MarkedGoal>& 
     json.push_back({{"number", goal.number},
                     {"position", {goal.T_map_body.x, goal.T_map_body.y, 0.0}},
                     {"orientation", {q.x(), q.y(), q.z(), q.w()}},
-                    {"type", std::string(1, goal.type)},
+                    {"type", name_of(goal.type)},
                     {"accuracy", goal.accuracy_m}});
   }
   save_text(file, json.dump(1) + "\n");

@@ -12,16 +12,13 @@ namespace {
 
 Station read_station(const std::string& place, const Json& json) {
   const JsonObject reader(place, json, {"number", "name", "type", "position", "orientation", "target", "accuracy", "priority", "window"});
-  Station station{.number = reader.whole("number"), .name = reader.word("name"), .type = reader.word("type"),
+  Station station{.number = reader.whole("number"), .name = reader.word("name"), .type = reader.choice("type", kStationTypes),
                   .T_route_body = reader.pose(), .p_route_target = {}, .accuracy_m = reader.number("accuracy")};
-  if (station.type != "inspect" && station.type != "pass" && station.type != "home") {
-    reader.fail(fmt::format("type = {}: must be one of inspect, pass, home", station.type));
-  }
   if (station.accuracy_m <= 0.0) reader.fail("accuracy must be positive");
   if (reader.has("target")) {
     const std::vector<double> target = reader.numbers("target", 3);
     station.p_route_target = {target[0], target[1], target[2]};
-  } else if (station.type == "inspect") {
+  } else if (station.type == StationType::kInspect) {
     reader.fail("target is missing: what an inspection looks at");
   }
   if (reader.has("priority")) station.priority = reader.whole("priority");

@@ -1,6 +1,7 @@
 #include "plan/navigator.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -29,10 +30,14 @@ bool stands_still(const VelocityCommand& command) {
   return std::abs(command.vx_mps) < 0.03 && std::abs(command.vy_mps) < 0.03 && std::abs(command.yaw_rate_radps) < 0.05;
 }
 
-std::unique_ptr<LocalPlanner> make_local_planner(const NavigatorSettings& settings) {
-  if (settings.local_planner == "paper_dwa") return std::make_unique<PaperDwa>(settings.paper_local);
-  return std::make_unique<DynamicWindow>(settings.local);
-}
+using LocalPlannerFactory = NamedFactory<std::unique_ptr<LocalPlanner>(const NavigatorSettings&)>;
+
+constexpr std::array kLocalPlanners = std::to_array<LocalPlannerFactory>({
+    {"dwa", "Dynamic window approach over forward simulated arcs",
+     [](const NavigatorSettings& settings) -> std::unique_ptr<LocalPlanner> { return std::make_unique<DynamicWindow>(settings.local); }},
+    {"paper_dwa", "Dynamic window approach of paper 004, as printed",
+     [](const NavigatorSettings& settings) -> std::unique_ptr<LocalPlanner> { return std::make_unique<PaperDwa>(settings.paper_local); }},
+});
 
 std::string sentence_of_recovery(const std::string& kind) {
   if (kind == "wait") return "Recovery: the robot waits.";
@@ -58,6 +63,8 @@ NavigationTrouble trouble_of(PlanStatus status) {
 }
 
 }  // namespace
+
+std::span<const LocalPlannerFactory> local_planners() { return kLocalPlanners; }
 
 const char* sentence_of(NavigationTrouble trouble) {
   switch (trouble) {
@@ -85,7 +92,7 @@ Navigator::Navigator(const NavigatorSettings& settings, const RobotDescription& 
       robot_(robot),
       costmap_(settings.costmap, Footprint(robot.footprint_m, settings.footprint_rows), std::move(keep_out_lines_in_map)),
       planner_(settings.global, settings.routes, seed),
-      local_planner_(make_local_planner(settings)),
+      local_planner_(row_named(kLocalPlanners, settings.local_planner, "plan.local_planner").make(settings)),
       approach_(settings.differential_approach) {
   validate(settings, "plan");
   if (settings.recoveries.empty()) throw InputError("plan.recoveries: must name at least one recovery");

@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/messages.h"
+#include "core/named_table.h"
 #include "core/navigation_goal.h"
 #include "core/robot_description.h"
 #include "plan/costmap.h"
@@ -19,6 +21,11 @@
 #include "plan/pose_regulator.h"
 
 namespace patrol::plan {
+
+struct NavigatorSettings;
+
+/// The local planners; `make` takes the settings of its own section.
+std::span<const NamedFactory<std::unique_ptr<LocalPlanner>(const NavigatorSettings&)>> local_planners();
 
 struct NavigatorSettings {
   std::string drive = "omnidirectional";  ///< or "differential": a robot that cannot step sideways
@@ -55,8 +62,8 @@ struct NavigatorSettings {
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("drive", self.drive, one_of({"omnidirectional", "differential"}));
-    visit("global", self.global, one_of({"astar", "dijkstra", "theta_star", "plain_ant_colony", "ant_colony", "two_swarms", "q_learning"}));
-    visit("local_planner", self.local_planner, one_of({"dwa", "paper_dwa"}));
+    visit("global", self.global, one_of(drivable_route_planners()));
+    visit("local_planner", self.local_planner, one_of(local_planners()));
     visit("footprint_rows", self.footprint_rows, between(1, 4));
     visit("steps_per_s", self.steps_per_s, between(1e3, 1e12));
     visit("replan_period_s", self.replan_period_s, between(0.1, 600.0));

@@ -53,7 +53,7 @@ struct GridSlamSettings {
     visit("particles", self.particles, between(1, 10000));
     visit("likelihood_gain", self.likelihood_gain, between(0.0, 1.0));
     visit("proposal", self.proposal, one_of({"scan_match", "motion"}));
-    visit("optimizer", self.optimizer, optimizer_names());
+    visit("optimizer", self.optimizer, one_of(optimizers()));
     visit("resample_threshold", self.resample_threshold, between(0.0, 1.0));
     visit("motion", self.motion);
     visit("ranges", self.ranges);

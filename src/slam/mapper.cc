@@ -1,9 +1,10 @@
 #include "slam/mapper.h"
 
+#include <array>
 #include <type_traits>
 #include <utility>
 
-#include "slam/filtered_path.h"
+#include "core/named_table.h"
 
 namespace patrol::slam {
 namespace {
@@ -39,17 +40,29 @@ class MapperOf final : public Mapper {
   Method method_;
 };
 
+constexpr std::array kMethods = std::to_array<MappingMethod>({
+    {"graph", "Submaps and a pose graph with loop closures, of Cartographer's class",
+     [](const MapperSettings& settings, const BoostedStumps&, std::uint64_t) -> std::unique_ptr<Mapper> {
+       return std::make_unique<MapperOf<GraphSlam>>(settings.graph);
+     }},
+    {"rbpf", "Rao-Blackwellized particle filter with improved proposals, of Gmapping's class",
+     [](const MapperSettings& settings, const BoostedStumps&, std::uint64_t seed) -> std::unique_ptr<Mapper> {
+       return std::make_unique<MapperOf<TrackedRbpf>>(settings.rbpf, seed);
+     }},
+    {"submap_rbpf", "Submaps of such a filter, connected by classified neighbors (paper 002)",
+     [](const MapperSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed) -> std::unique_ptr<Mapper> {
+       return std::make_unique<MapperOf<SubmapRbpf>>(settings.submap_rbpf, neighbours, seed);
+     },
+     true},
+});
+
 }  // namespace
+
+std::span<const MappingMethod> mapping_methods() { return kMethods; }
 
 std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed) {
   validate(settings, "slam");
-  if (settings.method == "rbpf") return std::make_unique<MapperOf<TrackedRbpf>>(settings.rbpf, seed);
-  if (settings.method == "submap_rbpf") return std::make_unique<MapperOf<SubmapRbpf>>(settings.submap_rbpf, neighbours, seed);
-  return make_graph_mapper(settings.graph);
+  return row_named(mapping_methods(), settings.method, "slam.method").make(settings, neighbours, seed);
 }
-
-std::unique_ptr<Mapper> make_graph_mapper(const GraphSlamSettings& settings) { return std::make_unique<MapperOf<GraphSlam>>(settings); }
-
-std::unique_ptr<Mapper> make_rbpf_mapper(const GridSlamSettings& settings, std::uint64_t seed) { return std::make_unique<MapperOf<FilteredPath>>(settings, seed); }
 
 }  // namespace patrol::slam

@@ -2,9 +2,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "core/boosted_stumps.h"
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/pose_graph.h"
@@ -17,9 +20,18 @@
 
 namespace patrol::slam {
 
-/// graph: submaps and a pose graph, of Cartographer's class; rbpf: a particle filter with improved proposals, of Gmapping's; submap_rbpf: submaps of such
-/// a filter, joined (paper 002).
-inline Limits mapping_methods() { return one_of({"graph", "rbpf", "submap_rbpf"}); }
+class Mapper;
+struct MapperSettings;
+
+/// Row of the table of SLAM methods, for runs (`stack.mapping`) and recorded logs (`patrol slam --method`).
+struct MappingMethod {
+  std::string_view name;     ///< text in settings and on the command line
+  std::string_view summary;  ///< one line of documentation
+  std::unique_ptr<Mapper> (*make)(const MapperSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed);
+  bool needs_neighbor_model = false;  ///< whether it classifies pairs of submaps
+};
+
+std::span<const MappingMethod> mapping_methods();
 
 struct MapperSettings {
   std::string method = "graph";
@@ -29,7 +41,7 @@ struct MapperSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("method", self.method, mapping_methods());
+    visit("method", self.method, one_of(mapping_methods()));
     visit("graph", self.graph);
     visit("rbpf", self.rbpf);
     visit("submap_rbpf", self.submap_rbpf);
@@ -60,11 +72,8 @@ class Mapper {
   virtual std::vector<std::size_t> node_scans() const = 0;
 };
 
-/// `neighbours` recognises neighbouring submaps, for submap_rbpf.
+/// Builds the method of that name. `neighbours` classifies pairs of submaps, for methods that need it.
 /// Throws InputError when a setting breaks its rule.
 std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed);
-/// The same of one method, for a robot whose odometry can be relied on.
-std::unique_ptr<Mapper> make_graph_mapper(const GraphSlamSettings& settings);
-std::unique_ptr<Mapper> make_rbpf_mapper(const GridSlamSettings& settings, std::uint64_t seed);
 
 }  // namespace patrol::slam

@@ -1,5 +1,8 @@
 #include "slam/particle_filter_parts.h"
 
+#include <array>
+
+#include "core/named_table.h"
 #include "slam/swarm/bat.h"
 #include "slam/swarm/firefly.h"
 #include "slam/swarm/sand_cat.h"
@@ -8,39 +11,55 @@
 namespace patrol::slam {
 namespace {
 
-std::shared_ptr<const SwarmOptimizer> make_optimizer(const ParticleFilterSettings& settings) {
-  const std::string& name = settings.optimizer;
-  const int iterations = settings.optimizer_iterations;
-  if (name == "woa") return std::make_shared<WhaleOptimizer>(iterations);
-  if (name == "ba") return std::make_shared<BatOptimizer>(BatSettings{.iterations = iterations});
-  if (name == "fa") return std::make_shared<FireflyOptimizer>(FireflySettings{.iterations = iterations, .absorption = settings.firefly_absorption});
-  if (name == "ifa") {
-    return std::make_shared<ImprovedFireflyOptimizer>(ImprovedFireflySettings{.iterations = iterations, .absorption = settings.firefly_absorption});
-  }
-  if (name == "scso" || name == "iscso") return std::make_shared<SandCatOptimizer>(iterations, name == "iscso");
-  return nullptr;
+using Settings = ParticleFilterSettings;
+using Optimizer = std::shared_ptr<const SwarmOptimizer>;
+
+Optimizer make_improved_firefly(const Settings& s) {
+  return std::make_shared<ImprovedFireflyOptimizer>(
+      ImprovedFireflySettings{.iterations = s.optimizer_iterations, .absorption = s.firefly_absorption});
 }
 
-Resampler make_resampler(const std::string& name) {
-  if (name == "multinomial") return resample_multinomially;
-  if (name == "residual") return resample_by_residuals;
-  if (name == "low_weight") return draw_low_weights_up;
-  if (name == "stepwise") return [](const std::vector<double>& weights, RandomSequence& random) { return resample_stepwise(weights, random); };
-  return resample_evenly;
-}
+constexpr std::array kOptimizers = std::to_array<OptimizerRow>({
+    {"none", "Particles stay where the proposal drew them", "systematic", [](const Settings&) -> Optimizer { return nullptr; }},
+    {"woa", "Whale optimization", "systematic",
+     [](const Settings& s) -> Optimizer { return std::make_shared<WhaleOptimizer>(s.optimizer_iterations); }},
+    {"ba", "Bat algorithm", "systematic",
+     [](const Settings& s) -> Optimizer { return std::make_shared<BatOptimizer>(BatSettings{.iterations = s.optimizer_iterations}); }},
+    {"fa", "Firefly algorithm", "systematic",
+     [](const Settings& s) -> Optimizer {
+       return std::make_shared<FireflyOptimizer>(FireflySettings{.iterations = s.optimizer_iterations, .absorption = s.firefly_absorption});
+     }},
+    {"ifa", "Improved firefly algorithm of paper 001, with its stepwise resampling", "stepwise", make_improved_firefly},
+    {"scso", "Sand cat swarm optimization", "systematic",
+     [](const Settings& s) -> Optimizer { return std::make_shared<SandCatOptimizer>(s.optimizer_iterations, false); }},
+    {"iscso", "Improved sand cat swarm optimization of paper 000, with its low-weight optimization", "low_weight",
+     [](const Settings& s) -> Optimizer { return std::make_shared<SandCatOptimizer>(s.optimizer_iterations, true); }},
+});
+
+constexpr std::array kResamplers = std::to_array<ResamplerRow>({
+    {"multinomial", "One independent draw for each new particle", resample_multinomially},
+    {"systematic", "One draw for all new particles, at equal steps of the cumulative weight", resample_evenly},
+    {"residual", "Integer parts of the expected counts for certain, the rest drawn", resample_by_residuals},
+    {"low_weight", "Low-weight optimization of paper 000; biased", draw_low_weights_up},
+    {"stepwise", "Stepwise resampling of paper 001; biased",
+     [](const std::vector<double>& weights, RandomSequence& random) { return resample_stepwise(weights, random); }},
+});
 
 }  // namespace
 
+std::span<const OptimizerRow> optimizers() { return kOptimizers; }
+
+std::span<const ResamplerRow> resamplers() { return kResamplers; }
+
 ParticleFilterSettings settings_of_paper(const std::string& optimizer) {
-  ParticleFilterSettings settings{.optimizer = optimizer};
-  if (optimizer == "iscso") settings.resampler = "low_weight";
-  if (optimizer == "ifa") settings.resampler = "stepwise";
-  return settings;
+  return {.optimizer = optimizer, .resampler = std::string(row_named(kOptimizers, optimizer, "optimizer").resampler)};
 }
 
 ParticleFilterParts make_parts(const ParticleFilterSettings& settings) {
   validate(settings, "particle_filter");
-  return {.optimizer = make_optimizer(settings), .resample = make_resampler(settings.resampler), .resample_threshold = settings.resample_threshold};
+  return {.optimizer = row_named(kOptimizers, settings.optimizer, "optimizer").make(settings),
+          .resample = row_named(kResamplers, settings.resampler, "resampler").resample,
+          .resample_threshold = settings.resample_threshold};
 }
 
 }  // namespace patrol::slam

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/settings.h"
 #include "slam/resampler.h"
@@ -9,8 +12,25 @@
 
 namespace patrol::slam {
 
-/// woa: whale, ba: bat, fa: firefly, ifa: improved firefly, scso: sand cat, iscso: improved sand cat.
-inline Limits optimizer_names() { return one_of({"none", "woa", "ba", "fa", "ifa", "scso", "iscso"}); }
+struct ParticleFilterSettings;
+
+/// Row of the table of optimizers that move particles toward a higher likelihood.
+struct OptimizerRow {
+  std::string_view name;       ///< text in settings
+  std::string_view summary;    ///< one line of documentation
+  std::string_view resampler;  ///< the one that its publication combines it with
+  std::shared_ptr<const SwarmOptimizer> (*make)(const ParticleFilterSettings& settings);
+};
+
+/// Row of the table of resamplers.
+struct ResamplerRow {
+  std::string_view name;     ///< text in settings
+  std::string_view summary;  ///< one line of documentation
+  std::vector<Offspring> (*resample)(const std::vector<double>& weights, RandomSequence& random);
+};
+
+std::span<const OptimizerRow> optimizers();
+std::span<const ResamplerRow> resamplers();
 
 /// The interchangeable parts of a particle filter, by name.
 struct ParticleFilterSettings {
@@ -22,15 +42,15 @@ struct ParticleFilterSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("optimizer", self.optimizer, optimizer_names());
+    visit("optimizer", self.optimizer, one_of(optimizers()));
     visit("optimizer_iterations", self.optimizer_iterations, between(1, 1000));
     visit("firefly_absorption", self.firefly_absorption, at_least(0.0));
-    visit("resampler", self.resampler, one_of({"multinomial", "systematic", "residual", "low_weight", "stepwise"}));
+    visit("resampler", self.resampler, one_of(resamplers()));
     visit("resample_threshold", self.resample_threshold, between(0.0, 1.0));
   }
 };
 
-/// An optimiser with the resampler that its paper gives it: ISCSO low-weight optimisation (paper 000), IFA stepwise (paper 001), all others systematic.
+/// An optimizer with the resampler of its publication. Throws InputError for an unknown optimizer.
 ParticleFilterSettings settings_of_paper(const std::string& optimizer);
 
 struct ParticleFilterParts {

@@ -17,10 +17,20 @@ GridSlamSettings tracked_filter() {
   return settings;
 }
 
-TrackedRbpf::TrackedRbpf(const TrackedRbpfSettings& settings, std::uint64_t seed) : tracker_(settings.tracking), filtered_(settings.filter, seed) {}
+TrackedRbpf::TrackedRbpf(const TrackedRbpfSettings& settings, std::uint64_t seed) : filtered_(settings.filter, seed) {
+  if (row_named(kRbpfOdometries, settings.odometry, "rbpf.odometry").value == RbpfOdometry::kScanMatched) tracker_.emplace(settings.tracking);
+}
+
+void TrackedRbpf::add(RangeSighting sighting) {
+  if (tracker_ && !newest_) return;
+  if (tracker_) sighting.T_odom_body = newest_->T_local_body * (newest_->T_odom_body.inverse() * sighting.T_odom_body);
+  filtered_.add(sighting);
+}
 
 SlamUpdate TrackedRbpf::update(const LevelScan& scan, const Pose2& T_odom_body) {
-  return filtered_.update(scan, tracker_.update(scan, T_odom_body).T_local_body);
+  if (!tracker_) return filtered_.update(scan, T_odom_body);
+  newest_ = OdometryPair{.T_odom_body = T_odom_body, .T_local_body = tracker_->update(scan, T_odom_body).T_local_body};
+  return filtered_.update(scan, newest_->T_local_body);
 }
 
 }  // namespace patrol::slam

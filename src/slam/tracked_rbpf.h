@@ -1,8 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "core/named_table.h"
 #include "core/pose_graph.h"
 #include "slam/graph/scan_tracker.h"
 #include "slam/filtered_path.h"
@@ -12,24 +16,41 @@ namespace patrol::slam {
 /// Particles enough for a building; what tracking leaves of odometry's errors; nothing that depends on legs.
 GridSlamSettings tracked_filter();
 
+/// Odometry that predicts the particles of `rbpf`.
+enum class RbpfOdometry : std::uint8_t { kGiven, kScanMatched };
+
+inline constexpr std::array kRbpfOdometries = std::to_array<NamedValue<RbpfOdometry>>({
+    {RbpfOdometry::kGiven, "given", "The odometry of the robot or the log, as given"},
+    {RbpfOdometry::kScanMatched, "scan_matched", "The given odometry, corrected by matching from scan to scan"},
+});
+static_assert(is_in_order(kRbpfOdometries));
+
+/// Settings of the method `rbpf`, in one section with those of its filter. The defaults are those for a recorded log, whose odometry is of unknown
+/// quality. A robot of this program has odometry of known quality: its stack uses the odometry as given and fewer particles.
 struct TrackedRbpfSettings {
-  ScanTrackerSettings tracking;
+  std::string odometry = "scan_matched";  ///< odometry that predicts the particles (`kRbpfOdometries`)
+  ScanTrackerSettings tracking;           ///< matching from scan to scan, with `odometry: scan_matched`
   GridSlamSettings filter = tracked_filter();
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("odometry", self.odometry, one_of(kRbpfOdometries));
     visit("tracking", self.tracking);
-    visit("filter", self.filter);
+    GridSlamSettings::fields(self.filter, visit);
   }
 };
 
-/// A Rao-Blackwellised particle filter (grid_slam.h) whose odometry is what matching from scan to scan makes of the wheels': the particles then have only its
-/// small errors to make up for, and wheels that lie do not lead all of them astray. Plain Gmapping, with a better odometry; no loop is closed
-/// but by particles that happen to have come back right.
+/// Rao-Blackwellized particle filter on grids (grid_slam.h), the method `rbpf` of runs and of recorded logs. Gmapping's filter; loops are closed only by
+/// particles that return to the right pose.
+///
+/// With `odometry: scan_matched`, matching from scan to scan corrects the odometry before the filter uses it: the particles have only its small errors to
+/// correct, and wrong wheel odometry does not mislead all of them.
 class TrackedRbpf {
  public:
   TrackedRbpf(const TrackedRbpfSettings& settings, std::uint64_t seed);
 
+  /// A range between scans; left out before the first scan.
+  void add(RangeSighting sighting);
   SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
   void finish() {}
 
@@ -41,7 +62,13 @@ class TrackedRbpf {
   std::vector<std::size_t> node_scans() const { return filtered_.node_scans(); }
 
  private:
-  ScanTracker tracker_;
+  /// Poses of the newest scan in the given and in the corrected odometry.
+  struct OdometryPair {
+    Pose2 T_odom_body, T_local_body;
+  };
+
+  std::optional<ScanTracker> tracker_;  ///< none with `odometry: given`
+  std::optional<OdometryPair> newest_;  ///< with a tracker
   FilteredPath filtered_;
 };
 

@@ -17,7 +17,7 @@ bool is_tunnel(const StackSettings& settings) { return settings.mission_type == 
 std::unique_ptr<Mission> make_gas_mission(const StackSettings& settings, const RobotDescription& robot,
                                           Route route_in_map, std::uint64_t seed) {
   const auto& stations = route_in_map.stations;
-  if (std::any_of(stations.begin(), stations.end(), [](const Station& station) { return station.type == "inspect"; }))
+  if (std::any_of(stations.begin(), stations.end(), [](const Station& station) { return station.type == StationType::kInspect; }))
     robot.T_body("tdlas");
   std::string about_order;
   if (settings.mission.order == "best" && !route_in_map.stations.empty()) {
@@ -29,7 +29,7 @@ std::unique_ptr<Mission> make_gas_mission(const StackSettings& settings, const R
 }
 
 void check_goals(const std::vector<MarkedGoal>& goals, const RobotDescription& robot, const Route& site_in_map) {
-  if (std::none_of(goals.begin(), goals.end(), [](const MarkedGoal& goal) { return goal.type == 'D'; })) return;
+  if (std::none_of(goals.begin(), goals.end(), [](const MarkedGoal& goal) { return goal.type == GoalType::kScan; })) return;
   if (!site_in_map.lining) throw InputError("tour: a goal is of type D, but the site's survey has no lining");
   robot.T_body("scanner");
 }
@@ -76,7 +76,8 @@ Stack make_stack(const StackSettings& settings, const RobotDescription& robot, c
   MotionExecutor motion(settings, robot, site_in_map, start.seed);
   std::unique_ptr<Mission> mission = make_mission(settings, robot, site_in_map, start);
   InstrumentSet instruments = make_instruments(settings, robot, site_in_map, start);
-  LocalizerStart localizer{.map = std::move(start.map), .has_mapping_drive = is_tunnel(settings) && start.has_remote};
+  LocalizerStart localizer{.map = std::move(start.map), .has_mapping_drive = is_tunnel(settings) && start.has_remote,
+                           .neighbor_model = std::move(start.neighbor_model)};
   return Stack({.pose = PosePipeline(settings, robot, site_in_map, std::move(localizer), start.seed),
                 .motion = std::move(motion),
                 .mission = std::move(mission),

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/boosted_stumps.h"
 #include "core/robot_description.h"
 #include "core/route.h"
 #include "stack/instruments/lining_instrument.h"

@@ -20,7 +20,7 @@ Route make_route() {
   Route route;
   route.stations.push_back({.number = 3,
                             .name = "well",
-                            .type = "inspect",
+                            .type = StationType::kInspect,
                             .T_route_body = {12.0, 7.0, pi / 2.0},
                             .p_route_target = {12.0, 10.0, 1.5},
                             .accuracy_m = 0.3});
@@ -59,7 +59,7 @@ TEST(RouteFrame, KeepsWhatHasNoPlace) {
   ASSERT_EQ(route.stations.size(), 1u);
   EXPECT_EQ(route.stations[0].number, 3);
   EXPECT_EQ(route.stations[0].name, "well");
-  EXPECT_EQ(route.stations[0].type, "inspect");
+  EXPECT_EQ(route.stations[0].type, StationType::kInspect);
   EXPECT_EQ(route.stations[0].accuracy_m, 0.3);
   EXPECT_EQ(route.stations[0].p_route_target.z(), 1.5);
   EXPECT_EQ(route.keep_out_lines.size(), 2u);

@@ -98,7 +98,7 @@ TEST(InspectionJson, WhatIsWrongIsNamedWithItsPlaceAndRule) {
   EXPECT_EQ(broken("/cells/0/ring", 0), "result.data.cells[0]: ring must lie in 1 ... 100000");
   EXPECT_EQ(broken("/cells/0/clock_deg", 361), "result.data.cells[0]: clock_deg must lie in 0 ... 360");
   EXPECT_EQ(broken("/cells/0/std_m", -1), "result.data.cells[0]: std_m must not be negative");
-  EXPECT_EQ(broken("/findings/0/level", "red"), "result.data.findings[0]: level must be one of none, notice, warning, alarm");
+  EXPECT_EQ(broken("/findings/0/level", "red"), "result.data.findings[0]: level = red: must be one of none, notice, warning, alarm");
   EXPECT_EQ(broken("/findings/0/position_m", {1, 2}), "result.data.findings[0]: position_m must be a list of 3 numbers");
   EXPECT_EQ(broken("/lines", "none"), "result.data: lines must be a list");
   EXPECT_EQ(broken("/registered", 1), "result.data: registered must be true or false");

@@ -47,18 +47,18 @@ TEST(LoadNav, ReadsTheFieldsOfPaper004) {
   ASSERT_EQ(goals.size(), 2U);
   EXPECT_EQ(goals[1].number, 2);
   EXPECT_THAT(goals[1].T_map_body, Pose2Near((Pose2{75.0, -2.0, std::numbers::pi}), 0.0, 1e-12));
-  EXPECT_EQ(goals[1].type, 'V');
+  EXPECT_EQ(goals[1].type, GoalType::kVia);
   EXPECT_EQ(goals[1].accuracy_m, 0.5);
 }
 
 TEST(LoadNav, WhatWasSavedIsReadBack) {
   const TemporaryFile file("nav.json", "");
-  save_nav(file.path(), {{.number = 4, .T_map_body = {1.25, -2.5, 0.75}, .type = 'V', .accuracy_m = 0.3}});
+  save_nav(file.path(), {{.number = 4, .T_map_body = {1.25, -2.5, 0.75}, .type = GoalType::kVia, .accuracy_m = 0.3}});
   const std::vector<MarkedGoal> goals = load_nav(file.path());
   ASSERT_EQ(goals.size(), 1U);
   EXPECT_EQ(goals[0].number, 4);
   EXPECT_THAT(goals[0].T_map_body, Pose2Near((Pose2{1.25, -2.5, 0.75}), 1e-12, 1e-12));
-  EXPECT_EQ(goals[0].type, 'V');
+  EXPECT_EQ(goals[0].type, GoalType::kVia);
 }
 
 TEST(LoadNav, EachMissingFieldIsNamed) {
@@ -93,7 +93,7 @@ TEST(LoadNav, NumbersThatMeanNothingAreRefused) {
             "nav.json: [1]: orientation must stand upright, within 45 degrees: a quaternion x, y, z, w");
   EXPECT_EQ(complaint_after([](Json& goal) { goal["accuracy"] = 0; }), "nav.json: [1]: accuracy must be positive");
   EXPECT_EQ(complaint_after([](Json& goal) { goal["type"] = "X"; }),
-            "nav.json: [1]: type = X: must be N (stop there), V (pass by), D (scan the lining) or R (wait for the remote control)");
+            "nav.json: [1]: type = X: must be one of N, V, D, R");
   EXPECT_EQ(complaint_after([](Json& goal) { goal["number"] = 1; }), "nav.json: [1]: number 1 stands there twice");
   EXPECT_EQ(complaint_about("[{\"number\": NaN}]"), "nav.json:1: is not JSON at column 13");
   EXPECT_EQ(complaint_about("[{\"number\": 1e999}]"), "nav.json:1: 1e999 is too large a number");

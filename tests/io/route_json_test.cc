@@ -55,7 +55,7 @@ TEST(LoadRoute, ReadsStartStationsAndKeepOutLines) {
   const Station& box = route.route.stations[0];
   EXPECT_EQ(box.number, 1);
   EXPECT_EQ(box.name, "box_1");
-  EXPECT_EQ(box.type, "inspect");
+  EXPECT_EQ(box.type, StationType::kInspect);
   EXPECT_THAT(box.T_route_body, Pose2Near((Pose2{5.0, 20.0, std::numbers::pi}), 0.0, 1e-12));
   EXPECT_THAT(box.p_route_target, VectorNear(Eigen::Vector3d(3.0, 20.0, 1.2), 0.0));
   EXPECT_EQ(box.accuracy_m, 0.2);
@@ -82,7 +82,7 @@ TEST(LoadRoute, ReadsPriorityAndWindowWhichNobodyMustGive) {
 TEST(LoadRoute, TheStreetsRoutesAreGood) {
   for (const char* name : {"boxes_and_well.json", "short.json", "whole_street.json"}) {
     const RouteFile route = load_route(std::string(PATROL_SOURCE_DIR "/worlds/street/routes/") + name);
-    EXPECT_EQ(route.route.stations.back().type, "home");
+    EXPECT_EQ(route.route.stations.back().type, StationType::kHome);
     EXPECT_FALSE(route.route.keep_out_lines.empty());
   }
 }

@@ -78,7 +78,7 @@ TEST(MapDisplacement, WithFewerThanThirtyCellsThereIsNone) {
 Station make_station(const std::string& name, const Pose2& T_route_body) {
   return {.number = 1,
           .name = name,
-          .type = "inspect",
+          .type = StationType::kInspect,
           .T_route_body = T_route_body,
           .p_route_target = {4.8, 4.8, 1.0},
           .accuracy_m = 0.2};

@@ -42,8 +42,21 @@ TEST(TrackedRbpf, FollowsTenMetresToThreeCentimetresAndKeepsAPoseForEveryScan) {
   EXPECT_EQ(rbpf.graph().edges.size() + 1, rbpf.graph().T_map_node.size());
 }
 
+// With `odometry: given` the filter sees the odometry itself: no matching from scan to scan comes before.
+TEST(TrackedRbpf, WithGivenOdometryIsTheFilterAlone) {
+  TrackedRbpfSettings settings{.odometry = "given", .tracking = {}};
+  TrackedRbpf rbpf(settings, 1);
+  FilteredPath filter(settings.filter, 1);
+  map_drive(rbpf);
+  map_drive(filter);
+  ASSERT_EQ(rbpf.path().size(), filter.path().size());
+  EXPECT_EQ(rbpf.path().back().vector(), filter.path().back().vector());
+  settings.odometry = "wheels";
+  EXPECT_THROW(TrackedRbpf(settings, 1), InputError);
+}
+
 TEST(MakeMapper, EveryMethodFollowsTenMetresToFourCentimetres) {
-  for (const std::string& method : mapping_methods().allowed) {
+  for (const std::string& method : names_of(mapping_methods())) {
     MapperSettings settings;
     settings.method = method;
     const std::unique_ptr<Mapper> mapper = make_mapper(settings, {}, 1);

@@ -8,17 +8,6 @@
 #include "core/error.h"
 
 namespace patrol::app {
-namespace {
-
-KeepRuns parse_keep(const std::string& text) {
-  if (text == "none") return KeepRuns::kNone;
-  if (text == "failed") return KeepRuns::kFailed;
-  if (text == "all") return KeepRuns::kAll;
-  throw InputError(fmt::format("--keep {}: must be none, failed or all", text));
-}
-
-}  // namespace
-
 BatchSettings batch_settings(const BatchOptions& options) {
   constexpr int kMostJobs = 1024;
   if (options.jobs < 0 || options.jobs > kMostJobs) {
@@ -26,7 +15,7 @@ BatchSettings batch_settings(const BatchOptions& options) {
   }
   if (!(options.run_limit_s > 0.0)) throw InputError("--run-limit-s: must be greater than 0");
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  return {.pool = {.num_processes = options.jobs > 0 ? options.jobs : cores, .limit_s = options.run_limit_s}, .keep = parse_keep(options.keep)};
+  return {.pool = {.num_processes = options.jobs > 0 ? options.jobs : cores, .limit_s = options.run_limit_s}, .keep = row_named(kKeepRuns, options.keep, "--keep").value};
 }
 
 }  // namespace patrol::app

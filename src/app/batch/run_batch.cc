@@ -23,21 +23,20 @@ RunVerdict verdict_of_run(const BatchRun& run, const std::filesystem::path& work
     Unobserved nobody;
     return run_once(scenario, run.scenario.stem().string(), find_data_root(run.scenario), work, nobody).value();
   } catch (const InputError& error) {
-    return {.end = "wrong input", .code = ExitCode::kWrongInput, .message = error.what(), .metrics = {}, .checks = {}, .events = {}};
+    return {.end = RunStatus::kWrongInput, .message = error.what(), .metrics = {}, .checks = {}, .events = {}};
   } catch (const std::exception& error) {
-    return {.end = "failed", .code = ExitCode::kProgramFailed, .message = error.what(), .metrics = {}, .checks = {}, .events = {}};
+    return {.end = RunStatus::kFailed, .message = error.what(), .metrics = {}, .checks = {}, .events = {}};
   }
 }
 
 /// Of a run whose process did not live to say it.
 RunVerdict verdict_of_death(const TaskEnd& end, double limit_s) {
   if (end.is_over_time) {
-    return {.end = "wall time limit", .code = ExitCode::kTimeLimit, .message = fmt::format("after {:g} s", limit_s), .metrics = {}, .checks = {}, .events = {}};
+    return {.end = RunStatus::kWallTimeLimit, .message = fmt::format("after {:g} s", limit_s), .metrics = {}, .checks = {}, .events = {}};
   }
   const std::string how = end.signal != 0 ? fmt::format("signal {} ({})", end.signal, ::strsignal(end.signal))
                                           : fmt::format("exit status {}", end.exit_code);
-  return {.end = "crashed",
-          .code = ExitCode::kProgramFailed,
+  return {.end = RunStatus::kCrashed,
           .message = end.last_words.empty() ? how : how + ": " + end.last_words,
           .metrics = {},
           .checks = {},
@@ -73,9 +72,9 @@ class Batch {
     RunVerdict verdict = verdict_of_run(run, work);
     std::string& message = verdict.message;  // says the same wherever the run was done
     for (std::size_t at; (at = message.find(work.string())) != std::string::npos;) message.replace(at, work.string().size(), "RUN");
-    keep_or_remove(run.address, verdict.code);
+    keep_or_remove(run.address, verdict.code());
     store_.save(run.address, verdict);
-    return static_cast<int>(verdict.code);
+    return static_cast<int>(verdict.code());
   }
 
   void handle(std::size_t i, const TaskEnd& end) {
@@ -91,9 +90,9 @@ class Batch {
     }
     const RunVerdict verdict = store_.load(run.address).value();
     ++num_done_;
-    if (verdict.code == ExitCode::kDone) return;
+    if (verdict.code() == ExitCode::kDone) return;
     ++num_not_fine_;
-    bar_.say(fmt::format("{}: {}: {}", run.label, verdict.end, verdict.message));
+    bar_.say(fmt::format("{}: {}: {}", run.label, name_of(verdict.end), verdict.message));
   }
 
   void keep_or_remove(const std::string& address, ExitCode code) const {

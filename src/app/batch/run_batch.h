@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "app/batch/process_pool.h"
 #include "app/batch/result_store.h"
+#include "core/named_table.h"
 
 namespace patrol::app {
 
@@ -19,6 +21,13 @@ struct BatchRun {
 
 /// Whose run directories stay, as `runs/ADDRESS/`, once they are scored.
 enum class KeepRuns { kNone, kFailed, kAll };
+
+inline constexpr std::array kKeepRuns = std::to_array<NamedValue<KeepRuns>>({
+    {KeepRuns::kNone, "none", "No run directory is kept"},
+    {KeepRuns::kFailed, "failed", "Directories of runs that did not meet their expectations are kept"},
+    {KeepRuns::kAll, "all", "Every run directory is kept"},
+});
+static_assert(is_in_order(kKeepRuns));
 
 struct BatchSettings {
   ProcessPoolSettings pool;

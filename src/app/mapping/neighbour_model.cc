@@ -1,14 +1,17 @@
 #include "app/mapping/neighbour_model.h"
 
-#include "app/scenario.h"
+#include "core/named_table.h"
 #include "io/adaboost_json.h"
+#include "slam/mapper.h"
 #include "slam/submaps/pair_features.h"
 
 namespace patrol::app {
 
-BoostedStumps neighbours_for(const slam::MapperSettings& settings) {
-  if (settings.method != "submap_rbpf") return {};
-  return io::load_boosted_stumps(find_data_root("") / kNeighbourModel, slam::pair_feature_names());
+bool needs_neighbor_model(const std::string& method) { return row_named(slam::mapping_methods(), method, "mapping").needs_neighbor_model; }
+
+BoostedStumps neighbours_for(const std::string& method, const std::filesystem::path& data_root) {
+  if (!needs_neighbor_model(method)) return {};
+  return io::load_boosted_stumps(data_root / kNeighbourModel, slam::pair_feature_names());
 }
 
 }  // namespace patrol::app

@@ -11,6 +11,7 @@
 #include "app/mapping/read_scans.h"
 #include "app/output_directory.h"
 #include "app/process_cost.h"
+#include "app/scenario.h"
 #include "core/thread_clock.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
@@ -129,7 +130,7 @@ ExitCode slam_command(const SlamOptions& options) {
   if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
   io::SettingsReader::read_section("--set", io::document_of(overrides), "", settings);
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
-  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbours_for(settings.slam), settings.seed);
+  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbours_for(settings.slam.method, find_data_root("")), settings.seed);
 
   const double wall_s = wall_seconds(), thread_s = thread_seconds();
   MappedLog mapped;

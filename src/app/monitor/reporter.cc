@@ -48,12 +48,12 @@ bool is_same(const OccupancyGrid& a, const OccupancyGrid& b) {
 /// Where the robot is to go, as its survey and its goals say.
 Json stations_of(const ScenarioFiles& files) {
   Json list = Json::array();
-  const auto add = [&](const std::string& name, const std::string& type, const Pose2& T_map_body) {
+  const auto add = [&](const std::string& name, std::string_view type, const Pose2& T_map_body) {
     list.push_back({{"name", io::on_one_line(name)}, {"type", type}, {"position_m", point(T_map_body.position())}});
   };
   const Route route = inspect::to_map(files.route, files.T_site_start);
-  for (const Station& station : route.stations) add(station.name, station.type, station.T_route_body);
-  for (const MarkedGoal& goal : files.goals) add(fmt::format("goal_{}", goal.number), std::string(1, goal.type), goal.T_map_body);
+  for (const Station& station : route.stations) add(station.name, name_of(station.type), station.T_route_body);
+  for (const MarkedGoal& goal : files.goals) add(fmt::format("goal_{}", goal.number), name_of(goal.type), goal.T_map_body);
   if (route.dock) add("dock", "dock", route.dock->T_route_docked);
   return list;
 }

@@ -29,7 +29,7 @@ struct PlanSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("planner", self.planner);
+    visit("planner", self.planner, one_of(plan::route_planners()));
     visit("seed", self.seed);
     visit("unknown", self.unknown, one_of({"lethal", "free"}));
     visit("smooth", self.smooth);

@@ -90,13 +90,13 @@ render::FoldedTables run_table(const SweepManifest& manifest, const SweepRows& r
   const std::vector<std::string> names = short_names(manifest);
   render::TableBlock table{.caption = "", .columns = {{"variant"}, {"seed", true}, {"end"}, {"exit code", true}, {"why"}}, .rows = {}};
   std::vector<std::size_t> order = progress.counted;
-  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return rows[i]->code != ExitCode::kDone; });
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return rows[i]->code() != ExitCode::kDone; });
   for (const std::size_t i : order) {
     const RunVerdict& verdict = *rows[i];
     table.rows.push_back({{names[manifest.runs[i].variant]},
                           {std::to_string(manifest.runs[i].seed)},
-                          {verdict.end, verdict.code == ExitCode::kDone ? Tone::kGood : Tone::kBad},
-                          {std::to_string(static_cast<int>(verdict.code))},
+                          {std::string(name_of(verdict.end)), verdict.code() == ExitCode::kDone ? Tone::kGood : Tone::kBad},
+                          {std::to_string(static_cast<int>(verdict.code()))},
                           {verdict.message}});
   }
   return {.summary = fmt::format("All {} runs", order.size()), .tables = {table}};

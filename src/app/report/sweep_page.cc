@@ -14,7 +14,7 @@ namespace {
 using render::Tone;
 
 std::string not_done(const SweepRows& rows, const SweepProgress& progress) {
-  const auto num = std::count_if(progress.counted.begin(), progress.counted.end(), [&](std::size_t i) { return rows[i]->code != ExitCode::kDone; });
+  const auto num = std::count_if(progress.counted.begin(), progress.counted.end(), [&](std::size_t i) { return rows[i]->code() != ExitCode::kDone; });
   return num == 0 ? fmt::format(" All {} runs came to their end as expected.", progress.counted.size())
                   : fmt::format(" {} of {} runs did not end as expected.", num, progress.counted.size());
 }

@@ -14,7 +14,7 @@ render::TableBlock scenario_table(const std::vector<TestedScenario>& tested, boo
   for (const TestedScenario& one : tested) {
     if (is_passed(one) != are_passed) continue;
     const auto seconds = io::metric_at(one.verdict->metrics, "performance.wall_s");
-    table.rows.push_back({are_passed ? render::Cell{"passed", Tone::kGood} : render::Cell{one.verdict->end, Tone::kBad},
+    table.rows.push_back({are_passed ? render::Cell{"passed", Tone::kGood} : render::Cell{std::string(name_of(one.verdict->end)), Tone::kBad},
                           {one.name},
                           {seconds ? fmt::format("{:.1f}", *seconds) : ""},
                           {one.verdict->message}});

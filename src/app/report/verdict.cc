@@ -57,7 +57,7 @@ std::string missed_text(const std::vector<CheckedExpectation>& checks) {
 /// Word, tone and reason of a run that is complete.
 void judge(const RunContents& run, const std::vector<CheckedExpectation>& checks, render::VerdictBlock& verdict) {
   const std::string end = early_end(run), misses = missed_text(checks);
-  const bool is_passed = end.empty() && misses.empty();
+  const bool is_passed = end.empty() && status_of(RunEnd::kMissionOver, checks) == RunStatus::kDone;
   verdict.word = is_passed ? "Passed" : "Missed";
   verdict.tone = is_passed ? Tone::kGood : Tone::kBad;
   if (!end.empty()) verdict.reason = fmt::format("The run ended early: {}.", end);

@@ -82,7 +82,7 @@ std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario
   try {
     std::optional<RunVerdict> verdict = run_once(scenario, name, data_root, root, observers);
     if (!verdict) reporter->finish("interrupted", "somebody stopped it");
-    else reporter->finish(verdict->code == ExitCode::kDone ? "finished" : "failed", verdict->message.empty() ? verdict->end : verdict->message);
+    else reporter->finish(verdict->code() == ExitCode::kDone ? "finished" : "failed", verdict->message.empty() ? std::string(name_of(verdict->end)) : verdict->message);
     return verdict;
   } catch (const std::exception& error) {
     reporter->finish("failed", error.what());
@@ -123,7 +123,7 @@ ExitCode run_command(const RunOptions& options) {
   if (const std::string goals = goal_table(verdict->metrics); !goals.empty()) fmt::print("{}\n", goals);
   for (const DeclaredEvent& event : verdict->events) fmt::print("{}: {}\n", event.what, event.is_executed ? "executed" : "NOT EXECUTED");
   fmt::print("run directory: {}\n", root.string());
-  return verdict->code;
+  return verdict->code();
 }
 
 }  // namespace patrol::app

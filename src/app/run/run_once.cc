@@ -7,6 +7,7 @@
 #include "app/process_cost.h"
 #include "app/run/run_directory.h"
 #include "app/run/run_junit.h"
+#include "app/scoring/score_json.h"
 #include "app/scoring/score_run.h"
 
 namespace patrol::app {
@@ -41,7 +42,9 @@ std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& 
   const RunOutcome outcome = run_loop(scenario, files, twin, stack, directory.log(), observer);
   if (outcome.end == RunEnd::kInterrupted) return std::nullopt;
 
-  io::Metrics metrics = score_run(directory, scenario, files);
+  const ScoredRun scored = score_run(directory.log(), scenario, files);
+  save_scored_run(directory, scored, scenario);
+  io::Metrics metrics = to_json(scored.score);
   metrics["performance"] = performance_of(outcome);
   io::save_metrics(directory.metrics(), metrics);
   RunVerdict verdict = verdict_of(outcome, scenario.kidnaps, metrics, check_expectations(scenario.expect, metrics));

@@ -1,7 +1,5 @@
 #include "app/run/run_record.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -16,15 +14,6 @@ void append(Trajectory& trajectory, Time stamp, const Pose3& pose) {
 }
 
 }  // namespace
-
-std::size_t RunRecord::num_events(EventKind kind) const {
-  return static_cast<std::size_t>(std::count_if(events.begin(), events.end(), [&](const Event& event) { return event.kind == kind; }));
-}
-
-bool RunRecord::has_estimate() const {
-  constexpr std::size_t kFewestPoses = 3;  // that a trajectory can be fitted to
-  return T_map_body.size() >= kFewestPoses && !T_odom_body.empty() && !map.values().empty();
-}
 
 RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   RunRecord record;

@@ -21,24 +21,22 @@ std::vector<DeclaredEvent> events_of(const RunOutcome& outcome, const std::vecto
 std::string name_of(const sim::FaultSettings& fault) { return fmt::format("fault {} {} at {} s", fault.sensor, fault.kind, fault.start_s); }
 std::string name_of(const KidnapSettings& kidnap) { return fmt::format("kidnap at {} s", kidnap.at_s); }
 
+RunStatus status_of(RunEnd end, const std::vector<CheckedExpectation>& checks) {
+  if (end == RunEnd::kFall) return RunStatus::kFall;
+  if (end == RunEnd::kTimeLimit) return RunStatus::kTimeLimit;
+  return all_met(checks) ? RunStatus::kDone : RunStatus::kExpectationMissed;
+}
+
 RunVerdict verdict_of(const RunOutcome& outcome, const std::vector<KidnapSettings>& kidnaps, io::Metrics metrics,
                       std::vector<CheckedExpectation> checks) {
-  RunVerdict verdict{.end = "done", .code = ExitCode::kDone, .message = "", .metrics = std::move(metrics), .checks = std::move(checks),
+  RunVerdict verdict{.end = status_of(outcome.end, checks), .message = "", .metrics = std::move(metrics), .checks = std::move(checks),
                      .events = events_of(outcome, kidnaps)};
   for (const CheckedExpectation& check : verdict.checks) {
     if (!check.is_met) verdict.message += (verdict.message.empty() ? "" : "; ") + missed(check);
   }
-  if (!verdict.message.empty()) {
-    verdict.end = "expectation missed";
-    verdict.code = ExitCode::kExpectationMissed;
-  }
-  if (outcome.end == RunEnd::kFall) {
-    verdict.end = "fall";
-    verdict.code = ExitCode::kExpectationMissed;
+  if (verdict.end == RunStatus::kFall) {
     verdict.message = fmt::format("the robot fell at {:.2f} s", to_seconds(outcome.duration));
-  } else if (outcome.end == RunEnd::kTimeLimit) {
-    verdict.end = "time limit";
-    verdict.code = ExitCode::kTimeLimit;
+  } else if (verdict.end == RunStatus::kTimeLimit) {
     verdict.message = fmt::format("time limit: {:.0f} s", to_seconds(outcome.duration));
   }
   return verdict;
@@ -49,8 +47,8 @@ std::string missed(const CheckedExpectation& check) {
 }
 
 io::Metrics to_json(const RunVerdict& verdict) {
-  io::Metrics json{{"end", verdict.end},
-                   {"exit_code", static_cast<int>(verdict.code)},
+  io::Metrics json{{"end", name_of(verdict.end)},
+                   {"exit_code", static_cast<int>(verdict.code())},
                    {"message", verdict.message},
                    {"expectations", io::Metrics::array()},
                    {"events", io::Metrics::array()},
@@ -69,8 +67,7 @@ io::Metrics to_json(const RunVerdict& verdict) {
 }
 
 RunVerdict verdict_from_json(const io::Metrics& json) {
-  RunVerdict verdict{.end = json.at("end"),
-                     .code = static_cast<ExitCode>(json.at("exit_code").get<int>()),
+  RunVerdict verdict{.end = row_named(kRunStatuses, json.at("end").get<std::string>(), "end").value,
                      .message = json.at("message"),
                      .metrics = json.at("metrics"),
                      .checks = {},

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/exit_code.h"
 #include "app/run/run_loop.h"
 #include "app/scoring/expectations.h"
+#include "core/named_table.h"
 #include "io/metrics_json.h"
 
 namespace patrol::app {
@@ -16,20 +20,49 @@ struct DeclaredEvent {
   bool is_executed = false;
 };
 
-/// What became of a run.
+/// Status of a run that is over.
+enum class RunStatus : std::uint8_t { kDone, kExpectationMissed, kFall, kTimeLimit, kWrongInput, kFailed, kCrashed, kWallTimeLimit };
+
+/// Row of the table of run statuses.
+struct RunStatusRow {
+  RunStatus value;
+  std::string_view name;     ///< text in stored results, tables and reports
+  std::string_view summary;  ///< one line of documentation
+  ExitCode code;
+};
+
+inline constexpr std::array kRunStatuses = std::to_array<RunStatusRow>({
+    {RunStatus::kDone, "done", "The run ended and every expectation was met", ExitCode::kDone},
+    {RunStatus::kExpectationMissed, "expectation missed", "The run ended and an expectation was missed", ExitCode::kExpectationMissed},
+    {RunStatus::kFall, "fall", "The robot fell", ExitCode::kExpectationMissed},
+    {RunStatus::kTimeLimit, "time limit", "The simulated time reached its limit", ExitCode::kTimeLimit},
+    {RunStatus::kWrongInput, "wrong input", "No score: the scenario or one of its files is invalid", ExitCode::kWrongInput},
+    {RunStatus::kFailed, "failed", "No score: the simulation or the program failed", ExitCode::kProgramFailed},
+    {RunStatus::kCrashed, "crashed", "No score: the process of the run died", ExitCode::kProgramFailed},
+    {RunStatus::kWallTimeLimit, "wall time limit", "No score: the process of the run reached its limit of wall time", ExitCode::kTimeLimit},
+});
+static_assert(is_in_order(kRunStatuses));
+
+constexpr std::string_view name_of(RunStatus status) { return row_of(kRunStatuses, status).name; }
+constexpr ExitCode exit_code_of(RunStatus status) { return row_of(kRunStatuses, status).code; }
+
+/// Result of a run.
 struct RunVerdict {
-  std::string end;      ///< "done", "expectation missed", "fall", "time limit"; of a run that came to no score "wrong input", "failed", "crashed",
-                        ///< "wall time limit"
-  ExitCode code = ExitCode::kDone;
+  RunStatus end = RunStatus::kDone;
   std::string message;  ///< why it is not done: one line
   io::Metrics metrics;  ///< metrics.json; empty for a run that came to no score
   std::vector<CheckedExpectation> checks;
   std::vector<DeclaredEvent> events;
+
+  ExitCode code() const { return exit_code_of(end); }
 };
 
 /// How junit.xml names what was declared: "fault imu freeze at 12 s".
 std::string name_of(const sim::FaultSettings& fault);
 std::string name_of(const KidnapSettings& kidnap);
+
+/// Status of a run that came to a score: a fall and a time limit come before the expectations that they made it miss.
+RunStatus status_of(RunEnd end, const std::vector<CheckedExpectation>& checks);
 
 /// Of a run that came to its end. `kidnaps` are those declared.
 RunVerdict verdict_of(const RunOutcome& outcome, const std::vector<KidnapSettings>& kidnaps, io::Metrics metrics,

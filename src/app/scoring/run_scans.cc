@@ -32,7 +32,7 @@ std::optional<stack::StandingPlace> place_of(const PanoramicScan& scan, const st
 
 }  // namespace
 
-std::vector<io::StationScan> station_scans(const RunDirectory& directory, const RunRecord& record, const Scenario& scenario, const ScenarioFiles& files) {
+std::vector<io::StationScan> station_scans(const std::filesystem::path& log_mcap, const RunRecord& record, const Scenario& scenario, const ScenarioFiles& files) {
   std::vector<io::StationScan> scans;
   if (!scenario.sensors.scanner.enabled) return scans;
   io::LogHandlers handlers;
@@ -45,7 +45,7 @@ std::vector<io::StationScan> station_scans(const RunDirectory& directory, const 
     scans.push_back({.station = *station, .T_map_scanner = T_map_scanner,
                      .points = inspect::make_reference(scan, T_map_scanner).points});
   };
-  io::read_run_log(directory.log(), handlers);
+  io::read_run_log(log_mcap, handlers);
   return scans;
 }
 

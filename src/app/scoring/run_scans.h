@@ -1,8 +1,8 @@
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
-#include "app/run/run_directory.h"
 #include "app/run/run_record.h"
 #include "app/scenario.h"
 #include "io/station_scans.h"
@@ -11,6 +11,6 @@ namespace patrol::app {
 
 /// The first panoramic scan of each station in a run's log, thinned and in map: what a later round can take as references. Each lies where
 /// its registration has put it, and a first one where the stack believed that it stood.
-std::vector<io::StationScan> station_scans(const RunDirectory& directory, const RunRecord& record, const Scenario& scenario, const ScenarioFiles& files);
+std::vector<io::StationScan> station_scans(const std::filesystem::path& log_mcap, const RunRecord& record, const Scenario& scenario, const ScenarioFiles& files);
 
 }  // namespace patrol::app

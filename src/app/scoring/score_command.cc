@@ -2,7 +2,9 @@
 
 #include "app/commands.h"
 #include "app/output_directory.h"
+#include "app/run/run_verdict.h"
 #include "app/scoring/relation_table.h"
+#include "app/scoring/score_json.h"
 #include "app/scoring/score_run.h"
 #include "app/scoring/score_table.h"
 #include "core/error.h"
@@ -20,7 +22,9 @@ ExitCode score_directory(const std::filesystem::path& root) {
   }
   const Scenario scenario = load_scenario(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
-  io::Metrics metrics = score_run(directory, scenario, files);
+  const ScoredRun scored = score_run(directory.log(), scenario, files);
+  save_scored_run(directory, scored, scenario);
+  io::Metrics metrics = to_json(scored.score);
   if (std::filesystem::exists(directory.metrics())) {
     const io::Metrics before = io::load_metrics(directory.metrics());
     if (before.contains("performance")) metrics["performance"] = before["performance"];
@@ -28,7 +32,8 @@ ExitCode score_directory(const std::filesystem::path& root) {
   io::save_metrics(directory.metrics(), metrics);
   const std::vector<CheckedExpectation> checks = check_expectations(scenario.expect, metrics);
   fmt::print("{}", score_table(metrics, checks));
-  return all_met(checks) ? ExitCode::kDone : ExitCode::kExpectationMissed;
+  // How the run ended is not in its log: only the expectations decide.
+  return exit_code_of(status_of(RunEnd::kMissionOver, checks));
 }
 
 }  // namespace

@@ -193,4 +193,66 @@ io::Metrics to_json(const score::WaterScore& score) {
   return metrics;
 }
 
+namespace {
+
+io::Metrics mission_json(const score::MissionScore& mission) {
+  return {{"completed", mission.is_completed},
+          {"fell", mission.has_fallen},
+          {"collisions", mission.num_collisions},
+          {"sensor_faults_noticed", mission.num_sensor_faults},
+          {"duration_s", mission.duration_s},
+          {"distance_m", mission.distance_m}};
+}
+
+io::Metrics navigation_json(const score::NavigationScore& navigation) {
+  return {{"paths", navigation.num_paths},
+          {"detours", navigation.num_detours},
+          {"recoveries", navigation.num_recoveries},
+          {"clearance", to_json(navigation.clearance)}};
+}
+
+/// In world; the report draws by it.
+io::Metrics pose_json(const Pose2& T_world_map) {
+  return {{"x_m", T_world_map.x}, {"y_m", T_world_map.y}, {"yaw_rad", T_world_map.yaw}};
+}
+
+void add_goals(const score::EstimateScore& score, io::Metrics& metrics) {
+  for (const score::GoalError& goal : score.goals) metrics["goals"].push_back(to_json(goal));
+  if (score.docking) {
+    metrics["docking"] = to_json(*score.docking);
+    metrics["docking"].erase("name");
+  }
+}
+
+void add_localization(const score::EstimateScore& score, io::Metrics& metrics) {
+  if (score.range_pose) metrics["range_pose"] = to_json(*score.range_pose);
+  if (!score.known_map) return;
+  metrics["localization"] = to_json(score.known_map->localization);
+  for (const score::RelocalizationScore& kidnap : score.known_map->kidnaps) metrics["localization"]["kidnaps"].push_back(to_json(kidnap));
+}
+
+}  // namespace
+
+io::Metrics to_json(const score::RunScore& run) {
+  io::Metrics metrics;
+  metrics["mission"] = mission_json(run.mission);
+  if (!run.estimate) return metrics;
+  const score::EstimateScore& score = *run.estimate;
+  metrics["pose"] = to_json(score.pose);
+  metrics["pose"]["aligned"] = to_json(score.aligned_pose);
+  metrics["odometry"] = to_json(score.odometry);
+  metrics["map"] = to_json(score.map);
+  metrics["map"]["origin_in_world"] = pose_json(score.T_world_map);
+  metrics["map"]["reference_agreement"] = score.map_agreement;
+  metrics["localizability"] = to_json(score_of(score.localizability));
+  metrics["navigation"] = navigation_json(score.navigation);
+  metrics["stations"] = to_json(score.stations);
+  add_goals(score, metrics);
+  add_localization(score, metrics);
+  metrics["inspection"] = to_json(score.inspection);
+  if (score.lining) metrics["inspection"]["lining"] = to_json(*score.lining);
+  if (score.water) metrics["inspection"]["water"] = to_json(*score.water);
+  return metrics;
+}
+
 }  // namespace patrol::app

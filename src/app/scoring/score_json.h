@@ -10,6 +10,7 @@
 #include "score/localizability.h"
 #include "score/localization_score.h"
 #include "score/map_error.h"
+#include "score/run_score.h"
 #include "score/station_error.h"
 #include "score/trajectory_error.h"
 #include "score/water_score.h"
@@ -29,5 +30,8 @@ io::Metrics to_json(const score::LocalizabilityScore& score);
 io::Metrics to_json(const score::RelocalizationScore& score);
 io::Metrics to_json(const score::LiningScore& score);
 io::Metrics to_json(const score::WaterScore& score);
+
+/// metrics.json without `performance`.
+io::Metrics to_json(const score::RunScore& score);
 
 }  // namespace patrol::app

@@ -1,21 +1,40 @@
 #pragma once
 
+#include <filesystem>
+#include <optional>
+#include <vector>
+
 #include "app/run/run_directory.h"
+#include "app/run/run_record.h"
 #include "app/scenario.h"
+#include "app/scoring/true_map.h"
 #include "core/grid.h"
 #include "core/trajectory.h"
 #include "io/metrics_json.h"
+#include "io/station_scans.h"
+#include "score/run_score.h"
 
 namespace patrol::app {
 
-/// Scores a run from its log alone: writes trajectories and maps into its directory, and returns the metrics (README, "A run
-/// directory") but for `performance`, which only the run itself knows. A run that ended before the stack had an estimate has no figures but the mission's.
-io::Metrics score_run(const RunDirectory& directory, const Scenario& scenario, const ScenarioFiles& files);
+/// Score of a run, with what the files of its directory hold beside it.
+struct ScoredRun {
+  RunRecord record;
+  score::RunScore score;
+  std::optional<TrueMap> truth;        ///< with `score.estimate`
+  std::vector<io::StationScan> scans;  ///< first panoramic scan of each station
+};
 
-/// Everyone's two trajectories: `pose.*` and `pose.aligned.*`.
+/// Scores a run from its log alone, and writes nothing. A run that ended before the stack had an estimate has the mission's score only.
+ScoredRun score_run(const std::filesystem::path& log_mcap, const Scenario& scenario, const ScenarioFiles& files);
+
+/// Writes trajectories, maps, localizability, station scans, and the commands and goals of a teleoperated drive into the run's directory. Writes nothing
+/// for a run without an estimate. metrics.json is written by the caller, who knows `performance`.
+void save_scored_run(const RunDirectory& directory, const ScoredRun& run, const Scenario& scenario);
+
+/// Scores any two trajectories: `pose.*` and `pose.aligned.*`.
 io::Metrics score_trajectories(const Trajectory& estimate, const Trajectory& reference);
 
-/// Everyone's two maps, which share a frame: `map.*`.
+/// Scores any two maps, which share a frame: `map.*`.
 io::Metrics score_maps(const OccupancyGrid& built, const OccupancyGrid& reference);
 
 }  // namespace patrol::app

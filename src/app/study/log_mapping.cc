@@ -7,6 +7,7 @@
 
 #include "app/mapping/neighbour_model.h"
 #include "app/process_cost.h"
+#include "app/scenario.h"
 #include "core/error.h"
 #include "core/thread_clock.h"
 #include "io/scan_log.h"
@@ -33,7 +34,7 @@ std::vector<Pose2> true_poses(const Trajectory& T_world_body, const std::vector<
 MappedRun map_log_of(const StudyRun& run, const std::string& method) {
   slam::MapperSettings settings;
   settings.method = method;
-  const BoostedStumps neighbours = neighbours_for(settings);
+  const BoostedStumps neighbours = neighbours_for(method, find_data_root(""));
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(run.log, {});
   MappedRun mapped;
   std::vector<Time> stamps;

@@ -24,7 +24,7 @@ struct FaultySensor {
 
 /// It is asked for a scan where one of the goals is a station of it.
 bool scans(const Scenario& scenario, const ScenarioFiles& files) {
-  const auto is_scanned = [](const MarkedGoal& goal) { return goal.type == 'D'; };
+  const auto is_scanned = [](const MarkedGoal& goal) { return goal.type == GoalType::kScan; };
   return scenario.sensors.scanner.enabled && std::any_of(files.goals.begin(), files.goals.end(), is_scanned);
 }
 

@@ -8,8 +8,6 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::array<std::string_view, 5> kOutcomes = {"survived", "degraded", "stopped", "UNSAFE", "NO RESULT"};
-
 /// Of a run with one declared fault.
 std::optional<bool> is_executed(const RunVerdict& verdict) {
   if (verdict.events.empty()) return std::nullopt;
@@ -21,12 +19,12 @@ std::optional<bool> is_executed(const RunVerdict& verdict) {
 FaultOutcome outcome_of(const RunVerdict& verdict) {
   const auto completed = io::metric_at(verdict.metrics, "mission.completed");
   if (!completed) return FaultOutcome::kNoResult;
-  if (verdict.end == "fall" || io::metric_at(verdict.metrics, "mission.collisions").value_or(0.0) > 0.0) return FaultOutcome::kUnsafe;
+  if (verdict.end == RunStatus::kFall || io::metric_at(verdict.metrics, "mission.collisions").value_or(0.0) > 0.0) return FaultOutcome::kUnsafe;
   if (*completed == 0.0) return FaultOutcome::kStopped;
-  return verdict.code == ExitCode::kDone ? FaultOutcome::kSurvived : FaultOutcome::kDegraded;
+  return verdict.code() == ExitCode::kDone ? FaultOutcome::kSurvived : FaultOutcome::kDegraded;
 }
 
-std::string_view text_of(FaultOutcome outcome) { return kOutcomes.at(static_cast<std::size_t>(outcome)); }
+std::string_view text_of(FaultOutcome outcome) { return row_of(kFaultOutcomes, outcome).name; }
 
 std::vector<FaultRow> fault_rows(const SweepManifest& manifest, const SweepRows& rows) {
   std::vector<FaultRow> faults;
@@ -39,7 +37,7 @@ std::vector<FaultRow> fault_rows(const SweepManifest& manifest, const SweepRows&
                                                  .is_executed = is_executed(verdict),
                                                  .outcome = outcome_of(verdict),
                                                  .num_noticed = io::metric_at(verdict.metrics, "mission.sensor_faults_noticed"),
-                                                 .end = verdict.end,
+                                                 .end = std::string(name_of(verdict.end)),
                                                  .message = verdict.message,
                                                  .figures = {},
                                                  .without = {}});

@@ -20,6 +20,15 @@ enum class FaultOutcome {
   kNoResult,     ///< crashed, hung, or came to no score
 };
 
+inline constexpr std::array kFaultOutcomes = std::to_array<NamedValue<FaultOutcome>>({
+    {FaultOutcome::kSurvived, "survived", "Mission completed without fall or collision, every expectation met"},
+    {FaultOutcome::kDegraded, "degraded", "Mission completed, an expectation missed"},
+    {FaultOutcome::kStopped, "stopped", "Mission not completed, no fall, no collision"},
+    {FaultOutcome::kUnsafe, "UNSAFE", "A fall or a collision"},
+    {FaultOutcome::kNoResult, "NO RESULT", "The run crashed, hung or came to no score"},
+});
+static_assert(is_in_order(kFaultOutcomes));
+
 FaultOutcome outcome_of(const RunVerdict& verdict);
 
 std::string_view text_of(FaultOutcome outcome);

@@ -43,7 +43,7 @@ Findings findings_of(const SweepManifest& manifest, const SweepRows& rows, const
 ExitCode worst_of(const SweepRows& rows, const SweepProgress& progress) {
   if (progress.counted.empty()) return ExitCode::kNothingExecuted;
   ExitCode worst = ExitCode::kDone;
-  for (const std::size_t i : progress.counted) worst = worse(worst, rows[i]->code);
+  for (const std::size_t i : progress.counted) worst = worse(worst, rows[i]->code());
   return worst;
 }
 

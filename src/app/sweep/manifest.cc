@@ -17,11 +17,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
-constexpr std::array<std::string_view, 3> kKinds = {"sweep", "budget", "faults"};
 
 Json json_of(const SweepManifest& manifest) {
   Json json{{"version", kVersion},
-            {"kind", kKinds.at(static_cast<std::size_t>(manifest.kind))},
+            {"kind", row_of(kSweepKinds, manifest.kind).name},
             {"scenario", manifest.scenario},
             {"overrides", manifest.overrides},
             {"paths", manifest.paths},
@@ -43,9 +42,7 @@ Json json_of(const SweepManifest& manifest) {
 
 SweepManifest manifest_of(const Json& json) {
   SweepManifest manifest;
-  const auto kind = std::find(kKinds.begin(), kKinds.end(), json.at("kind").get<std::string>());
-  if (kind == kKinds.end()) throw InputError("kind: must be sweep, budget or faults");
-  manifest.kind = static_cast<SweepKind>(kind - kKinds.begin());
+  manifest.kind = row_named(kSweepKinds, json.at("kind").get<std::string>(), "kind").value;
   json.at("scenario").get_to(manifest.scenario);
   json.at("overrides").get_to(manifest.overrides);
   json.at("paths").get_to(manifest.paths);

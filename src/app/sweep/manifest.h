@@ -28,6 +28,13 @@ struct EarlyStop {
 /// away; of a fault matrix the first has no fault.
 enum class SweepKind { kSweep, kBudget, kFaults };
 
+inline constexpr std::array kSweepKinds = std::to_array<NamedValue<SweepKind>>({
+    {SweepKind::kSweep, "sweep", "Runs over settings and seeds"},
+    {SweepKind::kBudget, "budget", "Error budget: runs without one error source each"},
+    {SweepKind::kFaults, "faults", "Fault matrix: runs with one sensor fault each"},
+});
+static_assert(is_in_order(kSweepKinds));
+
 /// What a sweep was asked for: sweep.json. A run is independent of all others, so that any number of processes can share them out.
 struct SweepManifest {
   SweepKind kind = SweepKind::kSweep;

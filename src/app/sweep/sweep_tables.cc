@@ -67,8 +67,8 @@ io::Table runs_table(const SweepManifest& manifest, const SweepRows& rows, const
     for (const std::string& path : manifest.paths) row.push_back(value_of(run.overrides, path));
     row.push_back(static_cast<std::int64_t>(run.seed));
     row.emplace_back(run.address);
-    row.emplace_back(result.end);
-    row.push_back(static_cast<std::int64_t>(result.code));
+    row.emplace_back(std::string(name_of(result.end)));
+    row.push_back(static_cast<std::int64_t>(result.code()));
     row.emplace_back(result.message);
     std::map<std::string, double> figures;
     for (const auto& [path, value] : io::figures_of(result.metrics)) figures[path] = value;

@@ -31,7 +31,7 @@ std::vector<BatchRun> runs_of(const std::vector<TestedScenario>& tested, const T
 void print_verdicts(const std::vector<TestedScenario>& tested) {
   for (const TestedScenario& one : tested) {
     const RunVerdict& verdict = *one.verdict;
-    fmt::print("{:<20} {}  {}\n", verdict.code == ExitCode::kDone ? "passed" : verdict.end, one.name, verdict.message);
+    fmt::print("{:<20} {}  {}\n", verdict.code() == ExitCode::kDone ? "passed" : name_of(verdict.end), one.name, verdict.message);
   }
 }
 
@@ -52,7 +52,7 @@ ExitCode test_command(const TestOptions& options) {
   ExitCode worst = ExitCode::kDone;
   for (TestedScenario& one : tested) {
     one.verdict = store.load(one.address);
-    if (one.verdict) worst = worse(worst, one.verdict->code);
+    if (one.verdict) worst = worse(worst, one.verdict->code());
   }
   save_test_junit(options.out / "junit.xml", tested);
   if (!is_through) {

@@ -56,13 +56,13 @@ std::string in_a_cell(const std::string& text) {
 std::string line_of(const TestedScenario& tested) {
   const RunVerdict& verdict = *tested.verdict;
   const auto seconds = io::metric_at(verdict.metrics, "performance.wall_s");
-  return fmt::format("| {} | {} | {} | {} |\n", is_passed(tested) ? "passed" : fmt::format("**{}**", verdict.end), in_a_cell(tested.name),
+  return fmt::format("| {} | {} | {} | {} |\n", is_passed(tested) ? "passed" : fmt::format("**{}**", name_of(verdict.end)), in_a_cell(tested.name),
                      seconds ? fmt::format("{:.1f}", *seconds) : "", in_a_cell(verdict.message));
 }
 
 }  // namespace
 
-bool is_passed(const TestedScenario& tested) { return tested.verdict && tested.verdict->code == ExitCode::kDone; }
+bool is_passed(const TestedScenario& tested) { return tested.verdict && tested.verdict->code() == ExitCode::kDone; }
 
 std::vector<TestedScenario> find_scenarios(const std::filesystem::path& scenarios, const std::vector<std::string>& overrides) {
   const std::string build = build_id();
@@ -90,7 +90,7 @@ void save_test_junit(const std::filesystem::path& file, const std::vector<Tested
 io::Table tests_table(const std::vector<TestedScenario>& tested) {
   io::Table table{.name = "tests", .columns = {"scenario", "end", "exit_code", "message", "metric", "wanted", "got", "is_met"}, .rows = {}};
   for (const TestedScenario& one : tested) {
-    const std::vector<io::Cell> head = {one.name, one.verdict->end, static_cast<std::int64_t>(one.verdict->code), one.verdict->message};
+    const std::vector<io::Cell> head = {one.name, std::string(name_of(one.verdict->end)), static_cast<std::int64_t>(one.verdict->code()), one.verdict->message};
     if (one.verdict->checks.empty()) {
       table.rows.push_back(head);
       table.rows.back().resize(table.columns.size());

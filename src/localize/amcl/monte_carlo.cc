@@ -37,19 +37,30 @@ const MonteCarloSettings& checked(const MonteCarloSettings& settings) {
   return settings;
 }
 
-std::unique_ptr<SensorModel> make_sensor_model(const MonteCarloSettings& settings, const OccupancyGrid& map, const LineField& lines) {
-  if (settings.sensor_model == "beam") return std::make_unique<BeamModel>(settings.beam, map);
-  return std::make_unique<LikelihoodField>(settings.likelihood_field, map, lines);
-}
+using Model = std::unique_ptr<SensorModel>;
+using SensorModelFactory = NamedFactory<Model(const MonteCarloSettings&, const OccupancyGrid&, const LineField&)>;
+
+constexpr std::array kSensorModels = std::to_array<SensorModelFactory>({
+    {"likelihood_field", "Distance of each beam's end to the nearest surface of the map",
+     [](const MonteCarloSettings& settings, const OccupancyGrid& map, const LineField& lines) -> Model {
+       return std::make_unique<LikelihoodField>(settings.likelihood_field, map, lines);
+     }},
+    {"beam", "Range of each beam against the range to the map's first surface along it",
+     [](const MonteCarloSettings& settings, const OccupancyGrid& map, const LineField&) -> Model {
+       return std::make_unique<BeamModel>(settings.beam, map);
+     }},
+});
 
 }  // namespace
+
+std::span<const SensorModelFactory> sensor_models() { return kSensorModels; }
 
 MonteCarloLocalizer::MonteCarloLocalizer(const MonteCarloSettings& settings, const OccupancyGrid& map,
                                          const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb, std::uint64_t seed)
     : settings_(checked(settings)),
       ranges_(anchors_in_map, T_body_uwb),
       lines_(checked(map), kLineRadius_cells),
-      sensor_model_(make_sensor_model(settings, map, lines_)),
+      sensor_model_(row_named(kSensorModels, settings.sensor_model, "localization.sensor_model").make(settings, map, lines_)),
       search_(settings.search, settings.likelihood_field, map, lines_),
       start_noise_(seed, "localize/start"),
       motion_noise_(seed, "localize/motion"),

@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/grid.h"
 #include "core/messages.h"
+#include "core/named_table.h"
 #include "core/random.h"
 #include "core/settings.h"
 #include "core/uwb.h"
@@ -28,6 +30,11 @@
 #include "localize/amcl/trust.h"
 
 namespace patrol::localize {
+
+struct MonteCarloSettings;
+
+/// The sensor models of a scan; `make` takes the settings of its own section.
+std::span<const NamedFactory<std::unique_ptr<SensorModel>(const MonteCarloSettings&, const OccupancyGrid&, const LineField&)>> sensor_models();
 
 struct MonteCarloSettings {
   std::string sensor_model = "likelihood_field";
@@ -54,7 +61,7 @@ struct MonteCarloSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("sensor_model", self.sensor_model, one_of({"likelihood_field", "beam"}));
+    visit("sensor_model", self.sensor_model, one_of(sensor_models()));
     visit("independent_beams", self.independent_beams, between(1.0, 10000.0));
     visit("scan_fit_tol", self.scan_fit_tol, between(0.0, 1.0));
     visit("update_distance_m", self.update_distance_m, between(0.0, 10.0));

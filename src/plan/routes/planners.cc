@@ -1,11 +1,11 @@
 #include "plan/routes/planners.h"
 
+#include <algorithm>
+#include <array>
 #include <optional>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include "core/error.h"
+#include "core/named_table.h"
 #include "plan/routes/any_angle_optimum.h"
 #include "plan/routes/grid_search.h"
 #include "plan/routes/theta_star.h"
@@ -13,31 +13,45 @@
 namespace patrol::plan {
 namespace {
 
-std::unique_ptr<RoutePlanner> make(const std::string& name, const RoutePlannerSettings& settings, std::uint64_t seed) {
-  const double cost_weight = settings.cost_weight;
-  if (name == "astar") return std::make_unique<GridSearch>(GridSearch::Method::kAstar, cost_weight);
-  if (name == "dijkstra") return std::make_unique<GridSearch>(GridSearch::Method::kDijkstra, cost_weight);
-  if (name == "theta_star") return std::make_unique<ThetaStar>(cost_weight);
-  if (name == "any_angle_optimum") {
-    if (cost_weight != 0.0) throw InputError("routes.cost_weight: the any-angle optimum knows no costs; it must be 0");
-    return std::make_unique<AnyAngleOptimum>();
-  }
-  if (name == "plain_ant_colony") return std::make_unique<AntColony>(settings.ant_colony, std::nullopt, cost_weight, seed);
-  if (name == "ant_colony") return std::make_unique<AntColony>(settings.ant_colony, settings.improved_colony, cost_weight, seed);
-  if (name == "two_swarms") return std::make_unique<TwoSwarms>(settings.two_swarms, cost_weight, seed);
-  if (name == "q_learning") return std::make_unique<QLearning>(settings.q_learning, cost_weight, seed);
-  throw InputError(fmt::format("there is no planner '{}' (known: {})", name, fmt::join(route_planner_names(), ", ")));
+using Settings = RoutePlannerSettings;
+using Planner = std::unique_ptr<RoutePlanner>;
+
+Planner make_any_angle_optimum(const Settings& settings, std::uint64_t) {
+  if (settings.cost_weight != 0.0) throw InputError("routes.cost_weight: the any-angle optimum knows no costs; it must be 0");
+  return std::make_unique<AnyAngleOptimum>();
 }
+
+/// Those that a robot can drive by come first.
+constexpr std::array kPlanners = std::to_array<RoutePlannerRow>({
+    {"astar", "A* on the grid, eight neighbors",
+     [](const Settings& s, std::uint64_t) -> Planner { return std::make_unique<GridSearch>(GridSearch::Method::kAstar, s.cost_weight); }},
+    {"dijkstra", "Dijkstra's algorithm on the grid, eight neighbors",
+     [](const Settings& s, std::uint64_t) -> Planner { return std::make_unique<GridSearch>(GridSearch::Method::kDijkstra, s.cost_weight); }},
+    {"theta_star", "Theta*: any-angle search with lines of sight",
+     [](const Settings& s, std::uint64_t) -> Planner { return std::make_unique<ThetaStar>(s.cost_weight); }},
+    {"plain_ant_colony", "Ant system without the improvements of paper 003",
+     [](const Settings& s, std::uint64_t seed) -> Planner { return std::make_unique<AntColony>(s.ant_colony, std::nullopt, s.cost_weight, seed); }},
+    {"ant_colony", "Improved ant colony of paper 003",
+     [](const Settings& s, std::uint64_t seed) -> Planner { return std::make_unique<AntColony>(s.ant_colony, s.improved_colony, s.cost_weight, seed); }},
+    {"two_swarms", "Particle swarm optimization with two swarms",
+     [](const Settings& s, std::uint64_t seed) -> Planner { return std::make_unique<TwoSwarms>(s.two_swarms, s.cost_weight, seed); }},
+    {"q_learning", "Q-learning with a potential field as its initial value",
+     [](const Settings& s, std::uint64_t seed) -> Planner { return std::make_unique<QLearning>(s.q_learning, s.cost_weight, seed); }},
+    {"any_angle_optimum", "Shortest any-angle path by a visibility graph; touches obstacles, no costs", make_any_angle_optimum, false},
+});
 
 }  // namespace
 
-std::vector<std::string> route_planner_names() {
-  return {"astar", "dijkstra", "theta_star", "any_angle_optimum", "plain_ant_colony", "ant_colony", "two_swarms", "q_learning"};
+std::span<const RoutePlannerRow> route_planners() { return kPlanners; }
+
+std::span<const RoutePlannerRow> drivable_route_planners() {
+  const auto end = std::find_if(kPlanners.begin(), kPlanners.end(), [](const RoutePlannerRow& row) { return !row.is_drivable; });
+  return {kPlanners.begin(), end};
 }
 
 std::unique_ptr<RoutePlanner> make_route_planner(const std::string& name, const RoutePlannerSettings& settings, std::uint64_t seed) {
   validate(settings, "routes");
-  std::unique_ptr<RoutePlanner> planner = make(name, settings, seed);
+  std::unique_ptr<RoutePlanner> planner = row_named(route_planners(), name, "planner").make(settings, seed);
   if (settings.max_steps_millions > 0) planner->limit_steps(1'000'000LL * settings.max_steps_millions);
   return planner;
 }

@@ -2,8 +2,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "core/settings.h"
 #include "plan/routes/ant_colony.h"
@@ -33,10 +34,21 @@ struct RoutePlannerSettings {
   }
 };
 
-/// Every planner of the family: astar, dijkstra, theta_star, any_angle_optimum, plain_ant_colony, ant_colony (paper 003's), two_swarms, q_learning.
-std::vector<std::string> route_planner_names();
+/// Row of the table of global planners.
+struct RoutePlannerRow {
+  std::string_view name;     ///< text in settings and on the command line
+  std::string_view summary;  ///< one line of documentation
+  std::unique_ptr<RoutePlanner> (*make)(const RoutePlannerSettings& settings, std::uint64_t seed);
+  bool is_drivable = true;  ///< whether its paths keep off lethal cells and follow costs, so that a robot can drive along them
+};
 
-/// Throws InputError for an unknown name or a wrong setting, and for the any-angle optimum with a cost weight: it knows none.
+/// Every global planner.
+std::span<const RoutePlannerRow> route_planners();
+/// The global planners that a robot can drive by.
+std::span<const RoutePlannerRow> drivable_route_planners();
+
+/// Builds the planner of that name. Throws InputError for an unknown name or a wrong setting, and for the any-angle optimum with a cost weight: it
+/// supports none.
 std::unique_ptr<RoutePlanner> make_route_planner(const std::string& name, const RoutePlannerSettings& settings, std::uint64_t seed);
 
 }  // namespace patrol::plan

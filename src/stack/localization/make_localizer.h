@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/boosted_stumps.h"
 #include "core/robot_description.h"
 #include "core/route.h"
 #include "stack/localization/localizer.h"
@@ -14,6 +15,7 @@ namespace patrol::stack {
 struct LocalizerStart {
   std::optional<OccupancyGrid> map = {};  ///< known before the start, in map
   bool has_mapping_drive = false;         ///< the mission begins with a drive that makes the map
+  BoostedStumps neighbor_model = {};      ///< classifier of pairs of submaps, for SLAM methods that need it
   double height_above_ground_m = 0.0;     ///< of the body's origin, as the robot stands
 };
 

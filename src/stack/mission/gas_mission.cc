@@ -86,7 +86,7 @@ void GasMission::drive(NavigationFeedback feedback, MissionOutput& output) {
   if (const double late_s = to_seconds(now_) - station().latest_s; late_s > 0.0) {
     output.events.push_back(event(EventKind::kStationLate, station().name, fmt::format("{:.0f} s late at {}.", late_s, station().name), late_s));
   }
-  if (station().type != "inspect") return next_station(output);
+  if (station().type != StationType::kInspect) return next_station(output);
   phase_ = Phase::kMeasuring;
   phase_start_ = std::max(now_, from_seconds(station().earliest_s));
 }
@@ -119,7 +119,7 @@ NavigationGoal GasMission::goal_at(const Station& station) const {
   NavigationGoal goal{.T_map_body = station.T_route_body,
                       .position_tol_m = std::min(settings_.position_tol_m, station.accuracy_m),
                       .yaw_tol_rad = settings_.yaw_tol_rad};
-  if (station.type == "pass") {
+  if (station.type == StationType::kPass) {
     goal.position_tol_m = station.accuracy_m;
     goal.yaw_tol_rad = std::numbers::pi;
   }

@@ -37,8 +37,8 @@ plan::TourProblem problem_of(const std::vector<Station>& stations, std::vector<s
     for (double& travel : row) travel /= mission.expected_speed_mps;
   }
   for (const Station& station : stations) {
-    if (station.type == "home") problem.end = problem.stations.size();
-    problem.stations.push_back({.service = station.type == "inspect" ? mission.settle_s + mission.measure_s : 0.0,
+    if (station.type == StationType::kHome) problem.end = problem.stations.size();
+    problem.stations.push_back({.service = station.type == StationType::kInspect ? mission.settle_s + mission.measure_s : 0.0,
                                 .earliest = station.earliest_s,
                                 .latest = station.latest_s,
                                 .priority = station.priority});

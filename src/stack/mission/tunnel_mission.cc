@@ -4,15 +4,20 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace patrol::stack {
+
+GoalType TunnelMissionSettings::type_of_mark(std::size_t index) const {
+  if (index >= mark_types.size()) return GoalType::kStop;
+  if (const auto* row = find_named(kGoalTypes, std::string_view(mark_types).substr(index, 1))) return row->value;
+  throw InputError(fmt::format("tour.mark_types = {}: must be made of the letters {}", mark_types, fmt::join(names_of(kGoalTypes), ", ")));
+}
 
 TunnelMission::TunnelMission(const TunnelMissionSettings& settings, std::vector<MarkedGoal> goals, bool has_remote, bool has_map)
     : settings_(settings), goals_(std::move(goals)), has_remote_(has_remote), has_map_(has_map), is_docked_(settings.starts_docked && !settings.starts_at_survey) {
   validate(settings, "tour");
-  if (settings.mark_types.find_first_not_of("NVDR") != std::string::npos) {
-    throw InputError(fmt::format("tour.mark_types = {}: must be made of the letters N, V, D, R", settings.mark_types));
-  }
+  for (std::size_t i = 0; i < settings.mark_types.size(); ++i) settings.type_of_mark(i);
   if (goals_.empty() && !has_remote) throw InputError("tour: there is no goal, and no remote control to mark one");
 }
 
@@ -66,7 +71,7 @@ Task TunnelMission::task() const {
   if (phase_ == Phase::kSounding) task.inspection = InspectionOrder{.instrument = InstrumentKind::kWater, .station = sounding_name()};
   if (phase_ != Phase::kDriving) return task;
   const MarkedGoal& goal = goals_[goal_];
-  const bool stops = goal.type != 'V';
+  const bool stops = goal.type != GoalType::kVia;
   task.motion = Motion::kNavigate;
   task.goal = {.T_map_body = goal.T_map_body,
                .position_tol_m = stops ? std::min(settings_.position_tol_m, goal.accuracy_m) : goal.accuracy_m,
@@ -130,15 +135,15 @@ void TunnelMission::drive(const MissionInput& input, MissionOutput& output) {
     return next_goal(output);
   }
   if (input.navigation != NavigationFeedback::kArrived) return;
-  if (goals_[goal_].type == 'V') return next_goal(output);
+  if (goals_[goal_].type == GoalType::kVia) return next_goal(output);
   enter(Phase::kStanding);
 }
 
 void TunnelMission::stand(MissionOutput& output) {
   if (now_ - phase_start_ < from_seconds(settings_.stand_s)) return;
   output.events.push_back(event(EventKind::kGoalReached, goal_name(), fmt::format("At {}.", goal_name()), navigation_));
-  if (goals_[goal_].type == 'D') return enter(Phase::kScanning);
-  if (goals_[goal_].type != 'R' || !has_remote_ || !has_map_) return next_goal(output);
+  if (goals_[goal_].type == GoalType::kScan) return enter(Phase::kScanning);
+  if (goals_[goal_].type != GoalType::kOperator || !has_remote_ || !has_map_) return next_goal(output);
   output.events.push_back(event(EventKind::kTeleopRequested, goal_name(), "From here a person drives."));
   last_remote_ = now_;
   enter(Phase::kHandedOver);

@@ -44,8 +44,8 @@ struct TunnelMissionSettings {
     visit("driver_patience_s", self.driver_patience_s, between(1.0, 3600.0));
   }
 
-  /// The type of the mark of that index, from 0.
-  char type_of_mark(std::size_t index) const { return index < mark_types.size() ? mark_types[index] : 'N'; }
+  /// Type of the goal of that index, from 0. Throws InputError when `mark_types` holds another letter than those of `kGoalTypes`.
+  GoalType type_of_mark(std::size_t index) const;
 };
 
 /// Paper 004's experiment (section 4.2): a drive by remote control makes the map and marks the goals; then, again and again, the robot

@@ -14,8 +14,11 @@ slam::GraphSlamSettings graph_of_a_known_robot() {
   return settings;
 }
 
-std::unique_ptr<slam::Mapper> make_mapper(const StackSettings& settings, std::uint64_t seed) {
-  return settings.mapping == "rbpf" ? slam::make_rbpf_mapper(settings.slam, seed) : slam::make_graph_mapper(settings.graph);
+slam::TrackedRbpfSettings rbpf_of_a_known_robot() { return {.odometry = "given", .tracking = {}, .filter = {}}; }
+
+std::unique_ptr<slam::Mapper> make_mapper(const StackSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed) {
+  return slam::make_mapper(
+      {.method = settings.mapping, .graph = settings.graph, .rbpf = settings.slam, .submap_rbpf = settings.submap_rbpf}, neighbours, seed);
 }
 
 }  // namespace patrol::stack

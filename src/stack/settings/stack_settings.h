@@ -23,6 +23,8 @@ namespace patrol::stack {
 
 /// Of a robot that is known: its odometry as the particle filter takes it to be, and a lidar that is levelled.
 slam::GraphSlamSettings graph_of_a_known_robot();
+/// Eight particles on the robot's odometry as given: its errors are known, and matching from scan to scan would only add its own.
+slam::TrackedRbpfSettings rbpf_of_a_known_robot();
 
 /// Settings of the stack: three selectors, and the settings of every part; a stack uses those of the parts that it is composed of.
 struct StackSettings {
@@ -33,9 +35,10 @@ struct StackSettings {
   localize::BodyEstimatorSettings odometry;        ///< of a robot with legs
   localize::TrackOdometrySettings track_odometry;  ///< of a robot with tracks
   localize::ScanLevelerSettings leveling;
-  std::string mapping = "graph";  ///< by which of the next two
+  std::string mapping = "graph";  ///< SLAM method (`slam::mapping_methods`), with the settings of one of the next three sections
   slam::GraphSlamSettings graph = graph_of_a_known_robot();
-  slam::GridSlamSettings slam;  ///< rbpf: a particle filter
+  slam::TrackedRbpfSettings slam = rbpf_of_a_known_robot();  ///< method `rbpf`
+  slam::SubmapRbpfSettings submap_rbpf;
   localize::MonteCarloSettings localization;  ///< on a map that is known
   localize::RangeFilterSettings range_filter;  ///< of a robot with tracks and UWB: a second opinion
   plan::NavigatorSettings plan;
@@ -55,9 +58,10 @@ struct StackSettings {
     visit("odometry", self.odometry);
     visit("track_odometry", self.track_odometry);
     visit("leveling", self.leveling);
-    visit("mapping", self.mapping, one_of({"graph", "rbpf"}));
+    visit("mapping", self.mapping, one_of(slam::mapping_methods()));
     visit("graph", self.graph);
     visit("slam", self.slam);
+    visit("submap_rbpf", self.submap_rbpf);
     visit("localization", self.localization);
     visit("range_filter", self.range_filter);
     visit("plan", self.plan);
@@ -70,7 +74,8 @@ struct StackSettings {
   }
 };
 
-/// What maps, by the method that the settings name. Throws InputError when a setting breaks its rule.
-std::unique_ptr<slam::Mapper> make_mapper(const StackSettings& settings, std::uint64_t seed);
+/// Builds the SLAM method that the settings name, from the table that `patrol slam` uses too. `neighbours` classifies pairs of submaps, for methods
+/// that need it. Throws InputError when a setting breaks its rule.
+std::unique_ptr<slam::Mapper> make_mapper(const StackSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed);
 
 }  // namespace patrol::stack

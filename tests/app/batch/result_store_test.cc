@@ -9,7 +9,7 @@ namespace patrol::app {
 namespace {
 
 RunVerdict sample_row() {
-  return {.end = "time limit", .code = ExitCode::kTimeLimit, .message = "after 9 s simulated", .metrics = {{"pose", {{"ate_rmse_m", 0.25}}}}, .checks = {}, .events = {}};
+  return {.end = RunStatus::kTimeLimit, .message = "after 9 s simulated", .metrics = {{"pose", {{"ate_rmse_m", 0.25}}}}, .checks = {}, .events = {}};
 }
 
 TEST(ResultStore, ARowComesBack) {
@@ -18,8 +18,8 @@ TEST(ResultStore, ARowComesBack) {
   EXPECT_FALSE(store.load("ab").has_value());
   store.save("ab", sample_row());
   const RunVerdict row = store.load("ab").value();
-  EXPECT_EQ(row.end, "time limit");
-  EXPECT_EQ(row.code, ExitCode::kTimeLimit);
+  EXPECT_EQ(row.end, RunStatus::kTimeLimit);
+  EXPECT_EQ(row.code(), ExitCode::kTimeLimit);
   EXPECT_EQ(io::metric_at(row.metrics, "pose.ate_rmse_m"), 0.25);
 }
 

@@ -89,7 +89,7 @@ app::ScenarioFiles survey(bool is_tunnel) {
   for (int i = 1; i <= 4; ++i) {
     Station& station = files.route.stations.emplace_back();
     station.name = name_of_station(is_tunnel, i);
-    station.type = "inspect";
+    station.type = StationType::kInspect;
     station.T_route_body = place_at(kLength_m / 4.0 * i);
   }
   return files;

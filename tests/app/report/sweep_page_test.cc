@@ -25,8 +25,7 @@ struct SmallSweep {
         manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .address = ""});
         const double noise_m = 0.001 * static_cast<double>(seed % 2 == 0 ? 1 : -1) * static_cast<double>(variant);
         const double error_m = 0.05 + 0.01 * static_cast<double>(seed) + noise_m + shift_m * static_cast<double>(variant);
-        rows.push_back(RunVerdict{.end = "done",
-                                  .code = ExitCode::kDone,
+        rows.push_back(RunVerdict{.end = RunStatus::kDone,
                                   .message = "",
                                   .metrics = {{"pose", {{"ate_rmse_m", error_m}}}, {"mission", {{"completed", true}, {"collisions", 0}}}},
                                   .checks = {},
@@ -51,8 +50,7 @@ TEST(SweepPage, AnIntervalThatHoldsZeroIsNoDifference) { EXPECT_EQ(SmallSweep(0.
 
 TEST(SweepPage, RunsThatFailedAreSaidAndStandFirst) {
   SmallSweep sweep(0.0);
-  sweep.rows[7]->end = "crashed";
-  sweep.rows[7]->code = ExitCode::kProgramFailed;
+  sweep.rows[7]->end = RunStatus::kCrashed;
   EXPECT_THAT(sweep.verdict().reason, HasSubstr("1 of 20 runs did not end as expected"));
   const render::Page page = sweep.page();
   const auto& runs = std::get<render::FoldedTables>(page.sections.back().blocks.front());
@@ -86,7 +84,7 @@ TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
     for (std::size_t variant = 0; variant < 3; ++variant) {
       budget.manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .address = ""});
       const double error_m = std::array{0.10, 0.04, 0.03}[variant] + 0.001 * static_cast<double>(seed * (variant + 1) % 3);
-      budget.rows.push_back(RunVerdict{.end = "done", .code = ExitCode::kDone, .message = "", .metrics = {{"pose", {{"ate_rmse_m", error_m}}}}, .checks = {}, .events = {}});
+      budget.rows.push_back(RunVerdict{.end = RunStatus::kDone, .message = "", .metrics = {{"pose", {{"ate_rmse_m", error_m}}}}, .checks = {}, .events = {}});
     }
   }
   EXPECT_EQ(budget.verdict().word, "lidar: range noise");

@@ -18,21 +18,21 @@ RunOutcome ended(RunEnd end, double duration_s) {
 
 TEST(RunVerdict, DoneWhenTheMissionIsOverAndEverythingIsMet) {
   const RunVerdict verdict = verdict_of(ended(RunEnd::kMissionOver, 60.0), {}, {}, {make_check(true)});
-  EXPECT_EQ(verdict.end, "done");
-  EXPECT_EQ(verdict.code, ExitCode::kDone);
+  EXPECT_EQ(verdict.end, RunStatus::kDone);
+  EXPECT_EQ(verdict.code(), ExitCode::kDone);
   EXPECT_EQ(verdict.message, "");
 }
 
 TEST(RunVerdict, AMissedExpectationIsSaidWithWhatItGot) {
   const RunVerdict verdict = verdict_of(ended(RunEnd::kMissionOver, 60.0), {}, {}, {make_check(true), make_check(false), make_check(false)});
-  EXPECT_EQ(verdict.end, "expectation missed");
-  EXPECT_EQ(verdict.code, ExitCode::kExpectationMissed);
+  EXPECT_EQ(verdict.end, RunStatus::kExpectationMissed);
+  EXPECT_EQ(verdict.code(), ExitCode::kExpectationMissed);
   EXPECT_EQ(verdict.message, "pose.ate_rmse_m is 0.21, expected <= 0.08; pose.ate_rmse_m is 0.21, expected <= 0.08");
 }
 
 TEST(RunVerdict, AFallAndATimeLimitComeBeforeWhatTheyMadeItMiss) {
-  EXPECT_EQ(verdict_of(ended(RunEnd::kFall, 33.0), {}, {}, {make_check(false)}).end, "fall");
-  EXPECT_EQ(verdict_of(ended(RunEnd::kTimeLimit, 33.0), {}, {}, {make_check(false)}).code, ExitCode::kTimeLimit);
+  EXPECT_EQ(verdict_of(ended(RunEnd::kFall, 33.0), {}, {}, {make_check(false)}).end, RunStatus::kFall);
+  EXPECT_EQ(verdict_of(ended(RunEnd::kTimeLimit, 33.0), {}, {}, {make_check(false)}).code(), ExitCode::kTimeLimit);
 }
 
 TEST(RunVerdict, KidnapsThatTheRunDidNotReachAreNotExecuted) {

@@ -30,7 +30,7 @@ SweepRows rows_with(const std::vector<std::vector<double>>& figures) {
   SweepRows rows;
   for (const std::vector<double>& of_seed : figures) {
     for (const double figure : of_seed) {
-      rows.emplace_back(RunVerdict{.end = "done", .code = ExitCode::kDone, .message = "", .metrics = {{"pose", {{"ate_rmse_m", figure}}}}, .checks = {}, .events = {}});
+      rows.emplace_back(RunVerdict{.end = RunStatus::kDone, .message = "", .metrics = {{"pose", {{"ate_rmse_m", figure}}}}, .checks = {}, .events = {}});
     }
   }
   return rows;

@@ -25,7 +25,7 @@ SweepManifest manifest_of(std::size_t num_variants, std::size_t num_seeds, Early
 }
 
 RunVerdict row_with(double value) {
-  return {.end = "done", .code = ExitCode::kDone, .message = "", .metrics = {{"pose", {{"ate_rmse_m", value}}}}, .checks = {}, .events = {}};
+  return {.end = RunStatus::kDone, .message = "", .metrics = {{"pose", {{"ate_rmse_m", value}}}}, .checks = {}, .events = {}};
 }
 
 /// What `figure(variant, seed)` gives for every run.

@@ -10,14 +10,12 @@ namespace {
 using test::fault_verdict;
 
 TEST(FaultOutcome, IsTheWorstThatHappened) {
-  EXPECT_EQ(outcome_of(fault_verdict("done", true, 0)), FaultOutcome::kSurvived);
-  RunVerdict missed = fault_verdict("expectation missed", true, 0);
-  missed.code = ExitCode::kExpectationMissed;
-  EXPECT_EQ(outcome_of(missed), FaultOutcome::kDegraded);
-  EXPECT_EQ(outcome_of(fault_verdict("time limit", false, 0)), FaultOutcome::kStopped);
-  EXPECT_EQ(outcome_of(fault_verdict("done", true, 1)), FaultOutcome::kUnsafe);
-  EXPECT_EQ(outcome_of(fault_verdict("fall", false, 0)), FaultOutcome::kUnsafe);
-  EXPECT_EQ(outcome_of({.end = "crashed", .code = ExitCode::kProgramFailed, .message = "", .metrics = {}, .checks = {}, .events = {}}),
+  EXPECT_EQ(outcome_of(fault_verdict(RunStatus::kDone, true, 0)), FaultOutcome::kSurvived);
+  EXPECT_EQ(outcome_of(fault_verdict(RunStatus::kExpectationMissed, true, 0)), FaultOutcome::kDegraded);
+  EXPECT_EQ(outcome_of(fault_verdict(RunStatus::kTimeLimit, false, 0)), FaultOutcome::kStopped);
+  EXPECT_EQ(outcome_of(fault_verdict(RunStatus::kDone, true, 1)), FaultOutcome::kUnsafe);
+  EXPECT_EQ(outcome_of(fault_verdict(RunStatus::kFall, false, 0)), FaultOutcome::kUnsafe);
+  EXPECT_EQ(outcome_of({.end = RunStatus::kCrashed, .message = "", .metrics = {}, .checks = {}, .events = {}}),
             FaultOutcome::kNoResult);
 }
 

@@ -17,7 +17,7 @@ TEST(FaultTables, SaysWhatBecameOfEachFaultAndWhatItCost) {
   manifest.seeds = {1};
   manifest.metrics = {"pose.ate_rmse_m"};
   for (std::size_t i = 0; i < 3; ++i) manifest.runs.push_back({.variant = i, .seed = 1, .overrides = {}, .address = ""});
-  SweepRows rows = {fault_verdict("done", true, 0), fault_verdict("time limit", false, 0), fault_verdict("done", true, 0, false)};
+  SweepRows rows = {fault_verdict(RunStatus::kDone, true, 0), fault_verdict(RunStatus::kTimeLimit, false, 0), fault_verdict(RunStatus::kDone, true, 0, false)};
   rows[0]->events.clear();
   rows[1]->metrics["pose"]["ate_rmse_m"] = 0.3;
 
@@ -37,10 +37,10 @@ TEST(FaultTables, ADocumentHasSensorsDownKindsAcrossAndTheWorstOfTheSeeds) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     for (std::size_t variant = 0; variant < 3; ++variant) {
       manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .address = ""});
-      rows.push_back(fault_verdict("done", true, 0));
+      rows.push_back(fault_verdict(RunStatus::kDone, true, 0));
     }
   }
-  rows[4] = fault_verdict("time limit", false, 0);
+  rows[4] = fault_verdict(RunStatus::kTimeLimit, false, 0);
   rows[4]->metrics["pose"]["ate_rmse_m"] = 0.3;
   EXPECT_THAT(faults_markdown(manifest, rows), HasSubstr("| pose.ate_rmse_m | drift | freeze |\n| --- | --- | --- |\n| no fault: survived 0.1, noticed |\n"
                                                          "| imu | **stopped** 0.2, noticed | survived 0.1, noticed |\n"));

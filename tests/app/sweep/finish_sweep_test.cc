@@ -28,8 +28,7 @@ SweepDirectory finished(const std::filesystem::path& root, const SweepManifest& 
   const SweepDirectory directory = begin_sweep_directory(root, manifest);
   for (std::size_t run = 0; run < manifest.runs.size(); ++run) {
     const double error_m = 0.1 - 0.02 * static_cast<double>(run % 3) + 0.001 * static_cast<double>(run);
-    directory.store().save(manifest.runs[run].address, {.end = "done",
-                                                        .code = ExitCode::kDone,
+    directory.store().save(manifest.runs[run].address, {.end = RunStatus::kDone,
                                                         .message = "",
                                                         .metrics = {{"pose", {{"ate_rmse_m", error_m}}}},
                                                         .checks = {},

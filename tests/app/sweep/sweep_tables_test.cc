@@ -28,7 +28,7 @@ SweepManifest two_by_two() {
 }
 
 RunVerdict row_with(double ate_m, double wall_s) {
-  return {.end = "done", .code = ExitCode::kDone, .message = "",
+  return {.end = RunStatus::kDone, .message = "",
           .metrics = {{"mission", {{"completed", true}}}, {"pose", {{"ate_rmse_m", ate_m}}}, {"performance", {{"wall_s", wall_s}}}}, .checks = {}, .events = {}};
 }
 
@@ -48,7 +48,7 @@ TEST(RunsTable, IsTheSameWhateverTheClockSaid) {
 TEST(RunsTable, ACrashedRunIsARowWithEmptyCells) {
   const SweepManifest manifest = two_by_two();
   SweepRows rows = rows_taking(1.0);
-  rows[0] = RunVerdict{.end = "crashed", .code = ExitCode::kProgramFailed, .message = "signal 11", .metrics = {}, .checks = {}, .events = {}};
+  rows[0] = RunVerdict{.end = RunStatus::kCrashed, .message = "signal 11", .metrics = {}, .checks = {}, .events = {}};
   EXPECT_THAT(io::to_csv(runs_table(manifest, rows, progress_of(manifest, rows))), HasSubstr("a=1,1,0.5,1,x,crashed,3,signal 11,,\r\n"));
 }
 

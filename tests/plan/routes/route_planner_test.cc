@@ -36,7 +36,7 @@ class EveryPlanner : public ::testing::TestWithParam<std::string> {
 
   std::unique_ptr<RoutePlanner> planner = make(GetParam());
 };
-INSTANTIATE_TEST_SUITE_P(Routes, EveryPlanner, ::testing::ValuesIn(route_planner_names()), [](const auto& parameter) { return parameter.param; });
+INSTANTIATE_TEST_SUITE_P(Routes, EveryPlanner, ::testing::ValuesIn(names_of(route_planners())), [](const auto& parameter) { return parameter.param; });
 
 TEST_P(EveryPlanner, FromACellToItselfHasNoLength) {
   const Route route = planner->plan(draw({"...", ".#.", "..."}), {2, 1}, {2, 1});
@@ -146,11 +146,15 @@ TEST_P(EveryPlanner, PricesARouteByTheCostsItCrosses) {
   EXPECT_NEAR(route.history.back(), 20.0, 1e-6);
 }
 
-TEST(RoutePlanners, AreEight) { EXPECT_EQ(route_planner_names().size(), 8u); }
+TEST(RoutePlanners, AreEightOfWhichARobotDrivesBySeven) {
+  EXPECT_EQ(route_planners().size(), 8u);
+  EXPECT_EQ(drivable_route_planners().size(), 7u);
+  for (const RoutePlannerRow& row : drivable_route_planners()) EXPECT_NE(row.name, "any_angle_optimum");
+}
 
 TEST(RoutePlanners, RefuseAWrongNameAndACostWeightForTheOptimum) {
   using ::testing::HasSubstr, ::testing::ThrowsMessage;
-  EXPECT_THAT([] { make_route_planner("ants", {}, 0); }, ThrowsMessage<InputError>(HasSubstr("no planner 'ants' (known: astar, dijkstra")));
+  EXPECT_THAT([] { make_route_planner("ants", {}, 0); }, ThrowsMessage<InputError>(HasSubstr("planner = ants: must be one of astar, dijkstra")));
   EXPECT_THAT([] { make_route_planner("any_angle_optimum", {.cost_weight = 1.0}, 0); }, ThrowsMessage<InputError>(HasSubstr("knows no costs")));
   EXPECT_THAT([] { cost_factors(-1.0); }, ThrowsMessage<InputError>(HasSubstr("cost_weight = -1")));
 }

@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 constexpr double kPeriod_s = 0.1;
 
 Station make_station(const std::string& name, const Pose2& T_route_body,
-                     const std::string& type = "inspect") {
+                     StationType type = StationType::kInspect) {
   Station station;
   station.name = name;
   station.type = type;
@@ -38,7 +38,7 @@ Station make_station(const std::string& name, const Pose2& T_route_body,
 Route make_route() {
   Route route;
   route.stations = {make_station("first", {3.0, 0.0, 0.0}), make_station("second", {3.0, 4.0, pi / 2.0}),
-                    make_station("home", {0.0, 0.0, 0.0}, "home")};
+                    make_station("home", {0.0, 0.0, 0.0}, StationType::kHome)};
   return route;
 }
 
@@ -353,7 +353,7 @@ TEST(GasMission, AskedPrecisionIsTheFinerOfSettingAndSurvey) {
 
 TEST(GasMission, APlaceToPassAsksForNoHeading) {
   Route route;
-  route.stations = {make_station("gate", {1.0, 0.0, 0.0}, "pass")};
+  route.stations = {make_station("gate", {1.0, 0.0, 0.0}, StationType::kPass)};
   route.stations[0].accuracy_m = 0.6;
   GasRound mission(make_settings(), route, {});
   const MissionOutput output =

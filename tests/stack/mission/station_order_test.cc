@@ -20,7 +20,7 @@ std::vector<std::string> names_of(const StationOrder& order) {
 }
 
 Station pass(const std::string& name, double x, double y, int priority = 0) {
-  Station station{.name = name, .type = "pass", .T_route_body = {x, y, 0.0}};
+  Station station{.name = name, .type = StationType::kPass, .T_route_body = {x, y, 0.0}};
   station.priority = priority;
   return station;
 }
@@ -41,7 +41,7 @@ TEST(StationOrder, SaysHowLongItShouldTake) {
 
 TEST(StationOrder, TakesALowerPriorityFirstAndHomeLast) {
   Route route{.stations = {pass("near", 3.0, 0.0, 1), pass("home", 0.5, 0.0), pass("far", 12.0, 0.0)}};
-  route.stations[1].type = "home";
+  route.stations[1].type = StationType::kHome;
   EXPECT_THAT(names_of(order(route)), ElementsAre("far", "near", "home"));
 }
 

@@ -138,8 +138,8 @@ TEST(TunnelMission, LostForThirtySecondsItSaysThatItCannotTell) {
 /// A goal at which the lining is scanned, and one from which a person drives on.
 std::vector<MarkedGoal> inspection_goals() {
   std::vector<MarkedGoal> goals = two_goals();
-  goals[0].type = 'D';
-  goals[1].type = 'R';
+  goals[0].type = GoalType::kScan;
+  goals[1].type = GoalType::kOperator;
   return goals;
 }
 
@@ -206,9 +206,9 @@ TEST(TunnelMission, MarksTakeTheTypesThatTheSettingsName) {
   robot.run(5.0);
   for (int i = 0; i < 3; ++i) robot.run(0.5, RemoteCommand{.mark = true});
   ASSERT_EQ(robot.tour().goals().size(), 3u);
-  EXPECT_EQ(robot.tour().goals()[0].type, 'D');
-  EXPECT_EQ(robot.tour().goals()[1].type, 'R');
-  EXPECT_EQ(robot.tour().goals()[2].type, 'N');
+  EXPECT_EQ(robot.tour().goals()[0].type, GoalType::kScan);
+  EXPECT_EQ(robot.tour().goals()[1].type, GoalType::kOperator);
+  EXPECT_EQ(robot.tour().goals()[2].type, GoalType::kStop);
   EXPECT_THROW(TunnelMission({.mark_types = "DX"}, {}, true), InputError);
 }
 

@@ -1,5 +1,8 @@
 #include "stack/settings/stack_settings.h"
 
+#include <set>
+#include <string_view>
+
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -12,7 +15,7 @@ namespace {
 std::unique_ptr<slam::Mapper> map_room(const StackSettings& settings) {
   test::RoomWorld room;
   room.add_box(-3.0, -2.0, 6.0, 4.0);
-  std::unique_ptr<slam::Mapper> mapper = make_mapper(settings, 1);
+  std::unique_ptr<slam::Mapper> mapper = make_mapper(settings, {}, 1);
   for (int i = 0; i <= 30; ++i) {
     const Pose2 pose{0.1 * i, 0.0, 0.0};
     const slam::SlamUpdate update = mapper->update(room.scan(pose, {}), pose);
@@ -21,10 +24,30 @@ std::unique_ptr<slam::Mapper> map_room(const StackSettings& settings) {
   return mapper;
 }
 
+template <typename Table>
+void expect_documented(const Table& table) {
+  std::set<std::string_view> names;
+  for (const auto& row : table) {
+    EXPECT_TRUE(names.insert(row.name).second) << row.name << " is a duplicate";
+    EXPECT_FALSE(row.summary.empty()) << row.name;
+    EXPECT_NE(row.summary.back(), '.') << row.name << ": a line of `patrol list` has no full stop";
+  }
+}
+
+TEST(Algorithms, HaveUniqueNamesAndADocumentationLine) {
+  expect_documented(slam::mapping_methods());
+  expect_documented(slam::kRbpfOdometries);
+  expect_documented(slam::optimizers());
+  expect_documented(slam::resamplers());
+  expect_documented(localize::sensor_models());
+  expect_documented(plan::route_planners());
+  expect_documented(plan::local_planners());
+}
+
 TEST(MakeMapper, TheFilterHasAsManyParticlesAsAskedForAndTheGraphNone) {
   StackSettings settings;
   settings.mapping = "rbpf";
-  settings.slam.particles = 12;
+  settings.slam.filter.particles = 12;
   EXPECT_EQ(map_room(settings)->particles().T_map_body.size(), 12U);
   settings.mapping = "graph";
   EXPECT_TRUE(map_room(settings)->particles().T_map_body.empty());
@@ -38,6 +61,21 @@ TEST(MakeMapper, BothMethodsMapTheSameRoom) {
     EXPECT_EQ(map.at(map.geometry().cell_at({1.0, 1.0})), kFree) << method;
     EXPECT_NEAR(map.geometry().width * map.geometry().resolution_m, 9.0, 0.2) << method;
   }
+}
+
+TEST(MakeMapper, ARunHasEveryMethodOfRecordedLogs) {
+  StackSettings settings;
+  for (const std::string& method : names_of(slam::mapping_methods())) {
+    settings.mapping = method;
+    validate(settings, "stack");
+    EXPECT_EQ(map_room(settings)->path().size(), 31U) << method;
+  }
+}
+
+// A robot's own odometry is used as it is, that of a log is corrected first: the same method with other settings.
+TEST(StackSettings, TheFilterOfARunAndOfALogDifferInSettingsOnly) {
+  EXPECT_EQ(StackSettings{}.slam.odometry, "given");
+  EXPECT_EQ(slam::MapperSettings{}.rbpf.odometry, "scan_matched");
 }
 
 TEST(StackSettings, AMappingMethodThatIsNotThereIsRefusedByName) {

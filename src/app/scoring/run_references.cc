@@ -1,0 +1,54 @@
+#include "app/scoring/run_references.h"
+
+#include <memory>
+
+#include "app/scoring/localizability_oracle.h"
+#include "sim/lining_moves.h"
+
+namespace patrol::app {
+namespace {
+
+std::vector<score::TrueLeak> true_leaks(const Scenario& scenario, const mjModel& world) {
+  std::vector<score::TrueLeak> leaks;
+  for (const sim::LeakSettings& leak : scenario.leaks) {
+    leaks.push_back({.name = leak.at, .p_world_m = sim::leak_source(world, leak).head<2>()});
+  }
+  return leaks;
+}
+
+std::vector<score::TrueWater> true_waters(const Scenario& scenario) {
+  std::vector<score::TrueWater> bodies;
+  for (const sim::WaterBodySettings& body : scenario.water) {
+    bodies.push_back({.p_world_m = {body.x_m, body.y_m, body.z_m}, .radius_m = body.radius_m});
+  }
+  return bodies;
+}
+
+}  // namespace
+
+score::RunReferences run_references(const Scenario& scenario, const ScenarioFiles& files, const TrueMap& truth) {
+  const auto oracle = std::make_shared<LocalizabilityOracle>(*truth.world, scenario.sensors.lidar, truth.lidar_height_m);
+  score::RunReferences references{.map = truth.reference,
+                                  .map_agreement = truth.reference_agreement,
+                                  .T_world_map = {},
+                                  .route = files.route,
+                                  .goals = files.goals,
+                                  .footprint_m = files.robot.footprint_m,
+                                  .leaks = true_leaks(scenario, *truth.world),
+                                  .lining = {},
+                                  .waters = true_waters(scenario),
+                                  .p_body_antenna = {},
+                                  .kidnaps = {},
+                                  .localizability = [oracle](const Eigen::Vector2d& p_world_m) { return oracle->at(p_world_m); }};
+  if (files.map) references.T_world_map = files.T_site_start;
+  if (files.route.lining) {
+    references.lining = score::TrueLining{.design = *files.route.lining,
+                         .invert_m = 0.0,
+                         .inward_m = [moves = scenario.lining](int ring, double clock_deg) { return sim::inward_m(moves, ring, clock_deg); }};
+  }
+  if (files.robot.antenna) references.p_body_antenna = files.robot.antenna->T_body_mount.position;
+  for (const KidnapSettings& kidnap : scenario.kidnaps) references.kidnaps.push_back(from_seconds(kidnap.at_s));
+  return references;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "app/scenario.h"
+#include "app/scoring/true_map.h"
+#include "score/run_score.h"
+
+namespace patrol::app {
+
+/// What a run of this scenario is evaluated against. `truth` must outlive the result.
+score::RunReferences run_references(const Scenario& scenario, const ScenarioFiles& files, const TrueMap& truth);
+
+}  // namespace patrol::app

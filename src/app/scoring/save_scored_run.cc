@@ -1,0 +1,64 @@
+#include <cmath>
+#include <numbers>
+
+#include "app/scoring/score_run.h"
+#include "io/csv.h"
+#include "io/map_server.h"
+#include "io/nav_json.h"
+#include "io/remote_csv.h"
+#include "io/tum.h"
+
+namespace patrol::app {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+void save_trajectories(const RunDirectory& directory, const RunRecord& record) {
+  io::save_tum(directory.estimate(), record.T_map_body, "base_link in map, as the stack believed");
+  io::save_tum(directory.truth(), record.T_world_body, "base_link in world, as it was");
+  io::save_tum(directory.odometry(), record.T_odom_body, "base_link in odom, by legs or tracks and IMU alone");
+}
+
+/// Commands of a teleoperated drive, to be driven again, and the goals that were marked.
+void save_drive(const RunDirectory& directory, const Scenario& scenario, const RunRecord& record) {
+  if (record.remote.empty()) return;
+  io::save_remote(directory.remote(), record.remote);
+  std::vector<MarkedGoal> goals;
+  for (const Event& event : record.events) {
+    if (event.kind != EventKind::kGoalMarked) continue;
+    goals.push_back({.number = static_cast<int>(goals.size()) + 1,
+                     .T_map_body = event.T_map_body,
+                     .type = scenario.stack.tour.type_of_mark(goals.size())});
+  }
+  if (!goals.empty()) io::save_nav(directory.nav(), goals);
+}
+
+/// One row for each sample: s, m, degrees in world.
+void save_localizability(const std::filesystem::path& file_csv, const std::vector<score::TrackedLocalizability>& track) {
+  io::Table table{.name = "localizability",
+                  .columns = {"time_s", "x_m", "y_m", "weak_std_m", "weak_direction_deg", "strong_std_m", "claimed_std_m", "claimed_direction_deg", "trust"},
+                  .rows = {}};
+  for (const score::TrackedLocalizability& at : track) {
+    const score::LocalizabilitySample& sample = at.sample;
+    const double claimed_deg = kDegPerRad * std::remainder(sample.claimed_direction_rad, std::numbers::pi);
+    table.rows.push_back({to_seconds(at.stamp), at.p_world_m.x(), at.p_world_m.y(), sample.truth.weak_std_m,
+                          kDegPerRad * sample.truth.weak_direction_rad, sample.truth.strong_std_m, sample.claimed_std_m, claimed_deg,
+                          sample.trust ? io::Cell{*sample.trust} : io::Cell{}});
+  }
+  io::save_csv(file_csv, table);
+}
+
+}  // namespace
+
+void save_scored_run(const RunDirectory& directory, const ScoredRun& run, const Scenario& scenario) {
+  if (!run.score.estimate) return;
+  save_trajectories(directory, run.record);
+  save_drive(directory, scenario, run.record);
+  if (!run.scans.empty()) io::save_station_scans(directory.scans(), run.scans);
+  io::save_map(directory.map(), run.record.map);
+  io::save_map(directory.truth_map(), score::seeable_part(run.truth->reference));
+  io::save_map_errors(directory.map_errors(), run.score.estimate->map.cells_m);
+  save_localizability(directory.localizability(), run.score.estimate->localizability);
+}
+
+}  // namespace patrol::app

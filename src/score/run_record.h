@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/ground_truth.h"
+#include "core/inspection_result.h"
+#include "core/messages.h"
+#include "core/trajectory.h"
+
+namespace patrol::score {
+
+/// Messages of a run's log that its score is computed from.
+struct RunRecord {
+  Trajectory T_map_body;                     ///< estimate of the stack
+  std::vector<Eigen::Matrix3d> covariances;  ///< [pose of T_map_body]: of x, y, yaw in map; m, m, rad
+  Trajectory T_map_body_by_ranges;           ///< estimate by odometry and UWB ranges, if the stack has one
+  Trajectory T_odom_body;
+  Trajectory T_world_body;  ///< ground truth
+  std::vector<Event> events;
+  std::vector<LocalizationTrust> trusts;
+  std::vector<RemoteCommand> remote;
+  std::vector<Collision> collisions;
+  std::vector<LiningResult> linings;
+  std::vector<WaterResult> waters;
+  std::size_t num_paths = 0;  ///< paths that the navigation planned
+  OccupancyGrid map;          ///< newest map
+  bool is_complete = false;   ///< whether the log has its end
+
+  std::size_t num_events(EventKind kind) const;
+  bool has_event(EventKind kind) const { return num_events(kind) > 0; }
+  /// Whether the run lasted until the stack had an estimate and a map.
+  bool has_estimate() const;
+};
+
+}  // namespace patrol::score

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/route.h"
+#include "score/driven_clearance.h"
+#include "score/goal_error.h"
+#include "score/inspection_score.h"
+#include "score/lining_score.h"
+#include "score/localizability_track.h"
+#include "score/localization_score.h"
+#include "score/map_error.h"
+#include "score/run_record.h"
+#include "score/station_error.h"
+#include "score/trajectory_error.h"
+#include "score/visibility.h"
+#include "score/water_score.h"
+
+/// Evaluation of a run: everything that metrics.json says of it but `performance`, which only the run itself knows.
+namespace patrol::score {
+
+/// Ground truth and survey that a run is evaluated against.
+struct RunReferences {
+  ReferenceMap map;                           ///< in world
+  double map_agreement = 0.0;                 ///< ratio of the reference's cells that an independent rendering confirms
+  std::optional<Pose2> T_world_map;           ///< pose of a given map's frame; none: the map begins at the robot's true start
+  Route route;                                ///< survey, in world
+  std::vector<MarkedGoal> goals;              ///< given goals, in map
+  std::vector<Eigen::Vector2d> footprint_m;   ///< outline of the robot
+  std::vector<TrueLeak> leaks;
+  std::optional<TrueLining> lining;
+  std::vector<TrueWater> waters;
+  std::optional<Eigen::Vector3d> p_body_antenna;  ///< mount of the sounding antenna, m
+  std::vector<Time> kidnaps;
+  LocalizabilityOracle localizability;
+};
+
+struct MissionScore {
+  bool is_completed = false;
+  bool has_fallen = false;
+  std::size_t num_collisions = 0;
+  std::size_t num_sensor_faults = 0;  ///< faults that the sensor monitor detected
+  double duration_s = 0.0;
+  double distance_m = 0.0;
+};
+
+struct NavigationScore {
+  std::size_t num_paths = 0;
+  std::size_t num_detours = 0;
+  std::size_t num_recoveries = 0;
+  DrivenClearance clearance;
+};
+
+/// Monte Carlo localization on a known map.
+struct KnownMapScore {
+  LocalizationScore localization;
+  std::vector<RelocalizationScore> kidnaps;
+};
+
+/// Scores that need an estimate and a map.
+struct EstimateScore {
+  Pose2 T_world_map;  ///< pose of the map's frame that the scores use
+  TrajectoryError pose;
+  AlignedError aligned_pose;
+  TrajectoryError odometry;
+  MapError map;
+  double map_agreement = 0.0;
+  std::vector<TrackedLocalizability> localizability;
+  NavigationScore navigation;
+  std::vector<StationError> stations;
+  std::vector<GoalError> goals;
+  std::optional<GoalError> docking;             ///< with a dock in the survey
+  std::optional<TrajectoryError> range_pose;    ///< with an estimate by odometry and UWB ranges
+  std::optional<KnownMapScore> known_map;       ///< with a confidence in the log
+  InspectionScore inspection;
+  std::optional<LiningScore> lining;            ///< with a result in the log
+  std::optional<WaterScore> water;              ///< with a result in the log
+};
+
+struct RunScore {
+  MissionScore mission;
+  std::optional<EstimateScore> estimate;  ///< none: the run ended before the stack had an estimate
+};
+
+MissionScore mission_score(const RunRecord& record);
+
+/// Precondition: `record.has_estimate()`. Throws InputError when estimate and ground truth have no instant in common.
+EstimateScore estimate_score(const RunRecord& record, const RunReferences& references);
+
+}  // namespace patrol::score

@@ -1,0 +1,95 @@
+#include "score/run_score.h"
+
+#include <gtest/gtest.h>
+
+namespace patrol::score {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A wall along y = 3 m.
+OccupancyGrid wall_map() {
+  OccupancyGrid map(GridGeometry{.resolution_m = 0.1, .width = 60, .height = 60, .origin_m = {-1.0, -2.0}}, kFree);
+  for (int col = 0; col < 60; ++col) map.at({col, 50}) = kOccupied;
+  return map;
+}
+
+/// Four meters along x in four seconds, estimated without error.
+RunRecord straight_run() {
+  RunRecord record;
+  for (int i = 0; i <= 40; ++i) {
+    const StampedPose pose{.stamp = from_seconds(0.1 * i), .pose = to_spatial({0.1 * i, 0.0, 0.0})};
+    record.T_world_body.push_back(pose);
+    record.T_map_body.push_back(pose);
+    record.T_odom_body.push_back(pose);
+    record.covariances.push_back(Eigen::Matrix3d::Identity());
+  }
+  record.map = wall_map();
+  return record;
+}
+
+RunReferences wall_references() {
+  RunReferences references;
+  references.map = {.cells = wall_map(), .is_seeable = Grid<std::uint8_t>(wall_map().geometry(), 1)};
+  references.localizability = [](const Eigen::Vector2d&) { return Localizability{}; };
+  return references;
+}
+
+Event event_of(EventKind kind, Time stamp, const std::string& subject = "") {
+  return {.stamp = stamp, .kind = kind, .subject = subject, .T_map_body = {}};
+}
+
+TEST(MissionScore, CountsEventsByTheirKind) {
+  RunRecord record = straight_run();
+  record.events = {event_of(EventKind::kSensorFault, 1s, "imu"), event_of(EventKind::kSensorFault, 2s, "lidar"),
+                   event_of(EventKind::kSensorRecovered, 3s, "imu"), event_of(EventKind::kMissionCompleted, 4s)};
+  record.collisions.resize(2);
+  const MissionScore score = mission_score(record);
+  EXPECT_TRUE(score.is_completed);
+  EXPECT_FALSE(score.has_fallen);
+  EXPECT_EQ(score.num_sensor_faults, 2U);
+  EXPECT_EQ(score.num_collisions, 2U);
+  EXPECT_NEAR(score.duration_s, 4.0, 1e-9);
+  EXPECT_NEAR(score.distance_m, 4.0, 1e-6);
+}
+
+TEST(RunRecord, HasAnEstimateWithThreePosesOdometryAndAMap) {
+  RunRecord record = straight_run();
+  EXPECT_TRUE(record.has_estimate());
+  record.map = {};
+  EXPECT_FALSE(record.has_estimate());
+}
+
+TEST(EstimateScore, OfAPerfectRunHasNoErrorAndOnlyThePartsThatTheLogHas) {
+  RunRecord record = straight_run();
+  record.events = {event_of(EventKind::kReplan, 1s), event_of(EventKind::kRecovery, 2s), event_of(EventKind::kRecovery, 3s)};
+  const EstimateScore score = estimate_score(record, wall_references());
+  EXPECT_NEAR(score.pose.ate_rmse_m, 0.0, 1e-9);
+  EXPECT_NEAR(score.odometry.ate_rmse_m, 0.0, 1e-9);
+  EXPECT_NEAR(score.map.nearest_mean_m, 0.0, 1e-9);
+  EXPECT_EQ(score.navigation.num_detours, 1U);
+  EXPECT_EQ(score.navigation.num_recoveries, 2U);
+  EXPECT_EQ(score.localizability.size(), 9U) << "two a second";
+  EXPECT_FALSE(score.docking || score.range_pose || score.known_map || score.lining || score.water);
+  EXPECT_TRUE(score.goals.empty());
+}
+
+TEST(EstimateScore, PlacesAGivenMapWhereTheSurveySays) {
+  RunReferences references = wall_references();
+  references.T_world_map = Pose2{0.5, 0.0, 0.0};
+  EXPECT_NEAR(estimate_score(straight_run(), references).pose.ate_rmse_m, 0.5, 1e-9);
+}
+
+TEST(EstimateScore, ScoresLocalizationOnAKnownMapAndEachKidnap) {
+  RunRecord record = straight_run();
+  for (const StampedPose& pose : record.T_map_body) record.trusts.push_back({.stamp = pose.stamp, .trust = 0.9});
+  RunReferences references = wall_references();
+  references.kidnaps = {1s, 2s};
+  const EstimateScore score = estimate_score(record, references);
+  ASSERT_TRUE(score.known_map);
+  EXPECT_NEAR(score.known_map->localization.min_trust, 0.9, 1e-12);
+  EXPECT_EQ(score.known_map->kidnaps.size(), 2U);
+}
+
+}  // namespace
+}  // namespace patrol::score
