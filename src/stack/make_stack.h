@@ -19,8 +19,8 @@ struct StackStart {
   std::vector<MarkedGoal> goals =
       {};  ///< none: marked on a drive by remote control, or the mission visits the route's stations
   LiningReferences references = {};  ///< scans of an earlier round
+  BoostedStumps neighbor_model = {};      ///< classifier of pairs of submaps, for SLAM methods that need it
   bool has_remote = false;           ///< a person may drive by remote control
-  BoostedStumps neighbor_model = {};  ///< classifier of pairs of submaps, for SLAM methods that need it
   double map_period_s = 5.0;
   std::uint64_t seed = 0;
 };

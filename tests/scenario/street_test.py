@@ -48,7 +48,7 @@ class Street(unittest.TestCase):
         done = self.run_patrol("known_map")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         metrics = self.metrics()
-        self.assertEqual([goal["arrivals"] for goal in metrics["goals"]], [1, 1])
+        self.assertEqual([goal["arrivals"] for goal in metrics["goals"]], [1, 0, 1])  # the second is passed by
         self.assertEqual(metrics["localization"]["lost_s"], 0.0)
         self.assertEqual((self.out / "map.pgm").read_bytes(), (SOURCE / "worlds/street/map/map.pgm").read_bytes())
 

@@ -87,8 +87,8 @@ stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
                            {.map = files.map,
                             .goals = files.goals,
                             .references = references_of(files),
-                            .has_remote = files.has_remote(),
                             .neighbor_model = files.neighbor_model,
+                            .has_remote = files.has_remote(),
                             .map_period_s = scenario.log.map_period_s,
                             .seed = scenario.seed});
 }
