@@ -10,12 +10,12 @@ namespace {
 constexpr std::int8_t kOccupiedPercent = 65;
 constexpr float kFar = 1e20f;
 
-/// One line of the exact squared distance transform: the lower envelope of parabolas (Felzenszwalb & Huttenlocher 2012).
+/// One-dimensional pass of the exact squared distance transform: lower envelope of parabolas [Felzenszwalb12].
 class LineTransform {
  public:
   explicit LineTransform(std::size_t length) : vertex_(length), boundary_(length + 1) {}
 
-  /// `line[i]` becomes min over j of line[j] + (i - j)^2.
+  /// Replaces `line[i]` by the minimum over j of line[j] + (i - j)^2.
   void apply(std::vector<float>& line) {
     std::size_t last = 0;
     vertex_[0] = 0;
@@ -98,8 +98,8 @@ double DistanceField::distance_m(const Eigen::Vector2d& p_m) const {
   return (1.0 - f.y()) * low + f.y() * high + geometry_.resolution_m * way_to_grid.norm();
 }
 
-// Of the bilinear piece itself. Differences over a step would be too flat within that step of an occupied cell, where
-// the distance has its fold.
+// Derivative of the bilinear piece itself: a finite difference would be too small within one step of an occupied cell,
+// where the distance has a kink.
 Eigen::Vector2d DistanceField::gradient(const Eigen::Vector2d& p_m) const {
   if (is_empty_) return Eigen::Vector2d::Zero();
   const auto [corners, f, way_to_grid] = place_of(p_m);
