@@ -47,11 +47,11 @@ struct LiningPage {
 /// Parses "scan.cell.line.ring"; an empty text is the first page. Throws InputError for any other text.
 LiningPage lining_page_from(const std::string& text);
 
-/// {"scans": [...], "lines": [...], "rings": [...], "next": text or null}: the newest scan of each station of a world,
-/// the newest change of each convergence line with the previous one, and the maximum inward displacement of each ring
-/// in its newest 40 scans. A page has at most 4,000 cells, 400 lines and 100 rings. A scan that does not fit continues
-/// on the next page with the same `seq`. For long scans, lists other than `cells` are given by their length (summary_of
-/// in result.h).
+/// {"scans": [...], "lines": [...], "rings": [...], "next": text or null} of a world. `scans`: newest scan of each
+/// station. `lines`: newest and previous change of each convergence line. `rings`: maximum inward displacement of each
+/// ring in its newest 40 scans. A page has at most 4,000 cells, 400 lines and 100 rings. A scan that does not fit
+/// continues on the next page with the same `seq`. For long scans, lists other than `cells` are given by their length
+/// (summary_of in result.h).
 std::string lining(Database& database, const std::string& world, const LiningPage& page = {});
 
 /// {"water": [...]}: newest result of each station. {"gas": [...]}: newest 2,000 measurements.

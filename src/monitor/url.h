@@ -10,7 +10,7 @@ namespace patrol::monitor {
 /// repeated name is used.
 void split_target(const std::string& target, std::string& path, std::map<std::string, std::string, std::less<>>& parameters);
 
-/// Address of a monitoring server.
+/// Host and port of a monitoring server.
 struct Url {
   std::string host;
   std::string port;

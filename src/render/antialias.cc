@@ -9,7 +9,7 @@
 namespace patrol::render {
 namespace {
 
-constexpr int kMinContrast = 16;           // of 255; weaker steps are not visible
+constexpr int kMinContrast = 16;           // brightness step, of 255; weaker steps are not visible
 constexpr int kBrightnessPerContrast = 5;  // minimum contrast: a fifth of the brightest neighbor
 constexpr float kReach_px = 6.0f;          // maximum blur length along the edge
 

@@ -17,9 +17,9 @@ namespace patrol::render {
 
 /// Ideal image of a depth camera, from the depth buffer of an off-screen render. Draws the visible geoms: groups 0 and
 /// 1 and the robot's visual geoms, without the camera housing (link `depth_camera`) and without geoms of low opacity.
-/// There are no lights, textures or shadows; each geom has one color that encodes its reflectivity. Only geoms in the
-/// field of view are drawn, and of large meshes only the faces near the camera, because the cost of software rendering
-/// grows with the number of vertices.
+/// There are no lights, textures or shadows; each geom has one color that encodes its reflectivity. The cost of
+/// software rendering grows with the number of vertices: only geoms in the field of view are drawn, and of large meshes
+/// only the faces near the camera.
 ///
 /// Approximations: Round shapes have 40 sides, an error of at most 0.3 % of their radius. Bars up to 6 cm thick have a
 /// square section, an error of at most 8 mm. The reflectivity of a textured geom is that of its color without the
@@ -70,7 +70,7 @@ class DepthRenderer : public sim::DepthImager {
 
   sim::PinholeLens lens_;
   double near_m_, far_m_;
-  /// copy of the render model without textures and shadows; its large meshes hold only the faces near the camera
+  /// copy of the render model without textures and shadows; its large meshes contain only the faces near the camera
   sim::ModelPtr model_;
   Offscreen offscreen_;
   mjvScene scene_;

@@ -10,7 +10,7 @@ namespace patrol::render {
 /// Homogeneous participating medium (fog, dust): extinction coefficient and in-scattered color.
 struct Haze {
   double extinction_per_m = 0.0;  ///< 0: clear air
-  Color color;                    ///< in-scattered color, seen at infinite distance
+  Color color;                    ///< in-scattered color: color of the medium at infinite distance
 };
 
 /// Applies the medium to a picture of clear air. After d meters the fraction exp(-extinction d) of the object's color

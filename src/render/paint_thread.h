@@ -26,7 +26,7 @@ struct PaintSettings {
 
 /// Renders finished replay frames in a pipeline of two threads: one draws the world, the other smooths edges and draws
 /// the overlay. Only the first uses OpenGL. With one context in each of two threads, OSMesa 22.3 crashed in one of 13
-/// films (cause unknown), and its rasterizer already uses every core for one context. A frame depends only on the
+/// films (cause unknown). Its rasterizer uses every core with one context already. A frame depends only on the
 /// arguments of `paint`.
 class PaintThread {
  public:

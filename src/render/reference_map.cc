@@ -232,7 +232,7 @@ ReferenceMapCheck check_and_complete(OccupancyGrid& map, const Grid<std::uint8_t
   for (int row = 0; row < map.geometry().height; ++row) {
     for (int col = 0; col < map.geometry().width; ++col) {
       const Cell cell{col, row};
-      // Where objects overlap, rays also hit surfaces inside a solid; these do not belong to the map.
+      // Rays also hit surfaces inside overlapping objects; these do not belong to the map.
       const bool is_buried = rendered.at(cell) == kUnknown;
       if (!is_surface(cell) && (!is_hit(cell) || is_buried)) continue;
       ++check.cells_checked;

@@ -111,8 +111,8 @@ Eigen::Vector3d RunFollower::on_ground(const Eigen::Vector2d& p_world_m) const {
   return {p_world_m.x(), p_world_m.y(), kAboveGround_m + (ground ? eye_z_m - ground->distance_m : 0.0)};
 }
 
-// Places each beam at the pose of its own time: the estimate gives the planar pose at one stamp, odometry the motion
-// and tilt around it.
+// Transforms each beam by the pose of its own time: the estimate gives the planar pose at one stamp, odometry the
+// motion and tilt around it.
 void RunFollower::place_scan(const PoseEstimate& estimate) {
   const Trajectory odometry(odometry_.begin(), odometry_.end());
   const Pose3 T_world_estimate =

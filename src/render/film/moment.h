@@ -13,7 +13,7 @@ namespace patrol::render {
 enum class MomentKind {
   kCollision,
   kFall,
-  kKidnap,       ///< moved to another place
+  kKidnap,       ///< moved to another pose
   kLost,         ///< localization lost
   kAlarm,        ///< finding of the inspection
   kRelocalized,  ///< localization recovered

@@ -7,7 +7,7 @@ namespace patrol::render {
 
 /// Camera of one shot. It keeps its bearing in world, except for a slow rotation, and moves with the robot. The bearing
 /// is the first of several with the largest free distance, both now and at the shot's highlight. The camera moves
-/// closer when an obstacle is in the way. In an overhead shot the picture contains the robot and its estimated
+/// closer when an obstacle blocks the view. In an overhead shot the picture contains the robot and its estimated
 /// position.
 class ShotCamera {
  public:

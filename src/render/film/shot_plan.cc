@@ -9,7 +9,7 @@
 namespace patrol::render {
 namespace {
 
-/// Highlights that are close in time and share one shot.
+/// Highlights that are close in time, shown in one shot.
 struct Scene {
   TimeSpan span;          ///< run time
   std::vector<std::string> titles;

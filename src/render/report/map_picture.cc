@@ -144,7 +144,7 @@ void paint(const MapLayers& layers, Picture& picture) {
 
 }  // namespace
 
-// Dark blue over violet to red: an accurate map looks like a line drawing. The lightness increases with the error.
+// Dark blue over violet to red: an accurate map resembles a line drawing. The lightness increases with the error.
 Color map_error_color(double error_m) {
   struct Stop {
     double share, r, g, b;

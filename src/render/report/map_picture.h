@@ -34,8 +34,8 @@ struct MapLayers {
 };
 
 /// Draws the occupied cells in the color of their error, above the true surfaces and the free cells. `shown` (in world)
-/// is the minimum area of the pictures. A pixel of the detail picture has at least the size of a cell of the built map,
-/// and larger if needed for at most 8 million pixels.
+/// is the minimum area of the pictures. A pixel of the detail picture has the size of a cell of the built map, or more
+/// to limit the picture to 8 million pixels.
 MapPicture map_picture(const MapLayers& layers, Eigen::AlignedBox2d shown);
 
 /// Colors of errors from 0 to `kMapErrorEnd_m`. Larger errors have the last color.
