@@ -77,6 +77,7 @@ class Database {
   }
   void execute(const char* sql);
   int changes() const;  ///< number of rows changed by the last statement
+  /// Row id of the last insertion.
   std::int64_t last_row() const;
 
  private:

@@ -7,6 +7,7 @@
 
 namespace patrol::monitor {
 
+/// Response to a client request.
 struct HttpAnswer {
   int status = 0;
   std::string body;

@@ -12,6 +12,7 @@
 
 namespace patrol::monitor {
 
+/// Address and limits of the server.
 struct HttpServerSettings {
   std::string host = "127.0.0.1";  ///< address or host name to listen on; the default accepts local connections only
   int port = 8080;                 ///< 0: any free port
@@ -40,20 +41,22 @@ struct HttpServerSettings {
   }
 };
 
+/// Parsed request.
 struct HttpRequest {
   std::string peer;           ///< address of the client
   std::string local;          ///< address of the server's end of the connection
   std::string host;           ///< Host header; empty unless there is exactly one
   std::string method;         ///< GET, POST, ...
   std::string path;           ///< as sent, without the query
-  std::map<std::string, std::string, std::less<>> parameters;
+  std::map<std::string, std::string, std::less<>> parameters;  ///< decoded query parameters
   std::string authorization;  ///< Authorization header
   std::string body;
 };
 
+/// Response to a request.
 struct HttpResponse {
   int status = 200;
-  std::string type = "application/json";
+  std::string type = "application/json";  ///< Content-Type
   std::string body;
   std::vector<std::pair<std::string, std::string>> headers;
 };

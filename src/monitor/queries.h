@@ -15,6 +15,7 @@ namespace patrol::monitor {
 /// by `robots`.
 std::string changes(Database& database, std::int64_t since, std::int64_t now_ms);
 
+/// Page of the list of robots.
 struct RobotsPage {
   std::string after;  ///< robots with names greater than this one; empty: from the first
   int limit = 200;
@@ -22,6 +23,7 @@ struct RobotsPage {
 /// {"robots": [...], "more": bool}: last known pose and run of each robot, ordered by name.
 std::string robots(Database& database, const RobotsPage& page = {});
 
+/// Page of the list of warnings and alarms.
 struct AlarmsPage {
   bool only_open = false;
   std::int64_t before = 0;  ///< findings with lower numbers; 0: from the newest
@@ -42,6 +44,7 @@ struct LiningPage {
   std::int64_t line = 0;
   std::int64_t ring = 0;  ///< index of the ring among the scanned rings
 
+  /// Inverse of `lining_page_from`.
   std::string text() const;
 };
 /// Parses "scan.cell.line.ring"; an empty text is the first page. Throws InputError for any other text.
@@ -58,6 +61,7 @@ std::string lining(Database& database, const std::string& world, const LiningPag
 std::string water(Database& database, const std::string& world);
 std::string gas(Database& database, const std::string& world);
 
+/// Page of the list of results with its filter.
 struct HistoryPage {
   std::string robot;        ///< empty: all robots
   std::string kind;         ///< empty: all kinds except poses and maps

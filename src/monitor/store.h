@@ -17,6 +17,7 @@ enum class Stored {
   kConflict,  ///< another result with the same id exists; nothing is changed
 };
 
+/// Outcome of an acknowledgment: done, acknowledged earlier, or unknown finding.
 enum class Acknowledged { kDone, kAlready, kUnknown };
 
 /// Store of results, one per id, durable once `add` returns. Updates the tables of the page (views.h) in the same
@@ -29,6 +30,7 @@ class Store {
   /// Stores all results in one transaction; on an exception none is stored.
   std::vector<Stored> add(const std::vector<Result>& results, std::int64_t received_ms);
 
+  /// Acknowledges a warning or alarm with the user's name and note.
   Acknowledged acknowledge(std::int64_t finding, const std::string& who, const std::string& note, std::int64_t now_ms);
 
   /// Database for the queries of queries.h.

@@ -6,11 +6,10 @@
 
 namespace patrol::monitor {
 
-/// Access token that robots and users of the page present to make changes.
-///
-/// Reads the token from the first line of a file. Throws InputError when it has fewer than 16 characters or characters
-/// not allowed in an HTTP header.
+/// Reads the access token, which robots and users of the page present to make changes, from the first line of a file.
+/// Throws InputError when it has fewer than 16 characters or characters not allowed in an HTTP header.
 std::string load_token(const std::filesystem::path& file);
+/// Throws InputError, beginning with `place`, for a token that `load_token` would not accept.
 void check_token(const std::string& place, const std::string& token);
 
 /// Reads the token from the file `token` of the folder. Creates the file with 256 random bits, readable by its owner

@@ -8,7 +8,7 @@ namespace patrol::monitor {
 /// Database record of a stored result.
 struct Filed {
   std::int64_t seq = 0;          ///< row in `results`
-  std::int64_t received_ms = 0;
+  std::int64_t received_ms = 0;  ///< time of reception, ms since 1970, UTC
   std::int64_t revision = 0;     ///< revision of the transaction that stored it
 };
 

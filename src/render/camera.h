@@ -12,6 +12,7 @@
 
 namespace patrol::render {
 
+/// Viewpoint of the camera that follows the robot.
 enum class CameraKind {
   kChase,    ///< behind and above the robot
   kTop,      ///< vertically down, north up; a roof is cut away
@@ -33,8 +34,10 @@ struct View {
   double far_m = 200.0;
 };
 
+/// View from `eye` to `focus` with the default field of view. The horizon is level; north is up in a vertical view.
 View look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& focus);
 
+/// Converts a view to MuJoCo's camera.
 mjvGLCamera gl_camera(const View& view);
 
 /// Pixel position of a world point: x right and y down from the upper left corner of the picture.

@@ -10,11 +10,13 @@
 
 namespace patrol::render {
 
+/// Color and opacity of a drawing operation, 0 transparent ... 1 opaque.
 struct Brush {
   Color color;
   double opacity = 1.0;
 };
 
+/// Color of `above` with `opacity` over `below`.
 inline Color blend(Color below, Color above, double opacity) {
   const auto mix = [&](std::uint8_t a, std::uint8_t b) {
     return static_cast<std::uint8_t>(a + opacity * (b - a) + 0.5);
@@ -35,6 +37,7 @@ class Font {
   int height_px() const { return height_px_; }
   /// Draws UTF-8 text. `left` and `baseline` are the origin of the first letter. Returns the origin of the next letter.
   int draw(Frame& frame, int left, int baseline, const std::string& text, const Brush& brush);
+  /// Width of the text, px.
   int width_px(const std::string& text);
   /// Longest prefix of the text that fits, with an ellipsis when it was cut.
   std::string fitted(const std::string& text, int width_px);

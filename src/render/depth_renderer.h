@@ -33,6 +33,7 @@ class DepthRenderer : public sim::DepthImager {
   DepthRenderer(const DepthRenderer&) = delete;
   DepthRenderer& operator=(const DepthRenderer&) = delete;
 
+  /// Renders depth and reflectivity, row 0 at the top. Depth is along the viewing axis, infinite without a surface.
   void draw(const mjData& data, const Pose3& T_world_camera, sim::SurfaceImage& image) override;
 
   /// Number of geoms in the last picture.

@@ -22,7 +22,7 @@ struct HeatMap {
     double share = 0.0;
     std::string text;
   };
-  OccupancyGrid surfaces;
+  OccupancyGrid surfaces;  ///< map drawn over the colors
   double step_m = 0.5;             ///< distance between positions; each is drawn as a square of this side
   std::vector<Place> places;
   std::string title;

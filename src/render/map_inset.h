@@ -11,6 +11,7 @@ namespace patrol::render {
 /// pose over the true one.
 class MapInset {
  public:
+  /// Draws the inset. No effect before the first map.
   void draw(Frame& frame, const RunSnapshot& snapshot);
 
  private:

@@ -8,6 +8,7 @@
 
 namespace patrol::render {
 
+/// Slice of the world to be mapped.
 struct ReferenceMapSettings {
   double height_m = 0.4;  ///< height of the slice in world; height of the level robot's lidar
   double resolution_m = 0.025;
@@ -26,6 +27,7 @@ struct ReferenceMapCheck {
   }
 };
 
+/// True map of a world with its verification.
 struct ReferenceMap {
   OccupancyGrid
       map;  ///< in world: occupied at surfaces of solid objects, unknown inside, free elsewhere

@@ -18,6 +18,7 @@
 
 namespace patrol::render {
 
+/// Settings of a film or a still picture.
 struct ReplaySettings {
   Cut cut = Cut::kStory;
   CameraKind camera = CameraKind::kChase;  ///< camera outside of planned shots
@@ -37,6 +38,7 @@ struct ReplaySettings {
 /// Called with the completed fraction, 0 ... 1. Returns false to interrupt the replay.
 using ReplayProgress = std::function<bool(double done)>;
 
+/// Result of a replay.
 struct ReplaySummary {
   int num_frames = 0;
   Time end{};  ///< end of the logged run

@@ -27,7 +27,9 @@ class VideoWriter {
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
 
+  /// Encodes the next frame. Throws std::runtime_error when the frame's size differs from the video's.
   void add(const Frame& frame);
+  /// Completes the file and gives it its name.
   void finish();
 
  private:

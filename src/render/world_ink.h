@@ -19,6 +19,7 @@ class WorldInk {
   /// `depth` as in Offscreen::read_depth. All three arguments must outlive this object.
   WorldInk(Frame& frame, const std::vector<float>& depth, const Projector& projector);
 
+  /// Draws line segments of constant width in world, at least 1.6 pixels at a frame height of 720.
   void polyline(std::span<const Eigen::Vector3d> points_m, double width_m, const Brush& brush);
   void dots(std::span<const Eigen::Vector3d> points_m, double radius_m, const Brush& brush);
 

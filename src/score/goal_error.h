@@ -21,7 +21,7 @@ struct Arrival {
 struct GoalError {
   std::string name;
   std::vector<Arrival> arrivals;
-  int num_failed = 0;
+  int num_failed = 0;  ///< number of failed navigations
 
   std::vector<double> position_errors_m() const;
   std::vector<double> heading_errors_deg() const;

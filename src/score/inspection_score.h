@@ -19,12 +19,13 @@ struct TrueLeak {
 /// Gas alarm of the robot with the leak that it is assigned to.
 struct Finding {
   std::string station;
-  double column_ppm_m = 0.0;
+  double column_ppm_m = 0.0;  ///< measured methane column
   Eigen::Vector2d p_world_m = Eigen::Vector2d::Zero();  ///< position reported by the robot
   std::string leak;      ///< name of the leak; empty for a false alarm
   double error_m = 0.0;  ///< distance from the leak
 };
 
+/// Number of leaks found and of false alarms, with all findings.
 struct InspectionScore {
   int leaks = 0;
   int leaks_found = 0;

@@ -16,6 +16,7 @@ namespace patrol::score {
 struct TrueLining {
   TunnelLining design;     ///< design geometry, in world
   double invert_m = 0.0;   ///< height of the design's invert, in world
+  /// true inward displacement at a clock position, 0 at the crown
   std::function<double(int ring, double clock_deg)> inward_m;
 };
 
@@ -32,6 +33,8 @@ struct RingScore {
   double place_error_m = 0.0;
 };
 
+/// Evaluation of all stations against the true deformation. A moved ring is found or missed
+/// at each registered station that has it in view.
 struct LiningScore {
   int stations = 0;
   int registered = 0;            ///< stations whose scan was registered to the reference
@@ -42,8 +45,8 @@ struct LiningScore {
   double max_error_m = 0.0;      ///< maximum |error_m| of the found rings
   double max_peak_error_m = 0.0;
   double max_place_error_m = 0.0;
-  int cells = 0;
-  double cell_rmse_m = 0.0;
+  int cells = 0;  ///< number of evaluated cells
+  double cell_rmse_m = 0.0;  ///< RMS error of the cells' displacement
   /// fraction of cells whose 95 % interval contains the true displacement at the cell's middle
   double cell_coverage_95 = 0.0;
   std::vector<RingScore> rings;  ///< moved rings and rings with a finding

@@ -33,6 +33,7 @@ struct Localizability {
   bool is_degenerate() const { return weak_std_m > kDegenerate_m; }
 };
 
+/// Computes the bound from the returns of one scan. `scan` contains only beams that hit a surface.
 Localizability localizability(const std::vector<SurfaceReturn>& scan, const BeamNoise& noise);
 
 /// Bound on the pose with the covariance and the confidence that the stack reported for it.
@@ -63,6 +64,7 @@ struct LocalizabilityScore {
   std::optional<double> weak_direction_error_deg;
 };
 
+/// Evaluates the samples of a run.
 LocalizabilityScore localizability_score(const std::vector<LocalizabilitySample>& samples);
 
 }  // namespace patrol::score

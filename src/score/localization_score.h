@@ -20,7 +20,7 @@ struct LocalizationScore {
 
 /// Recovery from a kidnapping.
 struct RelocalizationScore {
-  double at_s = 0.0;
+  double at_s = 0.0;  ///< time of the kidnapping
   double moved_m = 0.0;                   ///< distance between the estimated and the true position after the kidnapping
   std::optional<double> said_lost_s;      ///< time from the kidnapping to the report of lost localization
   /// time from the kidnapping to the first pose of a period of 5 s with less than 0.5 m error and not reported lost
@@ -30,6 +30,7 @@ struct RelocalizationScore {
 /// Evaluates a whole run. `matched` and `trusts` are ordered by time and begin when the localization starts.
 LocalizationScore localization_score(const std::vector<MatchedPose>& matched, const std::vector<LocalizationTrust>& trusts);
 
+/// Evaluates the recovery from a kidnapping at time `kidnapped`.
 RelocalizationScore relocalization_score(Time kidnapped, const std::vector<MatchedPose>& matched,
                                          const std::vector<LocalizationTrust>& trusts);
 

@@ -9,6 +9,7 @@
 
 namespace patrol::score {
 
+/// Assignment of trajectory poses to the stamps of relations.
 struct RelationSettings {
   /// maximum distance in time at which the nearest pose is used; beyond it the pose is interpolated
   double max_dt_s = 0.02;

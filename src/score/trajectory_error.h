@@ -37,7 +37,7 @@ struct TrajectoryError {
   double ate_max_m = 0.0;
   double heading_rmse_deg = 0.0;
   double rpe_trans_1m_m = 0.0;   ///< relative pose error: RMS over all segments with 1 m of true distance
-  double rpe_rot_1m_deg = 0.0;
+  double rpe_rot_1m_deg = 0.0;  ///< RMS relative rotation error over those segments
 };
 
 /// Throws InputError when the trajectories do not overlap in time.

@@ -25,10 +25,11 @@ struct WaterFinding {
   double ahead_error_m = 0.0;  ///< error along the line from the antenna to the body; positive: reported too far away
   double radius_error_m = 0.0;
   bool distance_holds = false;      ///< the reported distance interval contains the true distance
-  bool radius_holds = false;
+  bool radius_holds = false;  ///< the reported radius interval contains the true radius
   bool position_holds = false;      ///< the true position lies within the 95 % ellipsoid of the reported one
 };
 
+/// Number of bodies found and missed and of false alarms, with all findings.
 struct WaterScore {
   int stations = 0;  ///< stations with soundings
   int bodies = 0;

@@ -20,6 +20,7 @@ class Director {
 
   /// View of the next frame, `elapsed_s` of film time after the previous one. Must be called in the order of the film.
   View view(const RunSnapshot& snapshot, double elapsed_s);
+  /// Annotations of the frame at a time of the run.
   FilmNote note(Time now) const;
 
   const ShotPlan& plan() const { return plan_; }

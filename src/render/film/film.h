@@ -21,6 +21,7 @@ class Film {
 
   /// Adds the next snapshot in the order of the run and renders the frames that are due.
   void shoot(const RunSnapshot& snapshot);
+  /// Waits for the remaining frames and completes the file.
   void finish();
 
   int num_frames() const { return num_frames_; }

@@ -7,6 +7,7 @@
 
 namespace patrol::render {
 
+/// Thresholds for the detection of highlights.
 struct MomentSettings {
   double near_miss_m = 1.0;        ///< clearance to an actor below which an approach is a near miss
   int most_near_misses = 3;        ///< maximum number of near misses; the closest are kept

@@ -27,6 +27,7 @@ enum class MomentKind {
   kMission,      ///< start or end of the mission
 };
 
+/// Highlight of a run.
 struct Moment {
   Time at{};
   MomentKind kind{};

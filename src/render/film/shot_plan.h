@@ -12,6 +12,7 @@
 
 namespace patrol::render {
 
+/// Editing style of a film.
 enum class Cut {
   kStory,  ///< slow motion and close shots at the highlights
   kPlain,  ///< constant speed, one camera
@@ -20,6 +21,7 @@ enum class Cut {
 /// Parses "story" or "plain". Throws InputError for any other text.
 Cut cut_named(const std::string& name);
 
+/// Perspective of a shot.
 enum class ShotKind {
   kBeside,    ///< robot from near and low
   kTwoShot,   ///< robot and the subject of the highlight
@@ -35,6 +37,7 @@ struct Shot {
   std::optional<Eigen::Vector2d> p_world_subject = {};  ///< subject of a two-shot, m
 };
 
+/// Composition of highlights into shots.
 struct StorySettings {
   double lead_s = 4.0;  ///< run time before a highlight
   double hold_s = 3.0;  ///< run time after a highlight
@@ -42,6 +45,7 @@ struct StorySettings {
   int most_shots = 8;   ///< maximum number of shots; lower-priority scenes are chapters only
 };
 
+/// Speeds, shots and chapters of a film.
 struct ShotPlan {
   Cut cut = Cut::kStory;
   SpeedPlan speed;

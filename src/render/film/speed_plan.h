@@ -11,6 +11,7 @@ struct TimeSpan {
   Time from{}, to{};
 };
 
+/// Playback speeds of a film.
 struct SpeedSettings {
   double fast = 8.0;  ///< playback speed: run time / film time
   double slow = 2.0;  ///< playback speed of the slow spans; at most `fast`

@@ -14,6 +14,7 @@
 /// escaped when the page is written.
 namespace patrol::render {
 
+/// Emphasis of a text or bar.
 enum class Tone { kPlain, kGood, kWarning, kBad, kFaint };
 
 /// Meanings of colors in all figures of a page (report.css).
@@ -180,9 +181,9 @@ struct Section {
 struct Page {
   std::string kind;   ///< e.g. "run"
   std::string title;
-  std::vector<std::pair<std::string, std::string>> facts;
+  std::vector<std::pair<std::string, std::string>> facts;  ///< label and value in the page's header
   std::vector<Section> sections;
-  std::string colophon;  ///< sources and version of the page
+  std::string colophon;  ///< program version and sources of the page
 };
 
 }  // namespace patrol::render
