@@ -19,9 +19,9 @@ namespace patrol::monitor {
 ///                                             {"results": [{"id", "status": stored, known or conflict}]}
 ///   POST /api/alarms/<number>/acknowledge     {"who", "note"}
 ///   GET  /  /page.css  /page.js  ...  /schema
-///   GET  /api/changes?since=  /api/robots?after=&limit=  /api/alarms?open=&before=&limit=  /api/run?robot=&run=&station=
-///        /api/lining?world=&after=  /api/water?world=  /api/gas?world=  /api/history?robot=&kind=&before=&limit=
-///        /api/maps/<number>
+///   GET  /api/changes?since=  /api/robots?after=&limit=  /api/alarms?open=&before=&limit=
+///        /api/run?robot=&run=&station=  /api/lining?world=&after=  /api/water?world=  /api/gas?world=
+///        /api/history?robot=&kind=&before=&limit=  /api/maps/<number>
 ///
 /// Every response is bounded; longer data are divided into pages (queries.h). `limit` is at most 200 rows. `before` is
 /// the lowest number of the previous page, `after` its last robot or its `next`, and `station` its `next_station`.

@@ -19,10 +19,10 @@ struct SpeedSettings {
 };
 
 /// Mapping between film time and run time. The pace (film time / run time) is 1 / fast, and 1 / slow in the slow spans.
-/// Before and after each slow span it changes linearly with run time. The film of a run of T seconds with complete ramps
-/// has a length of
+/// Before and after each slow span it changes linearly with run time. The film of a run of T seconds with complete
+/// ramps has a length of
 ///   T / fast + sum_i (L_i + r) (1 / slow - 1 / fast)
-/// seconds, where L_i is the length of slow span i and r = 2 ramp_s / (1 / fast + 1 / slow) that of a ramp, in run time.
+/// seconds. L_i is the length of slow span i in run time, r = 2 ramp_s / (1 / fast + 1 / slow) the length of a ramp.
 class SpeedPlan {
  public:
   /// Merges slow spans whose ramps overlap, and clips spans to the run.
