@@ -50,7 +50,7 @@ struct ShotPlan {
   Cut cut = Cut::kStory;
   SpeedPlan speed;
   std::vector<Shot> shots;  ///< ordered, not overlapping; between shots the camera rig follows the robot
-  std::vector<Chapter> chapters;  ///< cover the whole film, one per scene
+  std::vector<Chapter> chapters;  ///< cover the whole film: the start, then one per scene
 };
 
 /// Plans the shots of a film. `moments` is the result of find_moments. A plain film has chapters only.
