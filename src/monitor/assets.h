@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// Files of the page, put into the program when it is built (embed.cmake).
+/// Files of the page, compiled into the program (embed.cmake).
 namespace patrol::monitor {
 
 extern const std::string_view kPage;         ///< index.html

@@ -7,12 +7,12 @@
 
 namespace patrol::monitor {
 
-/// Number of bytes that all connections together may hold. Not thread-safe.
+/// Limit on the number of bytes held by all connections together. Not thread-safe.
 class ByteBudget {
  public:
   explicit ByteBudget(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  /// Share of a budget, given back at the end of its life. The budget must outlive it.
+  /// Reserved part of a budget, released by the destructor. The budget must outlive it.
   class Claim {
    public:
     Claim(ByteBudget& budget, std::size_t bytes) : budget_(&budget), bytes_(bytes) { budget_->used_ += bytes_; }
@@ -27,7 +27,7 @@ class ByteBudget {
     std::size_t bytes_;
   };
 
-  /// None when the budget has too few bytes left. The first claim is always granted.
+  /// Reserves bytes, none when too few are left. The first claim is always granted, whatever its size.
   std::optional<Claim> claim(std::size_t bytes) {
     if (used_ > 0 && bytes > max_bytes_ - std::min(used_, max_bytes_)) return std::nullopt;
     return Claim(*this, bytes);

@@ -25,7 +25,7 @@ void Statement::check(int code) const {
 }
 
 void Statement::reset() {
-  sqlite3_reset(statement_.get());  // says again what the last step said
+  sqlite3_reset(statement_.get());  // returns the error of the last step again
   sqlite3_clear_bindings(statement_.get());
 }
 
@@ -63,7 +63,7 @@ std::string Statement::text(int column) const {
 
 namespace {
 
-/// SQLite would create it readable by all.
+/// Creates the file with mode 0600; SQLite would create it readable by all.
 void create_for_owner(const std::filesystem::path& file) {
   const int created = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (created >= 0) ::close(created);
@@ -106,7 +106,7 @@ Transaction::~Transaction() {
   if (!is_open_) return;
   try {
     database_.execute("ROLLBACK");
-  } catch (const std::runtime_error&) {  // SQLite has rolled back by itself
+  } catch (const std::runtime_error&) {  // already rolled back by SQLite
   }
 }
 

@@ -13,10 +13,10 @@ struct sqlite3_stmt;
 
 namespace patrol::monitor {
 
-/// A prepared statement. What comes from outside only ever gets into it through `bind`.
+/// Prepared statement. External values enter it only through `bind`.
 class Statement {
  public:
-  /// Starts anew with these for ?1, ?2, ...
+  /// Resets the statement and binds ?1, ?2, ...
   template <typename... Values>
   Statement& bind(const Values&... values) {
     reset();
@@ -24,7 +24,7 @@ class Statement {
     (bind_one(++place, values), ...);
     return *this;
   }
-  /// True: there is a row.
+  /// Returns true when there is a row.
   bool step();
   void run() { while (step()) {} }
 
@@ -55,17 +55,18 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> statement_;
 };
 
-/// An SQLite database with a write-ahead log that reaches the disk with every transaction: what was committed is there after a power
-/// cut. Whatever fails later throws std::runtime_error.
+/// SQLite database with a write-ahead log that is synchronized with every transaction: committed data survive a power
+/// failure. Throws std::runtime_error on later errors.
 class Database {
  public:
-  /// Creates the file, readable by its owner only, when it does not exist; its log and journal get the same mode. Throws InputError when it cannot be opened or is not a database.
+  /// Opens the file, or creates it readable by its owner only; its log and journal have the same mode. Throws
+  /// InputError when it cannot be opened or is not a database.
   explicit Database(const std::filesystem::path& file);
 
   Statement prepare(std::string_view sql) { return Statement(database_.get(), sql); }
-  /// One that is kept for the next time; for what is run to its end.
+  /// Cached statement for repeated use. Must be run to its end before the next use.
   Statement& prepared(const std::string& sql);
-  /// The first column of the first row, if there is one.
+  /// First column of the first row, none without a row.
   template <typename... Values>
   std::optional<std::int64_t> find_integer(const std::string& sql, const Values&... values) {
     Statement& statement = prepared(sql);
@@ -75,7 +76,8 @@ class Database {
     return found;
   }
   void execute(const char* sql);
-  int changes() const;  ///< rows of the last statement
+  int changes() const;  ///< number of rows changed by the last statement
+  /// Row id of the last insertion.
   std::int64_t last_row() const;
 
  private:
@@ -86,7 +88,7 @@ class Database {
   std::map<std::string, Statement> prepared_;
 };
 
-/// Everything until `commit`, or nothing.
+/// Transaction that is rolled back unless `commit` is called.
 class Transaction {
  public:
   explicit Transaction(Database& database) : database_(database) { database_.execute("BEGIN IMMEDIATE"); }

@@ -4,10 +4,10 @@
 
 namespace patrol::monitor {
 
-/// One process at a time may hold a folder. It lets go when it dies.
+/// Exclusive lock of a folder by one process, released when the process ends.
 class FolderLock {
  public:
-  /// Makes the folder when it is not there. Throws InputError when it cannot, or another process holds it.
+  /// Creates the folder if needed. Throws InputError on failure, or when another process holds the lock.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

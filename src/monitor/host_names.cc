@@ -9,7 +9,7 @@
 namespace patrol::monitor {
 namespace {
 
-/// Without port and brackets, in lower case; empty when it is not a host.
+/// Host in lower case without port and brackets, empty when it is not a host.
 std::string plain_host(std::string_view host) {
   std::string_view port;
   if (host.starts_with('[')) {

@@ -28,7 +28,7 @@ asio::awaitable<HttpAnswer> exchange(asio::io_context& context, const Url& url, 
   asio::ip::tcp::resolver resolver(context);
   const auto places = co_await resolver.async_resolve(url.host, url.port, asio::use_awaitable);
   co_await stream.async_connect(places, asio::use_awaitable);
-  // Refused at its header, the rest of a large request cannot be sent any more; the answer is there all the same.
+  // A server that refuses a large request at its header stops reading; its response is readable nevertheless.
   beast::error_code unsent;
   co_await http::async_write(stream, request, asio::redirect_error(asio::use_awaitable, unsent));
   if (unsent == beast::error::timeout) throw boost::system::system_error(unsent);

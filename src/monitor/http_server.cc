@@ -38,7 +38,7 @@ namespace http = boost::beast::http;
 using Error = boost::system::error_code;
 using Parser = http::request_parser<http::string_body>;
 
-constexpr std::chrono::milliseconds kAcceptPause{100};  // when there are no more file descriptors
+constexpr std::chrono::milliseconds kAcceptPause{100};  // after running out of file descriptors
 constexpr double kLingerLimit_s = 1.0;
 constexpr std::size_t kLingerBytes = 1 << 24;
 
@@ -48,7 +48,7 @@ std::size_t to_bytes(double megabytes) { return static_cast<std::size_t>(1e6 * m
 
 auto into(Error& error) { return asio::redirect_error(asio::use_awaitable, error); }
 
-/// Connection's two ends, as texts.
+/// Addresses of both ends of a connection.
 struct Ends {
   std::string peer;
   std::string local;
@@ -85,7 +85,7 @@ HttpResponse refusal_of(const Error& error) {
   return refusal(400, "this is not an HTTP request");
 }
 
-/// Refusal of a request whose body might be delimited in another way by somebody else, or that has a body where none is expected.
+/// Error response to a request with ambiguous framing (request smuggling), or with a body where none is allowed.
 std::optional<HttpResponse> refusal_of_framing(const Parser& parser) {
   const auto& message = parser.get();
   const std::size_t num_codings = message.count(http::field::transfer_encoding);
@@ -101,7 +101,7 @@ std::optional<HttpResponse> refusal_of_framing(const Parser& parser) {
   return std::nullopt;
 }
 
-/// Endpoint of an address or a host name; an IPv4 address is preferred. Throws system_error when the name is unknown.
+/// Endpoint of an address or a host name, IPv4 preferred. Throws system_error for an unknown name.
 asio::ip::tcp::endpoint endpoint_of(asio::io_context& context, const HttpServerSettings& settings) {
   Error error;
   const auto address = asio::ip::make_address(settings.host, error);
@@ -156,7 +156,8 @@ class HttpServer::Connections {
   void stop() { context_.stop(); }
 
  private:
-  /// Listed in `waiting_` while its header is awaited, else in `busy_`; in neither once it has ended.
+  /// Member of `waiting_` during the wait for its header, otherwise of `busy_`. The destructor removes it from its
+  /// list.
   struct Connection : Ends {
     Connection(beast::tcp_stream&& accepted, std::list<Connection*>& busy)
         : Ends(ends_of(accepted.socket())), stream(std::move(accepted)), place(busy.insert(busy.end(), this)), list(&busy) {}
@@ -174,12 +175,12 @@ class HttpServer::Connections {
     std::list<Connection*>* list;
   };
 
-  /// Writes a log line. A log that throws must end neither a connection nor the server.
+  /// Writes a log line. An exception of the log must end neither the connection nor the server.
   template <typename... Values>
   void log(fmt::format_string<const Values&...> form, const Values&... values) noexcept {
     try {
       log_(fmt::format(form, values...));
-    } catch (...) {  // the request is worth more than its line
+    } catch (...) {  // serve the request without its log line
     }
   }
 
@@ -188,7 +189,7 @@ class HttpServer::Connections {
     for (;;) {
       Error error;
       asio::ip::tcp::socket socket = co_await acceptor_.async_accept(into(error));
-      if (error) {  // no descriptors left, or the peer has gone again
+      if (error) {  // no file descriptors, or connection already closed by the client
         pause.expires_after(kAcceptPause);
         co_await pause.async_wait(into(error));
         continue;
@@ -196,13 +197,14 @@ class HttpServer::Connections {
       try {
         if (waiting_.size() + busy_.size() >= static_cast<std::size_t>(settings_.max_connections)) close_one();
         asio::co_spawn(context_, serve(std::move(socket)), asio::detached);
-      } catch (const std::exception& failure) {  // no memory for this one
+      } catch (const std::exception& failure) {  // out of memory for this connection
         log("a connection given up: {}", failure.what());
       }
     }
   }
 
-  /// The one that has waited longest for its header, or else has been at its request longest. It takes itself off the lists.
+  /// Closes the connection with the longest wait for its header, otherwise the one with the oldest request. Its
+  /// coroutine removes it from the list.
   void close_one() {
     Connection* waits = first_open(waiting_);
     Connection* one = waits != nullptr ? waits : first_open(busy_);
@@ -227,7 +229,7 @@ class HttpServer::Connections {
     }
   }
 
-  /// Serves one request. False: the connection is at its end.
+  /// Serves one request. Returns false at the end of the connection.
   asio::awaitable<bool> serve_one(Connection& connection, beast::flat_buffer& buffer, double limit_s) {
     Parser parser;
     parser.header_limit(static_cast<std::uint32_t>(settings_.max_header_kb) * 1024);
@@ -268,7 +270,7 @@ class HttpServer::Connections {
     co_return error;
   }
 
-  /// Reads the body into the request. False: the connection is at its end.
+  /// Reads the body into the request. Returns false at the end of the connection.
   asio::awaitable<bool> read_body(Connection& connection, beast::flat_buffer& buffer, Parser& parser, HttpRequest& request) {
     Error error;
     if (beast::iequals(parser.get()[http::field::expect], "100-continue")) {
@@ -286,7 +288,7 @@ class HttpServer::Connections {
     co_return !error;
   }
 
-  /// Sends an answer. False: the connection is at its end.
+  /// Sends a response. Returns false at the end of the connection.
   asio::awaitable<bool> send(Connection& connection, const HttpRequest& request, HttpResponse response, const Parser::value_type& asked) {
     std::optional<ByteBudget::Claim> claim = answers_.claim(response.body.size());
     if (!claim) {
@@ -303,7 +305,7 @@ class HttpServer::Connections {
     co_return !error && message.keep_alive();
   }
 
-  /// Whether the peer has closed its side: no answer is computed for it.
+  /// True when the client has closed its side; no response is computed for it.
   static bool has_gone(Connection& connection) {
     char byte = 0;
     const ssize_t count = ::recv(connection.stream.socket().native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
@@ -331,7 +333,8 @@ class HttpServer::Connections {
     log("{} {} {} {}: {}", request.peer, response.status, request.method, request.path, response.body);
   }
 
-  /// Says no and hangs up: what is still coming is thrown away for a moment, or the peer would never see the answer.
+  /// Sends an error response and closes the connection. Input is discarded for a limited time; otherwise the client
+  /// would not receive the response.
   asio::awaitable<void> refuse(Connection& connection, const HttpRequest& request, HttpResponse response) {
     log_refusal(request, response);
     auto message = to_message(std::move(response), 11, false);
@@ -349,7 +352,8 @@ class HttpServer::Connections {
   HttpServerSettings settings_;
   HttpHandler& handler_;
   Log log_;
-  std::list<Connection*> waiting_, busy_;  ///< the longest first; they outlive the connections, which end with the context
+  /// oldest first; destroyed after the connections, which end with the context
+  std::list<Connection*> waiting_, busy_;
   ByteBudget bodies_, answers_;
   asio::io_context context_;
   asio::ip::tcp::acceptor acceptor_;

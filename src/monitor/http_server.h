@@ -12,17 +12,19 @@
 
 namespace patrol::monitor {
 
+/// Address and limits of the server.
 struct HttpServerSettings {
-  std::string host = "127.0.0.1";  ///< address or host name to listen at; by default only this computer reaches it
-  int port = 8080;                 ///< 0: any that is free
-  double header_limit_s = 5.0;     ///< from the connection, or the request before, to the end of the header
-  double request_limit_s = 30.0;   ///< from the header to the end of the answer
-  double idle_limit_s = 15.0;      ///< between the requests of one connection
-  int max_connections = 400;       ///< at once; one more, and the one that has waited longest for its header goes
+  std::string host = "127.0.0.1";  ///< address or host name to listen on; the default accepts local connections only
+  int port = 8080;                 ///< 0: any free port
+  double header_limit_s = 5.0;     ///< timeout from accepting a connection to the end of its first header
+  double request_limit_s = 30.0;   ///< timeout from the end of the header to the end of the response
+  double idle_limit_s = 15.0;      ///< timeout from a response to the end of the next header of the connection
+  /// simultaneous connections; a further one closes the one with the longest wait for its header
+  int max_connections = 400;
   int max_header_kb = 16;
   double max_body_mb = 8.0;
-  double max_bodies_mb = 64.0;     ///< request bodies of all connections together; a request beyond it is refused with 503
-  double max_answers_mb = 64.0;    ///< answers of all connections together that wait to be read; one beyond it is replaced by 503
+  double max_bodies_mb = 64.0;     ///< request bodies of all connections; beyond it requests are refused with 503
+  double max_answers_mb = 64.0;    ///< unsent responses of all connections; beyond it responses are replaced by 503
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -39,52 +41,54 @@ struct HttpServerSettings {
   }
 };
 
+/// Parsed request.
 struct HttpRequest {
-  std::string peer;           ///< address
-  std::string local;          ///< address at which the peer reached the server
+  std::string peer;           ///< address of the client
+  std::string local;          ///< address of the server's end of the connection
   std::string host;           ///< Host header; empty unless there is exactly one
   std::string method;         ///< GET, POST, ...
-  std::string path;           ///< as it was sent, without what follows the `?`
-  std::map<std::string, std::string, std::less<>> parameters;
-  std::string authorization;  ///< that header
+  std::string path;           ///< as sent, without the query
+  std::map<std::string, std::string, std::less<>> parameters;  ///< decoded query parameters
+  std::string authorization;  ///< Authorization header
   std::string body;
 };
 
+/// Response to a request.
 struct HttpResponse {
   int status = 200;
-  std::string type = "application/json";
+  std::string type = "application/json";  ///< Content-Type
   std::string body;
   std::vector<std::pair<std::string, std::string>> headers;
 };
 
-/// Every refusal looks alike: {"error": "one line"}.
+/// Builds an error response: {"error": "one line"}.
 HttpResponse refusal(int status, const std::string& why);
 
-/// What the server is there for. One request at a time.
+/// Interface of the request handler. Called for one request at a time.
 class HttpHandler {
  public:
   virtual ~HttpHandler() = default;
-  /// Before the body is read: a refusal, or none.
+  /// Checks the header before the body is read. Returns an error response, or none to accept the request.
   virtual std::optional<HttpResponse> refuse(const HttpRequest& head) = 0;
-  /// May throw: the answer is then 500, and the server goes on.
+  /// Handles a request. An exception becomes a response with status 500.
   virtual HttpResponse answer(const HttpRequest& request) = 0;
 };
 
-/// An HTTP/1.1 server for a network that cannot be trusted to be kind: all connections in one thread, none of which waits for another;
-/// a limit on the time and the size of everything.
+/// Single-threaded asynchronous HTTP/1.1 server for untrusted networks. Timeouts, header, body and connection counts
+/// are bounded (HttpServerSettings).
 class HttpServer {
  public:
   using Log = std::function<void(const std::string& line)>;
 
-  /// Listens. Throws InputError when the address cannot be had, or a setting breaks its rule. `log` gets one line for each request
-  /// that is refused or given up.
+  /// Opens the port. Throws InputError when the address is not available or a setting is invalid. `log` receives one
+  /// line per refused or aborted request.
   HttpServer(const HttpServerSettings& settings, HttpHandler& handler, Log log);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
   int port() const;
-  /// Serves until SIGINT, SIGTERM or `stop`, which any thread may call.
+  /// Serves until SIGINT, SIGTERM or `stop`. `stop` is thread-safe.
   void run();
   void stop();
 

@@ -15,7 +15,7 @@
 namespace patrol::monitor {
 namespace {
 
-constexpr std::size_t kMaxText = 500;  // bytes; written out at most 2,000, which a pipe takes whole
+constexpr std::size_t kMaxText = 500;  // bytes; at most 2,000 after escaping, which a pipe accepts at once
 
 }  // namespace
 
@@ -24,7 +24,7 @@ void LineLog::write(const std::string& text) noexcept {
     const std::string lost = num_lost_ > 0 ? fmt::format("{} lines before this one could not be written\n", num_lost_) : "";
     if (write_bytes(lost + io::on_one_line(text.substr(0, kMaxText)) + "\n")) num_lost_ = 0;
     else ++num_lost_;
-  } catch (const std::exception&) {  // no memory
+  } catch (const std::exception&) {  // out of memory
     ++num_lost_;
   }
 }
@@ -39,7 +39,8 @@ void LineLog::write_with_time(const std::string& text) noexcept {
 
 bool LineLog::write_bytes(const std::string& bytes) const {
   pollfd output{.fd = descriptor_, .events = POLLOUT, .revents = 0};
-  if (::poll(&output, 1, 0) != 1 || (output.revents & POLLOUT) == 0) return false;  // a full pipe would make the server wait
+  // a full pipe would block the server
+  if (::poll(&output, 1, 0) != 1 || (output.revents & POLLOUT) == 0) return false;
   ssize_t count = -1;
   do count = ::write(descriptor_, bytes.data(), bytes.size());
   while (count < 0 && errno == EINTR);
@@ -49,7 +50,8 @@ bool LineLog::write_bytes(const std::string& bytes) const {
 void survive_lost_output() {
   std::signal(SIGPIPE, SIG_IGN);
   for (int descriptor = 0; descriptor <= STDERR_FILENO; ++descriptor) {
-    if (::fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) ::open("/dev/null", O_RDWR);  // takes the lowest number that is free
+    // gets the lowest free descriptor
+    if (::fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) ::open("/dev/null", O_RDWR);
   }
 }
 

@@ -10,8 +10,8 @@ struct PngSize {
   int height = 0;
 };
 
-/// Size in the header of a PNG (PNG specification, 5.2 and 11.2.2); none when the bytes do not begin like a PNG, or when a side is outside
-/// 1 ... 2^31 - 1. The image data are not checked.
+/// Size from the header of a PNG (PNG specification, 5.2 and 11.2.2). None when the signature or header is wrong, or a
+/// side is outside 1 ... 2^31 - 1. The image data are not checked.
 inline std::optional<PngSize> png_size(std::string_view bytes) {
   constexpr std::string_view kHead("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
   if (!bytes.starts_with(kHead) || bytes.size() < 24) return std::nullopt;

@@ -18,12 +18,12 @@ using io::Json;
 constexpr int kMostChanges = 200;
 constexpr int kMostTrackPoints = 600;
 constexpr int kMostRings = 500;
-constexpr int kMostRingRows = 40;  // of one ring
+constexpr int kMostRingRows = 40;  // per ring
 constexpr int kMostGasRows = 2'000;
 constexpr int kMostLines = 2'000;
 constexpr int kMostStations = 20;
 constexpr int kMostPage = 200;
-constexpr int kMostRunStations = 500;  // in one answer, as the following
+constexpr int kMostRunStations = 500;  // limits of one page, also those below
 constexpr int kMostCells = 4'000;
 constexpr int kPageLines = 400;
 constexpr int kPageRings = 100;
@@ -38,14 +38,14 @@ Json value_of(const Statement& row, int column) {
   return nullptr;
 }
 
-/// By the columns' names.
+/// JSON object of a row, keyed by column name.
 Json object_of(const Statement& row) {
   Json object;
   for (int column = 0; column < row.num_columns(); ++column) object[row.name(column)] = value_of(row, column);
   return object;
 }
 
-/// All that are left.
+/// JSON objects of the remaining rows.
 Json objects_of(Statement& rows) {
   Json list = Json::array();
   while (rows.step()) list.push_back(object_of(rows));
@@ -61,7 +61,7 @@ constexpr const char* kFindings =
     "CASE level WHEN 1 THEN 'notice' WHEN 2 THEN 'warning' ELSE 'alarm' END AS level, kind, subject, text, x, y, acknowledged_ms, who, note "
     "FROM findings JOIN runs ON runs.number = findings.run";
 
-/// Warnings and alarms that nobody has acknowledged.
+/// Number of unacknowledged warnings and alarms.
 Json open_count(Database& database) {
   Json count = {{"warning", 0}, {"alarm", 0}};
   Statement row = database.prepare("SELECT level, count(*) FROM findings WHERE acknowledged_ms IS NULL AND level >= 2 GROUP BY level");
@@ -76,7 +76,7 @@ Json findings_page(Database& database, const AlarmsPage& page) {
   return objects_of(rows.bind(page.before, std::clamp(page.limit, 1, kMostPage)));
 }
 
-/// At most 600 of a run's positions, in equal steps, and the last.
+/// At most 600 equally spaced positions of a run, and the last one.
 Json track_of(Database& database, std::int64_t run, std::int64_t num_poses) {
   Json track = Json::array();
   const std::int64_t step = num_poses / kMostTrackPoints + 1;
@@ -97,7 +97,7 @@ Json map_geometry(Database& database, std::int64_t seq) {
   return map;
 }
 
-/// One page of a run's stations, and the number at which the next page begins.
+/// Adds one page of a run's stations and the first number of the next page.
 void add_stations(Json& json, Database& database, std::int64_t run, std::int64_t first) {
   Statement row = database.prepare("SELECT value FROM runs, json_each(stations) WHERE number = ?1 LIMIT ?2 OFFSET ?3");
   row.bind(run, kMostRunStations + 1, first);
@@ -109,7 +109,7 @@ void add_stations(Json& json, Database& database, std::int64_t run, std::int64_t
   json["next_station"] = has_more ? Json(first + kMostRunStations) : Json(nullptr);
 }
 
-/// The newest result of each station, their data as they were stored.
+/// Newest result of each station with its data as stored.
 std::string newest_of(Database& database, const std::string& world, const char* kind) {
   std::string list;
   Statement row = database.prepare(
@@ -124,7 +124,7 @@ std::string newest_of(Database& database, const std::string& world, const char* 
   return "[" + list + "]";
 }
 
-/// One page of the cells of the newest scans; moves `page` to the next, and returns whether there is one.
+/// Adds one page of the cells of the newest scans. Advances `page` and returns true when another page follows.
 bool add_scans(Json& scans, Database& database, const std::string& world, LiningPage& page) {
   Statement scan = database.prepare(
       "SELECT seq, results.robot, results.run, results.time_s, results.made_ms, results.summary FROM newest JOIN results USING (seq) "
@@ -155,7 +155,7 @@ bool add_lines(Json& lines, Database& database, const std::string& world, Lining
   return static_cast<std::int64_t>(lines.size()) == limit && page.line < kMostLines;
 }
 
-/// [ring, made_ms, inward_m, std_m, clock_deg], the newest of each ring, in the order of time.
+/// Adds [ring, made_ms, inward_m, std_m, clock_deg] for the newest scans of each ring, in order of time.
 bool add_rings(Json& rings, Database& database, const std::string& world, LiningPage& page) {
   Statement numbers = database.prepare(
       "WITH RECURSIVE known (ring) AS (SELECT min(ring) FROM rings WHERE world = ?1 UNION ALL "

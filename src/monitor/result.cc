@@ -21,11 +21,11 @@ using io::Json;
 using io::JsonObject;
 
 constexpr std::size_t kMostEntries = 100'000;
-constexpr std::size_t kMostResults = 1000;  // in one request
+constexpr std::size_t kMostResults = 1000;  // per request
 constexpr std::size_t kLongestName = 200;
 constexpr std::size_t kLongestText = 2000;
 constexpr std::size_t kLongestSummary = 400;
-constexpr int kMostPixels = 8192;  // of a map's side
+constexpr int kMostPixels = 8192;  // per side of a map
 
 std::string text_of(const JsonObject& object, const char* key, std::size_t least, std::size_t most) {
   const std::string text = object.word(key);

@@ -51,7 +51,7 @@ std::optional<std::int64_t> whole(std::string_view text) {
   return value;
 }
 
-/// The finding that a path names, between its head and its tail.
+/// Number between prefix and suffix of a path, none if the path has another form.
 std::optional<std::int64_t> number_in(std::string_view path, std::string_view head, std::string_view tail) {
   if (!path.starts_with(head) || !path.ends_with(tail) || path.size() <= head.size() + tail.size()) return std::nullopt;
   return whole(path.substr(head.size(), path.size() - head.size() - tail.size()));
@@ -62,7 +62,7 @@ std::string parameter(const HttpRequest& request, const char* name) {
   return there == request.parameters.end() ? "" : there->second;
 }
 
-/// Throws InputError when it is not a whole number.
+/// Integer parameter of a request, `otherwise` if absent. Throws InputError when it is not a whole number.
 std::int64_t count(const HttpRequest& request, const char* name, std::int64_t otherwise) {
   const std::string text = parameter(request, name);
   if (text.empty()) return otherwise;
@@ -75,7 +75,7 @@ int limit_of(const HttpRequest& request, int otherwise) { return static_cast<int
 
 HttpResponse fresh(std::string json) { return {.body = std::move(json), .headers = {{"Cache-Control", "no-store"}}}; }
 
-/// Token of an Authorization header; empty when its scheme is another. Schemes have no case (RFC 9110, 11.1).
+/// Token of an Authorization header, empty for another scheme. Schemes are case-insensitive (RFC 9110, 11.1).
 std::string_view bearer_token(std::string_view header) {
   constexpr std::string_view kScheme = "bearer ";
   const auto is_same_letter = [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); };

@@ -10,22 +10,24 @@
 
 namespace patrol::monitor {
 
-/// The platform behind its address: takes results in, and gives the page what it shows.
+/// HTTP API of the monitoring server: receives results and serves the page and its data.
 ///
-/// Whoever changes something shows the token (`Authorization: Bearer ...`); reading needs none: who may reach the address may see. The
-/// token in a header also keeps other sites' pages from changing anything through a visitor's browser, which sends no such header for them.
+/// Changes require the access token (`Authorization: Bearer ...`). Reading requires none: whoever can reach the address
+/// can read. The token in a header also prevents cross-site request forgery, because browsers do not add this header.
 ///
-///   POST /api/results                         a result or a list of them: {"results": [{"id", "status": stored, known or conflict}]}
+///   POST /api/results                         a result or a list of them:
+///                                             {"results": [{"id", "status": stored, known or conflict}]}
 ///   POST /api/alarms/<number>/acknowledge     {"who", "note"}
 ///   GET  /  /page.css  /page.js  ...  /schema
-///   GET  /api/changes?since=  /api/robots?after=&limit=  /api/alarms?open=&before=&limit=  /api/run?robot=&run=&station=
-///        /api/lining?world=&after=  /api/water?world=  /api/gas?world=  /api/history?robot=&kind=&before=&limit=  /api/maps/<number>
+///   GET  /api/changes?since=  /api/robots?after=&limit=  /api/alarms?open=&before=&limit=
+///        /api/run?robot=&run=&station=  /api/lining?world=&after=  /api/water?world=  /api/gas?world=
+///        /api/history?robot=&kind=&before=&limit=  /api/maps/<number>
 ///
-/// Every answer has a limit, and what is longer comes in pages (queries.h): `limit` has at most 200 rows; `before` takes the lowest number
-/// of the page before, `after` its last robot or its `next`, `station` its `next_station`.
+/// Every response is bounded; longer data are divided into pages (queries.h). `limit` is at most 200 rows. `before` is
+/// the lowest number of the previous page, `after` its last robot or its `next`, and `station` its `next_station`.
 class Service final : public HttpHandler {
  public:
-  /// Requests under other host names than `hosts` allows are refused with 421.
+  /// Requests for host names not in `hosts` are refused with 421.
   Service(Store& store, std::string token, HttpServer::Log log, HostNames hosts = HostNames());
 
   std::optional<HttpResponse> refuse(const HttpRequest& head) override;

@@ -10,28 +10,30 @@
 
 namespace patrol::monitor {
 
-/// What became of a result that was handed in.
+/// Outcome of storing a result.
 enum class Stored {
   kNew,
-  kKnown,     ///< it was there already, the same
-  kConflict,  ///< another one of that id is there; nothing was changed
+  kKnown,     ///< an equal result exists
+  kConflict,  ///< another result with the same id exists; nothing is changed
 };
 
+/// Outcome of an acknowledgment: done, acknowledged earlier, or unknown finding.
 enum class Acknowledged { kDone, kAlready, kUnknown };
 
-/// Keeps results: each id once, for good once `add` returns. Beside them it keeps what the page asks for again and again
-/// (views.h), in the same transaction.
+/// Store of results, one per id, durable once `add` returns. Updates the tables of the page (views.h) in the same
+/// transaction.
 class Store {
  public:
-  /// Made when it is not there. Throws InputError when it cannot be opened, or another process has it open.
+  /// Opens the store, or creates it. Throws InputError when it cannot be opened, or another process has it open.
   explicit Store(const std::filesystem::path& folder);
 
-  /// All in one transaction: on an exception nothing is stored.
+  /// Stores all results in one transaction; on an exception none is stored.
   std::vector<Stored> add(const std::vector<Result>& results, std::int64_t received_ms);
 
+  /// Acknowledges a warning or alarm with the user's name and note.
   Acknowledged acknowledge(std::int64_t finding, const std::string& who, const std::string& note, std::int64_t now_ms);
 
-  /// For the queries (queries.h).
+  /// Database for the queries of queries.h.
   Database& database() { return database_; }
 
  private:

@@ -6,16 +6,17 @@
 
 namespace patrol::monitor {
 
-/// A secret that robots and people at the page show when they change something.
-///
-/// The first line of a file. Throws InputError when it has fewer than 16 characters, or some that cannot stand in an HTTP header.
+/// Reads the access token, which robots and users of the page present to make changes, from the first line of a file.
+/// Throws InputError when it has fewer than 16 characters or characters not allowed in an HTTP header.
 std::string load_token(const std::filesystem::path& file);
+/// Throws InputError, beginning with `place`, for a token that `load_token` would not accept.
 void check_token(const std::string& place, const std::string& token);
 
-/// From the folder's file `token`; made of 256 random bits, for its owner's eyes alone, when there is none.
+/// Reads the token from the file `token` of the folder. Creates the file with 256 random bits, readable by its owner
+/// only, if it does not exist.
 std::string token_of_folder(const std::filesystem::path& folder);
 
-/// In a time that does not tell how much of it is right.
+/// Compares two tokens in constant time, so that the time does not reveal the matching length.
 bool is_same_token(std::string_view a, std::string_view b);
 
 }  // namespace patrol::monitor

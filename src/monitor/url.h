@@ -6,16 +6,17 @@
 
 namespace patrol::monitor {
 
-/// A request's target: its path as it stands there, and what follows the `?`, decoded (RFC 3986, 3.4; the first of a name counts).
+/// Splits a request target into the path as sent and the decoded query parameters (RFC 3986, 3.4). The first value of a
+/// repeated name is used.
 void split_target(const std::string& target, std::string& path, std::map<std::string, std::string, std::less<>>& parameters);
 
-/// Where a platform is.
+/// Host and port of a monitoring server.
 struct Url {
   std::string host;
   std::string port;
 };
 
-/// Of "http://host[:port][/]". Throws InputError when it is anything else.
+/// Parses "http://host[:port][/]". Throws InputError for any other text.
 Url url_from(const std::string& text);
 
 }  // namespace patrol::monitor

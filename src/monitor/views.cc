@@ -59,12 +59,12 @@ WarningLevel finding_level(EventKind kind) {
   }
 }
 
-/// Time at which a result counts as made: a robot's clock that is ahead of the platform's must not outdo all that comes later.
+/// Time used for ordering results. A robot clock that is too far ahead must not hide all later results.
 std::int64_t counted_ms(const Result& result, const Filed& filed) {
   return result.made_ms > filed.received_ms + kClockTolerance_ms ? filed.received_ms : result.made_ms;
 }
 
-/// Enters one result.
+/// Adds one result to the tables.
 class Entry {
  public:
   Entry(Database& database, const Result& result, const Filed& filed) : database_(database), result_(result), filed_(filed), made_ms_(counted_ms(result, filed)) {
@@ -73,7 +73,7 @@ class Entry {
 
   void enter() {
     const Json data = Json::parse(result_.data);
-    bool is_mark = true;  // something that is drawn, beside robots and their track
+    bool is_mark = true;  // drawn on the page, other than robots and track
     if (result_.kind == "status") enter_status(data);
     else if (result_.kind == "event") enter_event(data);
     else if (result_.kind == "lining") enter_lining(io::lining_from_json("result", data));
@@ -93,7 +93,7 @@ class Entry {
     run_ = database_.find_integer("SELECT number FROM runs WHERE robot = ?1 AND run = ?2", result_.robot, result_.run).value();
   }
 
-  /// Results of an earlier run may come late: the robot stays where its newest has it.
+  /// Updates the robot's state. Late results of an earlier run do not change it.
   bool touch_robot(bool is_mark) {
     database_.prepared("INSERT INTO robots (robot, run, made_ms, received_ms, time_s, revision) VALUES (?1, ?2, ?3, ?4, ?5, ?6) ON CONFLICT (robot) DO NOTHING")
         .bind(result_.robot, run_, made_ms_, filed_.received_ms, result_.time_s, filed_.revision)
@@ -110,7 +110,7 @@ class Entry {
 
   void enter_status(const Json& data) {
     const std::string state = data["state"], scenario = data["scenario"], message = data["message"];
-    // A start that comes after its end does not open the run again.
+    // A late start message does not reopen a finished run.
     database_.prepared("UPDATE runs SET scenario = ?2, state = CASE WHEN ?3 = 'started' THEN state ELSE ?3 END, "
                       "message = CASE WHEN ?3 = 'started' THEN message ELSE ?4 END, "
                       "stations = CASE WHEN ?3 = 'started' THEN ?5 ELSE stations END WHERE number = ?1")
@@ -157,7 +157,7 @@ class Entry {
   void enter_lining(const LiningResult& lining) {
     if (!lining.is_registered) return;
     enter_newest(lining.station);
-    std::map<int, LiningCell> most;  // the cell of each ring that has moved inwards most
+    std::map<int, LiningCell> most;  // cell with the maximum inward displacement of each ring
     for (const LiningCell& cell : lining.cells) {
       if (!std::isfinite(cell.inward_m)) continue;
       const auto [there, is_new] = most.try_emplace(cell.ring, cell);
@@ -209,7 +209,7 @@ class Entry {
   Database& database_;
   const Result& result_;
   const Filed& filed_;
-  std::int64_t made_ms_;  ///< time that decides which result is the newest
+  std::int64_t made_ms_;  ///< time used for ordering
   std::int64_t run_ = 0;
 };
 

@@ -5,22 +5,22 @@
 
 namespace patrol::monitor {
 
-/// Where a result stands in the store.
+/// Database record of a stored result.
 struct Filed {
-  std::int64_t seq = 0;          ///< of its row in `results`
-  std::int64_t received_ms = 0;
-  std::int64_t revision = 0;     ///< of the transaction that stored it
+  std::int64_t seq = 0;          ///< row in `results`
+  std::int64_t received_ms = 0;  ///< time of reception, ms since 1970, UTC
+  std::int64_t revision = 0;     ///< revision of the transaction that stored it
 };
 
-/// The tables that the page reads, so that no question of its takes longer with more results: robots, runs, poses, findings, gas, rings,
-/// lines, and the newest scan and sounding of each station. They can be made again from `results`.
+/// Tables for the page, which keep its queries fast for any number of results: robots, runs, poses, findings, gas,
+/// rings, lines, and the newest scan and sounding of each station. They can be rebuilt from `results`.
 extern const char* const kViews;
 
-/// Largest lead of a robot's clock over the platform's. A result whose stamp is later counts in the tables as made when it was received;
-/// the result itself is kept as it was sent.
+/// Maximum lead of a robot's clock over the server's. For later stamps the tables use the time of reception; the stored
+/// result remains as received.
 inline constexpr std::int64_t kClockTolerance_ms = 60'000;
 
-/// Enters a new result there.
+/// Adds a new result to the tables.
 void update_views(Database& database, const Result& result, const Filed& filed);
 
 }  // namespace patrol::monitor

@@ -9,15 +9,15 @@
 namespace patrol::render {
 namespace {
 
-constexpr int kMinContrast = 16;           // of 255: below, no eye sees stairs
-constexpr int kBrightnessPerContrast = 5;  // nor below a fifth of the brightest neighbour
-constexpr float kReach_px = 6.0f;          // along the edge
+constexpr int kMinContrast = 16;           // brightness step, of 255; weaker steps are not visible
+constexpr int kBrightnessPerContrast = 5;  // minimum contrast: a fifth of the brightest neighbor
+constexpr float kReach_px = 6.0f;          // maximum blur length along the edge
 
 struct Tint {
   float r, g, b;
 };
 
-/// Bilinear, at pixel coordinates where integers are pixel centres.
+/// Bilinear interpolation. Integer coordinates are pixel centers.
 Tint sample(const Frame& frame, float x, float y) {
   x = std::clamp(x, 0.0f, static_cast<float>(frame.width() - 1) - 0.001f);
   y = std::clamp(y, 0.0f, static_cast<float>(frame.height() - 1) - 0.001f);
@@ -35,7 +35,7 @@ Tint mean(const Tint& a, const Tint& b) {
   return {0.5f * (a.r + b.r), 0.5f * (a.g + b.g), 0.5f * (a.b + b.b)};
 }
 
-/// Brightness of every pixel, 0 ... 255.
+/// Brightness of each pixel, 0 ... 255.
 std::vector<std::int16_t> brightness_of(const Frame& frame) {
   std::vector<std::int16_t> light(static_cast<std::size_t>(frame.width()) *
                                   static_cast<std::size_t>(frame.height()));
@@ -46,8 +46,8 @@ std::vector<std::int16_t> brightness_of(const Frame& frame) {
   return light;
 }
 
-/// Marks where brightness jumps in one row; `above`, `here`, `below` are the rows' brightness. Plain
-/// arithmetic, for the compiler to do many at once.
+/// Marks the brightness steps of one row. `above`, `here` and `below` are the brightness of adjacent rows. Branch-free
+/// arithmetic, for vectorization by the compiler.
 void mark_edges(const std::int16_t* above, const std::int16_t* here, const std::int16_t* below, int width,
                 std::int16_t* is_edge) {
   for (int x = 1; x + 1 < width; ++x) {
@@ -61,7 +61,7 @@ void mark_edges(const std::int16_t* above, const std::int16_t* here, const std::
   }
 }
 
-/// The pixel, blurred along the edge that it is on: across the gradient of brightness.
+/// Color of a pixel after blurring along its edge, perpendicular to the brightness gradient.
 Color blurred_along_edge(const Frame& sharp, int x, int y, const std::int16_t* above,
                          const std::int16_t* here, const std::int16_t* below) {
   const float nw = above[x - 1], ne = above[x + 1], sw = below[x - 1], se = below[x + 1];
@@ -73,7 +73,7 @@ Color blurred_along_edge(const Frame& sharp, int x, int y, const std::int16_t* a
   const Tint near = mean(sample(sharp, fx - dx / 6, fy - dy / 6), sample(sharp, fx + dx / 6, fy + dy / 6));
   const Tint far = mean(sample(sharp, fx - dx / 2, fy - dy / 2), sample(sharp, fx + dx / 2, fy + dy / 2));
   const Tint both = mean(near, far);
-  // What is darker or brighter than all around comes from beyond the edge.
+  // A value outside the range of the neighborhood was sampled beyond the edge: use the shorter blur.
   const float light = (77.0f * both.r + 150.0f * both.g + 29.0f * both.b) / 256.0f;
   const float middle = here[x];
   const bool is_beyond =

@@ -4,9 +4,9 @@
 
 namespace patrol::render {
 
-/// Softens the stairs of slanted edges: a pixel where brightness jumps is blurred along the edge, never
-/// across it (fast approximate anti-aliasing, T. Lottes, NVIDIA 2009, the variant of few samples). To the eye
-/// nearly as good as four samples a pixel, at a fraction of what those cost a software renderer.
+/// Fast approximate anti-aliasing (FXAA, few-sample variant) [Lottes09]: blurs pixels with a brightness step along the
+/// edge, never across it. The result is close to four samples per pixel at a fraction of their cost in a software
+/// renderer.
 void smooth_edges(Frame& frame);
 
 }  // namespace patrol::render

@@ -10,7 +10,7 @@ namespace patrol::render {
 
 namespace {
 
-/// Above a robot's body, m; none where there is nothing but the sky.
+/// Height of the roof above the robot's body, m; none without a roof.
 std::optional<double> roof_height_m(const Eigen::Vector3d& p_world_body, const FreeDistance& free_distance) {
   constexpr double kMastHeight_m = 0.6, kHighest_m = 12.0;
   if (!free_distance) return std::nullopt;
@@ -30,7 +30,7 @@ CameraKind camera_kind(const std::string& name) {
 
 View look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& focus) {
   View view{.eye = eye, .forward = (focus - eye).normalized(), .focus = focus};
-  // Straight down, up is north.
+  // North is up in a vertical view.
   const bool is_vertical = std::abs(view.forward.z()) > 0.999;
   const Eigen::Vector3d hint = is_vertical ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
   view.up = (hint - hint.dot(view.forward) * view.forward).normalized();
@@ -38,7 +38,7 @@ View look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& focus) {
 }
 
 View look_down(const Eigen::Vector3d& focus, double height_m, const FreeDistance& free_distance) {
-  constexpr double kCut = 0.6;  // of the roof's height
+  constexpr double kCut = 0.6;  // fraction of the roof's height at which it is cut
   View view = look_at(focus + height_m * Eigen::Vector3d::UnitZ(), focus);
   if (const auto roof_m = roof_height_m(focus, free_distance)) view.near_m = height_m - kCut * *roof_m;
   return view;
@@ -104,9 +104,9 @@ View CameraRig::on_board(const Pose3& T_world_body) const {
 }
 
 View CameraRig::chase(double elapsed_s) {
-  constexpr double kReturn_s = 0.8, kLookUp_s = 1.5;  // time constants; it comes near at once
+  constexpr double kReturn_s = 0.8, kLookUp_s = 1.5;  // time constants; the approach is immediate
   constexpr double kClearance_m = 0.25;
-  constexpr double kUp_m = 0.5;  // looks higher by this, under a roof
+  constexpr double kUp_m = 0.5;  // raises the target under a roof
   const Pose3 T_world_rig{*focus_m_, quaternion_from_yaw(heading_rad_)};
   const Eigen::Vector3d over_robot = T_world_rig * Eigen::Vector3d(0.0, 0.0, 0.4);
   const Eigen::Vector3d back = T_world_rig * Eigen::Vector3d(-2.4, 0.0, 1.15) - over_robot;

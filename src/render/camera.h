@@ -12,53 +12,57 @@
 
 namespace patrol::render {
 
+/// Viewpoint of the camera that follows the robot.
 enum class CameraKind {
   kChase,    ///< behind and above the robot
-  kTop,      ///< straight down, north up; a roof is cut away
-  kOnboard,  ///< from the robot's head, looking ahead
+  kTop,      ///< vertically down, north up; a roof is cut away
+  kOnboard,  ///< from the robot's head, looking forward
 };
 
-/// "chase", "top" or "onboard"; throws InputError for anything else.
+/// Parses "chase", "top" or "onboard". Throws InputError for any other text.
 CameraKind camera_kind(const std::string& name);
 
-/// Where the eye is and what it takes in.
+/// Pose, target and projection of a camera.
 struct View {
-  Eigen::Vector3d eye = Eigen::Vector3d::Zero();       ///< m, in world
-  Eigen::Vector3d forward = Eigen::Vector3d::UnitX();  ///< unit
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();       ///< unit, across `forward`
-  Eigen::Vector3d focus = Eigen::Vector3d::Zero();     ///< what it is about: light and shadows go there
-  double field_of_view_rad = 0.9;                      ///< vertical
+  Eigen::Vector3d eye = Eigen::Vector3d::Zero();       ///< camera position in world, m
+  Eigen::Vector3d forward = Eigen::Vector3d::UnitX();  ///< viewing direction, unit vector
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();       ///< unit vector orthogonal to `forward`
+  /// point of interest in world, m; light and shadows are centered there
+  Eigen::Vector3d focus = Eigen::Vector3d::Zero();
+  double field_of_view_rad = 0.9;                      ///< vertical opening angle
   double near_m = 0.05;
   double far_m = 200.0;
 };
 
+/// View from `eye` to `focus` with the default field of view. The horizon is level; north is up in a vertical view.
 View look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& focus);
 
+/// Converts a view to MuJoCo's camera.
 mjvGLCamera gl_camera(const View& view);
 
-/// A point of the world as a pixel: x right and y down from the picture's upper left corner.
+/// Pixel position of a world point: x right and y down from the upper left corner of the picture.
 struct Projected {
   Eigen::Vector2d pixel;
-  double distance_m;  ///< along the view's axis
+  double distance_m;  ///< distance along the viewing axis
 };
 
-/// The pinhole that MuJoCo's perspective cameras are.
+/// Pinhole projection, equal to MuJoCo's perspective camera.
 class Projector {
  public:
   Projector(const View& view, int width, int height);
 
-  /// In the camera: right, up, ahead.
+  /// Transforms a point from world to the camera frame: right, up, ahead.
   Eigen::Vector3d to_camera(const Eigen::Vector3d& point_m) const {
     return R_camera_world_ * (point_m - eye_m_);
   }
-  /// Of a point ahead of the camera.
+  /// Projects a point of the camera frame that lies ahead of the camera.
   Projected project_camera(const Eigen::Vector3d& in_camera_m) const {
     const double scale = focal_px_ / in_camera_m.z();
     return {center_px_ + scale * Eigen::Vector2d(in_camera_m.x(), -in_camera_m.y()), in_camera_m.z()};
   }
-  /// None behind the near plane.
+  /// Projects a world point, none if it lies behind the near plane.
   std::optional<Projected> project(const Eigen::Vector3d& point_m) const;
-  /// Distance along the axis of what the depth buffer (0 near, 1 far) holds.
+  /// Distance along the viewing axis of a depth buffer value (0 near, 1 far).
   double distance_m(float depth) const {
     return near_m_ * far_m_ / (far_m_ - static_cast<double>(depth) * (far_m_ - near_m_));
   }
@@ -75,24 +79,23 @@ class Projector {
   double far_m_;
 };
 
-/// How far one can go from a point along a unit vector, at most `max_m`.
+/// Free distance from a point along a unit vector, at most `max_m`.
 using FreeDistance =
     std::function<double(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m)>;
 
-/// Straight down on a place, north up, from `height_m` above it; a roof is cut away.
+/// View vertically down on a point, north up, from `height_m` above it. A roof is cut away.
 View look_down(const Eigen::Vector3d& focus, double height_m, const FreeDistance& free_distance);
 
-/// Follows the robot. What moves with each step of the trot is smoothed away, in the time of the one who
-/// watches. The chasing camera comes nearer where something would stand between it and the robot, and looks
-/// up where there is a roof: that is what a tunnel is known by.
+/// Camera that follows the robot. Low-pass filters in film time remove the oscillation of the gait. The chase camera
+/// moves closer when an obstacle is between it and the robot, and looks higher under a roof.
 class CameraRig {
  public:
-  /// `head_m` is where the onboard camera is, in the level body.
+  /// `head_m` is the position of the onboard camera in the level body frame.
   explicit CameraRig(CameraKind kind, FreeDistance free_distance = {},
                      const Eigen::Vector3d& head_m = {0.33, 0.0, 0.12})
       : kind_(kind), free_distance_(std::move(free_distance)), head_m_(head_m) {}
 
-  /// `elapsed_s` since the last frame, as it will be watched.
+  /// Returns the view of the next frame, `elapsed_s` of film time after the previous one.
   View follow(const Pose3& T_world_body, double elapsed_s);
 
  private:
@@ -102,10 +105,10 @@ class CameraRig {
   CameraKind kind_;
   FreeDistance free_distance_;
   Eigen::Vector3d head_m_;
-  std::optional<Eigen::Vector3d> focus_m_;  ///< smoothed
-  double heading_rad_ = 0.0;                ///< smoothed
-  double reach_ = 1.0;                      ///< smoothed; 1 where nothing is in the way
-  double roofed_ = 0.0;                     ///< smoothed; 1 under a roof
+  std::optional<Eigen::Vector3d> focus_m_;  ///< low-pass filtered
+  double heading_rad_ = 0.0;                ///< low-pass filtered
+  double reach_ = 1.0;  ///< fraction of the full camera distance, low-pass filtered; 1 without obstacles
+  double roofed_ = 0.0;                     ///< low-pass filtered; 1 under a roof
 };
 
 }  // namespace patrol::render

@@ -26,7 +26,7 @@ std::filesystem::path font_file(bool is_bold) {
                    " is not installed (package fonts-dejavu-core): a replay writes with it");
 }
 
-/// The next character of valid UTF-8; `at` moves behind it.
+/// Decodes the character at `at` of valid UTF-8 and advances `at` past it.
 char32_t next_character(const std::string& text, std::size_t& at) {
   const auto first = static_cast<unsigned char>(text[at++]);
   const int following = first >= 0xf0 ? 3 : first >= 0xe0 ? 2 : first >= 0xc0 ? 1 : 0;
@@ -37,7 +37,7 @@ char32_t next_character(const std::string& text, std::size_t& at) {
   return character;
 }
 
-/// Calls `shade(x, y, distance)` for the pixels around a stroke.
+/// Calls `shade(x, y, distance)` for the pixels around a line segment.
 template <typename Shade>
 void around_segment(const Frame& frame, const Eigen::Vector2d& a, const Eigen::Vector2d& b, double reach,
                     Shade shade) {

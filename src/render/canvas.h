@@ -10,11 +10,13 @@
 
 namespace patrol::render {
 
+/// Color and opacity of a drawing operation, 0 transparent ... 1 opaque.
 struct Brush {
   Color color;
   double opacity = 1.0;
 };
 
+/// Color of `above` with `opacity` over `below`.
 inline Color blend(Color below, Color above, double opacity) {
   const auto mix = [&](std::uint8_t a, std::uint8_t b) {
     return static_cast<std::uint8_t>(a + opacity * (b - a) + 0.5);
@@ -22,21 +24,22 @@ inline Color blend(Color below, Color above, double opacity) {
   return {mix(below.r, above.r), mix(below.g, above.g), mix(below.b, above.b)};
 }
 
-/// Letters of one size.
+/// Font of one size.
 class Font {
  public:
-  /// DejaVu Sans from where Linux distributions keep it. Throws InputError, naming the package, when it is
-  /// not there.
+  /// Loads DejaVu Sans from the font directories of Linux distributions. Throws InputError with the package name when
+  /// the font is not installed.
   explicit Font(int height_px, bool is_bold = false);
   ~Font();
   Font(const Font&) = delete;
   Font& operator=(const Font&) = delete;
 
   int height_px() const { return height_px_; }
-  /// UTF-8; `left`, `baseline`: where the first letter stands. Returns where the next one would.
+  /// Draws UTF-8 text. `left` and `baseline` are the origin of the first letter. Returns the origin of the next letter.
   int draw(Frame& frame, int left, int baseline, const std::string& text, const Brush& brush);
+  /// Width of the text, px.
   int width_px(const std::string& text);
-  /// As much of the text as fits, with an ellipsis where it was cut.
+  /// Longest prefix of the text that fits, with an ellipsis when it was cut.
   std::string fitted(const std::string& text, int width_px);
 
  private:
@@ -45,11 +48,11 @@ class Font {
   int height_px_;
 };
 
-/// Flat drawing on a frame; what lies outside is cut off. Pixel centres are at .5.
+/// 2D drawing on a frame, clipped to the frame. Pixel centers are at .5.
 void fill_rectangle(Frame& frame, int left, int top, int width, int height, const Brush& brush);
 void draw_line(Frame& frame, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double width_px,
                const Brush& brush);
-/// `picture` with its upper left corner at (left, top).
+/// Copies `picture` with its upper left corner to (left, top).
 void paste(Frame& frame, int left, int top, const Frame& picture);
 void draw_disc(Frame& frame, const Eigen::Vector2d& center, double radius_px, const Brush& brush);
 

@@ -14,9 +14,9 @@ namespace {
 
 using RowMajor3 = Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>;
 
-constexpr float kBrightest = 254.0f;  // colours are segment numbers plus one, in the red channel
+constexpr float kBrightest = 254.0f;  // the red channel contains the segment number plus one
 
-/// The view model without what a depth picture does not need, as it goes to OpenGL.
+/// Copies the render model for OpenGL without textures, shadows and multisampling.
 sim::ModelPtr strip_looks(const mjModel& view, const sim::PinholeLens& lens) {
   sim::ModelPtr model(mj_copyModel(nullptr, &view));
   model->ntex = 0;
@@ -48,20 +48,20 @@ bool is_drawn(const mjModel& model, int geom) {
   return is_for_the_eye && alpha > kSeeThrough && !is_housing(model, geom);
 }
 
-/// Luminance (ITU-R BT.709).
+/// Luminance of the geom's color (ITU-R BT.709).
 float reflectivity_of(const mjModel& model, int geom) {
   const float* rgba = rgba_of(model, geom);
   return std::clamp(0.2126f * rgba[0] + 0.7152f * rgba[1] + 0.0722f * rgba[2], 0.0f, 1.0f);
 }
 
-/// A thin round bar as a square one of the same section, which is a hundredth of the vertices: off by a quarter of the radius
-/// at its edges, 8 mm at most.
+/// Replaces a thin round bar by a square bar of equal cross-section with a hundredth of the vertices. The error is a
+/// quarter of the radius at the edges, at most 8 mm.
 void square_off(mjvGeom& drawn) {
   constexpr float kThin_m = 0.03f;
   if (drawn.type != mjGEOM_CAPSULE && drawn.type != mjGEOM_CYLINDER) return;
   const float radius_m = drawn.size[0];
   if (radius_m > kThin_m) return;
-  const float half_side_m = 0.886f * radius_m;  // root of pi, halved
+  const float half_side_m = 0.886f * radius_m;  // sqrt(pi) / 2
   const float half_length_m = drawn.size[2] + (drawn.type == mjGEOM_CAPSULE ? half_side_m : 0.0f);
   drawn.type = mjGEOM_BOX;
   drawn.size[0] = drawn.size[1] = half_side_m;
@@ -70,7 +70,7 @@ void square_off(mjvGeom& drawn) {
 
 }  // namespace
 
-/// Where the camera is, and the sides of what it sees as unit normals that point inwards.
+/// Camera pose, and the side planes of its field of view as unit normals that point inward.
 struct DepthRenderer::Camera {
   Camera(const Pose3& T_world_camera, const sim::PinholeLens& lens)
       : eye(T_world_camera.position), R(T_world_camera.rotation.toRotationMatrix()) {
@@ -89,7 +89,7 @@ struct DepthRenderer::Camera {
 
 DepthRenderer::DepthRenderer(const mjModel& view, const sim::PinholeLens& lens, double near_m, double far_m)
     : lens_(lens), near_m_(near_m), far_m_(far_m), model_(strip_looks(view, lens)), offscreen_(*model_, lens.width_px, lens.height_px) {
-  offscreen_.context().readDepthMap = mjDEPTH_ZEROFAR;  // as it is stored: most exact far away
+  offscreen_.context().readDepthMap = mjDEPTH_ZEROFAR;  // as stored by OpenGL, with the best resolution far away
   collect();
   find_large_meshes();
   mjv_defaultScene(&scene_);
@@ -123,7 +123,7 @@ void DepthRenderer::collect() {
   }
 }
 
-/// Those that stand still and are drawn once.
+/// Finds the static meshes with many faces that are used by one geom only.
 void DepthRenderer::find_large_meshes() {
   constexpr int kLarge = 1000;  // faces
   mjModel& model = *model_;
@@ -148,17 +148,17 @@ void DepthRenderer::find_large_meshes() {
       large.face_radii_m.push_back((corners.colwise() - middle).colwise().norm().maxCoeff());
       large.face_indices.push_back(indices);
     }
-    model.mesh_graphadr[mesh] = -1;  // nobody draws its hull
+    model.mesh_graphadr[mesh] = -1;  // the convex hull is not drawn
     large_meshes_.push_back(std::move(large));
   }
 }
 
-/// Uploads of the large meshes what the camera can see until it has moved on by `kStep_m`.
+/// Uploads the faces of large meshes that the camera can observe until it has moved by `kStep_m`.
 void DepthRenderer::upload_near(const Eigen::Vector3d& eye) {
   constexpr double kStep_m = 3.0;
   if (large_meshes_.empty() || (uploaded_about_ && (eye - *uploaded_about_).norm() < kStep_m)) return;
   uploaded_about_ = eye;
-  // A picture's corner is farther from the eye than its far plane.
+  // The corners of the picture are farther from the camera than the far plane.
   const double reach_m = kStep_m + far_m_ * Eigen::Vector3d(1.0, 0.5 * lens_.width_px / lens_.focal_px, 0.5 * lens_.height_px / lens_.focal_px).norm();
   mjModel& model = *model_;
   for (const LargeMesh& large : large_meshes_) {
@@ -182,7 +182,7 @@ int DepthRenderer::num_near_faces() const {
   return count;
 }
 
-/// Moves what is drawn to where its body is.
+/// Sets the geom's pose from the pose of its body.
 void DepthRenderer::place(Shape& shape, const mjData& data) const {
   if (shape.body == 0) return;
   const Eigen::Map<const RowMajor3> R_world_body(data.xmat + 9 * shape.body);
@@ -192,7 +192,7 @@ void DepthRenderer::place(Shape& shape, const mjData& data) const {
   for (int i = 0; i < 9; ++i) shape.drawn.mat[i] = static_cast<float>(R.data()[i]);
 }
 
-/// A plane without end is drawn as far as the camera sees, from below the camera.
+/// Limits an infinite plane to the camera's range, centered below the camera.
 void DepthRenderer::cut_endless(Shape& shape, const Camera& camera) const {
   if (shape.drawn.type != mjGEOM_PLANE) return;
   Eigen::Map<Eigen::Vector3f> position(shape.drawn.pos);
@@ -220,7 +220,7 @@ void DepthRenderer::aim(const Camera& camera) {
     gl.forward[axis] = static_cast<float>(camera.forward()[axis]);
     gl.up[axis] = static_cast<float>(camera.up()[axis]);
   }
-  gl.frustum_width = static_cast<float>(near_m_ * 0.5 * lens_.width_px / lens_.focal_px);  // half of it
+  gl.frustum_width = static_cast<float>(near_m_ * 0.5 * lens_.width_px / lens_.focal_px);  // half width
   gl.frustum_top = static_cast<float>(near_m_ * 0.5 * lens_.height_px / lens_.focal_px);
   gl.frustum_bottom = -gl.frustum_top;
   gl.frustum_near = static_cast<float>(near_m_);
@@ -246,7 +246,7 @@ void DepthRenderer::draw(const mjData& data, const Pose3& T_world_camera, sim::S
   image.depth_m.resize(depth_.size());
   image.reflectivity.resize(depth_.size());
   for (std::size_t pixel = 0; pixel < depth_.size(); ++pixel) {
-    // 1 at the near plane, 0 at the far plane, linear in the inverse depth.
+    // Depth value: 1 at the near plane, 0 at the far plane, linear in the inverse depth.
     const auto share = static_cast<double>(depth_[pixel]);
     const bool is_something = share > 0.0;
     image.depth_m[pixel] = is_something ? static_cast<float>(near_m_ * far_m_ / (near_m_ + share * (far_m_ - near_m_)))

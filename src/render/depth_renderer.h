@@ -15,46 +15,50 @@
 
 namespace patrol::render {
 
-/// The depth camera's perfect picture, from the depth buffer of an off-screen render. Drawn is what an eye would see, groups 0
-/// and 1 and the robot's own shapes, but for the housing (the link `depth_camera`) and what is mostly transparent; with no
-/// light, texture or shadow, each shape in one colour that says how much light it throws back. Only what may be in sight is
-/// drawn, and of large meshes only what is near: software rendering costs by vertices.
+/// Ideal image of a depth camera, from the depth buffer of an off-screen render. Draws the visible geoms: groups 0 and
+/// 1 and the robot's visual geoms, without the camera housing (link `depth_camera`) and without geoms of low opacity.
+/// There are no lights, textures or shadows; each geom has one color that encodes its reflectivity. The cost of
+/// software rendering grows with the number of vertices: only geoms in the field of view are drawn, and of large meshes
+/// only the faces near the camera.
 ///
-/// Round shapes have 40 sides: off by 0.3 % of their radius at most; bars up to 6 cm thick are drawn square, within 8 mm. How much light a textured shape throws back is taken from its
-/// colour without the texture.
+/// Approximations: Round shapes have 40 sides, an error of at most 0.3 % of their radius. Bars up to 6 cm thick have a
+/// square section, an error of at most 8 mm. The reflectivity of a textured geom is that of its color without the
+/// texture.
 class DepthRenderer : public sim::DepthImager {
  public:
-  /// As sim::DepthImagerFactory. Throws std::runtime_error without OpenGL. It belongs to the thread that made it.
+  /// Parameters as in sim::DepthImagerFactory. Throws std::runtime_error without OpenGL. May be used only in the thread
+  /// that created it.
   DepthRenderer(const mjModel& view, const sim::PinholeLens& lens, double near_m, double far_m);
   ~DepthRenderer() override;
   DepthRenderer(const DepthRenderer&) = delete;
   DepthRenderer& operator=(const DepthRenderer&) = delete;
 
+  /// Renders depth and reflectivity, row 0 at the top. Depth is along the viewing axis, infinite without a surface.
   void draw(const mjData& data, const Pose3& T_world_camera, sim::SurfaceImage& image) override;
 
-  /// Shapes in the last picture.
+  /// Number of geoms in the last picture.
   int num_drawn() const { return scene_.ngeom; }
-  /// Triangles of large meshes that are ready to be drawn.
+  /// Number of uploaded triangles of large meshes.
   int num_near_faces() const;
 
  private:
-  /// A shape that may be drawn, and where it is fixed.
+  /// Drawable geom with its pose relative to its body.
   struct Shape {
     int geom;
-    int body;                  ///< 0: the world
-    Eigen::Vector3d position;  ///< in the body
-    Eigen::Matrix3d rotation;  ///< body from geom
-    double radius_m;           ///< about `position`; 0: a plane
-    std::array<bool, 2> is_endless;  ///< of a plane: along its x, y
+    int body;                  ///< body id; 0: world
+    Eigen::Vector3d position;  ///< in the body frame
+    Eigen::Matrix3d rotation;  ///< R_body_geom
+    double radius_m;           ///< radius of the bounding sphere about `position`; 0 for a plane
+    std::array<bool, 2> is_endless;  ///< plane without end along its x, y
     mjvGeom drawn;
   };
   struct Camera;
-  /// A mesh of the world of which only what is near the camera is uploaded.
+  /// Static mesh of which only the faces near the camera are uploaded.
   struct LargeMesh {
     int mesh;
-    std::vector<Eigen::Vector3d> face_middles;     ///< in world
+    std::vector<Eigen::Vector3d> face_middles;     ///< centroids in world
     std::vector<double> face_radii_m;
-    std::vector<std::array<int, 9>> face_indices;  ///< of its vertices, normals, texture coordinates
+    std::vector<std::array<int, 9>> face_indices;  ///< indices of vertices, normals and texture coordinates
   };
 
   void collect();
@@ -67,7 +71,8 @@ class DepthRenderer : public sim::DepthImager {
 
   sim::PinholeLens lens_;
   double near_m_, far_m_;
-  sim::ModelPtr model_;  ///< the view without looks; its large meshes are cut to what is near
+  /// copy of the render model without textures and shadows; its large meshes contain only the faces near the camera
+  sim::ModelPtr model_;
   Offscreen offscreen_;
   mjvScene scene_;
   std::vector<Shape> shapes_;
@@ -77,7 +82,7 @@ class DepthRenderer : public sim::DepthImager {
   std::vector<float> depth_;
 };
 
-/// For the twin.
+/// Implements sim::DepthImagerFactory.
 std::unique_ptr<sim::DepthImager> make_depth_renderer(const mjModel& view, const sim::PinholeLens& lens, double near_m, double far_m);
 
 }  // namespace patrol::render

@@ -14,8 +14,8 @@
 namespace patrol::render {
 namespace {
 
-/// EGL's library, opened when it is asked for: MuJoCo takes its OpenGL from EGL as soon as it sees EGL in the process
-/// (eglGetProcAddress before OSMesaGetProcAddress), so a program that is linked with EGL could never use OSMesa.
+/// EGL library, loaded at run time. MuJoCo takes its OpenGL functions from EGL whenever EGL is in the process
+/// (eglGetProcAddress before OSMesaGetProcAddress). A program linked with EGL could therefore never use OSMesa.
 class EglLibrary {
  public:
   explicit EglLibrary(bool is_seen_by_mujoco)
@@ -31,7 +31,7 @@ class EglLibrary {
   }
 
  private:
-  void* handle_;  // never closed: MuJoCo keeps pointers into it
+  void* handle_;  // never closed: MuJoCo keeps pointers into the library
 };
 
 bool has_word(const char* words, std::string_view word) {
@@ -53,7 +53,7 @@ std::vector<EGLDeviceEXT> graphics_cards(const EglLibrary& egl) {
   return devices;
 }
 
-/// Ready for use; EGL_NO_DISPLAY when it is not to be had.
+/// Opens and initializes a display, EGL_NO_DISPLAY on failure.
 EGLDisplay open_display(const EglLibrary& egl, EGLenum platform, void* device) {
   const auto get_display = egl.function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
   if (get_display == nullptr) return EGL_NO_DISPLAY;

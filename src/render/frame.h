@@ -12,7 +12,7 @@ struct Color {
   friend bool operator==(const Color&, const Color&) = default;
 };
 
-/// A picture: RGB, 8 bits each, row 0 at the top.
+/// Picture: RGB, 8 bits per channel, row 0 at the top.
 class Frame {
  public:
   Frame() = default;
@@ -26,7 +26,7 @@ class Frame {
   bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
   Color& at(int x, int y) { return pixels_[index(x, y)]; }
   const Color& at(int x, int y) const { return pixels_[index(x, y)]; }
-  /// Three bytes a pixel, no padding.
+  /// Pixel data: three bytes per pixel, no padding.
   std::uint8_t* bytes() { return reinterpret_cast<std::uint8_t*>(pixels_.data()); }
   const std::uint8_t* bytes() const { return reinterpret_cast<const std::uint8_t*>(pixels_.data()); }
 
@@ -43,7 +43,7 @@ class Frame {
 };
 static_assert(sizeof(Color) == 3);
 
-/// Throw InputError when the file cannot be written, or read as a PNG.
+/// Saves or loads a PNG. Throws InputError when the file cannot be written, or cannot be read as a PNG.
 void save_png(const std::filesystem::path& file, const Frame& frame);
 Frame load_png(const std::filesystem::path& file);
 

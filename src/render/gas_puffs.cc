@@ -12,7 +12,7 @@
 namespace patrol::render {
 namespace {
 
-/// -0.5 ... 0.5, always the same for the same puff.
+/// Reproducible pseudorandom offset of a puff, -0.5 ... 0.5.
 double scatter(std::int64_t along, int across, int up, unsigned axis) {
   std::uint64_t x = static_cast<std::uint64_t>(along) * 0x9e3779b97f4a7c15u + static_cast<std::uint64_t>(across + 64) * 0xbf58476d1ce4e5b9u +
                     static_cast<std::uint64_t>(up + 64) * 0x94d049bb133111ebu + axis;
@@ -21,7 +21,7 @@ double scatter(std::int64_t along, int across, int up, unsigned axis) {
   return static_cast<double>(x >> 11) * 0x1p-53 - 0.5;
 }
 
-/// Pixels of a coarse picture of the gas: soft as it is, it needs no more.
+/// Optical depth of the gas on a coarse grid of pixels; the gas has no sharp edges.
 struct Veil {
   int step, width, height;
   std::vector<float> optical_depth;
@@ -34,10 +34,10 @@ struct Veil {
   float& at(int x, int y) { return optical_depth[static_cast<std::size_t>(y * width + x)]; }
 };
 
-/// Adds what a puff takes of the light: all of it where nothing stands before its far side, none where something stands before
-/// its near side.
+/// Adds a puff's optical depth: all of it where no object is in front of the puff's far side, none where an object is
+/// in front of its near side.
 void add(Veil& veil, const Frame& frame, const std::vector<float>& depth, const Projector& projector, const Puff& puff) {
-  constexpr double kReach = 2.3;  // radii
+  constexpr double kReach = 2.3;  // in standard deviations
   const std::optional<Projected> middle = projector.project(puff.p_world_m);
   if (!middle || middle->distance_m < 2.0 * puff.radius_m) return;
   const double reach_px = kReach * puff.radius_m * projector.focal_px() / middle->distance_m;
@@ -81,7 +81,8 @@ GasCloud::GasCloud(const mjModel& world, const std::vector<sim::LeakSettings>& l
   }
 }
 
-// A lattice that widens downwind about as the plume does; each of its points stands for the gas around it.
+// Samples the plume on a lattice that widens downwind at about the plume's rate. Each puff contains the gas around its
+// lattice point.
 std::vector<Puff> GasCloud::puffs(double now_s, double drift_m) const {
   constexpr double kStep_m = 0.15, kUpwind_m = 0.25, kReach_m = 6.0, kLeast_ppm_m = 15.0;
   constexpr int kBeside = 3;
@@ -94,7 +95,8 @@ std::vector<Puff> GasCloud::puffs(double now_s, double drift_m) const {
     for (std::int64_t n = first; n <= last; ++n) {
       const double along_m = static_cast<double>(n) * kStep_m + drift_m;
       const double spacing_m = 0.09 + 0.1 * std::max(along_m, 0.0);
-      const double ends = std::clamp(std::min(along_m + kUpwind_m, kReach_m - along_m), 0.0, 1.0);  // none appears at once
+      // fades puffs in and out at the ends of the lattice
+      const double ends = std::clamp(std::min(along_m + kUpwind_m, kReach_m - along_m), 0.0, 1.0);
       for (int j = -kBeside; j <= kBeside; ++j) {
         for (int k = -kBeside; k <= kBeside; ++k) {
           const Eigen::Vector2d place = plume.source_m.head<2>() + (along_m + kStep_m * scatter(n, j, k, 0)) * downwind_ +

@@ -11,15 +11,15 @@
 
 namespace patrol::render {
 
-/// A soft ball of gas.
+/// Gaussian ball of gas.
 struct Puff {
   Eigen::Vector3d p_world_m;
-  double radius_m;    ///< standard deviation of its density
-  double column_ppm_m;  ///< of methane, through its middle
+  double radius_m;    ///< standard deviation of the density
+  double column_ppm_m;  ///< methane column through the center
 };
 
-/// A run's leaks, for the eye: puffs that drift downwind, as dense as the twin's own plume is where they are. The plume is a
-/// steady one: how they drift says nothing but where the wind blows to.
+/// Gas of a run's leaks as puffs that drift downwind, with the concentration of the simulated plume at their positions.
+/// The plume is stationary: the drift only shows the wind direction.
 class GasCloud {
  public:
   GasCloud() = default;
@@ -27,7 +27,8 @@ class GasCloud {
   GasCloud(const mjModel& world, const std::vector<sim::LeakSettings>& leaks, const sim::WindSettings& wind);
 
   bool is_empty() const { return plumes_.empty(); }
-  /// `now_s` of the run: a leak may begin later. `drift_m`: how far the puffs have come.
+  /// Puffs at time `now_s` of the run; a leak has none before its start. `drift_m` is the distance by which the puffs
+  /// have drifted.
   std::vector<Puff> puffs(double now_s, double drift_m) const;
 
  private:
@@ -40,8 +41,8 @@ class GasCloud {
   Eigen::Vector2d downwind_ = Eigen::Vector2d::UnitX();
 };
 
-/// Draws them on a finished frame, hidden by what stands before them; `depth` as in Offscreen::read_depth. A column of
-/// kVeiling_ppm_m lets 37 % of what is behind through.
+/// Draws puffs on a finished frame, occluded by objects in front of them. `depth` as in Offscreen::read_depth. A column
+/// of kVeiling_ppm_m transmits 37 % of the background.
 inline constexpr double kVeiling_ppm_m = 4000.0;
 void draw_puffs(Frame& frame, const std::vector<float>& depth, const Projector& projector, const std::vector<Puff>& puffs);
 

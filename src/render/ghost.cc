@@ -10,7 +10,7 @@ namespace {
 
 using RowMajor3f = Eigen::Matrix<float, 3, 3, Eigen::RowMajor>;
 
-/// Of the robot's base, as a level pose in world.
+/// Planar pose of the robot's base in world.
 Pose2 level_pose(const mjData& data, int body) {
   const mjtNum* p = data.xpos + 3 * body;
   const mjtNum* q = data.xquat + 4 * body;
@@ -18,8 +18,8 @@ Pose2 level_pose(const mjData& data, int body) {
 }
 
 void tint(mjvGeom& geom, double opacity) {
-  constexpr double kMostOpaque = 0.32;  // MuJoCo 3.17 blends what is translucent in twice
-  geom.category = mjCAT_DECOR;  // throws no shadow
+  constexpr double kMostOpaque = 0.32;  // MuJoCo 3.17 blends translucent geoms twice
+  geom.category = mjCAT_DECOR;  // casts no shadow
   geom.matid = -1;
   geom.emission = 0.4f;
   geom.specular = geom.shininess = geom.reflectance = 0.0f;
@@ -33,7 +33,7 @@ void tint(mjvGeom& geom, double opacity) {
 
 double ghost_opacity(const Pose2& T_true_estimate) {
   constexpr double kUnseen_m = 0.04, kSeen_m = 0.12;
-  constexpr double kLever_m = 0.5;  // what is turned is off by this much times the angle, at the robot's ends
+  constexpr double kLever_m = 0.5;  // half length of the robot: converts yaw error to displacement
   const double off_m = T_true_estimate.position().norm() + kLever_m * std::abs(T_true_estimate.yaw);
   return std::clamp((off_m - kUnseen_m) / (kSeen_m - kUnseen_m), 0.0, 1.0);
 }

@@ -5,35 +5,35 @@
 
 namespace patrol::render {
 
-/// Whose OpenGL draws, without a display.
+/// OpenGL implementation for rendering without a display.
 enum class Renderer {
-  kAuto,    ///< EGL where a graphics card answers, else software
-  kOsmesa,  ///< Mesa's software renderer, straight into memory; gone from Mesa 25.1 on
-  kEgl,     ///< a graphics card, or where there is none the same software renderer
+  kAuto,    ///< EGL if a graphics card is found, else software
+  kOsmesa,  ///< Mesa's software renderer, directly into memory; removed in Mesa 25.1
+  kEgl,     ///< a graphics card, or without one Mesa's software renderer
 };
 
-/// "auto", "egl" or "osmesa"; throws InputError for anything else.
+/// Parses "auto", "egl" or "osmesa". Throws InputError for any other text.
 Renderer renderer_named(const std::string& name);
 
-/// Software: OSMesa where the program was built with it, else EGL.
+/// Software renderer: OSMesa if the program was built with it, else EGL.
 Renderer software_renderer();
 
-/// An OpenGL context that has no window. MuJoCo takes the functions of the first context that it meets in a process, and keeps
-/// them: two kinds do not go together in one process.
+/// OpenGL context without a window. MuJoCo keeps the function pointers of the first context in a process, so OSMesa and
+/// EGL cannot be mixed in one process.
 class GlContext {
  public:
   virtual ~GlContext() = default;
-  /// In this thread. Throws std::runtime_error when it cannot be.
+  /// Makes the context current in the calling thread. Throws std::runtime_error on failure.
   virtual void make_current() = 0;
 };
 
-/// Throws InputError when the renderer asked for is not there, std::runtime_error when it gives no context.
+/// Throws InputError when the requested renderer is not available, std::runtime_error when it creates no context.
 std::unique_ptr<GlContext> make_gl_context(Renderer renderer);
 
-// The kinds, each in a file of its own.
+// Implementations, each in its own file.
 std::unique_ptr<GlContext> make_osmesa_context();
 std::unique_ptr<GlContext> make_egl_context();
-/// Whether EGL finds a graphics card that answers.
+/// True when EGL opens a display on a graphics card.
 bool has_graphics_card();
 
 }  // namespace patrol::render

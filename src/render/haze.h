@@ -7,15 +7,15 @@
 
 namespace patrol::render {
 
-/// What hangs in the air: it takes light that comes from a thing, and sends some of its own to the eye.
+/// Homogeneous participating medium (fog, dust): extinction coefficient and in-scattered color.
 struct Haze {
-  double extinction_per_m = 0.0;  ///< 0 in clear air
-  Color color;                    ///< of air that one sees nothing through
+  double extinction_per_m = 0.0;  ///< 0: clear air
+  Color color;                    ///< in-scattered color: color of the medium at infinite distance
 };
 
-/// Draws the haze between eye and things into a picture of clear air. After a way of d metres a share exp(-extinction d) of
-/// what was there is left, the rest is haze (Koschmieder 1924). The way begins at the view's near plane: where that cuts
-/// something away, it cuts the air away too. `depth` as in Offscreen::read_depth.
+/// Applies the medium to a picture of clear air. After d meters the fraction exp(-extinction d) of the object's color
+/// remains; the rest is the color of the haze [Koschmieder24]. The distance starts at the view's near plane: what the
+/// plane cuts away contains no haze. `depth` as in Offscreen::read_depth.
 void add_haze(Frame& frame, const std::vector<float>& depth, const View& view, const Haze& haze);
 
 }  // namespace patrol::render

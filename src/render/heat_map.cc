@@ -24,7 +24,7 @@ class Sheet {
     constexpr double kMaxHeight_px = 1100.0;
     px_per_m_ = std::min({max_width_px / shown_.sizes().x(), kMaxHeight_px / shown_.sizes().y(), 1.0 / map.surfaces.geometry().resolution_m});
     picture_height_px_ = static_cast<int>(std::ceil(px_per_m_ * shown_.sizes().y()));
-    constexpr int kLeastWidth_px = 640;  // for the scale
+    constexpr int kLeastWidth_px = 640;  // minimum width for the color scale
     frame_ = Frame(std::max(static_cast<int>(std::ceil(px_per_m_ * shown_.sizes().x())), kLeastWidth_px), picture_height_px_ + kFooter_px, kPaper);
   }
 

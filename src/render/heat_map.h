@@ -10,30 +10,31 @@
 
 namespace patrol::render {
 
-/// A figure of places, drawn as colours over the surfaces between which they lie.
+/// Scalar value at map positions, drawn as colors under the surfaces of the map.
 struct HeatMap {
   struct Place {
     Eigen::Vector2d p_m;
-    double share = 0.0;            ///< 0 ... 1 of the scale's colours
+    double share = 0.0;            ///< position on the color scale, 0 ... 1
     bool has_stroke = false;
-    double stroke_rad = 0.0;       ///< a direction to be shown there, in the map's frame
+    double stroke_rad = 0.0;       ///< direction of the stroke, in the map's frame
   };
   struct Tick {
     double share = 0.0;
     std::string text;
   };
-  OccupancyGrid surfaces;
-  double step_m = 0.5;             ///< from place to place: each is a square so wide
+  OccupancyGrid surfaces;  ///< map drawn over the colors
+  double step_m = 0.5;             ///< distance between positions; each is drawn as a square of this side
   std::vector<Place> places;
   std::string title;
   std::string note;
-  std::vector<Tick> scale;         ///< written below the colours
+  std::vector<Tick> scale;         ///< labels below the color scale
 };
 
-/// The places' surroundings, north up, at most `max_width_px` wide, the scale below.
+/// Draws the surroundings of the positions, north up, at most `max_width_px` wide, with the color scale below.
 Frame draw_heat_map(const HeatMap& map, int max_width_px = 1600);
 
-/// Dark blue, green, yellow: growing lightness, told apart by the colour-blind and in grey.
+/// Color scale from dark blue over green to yellow. Lightness increases, so it is readable with color blindness and in
+/// gray.
 Color heat_color(double share);
 
 }  // namespace patrol::render

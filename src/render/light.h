@@ -6,10 +6,9 @@
 
 namespace patrol::render {
 
-/// How bright it is, for the eye that watches a replay. No sensor of the robots needs the light: lidar and depth camera bring
-/// their own, which is infrared.
+/// Brightness of a replay's pictures. No sensor depends on it: lidar and depth camera have their own infrared light.
 struct LightSettings {
-  double brightness_share = 1.0;  ///< of the light that the world's lamps, sun and sky give
+  double brightness_share = 1.0;  ///< fraction of the light of the world's lamps, sun and sky
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -17,9 +16,8 @@ struct LightSettings {
   }
 };
 
-/// Dims what shines and glows, the sky, and the fog, which has its light from them. To the eye, and so in a picture, a share s of
-/// the light is s^(1/2.2) of the brightness (sRGB's gamma): at a third of the light one still sees well. For a model whose
-/// textures have not been uploaded yet.
+/// Dims lamps, emission, sky and fog. A fraction s of the light becomes s^(1/2.2) of the brightness in the picture
+/// (gamma of sRGB). Must be called before the model's textures are uploaded.
 void set_light(mjModel& view, const LightSettings& light);
 
 }  // namespace patrol::render

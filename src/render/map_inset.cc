@@ -17,7 +17,7 @@ constexpr Color kFreeCell{214, 218, 222};
 constexpr Color kOccupiedCell{16, 18, 24};
 constexpr Color kBorderColor{235, 238, 242};
 
-/// The corners of what the map knows, in world.
+/// Bounding box of the known cells, in world.
 Eigen::AlignedBox2d known_part(const OccupancyGrid& map, const Pose2& T_world_map) {
   const GridGeometry& geometry = map.geometry();
   Cell low{geometry.width, geometry.height}, high{-1, -1};
@@ -46,7 +46,7 @@ void MapInset::draw(Frame& frame, const RunSnapshot& snapshot) {
   if (snapshot.map != map_) lay_out(frame, snapshot);
   if (picture_.width() == 0) return;
 
-  const double scale = frame.height() / 720.0;  // of lines
+  const double scale = frame.height() / 720.0;  // line width scale
   Frame inset = picture_;
   for (const Eigen::Vector3d& hit : snapshot.scan) {
     const Eigen::Vector2d p = pixel_of(hit.head<2>());
@@ -82,10 +82,10 @@ void MapInset::draw(Frame& frame, const RunSnapshot& snapshot) {
   paste(frame, left, top, inset);
 }
 
-// Every occupied cell blackens its pixel: a wall of one cell stays visible however small the picture is.
+// Paints the pixel of every occupied cell, so that walls of one cell stay visible at any scale.
 void MapInset::lay_out(const Frame& frame, const RunSnapshot& snapshot) {
-  constexpr double kMaxWidth = 0.28, kMaxHeight = 0.52, kMaxStripWidth = 0.42;  // of the frame
-  constexpr double kStrip = 4.0;  // a map this many times as long as it is high leaves room above
+  constexpr double kMaxWidth = 0.28, kMaxHeight = 0.52, kMaxStripWidth = 0.42;  // fractions of the frame
+  constexpr double kStrip = 4.0;  // aspect ratio above which a map may be wider, because it is low
   constexpr double kMargin_m = 1.0;
   map_ = snapshot.map;
   Eigen::AlignedBox2d shown = known_part(*map_, snapshot.T_world_map);

@@ -7,20 +7,21 @@
 
 namespace patrol::render {
 
-/// The map as it is being built, north up, in the lower right corner of a frame, with scan, paths, particles, and the robot
-/// where it believes to be, over where it is.
+/// Current map, north up, in the lower right corner of a frame, with scan, paths, particles, and the estimated robot
+/// pose over the true one.
 class MapInset {
  public:
+  /// Draws the inset. No effect before the first map.
   void draw(Frame& frame, const RunSnapshot& snapshot);
 
  private:
   void lay_out(const Frame& frame, const RunSnapshot& snapshot);
-  /// In the picture.
+  /// Pixel of a world point in the inset.
   Eigen::Vector2d pixel_of(const Eigen::Vector2d& p_world_m) const;
 
-  std::shared_ptr<const OccupancyGrid> map_;  ///< that the picture is of
+  std::shared_ptr<const OccupancyGrid> map_;  ///< map that `picture_` was drawn from
   Frame picture_;
-  Eigen::Vector2d low_m_ = Eigen::Vector2d::Zero(), high_m_ = Eigen::Vector2d::Zero();  ///< shown, in world
+  Eigen::Vector2d low_m_ = Eigen::Vector2d::Zero(), high_m_ = Eigen::Vector2d::Zero();  ///< displayed area in world
   double px_per_m_ = 1.0;
 };
 

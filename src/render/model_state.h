@@ -6,8 +6,8 @@
 
 namespace patrol::render {
 
-/// Moves robot and actors to where a logged state has them, and works out where every geom is. Throws InputError when the state
-/// is not one of this model.
+/// Sets robot and actors to a logged state and computes the poses of all geoms. Throws InputError when the state does
+/// not belong to this model.
 void put_state(const mjModel& model, const SimState& state, mjData& data);
 
 }  // namespace patrol::render

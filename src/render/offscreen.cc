@@ -15,8 +15,8 @@ Offscreen::Offscreen(const mjModel& model, int width, int height, Renderer rende
   mjr_defaultContext(&context_);
   mjr_makeContext(&model, &context_, mjFONTSCALE_100);
   mjr_setBuffer(mjFB_OFFSCREEN, &context_);
-  // Made anew without multisampling, whose depth is that of a sample off the pixel's centre, and which costs
-  // most of a frame.
+  // Recreates the buffer without multisampling: a multisampled depth is not that of the pixel's center, and
+  // multisampling takes most of a frame's time.
   context_.offSamples = 0;
   mjr_resizeOffscreen(width + 1, height + 1, &context_);
   mjr_resizeOffscreen(width, height, &context_);

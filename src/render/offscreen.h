@@ -10,13 +10,13 @@
 
 namespace patrol::render {
 
-/// MuJoCo's own renderer drawing into memory: no display, and no graphics card unless one is asked for. It belongs
-/// to the thread that made it; two of them in one thread take turns by `make_current`.
+/// MuJoCo's renderer, drawing into memory without a display, and without a graphics card unless one is requested. May
+/// be used only in the thread that created it. Two instances in one thread alternate by `make_current`.
 class Offscreen {
  public:
-  /// Uploads the model's textures and meshes; `model` is not needed afterwards. Throws std::runtime_error
-  /// when there is no usable OpenGL, or when the size is more than it can do. One sample a pixel, at its
-  /// centre, whatever the model asks for.
+  /// Uploads the model's textures and meshes; `model` is not needed afterwards. Throws std::runtime_error when OpenGL
+  /// is not usable or the size exceeds its limits. Renders one sample per pixel, at its center, whatever the model
+  /// requests.
   Offscreen(const mjModel& model, int width, int height, Renderer renderer = software_renderer());
   ~Offscreen();
   Offscreen(const Offscreen&) = delete;
@@ -27,10 +27,10 @@ class Offscreen {
   mjrContext& context() { return context_; }
 
   void make_current();
-  /// Draws into the off-screen buffer.
+  /// Draws the scene into the off-screen buffer.
   void render(mjvScene& scene);
   void read(Frame& frame);
-  /// Rows from the top; as OpenGL has it, 0 at the near plane and 1 at the far plane.
+  /// Reads the depth buffer, row 0 at the top: 0 at the near plane, 1 at the far plane (OpenGL's nonlinear depth).
   void read_depth(std::vector<float>& depth);
 
  private:

@@ -8,8 +8,8 @@
 namespace patrol::render {
 namespace {
 
-/// MuJoCo draws into a frame buffer object of its own; the buffer that OSMesa asks for is only there to be
-/// asked for.
+/// OSMesa context with a small dummy buffer. OSMesa requires a buffer, but MuJoCo renders into its own frame buffer
+/// object.
 class OsmesaContext : public GlContext {
  public:
   OsmesaContext() : context_(OSMesaCreateContextExt(OSMESA_RGBA, 24, 8, 0, nullptr)) {

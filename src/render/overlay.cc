@@ -15,7 +15,7 @@
 namespace patrol::render {
 namespace {
 
-constexpr double kDrift_mps = 0.35;  // of puffs of gas, as one watches
+constexpr double kDrift_mps = 0.35;  // drift of gas puffs in film time
 
 std::string clock_text(Time time) {
   const double seconds = to_seconds(time);
@@ -30,7 +30,7 @@ std::string figures_text(const RunSnapshot& snapshot) {
                                  snapshot.is_driving ? "driven" : "walked", snapshot.travelled_m);
 }
 
-/// What the methane meter reads, and how fast the film runs.
+/// Reading of the methane meter and playback speed.
 std::string beside_text(const RunSnapshot& snapshot, const std::optional<FilmNote>& note) {
   std::string text;
   if (snapshot.gas) text += fmt::format("methane {:.0f} ppm m", snapshot.gas->column_ppm_m);
@@ -116,7 +116,7 @@ void Overlay::draw_caption(Frame& frame, const std::vector<std::string>& lines, 
   }
 }
 
-/// How far the film is, and where its moments are.
+/// Progress bar of the film with marks at the highlights.
 void Overlay::draw_timeline(Frame& frame, const FilmNote& note) {
   const int height = std::max(2, static_cast<int>(std::lround(4.0 * scale_))), top = frame.height() - height;
   const auto at = [&](double film_s) {

@@ -12,25 +12,25 @@
 
 namespace patrol::render {
 
-/// What a replay adds to the picture of the world: gas, paths, scan and plan where they lie, the map in a corner,
-/// figures, and what a film has to say.
+/// Annotations over the rendered world: gas, paths, scan and plan at their positions, the map in a corner, values,
+/// legend, and the notes of a film.
 class Overlay {
  public:
-  /// Letters and lines fit a frame of this height. Throws InputError when there is no font.
+  /// Scales fonts and lines to the frame height. Throws InputError when the font is not installed.
   explicit Overlay(int frame_height, GasCloud gas = {});
 
-  /// `note`: of a film; none for a picture of its own.
+  /// Draws on a rendered frame; `depth` as in Offscreen::read_depth. `note` is none for a still picture.
   void draw(Frame& frame, const std::vector<float>& depth, const View& view, const RunSnapshot& snapshot,
             const std::optional<FilmNote>& note = {});
 
  private:
   void draw_figures(Frame& frame, const RunSnapshot& snapshot, const std::optional<FilmNote>& note);
-  /// Returns its upper edge.
+  /// Returns the upper edge of the legend, px.
   int draw_legend(Frame& frame, const RunSnapshot& snapshot);
   void draw_caption(Frame& frame, const std::vector<std::string>& lines, int bottom);
   void draw_timeline(Frame& frame, const FilmNote& note);
 
-  double scale_;  ///< of lines: 1 in a frame 720 pixels high
+  double scale_;  ///< line width scale: 1 for a frame of 720 pixels height
   Font figures_;
   Font words_;
   Font title_;

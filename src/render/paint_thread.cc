@@ -10,7 +10,7 @@
 namespace patrol::render {
 namespace {
 
-/// Makes what a thread works with, and tells whether that went well; null where it did not.
+/// Creates a thread's resources and reports success or the error through `is_ready`. Null on failure.
 template <typename Make>
 auto made_or_told(std::promise<void>& is_ready, Make make) -> decltype(make()) {
   try {

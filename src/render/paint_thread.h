@@ -15,28 +15,29 @@
 
 namespace patrol::render {
 
-/// What a picture of a run is painted with, whatever it shows.
+/// Settings of the renderer that apply to all frames.
 struct PaintSettings {
   int width = 1280;
   int height = 720;
-  double extinction_per_m = 0.0;  ///< of dust
+  double extinction_per_m = 0.0;  ///< extinction coefficient of the dust
   GasCloud gas = {};
   Renderer renderer = Renderer::kAuto;
 };
 
-/// Paints finished replay frames, two at a time: one thread draws the world, another smooths its edges and lays the overlay on
-/// it. Only the first has OpenGL: with a context in each of two threads OSMesa 22.3 crashed in one of 13 films, nobody knows why,
-/// and they would share its rasteriser, which uses every core for one of them already. What is painted depends on nothing but what
-/// is given.
+/// Renders finished replay frames in a pipeline of two threads: one draws the world, the other smooths edges and draws
+/// the overlay. Only the first uses OpenGL. With one context in each of two threads, OSMesa 22.3 crashed in one of 13
+/// films (cause unknown). Its rasterizer uses every core with one context already. A frame depends only on the
+/// arguments of `paint`.
 class PaintThread {
  public:
-  /// Waits until OpenGL and fonts are there; throws what kept them from that. `view` must outlive the threads.
+  /// Waits until OpenGL and fonts are ready, or rethrows the error of the thread that failed. `view` must outlive this
+  /// object.
   PaintThread(const mjModel& view, const PaintSettings& settings);
   ~PaintThread();
   PaintThread(const PaintThread&) = delete;
   PaintThread& operator=(const PaintThread&) = delete;
 
-  /// `note` as for Overlay.
+  /// Queues a frame. `note` as in Overlay::draw. Thread-safe.
   std::future<Frame> paint(RunSnapshot snapshot, const View& view, std::optional<FilmNote> note = {});
 
  private:

@@ -2,7 +2,7 @@
 
 #include "render/frame.h"
 
-/// One colour, one meaning, in the world and in the map.
+/// Colors with one meaning each, in the world and in the map.
 namespace patrol::render {
 
 inline constexpr Color kTruthColor{46, 204, 84};

@@ -21,7 +21,7 @@ namespace {
 
 using Bounds = Eigen::AlignedBox3d;
 
-/// A shape that the slice cuts.
+/// Geom that intersects the slice.
 struct CutGeom {
   int geom;
   Bounds bounds;  ///< in world
@@ -37,7 +37,7 @@ bool lidar_can_hit(const mjModel& model, int geom) {
 }
 
 Bounds bounds_in_world(const mjModel& model, const mjData& data, int geom) {
-  const mjtNum* local = model.geom_aabb + 6 * geom;  // centre, half sizes
+  const mjtNum* local = model.geom_aabb + 6 * geom;  // center, half sizes
   const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> R(data.geom_xmat + 9 * geom);
   const Eigen::Vector3d center = Eigen::Map<const Eigen::Vector3d>(data.geom_xpos + 3 * geom) +
                                  R * Eigen::Map<const Eigen::Vector3d>(local);
@@ -49,14 +49,14 @@ std::vector<CutGeom> geoms_cut_at(const mjModel& model, const mjData& data, doub
   std::vector<CutGeom> cut;
   for (int geom = 0; geom < model.ngeom; ++geom) {
     if (!stands_still(model, model.geom_bodyid[geom]) || !lidar_can_hit(model, geom)) continue;
-    if (model.geom_type[geom] == mjGEOM_PLANE) continue;  // has no inside
+    if (model.geom_type[geom] == mjGEOM_PLANE) continue;  // has no interior
     const Bounds bounds = bounds_in_world(model, data, geom);
     if (bounds.min().z() < height_m && bounds.max().z() > height_m) cut.push_back({geom, bounds});
   }
   return cut;
 }
 
-/// Cells aligned to the world's origin, so that maps of one world at two heights fit each other.
+/// Grid aligned to the world's origin, so that maps of one world at different heights have matching cells.
 GridGeometry geometry_around(const Bounds& bounds, const ReferenceMapSettings& settings) {
   const double r = settings.resolution_m;
   const auto first = [&](double low_m) { return std::floor((low_m - settings.margin_m) / r); };
@@ -69,7 +69,7 @@ GridGeometry geometry_around(const Bounds& bounds, const ReferenceMapSettings& s
           .origin_m = low * r};
 }
 
-/// A MuJoCo scene that holds just the shapes it is given.
+/// MuJoCo scene with selected geoms only.
 class SliceScene {
  public:
   explicit SliceScene(std::size_t max_geoms) {
@@ -92,7 +92,7 @@ class SliceScene {
     if (model.geom_type[geom] == mjGEOM_HFIELD) added.dataid = model.geom_dataid[geom];
   }
 
-  /// Depth, rows from high y to low y, columns along the camera's right: +x looking down, -x looking up.
+  /// Renders the depth: rows from high y to low y, columns along the camera's right (+x looking down, -x looking up).
   void render(Offscreen& offscreen, const Eigen::Vector3d& center_m, double width_m, double depth_m,
               bool looks_down, bool front_faces_only, std::vector<float>& depth) {
     constexpr float kNear_m = 1.0f;
@@ -120,11 +120,11 @@ class SliceScene {
   mjvScene scene_;
 };
 
-/// Which cells have their centre in something solid.
+/// Computes the cells whose center is inside a solid.
 Grid<std::uint8_t> render_solid(const mjModel& model, const mjData& data, const std::vector<CutGeom>& cut,
                                 const GridGeometry& geometry, double height_m) {
-  constexpr int kTile = 1000;          // cells, one a pixel
-  constexpr float kSameDepth = 1e-5f;  // of the whole depth
+  constexpr int kTile = 1000;          // cells; one pixel per cell
+  constexpr float kSameDepth = 1e-5f;  // tolerance as a fraction of the depth range
   const int tile_width = std::min(kTile, geometry.width), tile_height = std::min(kTile, geometry.height);
   Offscreen offscreen(model, tile_width, tile_height);
   SliceScene scene(cut.size());
@@ -182,10 +182,10 @@ OccupancyGrid surface_of(const Grid<std::uint8_t>& solid) {
   return map;
 }
 
-/// Marks the cells behind every surface that rays along the centre lines of rows and columns cross.
+/// Marks the cells behind every surface crossed by rays along the center lines of rows and columns.
 Grid<std::uint8_t> cast_surfaces(const mjModel& model, const mjData& data, const GridGeometry& geometry,
                                  double height_m) {
-  constexpr double kStep_m = 1e-4;  // past a surface, to look for the next
+  constexpr double kStep_m = 1e-4;  // offset past a surface for the next cast
   sim::LidarScene lidar(model);
   lidar.update(data);
   Grid<std::uint8_t> hit(geometry);
@@ -211,7 +211,7 @@ Grid<std::uint8_t> cast_surfaces(const mjModel& model, const mjData& data, const
   return hit;
 }
 
-/// True if `holds` of the cell or one of its eight neighbours.
+/// True if `holds` is true for the cell or one of its eight neighbors.
 template <typename Predicate>
 bool any_near(Cell cell, Predicate holds) {
   for (int row = cell.row - 1; row <= cell.row + 1; ++row) {
@@ -232,7 +232,7 @@ ReferenceMapCheck check_and_complete(OccupancyGrid& map, const Grid<std::uint8_t
   for (int row = 0; row < map.geometry().height; ++row) {
     for (int col = 0; col < map.geometry().width; ++col) {
       const Cell cell{col, row};
-      // Where things overlap, rays also meet surfaces inside what is solid: no concern of the map.
+      // Rays also hit surfaces inside overlapping objects; these do not belong to the map.
       const bool is_buried = rendered.at(cell) == kUnknown;
       if (!is_surface(cell) && (!is_hit(cell) || is_buried)) continue;
       ++check.cells_checked;

@@ -8,17 +8,18 @@
 
 namespace patrol::render {
 
+/// Slice of the world to be mapped.
 struct ReferenceMapSettings {
-  double height_m = 0.4;  ///< of the slice, in world: where the level robot's lidar looks
+  double height_m = 0.4;  ///< height of the slice in world; height of the level robot's lidar
   double resolution_m = 0.025;
-  double margin_m = 1.0;  ///< free cells around everything
+  double margin_m = 1.0;  ///< free cells around all objects
 };
 
-/// How well two ways of looking at the slice agree about where its surfaces are.
+/// Agreement of rendered slice and ray casts about the surfaces.
 struct ReferenceMapCheck {
-  std::size_t cells_checked = 0;   ///< cells that the render or a ray calls a surface
-  std::size_t cells_agreeing = 0;  ///< of these, cells that both find, within one cell
-  std::size_t cells_added = 0;     ///< thinner than a cell: met by rays only, and put into the map
+  std::size_t cells_checked = 0;   ///< cells that the render or a ray marks as a surface
+  std::size_t cells_agreeing = 0;  ///< cells marked by both within one cell
+  std::size_t cells_added = 0;     ///< objects thinner than a cell: found by rays only and added to the map
 
   double share_agreeing() const {
     return cells_checked == 0 ? 1.0
@@ -26,22 +27,23 @@ struct ReferenceMapCheck {
   }
 };
 
+/// True map of a world with its verification.
 struct ReferenceMap {
   OccupancyGrid
-      map;  ///< in world: occupied where a solid thing's surface is, unknown inside it, free elsewhere
+      map;  ///< in world: occupied at surfaces of solid objects, unknown inside, free elsewhere
   ReferenceMapCheck check;
 };
 
-/// The true map: what stands still in the world and can be hit by the lidar, cut at one height.
+/// Reference map: the static geoms of the world that the lidar can hit, cut at one height.
 ///
-/// Two orthographic renders, down and up from the slice, tell inside from outside: a camera that has its near
-/// plane inside a closed shape sees the inner side of it first. A cell is solid when its centre is, and a
-/// surface when one of its four neighbours is not solid: surface cells lie behind the surface by half a cell
-/// on average. Rays along the centre lines of all rows and columns then check every surface, and add what is
-/// too thin to hold a cell's centre.
+/// Two orthographic renders, down and up from the slice, separate inside from outside: a camera whose near plane is
+/// inside a closed shape sees the shape's inner side first. A cell is solid when its center is solid. A solid cell is a
+/// surface when one of its four neighbors is not solid. Surface cells lie behind the surface by half a cell on average.
+/// Rays along the center lines of all rows and columns then check every surface and add objects that are too thin to
+/// contain a cell center.
 ///
-/// `view` is a model for renders (sim/model_assembly.h); the robot and everything that moves are left out.
-/// Throws InputError when nothing stands at that height.
+/// `view` is a render model (sim/model_assembly.h); the robot and all moving objects are excluded. Throws InputError
+/// when no geom intersects the slice.
 ReferenceMap reference_map(const mjModel& view, const ReferenceMapSettings& settings = {});
 
 }  // namespace patrol::render

@@ -18,7 +18,7 @@
 namespace patrol::render {
 namespace {
 
-/// Handlers that feed the follower, and call `on_state` after each state.
+/// Log handlers that feed the follower and call `on_state` after each state.
 io::LogHandlers handlers_for(RunFollower& follower, std::function<void(Time)> on_state) {
   const auto feed = [&follower](Time, const auto& message) { follower.add(message); };
   io::LogHandlers handlers;
@@ -38,7 +38,7 @@ io::LogHandlers handlers_for(RunFollower& follower, std::function<void(Time)> on
   return handlers;
 }
 
-/// Thrown out of a log's reading: whoever watches wants no more.
+/// Exception that interrupts the reading of a log when the progress callback returns false.
 struct Interrupted {};
 
 FreeDistance free_distance_in(const RunFollower& follower) {
@@ -47,7 +47,7 @@ FreeDistance free_distance_in(const RunFollower& follower) {
   };
 }
 
-/// A camera that sees what the follower's world has in its way.
+/// Camera rig that detects obstacles in the follower's world.
 CameraRig camera_on(const RunFollower& follower, CameraKind kind) {
   const std::optional<Eigen::Vector3d> head_m = follower.head_m();
   return head_m ? CameraRig(kind, free_distance_in(follower), *head_m) : CameraRig(kind, free_distance_in(follower));

@@ -18,41 +18,43 @@
 
 namespace patrol::render {
 
+/// Settings of a film or a still picture.
 struct ReplaySettings {
   Cut cut = Cut::kStory;
-  CameraKind camera = CameraKind::kChase;  ///< that follows the robot where the cut has no other
+  CameraKind camera = CameraKind::kChase;  ///< camera outside of planned shots
   SpeedSettings speed = {};
   int width = 1280;
   int height = 720;
   double frames_per_second = 30.0;
   Renderer renderer = Renderer::kAuto;
-  std::optional<OccupancyGrid> map = {};  ///< that the robot was given, in map; none: it makes its own
-  sim::DustSettings dust = {};  ///< in the air of that run
-  std::vector<sim::LeakSettings> leaks = {};  ///< likewise
+  std::optional<OccupancyGrid> map = {};  ///< map that the robot was given, in map; none for a mapping run
+  sim::DustSettings dust = {};  ///< dust of the run
+  std::vector<sim::LeakSettings> leaks = {};  ///< gas leaks of the run
   sim::WindSettings wind = {};
   LightSettings light = {};
-  std::vector<Moment> announced = {};  ///< what is notable and only the scenario knows, e.g. the faults that it switched on
+  std::vector<Moment> announced = {};  ///< events known only to the scenario, e.g. injected faults
 };
 
-/// Called with the share that is done, 0 ... 1; false: no more.
+/// Called with the completed fraction, 0 ... 1. Returns false to interrupt the replay.
 using ReplayProgress = std::function<bool(double done)>;
 
+/// Result of a replay.
 struct ReplaySummary {
   int num_frames = 0;
-  Time end{};  ///< of the run, as logged
+  Time end{};  ///< end of the logged run
   int num_chapters = 0;
   bool log_is_complete = true;
-  bool is_interrupted = false;  ///< by the one who is told the progress: there is no film
+  bool is_interrupted = false;  ///< interrupted by the progress callback; no film is written
 };
 
-/// Films a logged run, read twice: once for its moments, once for the film. `T_world_map` is the start pose: map and world are
-/// joined there. The model's render quality is set to what a replay can afford. Throws InputError when the log cannot be read, has no states
-/// or is of another world.
+/// Renders a film of a logged run. Reads the log twice: once for the highlights, once for the frames. `T_world_map` is
+/// the start pose, at which map and world are aligned. Sets the model's render quality. Throws InputError when the log
+/// cannot be read, has no states, or belongs to another world.
 ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel model,
                      const Pose2& T_world_map, const ReplaySettings& settings,
                      const std::filesystem::path& out_mp4, const ReplayProgress& progress = {});
 
-/// One picture, of the last state up to `at`.
+/// Renders one picture of the last state up to `at`.
 void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, const Pose2& T_world_map,
            const ReplaySettings& settings, Time at, const std::filesystem::path& out_png);
 

@@ -8,15 +8,15 @@
 namespace patrol::render {
 namespace {
 
-constexpr double kPathStep_m = 0.05;  // between the points of a drawn path
+constexpr double kPathStep_m = 0.05;  // minimum distance between points of a drawn path
 constexpr double kAboveGround_m = 0.01;
-constexpr double kCarried_m = 0.5;  // from one truth to the next: not on the robot's own feet
+constexpr double kCarried_m = 0.5;  // a larger step between two true poses is a kidnapping, not a motion of the robot
 
 void extend(std::vector<Eigen::Vector3d>& path, const Eigen::Vector3d& point) {
   if (path.empty() || (point - path.back()).head<2>().norm() >= kPathStep_m) path.push_back(point);
 }
 
-/// A sensor's place on the trunk, from the site that the robot's model has for it.
+/// Pose of a sensor in the body frame from the site of its name, none without this site.
 std::optional<Pose3> sensor_on_body(const mjModel& model, const char* name) {
   const int site = mj_name2id(&model, mjOBJ_SITE, name);
   if (site < 0) return std::nullopt;
@@ -48,7 +48,7 @@ RunFollower::RunFollower(const mjModel& view, const Pose2& T_world_map)
   if (const auto T_body_camera = sensor_on_body(view, "depth_camera")) head_m_ = T_body_camera->position;
   snapshot_.T_world_map = T_world_map;
   snapshot_.is_driving = has_tracks(view);
-  // Whoever walks or drives is no ground to draw on.
+  // Move actors away: paths are projected to the ground, not onto actors.
   constexpr double kOutOfTheWay_m = -1000.0;
   const sim::DataPtr data = sim::make_data(view);
   for (int actor = 0; actor < view.nmocap; ++actor) data->mocap_pos[3 * actor + 2] = kOutOfTheWay_m;
@@ -103,21 +103,22 @@ double RunFollower::free_distance_m(const Eigen::Vector3d& from_m, const Eigen::
 }
 
 Eigen::Vector3d RunFollower::on_ground(const Eigen::Vector2d& p_world_m) const {
-  constexpr double kOverBody_m = 0.5, kReach_m = 3.0;  // looks down on what the robot may climb
+  // start above the robot, on ground that the robot may climb later
+  constexpr double kOverBody_m = 0.5, kReach_m = 3.0;
   const double eye_z_m = snapshot_.T_world_body.position.z() + kOverBody_m;
   const Eigen::Vector3d eye(p_world_m.x(), p_world_m.y(), eye_z_m);
   const auto ground = scenery_.cast(eye, -Eigen::Vector3d::UnitZ(), kReach_m, sim::kRayScenery);
   return {p_world_m.x(), p_world_m.y(), kAboveGround_m + (ground ? eye_z_m - ground->distance_m : 0.0)};
 }
 
-// Each beam from where the robot was when it was fired: the estimate says where the level body was at one
-// instant, odometry how it moved and leaned around that.
+// Transforms each beam by the pose of its own time: the estimate gives the planar pose at one stamp, odometry the
+// motion and tilt around it.
 void RunFollower::place_scan(const PoseEstimate& estimate) {
   const Trajectory odometry(odometry_.begin(), odometry_.end());
   const Pose3 T_world_estimate =
       to_spatial(snapshot_.T_world_map * estimate.T_map_body, snapshot_.T_world_body.position.z());
   const std::optional<Pose3> T_odom_estimate = pose_at(odometry, estimate.stamp);
-  Pose3 T_world_odom;  // level, with odometry's height brought to the true one
+  Pose3 T_world_odom;  // gravity-aligned; odometry's height replaced by the true one
   if (T_odom_estimate) {
     T_world_odom =
         T_world_estimate * to_spatial(to_planar(*T_odom_estimate), T_odom_estimate->position.z()).inverse();

@@ -12,10 +12,10 @@
 
 namespace patrol::render {
 
-/// Listens to a log as it is read, and always has the picture of it up to there.
+/// Builds the snapshot of a run up to the current log message.
 class RunFollower {
  public:
-  /// `view` must outlive the follower.
+  /// `view` must outlive this object.
   RunFollower(const mjModel& view, const Pose2& T_world_map);
 
   void add(const LaserScan& scan) { scan_ = scan; }
@@ -30,9 +30,9 @@ class RunFollower {
   void add(const SimState& state) { snapshot_.state = state; }
 
   const RunSnapshot& snapshot() const { return snapshot_; }
-  /// Where the robot looks from, in body; none if it has no camera.
+  /// Position of the robot's camera in body, none without a depth camera.
   const std::optional<Eigen::Vector3d>& head_m() const { return head_m_; }
-  /// To the first thing that stands still, at most `max_m`.
+  /// Distance to the nearest static object, at most `max_m`.
   double free_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m) const;
 
  private:
@@ -43,7 +43,7 @@ class RunFollower {
   Pose3 T_body_lidar_;
   std::optional<Eigen::Vector3d> head_m_;
   Trajectory truth_;
-  std::deque<StampedPose> odometry_;  ///< of late, body in odom
+  std::deque<StampedPose> odometry_;  ///< last 2 s, T_odom_body
   std::optional<LaserScan> scan_;
   RunSnapshot snapshot_;
 };

@@ -13,25 +13,25 @@
 
 namespace patrol::render {
 
-/// What a log has told by an instant, ready to be drawn. Points are m, in world; estimates are brought there
-/// as a surveyor would, with map and world joined at the start.
+/// Drawable state of a run at one time of its log. Points are in world, m. Estimates are transformed to world by
+/// `T_world_map`, the alignment at the start.
 struct RunSnapshot {
   SimState state;
-  Pose3 T_world_body;  ///< true
+  Pose3 T_world_body;  ///< ground truth
   Pose2 T_world_map;
-  Pose2 T_map_body;                             ///< estimated
+  Pose2 T_map_body;                             ///< newest estimate
   std::vector<Eigen::Vector3d> true_path;       ///< on the ground
   std::vector<Eigen::Vector3d> estimated_path;  ///< on the ground
   std::vector<Eigen::Vector3d> planned_path;    ///< on the ground
-  std::vector<Eigen::Vector3d> scan;            ///< hits, from where the robot believed to be
+  std::vector<Eigen::Vector3d> scan;            ///< scan hits at the estimated pose
   std::vector<Pose2> particles;                 ///< in map
-  std::shared_ptr<const OccupancyGrid> map;     ///< in map; null before the first
-  Pose2 T_true_estimate;                        ///< the newest estimate of the level body, in the true one of that instant
+  std::shared_ptr<const OccupancyGrid> map;     ///< in map; null before the first map
+  Pose2 T_true_estimate;  ///< newest estimate of the level body relative to its true pose at that stamp
   double travelled_m = 0.0;
-  std::optional<GasReading> gas;                ///< the newest; none without a methane meter
-  bool is_driving = false;  ///< on tracks, and not walking
-  std::string event;      ///< the newest one's text
-  bool is_alarm = false;  ///< that event is one
+  std::optional<GasReading> gas;                ///< newest reading; none without a methane meter
+  bool is_driving = false;  ///< tracked robot, not a walking one
+  std::string event;      ///< text of the newest event
+  bool is_alarm = false;  ///< the newest event is an alarm
 };
 
 }  // namespace patrol::render

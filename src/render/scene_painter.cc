@@ -22,7 +22,7 @@ Color to_color(const float rgba[4]) {
   return {byte(rgba[0]), byte(rgba[1]), byte(rgba[2])};
 }
 
-/// The sun, if the world has one: the first directional light that is not the headlight.
+/// First directional light other than the headlight, null without one.
 mjvLight* find_sun(mjvScene& scene) {
   for (int i = 0; i < scene.nlight; ++i) {
     mjvLight& light = scene.lights[i];
@@ -31,7 +31,7 @@ mjvLight* find_sun(mjvScene& scene) {
   return nullptr;
 }
 
-/// The cone of sight: four sides, as unit normals that point inwards, through the eye.
+/// Side planes of the view frustum through the eye, as unit normals that point inward.
 std::array<Eigen::Vector3d, 4> sides_of(const View& view, double aspect) {
   const double half_height = 0.5 * view.field_of_view_rad;
   const double half_width = std::atan(std::tan(half_height) * aspect);
@@ -43,14 +43,15 @@ std::array<Eigen::Vector3d, 4> sides_of(const View& view, double aspect) {
           side(-view.up, half_height)};
 }
 
-/// 0 at `x` <= from, 1 at `x` >= to, smooth between.
+/// Smooth step: 0 for `x` <= from, 1 for `x` >= to.
 double smooth_step(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);
 }
 
-/// How dark a lamp's shadows are at the focus: not where its shadow map ends (`reach_rad` off its axis; near the edge of that
-/// MuJoCo 3.17 draws speckles), and not where another lamp is as near and would take over.
+/// Darkness of a lamp's shadows at the focus, 0 ... 1. Fades to 0 at the end of the lamp's shadow map (`reach_rad` off
+/// its axis), where MuJoCo 3.17 draws speckles. Also fades to 0 where another lamp is equally near, because that lamp
+/// then becomes the shadow light.
 double shadow_share(const mjvLight& lamp, const Eigen::Vector3d& focus, double reach_rad, double second_nearest_m) {
   constexpr double kEdge_rad = 0.09, kFade_rad = 0.22, kFade_m = 2.0;
   const Eigen::Vector3d ray = focus - to_eigen(lamp.pos);
@@ -87,7 +88,7 @@ ScenePainter::ScenePainter(const mjModel& view, int width, int height, double ex
     options_.geomgroup[group] = 1;
   std::fill(std::begin(options_.sitegroup), std::end(options_.sitegroup), mjtByte{0});
   mjv_defaultScene(&scene_);
-  mjv_makeScene(&view, &scene_, 2 * static_cast<int>(view.ngeom) + 100);  // the robot may be there twice
+  mjv_makeScene(&view, &scene_, 2 * static_cast<int>(view.ngeom) + 100);  // space for robot and ghost
   scene_.flags[mjRND_REFLECTION] = 0;
   scene_.flags[mjRND_HAZE] = 0;
   scene_.flags[mjRND_FOG] = 1;
@@ -114,9 +115,8 @@ void ScenePainter::draw(const View& view, Frame& frame, std::vector<float>& dept
   add_haze(frame, depth, view, dust_);
 }
 
-// The shadow map covers a square around the sun's own place: bring the sun to where one looks. Towards the
-// sun the outer quarter of that square is speckled (too small a depth offset there in MuJoCo 3.17), so it
-// reaches farther that way.
+// The shadow map covers a square around the sun's position: move the sun to the focus. Toward the sun the outer quarter
+// of the square has speckles (depth offset too small in MuJoCo 3.17), so the square is shifted toward the sun.
 void ScenePainter::light_around(const View& view) {
   constexpr double kSunDistance_m = 25.0, kTowardsSun = 0.15;
   mjvLight* sun = find_sun(scene_);
@@ -128,10 +128,10 @@ void ScenePainter::light_around(const View& view) {
   for (int axis = 0; axis < 3; ++axis) sun->pos[axis] = static_cast<float>(place[axis]);
 }
 
-// Underground it is lamps that show what stands on the ground. One of them is what a frame can afford: the nearest. It throws
-// shadows as dark as `shadow_share` says: of two lamps in one place, one without shadows and one with, their light shared out.
+// Underground, shadows come from lamps. A frame has time for one shadow map: that of the nearest lamp. For partly dark
+// shadows (`shadow_share`) the lamp is split into two, one with and one without shadows.
 void ScenePainter::let_nearest_lamp_throw_shadows(const View& view) {
-  constexpr int kMostLights = 8;  // of OpenGL's fixed functions
+  constexpr int kMostLights = 8;  // limit of OpenGL's fixed-function pipeline
   const auto away_m = [&](const mjvLight& light) {
     return light.headlight ? std::numeric_limits<double>::infinity() : (to_eigen(light.pos) - view.focus).norm();
   };
@@ -158,9 +158,9 @@ void ScenePainter::let_nearest_lamp_throw_shadows(const View& view) {
   lamp->castshadow = 1;
 }
 
-/// Whether something there could throw a shadow to where one looks.
+/// True if an object there could cast a shadow near the focus.
 bool ScenePainter::may_shade(const View& view, const Eigen::Vector3d& center, double radius) {
-  constexpr double kLampShadow_m = 5.0;  // farther from what one looks at, lamps throw none into the picture that one would miss
+  constexpr double kLampShadow_m = 5.0;  // shadows of objects farther from the focus are not visible in the picture
   if (has_shadow_lamp_) return (center - view.focus).norm() < kLampShadow_m + radius;
   const mjvLight* sun = find_sun(scene_);
   if (sun == nullptr || scene_.flags[mjRND_SHADOW] == 0) return false;
@@ -168,15 +168,15 @@ bool ScenePainter::may_shade(const View& view, const Eigen::Vector3d& center, do
   return off_axis < std::numbers::sqrt2 * shadow_reach_m_ + radius;
 }
 
-// Software vertex work is half of a frame: leave out what would be a speck, and what is neither in sight
-// nor casts a shadow that could be.
+// Removes geoms smaller than a pixel, and geoms that neither are in view nor cast a shadow into it. Vertex processing
+// takes half of a frame in software.
 void ScenePainter::drop_unseen(const View& view) {
   const auto sides = sides_of(view, static_cast<double>(offscreen_.width()) / offscreen_.height());
   const auto is_in_sight = [&](const Eigen::Vector3d& center, double radius) {
     return std::ranges::all_of(sides,
                                [&](const Eigen::Vector3d& n) { return n.dot(center - view.eye) > -radius; });
   };
-  constexpr double kTooSmall_px = 1.2;  // radius
+  constexpr double kTooSmall_px = 1.2;  // bounding radius
   const double focal_px = 0.5 * offscreen_.height() / std::tan(0.5 * view.field_of_view_rad);
   const auto is_speck = [&](const Eigen::Vector3d& center, double radius) {
     return focal_px * radius < kTooSmall_px * (center - view.eye).norm();

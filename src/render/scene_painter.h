@@ -12,31 +12,31 @@
 
 namespace patrol::render {
 
-/// Sets what a replay can afford. Vertex work is half of a software-rendered frame: round shapes get as many
-/// sides as the eye asks for, flat ones are not divided. Shadows reach as far as one looks for them, at 12 mm
-/// a texel.
+/// Sets the render quality of a replay. Vertex processing is half of the time of a software-rendered frame: round
+/// shapes have a reduced number of sides, flat ones are not subdivided. Shadows cover 12.5 m around the focus, at 12 mm
+/// per texel.
 void set_replay_quality(mjModel& view);
 
-/// Draws the world and everything in it, as a state of the simulation has it.
+/// Renders the world with robot and actors at a state of the simulation.
 class ScenePainter {
  public:
-  /// `view` is a model for renders (sim/model_assembly.h) and must outlive the painter. Dust that stops a share of light
-  /// per metre has the colour of the world's fog. Throws std::runtime_error without OpenGL.
+  /// `view` is a render model (sim/model_assembly.h) and must outlive the painter. `extinction_per_m` is that of the
+  /// dust, drawn in the color of the world's fog. Throws std::runtime_error without OpenGL.
   ScenePainter(const mjModel& view, int width, int height, double extinction_per_m = 0.0, Renderer renderer = software_renderer());
   ~ScenePainter();
   ScenePainter(const ScenePainter&) = delete;
   ScenePainter& operator=(const ScenePainter&) = delete;
 
-  /// Moves robot and actors. Throws InputError when the state is not one of this model.
+  /// Moves robot and actors. Throws InputError when the state does not belong to this model.
   void set_state(const SimState& state);
-  /// Where the robot believes to be, seen from where it is: there stands a ghost (render/ghost.h). Not before the first call.
+  /// Sets the estimated pose of the body in the true one, at which the ghost is drawn (render/ghost.h).
   void set_estimate(const Pose2& T_true_estimate) { T_true_estimate_ = T_true_estimate; }
-  /// Draws and reads back; `depth` as in Offscreen::read_depth.
+  /// Renders a frame and reads it back. `depth` as in Offscreen::read_depth.
   void draw(const View& view, Frame& frame, std::vector<float>& depth);
 
   const mjData& data() const { return *data_; }
   Offscreen& offscreen() { return offscreen_; }
-  /// As last drawn.
+  /// Scene of the last frame.
   mjvScene& scene() { return scene_; }
 
  private:
@@ -52,8 +52,8 @@ class ScenePainter {
   mjvOption options_;
   Haze dust_;
   Pose2 T_true_estimate_;
-  bool has_shadow_lamp_ = false;  ///< in the last scene
-  double shadow_reach_m_;  ///< half the side of the square that the shadow map covers
+  bool has_shadow_lamp_ = false;  ///< a lamp casts shadows in the last scene
+  double shadow_reach_m_;  ///< half of the side of the square that the shadow map covers
 };
 
 }  // namespace patrol::render

@@ -41,7 +41,7 @@ Pointer* made(Pointer* pointer, const char* what) {
 
 constexpr AVRational kMillisecond{1, 1000};
 
-/// As libav frees them with the container.
+/// Allocates the chapters with libav's allocator, because libav frees them with the container.
 void add_chapters(AVFormatContext& container, const std::vector<Chapter>& chapters) {
   if (chapters.empty()) return;
   container.chapters = made(static_cast<AVChapter**>(av_calloc(chapters.size(), sizeof(AVChapter*))), "memory for chapters");
@@ -56,7 +56,7 @@ void add_chapters(AVFormatContext& container, const std::vector<Chapter>& chapte
   }
 }
 
-/// Of high definition, whatever the size: a player that is not told would guess by the size.
+/// Declares BT.709 for all sizes; without a declaration players choose the color space by the size.
 void use_bt709(AVCodecContext& codec) {
   codec.colorspace = AVCOL_SPC_BT709;
   codec.color_primaries = AVCOL_PRI_BT709;
@@ -118,7 +118,7 @@ void VideoWriter::Encoder::open(int width, int height, double frames_per_second,
   codec->pix_fmt = AV_PIX_FMT_YUV420P;
   use_bt709(*codec);
   codec->gop_size = 60;
-  codec->thread_count = 1;  // rate control of several threads depends on how many there are
+  codec->thread_count = 1;  // the output of rate control depends on the number of threads
   av_log_set_level(AV_LOG_ERROR);
   codec->flags |= AV_CODEC_FLAG_BITEXACT;
   if ((container->oformat->flags & AVFMT_GLOBALHEADER) != 0) codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;

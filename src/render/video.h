@@ -9,27 +9,27 @@
 
 namespace patrol::render {
 
-/// A part of a film that a player can jump to.
+/// Chapter of a film that a player can jump to.
 struct Chapter {
-  double begin_s = 0.0;  ///< in the film
+  double begin_s = 0.0;  ///< film time
   double end_s = 0.0;
   std::string title;
 };
 
-/// An MP4 file with H.264 in it (MPEG-4 part 2 where libx264 is missing): the same frames give the same
-/// bytes. It is written beside its place and takes its name only when it is complete; without `finish`
-/// nothing is left behind.
+/// Writer of MP4 files with H.264 (MPEG-4 part 2 without libx264). Equal frames give equal bytes. Writes to a temporary
+/// file that is renamed on completion; without `finish` no file remains.
 class VideoWriter {
  public:
-  /// Throws InputError when the size is odd or the file cannot be written, std::runtime_error when libav
-  /// fails.
+  /// Throws InputError when the size is odd or the file cannot be written, std::runtime_error when libav fails.
   VideoWriter(const std::filesystem::path& file, int width, int height, double frames_per_second,
               const std::vector<Chapter>& chapters = {});
   ~VideoWriter();
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
 
+  /// Encodes the next frame. Throws std::runtime_error when the frame's size differs from the video's.
   void add(const Frame& frame);
+  /// Completes the file and gives it its name.
   void finish();
 
  private:
@@ -37,7 +37,7 @@ class VideoWriter {
   std::unique_ptr<Encoder> encoder_;
 };
 
-/// What is in a video file, by reading it through.
+/// Properties of a video file, determined by reading all of its packets.
 struct VideoInfo {
   int width = 0;
   int height = 0;

@@ -8,7 +8,7 @@
 
 namespace patrol::render {
 
-/// From one thread to another, in order.
+/// FIFO queue between threads. Thread-safe.
 template <typename Work>
 class WorkQueue {
  public:
@@ -19,7 +19,7 @@ class WorkQueue {
     }
     wake_.notify_one();
   }
-  /// Waits for the next; none when the queue is closed, whatever is still in it.
+  /// Waits for the next item. None after `close`, even when items remain.
   std::optional<Work> take() {
     std::unique_lock lock(mutex_);
     wake_.wait(lock, [this] { return is_closed_ || !waiting_.empty(); });

@@ -6,11 +6,11 @@
 namespace patrol::render {
 namespace {
 
-constexpr double kMinWidth = 1.6 / 720.0;  // of the frame's height
+constexpr double kMinWidth = 1.6 / 720.0;  // fraction of the frame's height
 
 }  // namespace
 
-/// A piece of line on the screen; along it, 1 / distance is linear.
+/// Projected line segment; 1 / distance is linear along it.
 struct WorldInk::Stroke {
   Eigen::Vector2d from, to;
   double inverse_from, inverse_to;        ///< 1/m
@@ -67,7 +67,7 @@ void WorldInk::cover(const Stroke& stroke) {
 
   const double squared = std::max(along.squaredNorm(), 1e-12);
   for (int y = top; y <= bottom; ++y) {
-    // Only the columns that the slanted stroke can reach in this row.
+    // Only the columns that the slanted segment can cover in this row.
     double first = low.x(), last = high.x();
     if (std::abs(along.y()) > 1.0) {
       const double slope = along.x() / along.y();
@@ -93,8 +93,8 @@ void WorldInk::cover(const Stroke& stroke) {
   }
 }
 
-// A pixel's breadth away, flat ground seen from a metre above it is this much nearer or farther: the same
-// ground, not something that hides.
+// Tolerance: one pixel away, flat ground observed from a height of 1 m is nearer or farther by this much, and must not
+// occlude a line on it.
 bool WorldInk::is_hidden(std::size_t pixel, double distance_m) const {
   const double tolerance_m = 0.04 + 1.5 * distance_m * distance_m / projector_.focal_px();
   return distance_m > projector_.distance_m(depth_[pixel]) + tolerance_m;

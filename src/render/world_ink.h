@@ -12,13 +12,14 @@
 
 namespace patrol::render {
 
-/// Draws lines and dots that lie in the world on a finished frame: smaller with distance, hidden behind what
-/// stands before them. Cheaper than making them part of the scene, and their edges are smooth.
+/// Draws lines and dots at world positions on a finished frame, scaled by distance and occluded by objects in front of
+/// them. Cheaper than adding them to the scene, with anti-aliased edges.
 class WorldInk {
  public:
-  /// `depth` as in Offscreen::read_depth. All three must outlive this.
+  /// `depth` as in Offscreen::read_depth. All three arguments must outlive this object.
   WorldInk(Frame& frame, const std::vector<float>& depth, const Projector& projector);
 
+  /// Draws line segments of constant width in world, at least 1.6 pixels at a frame height of 720.
   void polyline(std::span<const Eigen::Vector3d> points_m, double width_m, const Brush& brush);
   void dots(std::span<const Eigen::Vector3d> points_m, double radius_m, const Brush& brush);
 
@@ -33,8 +34,8 @@ class WorldInk {
   const std::vector<float>& depth_;
   const Projector& projector_;
   std::vector<std::uint8_t>
-      coverage_;  ///< of the brush being laid on: strokes of one line do not add up where they meet
-  int top_ = 0, bottom_ = -1;  ///< rows that have any
+      coverage_;  ///< coverage of the current color, 0 ... 255; overlapping segments of one line do not add up
+  int top_ = 0, bottom_ = -1;  ///< rows with coverage
 };
 
 }  // namespace patrol::render

@@ -45,8 +45,8 @@ double DistanceField::distance_m(const Eigen::Vector2d& p_m) const {
   return (1.0 - f.y()) * low + f.y() * high + geometry_.resolution_m * way_to_grid.norm();
 }
 
-// Of the bilinear piece itself. Differences over a step would be too flat within that step of an occupied cell, where
-// the distance has its fold.
+// Derivative of the bilinear piece itself: a finite difference would be too small within one step of an occupied cell,
+// where the distance has a kink.
 Eigen::Vector2d DistanceField::gradient(const Eigen::Vector2d& p_m) const {
   if (is_empty_) return Eigen::Vector2d::Zero();
   const auto [corners, f, way_to_grid] = place_of(p_m);

@@ -9,24 +9,27 @@
 
 namespace patrol::score {
 
-/// The distance from anywhere to the nearest occupied cell's centre, exact at cell centres and bilinear between them.
+/// Distance from any point to the center of the nearest occupied cell: exact at cell centers, bilinear between them.
 class DistanceField {
  public:
-  /// Of the cells for which `occupied` is not 0.
+  /// Builds the field of the cells whose value in `occupied` is not 0.
   explicit DistanceField(const Grid<std::uint8_t>& occupied);
 
-  /// m; outside the grid, of its nearest cell plus the way to it. +Inf when no cell is occupied.
+  /// Returns the distance in m. Outside the grid it is the distance at the nearest border cell center plus the distance
+  /// to that center. +Inf when no cell is occupied.
   double distance_m(const Eigen::Vector2d& p_m) const;
 
-  /// Gradient of `distance_m`; zero when no cell is occupied.
+  /// Gradient of `distance_m`, zero when no cell is occupied.
   Eigen::Vector2d gradient(const Eigen::Vector2d& p_m) const;
 
  private:
-  /// Where a point lies among the four cell centres round it.
+  /// Position of a point among the four surrounding cell centers.
   struct Place {
-    std::array<double, 4> corners;  ///< their distances: lower left, lower right, upper left, upper right
-    Eigen::Vector2d fraction;       ///< of the way from the lower left, 0 ... 1
-    Eigen::Vector2d way_to_grid;    ///< from the outermost centre, in cells; zero inside
+    /// distances at the lower left, lower right, upper left and upper right center, m
+    std::array<double, 4> corners;
+    Eigen::Vector2d fraction;       ///< fraction of the step from the lower left center along x and y, 0 ... 1
+    /// offset of the point from the outermost cell centers, in cells; zero inside the grid
+    Eigen::Vector2d way_to_grid;
   };
   Place place_of(const Eigen::Vector2d& p_m) const;
 
@@ -35,7 +38,7 @@ class DistanceField {
   bool is_empty_;                  ///< no cell is occupied
 };
 
-/// 1 where the map says occupied (at least 65 percent, as map_server), else 0.
+/// 1 for cells that the map gives as occupied (at least 65 percent, the threshold of map_server), 0 for all others.
 Grid<std::uint8_t> occupied_cells(const OccupancyGrid& map);
 
 }  // namespace patrol::score

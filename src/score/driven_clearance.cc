@@ -23,7 +23,7 @@ std::vector<Eigen::Vector2d> occupied_centers(const OccupancyGrid& map) {
   return centers;
 }
 
-/// 0 inside.
+/// Distance from a point to the outline, 0 inside it.
 double distance_to_outline(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& outline) {
   bool is_inside = true;
   double least = std::numeric_limits<double>::infinity();

@@ -10,18 +10,19 @@
 
 namespace patrol::score {
 
-/// Free room about a robot's outline along its way.
+/// Clearance between the robot's outline and the nearest obstacle along the driven path.
 struct DrivenClearance {
   double mean_m = 0.0;
-  double p05_m = 0.0;  ///< less than this at one place of twenty
-  double min_m = 0.0;  ///< 0 where it touched
-  std::size_t places = 0;
+  double p05_m = 0.0;  ///< 5th percentile
+  double min_m = 0.0;  ///< minimum; 0 at a collision
+  std::size_t places = 0;  ///< number of evaluated path positions
 };
 
-inline constexpr double kMaxClearance_m = 3.0;  ///< more does not count as more
+inline constexpr double kMaxClearance_m = 3.0;  ///< upper limit; larger clearances count as this value
 
-/// From the outline (convex, counter-clockwise, in level) to the centre of the nearest occupied cell of the map, in world, at places of the way that lie
-/// `spacing_m` apart. Nothing is known of what moves. All zero of a way or an outline that is none.
+/// Distance from the outline to the center of the nearest occupied cell, at path positions at least `spacing_m` apart.
+/// The outline is convex and counterclockwise, in the level body frame. Moving obstacles are not considered. Returns
+/// zeros for an empty path or an outline with fewer than three corners.
 DrivenClearance driven_clearance(const Trajectory& T_world_body, const std::vector<Eigen::Vector2d>& footprint_m, const OccupancyGrid& map_in_world,
                                  double spacing_m = 0.1);
 

@@ -19,7 +19,7 @@ Arrival arrival(int navigation, const Pose2& T_world_wanted, const Pose2& T_worl
           .heading_error_deg = to_deg(std::abs(wrap_angle(T_world_truth.yaw - T_world_wanted.yaw)))};
 }
 
-/// Where each goal truly is.
+/// True pose of each goal in world, by goal name.
 std::map<std::string, Pose2> wanted_poses(const std::vector<Event>& events, const std::vector<MarkedGoal>& given,
                                           const Pose2& T_world_map, const Trajectory& T_world_body) {
   std::map<std::string, Pose2> wanted;

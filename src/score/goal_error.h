@@ -10,29 +10,30 @@
 
 namespace patrol::score {
 
-/// Where the robot really stood when it said that it was there, from where it should have stood.
+/// Error of the robot's true pose, at the time of its arrival event, relative to the goal pose.
 struct Arrival {
-  int navigation = 0;  ///< 1 is the first
+  int navigation = 0;  ///< number of the navigation, from 1
   double position_error_m = 0.0;
-  double heading_error_deg = 0.0;  ///< absolute
+  double heading_error_deg = 0.0;  ///< absolute value
 };
 
-/// All arrivals at one place.
+/// All arrivals at one goal.
 struct GoalError {
   std::string name;
   std::vector<Arrival> arrivals;
-  int num_failed = 0;
+  int num_failed = 0;  ///< number of failed navigations
 
   std::vector<double> position_errors_m() const;
   std::vector<double> heading_errors_deg() const;
 };
 
-/// Repeatability as paper 004, table 2 has it. A goal that was marked by driving there shall be met where the robot truly stood at the
-/// mark: map, localisation and control all count. `given` goals (in map) shall be met where the survey's start puts them.
+/// Repeatability as in [Liu21, tab. 2]. A goal saved during teleoperation is compared with the robot's true pose at the
+/// time of saving, so the error contains map, localization and control. `given` goals (in map) are transformed to world
+/// by `T_world_map`.
 std::vector<GoalError> goal_errors(const std::vector<Event>& events, const std::vector<MarkedGoal>& given,
                                    const Pose2& T_world_map, const Trajectory& T_world_body);
 
-/// Every docking, against the docked pose of the survey.
+/// Errors of all dockings relative to the surveyed docked pose.
 GoalError docking_error(const std::vector<Event>& events, const Pose2& T_world_docked, const Trajectory& T_world_body);
 
 }  // namespace patrol::score

@@ -10,21 +10,22 @@
 
 namespace patrol::score {
 
-/// A leak that was really there.
+/// Leak of the simulated world.
 struct TrueLeak {
   std::string name;
   Eigen::Vector2d p_world_m = Eigen::Vector2d::Zero();
 };
 
-/// An alarm of the robot beside the leak it is about.
+/// Gas alarm of the robot with the leak that it is assigned to.
 struct Finding {
   std::string station;
-  double column_ppm_m = 0.0;
-  Eigen::Vector2d p_world_m = Eigen::Vector2d::Zero();  ///< where the robot reported it
-  std::string leak;      ///< empty: a false alarm
-  double error_m = 0.0;  ///< from the leak
+  double column_ppm_m = 0.0;  ///< measured methane column
+  Eigen::Vector2d p_world_m = Eigen::Vector2d::Zero();  ///< position reported by the robot
+  std::string leak;      ///< name of the leak; empty for a false alarm
+  double error_m = 0.0;  ///< distance from the leak
 };
 
+/// Number of leaks found and of false alarms, with all findings.
 struct InspectionScore {
   int leaks = 0;
   int leaks_found = 0;
@@ -32,7 +33,8 @@ struct InspectionScore {
   std::vector<Finding> findings;
 };
 
-/// An alarm is about the nearest leak within `max_distance_m`; one with no leak there is false.
+/// Assigns each alarm to the nearest leak within `max_distance_m`. An alarm with no leak in this radius is a false
+/// alarm.
 InspectionScore inspection_score(const std::vector<Event>& events, const Pose2& T_world_map,
                                  const std::vector<TrueLeak>& leaks, double max_distance_m = 2.0);
 

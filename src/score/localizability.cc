@@ -16,7 +16,7 @@ double std_of(double information) {
   return 1.0 / std::sqrt(std::max(information, kLeast));
 }
 
-/// Folded to -pi/2 ... pi/2: a direction and its opposite are one.
+/// Maps an angle to -pi/2 ... pi/2: a direction and its opposite are equivalent.
 double folded(double angle_rad) { return std::remainder(angle_rad, std::numbers::pi); }
 
 }  // namespace
@@ -24,7 +24,7 @@ double folded(double angle_rad) { return std::remainder(angle_rad, std::numbers:
 Localizability localizability(const std::vector<SurfaceReturn>& scan, const BeamNoise& noise) {
   Localizability result{.num_returns = static_cast<int>(scan.size())};
   for (const SurfaceReturn& beam : scan) {
-    // n . (p + r d - q) = 0 of a surface through q: what p and the beam's direction change of r.
+    // Plane n . (p + r d - q) = 0 through surface point q: derivatives of r by the position p and by the beam's angle.
     const double cosine = beam.normal.head<2>().dot(beam.direction);
     const Eigen::Vector2d turned(-beam.direction.y(), beam.direction.x());
     const double per_rad_m = -beam.range_m * beam.normal.head<2>().dot(turned) / cosine;

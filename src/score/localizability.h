@@ -9,53 +9,62 @@
 
 namespace patrol::score {
 
-/// Of one beam of a real lidar; the beams err independently.
+/// Noise of a single lidar beam. The errors of different beams are independent.
 struct BeamNoise {
   double range_std_m = 0.015;
   double direction_std_rad = 0.0;
 };
 
-/// How well one scan can tell where it was taken: the Cramer-Rao bound of the pose from its ranges (A. Censi, "On achievable accuracy for
-/// range-finder localization", ICRA 2007). No unbiased matcher of one scan is better, whatever its method; a filter that remembers
-/// earlier scans and odometry may be.
+/// Cramer-Rao bound of the pose from the ranges of one scan [Censi07]. No unbiased matcher of a single scan has a
+/// smaller covariance. A filter that also uses earlier scans and odometry may have one.
 struct Localizability {
   int num_returns = 0;
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in world: 1/m^2, 1/(m rad), 1/rad^2
-  /// Standard deviations with the heading unknown as well, along the direction that the scan tells least of, and across it; `kUnbounded_m`
-  /// when it tells nothing.
+  /// Fisher information of x, y, yaw in world: 1/m^2, 1/(m rad), 1/rad^2
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  /// Standard deviations of the position with unknown heading, along the least observable direction and across it.
+  /// `kUnbounded_m` when the scan does not constrain the direction.
   double weak_std_m = 0.0;
   double strong_std_m = 0.0;
-  double weak_direction_rad = 0.0;  ///< in world, -pi/2 ... pi/2
+  double weak_direction_rad = 0.0;  ///< least observable direction in world, -pi/2 ... pi/2
 
   static constexpr double kUnbounded_m = 100.0;
-  static constexpr double kDegenerate_m = 0.1;  ///< a scan that leaves more than this along some direction does not tell the pose
+  static constexpr double kDegenerate_m = 0.1;  ///< standard deviation above which the pose counts as degenerate
 
   bool is_degenerate() const { return weak_std_m > kDegenerate_m; }
 };
 
+/// Computes the bound from the returns of one scan. `scan` contains only beams that hit a surface.
 Localizability localizability(const std::vector<SurfaceReturn>& scan, const BeamNoise& noise);
 
-/// The truth about a pose, beside what the stack said of it.
+/// Bound on the pose with the covariance and the confidence that the stack reported for it.
 struct LocalizabilitySample {
   Localizability truth;
-  double claimed_std_m = 0.0;          ///< along the weakest direction of the stack's own covariance
-  double claimed_direction_rad = 0.0;  ///< that direction, in world
-  std::optional<double> trust;         ///< 0 lost ... 1 sure, if it says so
+  double claimed_std_m = 0.0;          ///< standard deviation along the weakest direction of the stack's covariance
+  double claimed_direction_rad = 0.0;  ///< weakest direction of the stack's covariance, in world
+  std::optional<double> trust;         ///< confidence, 0 lost ... 1 certain; none when the stack does not report one
 };
 
-/// How well the stack knew where it could not know. Figures that need degenerate poses, or an order that is not there, are none without.
+/// Agreement of the stack's reported uncertainty with the Cramer-Rao bound. Values that need degenerate poses, or lists
+/// that vary, are none without them.
 struct LocalizabilityScore {
   std::size_t num_poses = 0;
   double weak_std_median_m = 0.0;
   double weak_std_max_m = 0.0;
-  double degenerate_share = 0.0;                      ///< of the poses
-  std::optional<double> covariance_rank_correlation;  ///< Spearman's, of the claimed deviation with the true one
-  std::optional<double> trust_rank_correlation;       ///< likewise of the trust: -1 is best
-  std::optional<double> covariance_detection;         ///< chance that a degenerate pose was claimed weaker than one that is not (AUC); 0.5: no better than a coin
-  std::optional<double> trust_detection;              ///< likewise by the trust
-  std::optional<double> weak_direction_error_deg;     ///< mean, of the degenerate poses, 0 ... 90
+  double degenerate_share = 0.0;                      ///< fraction of poses that are degenerate
+  /// Spearman's correlation of the reported with the true standard deviation
+  std::optional<double> covariance_rank_correlation;
+  /// Spearman's correlation of the confidence with the true standard deviation; -1 is best
+  std::optional<double> trust_rank_correlation;
+  /// probability that a degenerate pose has a larger reported standard deviation than a non-degenerate one (AUC); 0.5
+  /// is chance level
+  std::optional<double> covariance_detection;
+  /// probability that a degenerate pose has a lower confidence than a non-degenerate one (AUC)
+  std::optional<double> trust_detection;
+  /// mean error of the weakest direction over the degenerate poses, 0 ... 90
+  std::optional<double> weak_direction_error_deg;
 };
 
+/// Evaluates the samples of a run.
 LocalizabilityScore localizability_score(const std::vector<LocalizabilitySample>& samples);
 
 }  // namespace patrol::score

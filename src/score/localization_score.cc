@@ -11,7 +11,7 @@ constexpr double kStrayed_m = 0.5;
 constexpr double kDoubted = 0.5;
 constexpr Time kKeeps = std::chrono::seconds(5);
 
-/// The newest trust up to `stamp`; none before the first.
+/// Newest confidence up to `stamp`, null before the first one.
 const LocalizationTrust* trust_at(const std::vector<LocalizationTrust>& trusts, Time stamp) {
   const auto after = std::upper_bound(trusts.begin(), trusts.end(), stamp,
                                       [](Time time, const LocalizationTrust& trust) { return time < trust.stamp; });

@@ -8,26 +8,29 @@
 
 namespace patrol::score {
 
-/// How well the robot knew how well it knew.
+/// Quality of the localization's self-assessment: maximum error while not reported lost, minimum confidence, total time
+/// reported lost. Times are in s of the run.
 struct LocalizationScore {
-  double max_error_m = 0.0;            ///< of the position, while it did not say that it was lost
+  double max_error_m = 0.0;            ///< maximum position error while not reported lost
   double min_trust = 1.0;
-  std::optional<double> doubted_s;     ///< when its trust first fell below one half
-  std::optional<double> strayed_s;     ///< when its error first passed half a metre
-  double lost_s = 0.0;                 ///< in all, by its own word
+  std::optional<double> doubted_s;     ///< time at which the confidence first fell below 0.5
+  std::optional<double> strayed_s;  ///< time at which the position error first exceeded 0.5 m while not reported lost
+  double lost_s = 0.0;                 ///< total time reported lost
 };
 
-/// After a kidnap.
+/// Recovery from a kidnapping.
 struct RelocalizationScore {
-  double at_s = 0.0;
-  double moved_m = 0.0;                   ///< from where the robot believed itself to where it was put
-  std::optional<double> said_lost_s;      ///< until it said that it was lost
-  std::optional<double> relocalized_s;    ///< until it knew its place again to half a metre, and did not lose it in the next five seconds
+  double at_s = 0.0;  ///< time of the kidnapping
+  double moved_m = 0.0;                   ///< distance between the estimated and the true position after the kidnapping
+  std::optional<double> said_lost_s;      ///< time from the kidnapping to the report of lost localization
+  /// time from the kidnapping to the first pose of a period of 5 s with less than 0.5 m error and not reported lost
+  std::optional<double> relocalized_s;
 };
 
-/// `matched` and `trusts` in order of time; both from when localisation began.
+/// Evaluates a whole run. `matched` and `trusts` are ordered by time and begin when the localization starts.
 LocalizationScore localization_score(const std::vector<MatchedPose>& matched, const std::vector<LocalizationTrust>& trusts);
 
+/// Evaluates the recovery from a kidnapping at time `kidnapped`.
 RelocalizationScore relocalization_score(Time kidnapped, const std::vector<MatchedPose>& matched,
                                          const std::vector<LocalizationTrust>& trusts);
 

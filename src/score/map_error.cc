@@ -9,7 +9,7 @@
 namespace patrol::score {
 namespace {
 
-constexpr double kCoveredWithin_m = 0.10 + 1e-6;  // distances are floats: two cells of 5 cm are within 10 cm
+constexpr double kCoveredWithin_m = 0.10 + 1e-6;  // margin for float distances: two cells of 5 cm are within 10 cm
 
 std::vector<Eigen::Vector2d> centers_of(const Grid<std::uint8_t>& marked) {
   std::vector<Eigen::Vector2d> points;
@@ -30,7 +30,7 @@ std::vector<double> distances_m(const DistanceField& field, const Pose2& T_field
   return distances;
 }
 
-/// The distances as a grid, on the cells that are marked, in the order of `centers_of`.
+/// Writes the distances to a grid, on the marked cells, in the order of `centers_of`.
 Grid<float> on_cells(const Grid<std::uint8_t>& marked, const std::vector<double>& distances) {
   Grid<float> cells(marked.geometry(), std::numeric_limits<float>::quiet_NaN());
   std::size_t next = 0;
@@ -46,7 +46,7 @@ double share_within(const std::vector<double>& values, double limit) {
   return values.empty() ? 0.0 : static_cast<double>(within) / static_cast<double>(values.size());
 }
 
-/// Intersection over union in the built map's cells; reference points outside the built map count as missed.
+/// Intersection over union in the built map's cells. Reference points outside the built map count as missed.
 double intersection_over_union(const Grid<std::uint8_t>& built, const Pose2& T_map_world,
                                const std::vector<Eigen::Vector2d>& reference_points) {
   Grid<std::uint8_t> reference(built.geometry());

@@ -11,7 +11,7 @@
 namespace patrol::score {
 namespace {
 
-/// The trajectory at the relations' stamps, each looked up once.
+/// Poses of the trajectory at the relations' stamps. Each stamp is looked up once.
 class PoseLookup {
  public:
   PoseLookup(const Trajectory& T_map_body, const RelationSettings& settings)
@@ -44,7 +44,7 @@ class PoseLookup {
     return reference_at(nearest);
   }
 
-  /// Linear in x, y and, the short way, in yaw.
+  /// Interpolates linearly in x, y and yaw, the yaw along the shorter arc.
   Pose2 between(const StampedPose& before, const StampedPose& after, Time stamp) const {
     const Pose2 a = reference_at(before), b = reference_at(after);
     const double share = to_seconds(stamp - before.stamp) / to_seconds(after.stamp - before.stamp);

@@ -9,9 +9,11 @@
 
 namespace patrol::score {
 
+/// Assignment of trajectory poses to the stamps of relations.
 struct RelationSettings {
-  double max_dt_s = 0.02;  ///< a pose within this of a relation's stamp is taken as it is; else it is interpolated
-  double ref_x_m = 0.0;    ///< the point that the relations are about lies this far ahead of the trajectory's body
+  /// maximum distance in time at which the nearest pose is used; beyond it the pose is interpolated
+  double max_dt_s = 0.02;
+  double ref_x_m = 0.0;    ///< x offset of the relations' reference point in the trajectory's body frame
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -20,28 +22,29 @@ struct RelationSettings {
   }
 };
 
-/// Of a list of errors.
+/// Mean and spread of a list of errors.
 struct ErrorSpread {
   double mean = 0.0;
-  double std = 0.0;  ///< of the list itself: n in the denominator
+  double std = 0.0;  ///< population standard deviation: n in the denominator
 };
 
-/// How well a trajectory keeps the relations between places that are known to be true. No frame is fitted: each relation is about two
-/// poses alone, so that a bend early in the trajectory is not counted over and over.
+/// Error of a trajectory relative to given true relative poses. No frame is fitted: each relation concerns only two
+/// poses, so an early heading error is not counted again in every later pose.
 struct RelationError {
   std::size_t num_relations = 0;
-  std::size_t num_stamps = 0;        ///< different ones, in the relations
-  std::size_t num_interpolated = 0;  ///< of these: no pose of the trajectory was near enough
-  std::size_t num_outside = 0;       ///< of the interpolated: before the first pose or after the last, which is taken
+  std::size_t num_stamps = 0;        ///< number of distinct stamps in the relations
+  std::size_t num_interpolated = 0;  ///< stamps without a pose of the trajectory within `max_dt_s`
+  /// of the interpolated stamps, those before the first or after the last pose; the end pose is used
+  std::size_t num_outside = 0;
   ErrorSpread trans_m, squared_trans_m2;
   double trans_median_m = 0.0, trans_max_m = 0.0;
   ErrorSpread rot_deg, squared_rot_deg2;
   double rot_median_deg = 0.0, rot_max_deg = 0.0;
 };
 
-/// The error of a relation is the distance between est(t1)^-1 est(t2) and it, and between their headings (Kuemmerle et al., "On measuring
-/// the accuracy of SLAM algorithms", Autonomous Robots 2009, with the two parts apart). Of an even number the median is the
-/// upper one. Throws InputError when the trajectory or the relations are empty.
+/// Compares est(t1)^-1 est(t2) with each relation: distance of the translations and difference of the headings. The
+/// metric is that of [Kuemmerle09] with translation and rotation apart. With an even number of relations the median is
+/// the upper one. Throws InputError when the trajectory or the list of relations is empty.
 RelationError relation_error(const Trajectory& T_map_body, const std::vector<PoseRelation>& relations, const RelationSettings& settings = {});
 
 }  // namespace patrol::score

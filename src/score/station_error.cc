@@ -13,20 +13,22 @@
 namespace patrol::score {
 namespace {
 
-constexpr double kMaxDistance_m = 0.5;    // a cell farther from everything was no part of the world
-constexpr double kRobust_m = 0.05;        // beyond it a cell's say falls (Cauchy)
+constexpr double kMaxDistance_m = 0.5;    // cells farther from every true surface are not used
+constexpr double kRobust_m = 0.05;        // scale of the Cauchy weight
 constexpr int kMinPoints = 30;
 constexpr int kIterations = 20;
-constexpr double kWeakShare = 0.03;       // directions with less information than this share of the best are not moved
+// directions below this fraction of the largest information eigenvalue are not moved
+constexpr double kWeakShare = 0.03;
 
-// Search for displacements that a fit from the map as it lies cannot reach.
-constexpr double kSearch_m = 3.0;         // along either axis
+// Search for displacements outside the convergence basin of the fit from the identity.
+constexpr double kSearch_m = 3.0;         // maximum along either axis
 constexpr double kSearchStep_m = 0.1;
-constexpr double kSearchRobust_m = 0.1;   // kRobust_m for poses between the steps
-constexpr double kSearchTurn_deg = 2.0;   // step of the yaw, two to either side
+constexpr double kSearchRobust_m = 0.1;   // scale of the Cauchy weight during the search, wider to bridge the steps
+constexpr double kSearchTurn_deg = 2.0;   // step of the yaw
 constexpr int kSearchTurns = 2;
 constexpr std::size_t kMaxSearchPoints = 300;
-constexpr double kAsGoodShare = 0.9;      // of two fits whose scores are in at least this ratio the smaller motion counts
+// the smaller of two motions counts when its score is at least this fraction of the other's
+constexpr double kAsGoodShare = 0.9;
 
 std::vector<Eigen::Vector2d> points_round(const OccupancyGrid& built, const Pose2& T_world_map, const Eigen::Vector2d& center,
                                           double radius_m) {
@@ -38,7 +40,7 @@ std::vector<Eigen::Vector2d> points_round(const OccupancyGrid& built, const Pose
   return near;
 }
 
-/// One step of Gauss-Newton for a motion about `center`: x, y in m, turn in units of `radius_m` of arc.
+/// One Gauss-Newton step of a motion about `center`: x, y in m, rotation as arc length at `radius_m`.
 Eigen::Vector3d step(const DistanceField& field, const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& center,
                      const Pose2& motion, double radius_m) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
@@ -74,7 +76,7 @@ Pose2 refine(const DistanceField& field, const std::vector<Eigen::Vector2d>& poi
   return motion;
 }
 
-/// Mean weight of the moved points: 1 if all lie on surfaces, towards 0 if all are much farther than `robust_m`.
+/// Mean weight of the moved points: 1 when all lie on surfaces, near 0 when all are much farther than `robust_m`.
 double score_of(const DistanceField& field, const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& center,
                 const Pose2& motion, double robust_m) {
   double sum = 0.0;
@@ -85,8 +87,8 @@ double score_of(const DistanceField& field, const std::vector<Eigen::Vector2d>& 
   return sum / static_cast<double>(points.size());
 }
 
-/// Smallest motion of a grid of motions that fits nearly as well as the best of them. Of motions along a straight wall, which all fit
-/// alike, that is the one across the wall.
+/// Smallest motion of a grid whose score is within `kAsGoodShare` of the best. Along a straight wall many motions fit
+/// equally well; the smallest is the one across the wall.
 Pose2 search(const DistanceField& field, const std::vector<Eigen::Vector2d>& all, const Eigen::Vector2d& center, double radius_m) {
   std::vector<Eigen::Vector2d> points;
   const std::size_t stride = all.size() / kMaxSearchPoints + 1;
@@ -127,7 +129,7 @@ std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2
   if (!std::isfinite(field.distance_m(p_world_target))) return std::nullopt;
   const auto score = [&](const Pose2& motion) { return score_of(field, points, p_world_target, motion, kRobust_m); };
   const Pose2 near = refine(field, points, p_world_target, {}, radius_m);
-  if (score(near) >= kAsGoodShare) return near.position().norm();  // no score exceeds 1
+  if (score(near) >= kAsGoodShare) return near.position().norm();  // the score is at most 1
   const Pose2 far = refine(field, points, p_world_target, search(field, points, p_world_target, radius_m), radius_m);
   const bool is_near_as_good = score(near) >= kAsGoodShare * score(far);
   return (is_near_as_good ? near : far).position().norm();

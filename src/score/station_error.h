@@ -13,26 +13,29 @@
 
 namespace patrol::score {
 
-/// How well one station of the route was found.
+/// Accuracy at one station of the route.
 struct StationError {
   std::string name;
   bool is_reached = false;
-  double position_error_m = 0.0;   ///< of the robot's own pose when it said that it had arrived
-  double heading_error_deg = 0.0;
-  double stand_error_m = 0.0;      ///< where it really stood, from where the survey wants it
-  std::optional<double> map_error_m;  ///< how far the built map has the station's target from its true place
+  double position_error_m = 0.0;   ///< error of the estimated pose at the time of the arrival event
+  double heading_error_deg = 0.0;  ///< absolute value, at the arrival event
+  double stand_error_m = 0.0;      ///< distance of the true position from the surveyed one
+  std::optional<double> map_error_m;  ///< displacement of the station's target in the built map
 };
 
-/// Displacement of a station's target in the built map, m. The occupied cells within `radius_m` of the target are registered to the
-/// reference by a rigid motion (Gauss-Newton on the reference's distance field, robust); the displacement is how far the motion
-/// moves the target. Gauss-Newton starts twice: from the map as it lies, and from the best of a grid of motions up to 3 m along
-/// either axis and 4 degrees. The second result counts where it fits clearly better: larger errors are found up to that limit.
-/// Directions that the surroundings do not show (along a single straight wall) are not moved. None if there is too little to fit.
+/// Displacement of a station's target in the built map, m. The occupied cells within `radius_m` of the target are
+/// registered to the reference by a rigid motion (Gauss-Newton on the reference's distance field, robust loss). The
+/// displacement is the distance by which this motion moves the target.
+///
+/// Gauss-Newton starts twice: from the identity, and from the best of a grid of motions up to 3 m along either axis and
+/// 4 degrees. The second result counts only where it fits clearly better, so larger errors are found up to that limit.
+/// Degenerate directions (along a single straight wall) are not moved. Returns none when there are too few occupied
+/// cells.
 std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2& T_world_map,
                                          const ReferenceMap& reference, const Eigen::Vector2d& p_world_target,
                                          double radius_m = 6.0);
 
-/// One entry per station, in the route's order. `route_in_world`: the survey, which is true.
+/// One entry per station in the order of the route. `route_in_world` is the survey, the ground truth of the stations.
 std::vector<StationError> station_errors(const Route& route_in_world, const std::vector<Event>& events,
                                          const Pose2& T_world_map, const Trajectory& T_world_body,
                                          const OccupancyGrid& built, const ReferenceMap& reference);

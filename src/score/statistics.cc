@@ -9,13 +9,13 @@
 namespace patrol::score {
 namespace {
 
-/// Two-sided quantile of Student's t: the share `level` lies within plus and minus it.
+/// Two-sided quantile of Student's t: the probability of the interval between minus and plus the result is `level`.
 double student_t(std::size_t degrees_of_freedom, double level) {
   const boost::math::students_t distribution(static_cast<double>(degrees_of_freedom));
   return boost::math::quantile(boost::math::complement(distribution, (1.0 - level) / 2.0));
 }
 
-/// [value] from 1; equal values share the mean of their ranks.
+/// Ranks from 1, [value]; equal values have the mean of their ranks.
 std::vector<double> ranks_of(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

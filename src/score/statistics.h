@@ -3,19 +3,19 @@
 #include <optional>
 #include <vector>
 
-/// Small figures about a list of numbers. An empty list gives 0 throughout: there was nothing to be wrong about.
+/// Basic statistics of a list of numbers. Functions that return a number give 0 for an empty list.
 namespace patrol::score {
 
 double mean(const std::vector<double>& values);
-/// Of the sample: n - 1 in the denominator; 0 for fewer than two values.
+/// Sample variance: n - 1 in the denominator. 0 for fewer than two values.
 double variance(const std::vector<double>& values);
 double root_mean_square(const std::vector<double>& values);
 double maximum(const std::vector<double>& values);
 
-/// The value below which `fraction` of the list lies, linear between neighbours (Hyndman & Fan 1996, type 7).
+/// Percentile with linear interpolation [Hyndman96, type 7]; `fraction` in 0 ... 1.
 double percentile(std::vector<double> values, double fraction);
 
-/// Half width of the 95 % confidence interval of the mean, by Student's t; 0 for fewer than two values.
+/// Half width of the 95 % confidence interval of the mean by Student's t, 0 for fewer than two values.
 double confidence_95(const std::vector<double>& values);
 
 struct Interval {
@@ -26,14 +26,14 @@ struct Interval {
   bool contains(double value) const { return low <= value && value <= high; }
 };
 
-/// Confidence interval of the mean, by Student's t; none for fewer than two values, which say nothing of their spread.
+/// Confidence interval of the mean by Student's t, none for fewer than two values.
 std::optional<Interval> mean_interval(const std::vector<double>& values, double level = 0.95);
 
-/// Spearman's rank correlation, ties sharing their mean rank, -1 ... 1; none when either list does not vary.
+/// Spearman's rank correlation, -1 ... 1; ties have the mean of their ranks. None when either list is constant.
 std::optional<double> rank_correlation(const std::vector<double>& a, const std::vector<double>& b);
 
-/// Chance that a value of a marked one is greater than a value of an unmarked one, ties counting half (area under the ROC curve,
-/// Mann-Whitney U / n m); none without both kinds.
+/// Probability that a marked value is greater than an unmarked one; ties count half. This is the area under the ROC
+/// curve, Mann-Whitney's U / (n m). None unless there are marked and unmarked values.
 std::optional<double> chance_of_order(const std::vector<double>& values, const std::vector<bool>& is_marked);
 
 }  // namespace patrol::score

@@ -19,8 +19,8 @@ struct RelativeError {
   std::vector<double> rotation_rad;
 };
 
-/// Relative pose error (Kuemmerle et al. 2009; Sturm et al. 2012) of every stretch that starts at a pose and ends at the
-/// first pose at least 1 m of true way further on.
+/// Relative pose error [Kuemmerle09; Sturm12] of every segment from a pose to the first pose that is at least 1 m of
+/// true distance later.
 RelativeError relative_error(const std::vector<MatchedPose>& poses) {
   std::vector<double> way_m(poses.size(), 0.0);
   for (std::size_t i = 1; i < poses.size(); ++i) {
@@ -40,13 +40,13 @@ RelativeError relative_error(const std::vector<MatchedPose>& poses) {
   return error;
 }
 
-/// Positions of the same instants, one column each.
+/// Positions at the paired stamps, one per column.
 struct PointPairs {
   Eigen::Matrix3Xd estimate;
   Eigen::Matrix3Xd reference;
 };
 
-/// The index of the stamp nearest to `stamp`; of two equally near the earlier.
+/// Index of the stamp nearest to `stamp`, the earlier of two equally near ones.
 std::size_t nearest_index(const Trajectory& trajectory, Time stamp) {
   const auto after = std::upper_bound(trajectory.begin(), trajectory.end(), stamp,
                                       [](Time t, const StampedPose& entry) { return t < entry.stamp; });
@@ -77,7 +77,7 @@ PointPairs pair_by_stamp(const Trajectory& estimate, const Trajectory& reference
   return pairs;
 }
 
-/// Umeyama (1991), equations 34 to 43 with the scale held at 1.
+/// Rigid fit [Umeyama91, eqs. 34 to 43] with the scale fixed at 1.
 Pose3 fit_rigid_motion(const PointPairs& pairs) {
   const Eigen::Vector3d estimate_mean = pairs.estimate.rowwise().mean();
   const Eigen::Vector3d reference_mean = pairs.reference.rowwise().mean();

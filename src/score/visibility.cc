@@ -8,7 +8,7 @@
 namespace patrol::score {
 namespace {
 
-/// Walks the cells along a ray in order (Amanatides & Woo 1987).
+/// Visits the cells along a ray in order [Amanatides87].
 class CellWalk {
  public:
   CellWalk(const GridGeometry& geometry, const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction)
@@ -81,7 +81,7 @@ void look(ReferenceMap& reference, const Eigen::Vector2d& from_m, double angle_r
 ReferenceMap mark_seeable(OccupancyGrid reference, const Trajectory& T_world_body, double max_range_m, double spacing_m) {
   const GridGeometry geometry = reference.geometry();
   ReferenceMap marked{std::move(reference), Grid<std::uint8_t>(geometry)};
-  // Two cells between neighbouring rays at full range; `mark_round` fills the gap.
+  // Adjacent rays are two cells apart at full range; `mark_round` fills the gap.
   const double step_rad = 2.0 * geometry.resolution_m / max_range_m;
   const int num_rays = static_cast<int>(std::ceil(2.0 * std::numbers::pi / step_rad));
   for (const Eigen::Vector2d& place : thin_out(T_world_body, spacing_m)) {

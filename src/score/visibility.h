@@ -8,19 +8,20 @@
 
 namespace patrol::score {
 
-/// What there was to map: the true map and, for each cell, whether this trajectory could have seen it.
+/// Reference map: the true map and, for each cell, whether a lidar on the given trajectory could have observed it.
 struct ReferenceMap {
-  OccupancyGrid cells;              ///< in world; unknown inside solid things
-  Grid<std::uint8_t> is_seeable;    ///< same geometry
+  OccupancyGrid cells;              ///< in world; unknown inside solid objects
+  Grid<std::uint8_t> is_seeable;    ///< 1 for observable cells; geometry of `cells`
 };
 
-/// Marks the cells that a lidar at these places could have seen: those a ray of at most `max_range_m` crosses or ends in
-/// before anything else stops it. Places nearer than `spacing_m` to the one before are left out. Occupied cells within
-/// one cell of where a ray ends are seeable too: rays are thinner than what they measure.
+/// Marks the cells that a lidar on the trajectory could have observed. These are the cells that a ray of at most
+/// `max_range_m` crosses or ends in before it is blocked. Poses nearer than `spacing_m` to the previous one are
+/// skipped. Occupied cells within one cell of a ray's end are observable too, because a ray is thinner than a lidar
+/// beam.
 ReferenceMap mark_seeable(OccupancyGrid reference, const Trajectory& T_world_body, double max_range_m,
                           double spacing_m = 0.5);
 
-/// Seeable cells as they are, the others unknown: the true map as map_server's files can hold it.
+/// Keeps the observable cells and sets all others to unknown, as in a map for map_server.
 OccupancyGrid seeable_part(const ReferenceMap& reference);
 
 }  // namespace patrol::score

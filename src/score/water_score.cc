@@ -7,7 +7,7 @@
 namespace patrol::score {
 namespace {
 
-/// 95 % of a chi-squared variable of three degrees of freedom.
+/// 95 % quantile of the chi-squared distribution with three degrees of freedom.
 constexpr double kChiSquared3 = 7.815;
 
 std::optional<std::size_t> nearest_body(const std::vector<TrueWater>& bodies, const Eigen::Vector3d& p_world_m, double max_distance_m) {

@@ -1,13 +1,13 @@
-// The map of a run: cells, track, stations, findings, water, robot. Metres in `map`, x to the right, y up.
+// Map of a run: cells, track, stations, findings, water, robots. Coordinates in `map`, m, x to the right, y up.
 const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
 const rgb = (color) => {
   const context = document.createElement('canvas').getContext('2d');
   context.fillStyle = color;
   return [1, 3, 5].map((at) => parseInt(context.fillStyle.slice(at, at + 2), 16));
 };
-const kSigmas = 2.448;  // half axes of the ellipse that holds 95 % of a normal distribution of two dimensions
+const kSigmas = 2.448;  // half axes of the 95 % ellipse of a two-dimensional normal distribution
 
-/// Occupied and free cells in the page's colours; what is unknown shows the ground.
+/// Map image with occupied and free cells in the page's colors; unknown cells are transparent.
 async function coloured(url) {
   const image = new Image();
   image.src = url;
@@ -25,7 +25,7 @@ async function coloured(url) {
   return canvas;
 }
 
-/// Eigenvalues and the first eigenvector's angle of [[a, b], [b, c]].
+/// Half axes (square roots of the eigenvalues) of [[a, b], [b, c]] and the angle of the long one.
 function axes(a, b, c) {
   const middle = (a + c) / 2, half = Math.hypot((a - c) / 2, b);
   return { long: Math.sqrt(Math.max(0, middle + half)), short: Math.sqrt(Math.max(0, middle - half)), angle: 0.5 * Math.atan2(2 * b, a - c) };
@@ -41,13 +41,13 @@ export class MapView {
     this.water = [];
     this.robots = [];
     this.cells = null;
-    this.shown = null;  // {x, y, metres per pixel}; null: everything
+    this.shown = null;  // {x, y, meters per pixel}; null: the whole map
     const [nearer, further, whole] = section.querySelectorAll('.zoom button');
     nearer.addEventListener('click', () => this.zoom(0.6));
     further.addEventListener('click', () => this.zoom(1 / 0.6));
     whole.addEventListener('click', () => { this.shown = null; this.draw(); });
     this.canvas.addEventListener('wheel', (event) => {
-      if (!event.ctrlKey && !this.shown) return;  // the page scrolls
+      if (!event.ctrlKey && !this.shown) return;  // scrolls the page
       event.preventDefault();
       this.zoom(Math.exp(0.002 * event.deltaY), event.offsetX, event.offsetY);
     }, { passive: false });
@@ -56,7 +56,8 @@ export class MapView {
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { this.mapUrl = null; this.load(); });
   }
 
-  /// `details` of /api/run, `water` of /api/water that this run found, the robots to draw, the chosen first.
+  /// `details` of /api/run, the `water` results of /api/water of this run, and the robots to draw, the selected one
+  /// first.
   show(details, water, robots) {
     if (!this.details || !details || this.details.run !== details.run) this.shown = null;
     Object.assign(this, { details, water, robots });
@@ -100,7 +101,7 @@ export class MapView {
 
   place() { return this.shown || this.whole(); }
 
-  /// Everything that there is, with a margin.
+  /// View of all drawn objects with a margin.
   whole() {
     const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
     const add = ([x, y]) => { low[0] = Math.min(low[0], x); low[1] = Math.min(low[1], y); high[0] = Math.max(high[0], x); high[1] = Math.max(high[1], y); };
@@ -203,7 +204,7 @@ export class MapView {
     this.label(context, x, y, robot.robot, ink(isChosen ? 'accent' : 'soft'));
   }
 
-  /// Left out where another one stands.
+  /// Draws a label unless it overlaps an earlier one.
   label(context, x, y, text, color) {
     context.font = '600 11px ' + ink('font');
     const short = text.length > 24 ? text.slice(0, 23) + '\u2026' : text, width = context.measureText(short).width;

@@ -1,4 +1,5 @@
-// Asks the platform once a second what is new, and shows it. Whatever robots send is set as text, never as markup.
+// Polls the server for changes once per second and updates the page. Data from robots are inserted as text, never as
+// markup.
 import { MapView } from '/map.js';
 import { showGas, showLining, showWater } from '/site.js';
 import { $, clock, dayAndClock, make, plural, simulated, spoken } from '/words.js';
@@ -22,7 +23,7 @@ async function ask(path, parameters = {}) {
 
 const kMaxPages = 100;
 
-/// Everything of an answer that comes in pages: `next(page)` gives the parameters of the page that follows, or null.
+/// Requests all pages of a response. `next(page)` returns the parameters of the following page, or null.
 async function askAll(path, parameters, next, merge) {
   const all = await ask(path, parameters);
   for (let i = 1, more = next(all); more && i < kMaxPages; ++i) {
@@ -39,7 +40,7 @@ const askRun = (robot, run) => askAll('/api/run', { robot, run }, (page) => (pag
   (all, page) => all.stations.push(...page.stations));
 
 const askLining = (world) => askAll('/api/lining', { world }, (page) => (page.next == null ? null : { after: page.next }), (all, page) => {
-  for (const scan of page.scans) {  // a long scan goes on
+  for (const scan of page.scans) {  // a long scan continues on the next page
     const last = all.scans[all.scans.length - 1];
     if (last && last.seq === scan.seq) last.data.cells.push(...scan.data.cells);
     else all.scans.push(scan);
@@ -48,7 +49,7 @@ const askLining = (world) => askAll('/api/lining', { world }, (page) => (page.ne
   all.rings.push(...page.rings);
 });
 
-/// One that the platform did not answer is tried again when it does.
+/// Runs a refresh and repeats it after the next response of the server if it fails.
 const attempt = (refresh) => { refresh().catch(() => state.missed.add(refresh)); };
 
 // ---- Robots ----
@@ -148,7 +149,7 @@ $('form', dialog).addEventListener('submit', async (event) => {
   }
 });
 
-// ---- The chosen robot's run, and its world ----
+// ---- Run of the selected robot, and its world ----
 
 const map = new MapView($('#map'));
 
@@ -165,7 +166,7 @@ async function refreshRun() {
 function showMap() {
   const { details } = state, robot = state.robots.get(state.chosen);
   if (!details || !robot) return;
-  // Robots of one scenario were put down at one place: their maps share an origin.
+  // Robots of one scenario have the same start pose, so their maps have a common origin.
   const isLive = robot.run === details.run;
   const others = [...state.robots.values()].filter((one) => one !== robot && one.world === robot.world && one.scenario === robot.scenario);
   map.show(details, state.water.filter((one) => one.run === details.run), isLive ? [robot, ...others] : []);
@@ -209,13 +210,13 @@ function summary({ kind, data }) {
   if (kind === 'pose') return `x ${data.x.toFixed(2)} m, y ${data.y.toFixed(2)} m, heading ${(data.yaw * 180 / Math.PI).toFixed(0)}\u00b0`;
   return kind === 'map' ? `${data.width} x ${data.height} cells of ${data.resolution_m} m` : '';
 }
-const sizeOf = (list) => (Array.isArray(list) ? list.length : list);  // of a long one the platform gives the length
+const sizeOf = (list) => (Array.isArray(list) ? list.length : list);  // the server sends only the length of long lists
 
 async function refreshHistory() {
   const wanted = { robot: $('#history-robot').value, kind: $('#history-kind').value, before: pages[pages.length - 1], limit: kHistoryRows };
   state.wanted = wanted;
   const { results, more } = await ask('/api/history', wanted);
-  if (state.wanted !== wanted) return;  // another page was asked for meanwhile
+  if (state.wanted !== wanted) return;  // another page was requested meanwhile
   $('#history tbody').replaceChildren(...results.map((one) => make('tr', {}, make('td', { textContent: dayAndClock(one.received_ms) }), make('td', { textContent: one.robot }),
     make('td', { textContent: simulated(one.time_s), title: 'into the run ' + one.run }), make('td', { textContent: one.kind === 'event' ? spoken(one.data.kind) : one.kind }), make('td', { textContent: summary(one) }))));
   $('#newer').disabled = pages.length === 1;
@@ -233,7 +234,7 @@ function showHistoryRobots() {
   select.value = before;
 }
 
-// ---- What is new ----
+// ---- Changes ----
 
 function showLive(isOn) {
   const live = $('#live');
@@ -249,7 +250,7 @@ async function poll() {
   const missed = [...state.missed];
   state.missed.clear();
   missed.forEach(attempt);
-  if (news.revision < state.revision) return location.reload();  // another database is served
+  if (news.revision < state.revision) return location.reload();  // the server has another database
   const isFirst = state.revision === 0;
   Object.assign(state, { revision: news.revision, skew_ms: news.now_ms - Date.now() });
   const before = state.robots.get(state.chosen), marked = news.robots.filter((robot) => (state.robots.get(robot.robot) || { mark_revision: -1 }).mark_revision !== robot.mark_revision);
@@ -272,7 +273,7 @@ async function poll() {
   if (isFirst && !robot) attempt(refreshWorld);
 }
 
-/// Between two answers of /api/run the track grows by the poses that come.
+/// Extends the track by new poses between two responses of /api/run.
 function followTrack(robot) {
   const { details } = state;
   if (!details || robot.x == null || details.run !== robot.run) return;

@@ -1,4 +1,4 @@
-// The lining's heat map, and curves over time (uPlot).
+// Heat map of the lining, and curves over time (uPlot).
 const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
 const kSeries = 6, kPlotHeight = 230;
 
@@ -6,10 +6,10 @@ function mixed(from, to, share) {
   return `color-mix(in srgb, ${to} ${Math.round(100 * share)}%, ${from})`;
 }
 
-/// The colour of a displacement: inwards and outwards, from still to the scale's end.
+/// Color of a displacement, inward or outward, from zero to the end of the scale.
 const colour = (inward_mm, end_mm) => mixed(ink('still'), ink(inward_mm > 0 ? 'inward' : 'outward'), Math.min(1, Math.abs(inward_mm) / end_mm));
 
-/// Crown in the middle: -180 ... 180.
+/// Clock angle with the crown in the middle: -180 ... 180.
 const unrolled = (clock_deg) => (clock_deg > 180 ? clock_deg - 360 : clock_deg);
 
 export class HeatMap {
@@ -24,7 +24,7 @@ export class HeatMap {
     this.canvas.addEventListener('pointerleave', () => { this.output.textContent = ''; });
   }
 
-  /// Cells of /api/lining's scans, the newest first: of a ring that two scans saw, the newer counts.
+  /// Shows the cells of the scans of /api/lining, newest first. For a ring in several scans the newest is used.
   show(scans) {
     const owner = new Map();
     for (const scan of scans) for (const cell of scan.data.cells) if (!owner.has(cell.ring)) owner.set(cell.ring, scan);
@@ -41,7 +41,7 @@ export class HeatMap {
     this.ramp.replaceChildren(`${this.end_mm} mm outwards`, bar, `${this.end_mm} mm inwards`, ' \u2013 pale: within twice its standard deviation');
   }
 
-  /// Where a cell is drawn: rings in a row, a gap where numbers are left out.
+  /// Positions of the cells: rings in a row, with a gap at missing ring numbers.
   layout() {
     const left = 44, bottom = 22, width = this.canvas.clientWidth - left - 4, height = this.canvas.clientHeight - bottom - 4;
     let slots = 0;
@@ -88,7 +88,7 @@ export class HeatMap {
   }
 }
 
-/// The clock, as fine as the marks are apart; the day where they are days apart.
+/// Axis labels: time of day with the resolution of the ticks, or dates for ticks at least one day apart.
 function timesOf(plot, splits) {
   const apart_s = splits.length > 1 ? splits[1] - splits[0] : 60;
   const form = apart_s >= 86400 ? { month: 'short', day: 'numeric' } : { hour: '2-digit', minute: '2-digit', hour12: false, ...(apart_s < 60 ? { second: '2-digit' } : {}) };
@@ -96,7 +96,7 @@ function timesOf(plot, splits) {
   return splits.map((s) => new Date(1000 * s).toLocaleString([], spansDays ? { weekday: 'short', ...form } : form));
 }
 
-/// Curves over the clock on the wall.
+/// Plot of curves over wall-clock time.
 export class TimePlot {
   constructor(place, keys) {
     this.place = place;
@@ -106,7 +106,7 @@ export class TimePlot {
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.series && this.show(this.series));
   }
 
-  /// [{name, points: [[ms, value], ...]}]; the first six are drawn.
+  /// Shows curves [{name, points: [[ms, value], ...]}]; at most six are drawn.
   show(series) {
     this.series = series;
     if (this.plot) this.plot.destroy();

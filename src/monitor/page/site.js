@@ -1,4 +1,4 @@
-// What was found at a site: its lining, the water ahead, gas.
+// Findings at a site: lining, water ahead, gas.
 import { HeatMap, TimePlot } from '/plots.js';
 import { $, dayAndClock, make, mm, plural, spoken } from '/words.js';
 
@@ -7,7 +7,7 @@ const heat = new HeatMap($('#lining .wide'));
 const ringPlot = new TimePlot($('#rings'), $('#lining .keys'));
 const gasPlot = new TimePlot($('#gas-plot'), $('#gas .keys'));
 
-/// Points [key, ms, value] as curves of their keys.
+/// Groups points [key, ms, value] into one curve per key.
 function curvesOf(points, name) {
   const curves = new Map();
   for (const [key, ms, value] of points) {

@@ -1,8 +1,8 @@
-// How things are said and put on the page. Text is always set as text.
+// Formatting of values, and creation of elements. Text is always inserted as text, never as markup.
 
 export const $ = (selector, from = document) => from.querySelector(selector);
 
-/// An element with properties and children; strings become text.
+/// Creates an element with properties and children; strings become text nodes.
 export function make(tag, properties, ...children) {
   const element = Object.assign(document.createElement(tag), properties);
   element.append(...children);

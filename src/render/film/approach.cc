@@ -10,7 +10,8 @@ namespace {
 
 std::string_view name_of(const mjModel& model, int body) { return mj_id2name(&model, mjOBJ_BODY, body); }
 
-/// People are several mocap bodies: "pedestrian_1", "pedestrian_1_thigh_left", ...
+/// Main body of a pedestrian's limb. Pedestrians consist of several mocap bodies: "pedestrian_1",
+/// "pedestrian_1_thigh_left", ...
 int whole_of(const mjModel& model, int part) {
   const std::string_view name = name_of(model, part);
   for (int body = 0; body < model.nbody; ++body) {

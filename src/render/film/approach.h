@@ -9,33 +9,35 @@
 
 namespace patrol::render {
 
-/// How near the robot was to somebody who moves.
+/// Closest moving actor near the robot at one time.
 struct Approach {
   Time at{};
-  std::string actor;  ///< the name of their body, e.g. "pedestrian_1"
-  double clearance_m = 0.0;  ///< between skin and skin, true
+  std::string actor;  ///< name of the actor's body, e.g. "pedestrian_1"
+  double clearance_m = 0.0;  ///< true distance between the surfaces of robot and actor
   Eigen::Vector2d p_world_actor = Eigen::Vector2d::Zero();
 };
 
-/// Measures clearances to people and vehicles, which are the model's mocap bodies, from states of the simulation.
+/// Measures the clearance between the robot and pedestrians or vehicles (the model's mocap bodies) from states of the
+/// simulation.
 class ApproachFinder {
  public:
-  static constexpr double kFarthest_m = 1.5;  ///< what is farther off is no approach
+  static constexpr double kFarthest_m = 1.5;  ///< actors farther away are ignored
 
-  /// `view` must outlive the finder.
+  /// `view` must outlive this object.
   explicit ApproachFinder(const mjModel& view);
 
-  /// The nearest one; none within kFarthest_m. Throws InputError when the state is not one of this model.
+  /// Returns the nearest actor, none within kFarthest_m. Throws InputError when the state does not belong to this
+  /// model.
   std::optional<Approach> nearest(const SimState& state);
 
  private:
   struct Part {
     int geom;
-    int actor;  ///< body; of a person's leg, the person's
+    int actor;  ///< body id; for a limb, the pedestrian's main body
   };
   const mjModel& model_;
   sim::DataPtr data_;
-  std::vector<int> robot_;   ///< geoms
+  std::vector<int> robot_;   ///< geom ids
   std::vector<Part> actors_;
 };
 

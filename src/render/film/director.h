@@ -11,27 +11,28 @@
 
 namespace patrol::render {
 
-/// Says from where each frame of a film is taken, and what is written on it.
+/// Selects the view and the annotations of each frame of a film.
 class Director {
  public:
-  /// `rig` follows the robot where the plan has no shot; `free_distance` is for the shots' own cameras.
+  /// `rig` is the camera outside of planned shots; `free_distance` is for the shots' cameras.
   Director(ShotPlan plan, CameraRig rig, FreeDistance free_distance)
       : plan_(std::move(plan)), rig_(std::move(rig)), free_distance_(std::move(free_distance)) {}
 
-  /// In order of the film; `elapsed_s` of film since the last frame.
+  /// View of the next frame, `elapsed_s` of film time after the previous one. Must be called in the order of the film.
   View view(const RunSnapshot& snapshot, double elapsed_s);
+  /// Annotations of the frame at a time of the run.
   FilmNote note(Time now) const;
 
   const ShotPlan& plan() const { return plan_; }
 
  private:
-  /// The shot that an instant of the run is in; null: the camera follows.
+  /// Shot at a time of the run, null outside of planned shots.
   const Shot* shot_at(Time now) const;
 
   ShotPlan plan_;
   CameraRig rig_;
   FreeDistance free_distance_;
-  const Shot* shot_ = nullptr;  ///< that `camera_` takes
+  const Shot* shot_ = nullptr;  ///< shot of `camera_`
   std::optional<ShotCamera> camera_;
 };
 

@@ -11,16 +11,17 @@
 
 namespace patrol::render {
 
-/// Films what a run's snapshots show, as its director has it: a frame for every instant of the film, of the first state that is
-/// not before it.
+/// Renders a film from a run's snapshots and a director. Each frame shows the first state at or after the frame's time
+/// in the run.
 class Film {
  public:
   /// `view` must outlive the film.
   Film(const mjModel& view, const PaintSettings& settings, double frames_per_second, Director director,
        const std::filesystem::path& out_mp4);
 
-  /// In order of the run; takes the frames that are due.
+  /// Adds the next snapshot in the order of the run and renders the frames that are due.
   void shoot(const RunSnapshot& snapshot);
+  /// Waits for the remaining frames and completes the file.
   void finish();
 
   int num_frames() const { return num_frames_; }

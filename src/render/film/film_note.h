@@ -5,13 +5,13 @@
 
 namespace patrol::render {
 
-/// What a film says beside the picture of the run. Seconds of film.
+/// Annotations of one frame of a film. Times are film times.
 struct FilmNote {
-  std::vector<std::string> caption;  ///< lines, about what is shown; empty: none
-  double speed = 1.0;   ///< seconds of the run in a second of film
+  std::vector<std::string> caption;  ///< text lines about the current shot; empty without a shot
+  double speed = 1.0;   ///< playback speed: run time / film time
   double film_s = 0.0;
   double length_s = 0.0;
-  std::vector<double> marks_s;  ///< where its moments are
+  std::vector<double> marks_s;  ///< times of the highlights
 };
 
 }  // namespace patrol::render

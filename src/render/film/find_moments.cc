@@ -66,7 +66,7 @@ void add_events(const RunHistory& history, const Pose2& T_world_map, Moments& mo
   }
 }
 
-/// What is touched twice within seconds is one collision.
+/// Merges contacts less than 3 s apart into one collision.
 void add_collisions(const RunHistory& history, Moments& moments) {
   constexpr Time kOneCollision = std::chrono::seconds(3);
   std::optional<Time> last;
@@ -78,7 +78,7 @@ void add_collisions(const RunHistory& history, Moments& moments) {
   }
 }
 
-/// The nearest instant of each time that somebody was near.
+/// Closest approach of each encounter; approaches of one actor less than 5 s apart are one encounter.
 std::vector<Approach> encounters(const std::vector<Approach>& approaches, double near_m) {
   constexpr Time kOneEncounter = std::chrono::seconds(5);
   std::vector<Approach> met;
@@ -110,7 +110,7 @@ void add_largest_error(const RunHistory& history, const MomentSettings& settings
   moments.push_back({largest->at, MomentKind::kLargestError, fmt::format("Largest position error: {:.3f} m", size_m(*largest))});
 }
 
-/// The truth makes a leap: somebody carries the robot away.
+/// Adds steps of the true pose that the robot cannot make itself.
 void add_kidnaps(const RunHistory& history, const MomentSettings& settings, Moments& moments) {
   for (std::size_t i = 1; i < history.T_world_body.size(); ++i) {
     const double leap_m = (history.T_world_body[i].pose.position - history.T_world_body[i - 1].pose.position).norm();
@@ -120,7 +120,7 @@ void add_kidnaps(const RunHistory& history, const MomentSettings& settings, Mome
   }
 }
 
-/// The error makes a leap, but not because the truth does.
+/// Adds steps of the error that are not caused by a step of the true pose.
 void add_corrections(const RunHistory& history, const MomentSettings& settings, Moments& moments) {
   constexpr Time kAround = std::chrono::milliseconds(500);
   const Moments before = moments;

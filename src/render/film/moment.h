@@ -9,29 +9,30 @@
 
 namespace patrol::render {
 
-/// What a run is remembered by; the first is the most worth a look.
+/// Kinds of highlights in order of decreasing priority.
 enum class MomentKind {
   kCollision,
   kFall,
-  kKidnap,       ///< lifted to another place
-  kLost,         ///< says that it does not know where it is
-  kAlarm,        ///< a finding
-  kRelocalized,  ///< knows again where it is
-  kFault,        ///< of a sensor, begins
-  kFailure,      ///< of a goal, a station, a docking, the mission
+  kKidnap,       ///< moved to another pose
+  kLost,         ///< localization lost
+  kAlarm,        ///< finding of the inspection
+  kRelocalized,  ///< localization recovered
+  kFault,        ///< start of a sensor fault
+  kFailure,      ///< failure of a sensor, an inspection, a goal, a station, a docking or the mission
   kNearMiss,
   kLargestError,
-  kCorrection,   ///< the estimate jumps: a loop closes, or a guess is given up
+  kCorrection,   ///< jump of the estimate: loop closure or change of hypothesis
   kDocking,
-  kGoal,         ///< or station, reached
-  kMission,      ///< begins, ends
+  kGoal,         ///< goal or station reached
+  kMission,      ///< start or end of the mission
 };
 
+/// Highlight of a run.
 struct Moment {
   Time at{};
   MomentKind kind{};
-  std::string title;  ///< a few words for a person
-  std::optional<Eigen::Vector2d> p_world_subject = {};  ///< what it is about, m, where that is not the robot itself
+  std::string title;  ///< short description
+  std::optional<Eigen::Vector2d> p_world_subject = {};  ///< position of the highlight, m; none if it is the robot's own
 };
 
 }  // namespace patrol::render

@@ -13,24 +13,24 @@
 
 namespace patrol::render {
 
-/// How far the estimate was off.
+/// Position error of the estimate.
 struct EstimateError {
   Time at{};
-  Eigen::Vector2d error_in_world_m;  ///< estimated less true position, map and world joined at the start
+  Eigen::Vector2d error_in_world_m;  ///< estimated minus true position; map and world aligned at the start
 };
 
-/// What a log tells of a run as a whole: what its notable moments are found by.
+/// Data of a whole run for the detection of highlights.
 struct RunHistory {
-  int num_states = 0;   ///< that a replay can show
-  Time begin{}, end{};  ///< of those
-  Trajectory T_world_body;  ///< true
+  int num_states = 0;   ///< number of states that a replay can show
+  Time begin{}, end{};  ///< times of the first and last state
+  Trajectory T_world_body;  ///< ground truth
   std::vector<EstimateError> errors;
-  std::vector<Approach> approaches;  ///< to people and vehicles, where they were near
+  std::vector<Approach> approaches;  ///< to pedestrians and vehicles, within ApproachFinder::kFarthest_m
   std::vector<Event> events;
   std::vector<Collision> collisions;
 };
 
-/// Reads the whole log. Throws InputError when it cannot be read, or is of another model than `view`.
+/// Reads the whole log. Throws InputError when the log cannot be read or belongs to another model than `view`.
 RunHistory read_run_history(const std::filesystem::path& log_mcap, const mjModel& view, const Pose2& T_world_map);
 
 }  // namespace patrol::render

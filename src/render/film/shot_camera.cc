@@ -10,7 +10,7 @@
 namespace patrol::render {
 namespace {
 
-constexpr double kClearance_m = 0.25;  // between eye and wall
+constexpr double kClearance_m = 0.25;  // between camera and obstacle
 constexpr double kFollow_s = 0.12;     // time constant
 
 }  // namespace
@@ -21,7 +21,7 @@ ShotCamera::ShotCamera(const Shot& shot, FreeDistance free_distance, const Pose3
       focus_m_(focus_of(T_world_body)),
       bearing_rad_(choose_bearing(T_world_body)) {}
 
-/// What the picture is about: the robot, or a place between it and what it meets.
+/// Point of interest: the robot, or a point between it and the subject of the shot.
 Eigen::Vector3d ShotCamera::focus_of(const Pose3& T_world_body) const {
   constexpr double kTowardsSubject = 0.4;
   Eigen::Vector3d focus = T_world_body.position;
@@ -29,7 +29,7 @@ Eigen::Vector3d ShotCamera::focus_of(const Pose3& T_world_body) const {
   return focus;
 }
 
-/// From the focus to the eye, for a bearing of zero.
+/// Offset from the focus to the camera at a bearing of zero.
 Eigen::Vector3d ShotCamera::offset_m(const Eigen::Vector3d& p_world_body) const {
   if (!shot_.p_world_subject) return {1.8, 0.0, 0.55};
   const double apart_m = (*shot_.p_world_subject - p_world_body.head<2>()).norm();
@@ -38,8 +38,8 @@ Eigen::Vector3d ShotCamera::offset_m(const Eigen::Vector3d& p_world_body) const 
 }
 
 double ShotCamera::choose_bearing(const Pose3& T_world_body) const {
-  // Beside: from ahead rather than from behind, which is where the camera that follows is. Of two: across the line between them,
-  // on the robot's side of it, for it is the smaller of the two.
+  // One subject: from the front rather than from behind, the view of the chase camera. Two subjects: across the line
+  // between them, on the side of the robot, which is the smaller one.
   static constexpr std::array kBeside_deg = {40.0, -40.0, 75.0, -75.0, 110.0, -110.0, 150.0, -150.0};
   static constexpr std::array kOfTwo_deg = {120.0, -120.0, 145.0, -145.0, 95.0, -95.0, 70.0, -70.0};
   double ahead_rad = yaw_of(shot_.T_world_body.rotation);
@@ -76,9 +76,9 @@ View ShotCamera::from_above(const Pose3& T_world_body, const Eigen::Vector2d& p_
 }
 
 View ShotCamera::follow(const Pose3& T_world_body, const Eigen::Vector2d& p_world_estimate, double elapsed_s) {
-  constexpr double kReturn_s = 0.8;  // time constant; it comes near at once
+  constexpr double kReturn_s = 0.8;  // time constant; the approach is immediate
   constexpr double kSwing_radps = 3.0 * kDegree;
-  constexpr double kAside = 0.07, kBelow = 0.08;  // of the distance
+  constexpr double kAside = 0.07, kBelow = 0.08;  // fractions of the distance
   if (shot_.kind == ShotKind::kOverhead) return from_above(T_world_body, p_world_estimate, elapsed_s);
   focus_m_ += (1.0 - std::exp(-elapsed_s / kFollow_s)) * (focus_of(T_world_body) - focus_m_);
   bearing_rad_ += kSwing_radps * elapsed_s;
@@ -89,7 +89,7 @@ View ShotCamera::follow(const Pose3& T_world_body, const Eigen::Vector2d& p_worl
     reach = std::clamp((free_m - kClearance_m) / offset.norm(), 0.3, 1.0);
   }
   reach_ = std::min(reach, reach_ + (1.0 - std::exp(-elapsed_s / kReturn_s)) * (reach - reach_));
-  // A little to the right and below: there the map lies over the picture, and the caption.
+  // Aim slightly right of and below the focus: the map inset covers that part of the picture, and the caption.
   const Eigen::Vector3d to_right = Eigen::Vector3d::UnitZ().cross(offset), down = -offset.norm() * Eigen::Vector3d::UnitZ();
   return look_at(focus_m_ + reach_ * offset, focus_m_ + reach_ * (kAside * to_right + kBelow * down));
 }

@@ -5,16 +5,16 @@
 
 namespace patrol::render {
 
-/// The camera of one shot. It stands off in a direction of the world that it keeps, but for a slow swing, and moves along with
-/// the robot: of several directions the first from which nothing stands before the robot, neither now nor at the moment that the
-/// shot is about; where something does, it comes nearer. From above, it has both the robot and the place where it believes to be
-/// in the picture.
+/// Camera of one shot. It keeps its bearing in world, except for a slow rotation, and moves with the robot. The bearing
+/// is the first of several with the largest free distance, both now and at the shot's highlight. The camera moves
+/// closer when an obstacle blocks the view. In an overhead shot the picture contains the robot and its estimated
+/// position.
 class ShotCamera {
  public:
-  /// `T_world_body` when the shot begins; `free_distance` as for CameraRig.
+  /// `T_world_body` is the pose at the start of the shot; `free_distance` as in CameraRig.
   ShotCamera(const Shot& shot, FreeDistance free_distance, const Pose3& T_world_body);
 
-  /// `elapsed_s` since the last frame, as it will be watched.
+  /// Returns the view of the next frame, `elapsed_s` of film time after the previous one.
   View follow(const Pose3& T_world_body, const Eigen::Vector2d& p_world_estimate, double elapsed_s);
 
  private:
@@ -25,10 +25,10 @@ class ShotCamera {
 
   Shot shot_;
   FreeDistance free_distance_;
-  Eigen::Vector3d focus_m_;  ///< smoothed
-  double bearing_rad_;       ///< from the focus to the eye, in world
-  double reach_ = 1.0;       ///< smoothed; 1 where nothing is in the way
-  double height_m_ = 10.0;   ///< smoothed; of a look from above
+  Eigen::Vector3d focus_m_;  ///< low-pass filtered
+  double bearing_rad_;       ///< from the focus to the camera, in world
+  double reach_ = 1.0;       ///< fraction of the full camera distance, low-pass filtered; 1 without obstacles
+  double height_m_ = 10.0;   ///< height of an overhead shot, low-pass filtered
 };
 
 }  // namespace patrol::render

@@ -9,14 +9,14 @@
 namespace patrol::render {
 namespace {
 
-/// Moments that follow so closely on each other that they are one picture.
+/// Highlights that are close in time, shown in one shot.
 struct Scene {
-  TimeSpan span;          ///< of the run
+  TimeSpan span;          ///< run time
   std::vector<std::string> titles;
   Moment most_notable;
 };
 
-/// A scene of moments in order of time; `from` ... `to` of `moments`.
+/// Builds a scene from the highlights [`from`, `to`), which are ordered by time.
 Scene scene_of(std::vector<Moment>::const_iterator from, std::vector<Moment>::const_iterator to, const StorySettings& settings) {
   constexpr std::size_t kMostTitles = 3;
   Scene scene{.span = {from->at - from_seconds(settings.lead_s), (to - 1)->at + from_seconds(settings.hold_s)},
@@ -30,7 +30,7 @@ Scene scene_of(std::vector<Moment>::const_iterator from, std::vector<Moment>::co
   return scene;
 }
 
-/// In order. Where two would overlap, the one gives way to the other in the middle.
+/// Groups the highlights into scenes in order of time. Overlapping scenes are cut at the middle of the overlap.
 std::vector<Scene> scenes_of(const std::vector<Moment>& moments, TimeSpan run, const StorySettings& settings) {
   std::vector<Scene> scenes;
   for (auto from = moments.begin(), to = from; from != moments.end(); from = to) {
@@ -59,7 +59,7 @@ ShotKind shot_kind(const Moment& moment) {
   }
 }
 
-/// The most notable scenes, in order of time.
+/// Shots of the scenes with the highest priority, in order of time.
 std::vector<Shot> shots_of(std::vector<Scene> scenes, const Trajectory& T_world_body, int most_shots) {
   const auto kind = [](const Scene& scene) { return scene.most_notable.kind; };
   std::erase_if(scenes, [&](const Scene& scene) { return kind(scene) == MomentKind::kMission || scene.span.to <= scene.span.from; });

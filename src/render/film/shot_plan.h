@@ -12,44 +12,48 @@
 
 namespace patrol::render {
 
+/// Editing style of a film.
 enum class Cut {
-  kStory,  ///< slows down at the notable moments, and goes near
-  kPlain,  ///< even, one camera
+  kStory,  ///< slow motion and close shots at the highlights
+  kPlain,  ///< constant speed, one camera
 };
 
-/// "story" or "plain"; throws InputError for anything else.
+/// Parses "story" or "plain". Throws InputError for any other text.
 Cut cut_named(const std::string& name);
 
+/// Perspective of a shot.
 enum class ShotKind {
-  kBeside,    ///< the robot from near, low
-  kTwoShot,   ///< the robot and what it meets
-  kOverhead,  ///< from above, with the ground for a map
+  kBeside,    ///< robot from near and low
+  kTwoShot,   ///< robot and the subject of the highlight
+  kOverhead,  ///< vertically down on robot and estimate
 };
 
-/// A part of a film that another camera takes than the one that follows.
+/// Segment of a film with its own camera instead of the following one.
 struct Shot {
-  TimeSpan span;  ///< of the run
+  TimeSpan span;  ///< run time
   ShotKind kind = ShotKind::kBeside;
-  std::vector<std::string> caption;  ///< lines
-  Pose3 T_world_body;  ///< true, at the moment that the shot is about
-  std::optional<Eigen::Vector2d> p_world_subject = {};  ///< of a two-shot, m
+  std::vector<std::string> caption;  ///< text lines
+  Pose3 T_world_body;  ///< true pose at the highlight
+  std::optional<Eigen::Vector2d> p_world_subject = {};  ///< subject of a two-shot, m
 };
 
+/// Composition of highlights into shots.
 struct StorySettings {
-  double lead_s = 4.0;  ///< of the run, before a moment
-  double hold_s = 3.0;  ///< and after
-  double same_scene_s = 4.0;  ///< moments nearer to each other than this are one scene
-  int most_shots = 8;   ///< beyond, the less notable scenes are chapters only
+  double lead_s = 4.0;  ///< run time before a highlight
+  double hold_s = 3.0;  ///< run time after a highlight
+  double same_scene_s = 4.0;  ///< highlights less than this apart belong to one scene
+  int most_shots = 8;   ///< maximum number of shots; lower-priority scenes are chapters only
 };
 
+/// Speeds, shots and chapters of a film.
 struct ShotPlan {
   Cut cut = Cut::kStory;
   SpeedPlan speed;
-  std::vector<Shot> shots;  ///< in order, apart; between them the camera follows
-  std::vector<Chapter> chapters;  ///< from the film's begin to its end; of every scene
+  std::vector<Shot> shots;  ///< ordered, not overlapping; between shots the camera rig follows the robot
+  std::vector<Chapter> chapters;  ///< cover the whole film: the start, then one per scene
 };
 
-/// `moments` as find_moments gives them. A plain cut has the chapters only.
+/// Plans the shots of a film. `moments` is the result of find_moments. A plain film has chapters only.
 ShotPlan plan_shots(const RunHistory& history, const std::vector<Moment>& moments, Cut cut, const SpeedSettings& speed,
                     const StorySettings& settings = {});
 

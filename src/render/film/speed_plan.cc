@@ -6,7 +6,7 @@
 namespace patrol::render {
 namespace {
 
-/// In order, cut to the run, those together whose ramps meet.
+/// Sorts the spans, clips them to the run and merges those whose ramps overlap.
 std::vector<TimeSpan> joined(std::vector<TimeSpan> spans, TimeSpan run, Time ramp) {
   std::ranges::sort(spans, {}, &TimeSpan::from);
   std::vector<TimeSpan> apart;
@@ -25,7 +25,7 @@ SpeedPlan::SpeedPlan(TimeSpan run, std::vector<TimeSpan> slow_spans, const Speed
   const double fast_pace = 1.0 / settings.fast, slow_pace = std::max(1.0 / settings.slow, fast_pace);
   const double ramp_s = 2.0 * settings.ramp_s / (fast_pace + slow_pace);
   const double begin_s = to_seconds(run.from), end_s = to_seconds(run.to);
-  // A ramp that the run's end cuts short is as steep as a whole one.
+  // A ramp cut by the end of the run keeps its slope.
   const auto pace_beside = [&](double away_s) { return std::max(fast_pace, slow_pace - away_s / ramp_s * (slow_pace - fast_pace)); };
   const auto add = [&](double run_s, double pace) {
     if (nodes_.empty()) return nodes_.push_back({run_s, pace, 0.0});
@@ -62,7 +62,8 @@ double SpeedPlan::film_s(Time run_time) const {
   return node.film_s + 0.5 * (node.pace + pace_after(node, run_s)) * (run_s - node.run_s);
 }
 
-// With x = run_s - node.run_s: film_s - node.film_s = pace x + slope x^2 / 2, solved in the form that bears a slope of zero.
+// Solves film_s - node.film_s = pace x + slope x^2 / 2 for x = run_s - node.run_s, in a form that is stable for slope =
+// 0.
 Time SpeedPlan::run_time(double film_s) const {
   const Node& node = node_before(&Node::film_s, film_s);
   const double slope = pace_after(node, node.run_s + 1.0) - node.pace;

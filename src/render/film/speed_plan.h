@@ -6,37 +6,38 @@
 
 namespace patrol::render {
 
-/// A part of a run.
+/// Interval of run time.
 struct TimeSpan {
   Time from{}, to{};
 };
 
+/// Playback speeds of a film.
 struct SpeedSettings {
-  double fast = 8.0;  ///< seconds of the run in a second of film
-  double slow = 2.0;  ///< likewise, where there is something to see; not slower than `fast` asks for already
-  double ramp_s = 1.25;  ///< of film, that going over from the one to the other takes
+  double fast = 8.0;  ///< playback speed: run time / film time
+  double slow = 2.0;  ///< playback speed of the slow spans; limited to `fast`
+  double ramp_s = 1.25;  ///< film time of a transition between the speeds
 };
 
-/// Which instant of a run each instant of its film shows. The film's pace (seconds of film for a second of the run) is 1 / fast,
-/// and 1 / slow in the slow spans; before and after each it changes linearly with the run's time. So a film of a run of T seconds
-/// with slow spans of L_i seconds and whole ramps of r = 2 ramp_s / (1 / fast + 1 / slow) seconds is
+/// Mapping between film time and run time. The pace (film time / run time) is 1 / fast, and 1 / slow in the slow spans.
+/// Before and after each slow span it changes linearly with run time. The film of a run of T seconds with complete
+/// ramps has a length of
 ///   T / fast + sum_i (L_i + r) (1 / slow - 1 / fast)
-/// seconds long.
+/// seconds. L_i is the length of slow span i in run time, r = 2 ramp_s / (1 / fast + 1 / slow) the length of a ramp.
 class SpeedPlan {
  public:
-  /// Spans whose ramps meet become one; what reaches beyond the run is cut off.
+  /// Merges slow spans whose ramps overlap, and clips spans to the run.
   SpeedPlan(TimeSpan run, std::vector<TimeSpan> slow_spans, const SpeedSettings& settings);
 
   double length_s() const { return nodes_.back().film_s; }
-  /// The run's instant at `film_s`, 0 ... length_s; beyond, the run goes on at the pace that it had.
+  /// Run time at `film_s`, 0 ... length_s. Beyond the end, the last pace continues.
   Time run_time(double film_s) const;
-  /// The inverse.
+  /// Inverse of `run_time`.
   double film_s(Time run_time) const;
-  /// Seconds of the run in a second of film, at an instant of the run.
+  /// Playback speed (run time / film time) at a run time.
   double speed(Time run_time) const;
 
  private:
-  /// Between two of them, the pace is linear in the run's time.
+  /// Between two nodes, the pace is linear in run time.
   struct Node {
     double run_s;
     double pace;

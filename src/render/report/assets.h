@@ -2,12 +2,12 @@
 
 #include <string_view>
 
-/// Files that every page carries, put into the program when it is built (embed.cmake).
+/// Files contained in every report page, compiled into the program (embed.cmake).
 namespace patrol::render {
 
 extern const std::string_view kReportStyle;   ///< report.css
 extern const std::string_view kReportScript;  ///< report.js
-extern const std::string_view kPlotLibrary;   ///< uPlot, which declares itself as `uPlot`
+extern const std::string_view kPlotLibrary;   ///< uPlot, which defines the global `uPlot`
 extern const std::string_view kPlotStyle;
 
 }  // namespace patrol::render

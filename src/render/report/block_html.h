@@ -4,7 +4,7 @@
 
 #include "render/report/blocks.h"
 
-/// Blocks as HTML. What needs a script carries its data with it; report.js draws it.
+/// Conversion of blocks to HTML. Blocks drawn by a script embed their data; report.js draws them.
 namespace patrol::render {
 
 std::string block_html(const Block& block);
@@ -22,7 +22,7 @@ std::string to_html(const LanePlot& block);
 std::string to_html(const MapBlock& block);
 std::string to_html(const VideoBlock& block);
 
-/// The class that report.css gives it.
+/// CSS class of report.css.
 const char* css_class(Tone tone);
 const char* css_class(Ink ink);
 

@@ -10,13 +10,14 @@
 
 #include "render/report/map_picture.h"
 
-/// What a report's page is made of: plain descriptions, which know nothing of runs, sweeps or HTML. Every text is plain; it is escaped
-/// when the page is written.
+/// Content of a report page as plain data, independent of runs, sweeps and HTML. All texts are plain text and are
+/// escaped when the page is written.
 namespace patrol::render {
 
+/// Emphasis of a text or bar.
 enum class Tone { kPlain, kGood, kWarning, kBad, kFaint };
 
-/// One colour, one meaning, through all figures of a page (report.css).
+/// Meanings of colors in all figures of a page (report.css).
 enum class Ink { kTruth, kEstimate, kBound, kOdometry, kRanges, kTrust, kEvent, kAlarm };
 
 struct TableCell {
@@ -26,7 +27,7 @@ struct TableCell {
 
 struct Column {
   std::string title;
-  bool is_number = false;  ///< set flush right
+  bool is_number = false;  ///< right-aligned
 };
 
 struct TableBlock {
@@ -35,7 +36,7 @@ struct TableBlock {
   std::vector<std::vector<TableCell>> rows;
 };
 
-/// Tables that only some readers want: shown on demand, and in print.
+/// Collapsible tables: closed on screen until opened, open in print.
 struct FoldedTables {
   std::string summary;
   std::vector<TableBlock> tables;
@@ -45,7 +46,7 @@ struct TextBlock {
   std::string text;
 };
 
-/// How it went, and what that is made of.
+/// Verdict of a run with its reason and the checks behind it.
 struct VerdictBlock {
   std::string word;
   Tone tone = Tone::kPlain;
@@ -66,19 +67,19 @@ struct KeyFigures {
 struct Bar {
   std::string label;
   double value = 0.0;
-  std::string text;  ///< the value as it is to be read
+  std::string text;  ///< displayed value
 };
 struct BarBlock {
   std::string caption;
   std::vector<Bar> bars;
 };
 
-/// All values of one kind, and their quartiles.
+/// Values of one group with their quartiles.
 struct Box {
   std::string label;
   std::vector<double> values;
   double lower_quartile = 0.0, median = 0.0, upper_quartile = 0.0;
-  std::string text;  ///< the median as it is to be read
+  std::string text;  ///< displayed median
 };
 struct BoxPlot {
   std::string caption;
@@ -86,15 +87,16 @@ struct BoxPlot {
   std::vector<Box> boxes;
 };
 
-/// A stretch of a scale, with an interval about its end: a step of a waterfall, or a difference from zero.
+/// Interval of a scale with a confidence interval about its end: a step of a waterfall chart, or a difference from
+/// zero.
 struct Span {
   std::string label;
   double from = 0.0, to = 0.0;
   std::optional<std::pair<double, double>> interval{};
   Tone tone = Tone::kPlain;
-  std::string text;  ///< the figure as it is to be read
+  std::string text;  ///< displayed value
 };
-/// One below the other, on one scale, zero marked.
+/// Rows of spans on a common scale with a mark at zero.
 struct SpanChart {
   std::string caption;
   std::string unit;
@@ -105,7 +107,7 @@ struct Curve {
   std::string name;
   Ink ink = Ink::kEstimate;
   bool is_dashed = false;
-  std::vector<Eigen::Vector2d> points;  ///< x growing
+  std::vector<Eigen::Vector2d> points;  ///< increasing x
 };
 struct PlotMark {
   double x = 0.0;
@@ -116,23 +118,23 @@ struct PlotSpan {
   double from = 0.0, to = 0.0;
   std::string text;
 };
-/// The x axis that several plots share: they are zoomed together.
+/// x axis shared by several plots, which zoom together.
 struct PlotAxis {
   std::string label;
-  double max = 1.0;  ///< from 0
+  double max = 1.0;  ///< the axis begins at 0
 };
 
 struct LinePlot {
   std::string title;
   std::string unit;
   PlotAxis axis;
-  std::optional<double> max;  ///< of y, where it has one
+  std::optional<double> max;  ///< upper limit of the y axis, if fixed
   std::vector<Curve> curves;
   std::vector<PlotMark> marks;
   std::vector<PlotSpan> spans;
 };
 
-/// What happened when, kind by kind.
+/// Timeline of events with one lane per kind.
 struct LanePlot {
   struct Lane {
     std::string name;
@@ -147,12 +149,12 @@ struct LanePlot {
 struct MapPath {
   std::string name;
   Ink ink = Ink::kEstimate;
-  std::vector<std::vector<Eigen::Vector2d>> pieces_m;  ///< polylines in the picture's frame
+  std::vector<std::vector<Eigen::Vector2d>> pieces_m;  ///< polylines, in the picture's frame
 };
 struct MapMark {
   std::string label;
   Ink ink = Ink::kEvent;
-  Eigen::Vector2d p_m = Eigen::Vector2d::Zero();  ///< in the picture's frame
+  Eigen::Vector2d p_m = Eigen::Vector2d::Zero();  ///< position, in the picture's frame
 };
 struct MapBlock {
   MapPicture picture;
@@ -160,7 +162,7 @@ struct MapBlock {
   std::vector<MapMark> marks;
 };
 
-/// An MP4: its bytes, or else where it lies, seen from the page.
+/// MP4 video: embedded bytes, or a URL relative to the page.
 struct VideoBlock {
   std::string mp4;
   std::string address;
@@ -170,18 +172,18 @@ struct VideoBlock {
 using Block = std::variant<TextBlock, VerdictBlock, KeyFigures, TableBlock, FoldedTables, BarBlock, BoxPlot, SpanChart, LinePlot, LanePlot,
                            MapBlock, VideoBlock>;
 
-/// Line plots that follow each other stand beside each other where there is room.
+/// Section of a page. Consecutive line plots form a grid.
 struct Section {
-  std::string title;  ///< none: the first, which needs none
+  std::string title;  ///< empty only for the first section
   std::vector<Block> blocks;
 };
 
 struct Page {
   std::string kind;   ///< e.g. "run"
   std::string title;
-  std::vector<std::pair<std::string, std::string>> facts;
+  std::vector<std::pair<std::string, std::string>> facts;  ///< label and value in the page's header
   std::vector<Section> sections;
-  std::string colophon;  ///< what the page was made of
+  std::string colophon;  ///< program version and sources of the page
 };
 
 }  // namespace patrol::render

@@ -30,7 +30,8 @@ std::vector<Eigen::Vector2d> simplified(const std::vector<Eigen::Vector2d>& path
   if (path.size() < 3) return path;
   std::vector<bool> is_kept(path.size(), false);
   is_kept.front() = is_kept.back() = true;
-  std::vector<std::pair<std::size_t, std::size_t>> open = {{0, path.size() - 1}};  // a stack: long paths would recurse deeply
+  // explicit stack: recursion is deep for long paths
+  std::vector<std::pair<std::size_t, std::size_t>> open = {{0, path.size() - 1}};
   while (!open.empty()) {
     const auto [first, last] = open.back();
     open.pop_back();

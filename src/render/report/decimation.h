@@ -7,11 +7,12 @@
 
 namespace patrol::render {
 
-/// Of a curve with more than `2 * num_stretches` points: the least and the greatest y of each of that many stretches of equally many
-/// points, in order of x, and both ends. Peaks stay. A shorter curve as it is.
+/// Reduces a curve with more than `2 * num_stretches` points. Keeps the minimum and maximum y of each of
+/// `num_stretches` equal segments, in order of x, and both end points, so that peaks are preserved. Shorter curves are
+/// returned unchanged.
 std::vector<Eigen::Vector2d> decimated(const std::vector<Eigen::Vector2d>& curve, std::size_t num_stretches);
 
-/// The points of a path that it needs to stay within `tolerance` of all of them (Ramer 1972; Douglas and Peucker 1973).
+/// Reduces a path to the points needed to stay within `tolerance` of all points [Ramer72; Douglas73].
 std::vector<Eigen::Vector2d> simplified(const std::vector<Eigen::Vector2d>& path, double tolerance);
 
 }  // namespace patrol::render

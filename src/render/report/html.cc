@@ -8,7 +8,7 @@ std::string script_json(const nlohmann::ordered_json& value) {
   const std::string json = value.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
   std::string out;
   out.reserve(json.size());
-  for (const char c : json) {  // '<' stands in strings only, where its escape means the same
+  for (const char c : json) {  // '<' occurs only in strings, where the escape is equivalent
     if (c == '<') out += "\\u003c";
     else out += c;
   }

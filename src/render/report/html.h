@@ -5,13 +5,13 @@
 
 #include <nlohmann/json.hpp>
 
-/// The few things that keep a page whole whatever stands in a run's files.
+/// Escaping of text and data for HTML pages.
 namespace patrol::render {
 
-/// Text for HTML, attributes included. Line ends stay, other control characters become spaces.
+/// Escapes text for HTML content and attributes. Line ends remain; other control characters become spaces.
 std::string escaped_html(std::string_view text);
 
-/// JSON that can stand in a <script>: no character in it can end the element. Bytes that are not UTF-8 become U+FFFD.
+/// JSON for a <script> element: contains no character sequence that ends the element. Invalid UTF-8 becomes U+FFFD.
 std::string script_json(const nlohmann::ordered_json& value);
 
 /// "data:image/png;base64,..." (RFC 2397, RFC 4648).

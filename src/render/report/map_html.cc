@@ -5,7 +5,7 @@
 #include "render/report/decimation.h"
 #include "render/report/html.h"
 
-/// The map as a picture in an SVG whose unit is the metre, y down from the picture's upper edge; report.js zooms it.
+/// Map figure as SVG: unit meter, y down from the picture's upper edge; report.js zooms it.
 namespace patrol::render {
 namespace {
 
@@ -28,7 +28,7 @@ std::string path_html(const MapPath& path, const MapPicture& picture) {
   return html;
 }
 
-/// A line of no length with a round cap is a dot of the same size at every zoom.
+/// A line of zero length with a round cap is a dot of constant size at every zoom.
 std::string mark_html(const MapMark& mark, const MapPicture& picture) {
   const double x = mark.p_m.x() - picture.low_m.x(), y = picture.high_m.y() - mark.p_m.y();
   return fmt::format("<g class=\"{0}\"><path d=\"M{1:.2f} {2:.2f}h0\"/><text x=\"{1:.2f}\" y=\"{2:.2f}\">{3}</text></g>\n",

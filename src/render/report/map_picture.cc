@@ -11,11 +11,11 @@
 namespace patrol::render {
 namespace {
 
-constexpr std::int8_t kOccupiedFrom = 65;  // percent, as map_server
-constexpr int kNumErrors = 40;             // steps of the error's colours
+constexpr std::int8_t kOccupiedFrom = 65;  // percent, threshold of map_server
+constexpr int kNumErrors = 40;             // number of error colors
 constexpr std::uint8_t kNothing = 0, kFreePixel = 1, kTruthPixel = 2, kFirstError = 3;
 
-/// Pixels as places in a palette, row 0 at the top.
+/// Palette image, row 0 at the top.
 struct PaletteImage {
   int width = 0, height = 0;
   std::vector<std::uint8_t> pixels;
@@ -43,10 +43,10 @@ std::string to_png(const PaletteImage& image) {
   return png;
 }
 
-/// Between world and the pixels of a picture.
+/// Transformation from world to the pixels of a picture.
 class Picture {
  public:
-  /// `shown`: at least, from its upper left corner. A cell is painted `brush` pixels wide.
+  /// `shown` is the minimum area, from its upper left corner. A cell is drawn `brush` pixels wide.
   Picture(const Eigen::AlignedBox2d& shown, double pixel_m, int brush)
       : left_m_(shown.min().x()),
         top_m_(shown.max().y()),
@@ -60,7 +60,7 @@ class Picture {
 
   MapPicture::Sheet sheet() const { return {.png = to_png(image_), .size_m = pixel_m_ * Eigen::Vector2d(image_.width, image_.height)}; }
 
-  /// Every pixel becomes what `value_at` says of its centre in world.
+  /// Sets every pixel to `value_at` of its center in world.
   template <typename ValueAt>
   void fill(const ValueAt& value_at) {
     for (int row = 0; row < image_.height; ++row) {
@@ -70,8 +70,8 @@ class Picture {
     }
   }
 
-  /// The pixel that holds `p_world`, and those that the brush reaches; of several values the greatest stays, so that the worst error
-  /// is seen.
+  /// Draws a value at `p_world` and in the area of the brush. The maximum of several values remains, so that the
+  /// largest error is visible.
   void raise(const Eigen::Vector2d& p_world, std::uint8_t value) {
     const int left = static_cast<int>(std::floor((p_world.x() - left_m_) / pixel_m_));
     const int top = static_cast<int>(std::floor((top_m_ - p_world.y()) / pixel_m_));
@@ -103,7 +103,7 @@ void for_each_cell(const Grid<Value>& grid, const Use& use) {
 
 bool is_occupied(const OccupancyGrid& map, Cell cell) { return map.at(cell) >= kOccupiedFrom; }
 
-/// What the built map knows and the true surfaces, in world.
+/// Extends the area to the known cells of the built map and the true surfaces, in world.
 void extend_to_known(Eigen::AlignedBox2d& shown, const MapLayers& layers) {
   for_each_cell(layers.built, [&](Cell cell) {
     if (layers.built.at(cell) != kUnknown) shown.extend(layers.T_world_map * layers.built.geometry().center_of(cell));
@@ -136,7 +136,7 @@ void paint(const MapLayers& layers, Picture& picture) {
       if (is_occupied(*layers.truth, cell)) picture.raise(layers.truth->geometry().center_of(cell), kTruthPixel);
     });
   }
-  // Once more, cell by cell: the pixels' centres can miss a wall that is one cell thick.
+  // Draw the cells as well: pixel centers can miss a wall of one cell.
   for_each_cell(layers.built, [&](Cell cell) {
     if (is_occupied(layers.built, cell)) picture.raise(layers.T_world_map * geometry.center_of(cell), built_pixel(layers, cell));
   });
@@ -144,7 +144,7 @@ void paint(const MapLayers& layers, Picture& picture) {
 
 }  // namespace
 
-// Ink, violet, red: dark where the map is right, so that a good map looks like a drawing; each step also differs in lightness.
+// Dark blue over violet to red: an accurate map resembles a line drawing. The lightness increases with the error.
 Color map_error_color(double error_m) {
   struct Stop {
     double share, r, g, b;
@@ -161,7 +161,7 @@ Color map_error_color(double error_m) {
 
 MapPicture map_picture(const MapLayers& layers, Eigen::AlignedBox2d shown) {
   constexpr double kMargin_m = 1.0, kMaxPixels = 8e6;
-  const Eigen::Array2d kPage_px(1150.0, 750.0);  // that the whole map is seen on
+  const Eigen::Array2d kPage_px(1150.0, 750.0);  // size of the figure on the page
   extend_to_known(shown, layers);
   if (shown.isEmpty()) shown.extend(Eigen::Vector2d::Zero().eval());
   shown.min().array() -= kMargin_m;

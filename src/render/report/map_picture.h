@@ -12,33 +12,33 @@
 
 namespace patrol::render {
 
-/// A map as pictures: north up, axes of world.
+/// Map as pictures, north up, in world axes.
 struct MapPicture {
-  /// Its upper left corner is that of the map.
+  /// Picture with the upper left corner of the map.
   struct Sheet {
     std::string png;
     Eigen::Vector2d size_m = Eigen::Vector2d::Zero();
   };
-  Sheet overview;  ///< coarse, walls drawn broad: for the whole map at once
-  Sheet detail;    ///< cell by cell
-  Eigen::Vector2d low_m = Eigen::Vector2d::Zero(), high_m = Eigen::Vector2d::Zero();  ///< corners, in world
+  Sheet overview;  ///< coarse with thick walls, for the view of the whole map
+  Sheet detail;    ///< one pixel per cell
+  Eigen::Vector2d low_m = Eigen::Vector2d::Zero(), high_m = Eigen::Vector2d::Zero();  ///< corners in world
   bool has_errors = false;
 };
 
-/// A built map laid over the true one.
+/// Built map and true map for a comparison.
 struct MapLayers {
   OccupancyGrid built;  ///< in map
   Pose2 T_world_map;
   std::optional<OccupancyGrid> truth;  ///< in world
-  Grid<float> error_m;  ///< of `built`'s occupied cells, from their centre to the nearest true surface; empty: not known
+  Grid<float> error_m;  ///< distance of each occupied cell of `built` to the nearest true surface; empty if unknown
 };
 
-/// Occupied cells in the colour of their error, true surfaces below them, what is known to be free below both. `shown` (in world) is
-/// the least that the pictures show. The detail's pixels are as large as the built map's cells, or larger, so that there are 8 million
-/// at most.
+/// Draws the occupied cells in the color of their error, above the true surfaces and the free cells. `shown` (in world)
+/// is the minimum area of the pictures. A pixel of the detail picture has the size of a cell of the built map, or more
+/// to limit the picture to 8 million pixels.
 MapPicture map_picture(const MapLayers& layers, Eigen::AlignedBox2d shown);
 
-/// The colours of errors from 0 to `kMapErrorEnd_m`; larger ones have the last.
+/// Colors of errors from 0 to `kMapErrorEnd_m`. Larger errors have the last color.
 inline constexpr double kMapErrorEnd_m = 0.20;
 Color map_error_color(double error_m);
 

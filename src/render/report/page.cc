@@ -18,7 +18,7 @@ constexpr const char* kGridEnd =
 constexpr const char* kPolicy =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; media-src data: 'self' file:";
 
-/// "Error over time" -> "error-over-time".
+/// Anchor of a section: "Error over time" -> "error-over-time".
 std::string anchor_of(const std::string& title) {
   std::string anchor;
   for (const char c : title) anchor += std::isalnum(static_cast<unsigned char>(c)) ? static_cast<char>(std::tolower(static_cast<unsigned char>(c))) : '-';
@@ -41,7 +41,7 @@ std::string navigation_html(const Page& page) {
   return html + "</nav>\n";
 }
 
-/// Line plots that follow each other, in a grid.
+/// Converts the blocks; consecutive line plots form a grid.
 std::string blocks_html(const std::vector<Block>& blocks) {
   std::string html;
   bool is_in_grid = false;
@@ -60,7 +60,7 @@ std::string section_html(const Section& section) {
                      blocks_html(section.blocks));
 }
 
-/// uPlot takes the number of pixels per CSS pixel from a name that is shadowed here: with three, the drawings are sharp in print too.
+/// uPlot reads the pixel ratio from a name that is shadowed here. A ratio of at least three gives sharp plots in print.
 std::string scripts_html() {
   return fmt::format("<script>(function(devicePixelRatio){{\n{}\nwindow.uPlot=uPlot;}})(Math.max(3,window.devicePixelRatio));</script>\n<script>\n{}</script>\n",
                      kPlotLibrary, kReportScript);

@@ -6,8 +6,8 @@
 
 namespace patrol::render {
 
-/// The whole page in one file: style, scripts, pictures and data in it, nothing fetched from anywhere (its own content security policy
-/// forbids it). The same page gives the same bytes.
+/// Complete page in one file with style, scripts, pictures and data. Nothing is fetched: the page's content security
+/// policy forbids it. Equal pages give equal bytes.
 std::string to_html(const Page& page);
 
 }  // namespace patrol::render

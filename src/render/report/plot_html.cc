@@ -9,16 +9,16 @@
 #include "render/report/decimation.h"
 #include "render/report/html.h"
 
-/// Plots as data that report.js draws with uPlot.
+/// Plot data that report.js draws with uPlot.
 namespace patrol::render {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kNumStretches = 600;  // of a curve; more than a screen has pixels for
-constexpr double kLogFrom = 50.0;           // a curve whose peak is this many times its median is drawn over a logarithmic axis
+constexpr std::size_t kNumStretches = 600;  // segments of a decimated curve, more than a screen shows
+constexpr double kLogFrom = 50.0;           // ratio of peak to median above which the axis is logarithmic
 
-/// Four digits are more than a plot shows.
+/// Rounds to four digits, the resolution of a plot.
 double shortened(double value) { return std::strtod(fmt::format("{:.4g}", value).c_str(), nullptr); }
 double shortened_x(double x) { return std::round(1e3 * x) / 1e3; }
 
@@ -43,7 +43,7 @@ Json spans_json(const std::vector<PlotSpan>& spans) {
   return json;
 }
 
-/// A state goes below zero; an error does not.
+/// True for curves with negative values; these have no logarithmic axis.
 bool has_sign(const Curve& curve) {
   return std::any_of(curve.points.begin(), curve.points.end(), [](const Eigen::Vector2d& point) { return point.y() < 0.0; });
 }
@@ -65,7 +65,7 @@ std::string legend_html(const std::vector<Curve>& curves) {
   return html;
 }
 
-/// What the drawing leaves out, if it does.
+/// Note about decimated curves, empty if all points are drawn.
 std::string thinning_note(const std::vector<Curve>& curves) {
   std::size_t most = 0;
   for (const Curve& curve : curves) most = std::max(most, curve.points.size());

@@ -1,4 +1,4 @@
-// Draws the plots and zooms the map of a report. Data stand beside each figure; nothing is fetched.
+// Draws the plots and zooms the map of a report. The data are next to each figure; nothing is fetched.
 'use strict';
 (() => {
   const style = getComputedStyle(document.documentElement);
@@ -11,7 +11,7 @@
   const axis = (more) => ({ font: axisFont, stroke: color('soft'), grid: { stroke: color('line'), width: 1 }, ticks: { show: false }, ...more });
   const timeAxis = (data) => axis({ label: data.label, labelFont: axisFont, labelSize: 16, size: 26, space: 60 });
 
-  /// Five decades at most: errors begin at nothing.
+  /// Range of a logarithmic axis, at most five decades, because errors may begin at zero.
   function decades(plot, least, greatest) {
     const to = Math.ceil(Math.log10(greatest || 1)), from = Math.max(Math.floor(Math.log10(least || 1e-3)), to - 5);
     return [10 ** from, 10 ** to];
@@ -23,7 +23,7 @@
   };
   const short = (value) => String(+value.toPrecision(3));
 
-  /// Spans and marks of the run, below the curves.
+  /// Draws spans and marks of the run below the curves.
   function drawOccasions(plot, data) {
     const { ctx, bbox } = plot, x = (value) => plot.valToPos(value, 'x', true);
     ctx.save();
@@ -39,7 +39,7 @@
     ctx.restore();
   }
 
-  /// Curves have stamps of their own: the sample of one that is nearest to the place of the cursor.
+  /// Index of the curve's sample nearest to the cursor; curves have their own stamps.
   function nearestSample(plot, series, index) {
     const x = plot.data[0], y = plot.data[series];
     let before = index, after = index;
@@ -86,7 +86,7 @@
     }));
   }
 
-  /// What stands under the cursor: an event of its lane, else a span.
+  /// Text at the cursor: the event of its lane, else the span.
   function occasionAt(plot, data) {
     const { left, top } = plot.cursor;
     if (left == null || left < 0) return '';
@@ -137,7 +137,7 @@
       scaleBar.style.width = length / px + 'px';
       scaleBar.textContent = length + ' m';
     }
-    /// Of labels that would lie on each other the first stays, troubles before all.
+    /// Hides labels that overlap an earlier one; alarms have priority.
     function declutter() {
       const taken = [];
       for (const label of [...svg.querySelectorAll('.alarm text'), ...svg.querySelectorAll('.event text')]) {
@@ -147,7 +147,7 @@
         if (isFree) taken.push(box);
       }
     }
-    /// The place on the map that lies under a point of the window stays there.
+    /// Zooms about a point of the window: the map position under it stays fixed.
     function zoom(factor, clientX, clientY) {
       const box = svg.getBoundingClientRect(), px = metresPerPixel();
       const fx = clientX - box.left - box.width / 2, fy = clientY - box.top - box.height / 2;
@@ -176,7 +176,7 @@
     }
 
     svg.addEventListener('wheel', (event) => {
-      if (!event.ctrlKey && !svg.classList.contains('zoomed')) return;  // the page scrolls
+      if (!event.ctrlKey && !svg.classList.contains('zoomed')) return;  // scrolls the page
       event.preventDefault();
       zoom(Math.exp(-0.002 * event.deltaY), event.clientX, event.clientY);
     }, { passive: false });
@@ -209,7 +209,7 @@
 
   const maps = [...document.querySelectorAll('.view')].map(zoomableMap);
 
-  // ---- The page's size, on screen and on paper ----
+  // ---- Page size on screen and on paper ----
 
   const layOut = (paper) => {
     fit(paper && kPaperWidth);

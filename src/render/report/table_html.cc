@@ -8,11 +8,11 @@
 #include "render/report/block_html.h"
 #include "render/report/html.h"
 
-/// Tables, and the figures that are tables with a bar or a box in each row: they need no script.
+/// Tables, and charts made of tables with a bar or box per row, without a script.
 namespace patrol::render {
 namespace {
 
-/// Text in which a long name may be broken: after '_' and '/', and between the parts of a path.
+/// Escaped text with line break opportunities after '_' and '/' and between the parts of a path.
 std::string breakable_html(const std::string& text) {
   std::string html;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -37,7 +37,7 @@ std::string head_html(const std::vector<Column>& columns) {
   return html + "</tr></thead>";
 }
 
-/// The least of 1, 2 or 5 times a power of ten that takes at most `max_steps` steps to `end`.
+/// Minimum of 1, 2 or 5 times a power of ten that covers `end` with at most `max_steps` steps.
 double round_step(double end, int max_steps) {
   const double least = end / max_steps, power = std::pow(10.0, std::floor(std::log10(least)));
   for (const double factor : {1.0, 2.0, 5.0}) {
@@ -46,7 +46,7 @@ double round_step(double end, int max_steps) {
   return 10.0 * power;
 }
 
-/// Round ticks, from at or below `min` to at or beyond `max`; zero is one of them.
+/// Axis with round ticks from at most `min` to at least `max`, including zero.
 struct Scale {
   double step = 0.2;
   double begin = 0.0;
