@@ -7,12 +7,12 @@
 
 /// Coordinate frames and rigid transforms.
 ///
-///  world     ground-truth frame of the simulator; z up; unknown to the stack
-///  map       frame of the SLAM map; origin at the initial `level` pose; may jump on a loop closure
-///  odom      continuous odometry frame; drifts and never jumps
-///  body      base of the robot (REP 105 `base_link`); x forward, y left, z up (REP 103)
-///  level     gravity-aligned body frame: roll and pitch removed, same origin (REP 105 `base_footprint` at trunk height)
-///  <sensor>  `lidar`, `imu`, ...
+///   world     ground-truth frame of the simulator; z up; unknown to the stack
+///   map       frame of the SLAM map; origin at the initial `level` pose; may jump on a loop closure
+///   odom      continuous odometry frame; drifts and never jumps
+///   body      base of the robot (REP 105 `base_link`); x forward, y left, z up (REP 103)
+///   level     gravity-aligned body frame: no roll or pitch, same origin (REP 105 `base_footprint` at trunk height)
+///   <sensor>  `lidar`, `imu`, ...
 ///
 /// `T_a_b` maps coordinates in b to coordinates in a: p_a = T_a_b * p_b. Neighboring names meet in products:
 /// T_world_map * T_map_body. Angles are in radians, lengths in meters.
