@@ -35,7 +35,7 @@ struct SphereRate {
 
 /// Returns the rate that a sphere adds, exactly and with the conductive host included. The dipole field is expanded in
 /// spherical multipoles of both kinds, each reflected by the sphere [Wait51]; dipole in a conductive whole space after
-/// [Nabighian70, Ward88]. The inverse Laplace transform is summed along Talbot's contour [Trefethen06]. The tests
+/// [Nabighian70], [Ward88]. The inverse Laplace transform is summed along Talbot's contour [Trefethen06]. The tests
 /// compare it with the Born integral in rock (1 %, the error of that integral) and with Wait's decay in a nonconductive
 /// host (0.3 %). Not valid for times so early that mu0 sigma a^2 / t exceeds 10^4.
 SphereRate sphere_rate(double rock_spm, const ConductiveSphere& sphere, double time_s);

@@ -2,7 +2,7 @@
 
 namespace patrol::inspect {
 
-/// What navigation says about the goal it was given.
+/// State of the navigation to the current goal.
 enum class NavigationFeedback { kDriving, kArrived, kFailed };
 
 }  // namespace patrol::inspect

@@ -105,7 +105,7 @@ void GyroOdometry::compare(double odometry_rad, double gyro_rad, double dt_s) {
 
 GyroVerdict GyroOdometry::verdict() const {
   if (!(tt_ > 0.0)) return GyroVerdict::kUnknown;
-  // with the part proportional to time, the bias, removed
+  // Remove the part proportional to time, the bias.
   const double gg = gg_ - gt_ * gt_ / tt_, og = og_ - ot_ * gt_ / tt_, oo = oo_ - ot_ * ot_ / tt_;
   if (gg < kEnoughTurnsRad2) return GyroVerdict::kUnknown;
   const double slope = og / gg, residual = std::sqrt(std::max(0.0, oo - slope * og) / gg);

@@ -25,7 +25,7 @@ std::string quoted(std::string_view word) {
 
 template <typename Number>
 bool parse_all(std::string_view text, Number& value) {
-  // from_chars does not accept a plus sign
+  // std::from_chars does not accept a plus sign.
   if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc{} && end == text.data() + text.size();

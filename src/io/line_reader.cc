@@ -44,7 +44,7 @@ bool LineReader::fill() {
     end_ -= begin_;
     begin_ = 0;
   }
-  // a long line; the size stays bounded by kMaxLineBytes
+  // A long line; the size stays bounded by kMaxLineBytes.
   if (end_ + kReadBytes > buffer_.size()) buffer_.resize(2 * buffer_.size());
   const int got = gzread(gzip_.get(), buffer_.data() + end_, static_cast<unsigned>(kReadBytes));
   if (got > 0) {

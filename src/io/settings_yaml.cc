@@ -71,7 +71,7 @@ void apply_override(YAML::Node root, const std::string& override) {
 
 }  // namespace
 
-// yaml-cpp counts lines from 0
+// yaml-cpp counts lines from 0.
 int line_of(const YAML::Node& node) { return node.Mark().is_null() ? 0 : node.Mark().line + 1; }
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {

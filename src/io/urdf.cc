@@ -159,7 +159,7 @@ void UrdfReader::check_tree() const {
     std::size_t steps = 0;
     for (auto at = parent_of.find(name); at != parent_of.end(); at = parent_of.find(at->second)) {
       if (++steps <= parent_of.size()) continue;
-      // break the shared-pointer cycle, which would leak
+      // Break the shared-pointer cycle, which would leak.
       for (const auto& [ignored, held] : model_->links_) held->child_links.clear();
       fail(name, "the joints go round in a circle here");
     }
