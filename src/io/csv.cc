@@ -7,15 +7,15 @@
 namespace patrol::io {
 namespace {
 
-std::string quoted(const std::string& text) {
+std::string quoted_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string field = "\"";
   for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
   return field + "\"";
 }
 
-std::string text_of(const Cell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) return quoted(*text);
+std::string text_of(const TableValue& cell) {
+  if (const auto* text = std::get_if<std::string>(&cell)) return quoted_cell(*text);
   if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{}", *number);
   if (const auto* number = std::get_if<std::int64_t>(&cell)) return fmt::format("{}", *number);
   return "";
@@ -34,8 +34,8 @@ std::string to_csv(const Table& table) {
     }
     text += "\r\n";
   };
-  add_line(table.columns, quoted);
-  for (const std::vector<Cell>& row : table.rows) add_line(row, text_of);
+  add_line(table.columns, quoted_cell);
+  for (const std::vector<TableValue>& row : table.rows) add_line(row, text_of);
   return text;
 }
 

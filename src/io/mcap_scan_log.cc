@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::size_t kMostWaiting = 256;  ///< maximum number of waiting scans; later odometry is treated as missing
 constexpr std::size_t kMostBeams = 10'000;
-constexpr double kUnitTol = 1e-3;          ///< tolerance of the norm of a quaternion
-constexpr double kFurthest_m = 1e8;
-constexpr double kMaxAngleRad = 7.0;       ///< one turn plus rounding
+constexpr double kQuaternionTol = 1e-3;          ///< tolerance of the norm of a quaternion
+constexpr double kFurthestPose_m = 1e8;
+constexpr double kMaxScanAngle_rad = 7.0;       ///< one turn plus rounding
 constexpr double kFastestRadps = 1e3;      ///< maximum plausible rate
-constexpr const char* kTfStatic = "/tf_static";
+constexpr const char* kTfStaticSuffix = "/tf_static";
 
 void expect_pose(const Pose3& pose, const char* whose) {
-  const bool is_pose = pose.position.allFinite() && pose.position.cwiseAbs().maxCoeff() <= kFurthest_m && std::abs(pose.rotation.norm() - 1.0) <= kUnitTol;
+  const bool is_pose = pose.position.allFinite() && pose.position.cwiseAbs().maxCoeff() <= kFurthestPose_m && std::abs(pose.rotation.norm() - 1.0) <= kQuaternionTol;
   if (!is_pose) throw DecodeError(fmt::format("{} is no pose: not finite, or its quaternion not of length 1", whose));
 }
 
@@ -31,7 +31,7 @@ void expect_scan(const LaserScan& scan) {
   const std::size_t num_beams = scan.ranges_m.size();
   if (num_beams == 0 || num_beams > kMostBeams) throw DecodeError(fmt::format("a scan of {} beams: must be 1 ... {}", num_beams, kMostBeams));
   const double span_rad = std::abs(scan.angle_increment_rad) * static_cast<double>(num_beams);
-  const bool has_angles = std::abs(scan.angle_min_rad) <= kMaxAngleRad && span_rad <= kMaxAngleRad;
+  const bool has_angles = std::abs(scan.angle_min_rad) <= kMaxScanAngle_rad && span_rad <= kMaxScanAngle_rad;
   if (!has_angles) throw DecodeError("a scan of more than a turn");
   if (!std::isfinite(scan.time_increment_s) || !std::isfinite(scan.scan_time_s)) throw DecodeError("a scan whose times are not finite");
 }
@@ -126,7 +126,7 @@ void McapScanLog::handle(const McapMessage& message) {
     if (imu_topic_.empty()) imu_topic_ = topic;
     if (topic == imu_topic_) return add_imu(message);
   } else if (type == kRosType<TransformSet>) {
-    return add_transforms(message, topic.ends_with(kTfStatic));
+    return add_transforms(message, topic.ends_with(kTfStaticSuffix));
   }
   count_ignored(topic);
 }

@@ -49,13 +49,13 @@ class Lines {
   int number_ = 0;
 };
 
-struct Header {
+struct GridHeader {
   int width = 0, height = 0;
 };
 
 /// Reads the header up to and including the line "map".
-Header read_header(Lines& lines) {
-  Header header;
+GridHeader read_grid_header(Lines& lines) {
+  GridHeader header;
   bool has_type = false;
   while (const auto text = lines.next()) {
     LineFields fields(*text);
@@ -84,7 +84,7 @@ Header read_header(Lines& lines) {
   lines.refuse_file("holds no map");
 }
 
-std::vector<std::string_view> split(std::string_view text) {
+std::vector<std::string_view> split_words(std::string_view text) {
   // With tabs as separators map names may contain blanks.
   const std::string_view separators = text.find('\t') != std::string_view::npos ? "\t" : " ";
   std::vector<std::string_view> fields;
@@ -98,7 +98,7 @@ std::vector<std::string_view> split(std::string_view text) {
 
 MovingAiProblem parse_problem(std::string_view text) {
   constexpr std::size_t kNumFields = 9;
-  const std::vector<std::string_view> fields = split(text);
+  const std::vector<std::string_view> fields = split_words(text);
   if (fields.size() != kNumFields) throw FieldError(fmt::format("holds {} fields", fields.size()));
   const auto integer = [&](std::size_t index, const char* what, int min, int max) {
     return static_cast<int>(LineFields(fields[index]).integer(what, min, max));
@@ -134,7 +134,7 @@ double rounding_of(std::string_view length) {
 
 MovingAiMap load_moving_ai_map(const std::filesystem::path& file) {
   Lines lines(file);
-  const Header header = read_header(lines);
+  const GridHeader header = read_grid_header(lines);
   const auto width = static_cast<std::size_t>(header.width), height = static_cast<std::size_t>(header.height);
   if (width * height > kMostCells) lines.refuse(fmt::format("map: {} x {} cells, at most {} are read", width, height, kMostCells));
   std::vector<char> from_top;  // grows with the data, not with the size in the header

@@ -13,13 +13,13 @@ namespace patrol::io {
 namespace {
 
 constexpr std::size_t kMostGoals = 1000;
-constexpr const char* kTypes = "NVDR";
+constexpr const char* kGoalTypes = "NVDR";
 
 MarkedGoal read_goal(const std::string& place, const Json& json) {
   const JsonObject reader(place, json, {"number", "position", "orientation", "type", "accuracy"});
   MarkedGoal goal{.number = reader.whole("number"), .T_map_body = reader.pose(), .type = 'N', .accuracy_m = reader.number("accuracy")};
   const std::string type = reader.word("type");
-  if (type.size() != 1 || std::string(kTypes).find(type[0]) == std::string::npos) {
+  if (type.size() != 1 || std::string(kGoalTypes).find(type[0]) == std::string::npos) {
     reader.fail(fmt::format("type = {}: must be N (stop there), V (pass by), D (scan the lining) or R (wait for the remote control)", type));
   }
   goal.type = type[0];

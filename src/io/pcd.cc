@@ -13,11 +13,11 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::int64_t kMostPoints = 1'000'000'000;
-constexpr std::size_t kMostColumns = 1000;
+constexpr std::int64_t kMostPcdPoints = 1'000'000'000;
+constexpr std::size_t kMostPcdFields = 1000;
 constexpr std::int64_t kMostOfOneField = 100'000;
 
-struct Header {
+struct PcdHeader {
   std::vector<PointColumn> columns;
   std::vector<std::size_t> sizes;  ///< [column], bytes
   std::string types;               ///< [column]: I, U or F
@@ -26,9 +26,9 @@ struct Header {
   std::string data;
 };
 
-void read_values(FileText& text, const std::string& key, LineFields& fields, Header& header) {
+void read_values(FileText& text, const std::string& key, LineFields& fields, PcdHeader& header) {
   if (key == "FIELDS") {
-    if (fields.num_words() > kMostColumns) text.refuse(fmt::format("FIELDS has more than {} words", kMostColumns));
+    if (fields.num_words() > kMostPcdFields) text.refuse(fmt::format("FIELDS has more than {} words", kMostPcdFields));
     while (!fields.is_empty()) header.columns.push_back({.name = std::string(fields.word("name"))});
   } else if (key == "SIZE") {
     while (!fields.is_empty()) header.sizes.push_back(static_cast<std::size_t>(fields.integer("SIZE", 1, 8)));
@@ -40,11 +40,11 @@ void read_values(FileText& text, const std::string& key, LineFields& fields, Hea
       header.columns[i].count = static_cast<std::size_t>(fields.integer("COUNT", 1, kMostOfOneField));
     }
   } else if (key == "WIDTH") {
-    header.width = fields.integer("WIDTH", 0, kMostPoints);
+    header.width = fields.integer("WIDTH", 0, kMostPcdPoints);
   } else if (key == "HEIGHT") {
-    header.height = fields.integer("HEIGHT", 0, kMostPoints);
+    header.height = fields.integer("HEIGHT", 0, kMostPcdPoints);
   } else if (key == "POINTS") {
-    header.points = fields.integer("POINTS", 0, kMostPoints);
+    header.points = fields.integer("POINTS", 0, kMostPcdPoints);
   } else if (key == "DATA") {
     header.data = fields.word("DATA");
   } else if (key != "VERSION" && key != "VIEWPOINT") {
@@ -63,7 +63,7 @@ std::optional<NumberType> type_of(char type, std::size_t bytes) {
   return std::nullopt;
 }
 
-void set_types(FileText& text, Header& header) {
+void set_types(FileText& text, PcdHeader& header) {
   if (header.sizes.size() != header.columns.size() || header.types.size() != header.columns.size()) {
     text.refuse(fmt::format("FIELDS has {} words, SIZE {} and TYPE {}", header.columns.size(), header.sizes.size(), header.types.size()));
   }
@@ -74,8 +74,8 @@ void set_types(FileText& text, Header& header) {
   }
 }
 
-Header read_header(FileText& text) {
-  Header header;
+PcdHeader read_pcd_header(FileText& text) {
+  PcdHeader header;
   while (header.data.empty()) {
     const auto line = text.next_line();
     if (!line) text.refuse("the header has no line DATA");
@@ -90,7 +90,7 @@ Header read_header(FileText& text) {
   }
   set_types(text, header);
   if (header.data != "ascii" && header.data != "binary") text.refuse("DATA must be ascii or binary");
-  if (header.height > 0 && header.width > kMostPoints / header.height) text.refuse("WIDTH x HEIGHT is too large");
+  if (header.height > 0 && header.width > kMostPcdPoints / header.height) text.refuse("WIDTH x HEIGHT is too large");
   const std::int64_t points = header.width * header.height;
   if (header.points.value_or(points) != points) text.refuse(fmt::format("POINTS is {}, WIDTH x HEIGHT {}", *header.points, points));
   return header;
@@ -108,7 +108,7 @@ void save_pcd(const std::filesystem::path& file, const std::vector<ScannerPoint>
 
 std::vector<ScannerPoint> load_pcd(const std::filesystem::path& file) {
   FileText text(file);
-  Header header = read_header(text);
+  PcdHeader header = read_pcd_header(text);
   PointTable table(text, std::move(header.columns), static_cast<std::size_t>(header.width * header.height));
   std::vector<ScannerPoint> points = header.data == "ascii" ? table.read_figures() : table.read_binary();
   table.expect_end();

@@ -12,16 +12,16 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::int64_t kMostPoints = 1'000'000'000;
-constexpr std::size_t kMostColumns = 1000;
+constexpr std::int64_t kMostPlyPoints = 1'000'000'000;
+constexpr std::size_t kMostPlyProperties = 1000;
 
-const std::map<std::string_view, NumberType> kTypes = {
+const std::map<std::string_view, NumberType> kPlyTypes = {
     {"char", NumberType::kInt8},      {"int8", NumberType::kInt8},     {"uchar", NumberType::kUint8},   {"uint8", NumberType::kUint8},
     {"short", NumberType::kInt16},    {"int16", NumberType::kInt16},   {"ushort", NumberType::kUint16}, {"uint16", NumberType::kUint16},
     {"int", NumberType::kInt32},      {"int32", NumberType::kInt32},   {"uint", NumberType::kUint32},   {"uint32", NumberType::kUint32},
     {"float", NumberType::kFloat32},  {"float32", NumberType::kFloat32}, {"double", NumberType::kFloat64}, {"float64", NumberType::kFloat64}};
 
-struct Header {
+struct PlyHeader {
   std::string format;
   std::size_t num_points = 0;
   std::vector<PointColumn> columns;
@@ -31,21 +31,21 @@ struct Header {
 PointColumn read_property(FileText& text, LineFields& fields) {
   const std::string type(fields.word("type"));
   if (type == "list") text.refuse("a list among the properties of vertex is not read");
-  const auto known = kTypes.find(type);
-  if (known == kTypes.end()) text.refuse("a property of a type that PLY does not know");
+  const auto known = kPlyTypes.find(type);
+  if (known == kPlyTypes.end()) text.refuse("a property of a type that PLY does not know");
   return {.name = std::string(fields.word("name")), .type = known->second};
 }
 
-void read_element(FileText& text, LineFields& fields, Header& header) {
+void read_element(FileText& text, LineFields& fields, PlyHeader& header) {
   const std::string_view name = fields.word("name");
-  const std::int64_t count = fields.integer("count", 0, kMostPoints);
+  const std::int64_t count = fields.integer("count", 0, kMostPlyPoints);
   if (header.num_elements++ > 0) return;
   if (name != "vertex") text.refuse("the first element must be vertex");
   header.num_points = static_cast<std::size_t>(count);
 }
 
 /// Reads a line of the header; returns true at its last line.
-bool read_line(FileText& text, std::string_view line, Header& header) {
+bool read_header_line(FileText& text, std::string_view line, PlyHeader& header) {
   LineFields fields(line);
   if (fields.is_empty()) return false;
   const std::string key(fields.word("key"));
@@ -57,7 +57,7 @@ bool read_line(FileText& text, std::string_view line, Header& header) {
   } else if (key == "property") {
     if (header.num_elements == 0) text.refuse("a property of no element");
     if (header.num_elements > 1) return false;
-    if (header.columns.size() >= kMostColumns) text.refuse(fmt::format("vertex has more than {} properties", kMostColumns));
+    if (header.columns.size() >= kMostPlyProperties) text.refuse(fmt::format("vertex has more than {} properties", kMostPlyProperties));
     header.columns.push_back(read_property(text, fields));
   } else if (key != "comment" && key != "obj_info") {
     text.refuse("is no line of a PLY header");
@@ -65,14 +65,14 @@ bool read_line(FileText& text, std::string_view line, Header& header) {
   return false;
 }
 
-Header read_header(FileText& text) {
+PlyHeader read_ply_header(FileText& text) {
   if (text.next_line() != "ply") text.refuse("is not a PLY file");
-  Header header;
+  PlyHeader header;
   for (bool is_over = false; !is_over;) {
     const auto line = text.next_line();
     if (!line) text.refuse("the header has no end");
     try {
-      is_over = read_line(text, *line, header);
+      is_over = read_header_line(text, *line, header);
     } catch (const FieldError& error) {
       text.refuse(error.what());
     }
@@ -95,7 +95,7 @@ void save_ply(const std::filesystem::path& file, const std::vector<ScannerPoint>
 
 std::vector<ScannerPoint> load_ply(const std::filesystem::path& file) {
   FileText text(file);
-  Header header = read_header(text);
+  PlyHeader header = read_ply_header(text);
   PointTable table(text, std::move(header.columns), header.num_points);
   std::vector<ScannerPoint> points = header.format == "ascii" ? table.read_figures() : table.read_binary();
   if (header.num_elements == 1) table.expect_end();

@@ -16,26 +16,26 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::array<const char*, 5> kColumns = {"time_s", "vx_mps", "yaw_rate_radps", "mark", "hand_over"};
-constexpr double kLongest_s = 86400.0;  // maximum time limit of a scenario
+constexpr std::array<const char*, 5> kRemoteColumns = {"time_s", "vx_mps", "yaw_rate_radps", "mark", "hand_over"};
+constexpr double kLongestDrive_s = 86400.0;  // maximum time limit of a scenario
 constexpr double kFastest = 100.0;      // m/s, rad/s; larger values are treated as input errors
 
-using Row = std::array<double, kColumns.size()>;
+using Row = std::array<double, kRemoteColumns.size()>;
 
-std::string header() { return fmt::format("{}", fmt::join(kColumns, ",")); }
+std::string header() { return fmt::format("{}", fmt::join(kRemoteColumns, ",")); }
 
 /// Reads one number per column. `refuse` does not return.
 template <typename Refuse>
 Row read_row(const std::string& line, const Refuse& refuse) {
   const auto num_cells = static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) + 1;
-  if (num_cells != kColumns.size()) refuse(fmt::format("must be {} numbers with commas between, {}", kColumns.size(), header()));
+  if (num_cells != kRemoteColumns.size()) refuse(fmt::format("must be {} numbers with commas between, {}", kRemoteColumns.size(), header()));
   Row row{};
   const char* cell = line.data();
   for (std::size_t i = 0; i < row.size(); ++i) {
     const char* const end = std::find(cell, line.data() + line.size(), ',');
     const auto [rest, error] = std::from_chars(cell, end, row[i]);
     if (error != std::errc() || rest != end || !std::isfinite(row[i])) {
-      refuse(fmt::format("{} = {}: must be a number", kColumns[i], std::string(cell, end)));
+      refuse(fmt::format("{} = {}: must be a number", kRemoteColumns[i], std::string(cell, end)));
     }
     cell = end + 1;
   }
@@ -46,7 +46,7 @@ Row read_row(const std::string& line, const Refuse& refuse) {
 template <typename Refuse>
 RemoteCommand read_command(const std::string& line, std::optional<Time> since, const Refuse& refuse) {
   const auto [time_s, vx_mps, yaw_rate_radps, mark, hand_over] = read_row(line, refuse);
-  if (time_s < 0.0 || time_s > kLongest_s) refuse(fmt::format("time_s = {}: must lie in 0 ... {}", time_s, kLongest_s));
+  if (time_s < 0.0 || time_s > kLongestDrive_s) refuse(fmt::format("time_s = {}: must lie in 0 ... {}", time_s, kLongestDrive_s));
   const Time stamp = from_seconds(time_s);
   if (since && stamp <= *since) refuse(fmt::format("time_s = {}: must be later than in the line before", time_s));
   const auto check_speed = [&](const char* key, double value) {

@@ -148,4 +148,3 @@ PATROL_ROS_MESSAGE(WaterResult);
 
 }  // namespace patrol::io
 
-#undef PATROL_ROS_MESSAGE

@@ -182,4 +182,3 @@ PATROL_ROS_MESSAGE(TransformSet);
 
 }  // namespace patrol::io
 
-#undef PATROL_ROS_MESSAGE

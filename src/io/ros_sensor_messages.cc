@@ -212,4 +212,3 @@ PATROL_ROS_MESSAGE(RemoteCommand);
 
 }  // namespace patrol::io
 
-#undef PATROL_ROS_MESSAGE

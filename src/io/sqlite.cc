@@ -32,7 +32,7 @@ void execute(sqlite3* database, const std::string& sql) {
   check(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK, database);
 }
 
-int bind(sqlite3_stmt* statement, int place, const Cell& cell) {
+int bind(sqlite3_stmt* statement, int place, const TableValue& cell) {
   if (const auto* text = std::get_if<std::string>(&cell)) {
     return sqlite3_bind_text(statement, place, text->data(), static_cast<int>(text->size()), SQLITE_STATIC);
   }
@@ -51,7 +51,7 @@ void write(sqlite3* database, const Table& table) {
   sqlite3_stmt* raw = nullptr;
   check(sqlite3_prepare_v2(database, sql.c_str(), -1, &raw, nullptr) == SQLITE_OK, database);
   const Statement insert(raw, sqlite3_finalize);
-  for (const std::vector<Cell>& row : table.rows) {
+  for (const std::vector<TableValue>& row : table.rows) {
     for (std::size_t i = 0; i < row.size(); ++i) check(bind(raw, static_cast<int>(i) + 1, row[i]) == SQLITE_OK, database);
     check(sqlite3_step(raw) == SQLITE_DONE && sqlite3_reset(raw) == SQLITE_OK, database);
   }

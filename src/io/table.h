@@ -8,12 +8,12 @@
 namespace patrol::io {
 
 /// Content of a table cell; monostate: no value.
-using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
+using TableValue = std::variant<std::monostate, std::int64_t, double, std::string>;
 
 struct Table {
   std::string name;
   std::vector<std::string> columns;
-  std::vector<std::vector<Cell>> rows;  ///< [row][column]
+  std::vector<std::vector<TableValue>> rows;  ///< [row][column]
 };
 
 }  // namespace patrol::io

@@ -17,11 +17,11 @@ namespace {
 
 constexpr std::size_t kMostStations = 200;  // paths between all pairs are planned
 constexpr double kLongest_s = 1e7;
-constexpr const char* kColumns = "name, x, y and, if wanted, service_s, earliest_s, latest_s, priority";
+constexpr const char* kStationColumns = "name, x, y and, if wanted, service_s, earliest_s, latest_s, priority";
 
 /// Splits a line into cells. `refuse` does not return.
 template <typename Refuse>
-std::vector<std::string> split(std::string_view line, const Refuse& refuse) {
+std::vector<std::string> split_cells(std::string_view line, const Refuse& refuse) {
   std::vector<std::string> cells(1);
   bool is_quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -58,7 +58,7 @@ class StationReader {
       if (number_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
       if (text.ends_with('\r')) text.remove_suffix(1);
       if (text.empty() && !columns_.empty()) continue;
-      const std::vector<std::string> cells = split(text, [&](const std::string& what) { refuse(what); });
+      const std::vector<std::string> cells = split_cells(text, [&](const std::string& what) { refuse(what); });
       if (columns_.empty()) read_header(cells);
       else read_station(cells);
     }
@@ -74,12 +74,12 @@ class StationReader {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const auto known = {"name", "x", "y", "service_s", "earliest_s", "latest_s", "priority"};
       if (std::find(known.begin(), known.end(), cells[i]) == known.end()) {
-        refuse(fmt::format("{}: is no column: the first line must name {}", cells[i], kColumns));
+        refuse(fmt::format("{}: is no column: the first line must name {}", cells[i], kStationColumns));
       }
       if (!columns_.emplace(cells[i], i).second) refuse(fmt::format("{}: stands there twice", cells[i]));
     }
     for (const char* column : {"name", "x", "y"}) {
-      if (!columns_.contains(column)) refuse(fmt::format("{}: is missing: the first line must name {}", column, kColumns));
+      if (!columns_.contains(column)) refuse(fmt::format("{}: is missing: the first line must name {}", column, kStationColumns));
     }
   }
 

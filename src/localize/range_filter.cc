@@ -11,7 +11,7 @@
 namespace patrol::localize {
 namespace {
 
-constexpr int kFrozenRepeats = 5;  // equal consecutive readings of one anchor, which noise practically excludes
+constexpr int kFrozenRangeRepeats = 5;  // equal consecutive readings of one anchor, which noise practically excludes
 
 const RangeFilterSettings& checked(const RangeFilterSettings& settings) {
   validate(settings, "uwb");
@@ -128,7 +128,7 @@ bool RangeFilter::is_usable(const UwbRange& range) {
   heard.repeats = range.range_m == heard.range_m ? heard.repeats + 1 : 0;
   heard.stamp = range.stamp;
   heard.range_m = range.range_m;
-  return heard.repeats < kFrozenRepeats;
+  return heard.repeats < kFrozenRangeRepeats;
 }
 
 double RangeFilter::innovation(const UwbRange& range, const Pose3& T_odom_body, Vector& H) const {

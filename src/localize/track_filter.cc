@@ -12,17 +12,17 @@ namespace {
 
 using Error = InertialError;
 
-constexpr double kStartTiltStd_rad = 0.05;
-constexpr double kStartVelocityStd_mps = 0.05;
-constexpr double kGate = 16.27;     // 99.9 % of chi-square, three degrees of freedom
+constexpr double kTrackStartTiltStd_rad = 0.05;
+constexpr double kTrackStartVelocityStd_mps = 0.05;
+constexpr double kTrackGate = 16.27;     // 99.9 % of chi-square, three degrees of freedom
 constexpr double kLostSpeedStd_mps = 0.1;
 constexpr double kBeltSmoothing_s = 1.0;
 constexpr double kTakeBack_s = 0.5;       // after a loss of traction; the first readings contain nearly all information
 constexpr int kPlace[4] = {Error::kPosition, Error::kPosition + 1, Error::kPosition + 2, Error::kRotation + 2};
 // Process noise without an IMU.
-constexpr double kCoastYawRateStd = 0.05;  // rad/sqrt(s): yaw rate from the belts
-constexpr double kCoastTiltStd = 0.03;     // rad/sqrt(s)
-constexpr double kCoastVelocityStd = 1.0;  // m/s/sqrt(s)
+constexpr double kTrackCoastYawRateStd = 0.05;  // rad/sqrt(s): yaw rate from the belts
+constexpr double kTrackCoastTiltStd = 0.03;     // rad/sqrt(s)
+constexpr double kTrackCoastVelocityStd = 1.0;  // m/s/sqrt(s)
 
 }  // namespace
 
@@ -30,9 +30,9 @@ TrackFilter::TrackFilter(const Settings& settings, const InertialSample& first) 
   motion_.T_odom_body.rotation = tilt_of(first.force_mps2);
   motion_.omega_body = first.rate_radps;
   const auto set_std = [this](int block, double std) { P_.diagonal().segment<3>(block).setConstant(std * std); };
-  set_std(Error::kRotation, kStartTiltStd_rad);
-  P_(Error::kRotation + 2, Error::kRotation + 2) = 0.0;  // zero by definition of odom
-  set_std(Error::kVelocity, kStartVelocityStd_mps);
+  set_std(Error::kRotation, kTrackStartTiltStd_rad);
+  P_(Error::kRotation + 2, Error::kRotation + 2) = 0.0;  // odom is where it started
+  set_std(Error::kVelocity, kTrackStartVelocityStd_mps);
   set_std(Error::kGyroBias, settings.gyro_bias_std_radps);
   set_std(Error::kAccelBias, settings.accel_bias_std_mps2);
   P_(kScale, kScale) = std::pow(settings.scale_std, 2);
@@ -74,9 +74,9 @@ void TrackFilter::coast(double dt_s, double yaw_rate_radps) {
   forward_acceleration_mps2_ = 0.0;
 
   propagate_inertial_errors(P_, dt_s, R, motion_.v_body, motion_.omega_body);
-  P_.diagonal().segment<2>(Error::kRotation).array() += dt_s * kCoastTiltStd * kCoastTiltStd;
-  P_(Error::kRotation + 2, Error::kRotation + 2) += dt_s * kCoastYawRateStd * kCoastYawRateStd;
-  P_.diagonal().segment<3>(Error::kVelocity).array() += dt_s * kCoastVelocityStd * kCoastVelocityStd;
+  P_.diagonal().segment<2>(Error::kRotation).array() += dt_s * kTrackCoastTiltStd * kTrackCoastTiltStd;
+  P_(Error::kRotation + 2, Error::kRotation + 2) += dt_s * kTrackCoastYawRateStd * kTrackCoastYawRateStd;
+  P_.diagonal().segment<3>(Error::kVelocity).array() += dt_s * kTrackCoastVelocityStd * kTrackCoastVelocityStd;
 }
 
 // First-order Gauss-Markov process: the value decays by a, and (1 - a^2) of the stationary variance is added.
@@ -114,7 +114,7 @@ void TrackFilter::correct_speed(double dt_s, double belts_mps, const TrunkMotion
   Eigen::Matrix3d S = H * W;
   S.diagonal().array() += std_mps.array().square();
   const double distance = innovation.dot(S.inverse() * innovation);
-  if (distance > kGate) S.diagonal().array() += std_mps.array().square() * (distance / kGate - 1.0);
+  if (distance > kTrackGate) S.diagonal().array() += std_mps.array().square() * (distance / kTrackGate - 1.0);
   apply(W, S, innovation);
   takes_back_s_ = std::max(0.0, takes_back_s_ - dt_s);
 }

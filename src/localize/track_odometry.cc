@@ -11,19 +11,19 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kMaxStartAcceleration_mps2 = 1.0;  // the start's tilt is read from gravity alone
-constexpr int kFrozenRepeats = 10;                  // equal IMU readings in a row while the belts run
-constexpr Time kMaxImuStep = std::chrono::milliseconds(50);  // a longer gap is not integrated across
+constexpr double kTrackMaxStartAcceleration_mps2 = 1.0;  // the start's tilt is read from gravity alone
+constexpr int kTrackFrozenRepeats = 10;                  // equal IMU readings in a row while the belts run
+constexpr Time kTrackMaxImuStep = std::chrono::milliseconds(50);  // a longer gap is not integrated across
 constexpr Time kTickSilence = std::chrono::milliseconds(200);
 constexpr double kStandingStd_mps = 0.002;
 constexpr double kStandstillCreep_m = 1e-5;  // of the belts' ends over a window at rest
 constexpr double kMaxBiasSigmas = 5.0;       // a gyro at rest that reads more is being turned
-constexpr double kHoldStd_mps = 0.5;         // without the belts the velocity is at least not this wrong
+constexpr double kTrackHoldStd_mps = 0.5;         // without the belts the velocity is at least not this wrong
 constexpr double kLastingSideways = 0.005;   // share of the way, straight on
 constexpr double kAgreement_mps = 0.15;      // of belts and IMU, after their disagreement,
 constexpr Time kAgreement = std::chrono::milliseconds(300);  // and how long it must last
-constexpr double kAssumedRate_hz = 1000.0;   // upper bound, for the size of the history
-constexpr std::size_t kMaxPending = 256;
+constexpr double kTrackAssumedRate_hz = 1000.0;   // upper bound, for the size of the history
+constexpr std::size_t kTrackMaxPending = 256;
 
 const TrackOdometrySettings& checked(const TrackOdometrySettings& settings) {
   validate(settings, "odometry");
@@ -69,7 +69,7 @@ TrackOdometry::TrackOdometry(const RobotDescription& robot, const TrackOdometryS
       metres_per_tick_(2.0 * std::numbers::pi * robot.tracks->sprocket_radius_m / settings.ticks_per_sprocket_turn),
       track_ends_(track_ends(*robot.tracks)),
       imu_mount_(robot.T_body("imu")),
-      history_(static_cast<std::size_t>(settings.history_s * kAssumedRate_hz)),
+      history_(static_cast<std::size_t>(settings.history_s * kTrackAssumedRate_hz)),
       slip_watch_({.window_s = settings.slip_window_s, .threshold_mps = settings.slip_disagreement_mps}),
       bias_meter_({.window_s = settings.standstill_window_s,
                    .gyro_noise_radps_per_sqrt_hz = settings.gyro_noise_radps_per_sqrt_hz,
@@ -81,7 +81,7 @@ void TrackOdometry::add(const Imu& imu) {
   reading << imu.angular_velocity_radps, imu.linear_acceleration_mps2;
   imu_repeats_ = reading == last_imu_reading_ ? imu_repeats_ + 1 : 0;
   last_imu_reading_ = reading;
-  const bool is_frozen = imu_repeats_ >= kFrozenRepeats && !counters_.stand();
+  const bool is_frozen = imu_repeats_ >= kTrackFrozenRepeats && !counters_.stand();
   if (!is_plausible(imu) || is_frozen || (filter_ && imu.stamp <= now_)) {
     ++rejected_messages_;
     return;
@@ -92,7 +92,7 @@ void TrackOdometry::add(const Imu& imu) {
 
 void TrackOdometry::add(const TrackTicks& ticks) {
   const TrackTicks* newest = !pending_.empty() ? &pending_.back() : counters_.last() ? &*counters_.last() : nullptr;
-  if ((newest && ticks.stamp <= newest->stamp) || pending_.size() >= kMaxPending) {
+  if ((newest && ticks.stamp <= newest->stamp) || pending_.size() >= kTrackMaxPending) {
     ++rejected_messages_;
     return;
   }
@@ -102,11 +102,11 @@ void TrackOdometry::add(const TrackTicks& ticks) {
 
 void TrackOdometry::advance(Time stamp, const InertialSample& sample) {
   if (!filter_) {
-    if (std::abs(sample.force_mps2.norm() - kGravity_mps2) > kMaxStartAcceleration_mps2) return;
+    if (std::abs(sample.force_mps2.norm() - kGravity_mps2) > kTrackMaxStartAcceleration_mps2) return;
     filter_.emplace(filter_settings(settings_, *robot_.tracks), sample);
     filter_->regain_grip(0.0, settings_.slip_std);
     started_ = stamp;
-  } else if (stamp - now_ > kMaxImuStep) {
+  } else if (stamp - now_ > kTrackMaxImuStep) {
     filter_->coast(to_seconds(stamp - now_), filter_->yaw_rate_radps());
     slip_watch_.reset();
   } else {
@@ -242,7 +242,7 @@ void TrackOdometry::watch_standstill(const InertialSample& sample) {
 void TrackOdometry::hold_velocity() {
   if (now_ - last_velocity_hold_ < kTickSilence) return;
   last_velocity_hold_ = now_;
-  filter_->correct_velocity(last_speed_, kHoldStd_mps);
+  filter_->correct_velocity(last_speed_, kTrackHoldStd_mps);
   remember();
 }
 

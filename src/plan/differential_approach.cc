@@ -7,7 +7,7 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kFacing_rad = 0.1;     // near enough to set off
+constexpr double kApproachFacing_rad = 0.1;     // near enough to set off
 constexpr double kLost_rad = 0.6;       // so far off on the way: turn again
 constexpr double kBlindBearing_m = 0.15;  // nearer than this the bearing of the place says little
 constexpr int kMaxChanges = 6;          // of phase within one step
@@ -87,7 +87,7 @@ DifferentialApproach::Phase DifferentialApproach::choose(const Pose2& T_goal_bod
 
 VelocityCommand DifferentialApproach::turn_to_place(const Pose2& T_goal_body) {
   const double turn = bearing_rad(T_goal_body, forward_);
-  if (std::abs(turn) > kFacing_rad) return {.yaw_rate_radps = yaw_rate_radps(turn)};
+  if (std::abs(turn) > kApproachFacing_rad) return {.yaw_rate_radps = yaw_rate_radps(turn)};
   phase_ = Phase::kDriveToPlace;
   return {};
 }

@@ -7,7 +7,7 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kFacing_rad = 0.05;  // to the line: near enough to set off
+constexpr double kDockFacing_rad = 0.05;  // to the line: near enough to set off
 
 }  // namespace
 
@@ -88,7 +88,7 @@ DockingStep Docking::step(Time now, const Pose2& T_odom_body) {
 
 VelocityCommand Docking::turn_to_line(const Pose2& T_docked_body) {
   const double turn = wrap_angle(line_heading_rad(settings_.line, T_docked_body.y, 1.0) - T_docked_body.yaw);
-  if (std::abs(turn) > kFacing_rad) return {.yaw_rate_radps = yaw_rate_radps(turn)};
+  if (std::abs(turn) > kDockFacing_rad) return {.yaw_rate_radps = yaw_rate_radps(turn)};
   enter(Phase::kDriveIn, "");
   return {};
 }

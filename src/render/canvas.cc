@@ -83,7 +83,7 @@ Font::Font(int height_px, bool is_bold) : face_(std::make_unique<Face>()), heigh
 
 Font::~Font() = default;
 
-int Font::draw(Frame& frame, int left, int baseline, const std::string& text, const Ink& ink) {
+int Font::draw(Frame& frame, int left, int baseline, const std::string& text, const Brush& brush) {
   for (std::size_t at = 0; at < text.size();) {
     if (FT_Load_Char(face_->face, next_character(text, at), FT_LOAD_RENDER) != 0) continue;
     const FT_GlyphSlot glyph = face_->face->glyph;
@@ -93,7 +93,7 @@ int Font::draw(Frame& frame, int left, int baseline, const std::string& text, co
         const int x = left + glyph->bitmap_left + col, y = baseline - glyph->bitmap_top + row;
         if (!frame.contains(x, y)) continue;
         const double coverage = bitmap.buffer[row * bitmap.pitch + col] / 255.0;
-        frame.at(x, y) = blend(frame.at(x, y), ink.color, coverage * ink.opacity);
+        frame.at(x, y) = blend(frame.at(x, y), brush.color, coverage * brush.opacity);
       }
     }
     left += static_cast<int>(glyph->advance.x >> 6);
@@ -122,25 +122,25 @@ std::string Font::fitted(const std::string& text, int width) {
   return cut + "…";
 }
 
-void fill_rectangle(Frame& frame, int left, int top, int width, int height, const Ink& ink) {
+void fill_rectangle(Frame& frame, int left, int top, int width, int height, const Brush& brush) {
   for (int y = std::max(0, top); y < std::min(frame.height(), top + height); ++y) {
     for (int x = std::max(0, left); x < std::min(frame.width(), left + width); ++x) {
-      frame.at(x, y) = blend(frame.at(x, y), ink.color, ink.opacity);
+      frame.at(x, y) = blend(frame.at(x, y), brush.color, brush.opacity);
     }
   }
 }
 
 void draw_line(Frame& frame, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double width_px,
-               const Ink& ink) {
+               const Brush& brush) {
   const double reach = 0.5 * width_px + 0.5;
   around_segment(frame, from, to, reach, [&](int x, int y, double distance) {
     const double coverage = std::clamp(reach - distance, 0.0, 1.0);
-    if (coverage > 0.0) frame.at(x, y) = blend(frame.at(x, y), ink.color, coverage * ink.opacity);
+    if (coverage > 0.0) frame.at(x, y) = blend(frame.at(x, y), brush.color, coverage * brush.opacity);
   });
 }
 
-void draw_disc(Frame& frame, const Eigen::Vector2d& center, double radius_px, const Ink& ink) {
-  draw_line(frame, center, center, 2.0 * radius_px, ink);
+void draw_disc(Frame& frame, const Eigen::Vector2d& center, double radius_px, const Brush& brush) {
+  draw_line(frame, center, center, 2.0 * radius_px, brush);
 }
 
 void paste(Frame& frame, int left, int top, const Frame& picture) {

@@ -10,7 +10,7 @@
 
 namespace patrol::render {
 
-struct Ink {
+struct Brush {
   Color color;
   double opacity = 1.0;
 };
@@ -34,7 +34,7 @@ class Font {
 
   int height_px() const { return height_px_; }
   /// UTF-8; `left`, `baseline`: where the first letter stands. Returns where the next one would.
-  int draw(Frame& frame, int left, int baseline, const std::string& text, const Ink& ink);
+  int draw(Frame& frame, int left, int baseline, const std::string& text, const Brush& brush);
   int width_px(const std::string& text);
   /// As much of the text as fits, with an ellipsis where it was cut.
   std::string fitted(const std::string& text, int width_px);
@@ -46,11 +46,11 @@ class Font {
 };
 
 /// Flat drawing on a frame; what lies outside is cut off. Pixel centres are at .5.
-void fill_rectangle(Frame& frame, int left, int top, int width, int height, const Ink& ink);
+void fill_rectangle(Frame& frame, int left, int top, int width, int height, const Brush& brush);
 void draw_line(Frame& frame, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double width_px,
-               const Ink& ink);
+               const Brush& brush);
 /// `picture` with its upper left corner at (left, top).
 void paste(Frame& frame, int left, int top, const Frame& picture);
-void draw_disc(Frame& frame, const Eigen::Vector2d& center, double radius_px, const Ink& ink);
+void draw_disc(Frame& frame, const Eigen::Vector2d& center, double radius_px, const Brush& brush);
 
 }  // namespace patrol::render

@@ -12,7 +12,7 @@
 namespace patrol::render {
 namespace {
 
-constexpr Color kNothing{44, 48, 56};
+constexpr Color kUnknownCell{44, 48, 56};
 constexpr Color kFreeCell{214, 218, 222};
 constexpr Color kOccupiedCell{16, 18, 24};
 constexpr Color kBorderColor{235, 238, 242};
@@ -102,7 +102,7 @@ void MapInset::lay_out(const Frame& frame, const RunSnapshot& snapshot) {
   const int width = static_cast<int>(std::ceil(size_m.x() * px_per_m_));
   const int height = static_cast<int>(std::ceil(size_m.y() * px_per_m_));
 
-  picture_ = Frame(width, height, kNothing);
+  picture_ = Frame(width, height, kUnknownCell);
   const Pose2 T_map_world = snapshot.T_world_map.inverse();
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {

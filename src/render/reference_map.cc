@@ -19,12 +19,12 @@
 namespace patrol::render {
 namespace {
 
-using Box = Eigen::AlignedBox3d;
+using Bounds = Eigen::AlignedBox3d;
 
 /// A shape that the slice cuts.
 struct CutGeom {
   int geom;
-  Box bounds;  ///< in world
+  Bounds bounds;  ///< in world
 };
 
 bool stands_still(const mjModel& model, int body) {
@@ -36,7 +36,7 @@ bool lidar_can_hit(const mjModel& model, int geom) {
   return group == sim::kGroupLidarOnly || (group == sim::kGroupSolid && model.geom_rgba[4 * geom + 3] > 0.0f);
 }
 
-Box bounds_in_world(const mjModel& model, const mjData& data, int geom) {
+Bounds bounds_in_world(const mjModel& model, const mjData& data, int geom) {
   const mjtNum* local = model.geom_aabb + 6 * geom;  // centre, half sizes
   const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> R(data.geom_xmat + 9 * geom);
   const Eigen::Vector3d center = Eigen::Map<const Eigen::Vector3d>(data.geom_xpos + 3 * geom) +
@@ -50,14 +50,14 @@ std::vector<CutGeom> geoms_cut_at(const mjModel& model, const mjData& data, doub
   for (int geom = 0; geom < model.ngeom; ++geom) {
     if (!stands_still(model, model.geom_bodyid[geom]) || !lidar_can_hit(model, geom)) continue;
     if (model.geom_type[geom] == mjGEOM_PLANE) continue;  // has no inside
-    const Box bounds = bounds_in_world(model, data, geom);
+    const Bounds bounds = bounds_in_world(model, data, geom);
     if (bounds.min().z() < height_m && bounds.max().z() > height_m) cut.push_back({geom, bounds});
   }
   return cut;
 }
 
 /// Cells aligned to the world's origin, so that maps of one world at two heights fit each other.
-GridGeometry geometry_around(const Box& bounds, const ReferenceMapSettings& settings) {
+GridGeometry geometry_around(const Bounds& bounds, const ReferenceMapSettings& settings) {
   const double r = settings.resolution_m;
   const auto first = [&](double low_m) { return std::floor((low_m - settings.margin_m) / r); };
   const auto last = [&](double high_m) { return std::ceil((high_m + settings.margin_m) / r); };
@@ -128,7 +128,7 @@ Grid<std::uint8_t> render_solid(const mjModel& model, const mjData& data, const 
   const int tile_width = std::min(kTile, geometry.width), tile_height = std::min(kTile, geometry.height);
   Offscreen offscreen(model, tile_width, tile_height);
   SliceScene scene(cut.size());
-  Box all;
+  Bounds all;
   for (const CutGeom& geom : cut) all.extend(geom.bounds);
 
   Grid<std::uint8_t> solid(geometry);
@@ -137,7 +137,7 @@ Grid<std::uint8_t> render_solid(const mjModel& model, const mjData& data, const 
     for (int col0 = 0; col0 < geometry.width; col0 += tile_width) {
       const Eigen::Vector2d low = geometry.origin_m + geometry.resolution_m * Eigen::Vector2d(col0, row0);
       const Eigen::Vector2d size = geometry.resolution_m * Eigen::Vector2d(tile_width, tile_height);
-      const Box tile(Eigen::Vector3d(low.x(), low.y(), height_m),
+      const Bounds tile(Eigen::Vector3d(low.x(), low.y(), height_m),
                      Eigen::Vector3d(low.x() + size.x(), low.y() + size.y(), height_m));
       scene.clear();
       bool is_empty = true;
@@ -257,7 +257,7 @@ ReferenceMap reference_map(const mjModel& view, const ReferenceMapSettings& sett
     throw InputError(fmt::format("the world has nothing that a lidar {:.2f} m above its ground could hit",
                                  settings.height_m));
   }
-  Box bounds;
+  Bounds bounds;
   for (const CutGeom& geom : cut) bounds.extend(geom.bounds);
   const GridGeometry geometry = geometry_around(bounds, settings);
 

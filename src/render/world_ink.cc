@@ -20,19 +20,19 @@ struct WorldInk::Stroke {
 WorldInk::WorldInk(Frame& frame, const std::vector<float>& depth, const Projector& projector)
     : frame_(frame), depth_(depth), projector_(projector), coverage_(depth.size(), 0) {}
 
-void WorldInk::polyline(std::span<const Eigen::Vector3d> points_m, double width_m, const Ink& ink) {
+void WorldInk::polyline(std::span<const Eigen::Vector3d> points_m, double width_m, const Brush& brush) {
   for (std::size_t i = 1; i < points_m.size(); ++i) {
     stroke(projector_.to_camera(points_m[i - 1]), projector_.to_camera(points_m[i]), width_m);
   }
-  blend_in(ink);
+  blend_in(brush);
 }
 
-void WorldInk::dots(std::span<const Eigen::Vector3d> points_m, double radius_m, const Ink& ink) {
+void WorldInk::dots(std::span<const Eigen::Vector3d> points_m, double radius_m, const Brush& brush) {
   for (const Eigen::Vector3d& point : points_m) {
     const Eigen::Vector3d in_camera = projector_.to_camera(point);
     stroke(in_camera, in_camera, 2.0 * radius_m);
   }
-  blend_in(ink);
+  blend_in(brush);
 }
 
 void WorldInk::stroke(const Eigen::Vector3d& from_in_camera, const Eigen::Vector3d& to_in_camera,
@@ -100,12 +100,12 @@ bool WorldInk::is_hidden(std::size_t pixel, double distance_m) const {
   return distance_m > projector_.distance_m(depth_[pixel]) + tolerance_m;
 }
 
-void WorldInk::blend_in(const Ink& ink) {
+void WorldInk::blend_in(const Brush& brush) {
   for (int y = top_; y <= bottom_; ++y) {
     for (int x = 0; x < frame_.width(); ++x) {
       std::uint8_t& covered = coverage_[static_cast<std::size_t>(y * frame_.width() + x)];
       if (covered == 0) continue;
-      frame_.at(x, y) = blend(frame_.at(x, y), ink.color, ink.opacity * covered / 255.0);
+      frame_.at(x, y) = blend(frame_.at(x, y), brush.color, brush.opacity * covered / 255.0);
       covered = 0;
     }
   }

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "score/statistics.h"
 
 namespace patrol::score {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 /// The trajectory at the relations' stamps, each looked up once.
 class PoseLookup {

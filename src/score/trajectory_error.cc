@@ -1,17 +1,16 @@
 #include "score/trajectory_error.h"
 
 #include <algorithm>
-#include <numbers>
 
 #include <Eigen/Dense>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "score/statistics.h"
 
 namespace patrol::score {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kStretch_m = 1.0;
 constexpr Time kMaxStampDifference = std::chrono::milliseconds(10);
 

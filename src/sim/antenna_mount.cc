@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "core/angles.h"
 #include "core/error.h"
 
 namespace patrol::sim {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::array kJointNames = {"tem_yaw_joint", "tem_pitch_joint"};
 
 int joint_id(const mjModel& physics, const char* name) {

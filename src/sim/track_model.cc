@@ -94,7 +94,7 @@ double road_wheel_load_n(const urdf::ModelInterface& robot) {
     if (link->inertial) mass_kg += link->inertial->mass;
     if (!is_track(*link)) continue;
     wheels += std::count_if(link->collision_array.begin(), link->collision_array.end(),
-                            [&](const auto& wheel) { return is_road_wheel(*link, *wheel); });
+                            [&robot_link = *link](const auto& wheel) { return is_road_wheel(robot_link, *wheel); });
   }
   return wheels == 0 ? 0.0 : (mass_kg / static_cast<double>(wheels) - kWheelMass_kg) * kGravity_mps2;
 }

@@ -15,7 +15,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::output_directory_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -172,4 +172,4 @@ TEST(OutputDirectory, AFileInItsPlaceIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::output_directory_test

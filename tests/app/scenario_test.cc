@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::scenario_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -122,4 +122,4 @@ TEST(Scenario, AnOverrideOfAnUnknownKeyNamesTheNearest) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::scenario_test

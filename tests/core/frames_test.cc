@@ -7,7 +7,7 @@
 
 #include "tests/support/pose_near.h"
 
-namespace patrol {
+namespace patrol::frames_test {
 namespace {
 
 using test::Pose2Near, test::Pose3Near, test::VectorNear;
@@ -115,4 +115,4 @@ TEST(Interpolate, TurnsTheShortWayAcrossTheHalfTurn) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::frames_test

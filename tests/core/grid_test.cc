@@ -4,7 +4,7 @@
 
 #include "tests/support/pose_near.h"
 
-namespace patrol {
+namespace patrol::grid_test {
 namespace {
 
 using test::VectorNear;
@@ -51,4 +51,4 @@ TEST(Grid, WithoutSizeHoldsNothing) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::grid_test

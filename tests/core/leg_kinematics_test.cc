@@ -7,7 +7,7 @@
 #include "core/random.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol {
+namespace patrol::leg_kinematics_test {
 namespace {
 
 using test::VectorNear;
@@ -110,4 +110,4 @@ TEST(JointAngles, OutOfReachIsNoAnswer) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::leg_kinematics_test

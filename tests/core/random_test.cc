@@ -8,7 +8,7 @@
 #include <numbers>
 #include <set>
 
-namespace patrol {
+namespace patrol::random_test {
 namespace {
 
 using Block = std::array<std::uint64_t, 4>;
@@ -208,4 +208,4 @@ TEST(RandomSequence, CauchyHasItsQuartilesAtMinusOneZeroAndOne) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::random_test

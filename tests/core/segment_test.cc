@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol {
+namespace patrol::segment_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -16,4 +16,4 @@ TEST(DistanceToSegment, IsToItsSideItsEndsOrThePointThatItIs) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::segment_test

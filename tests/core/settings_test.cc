@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace patrol {
+namespace patrol::settings_test {
 namespace {
 
 struct Wheel {
@@ -82,4 +82,4 @@ TEST(InputErrorText, HasFileAndLineWhereThereIsOne) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::settings_test

@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 
-namespace patrol {
+namespace patrol::symmetric_axes_test {
 namespace {
 
 TEST(SymmetricAxes, AreEigensOfTwoHundredRandomMatrices) {
@@ -37,4 +37,4 @@ TEST(SymmetricAxes, ACircleAndNothingHaveAxesToo) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::symmetric_axes_test

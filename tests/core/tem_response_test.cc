@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace patrol {
+namespace patrol::tem_response_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -146,4 +146,4 @@ TEST(TemGates, ASphereThroughRampAndGatesIsTheFineSumToThreePerMille) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::tem_response_test

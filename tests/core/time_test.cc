@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol {
+namespace patrol::time_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -19,4 +19,4 @@ TEST(Time, ThereAndBackIsExactForADayOfTicks) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::time_test

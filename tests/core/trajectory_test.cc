@@ -4,7 +4,7 @@
 
 #include "tests/support/pose_near.h"
 
-namespace patrol {
+namespace patrol::trajectory_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -39,4 +39,4 @@ TEST(PlanarLength, FourAndThreeAreSevenWhateverTheHeights) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::trajectory_test

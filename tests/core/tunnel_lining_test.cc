@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol {
+namespace patrol::tunnel_lining_test {
 namespace {
 
 /// Straight for 80 m, then to the left with a radius of 400 m; turned and moved in the route's frame.
@@ -79,4 +79,4 @@ TEST(TunnelLining, RingsAreCountedFromOne) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::tunnel_lining_test

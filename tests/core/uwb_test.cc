@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace patrol {
+namespace patrol::uwb_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -67,4 +67,4 @@ TEST(Uwb, PitchOfTenDegreesMovesAnAntennaOneMetreUpAheadBySineTen) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::uwb_test

@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::gas_measurement_test {
 namespace {
 
 constexpr double kExactTol = 1e-9;
@@ -90,4 +90,4 @@ TEST(GasMeasurement, OfNothingOrOneReadingHasNoSpread) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::gas_measurement_test

@@ -7,7 +7,7 @@
 #include "core/random.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::route_frame_test {
 namespace {
 
 using std::numbers::pi;
@@ -80,4 +80,4 @@ TEST(RouteFrame, ThereAndBackIsTheRouteAgain) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::route_frame_test

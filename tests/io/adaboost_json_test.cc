@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::adaboost_json_test {
 namespace {
 
 using test::read_bytes, test::TemporaryFile;
@@ -98,4 +98,4 @@ TEST(LoadBoostedStumps, AMillionStumpsAreRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::adaboost_json_test

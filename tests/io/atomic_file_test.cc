@@ -11,7 +11,7 @@
 #include "io/bounded_read.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::atomic_file_test {
 namespace {
 
 using test::read_bytes, test::TemporaryFolder;
@@ -85,4 +85,4 @@ TEST(LoadText, RefusesDevicesPipesAndFilesOverTheLimit) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::atomic_file_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::io {
+namespace patrol::io::base64_test {
 namespace {
 
 TEST(Base64, GivesTheVectorsOfRfc4648) {
@@ -24,4 +24,4 @@ TEST(Base64, WhatIsNoneIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::base64_test

@@ -13,7 +13,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::carmen_log_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -349,4 +349,4 @@ TEST(ScanLogOptions, AnUnknownLaserIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::carmen_log_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::io {
+namespace patrol::io::csv_test {
 namespace {
 
 TEST(Csv, QuotesWhatNeedsItAndDoublesQuotes) {
@@ -16,4 +16,4 @@ TEST(Csv, NumbersReadBackAsTheSameAndNothingIsEmpty) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::csv_test

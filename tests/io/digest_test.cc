@@ -4,7 +4,7 @@
 
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::digest_test {
 namespace {
 
 TEST(Digest, OfAbcIsTheStandardsExample) {  // FIPS 180-2, appendix B.1
@@ -40,4 +40,4 @@ TEST_F(FolderDigest, DoesNotSeeWhatIsLeftOutOrHidden) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::digest_test

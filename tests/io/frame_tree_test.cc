@@ -5,7 +5,7 @@
 #include "tests/io/log_messages.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::io {
+namespace patrol::io::frame_tree_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -105,4 +105,4 @@ TEST(FrameTree, NotesAThousandFrames) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::frame_tree_test

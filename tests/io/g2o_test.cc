@@ -7,7 +7,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::g2o_test {
 namespace {
 
 using test::Pose2Near, test::TemporaryFile, test::TemporaryFolder;
@@ -104,4 +104,4 @@ TEST(SaveG2o, ThereAndBackIsTheSameToTheBit) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::g2o_test

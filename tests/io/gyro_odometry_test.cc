@@ -6,7 +6,7 @@
 
 #include "tests/support/pose_near.h"
 
-namespace patrol::io {
+namespace patrol::io::gyro_odometry_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -104,4 +104,4 @@ TEST(GyroOdometry, StampsThatDoNotGrowAreDropped) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::gyro_odometry_test

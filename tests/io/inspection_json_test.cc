@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 
-namespace patrol::io {
+namespace patrol::io::inspection_json_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -113,4 +113,4 @@ TEST(InspectionJson, ACovarianceOfTwoRowsIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::inspection_json_test

@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 
-namespace patrol::io {
+namespace patrol::io::json_check_test {
 namespace {
 
 std::string complaint_about(const std::string& text, std::size_t max_entries = 3) {
@@ -53,4 +53,4 @@ TEST(CheckJson, TwentyLevelsAreDeepEnough) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::json_check_test

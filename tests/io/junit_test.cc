@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::junit_test {
 namespace {
 
 using ::testing::HasSubstr, ::testing::Not;
@@ -111,4 +111,4 @@ TEST(LoadJunit, RefusesWhatIsNotJunitAndNamesTheFile) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::junit_test

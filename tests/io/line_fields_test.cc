@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace patrol::io {
+namespace patrol::io::line_fields_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -83,4 +83,4 @@ TEST(LineFields, APoseIsWrappedAndOnTheEarth) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::line_fields_test

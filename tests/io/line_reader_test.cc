@@ -8,7 +8,7 @@
 #include "tests/support/gzip_file.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::line_reader_test {
 namespace {
 
 using test::gzipped, test::TemporaryFile, test::TemporaryFolder;
@@ -116,4 +116,4 @@ TEST(LineReader, AMissingFileAndAFolderAreRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::line_reader_test

@@ -7,7 +7,7 @@
 
 #include <png.h>
 
-namespace patrol::io {
+namespace patrol::io::map_png_test {
 namespace {
 
 TEST(MapPng, HasNorthUpAndTheThreeGreysOfMapServer) {
@@ -27,4 +27,4 @@ TEST(MapPng, HasNorthUpAndTheThreeGreysOfMapServer) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::map_png_test

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::map_server_test {
 namespace {
 
 using test::read_bytes, test::TemporaryFolder, test::write_bytes;
@@ -167,4 +167,4 @@ TEST(MapErrors, OfAnotherMapsSizeAreRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::map_server_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::io {
+namespace patrol::io::markup_text_test {
 namespace {
 
 TEST(EscapedMarkup, LeavesNoCharacterThatMeansSomething) {
@@ -14,4 +14,4 @@ TEST(EscapedMarkup, KeepsOtherAlphabetsLineEndsAndTabsButNoControlCharacters) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::markup_text_test

@@ -12,7 +12,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::mcap_scan_log_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -411,4 +411,4 @@ TEST_F(McapScans, ARecordLargerThanAQuarterOfAGigabyteIsDamageNotData) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::mcap_scan_log_test

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::metrics_json_test {
 namespace {
 
 Metrics make_metrics() {
@@ -81,4 +81,4 @@ TEST(LoadMetrics, BrokenAndMissingFilesAreNamed) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::metrics_json_test

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::moving_ai_test {
 namespace {
 
 using test::TemporaryFolder, test::write_bytes;
@@ -128,4 +128,4 @@ TEST_F(MovingAi, ProblemsThatAreNoneAreRefusedInOneLineWithThePlace) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::moving_ai_test

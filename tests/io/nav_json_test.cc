@@ -12,7 +12,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::nav_json_test {
 namespace {
 
 using test::Pose2Near, test::TemporaryFile;
@@ -108,4 +108,4 @@ TEST(LoadNav, NoGoalAndAMillionGoalsAreRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::nav_json_test

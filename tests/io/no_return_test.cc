@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace patrol::io {
+namespace patrol::io::no_return_test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -94,4 +94,4 @@ TEST(NoReturn, ALogThatSaysEightMetresForNoReturnIsReadAsSuchUnlessAskedNotTo) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::no_return_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::io {
+namespace patrol::io::one_line_test {
 namespace {
 
 TEST(OneLine, ControlCharactersAreWrittenOut) { EXPECT_EQ(on_one_line("a\nb\x1b[31m\x7f"), "a\\nb\\x1b[31m\\x7f"); }
@@ -17,4 +17,4 @@ TEST(OneLine, C1ControlsAndBytesThatAreNotUtf8AreWrittenOut) {
 TEST(OneLine, LettersBeyondAsciiStay) { EXPECT_EQ(on_one_line("Größe 5 µm"), "Größe 5 µm"); }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::one_line_test

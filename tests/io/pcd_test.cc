@@ -6,7 +6,7 @@
 
 #include "tests/io/cloud_samples.h"
 
-namespace patrol::io {
+namespace patrol::io::pcd_test {
 namespace {
 
 using test::read_bytes, test::TemporaryFolder, test::write_bytes;
@@ -83,4 +83,4 @@ TEST(Pcd, NumbersThatAreNoneAreRefusedWithTheirPlace) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::pcd_test

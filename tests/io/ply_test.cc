@@ -7,7 +7,7 @@
 
 #include "tests/io/cloud_samples.h"
 
-namespace patrol::io {
+namespace patrol::io::ply_test {
 namespace {
 
 using test::read_bytes, test::TemporaryFolder, test::write_bytes;
@@ -104,4 +104,4 @@ TEST(Ply, AFileThatIsNotThereIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::ply_test

@@ -7,7 +7,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::relations_test {
 namespace {
 
 using test::Pose2Near, test::TemporaryFile;
@@ -51,4 +51,4 @@ TEST(LoadRelations, AnEmptyOrMissingFileIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::relations_test

@@ -7,7 +7,7 @@
 #include "io/remote_csv.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::remote_drive_test {
 namespace {
 
 using test::TemporaryFile;
@@ -95,4 +95,4 @@ TEST(LoadRemote, NumbersBeyondAnyDriveAreRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::remote_drive_test

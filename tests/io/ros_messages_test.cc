@@ -10,7 +10,7 @@
 #include "tests/io/sample_messages.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::io {
+namespace patrol::io::ros_messages_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -266,4 +266,4 @@ TEST(RosDefinition, CarriesEveryTypeItUsesOnce) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::ros_messages_test

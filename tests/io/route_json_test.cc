@@ -12,7 +12,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::route_json_test {
 namespace {
 
 using test::Pose2Near, test::TemporaryFile, test::VectorNear;
@@ -176,4 +176,4 @@ TEST(LoadRoute, WhatIsNotJsonIsNamedByItsLine) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::route_json_test

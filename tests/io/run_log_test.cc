@@ -11,7 +11,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::run_log_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -271,4 +271,4 @@ TEST_F(RunLog, AMissingLogIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::run_log_test

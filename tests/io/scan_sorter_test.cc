@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace patrol::io {
+namespace patrol::io::scan_sorter_test {
 namespace {
 
 using Order = ScanSorter::Order;
@@ -76,4 +76,4 @@ TEST(ScanSorter, AScanOfTheFarFutureComesLast) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::scan_sorter_test

@@ -6,7 +6,7 @@
 #include "io/yaml_document.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::settings_yaml_test {
 namespace {
 
 using test::read_bytes, test::TemporaryFile, test::TemporaryFolder;
@@ -297,4 +297,4 @@ TEST(NearestWord, IsNearOrEmpty) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::settings_yaml_test

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::sqlite_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -49,4 +49,4 @@ TEST(Sqlite, APlaceThatCannotBeWrittenIsSaid) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::sqlite_test

@@ -7,7 +7,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::station_scans_test {
 namespace {
 
 std::vector<StationScan> two_scans() {
@@ -53,4 +53,4 @@ TEST(StationScans, ACloudThatIsNotThereIsNamed) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::station_scans_test

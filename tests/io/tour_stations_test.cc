@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::tour_stations_test {
 namespace {
 
 std::vector<TourStation> load(const std::string& text) {
@@ -81,4 +81,4 @@ TEST(TourStations, MoreThanTwoHundredAreRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::tour_stations_test

@@ -11,7 +11,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io {
+namespace patrol::io::urdf_test {
 namespace {
 
 using test::TemporaryFile, test::VectorNear;
@@ -265,4 +265,4 @@ TEST(Urdf, AFileCutShortOrNotThereIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::urdf_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-namespace patrol::localize {
+namespace patrol::localize::amcl_beam_model_test {
 namespace {
 
 constexpr double kNoEcho = std::numeric_limits<double>::infinity();
@@ -76,4 +76,4 @@ TEST(BeamModel, ThePoseThatTheScanWasTakenFromFitsBest) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::amcl_beam_model_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/tunnel_world.h"
 
-namespace patrol::localize {
+namespace patrol::localize::amcl_global_search_test {
 namespace {
 
 constexpr double kBeams = 20.0;  // that a scan counts for
@@ -84,4 +84,4 @@ TEST(GlobalSearch, AMapSmallerThanItsStepsHasAPlaceAllTheSame) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::amcl_global_search_test

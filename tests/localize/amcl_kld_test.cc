@@ -7,7 +7,7 @@
 #include "localize/amcl/particle_cloud.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::localize {
+namespace patrol::localize::amcl_kld_test {
 namespace {
 
 constexpr KldSettings kFree{.min_particles = 1, .max_particles = 1000000};
@@ -62,4 +62,4 @@ TEST(ParticleCloud, TheHeaviestClumpIsDescribedAndNotTheOthers) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::amcl_kld_test

@@ -7,7 +7,7 @@
 
 #include "localize/amcl/distance_to_occupied.h"
 
-namespace patrol::localize {
+namespace patrol::localize::amcl_likelihood_field_test {
 namespace {
 
 constexpr double kRes = 0.1;
@@ -123,4 +123,4 @@ TEST(LikelihoodField, AScanWithoutHitsFitsEverywhereAlike) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::amcl_likelihood_field_test

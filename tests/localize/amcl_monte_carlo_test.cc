@@ -13,7 +13,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/tunnel_world.h"
 
-namespace patrol::localize {
+namespace patrol::localize::amcl_monte_carlo_test {
 namespace {
 
 using test::DriveSettings, test::Tunnel, test::TunnelDrive;
@@ -341,4 +341,4 @@ TEST(MonteCarlo, RefusesSettingsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::amcl_monte_carlo_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/pose_near.h"
 
-namespace patrol::localize {
+namespace patrol::localize::amcl_odometry_model_test {
 namespace {
 
 constexpr int kParticles = 2000;
@@ -80,4 +80,4 @@ TEST(OdometryModel, TheSameTickDrawsTheSameAndAnotherAnother) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::amcl_odometry_model_test

@@ -8,7 +8,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/tunnel_world.h"
 
-namespace patrol::localize {
+namespace patrol::localize::amcl_pose_refinement_test {
 namespace {
 
 using test::Pose2Near;
@@ -100,4 +100,4 @@ TEST(ScanProposal, GoesTheWayThatTheScanKnows) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::amcl_pose_refinement_test

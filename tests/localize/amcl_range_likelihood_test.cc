@@ -8,7 +8,7 @@
 
 #include "localize/amcl/range_memory.h"
 
-namespace patrol::localize {
+namespace patrol::localize::amcl_range_likelihood_test {
 namespace {
 
 constexpr RangeLikelihoodSettings kSettings{};
@@ -71,4 +71,4 @@ TEST(RangeMemory, ATiltedBodyCarriesItsAntennaAlong) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::amcl_range_likelihood_test

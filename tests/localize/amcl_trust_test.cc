@@ -8,7 +8,7 @@
 
 #include "localize/amcl/fit_monitor.h"
 
-namespace patrol::localize {
+namespace patrol::localize::amcl_trust_test {
 namespace {
 
 /// Deviation `weak_m` along `direction_rad`, 1 cm across.
@@ -92,4 +92,4 @@ TEST(FitMonitor, RangesThatDoNotFitAreEnough) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::amcl_trust_test

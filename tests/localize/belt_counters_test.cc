@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::localize {
+namespace patrol::localize::belt_counters_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -51,4 +51,4 @@ TEST(BeltCounters, NothingIsSaidAcrossAGapOfASecond) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::belt_counters_test

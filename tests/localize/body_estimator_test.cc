@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/support/walking_robot.h"
 
-namespace patrol::localize {
+namespace patrol::localize::body_estimator_test {
 namespace {
 
 using test::make_quadruped;
@@ -328,4 +328,4 @@ TEST(BodyEstimator, SettingOutOfRangeIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::body_estimator_test

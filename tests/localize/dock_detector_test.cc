@@ -10,7 +10,7 @@
 #include "tests/support/dock_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::localize {
+namespace patrol::localize::dock_detector_test {
 namespace {
 
 using test::make_dock_profile;
@@ -150,4 +150,4 @@ TEST(DockDetector, RefusesAProfileOfOnePointAndSettingsThatBreakTheirRule) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::dock_detector_test

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace patrol::localize {
+namespace patrol::localize::imu_mount_test {
 namespace {
 
 TEST(ImuMount, OnASpinningBodyTheCentripetalForceOfTheLeverIsTakenOff) {
@@ -44,4 +44,4 @@ TEST(ImuMount, NaNAndReadingsBeyondAnyUnitAreNotPlausible) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::imu_mount_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace patrol::localize {
+namespace patrol::localize::inertial_filter_test {
 namespace {
 
 constexpr double kDt = 0.004;
@@ -129,4 +129,4 @@ TEST(InertialFilter, CoastingGrowsYawUncertaintyWithTime) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::inertial_filter_test

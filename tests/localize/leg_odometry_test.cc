@@ -6,7 +6,7 @@
 
 #include "tests/support/walking_robot.h"
 
-namespace patrol::localize {
+namespace patrol::localize::leg_odometry_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -94,4 +94,4 @@ TEST(HeightByFeet, IsTheLegsLengthAndTheFootsRadius) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::leg_odometry_test

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace patrol::localize {
+namespace patrol::localize::map_pose_tracker_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -53,4 +53,4 @@ TEST(MapPoseTracker, CorrectionFromThePastIsIgnored) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::map_pose_tracker_test

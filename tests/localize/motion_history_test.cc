@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::localize {
+namespace patrol::localize::motion_history_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -47,4 +47,4 @@ TEST(MotionHistory, SameStampReplacesTheNewest) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::motion_history_test

@@ -13,7 +13,7 @@
 #include "tests/support/tracked_drive.h"
 #include "tests/support/uwb_tunnel.h"
 
-namespace patrol::localize {
+namespace patrol::localize::range_filter_test {
 namespace {
 
 using test::make_tracked_robot;
@@ -259,4 +259,4 @@ TEST(RangeFilter, BadSettingsAndDoubleAnchorsAreNamed) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::range_filter_test

@@ -10,7 +10,7 @@
 #include "core/trajectory.h"
 #include "tests/support/walking_robot.h"
 
-namespace patrol::localize {
+namespace patrol::localize::scan_leveler_test {
 namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
@@ -229,4 +229,4 @@ TEST(ScanLeveler, WithTheEstimatorInTheLoopWallsAreAsGoodAsItsPose) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::scan_leveler_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace patrol::localize {
+namespace patrol::localize::slip_watch_test {
 namespace {
 
 constexpr double kDt = 0.004;
@@ -51,4 +51,4 @@ TEST(SlipWatch, ARoughRideAsksForMore) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::slip_watch_test

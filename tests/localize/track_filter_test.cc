@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace patrol::localize {
+namespace patrol::localize::track_filter_test {
 namespace {
 
 constexpr double kDt = 0.004;
@@ -117,4 +117,4 @@ TEST(TrackFilter, TheTurnsCentreFiveCentimetresBehindDragsTheBodySideways) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::track_filter_test

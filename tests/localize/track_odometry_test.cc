@@ -14,7 +14,7 @@
 #include "core/error.h"
 #include "tests/support/tracked_drive.h"
 
-namespace patrol::localize {
+namespace patrol::localize::track_odometry_test {
 namespace {
 
 using test::make_tour;
@@ -320,4 +320,4 @@ TEST(TrackOdometry, ARobotWithoutTracksOrImuIsRefusedWithASentence) {
 }
 
 }  // namespace
-}  // namespace patrol::localize
+}  // namespace patrol::localize::track_odometry_test

@@ -17,7 +17,7 @@
 #include "core/error.h"
 #include "monitor/http_client.h"
 
-namespace patrol::monitor {
+namespace patrol::monitor::http_server_test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -325,4 +325,4 @@ TEST_F(Server, AClientIsToldWhyNobodyAnswers) {
 }
 
 }  // namespace
-}  // namespace patrol::monitor
+}  // namespace patrol::monitor::http_server_test

@@ -11,7 +11,7 @@
 #include "tests/monitor/sample_results.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::monitor {
+namespace patrol::monitor::queries_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -229,4 +229,4 @@ TEST_F(Queries, HistoryIsPagedFromTheNewestAndFiltered) {
 }
 
 }  // namespace
-}  // namespace patrol::monitor
+}  // namespace patrol::monitor::queries_test

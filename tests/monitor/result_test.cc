@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "tests/monitor/sample_results.h"
 
-namespace patrol::monitor {
+namespace patrol::monitor::result_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -99,4 +99,4 @@ TEST(Utc, GoesThereAndBackToTheMillisecond) {
 }
 
 }  // namespace
-}  // namespace patrol::monitor
+}  // namespace patrol::monitor::result_test

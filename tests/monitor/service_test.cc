@@ -5,7 +5,7 @@
 #include "tests/monitor/sample_results.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::monitor {
+namespace patrol::monitor::service_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -124,4 +124,4 @@ TEST_F(Platform, AMapComesBackAsThePngThatWasSent) {
 }
 
 }  // namespace
-}  // namespace patrol::monitor
+}  // namespace patrol::monitor::service_test

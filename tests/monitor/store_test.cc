@@ -8,7 +8,7 @@
 #include "tests/monitor/sample_results.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::monitor {
+namespace patrol::monitor::store_test {
 namespace {
 
 using namespace patrol::test;
@@ -111,4 +111,4 @@ TEST(Store, ANameOfSqlIsAName) {
 }
 
 }  // namespace
-}  // namespace patrol::monitor
+}  // namespace patrol::monitor::store_test

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::monitor {
+namespace patrol::monitor::token_test {
 namespace {
 
 TEST(Token, IsMadeOnceForItsOwnersEyesAlone) {
@@ -45,4 +45,4 @@ TEST(Token, OnlyTheWholeIsTheSame) {
 }
 
 }  // namespace
-}  // namespace patrol::monitor
+}  // namespace patrol::monitor::token_test

@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 
-namespace patrol::monitor {
+namespace patrol::monitor::url_test {
 namespace {
 
 TEST(Url, HasHostAndPort) {
@@ -31,4 +31,4 @@ TEST(Target, ParametersAreDecodedAndThePathIsNot) {
 }
 
 }  // namespace
-}  // namespace patrol::monitor
+}  // namespace patrol::monitor::url_test

@@ -8,7 +8,7 @@
 #include "tests/support/room_world.h"
 
 // The costmap's layer of low obstacles, from images and pings to cells.
-namespace patrol::plan {
+namespace patrol::plan::costmap_low_test {
 namespace {
 
 using test::DepthScene;
@@ -150,4 +150,4 @@ TEST(CostmapLow, AnEchoOfWhatTheLidarSeesMarksNothing) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::costmap_low_test

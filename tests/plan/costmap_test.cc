@@ -9,7 +9,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/room_world.h"
 
-namespace patrol::plan {
+namespace patrol::plan::costmap_test {
 namespace {
 
 using test::RoomWorld;
@@ -431,4 +431,4 @@ TEST(Costmap, RefusesAnOutlineThatReachesBeyondItsField) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::costmap_test

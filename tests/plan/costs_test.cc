@@ -9,7 +9,7 @@
 #include "plan/costs/path_heading.h"
 #include "plan/costs/progress.h"
 
-namespace patrol::plan {
+namespace patrol::plan::costs_test {
 namespace {
 
 using std::numbers::pi;
@@ -108,4 +108,4 @@ TEST(ProgressCost, NearTheEndOnlyWhatIsLeftCounts) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::costs_test

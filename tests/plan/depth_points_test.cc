@@ -7,7 +7,7 @@
 
 #include "tests/support/depth_scene.h"
 
-namespace patrol::plan {
+namespace patrol::plan::depth_points_test {
 namespace {
 
 using test::DepthScene;
@@ -92,4 +92,4 @@ TEST(DepthPoints, ASinglePixelIsFilteredAway) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::depth_points_test

@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "tests/plan/tracked_plant.h"
 
-namespace patrol::plan {
+namespace patrol::plan::differential_approach_test {
 namespace {
 
 using std::numbers::pi;
@@ -141,4 +141,4 @@ TEST(DifferentialApproach, AJitteringPoseDoesNotKeepItFromEnding) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::differential_approach_test

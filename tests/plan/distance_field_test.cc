@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 
-namespace patrol::plan {
+namespace patrol::plan::distance_field_test {
 namespace {
 
 /// About one cell in `sparsity` is an obstacle.
@@ -80,4 +80,4 @@ TEST(DistanceTransform, TheSameObjectServesGridsOfAnySize) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::distance_field_test

@@ -7,7 +7,7 @@
 #include "core/random.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::plan {
+namespace patrol::plan::dock_track_test {
 namespace {
 
 using test::Pose2Near;
@@ -82,4 +82,4 @@ TEST(DockTrack, ALookOlderThanTheLastChangesNothing) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::dock_track_test

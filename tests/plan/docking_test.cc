@@ -13,7 +13,7 @@
 #include "tests/support/dock_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::plan {
+namespace patrol::plan::docking_test {
 namespace {
 
 using test::RoomWorld;
@@ -212,4 +212,4 @@ TEST(Docking, RefusesSettingsThatBreakTheirRule) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::docking_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/pose_near.h"
 
-namespace patrol::plan {
+namespace patrol::plan::dwa_test {
 namespace {
 
 using std::numbers::pi;
@@ -210,4 +210,4 @@ TEST(DynamicWindow, TooNearToSomethingLeadsAwayFromIt) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::dwa_test

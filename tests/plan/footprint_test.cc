@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/random.h"
 
-namespace patrol::plan {
+namespace patrol::plan::footprint_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -128,4 +128,4 @@ TEST(Footprint, RefusesWhatIsNoOutline) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::footprint_test

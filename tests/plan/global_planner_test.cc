@@ -12,7 +12,7 @@
 #include "tests/plan/routes/drawn_grid.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::plan {
+namespace patrol::plan::global_planner_test {
 namespace {
 
 using test::draw, test::random_ends, test::random_grid;
@@ -158,4 +158,4 @@ TEST(NearestPassable, EqualsBruteForceWithinItsRadius) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::global_planner_test

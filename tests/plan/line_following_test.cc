@@ -7,7 +7,7 @@
 
 #include "tests/plan/tracked_plant.h"
 
-namespace patrol::plan {
+namespace patrol::plan::line_following_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -63,4 +63,4 @@ TEST(LineFollowing, ForeseesTheSideErrorThatIsLeft) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::line_following_test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace patrol::plan {
+namespace patrol::plan::low_obstacles_test {
 namespace {
 
 constexpr Cell kHere{3, -4};
@@ -89,4 +89,4 @@ TEST(LowObstacles, WhatOnlySonarHasHeardCanBeForgotten) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::low_obstacles_test

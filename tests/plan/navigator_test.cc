@@ -11,7 +11,7 @@
 #include "tests/plan/kinematic_drive.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::plan {
+namespace patrol::plan::navigator_test {
 namespace {
 
 using std::numbers::pi;
@@ -375,4 +375,4 @@ TEST(Navigator, RefusesARobotWithoutAnOutlineAndSettingsThatBreakTheirRule) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::navigator_test

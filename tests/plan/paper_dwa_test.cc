@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 
-namespace patrol::plan {
+namespace patrol::plan::paper_dwa_test {
 namespace {
 
 using std::numbers::pi;
@@ -138,4 +138,4 @@ TEST(PaperDwa, RefusesSettingsThatBreakTheirRule) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::paper_dwa_test

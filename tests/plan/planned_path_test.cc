@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::plan {
+namespace patrol::plan::planned_path_test {
 namespace {
 
 using test::Pose2Near;
@@ -98,4 +98,4 @@ TEST(PlannedPath, OfNothingIsEmpty) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::planned_path_test

@@ -7,7 +7,7 @@
 #include "core/random.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::plan {
+namespace patrol::plan::pose_regulator_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -82,4 +82,4 @@ TEST(PoseRegulator, ReachedMeansBothPositionAndHeading) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::pose_regulator_test

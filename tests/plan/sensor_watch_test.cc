@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace patrol::plan {
+namespace patrol::plan::sensor_watch_test {
 namespace {
 
 constexpr Time kPeriod = std::chrono::milliseconds(100);
@@ -177,4 +177,4 @@ TEST(SensorWatch, GivesUpAfterAMinuteWithoutScans) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::sensor_watch_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-namespace patrol::plan {
+namespace patrol::plan::sonar_cone_test {
 namespace {
 
 constexpr double kSpacing_m = 0.1;
@@ -74,4 +74,4 @@ TEST(SonarCone, AnEchoThatMayBeTheGroundMarksNothing) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::sonar_cone_test

@@ -10,7 +10,7 @@
 #include "tests/support/pose_near.h"
 
 // The navigator with a robot of 1.0 by 0.7 m that cannot step sideways.
-namespace patrol::plan {
+namespace patrol::plan::tracked_navigation_test {
 namespace {
 
 using test::RoomWorld;
@@ -148,4 +148,4 @@ TEST(TrackedNavigation, PapersDwaDrivesItAcrossTheHallToo) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::tracked_navigation_test

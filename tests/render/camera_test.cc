@@ -10,7 +10,7 @@
 #include "render/scene_painter.h"
 #include "tests/render/small_scene.h"
 
-namespace patrol::render {
+namespace patrol::render::camera_test {
 namespace {
 
 TEST(Projector, PutsWhatIsStraightAheadInTheMiddle) {
@@ -147,4 +147,4 @@ TEST(CameraKindTest, AnUnknownNameIsRefusedWithTheOnesThatAre) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::camera_test

@@ -7,10 +7,10 @@
 
 #include "render/antialias.h"
 
-namespace patrol::render {
+namespace patrol::render::canvas_test {
 namespace {
 
-constexpr Ink kWhite{{255, 255, 255}, 1.0};
+constexpr Brush kWhite{{255, 255, 255}, 1.0};
 
 /// Painted area in pixels: white on black, shades counted by how white they are.
 double painted_area(const Frame& frame) {
@@ -98,4 +98,4 @@ TEST(SmoothEdges, MakesTheStairsOfASlantedEdgeShallower) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::canvas_test

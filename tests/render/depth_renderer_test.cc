@@ -9,7 +9,7 @@
 #include "sim/lidar_scene.h"
 #include "tests/render/small_scene.h"
 
-namespace patrol::render {
+namespace patrol::render::depth_renderer_test {
 namespace {
 
 constexpr sim::PinholeLens kLens{.width_px = 80, .height_px = 60, .focal_px = 57.0};
@@ -201,4 +201,4 @@ TEST(DepthRenderer, TwoInOneThreadTakeTurns) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::depth_renderer_test

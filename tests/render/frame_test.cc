@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::render {
+namespace patrol::render::frame_test {
 namespace {
 
 Frame colourful(int width, int height) {
@@ -54,4 +54,4 @@ TEST(FrameTest, StartsAtTheUpperLeftCorner) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::frame_test

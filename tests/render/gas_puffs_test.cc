@@ -8,7 +8,7 @@
 #include "render/palette.h"
 #include "tests/render/small_scene.h"
 
-namespace patrol::render {
+namespace patrol::render::gas_puffs_test {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 180;
@@ -74,4 +74,4 @@ TEST_F(DrawPuffs, TintsWhatIsBehindThem) {
 TEST_F(DrawPuffs, AreHiddenByWhatStandsBeforeThem) { EXPECT_EQ(draw(0.5f), Frame(kWidth, kHeight, {100, 100, 100})); }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::gas_puffs_test

@@ -7,7 +7,7 @@
 #include "render/scene_painter.h"
 #include "tests/render/small_scene.h"
 
-namespace patrol::render {
+namespace patrol::render::ghost_test {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 180;
@@ -57,4 +57,4 @@ TEST(GhostOpacity, GrowsWithTheErrorAndStaysAtOne) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::ghost_test

@@ -10,7 +10,7 @@
 #include "render/frame.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::render {
+namespace patrol::render::gl_context_test {
 namespace {
 
 /// tests/render/still_with.cc: each kind of OpenGL needs a process of its own.
@@ -52,4 +52,4 @@ TEST(GlContext, KnowsItsRenderersByName) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::gl_context_test

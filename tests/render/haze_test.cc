@@ -8,7 +8,7 @@
 
 #include "sim/dust.h"
 
-namespace patrol::render {
+namespace patrol::render::haze_test {
 namespace {
 
 constexpr int kSize = 101;  // odd: the middle pixel lies on the axis
@@ -65,4 +65,4 @@ TEST(Haze, TheAirBeforeTheNearPlaneIsCutAwayToo) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::haze_test

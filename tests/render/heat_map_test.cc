@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::render {
+namespace patrol::render::heat_map_test {
 namespace {
 
 TEST(HeatMap, LightnessGrowsWithTheFigure) {
@@ -27,4 +27,4 @@ TEST(HeatMap, APlaceHasItsColourAndASurfaceIsDark) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::heat_map_test

@@ -9,7 +9,7 @@
 #include "render/scene_painter.h"
 #include "tests/render/small_scene.h"
 
-namespace patrol::render {
+namespace patrol::render::light_test {
 namespace {
 
 constexpr int kWidth = 160, kHeight = 90;
@@ -56,4 +56,4 @@ TEST(Light, LessThanNoneOfItIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::light_test

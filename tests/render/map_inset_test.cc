@@ -6,7 +6,7 @@
 
 #include "render/palette.h"
 
-namespace patrol::render {
+namespace patrol::render::map_inset_test {
 namespace {
 
 /// 10 m x 10 m of free floor in map, with a wall along its +x side.
@@ -95,4 +95,4 @@ TEST(MapInsetTest, TheRobotStandsWhereItBelievesToBe) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::map_inset_test

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/render/small_scene.h"
 
-namespace patrol::render {
+namespace patrol::render::reference_map_test {
 namespace {
 
 std::int8_t value_at(const OccupancyGrid& map, double x, double y) {
@@ -182,4 +182,4 @@ TEST(ReferenceMapTest, AWorldWithNothingThereIsAnError) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::reference_map_test

@@ -11,7 +11,7 @@
 #include "tests/render/small_scene.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::render {
+namespace patrol::render::replay_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -177,4 +177,4 @@ TEST_F(Replay, RefusesASpeedOfNothing) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::replay_test

@@ -9,7 +9,7 @@
 #include "tests/render/small_scene.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::render {
+namespace patrol::render::run_follower_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -164,4 +164,4 @@ TEST(RunFollowerWithout, ALidarIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::run_follower_test

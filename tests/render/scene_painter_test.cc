@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/render/small_scene.h"
 
-namespace patrol::render {
+namespace patrol::render::scene_painter_test {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 180;
@@ -214,4 +214,4 @@ TEST(OffscreenTest, RefusesASizeWithoutPixels) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::scene_painter_test

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::render {
+namespace patrol::render::video_test {
 namespace {
 
 void write_film(const std::filesystem::path& file, int num_frames) {
@@ -80,4 +80,4 @@ TEST(Video, NamesThePlaceThatCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::video_test

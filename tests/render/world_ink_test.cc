@@ -5,7 +5,7 @@
 #include "render/scene_painter.h"
 #include "tests/render/small_scene.h"
 
-namespace patrol::render {
+namespace patrol::render::world_ink_test {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 180;
@@ -65,4 +65,4 @@ TEST_F(WorldInkTest, AThinInkDoesNotAddUpWhereALineMeetsItself) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::world_ink_test

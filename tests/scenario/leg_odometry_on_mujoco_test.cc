@@ -13,7 +13,7 @@
 #include "tests/support/temporary_file.h"
 
 /// The stack's odometry against MuJoCo's truth on the real trot, with the sensors at their defaults.
-namespace patrol {
+namespace patrol::leg_odometry_on_mujoco_test {
 namespace {
 
 const std::string kRobotUrdf = PATROL_SOURCE_DIR "/models/quadruped/quadruped.urdf";
@@ -127,4 +127,4 @@ TEST_P(LegOdometryOnMujoco, ToldToWalkAtOnceItStandsHalfASecondAndTheScaleHolds)
 INSTANTIATE_TEST_SUITE_P(Seeds, LegOdometryOnMujoco, testing::Values(1U, 2U));
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::leg_odometry_on_mujoco_test

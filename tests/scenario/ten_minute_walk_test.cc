@@ -3,7 +3,7 @@
 #include "tests/support/quadruped_twin.h"
 
 /// The whole range of commands for ten minutes: -0.3 to 1.0 m/s, +-1 rad/s, starts, stops, turns in place.
-namespace patrol::sim {
+namespace patrol::sim::ten_minute_walk_test {
 namespace {
 
 struct Stretch {
@@ -26,4 +26,4 @@ TEST(TenMinuteWalk, TenRoundsOfStartsTurnsAndStopsWithoutAFallOrTiltingSixteenDe
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::ten_minute_walk_test

@@ -12,7 +12,7 @@
 #include "tests/support/tracked_twin.h"
 #include "tests/support/quadruped_twin.h"
 
-namespace patrol::sim {
+namespace patrol::sim::tracks_test {
 namespace {
 
 constexpr double kWeight_n = 85.0 * 9.81;
@@ -282,4 +282,4 @@ TEST(Tracks, TurnedOverByAPushItKnowsThatItHasFallen) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::tracks_test

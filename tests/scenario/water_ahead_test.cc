@@ -14,7 +14,7 @@
 #include "sim/sensors/tem.h"
 #include "tests/support/soundings.h"
 
-namespace patrol {
+namespace patrol::water_ahead_test {
 namespace {
 
 constexpr int kSeeds = 10;
@@ -90,4 +90,4 @@ TEST(WaterAhead, NoneIsReportedInTenSeedsWhereThereIsNone) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::water_ahead_test

@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::score {
+namespace patrol::score::distance_field_test {
 namespace {
 
 using test::VectorNear;
@@ -112,4 +112,4 @@ TEST(OccupiedCells, BeginAtSixtyFivePercent) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::distance_field_test

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace patrol::score {
+namespace patrol::score::driven_clearance_test {
 namespace {
 
 constexpr double kExactTol = 1e-9;
@@ -53,4 +53,4 @@ TEST(DrivenClearance, OfNoWayOrNoOutlineIsNothing) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::driven_clearance_test

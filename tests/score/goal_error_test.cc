@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace patrol::score {
+namespace patrol::score::goal_error_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -53,4 +53,4 @@ TEST(DockingError, CountsDockingsAndFailures) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::goal_error_test

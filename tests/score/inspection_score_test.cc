@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace patrol::score {
+namespace patrol::score::inspection_score_test {
 namespace {
 
 Event alarm_at(double x, double y, const std::string& station = "box_2") {
@@ -63,4 +63,4 @@ TEST(InspectionScore, OtherEventsAreNoAlarms) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::inspection_score_test

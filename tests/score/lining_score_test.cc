@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace patrol::score {
+namespace patrol::score::lining_score_test {
 namespace {
 
 /// Ring 3 has moved by 6 mm all round, ring 5 outwards by 4 mm, ring 7 by 2 mm: neither must it be found, nor is it wrong to.
@@ -85,4 +85,4 @@ TEST(LiningScore, StationThatCouldNotBeRegisteredCountsAsNothingElse) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::lining_score_test

@@ -10,7 +10,7 @@
 
 #include "core/random.h"
 
-namespace patrol::score {
+namespace patrol::score::localizability_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -174,4 +174,4 @@ TEST(LocalizabilityScore, WithoutDegeneratePosesThereIsNothingToDetect) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::localizability_test

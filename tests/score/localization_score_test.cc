@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::score {
+namespace patrol::score::localization_score_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -48,4 +48,4 @@ TEST(RelocalizationScore, ARobotThatNeverFindsItsPlaceHasNone) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::localization_score_test

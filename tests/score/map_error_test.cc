@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace patrol::score {
+namespace patrol::score::map_error_test {
 namespace {
 
 constexpr double kFloatTol = 1e-6;
@@ -152,4 +152,4 @@ TEST(MapError, WithoutOccupiedCellsIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::map_error_test

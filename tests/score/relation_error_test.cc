@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace patrol::score {
+namespace patrol::score::relation_error_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -122,4 +122,4 @@ TEST(RelationError, NothingToScoreIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::relation_error_test

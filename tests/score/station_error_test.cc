@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace patrol::score {
+namespace patrol::score::station_error_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -152,4 +152,4 @@ TEST(StationErrors, TellBeliefTruthAndSurveyApart) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::station_error_test

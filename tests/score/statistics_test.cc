@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace patrol::score {
+namespace patrol::score::statistics_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -89,4 +89,4 @@ TEST(ChanceOfOrder, CountsPairsAndTiesHalf) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::statistics_test

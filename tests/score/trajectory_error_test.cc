@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::score {
+namespace patrol::score::trajectory_error_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -211,4 +211,4 @@ TEST(AlignedError, OnALineOrOfTwoPosesIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::trajectory_error_test

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace patrol::score {
+namespace patrol::score::visibility_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -98,4 +98,4 @@ TEST(MarkSeeable, PlacesNearerThanTheSpacingAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::visibility_test

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace patrol::score {
+namespace patrol::score::water_score_test {
 namespace {
 
 const Eigen::Vector3d kAntenna(0.0, 0.0, 1.0);
@@ -76,4 +76,4 @@ TEST(WaterScore, SoundingsThatFindNothingMissTheBodyAndNoSoundingsMissNothing) {
 }
 
 }  // namespace
-}  // namespace patrol::score
+}  // namespace patrol::score::water_score_test

@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::actors_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -228,4 +228,4 @@ TEST(Actors, APathOfOnePointOrNoLengthIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::actors_test

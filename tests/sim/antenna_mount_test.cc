@@ -13,7 +13,7 @@
 #include "tests/support/temporary_file.h"
 #include "tests/support/tracked_twin.h"
 
-namespace patrol::sim {
+namespace patrol::sim::antenna_mount_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -143,4 +143,4 @@ TEST(AntennaMount, RefusesAModelWithoutItsJointsAndASpeedOfNothing) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::antenna_mount_test

@@ -10,7 +10,7 @@
 
 #include "tests/support/moments.h"
 
-namespace patrol::sim {
+namespace patrol::sim::depth_camera_test {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
@@ -191,4 +191,4 @@ TEST(DepthCamera, WithoutNoiseTheSamePixelsAreLost) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::depth_camera_test

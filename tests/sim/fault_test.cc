@@ -10,7 +10,7 @@
 #include "sim/sensors/sensor_suite.h"
 #include "tests/support/quadruped_twin.h"
 
-namespace patrol::sim {
+namespace patrol::sim::fault_test {
 namespace {
 
 /// A message and when it came out.
@@ -207,4 +207,4 @@ TEST(Fault, AFreezeBeforeTheFirstReadingHasNothingToRepeatAndIsNotExecuted) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::fault_test

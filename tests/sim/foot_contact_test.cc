@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::foot_contact_test {
 namespace {
 
 /// A foot of 3 kg that rests on the ground and one that hangs in the air.
@@ -114,4 +114,4 @@ TEST(FootContact, AModelWithoutTheFootIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::foot_contact_test

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-namespace patrol::sim {
+namespace patrol::sim::force_distribution_test {
 namespace {
 
 const FootVectors kFeet = {Eigen::Vector3d(0.19, 0.14, -0.30), Eigen::Vector3d(0.20, -0.13, -0.29),
@@ -72,4 +72,4 @@ TEST(ForceDistribution, OfAllForcesThatGiveTheWrenchItTakesTheSmallest) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::force_distribution_test

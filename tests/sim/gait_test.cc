@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::sim {
+namespace patrol::sim::gait_test {
 namespace {
 
 TEST(Gait, ATrotOf0_44SecondsAndDuty0_58Stands0_2552SecondsAndSwingsTheRest) {
@@ -51,4 +51,4 @@ TEST(Gait, FractionsRunEvenlyFrom0To1ThroughStanceAndSwing) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::gait_test

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::gas_plume_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -127,4 +127,4 @@ TEST(GasPlume, AnUnknownSiteIsRefusedAndTheKnownOnesAreNamed) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::gas_plume_test

@@ -8,7 +8,7 @@
 
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::gnss_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -127,4 +127,4 @@ TEST(Gnss, AfterALossTheFixComesBackFiveSecondsLater) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::gnss_test

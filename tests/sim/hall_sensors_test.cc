@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "sim/mujoco.h"
 
-namespace patrol::sim {
+namespace patrol::sim::hall_sensors_test {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -86,4 +86,4 @@ TEST_F(TwoSprockets, AWrongSettingOrAMissingJointIsNamed) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::hall_sensors_test

@@ -7,7 +7,7 @@
 
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::ideal_scan_test {
 namespace {
 
 // A wall that fills the half plane x > 2: its range along an angle is 2 / cos(angle).
@@ -29,4 +29,4 @@ TEST(IdealScan, NothingAroundIsNoReturn) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::ideal_scan_test

@@ -9,7 +9,7 @@
 
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::imu_test {
 namespace {
 
 constexpr double kTick_s = 0.002;
@@ -184,4 +184,4 @@ TEST(Imu, OnAnArmOfHalfAMetreAt4RadiansPerSecondItReads8MetresPerSquareSecondInw
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::imu_test

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::joint_encoders_test {
 namespace {
 
 const std::string kElbow = R"(<body><joint name="other" axis="0 1 0"/><geom size="0.1"/>
@@ -76,4 +76,4 @@ TEST(JointEncoders, AJointThatTheModelLacksIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::joint_encoders_test

@@ -10,7 +10,7 @@
 #include "tests/sim/small_world.h"
 #include "tests/support/quadruped_twin.h"
 
-namespace patrol::sim {
+namespace patrol::sim::lidar_scene_test {
 namespace {
 
 constexpr double kRange_m = 40.0;
@@ -261,4 +261,4 @@ TEST(LidarScene, AShapeWithoutSurfaceToCastAtIsRefusedByItsNumber) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::lidar_scene_test

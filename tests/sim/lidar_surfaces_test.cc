@@ -5,7 +5,7 @@
 
 #include "tests/sim/lidar_scans.h"
 
-namespace patrol::sim {
+namespace patrol::sim::lidar_surfaces_test {
 namespace {
 
 TEST(LidarSurfaces, GrazingBeamsBeyond85DegreesAreLost) {
@@ -135,4 +135,4 @@ TEST(LidarSurfaces, WithoutWidthOrOverAGapOf2MetresNoPixelIsMixed) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::lidar_surfaces_test

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/sim/lidar_scans.h"
 
-namespace patrol::sim {
+namespace patrol::sim::lidar_test {
 namespace {
 
 /// Walls at +-4 m in x and +-3 m in y.
@@ -258,4 +258,4 @@ TEST(Lidar, OutOfRangeSettingsAreRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::lidar_test

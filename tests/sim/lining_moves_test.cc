@@ -12,7 +12,7 @@
 #include "sim/lidar_scene.h"
 #include "sim/mujoco.h"
 
-namespace patrol::sim {
+namespace patrol::sim::lining_moves_test {
 namespace {
 
 const std::string kTunnelXml = PATROL_SOURCE_DIR "/worlds/tunnel/tunnel.xml";
@@ -162,4 +162,4 @@ TEST(LiningMoves, WithoutMovesAnyWorldIsGood) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::lining_moves_test

@@ -16,7 +16,7 @@
 #include "tests/support/quadruped_twin.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::sim {
+namespace patrol::sim::model_assembly_test {
 namespace {
 
 using testing::HasSubstr;
@@ -216,4 +216,4 @@ TEST(ModelAssembly, AMissingOrBrokenFileIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::model_assembly_test

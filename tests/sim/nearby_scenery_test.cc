@@ -12,7 +12,7 @@
 #include "tests/support/tracked_twin.h"
 #include "tests/support/quadruped_twin.h"
 
-namespace patrol::sim {
+namespace patrol::sim::nearby_scenery_test {
 namespace {
 
 using Touch = std::tuple<int, int, double>;  ///< geoms and distance
@@ -79,4 +79,4 @@ TEST(NearbyScenery, AWorldOfAPlaneOnlyKeepsItsGround) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::nearby_scenery_test

@@ -15,7 +15,7 @@
 #include "core/error.h"
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::panoramic_scanner_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -444,4 +444,4 @@ TEST(PanoramicScanner, AStepOfNothingIsRefusedByItsName) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::panoramic_scanner_test

@@ -10,7 +10,7 @@
 #include "sim/lidar_scene.h"
 #include "sim/mujoco.h"
 
-namespace patrol::sim {
+namespace patrol::sim::props_test {
 namespace {
 
 ModelPtr world_with(const std::vector<PropSettings>& props) {
@@ -166,4 +166,4 @@ TEST(LowObstacles, ARouteTooShortForThemIsRefusedWithItsLength) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::props_test

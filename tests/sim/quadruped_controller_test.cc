@@ -7,7 +7,7 @@
 
 #include "tests/support/quadruped_twin.h"
 
-namespace patrol::sim {
+namespace patrol::sim::quadruped_controller_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -132,4 +132,4 @@ TEST(QuadrupedController, TwoRobotsOfTheSameSeedWalkToTheSameBit) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::quadruped_controller_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace patrol::sim {
+namespace patrol::sim::remote_operator_test {
 namespace {
 
 constexpr double kTick_s = 0.02;
@@ -101,4 +101,4 @@ TEST(RemoteOperator, KeepsWithinTwentyCentimetresOfAStraightLegWithAReactionTime
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::remote_operator_test

@@ -13,7 +13,7 @@
 #include "core/error.h"
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::sensor_suite_test {
 namespace {
 
 /// A box on wheels that nobody sees: what carries the sensors of a tracked robot. It stands at the origin, 1 m up.
@@ -277,4 +277,4 @@ TEST(Fault, JitterOf20MillisecondsDelaysBy16OnAverage) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::sensor_suite_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::sim {
+namespace patrol::sim::swing_trajectory_test {
 namespace {
 
 const Eigen::Vector3d kLiftOff(-0.1, 0.05, -0.30), kTouchDown(0.15, 0.02, -0.25);
@@ -43,4 +43,4 @@ TEST(SwingTrajectory, IsAtFullHeightOverTheMiddleFifthSoThatAKerbIsPassedHigh) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::swing_trajectory_test

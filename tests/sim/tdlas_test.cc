@@ -6,7 +6,7 @@
 
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::tdlas_test {
 namespace {
 
 const std::string kWallAt10m = R"(<geom type="box" pos="10.5 0 1" size="0.5 5 2"/>)";
@@ -99,4 +99,4 @@ TEST(Tdlas, SwitchingTheRelativeNoiseOffLeavesTheOtherDrawsAsTheyWere) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::tdlas_test

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/support/moments.h"
 
-namespace patrol::sim {
+namespace patrol::sim::tem_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -169,4 +169,4 @@ TEST(Tem, RefusesABodyAboutTheAntennaAndGatesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::tem_test

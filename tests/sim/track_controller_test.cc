@@ -7,7 +7,7 @@
 #include "sim/sensors/hall_sensors.h"
 #include "tests/support/tracked_twin.h"
 
-namespace patrol::sim {
+namespace patrol::sim::track_controller_test {
 namespace {
 
 constexpr double kTick_s = 0.002;
@@ -161,4 +161,4 @@ TEST(TrackController, BeyondSixtyDegreesFor300MillisecondsIsAFall) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::track_controller_test

@@ -17,7 +17,7 @@
 #include "tests/support/quadruped_twin.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::sim {
+namespace patrol::sim::twin_test {
 namespace {
 
 /// A twin of a robot in a small world, with no sensor but those that its firmware reads.
@@ -212,4 +212,4 @@ TEST(Twin, WhereThereIsNoGroundItCannotBePut) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::twin_test

@@ -13,7 +13,7 @@
 #include "core/random.h"
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::ultrasonic_test {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
@@ -261,4 +261,4 @@ TEST(Ultrasonic, ARobotWithoutTransducersAndSlotsTooShortAreRefusedInASentence) 
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::ultrasonic_test

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::uwb_test {
 namespace {
 
 constexpr int kPolls = 20000;
@@ -166,4 +166,4 @@ TEST(Uwb, AWorldWithoutAnchorsIsRefusedInASentence) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::uwb_test

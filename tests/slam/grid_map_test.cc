@@ -10,7 +10,7 @@
 #include "core/random.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::grid_map_test {
 namespace {
 
 using test::VectorNear;
@@ -184,4 +184,4 @@ TEST(GridMap, FindsSurfaceNearbyAsASearchCellByCellDoes) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::grid_map_test

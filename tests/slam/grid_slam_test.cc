@@ -10,7 +10,7 @@
 #include "tests/slam/street_walk.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::grid_slam_test {
 namespace {
 
 using test::Pose2Near, test::WalkStep;
@@ -240,4 +240,4 @@ TEST(GridSlam, RefusesASettingByName) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::grid_slam_test

@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 
-namespace patrol::slam {
+namespace patrol::slam::local_line_test {
 namespace {
 
 /// Hits every centimetre along a line through `through` at `angle`, 1 m each way, scattered across by
@@ -67,4 +67,4 @@ TEST(FitLocalLine, TwoCellsOrNoneMakeNoLine) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::local_line_test

@@ -7,7 +7,7 @@
 #include "core/random.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::map_rendering_test {
 namespace {
 
 using test::VectorNear;
@@ -77,4 +77,4 @@ TEST(RenderMap, ANoisyWallIsOneCellThickAndLiesInItsCell) {
 TEST(RenderMap, OfNothingIsEmpty) { EXPECT_EQ(render_map(GridMap(0.05, 100.0), 2).values().size(), 0U); }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::map_rendering_test

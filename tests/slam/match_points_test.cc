@@ -6,7 +6,7 @@
 
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::match_points_test {
 namespace {
 
 using test::VectorNear;
@@ -49,4 +49,4 @@ TEST(SelectMatchPoints, KeepEveryTenthOfAThousandWhenAHundredAreAllowed) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::match_points_test

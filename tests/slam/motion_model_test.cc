@@ -9,7 +9,7 @@
 #include "slam/proposal.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::motion_model_test {
 namespace {
 
 using test::Pose2Near, test::VectorNear;
@@ -93,4 +93,4 @@ TEST(MotionModelSettings, RefuseANegativeSpreadByName) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::motion_model_test

@@ -9,7 +9,7 @@
 #include "slam/swarm/sand_cat.h"
 #include "slam/swarm/whale.h"
 
-namespace patrol::slam {
+namespace patrol::slam::particle_filter_parts_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -86,4 +86,4 @@ TEST(MakeParts, RefusesWhatIsNoNameOrOutOfItsRange) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::particle_filter_parts_test

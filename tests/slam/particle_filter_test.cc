@@ -8,7 +8,7 @@
 
 #include "slam/swarm/whale.h"
 
-namespace patrol::slam {
+namespace patrol::slam::particle_filter_test {
 namespace {
 
 /// A number that wanders and is measured: x' = a x + b + q w, z = x + r v. All is normal, so that the Kalman filter is exact.
@@ -155,4 +155,4 @@ TEST(RenewParticles, ThenAllFourWeighTheSameAndTheHeavyOneHasTwoOrThreeChildren)
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::particle_filter_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::planar_scan_test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -62,4 +62,4 @@ TEST(PlanarScan, ABeamWithoutReturnIsFreeOnlyAsFarAsIsAskedFor) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::planar_scan_test

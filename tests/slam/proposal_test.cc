@@ -10,7 +10,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/room_world.h"
 
-namespace patrol::slam {
+namespace patrol::slam::proposal_test {
 namespace {
 
 using test::Pose2Near, test::RoomWorld;
@@ -82,4 +82,4 @@ TEST(ProposalSample, WithoutNoiseIsTheMean) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::proposal_test

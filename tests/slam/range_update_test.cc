@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 
-namespace patrol::slam {
+namespace patrol::slam::range_update_test {
 namespace {
 
 const Eigen::Vector3d kAntenna(0.2, -0.1, 0.8);
@@ -78,4 +78,4 @@ TEST(RangeUpdate, ALongRangeIsDoubtedSoonerThanAShortOne) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::range_update_test

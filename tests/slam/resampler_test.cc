@@ -8,7 +8,7 @@
 
 #include "slam/resampling.h"
 
-namespace patrol::slam {
+namespace patrol::slam::resampler_test {
 namespace {
 
 const std::vector<double> kWeights = {0.06, 0.32, 0.1, 0.2, 0.01, 0.16, 0.03, 0.12};
@@ -221,4 +221,4 @@ TEST(ResampleStepwise, MutationsHaveTheStandardDeviationOfOnePercent) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::resampler_test

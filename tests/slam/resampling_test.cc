@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 
-namespace patrol::slam {
+namespace patrol::slam::resampling_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -86,4 +86,4 @@ TEST(ResampleSystematic, AWeightOfZeroHasNoChildren) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::resampling_test

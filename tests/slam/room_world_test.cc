@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-namespace patrol::test {
+namespace patrol::test::room_world_test {
 namespace {
 
 constexpr double kExactTol = 1e-9;
@@ -83,4 +83,4 @@ TEST(RoomWorld, ScansAreInTheBodyAndNoisyAsAskedFor) {
 }
 
 }  // namespace
-}  // namespace patrol::test
+}  // namespace patrol::test::room_world_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::slam {
+namespace patrol::slam::scan_integration_test {
 namespace {
 
 // One beam along +x from the middle of cell (0, 0), cells of 10 cm: what each cell of row 0 has learnt.
@@ -62,4 +62,4 @@ TEST(IntegrateScan, BeamsLeaveFromTheLidarTurnedWithTheBody) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::scan_integration_test

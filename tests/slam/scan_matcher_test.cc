@@ -11,7 +11,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/room_world.h"
 
-namespace patrol::slam {
+namespace patrol::slam::scan_matcher_test {
 namespace {
 
 using test::Pose2Near, test::RoomWorld;
@@ -151,4 +151,4 @@ TEST(SearchPose, ComesWithinReachOfTheMatchFromThirtyCentimetresAndSixDegrees) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::scan_matcher_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::slam {
+namespace patrol::slam::surface_points_test {
 namespace {
 
 /// A wall along y = 1 from x = 0 to 4, seen from below by beams straight up every 2.5 cm, twice.
@@ -61,4 +61,4 @@ TEST(FacingsOf, WhereNothingIsKnownToBeFreeNobodyKnows) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::surface_points_test

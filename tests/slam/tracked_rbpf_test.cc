@@ -8,7 +8,7 @@
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::tracked_rbpf_test {
 namespace {
 
 const std::vector<test::DriveStep>& short_drive() {
@@ -70,4 +70,4 @@ TEST(PathStep, AWayOfAMillionStepsIsLetGo) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::tracked_rbpf_test

@@ -25,7 +25,7 @@ std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::e
 
 Json point(const Eigen::Vector2d& p) { return {p.x(), p.y()}; }
 
-Json to_json(const Event& event) {
+Json event_json(const Event& event) {
   return {{"kind", event.kind},
           {"subject", io::on_one_line(event.subject)},
           {"text", io::on_one_line(event.text)},
@@ -34,7 +34,7 @@ Json to_json(const Event& event) {
           {"position_m", point(event.p_map_target)}};
 }
 
-Json to_json(const OccupancyGrid& map) {
+Json map_json(const OccupancyGrid& map) {
   const GridGeometry& geometry = map.geometry();
   return {{"width", geometry.width}, {"height", geometry.height}, {"resolution_m", geometry.resolution_m}, {"origin_m", point(geometry.origin_m)},
           {"png_base64", io::to_base64(io::map_png(map))}};
@@ -87,7 +87,7 @@ void Reporter::see(const StackMessage& message) {
                    untold_map_ = update;
                    if (update.stamp >= next_map_) tell_map(update);
                  },
-                 [&](const Event& event) { tell(event.stamp, "event", text_of(to_json(event))); },
+                 [&](const Event& event) { tell(event.stamp, "event", text_of(event_json(event))); },
                  [&](const LiningResult& result) { tell(result.stamp, "lining", text_of(io::to_json(result))); },
                  [&](const WaterResult& result) { tell(result.stamp, "water", text_of(io::to_json(result))); },
                  [](const auto&) {},
@@ -122,7 +122,7 @@ void Reporter::tell_map(const MapUpdate& update) {
   untold_map_.reset();
   if (is_empty || is_same(update.map, told_map_)) return;
   next_map_ = update.stamp + from_seconds(settings_.map_period_s);
-  tell(update.stamp, "map", text_of(to_json(update.map)));
+  tell(update.stamp, "map", text_of(map_json(update.map)));
   told_map_ = update.map;
 }
 

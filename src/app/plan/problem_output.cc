@@ -95,11 +95,11 @@ io::Table problem_table(const ProblemReport& report) {
                   .rows = {}};
   for (const SolvedProblem& solved : report.solved) {
     const io::MovingAiProblem& problem = solved.problem;
-    const auto whole = [](std::int64_t value) { return io::Cell(value); };
+    const auto whole = [](std::int64_t value) { return io::TableValue(value); };
     const auto from_top = [&](Cell cell) { return whole(problem.height - 1 - cell.row); };
     table.rows.push_back({whole(problem.line), whole(problem.bucket), whole(problem.start.col), from_top(problem.start), whole(problem.goal.col),
                           from_top(problem.goal), problem.optimal_length, std::string(status_name(solved.status)),
-                          solved.is_found() ? io::Cell(solved.length) : io::Cell(), solved.ratio() ? io::Cell(*solved.ratio()) : io::Cell(),
+                          solved.is_found() ? io::TableValue(solved.length) : io::TableValue(), solved.ratio() ? io::TableValue(*solved.ratio()) : io::TableValue(),
                           whole(solved.num_turns), whole(solved.num_expanded), solved.failure.value_or("")});
   }
   return table;

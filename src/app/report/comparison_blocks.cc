@@ -11,10 +11,9 @@
 namespace patrol::app {
 namespace {
 
-using render::Cell;
 using render::Tone;
 
-Cell verdict_cell(const VariantFigure& figure) {
+render::TableCell verdict_cell(const VariantFigure& figure) {
   const bool is_difference = figure.verdict == "lower" || figure.verdict == "higher";
   return {figure.verdict, is_difference ? Tone::kPlain : Tone::kFaint};
 }

@@ -1,9 +1,9 @@
 #include "app/report/error_plots.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "app/report/occasions.h"
+#include "core/angles.h"
 #include "score/trajectory_error.h"
 
 namespace patrol::app {
@@ -12,8 +12,6 @@ namespace {
 using render::Curve;
 using render::Ink;
 using render::LinePlot;
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 Curve position_curve(const std::string& name, Ink ink, const std::vector<score::MatchedPose>& poses) {
   Curve curve{.name = name, .ink = ink, .points = {}};

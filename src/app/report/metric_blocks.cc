@@ -14,16 +14,15 @@
 namespace patrol::app {
 namespace {
 
-using render::Cell;
 using render::Tone;
 
 /// A figure of an entry in fixed decimals, so that a column's points stand below each other.
-Cell figure_cell(const io::Metrics& entry, const std::string& path, int decimals, double factor = 1.0) {
+render::TableCell figure_cell(const io::Metrics& entry, const std::string& path, int decimals, double factor = 1.0) {
   const std::optional<double> value = io::metric_at(entry, path);
-  return value ? Cell{fmt::format("{:.{}f}", factor * *value, decimals)} : Cell{"–", Tone::kFaint};
+  return value ? render::TableCell{fmt::format("{:.{}f}", factor * *value, decimals)} : render::TableCell{"–", Tone::kFaint};
 }
 
-Cell checked_cell(const std::string& path, const std::vector<CheckedExpectation>& checks) {
+render::TableCell checked_cell(const std::string& path, const std::vector<CheckedExpectation>& checks) {
   const auto check = std::find_if(checks.begin(), checks.end(), [&](const CheckedExpectation& one) { return one.metric == path; });
   if (check == checks.end()) return {};
   return {check->wanted + (check->is_met ? " met" : " MISSED"), check->is_met ? Tone::kGood : Tone::kBad};
@@ -48,8 +47,8 @@ render::BoxPlot box_plot(const io::Metrics& metrics, const std::string& metric, 
   return plot;
 }
 
-std::vector<Cell> goal_row(const std::string& name, const io::Metrics& goal) {
-  std::vector<Cell> row = {{name}, figure_cell(goal, "arrivals", 0), figure_cell(goal, "failed", 0)};
+std::vector<render::TableCell> goal_row(const std::string& name, const io::Metrics& goal) {
+  std::vector<render::TableCell> row = {{name}, figure_cell(goal, "arrivals", 0), figure_cell(goal, "failed", 0)};
   if (goal.value("failed", 0) > 0) row.back().tone = Tone::kBad;
   for (const char* statistic : {"mean", "std", "max"}) row.push_back(figure_cell(goal, fmt::format("position_error_m.{}", statistic), 2, 100.0));
   for (const char* statistic : {"mean", "std", "max"}) row.push_back(figure_cell(goal, fmt::format("heading_error_deg.{}", statistic), 2));
@@ -82,7 +81,7 @@ std::vector<render::Block> station_blocks(const io::Metrics& metrics) {
   for (const io::Metrics& station : metrics["stations"]) {
     const bool is_reached = station.value("reached", false);
     table.rows.push_back({{station.value("name", "")},
-                          is_reached ? Cell{"yes", Tone::kGood} : Cell{"NO", Tone::kBad},
+                          is_reached ? render::TableCell{"yes", Tone::kGood} : render::TableCell{"NO", Tone::kBad},
                           figure_cell(station, "position_error_m", 1, 100.0),
                           figure_cell(station, "heading_error_deg", 2),
                           figure_cell(station, "stand_error_m", 1, 100.0),
@@ -124,7 +123,7 @@ std::vector<render::Block> leak_blocks(const io::Metrics& metrics) {
                           figure_cell(finding, "column_ppm_m", 0),
                           figure_cell(finding, "x_m", 2),
                           figure_cell(finding, "y_m", 2),
-                          is_leak ? Cell{finding["leak"].get<std::string>(), Tone::kGood} : Cell{"false alarm", Tone::kBad},
+                          is_leak ? render::TableCell{finding["leak"].get<std::string>(), Tone::kGood} : render::TableCell{"false alarm", Tone::kBad},
                           figure_cell(finding, "position_error_m", 1, 100.0)});
   }
   return {table};
@@ -144,7 +143,7 @@ std::vector<render::Block> lining_blocks(const io::Metrics& metrics) {
                           figure_cell(ring, "reported_mm", 2),
                           figure_cell(ring, "error_mm", 2),
                           figure_cell(ring, "place_error_m", 1, 100.0),
-                          !is_found ? Cell{"missed", Tone::kBad} : has_moved ? Cell{"found", Tone::kGood} : Cell{"false finding", Tone::kBad}});
+                          !is_found ? render::TableCell{"missed", Tone::kBad} : has_moved ? render::TableCell{"found", Tone::kGood} : render::TableCell{"false finding", Tone::kBad}});
   }
   const auto figure = [&](const char* name) { return io::metric_at(lining, name).value_or(0.0); };
   return {table, render::TextBlock{fmt::format("{:.0f} of {:.0f} scans were laid on their references. {:.0f} cells (a ring's part in ten degrees): RMS error {:.2f} mm; {:.1f} % of their "
@@ -169,7 +168,7 @@ std::vector<render::Block> water_blocks(const io::Metrics& metrics) {
                           figure_cell(finding, "ahead_error_m", 2),
                           figure_cell(finding, "radius_error_m", 2),
                           {holds ? "holds the distance" : "does not hold it", holds ? Tone::kGood : Tone::kBad},
-                          is_true ? Cell{"found", Tone::kGood} : Cell{"false alarm", Tone::kBad}});
+                          is_true ? render::TableCell{"found", Tone::kGood} : render::TableCell{"false alarm", Tone::kBad}});
   }
   return {table, render::TextBlock{summary}};
 }

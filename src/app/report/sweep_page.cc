@@ -69,7 +69,7 @@ render::TableBlock fault_table(const SweepManifest& manifest, const std::vector<
   render::TableBlock table{.caption = "", .columns = {{"fault"}, {"seed", true}, {"executed"}, {"outcome"}, {"noticed", true}, {"end"}}, .rows = {}};
   for (const std::string& metric : manifest.metrics) table.columns.push_back({metric, true});
   for (const FaultRow& row : rows) {
-    std::vector<render::Cell> cells = {{row.name},
+    std::vector<render::TableCell> cells = {{row.name},
                                        {std::to_string(row.seed)},
                                        {executed_text(row), row.is_not_executed() ? Tone::kWarning : Tone::kPlain},
                                        {std::string(text_of(row.outcome)), tone_of(row.outcome)},

@@ -14,7 +14,7 @@ render::TableBlock scenario_table(const std::vector<TestedScenario>& tested, boo
   for (const TestedScenario& one : tested) {
     if (is_passed(one) != are_passed) continue;
     const auto seconds = io::metric_at(one.verdict->metrics, "performance.wall_s");
-    table.rows.push_back({are_passed ? render::Cell{"passed", Tone::kGood} : render::Cell{one.verdict->end, Tone::kBad},
+    table.rows.push_back({are_passed ? render::TableCell{"passed", Tone::kGood} : render::TableCell{one.verdict->end, Tone::kBad},
                           {one.name},
                           {seconds ? fmt::format("{:.1f}", *seconds) : ""},
                           {one.verdict->message}});
@@ -29,7 +29,7 @@ render::FoldedTables expectation_tables(const std::vector<TestedScenario>& teste
     if (one.verdict->checks.empty()) continue;
     render::TableBlock table{.caption = one.name, .columns = {{"metric"}, {"wanted", true}, {"got", true}, {""}}, .rows = {}};
     for (const CheckedExpectation& check : one.verdict->checks) {
-      table.rows.push_back({{check.metric}, {check.wanted}, {check.got}, check.is_met ? render::Cell{"met", Tone::kGood} : render::Cell{"MISSED", Tone::kBad}});
+      table.rows.push_back({{check.metric}, {check.wanted}, {check.got}, check.is_met ? render::TableCell{"met", Tone::kGood} : render::TableCell{"MISSED", Tone::kBad}});
     }
     folded.tables.push_back(std::move(table));
   }

@@ -10,7 +10,6 @@
 namespace patrol::app {
 namespace {
 
-using render::Cell;
 using render::Tone;
 
 const io::JunitCase* case_named(const RunContents& run, const std::string& name) {
@@ -24,21 +23,21 @@ std::string early_end(const RunContents& run) {
   return end == nullptr || end->result == io::JunitResult::kPassed ? "" : end->message;
 }
 
-Cell executed_cell(bool is_executed) { return is_executed ? Cell{"executed", Tone::kGood} : Cell{"NOT EXECUTED", Tone::kWarning}; }
+render::TableCell executed_cell(bool is_executed) { return is_executed ? render::TableCell{"executed", Tone::kGood} : render::TableCell{"NOT EXECUTED", Tone::kWarning}; }
 
-std::vector<Cell> expectation_row(const CheckedExpectation& check, bool is_complete) {
-  const Cell judged = check.is_met ? Cell{"met", Tone::kGood} : Cell{"MISSED", Tone::kBad};
-  return {{check.metric}, {check.wanted}, {check.got}, is_complete ? judged : Cell{"not known", Tone::kFaint}};
+std::vector<render::TableCell> expectation_row(const CheckedExpectation& check, bool is_complete) {
+  const render::TableCell judged = check.is_met ? render::TableCell{"met", Tone::kGood} : render::TableCell{"MISSED", Tone::kBad};
+  return {{check.metric}, {check.wanted}, {check.got}, is_complete ? judged : render::TableCell{"not known", Tone::kFaint}};
 }
 
-std::vector<Cell> fault_row(const RunContents& run, const sim::FaultSettings& fault) {
+std::vector<render::TableCell> fault_row(const RunContents& run, const sim::FaultSettings& fault) {
   const std::string name = name_of(fault);
   const io::JunitCase* test = case_named(run, name);
-  const Cell result = test == nullptr ? Cell{"not known", Tone::kFaint} : executed_cell(test->result == io::JunitResult::kPassed);
+  const render::TableCell result = test == nullptr ? render::TableCell{"not known", Tone::kFaint} : executed_cell(test->result == io::JunitResult::kPassed);
   return {{name}, {fmt::format("{} s long", fault.duration_s)}, {test == nullptr ? "" : test->message}, result};
 }
 
-std::vector<Cell> kidnap_row(const RunContents& run, const KidnapSettings& kidnap) {
+std::vector<render::TableCell> kidnap_row(const RunContents& run, const KidnapSettings& kidnap) {
   return {{name_of(kidnap)},
           {fmt::format("to ({}, {}) m", kidnap.x_m, kidnap.y_m)},
           {},
@@ -69,7 +68,7 @@ void judge(const RunContents& run, const std::vector<CheckedExpectation>& checks
 }
 
 void add_unexecuted(render::VerdictBlock& verdict) {
-  const auto is_unexecuted = [](const std::vector<Cell>& row) { return row.back().tone == Tone::kWarning; };
+  const auto is_unexecuted = [](const std::vector<render::TableCell>& row) { return row.back().tone == Tone::kWarning; };
   const auto num = std::count_if(verdict.checks.rows.begin(), verdict.checks.rows.end(), is_unexecuted);
   if (num > 0) verdict.reason += fmt::format(" {} declared, but NOT EXECUTED.", num == 1 ? "One fault or kidnap was" : fmt::format("{} faults and kidnaps were", num));
 }

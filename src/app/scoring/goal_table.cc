@@ -8,13 +8,13 @@ namespace patrol::app {
 namespace {
 
 /// Mean and standard deviation of ten navigations, as printed.
-struct Published {
+struct PublishedGoal {
   double position_cm, position_std_cm;
   double heading_deg, heading_std_deg;
 };
-constexpr std::array<Published, 3> kTable2 = {{{17.06, 2.77, 4.71, 1.74}, {18.40, 2.36, 5.20, 1.76}, {18.79, 2.89, 5.25, 1.84}}};
+constexpr std::array<PublishedGoal, 3> kTable2 = {{{17.06, 2.77, 4.71, 1.74}, {18.40, 2.36, 5.20, 1.76}, {18.79, 2.89, 5.25, 1.84}}};
 
-std::string line(const io::Metrics& goal, const Published* published) {
+std::string line(const io::Metrics& goal, const PublishedGoal* published) {
   const io::Metrics &position = goal.at("position_error_m"), &heading = goal.at("heading_error_deg");
   std::string text = fmt::format("  {:<8} {:>8}   {:>6.2f} +- {:<6.2f} {:>7.2f} +- {:<6.2f}", goal.at("name").get<std::string>(),
                                  goal.at("arrivals").get<int>(), 100.0 * position.at("mean").get<double>(),
@@ -32,7 +32,7 @@ std::string goal_table(const io::Metrics& metrics) {
   std::string text;
   std::size_t row = 0;
   for (const io::Metrics& goal : metrics.at("goals")) {
-    const Published* published = row < kTable2.size() ? &kTable2[row] : nullptr;
+    const PublishedGoal* published = row < kTable2.size() ? &kTable2[row] : nullptr;
     ++row;
     const int arrivals = goal.at("arrivals").get<int>(), failed = goal.at("failed").get<int>();
     if (arrivals > 0) text += line(goal, published);

@@ -13,12 +13,12 @@ namespace patrol::app {
 namespace {
 
 constexpr double kClearance_m = 0.4;
-constexpr double kSurfaceCell_m = 0.05;
+constexpr double kLocalizabilityCell_m = 0.05;
 
 }  // namespace
 
 LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFiles& files, double step_m) {
-  const WorldSurfaces world = world_surfaces(files, kSurfaceCell_m);
+  const WorldSurfaces world = world_surfaces(files, kLocalizabilityCell_m);
   LocalizabilityMap map{.surfaces = world.surfaces, .step_m = step_m, .places = {}};
   const score::DistanceField clearance(score::occupied_cells(map.surfaces));
   const LocalizabilityOracle oracle(*world.world, scenario.sensors.lidar, world.lidar_height_m);

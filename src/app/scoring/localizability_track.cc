@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
 #include "core/symmetric_axes.h"
 #include "io/csv.h"
 
@@ -11,7 +12,6 @@ namespace patrol::app {
 namespace {
 
 constexpr Time kSpacing = std::chrono::milliseconds(500);
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 /// Trust is said of the estimate with the same stamp.
 std::optional<double> trust_at(const std::vector<LocalizationTrust>& trusts, Time stamp) {
@@ -55,7 +55,7 @@ void save_localizability(const std::filesystem::path& file_csv, const std::vecto
     const score::LocalizabilitySample& sample = at.sample;
     const double claimed_deg = kDegPerRad * std::remainder(sample.claimed_direction_rad, std::numbers::pi);
     table.rows.push_back({to_seconds(at.stamp), at.p_world_m.x(), at.p_world_m.y(), sample.truth.weak_std_m, kDegPerRad * sample.truth.weak_direction_rad,
-                          sample.truth.strong_std_m, sample.claimed_std_m, claimed_deg, sample.trust ? io::Cell{*sample.trust} : io::Cell{}});
+                          sample.truth.strong_std_m, sample.claimed_std_m, claimed_deg, sample.trust ? io::TableValue{*sample.trust} : io::TableValue{}});
   }
   io::save_csv(file_csv, table);
 }

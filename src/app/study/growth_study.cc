@@ -20,7 +20,7 @@ namespace {
 using render::Ink;
 using slam::GrowthModel;
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoGrowthFigure = std::numeric_limits<double>::quiet_NaN();
 
 /// A filter as the study compares it.
 struct GrowthMethod {
@@ -56,14 +56,14 @@ std::vector<GrowthMethod> methods_of(int particles, const std::array<double, 4>&
 }
 
 /// A sign of eq. 9 and the filters that are tried with it; the others are compared with the first if it is the exact one.
-struct Trial {
+struct GrowthTrial {
   std::string world;
   GrowthModel model;
   std::vector<GrowthMethod> methods;
 };
 
-std::vector<Trial> growth_trials() {
-  std::vector<Trial> trials = {{.world = "1 + x² in the denominator", .model = GrowthModel(), .methods = {}}, {.world = "1 − x², as eq. 9 prints it", .model = GrowthModel({.denominator_sign = -1}), .methods = {}}};
+std::vector<GrowthTrial> growth_trials() {
+  std::vector<GrowthTrial> trials = {{.world = "1 + x² in the denominator", .model = GrowthModel(), .methods = {}}, {.world = "1 − x², as eq. 9 prints it", .model = GrowthModel({.denominator_sign = -1}), .methods = {}}};
   trials[0].methods.push_back({.name = "exact Bayes filter (the bound)", .make = [](const GrowthModel& model, std::uint64_t) { return std::make_unique<slam::ExactFilter>(model); }});
   const std::array<std::pair<int, std::array<double, 4>>, 3> table_1 = {{{50, {4.2216, 3.6631, 3.2270, 2.9783}}, {100, {3.0043, 2.5799, 2.4075, 1.8843}}, {150, {2.4415, 1.8336, 1.6815, 1.2885}}}};
   for (const auto& [particles, published] : table_1) {
@@ -96,12 +96,12 @@ std::vector<double> figures_of(const GrowthMethod& method, const GrowthTrack& tr
     num_effective += estimate.effective_sample_size;
   }
   const auto steps = static_cast<double>(run.states.size());
-  return {std::sqrt(squares / steps), nees / steps, method.particles > 0 ? num_effective / steps : kNothing, 1e3 * track.seconds};
+  return {std::sqrt(squares / steps), nees / steps, method.particles > 0 ? num_effective / steps : kNoGrowthFigure, 1e3 * track.seconds};
 }
 
-StudySample run_trials(const std::vector<Trial>& trials, std::uint64_t seed) {
+StudySample run_growth_trials(const std::vector<GrowthTrial>& trials, std::uint64_t seed) {
   StudySample sample;
-  for (const Trial& trial : trials) {
+  for (const GrowthTrial& trial : trials) {
     const slam::GrowthRun run = trial.model.simulate(seed);
     for (const GrowthMethod& method : trial.methods) {
       const auto filter = method.make(trial.model, seed);
@@ -111,9 +111,9 @@ StudySample run_trials(const std::vector<Trial>& trials, std::uint64_t seed) {
   return sample;
 }
 
-std::vector<StudyVariant> variants_of(const std::vector<Trial>& trials) {
+std::vector<StudyVariant> growth_variants(const std::vector<GrowthTrial>& trials) {
   std::vector<StudyVariant> variants;
-  for (const Trial& trial : trials) {
+  for (const GrowthTrial& trial : trials) {
     const std::size_t first = variants.size();
     const bool has_bound = trial.methods.front().particles == 0;
     for (const GrowthMethod& method : trial.methods) {
@@ -131,7 +131,7 @@ render::Curve curve_of(const std::string& name, Ink ink, const std::vector<doubl
 }
 
 /// Figures 1 to 4: states and errors over time, and where the particles are at step 25; N = 100.
-std::vector<render::Section> illustrate(const Trial& trial, std::uint64_t seed) {
+std::vector<render::Section> illustrate_growth(const GrowthTrial& trial, std::uint64_t seed) {
   constexpr int kParticles = 100, kShownStep = 25;
   constexpr std::array kInks = {Ink::kOdometry, Ink::kRanges, Ink::kTrust, Ink::kAlarm, Ink::kEvent, Ink::kEstimate};
   const slam::GrowthRun run = trial.model.simulate(seed);
@@ -163,7 +163,7 @@ std::vector<render::Section> illustrate(const Trial& trial, std::uint64_t seed) 
 }  // namespace
 
 Study growth_study() {
-  std::vector<Trial> trials = growth_trials();
+  std::vector<GrowthTrial> trials = growth_trials();
   Study study{.name = "ungm",
               .title = "Particle filters of the univariate growth model",
               .source = "paper 001, table 1 and figures 1 to 4",
@@ -174,9 +174,9 @@ Study growth_study() {
               .default_seeds = 500,
               .compared_with = "the bound"};
   study.figures = {{.name = "RMSE", .unit = "", .is_compared = true}, {.name = "NEES", .unit = ""}, {.name = "N_eff", .unit = ""}, {.name = "time", .unit = "ms", .is_of_the_clock = true}};
-  study.variants = variants_of(trials);
-  study.illustrate = [trial = trials.front()](std::uint64_t seed) { return illustrate(trial, seed); };
-  study.run = [trials = std::move(trials)](std::uint64_t seed) { return run_trials(trials, seed); };
+  study.variants = growth_variants(trials);
+  study.illustrate = [trial = trials.front()](std::uint64_t seed) { return illustrate_growth(trial, seed); };
+  study.run = [trials = std::move(trials)](std::uint64_t seed) { return run_growth_trials(trials, seed); };
   return study;
 }
 

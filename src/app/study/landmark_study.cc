@@ -20,15 +20,15 @@
 namespace patrol::app {
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoLandmarkFigure = std::numeric_limits<double>::quiet_NaN();
 
-const std::vector<StudyFigure> kFigures = {{.name = "position RMSE", .unit = "m", .is_compared = true},
+const std::vector<StudyFigure> kLandmarkFigures = {{.name = "position RMSE", .unit = "m", .is_compared = true},
                                            {.name = "landmark RMSE", .unit = "m", .is_compared = true},
                                            {.name = "NEES", .unit = ""},
                                            {.name = "N_eff", .unit = ""},
                                            {.name = "time", .unit = "s", .is_of_the_clock = true}};
 
-double root_mean_square(double sum, std::size_t count) { return count == 0 ? kNothing : std::sqrt(sum / static_cast<double>(count)); }
+double root_mean_square(double sum, std::size_t count) { return count == 0 ? kNoLandmarkFigure : std::sqrt(sum / static_cast<double>(count)); }
 
 double landmark_rmse_m(const std::vector<std::optional<Eigen::Vector2d>>& found, const LandmarkWorld& world) {
   double sum = 0.0;
@@ -59,30 +59,30 @@ std::vector<double> figures_of(const LandmarkTrack& track, bool has_particles, c
   }
   const auto steps = static_cast<double>(run.truth.size());
   return {position_rmse_m(track.poses(), run.truth), landmark_rmse_m(track.landmarks, world), nees / steps,
-          has_particles ? num_effective / steps : kNothing, track.seconds};
+          has_particles ? num_effective / steps : kNoLandmarkFigure, track.seconds};
 }
 
 std::vector<double> batch_figures(const LandmarkWorld& world, const LandmarkRun& run, const LandmarkTrack& guess) {
   const double start_s = thread_seconds();
   const slam::BatchSolution batch =
       slam::solve_batch(world.motion, world.noise, run.odometry, run.seen, {.T_map_body = guess.poses(), .landmarks = guess.landmarks});
-  return {position_rmse_m(batch.T_map_body, run.truth), landmark_rmse_m(batch.landmarks, world), kNothing, kNothing, thread_seconds() - start_s};
+  return {position_rmse_m(batch.T_map_body, run.truth), landmark_rmse_m(batch.landmarks, world), kNoLandmarkFigure, kNoLandmarkFigure, thread_seconds() - start_s};
 }
 
 /// [method's name, particles] -> position, landmarks.
-using Published = std::map<std::pair<std::string, int>, std::vector<std::optional<double>>>;
+using PublishedLandmarks = std::map<std::pair<std::string, int>, std::vector<std::optional<double>>>;
 
 /// A world, and the methods that are tried in it. Batch least squares comes last, from the last method's result.
-struct Trial {
+struct LandmarkTrial {
   LandmarkWorld world;
   std::vector<LandmarkMethod> methods;
-  Published published{};
+  PublishedLandmarks published{};
 };
 
 /// Each method is compared with the first one of as many particles, or else with the first of all.
-std::vector<StudyVariant> variants_of(const std::vector<Trial>& trials) {
+std::vector<StudyVariant> variants_of(const std::vector<LandmarkTrial>& trials) {
   std::vector<StudyVariant> variants;
-  for (const Trial& trial : trials) {
+  for (const LandmarkTrial& trial : trials) {
     const std::size_t first = variants.size();
     std::map<int, std::size_t> first_of_particles;
     for (const LandmarkMethod& method : trial.methods) {
@@ -99,9 +99,9 @@ std::vector<StudyVariant> variants_of(const std::vector<Trial>& trials) {
   return variants;
 }
 
-StudySample run_trials(const std::vector<Trial>& trials, std::uint64_t seed) {
+StudySample run_trials(const std::vector<LandmarkTrial>& trials, std::uint64_t seed) {
   StudySample sample;
-  for (const Trial& trial : trials) {
+  for (const LandmarkTrial& trial : trials) {
     const LandmarkRun run = simulate(trial.world, seed);
     LandmarkTrack track;
     for (const LandmarkMethod& method : trial.methods) {
@@ -114,8 +114,8 @@ StudySample run_trials(const std::vector<Trial>& trials, std::uint64_t seed) {
 }
 
 /// The first trial is the one that pictures are made of.
-Study landmark_study(Study study, std::vector<Trial> trials) {
-  study.figures = kFigures;
+Study landmark_study(Study study, std::vector<LandmarkTrial> trials) {
+  study.figures = kLandmarkFigures;
   study.variants = variants_of(trials);
   study.illustrate = [trial = trials.front()](std::uint64_t seed) { return landmark_sections(trial.world, trial.methods, seed); };
   study.run = [trials = std::move(trials)](std::uint64_t seed) { return run_trials(trials, seed); };
@@ -144,9 +144,9 @@ const char* const kGardenConditions =
 }  // namespace
 
 Study circle_study() {
-  std::vector<Trial> trials;
+  std::vector<LandmarkTrial> trials;
   for (const char* odometry : {"S5", "M", "S3"}) {
-    Trial& trial = trials.emplace_back(Trial{.world = garden_world(odometry, true), .methods = garden_methods(10)});
+    LandmarkTrial& trial = trials.emplace_back(LandmarkTrial{.world = garden_world(odometry, true), .methods = garden_methods(10)});
     if (trials.size() == 1) {
       for (const int particles : {50, 100}) {
         for (const LandmarkMethod& method : garden_methods(particles)) trial.methods.push_back(method);
@@ -167,9 +167,9 @@ Study circle_study() {
 }
 
 Study noncircular_study() {
-  std::vector<Trial> trials;
+  std::vector<LandmarkTrial> trials;
   for (const char* odometry : {"S5", "M", "S3"}) {
-    Trial& trial = trials.emplace_back(Trial{.world = garden_world(odometry, false), .methods = garden_methods(20)});
+    LandmarkTrial& trial = trials.emplace_back(LandmarkTrial{.world = garden_world(odometry, false), .methods = garden_methods(20)});
     add_references(20, trial.methods);
   }
   return landmark_study({.name = "landmarks-noncircular",
@@ -186,15 +186,15 @@ Study campus_study() {
   constexpr double kWay_m = 600.0, kStep_s = 0.025;
   const std::vector<LandmarkMethod> of_the_paper = {fast_slam_1(kParticles), swarm_slam("ba", kParticles), swarm_slam("fa", kParticles),
                                                     swarm_slam("ifa", kParticles)};
-  const Published published = {{{"FastSLAM", kParticles}, {2.2418}}, {{"BA", kParticles}, {1.2234}}, {{"FA", kParticles}, {1.1313}}, {{"IFA", kParticles}, {0.4160}}};
-  std::vector<Trial> trials;
+  const PublishedLandmarks published = {{{"FastSLAM", kParticles}, {2.2418}}, {{"BA", kParticles}, {1.2234}}, {{"FA", kParticles}, {1.1313}}, {{"IFA", kParticles}, {0.4160}}};
+  std::vector<LandmarkTrial> trials;
   for (const bool is_biased : {true, false}) {
     trials.push_back({.world = campus_world(is_biased, 3.0, 8000), .methods = of_the_paper, .published = published});
     trials.back().methods.push_back(swarm_slam("iscso", kParticles));
     add_references(kParticles, trials.back().methods);
   }
   for (const double speed_mps : {2.0, 5.0}) {
-    Trial& trial = trials.emplace_back(Trial{.world = campus_world(true, speed_mps, static_cast<int>(kWay_m / speed_mps / kStep_s)), .methods = of_the_paper});
+    LandmarkTrial& trial = trials.emplace_back(LandmarkTrial{.world = campus_world(true, speed_mps, static_cast<int>(kWay_m / speed_mps / kStep_s)), .methods = of_the_paper});
     trial.world.name += fmt::format(", {:g} m/s", speed_mps);
     trial.methods.push_back(invariant_slam());
   }

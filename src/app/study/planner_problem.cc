@@ -16,7 +16,7 @@
 namespace patrol::app {
 namespace {
 
-constexpr double kSurfaceCell_m = 0.05;
+constexpr double kProblemCell_m = 0.05;
 constexpr double kPlanningCell_m = 0.2;
 constexpr double kFarShare = 1.0 / 3.0;  ///< of the diagonal
 constexpr std::uint64_t kMaxDraws = 1000;
@@ -39,7 +39,7 @@ DrivableWorld load_world(const std::string& name) {
   settings.resolution_m = kPlanningCell_m;
   settings.crosses_unknown = false;
   plan::Costmap costmap(settings, plan::Footprint(files.robot.footprint_m, scenario.stack.plan.footprint_rows), files.route.keep_out_lines);
-  costmap.set_map(world_surfaces(files, kSurfaceCell_m).surfaces);
+  costmap.set_map(world_surfaces(files, kProblemCell_m).surfaces);
   DrivableWorld world{.costs = costmap.cost(), .reachable = {}};
   for (plan::Cost& cost : world.costs.values()) cost = cost == plan::kLethalCost ? plan::kLethalCost : plan::kFreeCost;
   const std::optional<Cell> start = plan::nearest_passable(world.costs, files.T_site_start.position(), 1.0);

@@ -17,7 +17,7 @@ namespace {
 
 using render::Ink;
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoPlannerFigure = std::numeric_limits<double>::quiet_NaN();
 constexpr int kMaxStepsMillions = 50;  // of ants, particles and episodes, in one planning
 
 struct PlannerWorld {
@@ -47,7 +47,7 @@ struct PlannerMethod {
 };
 
 /// The first is what the others are compared with; the last two are what no route over eight neighbours, and none at all, undercuts.
-constexpr std::array<PlannerMethod, 9> kMethods = {{{"improved ants (ours)", "ant_colony", true, Ink::kEstimate},
+constexpr std::array<PlannerMethod, 9> kPlannerMethods = {{{"improved ants (ours)", "ant_colony", true, Ink::kEstimate},
                                                     {"paper 003's ants", "ant_colony", true, Ink::kEvent, false},
                                                     {"plain ants", "plain_ant_colony", true, Ink::kOdometry},
                                                     {"two swarms", "two_swarms", true, Ink::kRanges},
@@ -58,7 +58,7 @@ constexpr std::array<PlannerMethod, 9> kMethods = {{{"improved ants (ours)", "an
                                                     {"any-angle optimum", "any_angle_optimum", false, Ink::kBound}}};
 constexpr std::size_t kAstar = 7, kOptimum = 8;
 
-const std::vector<StudyFigure> kFigures = {{.name = "longer than A*", .unit = "%", .is_compared = true},
+const std::vector<StudyFigure> kPlannerFigures = {{.name = "longer than A*", .unit = "%", .is_compared = true},
                                            {.name = "iterations to 1 % of its final value", .unit = "", .is_compared = true},
                                            {.name = "iterations to A* + 3 %", .unit = ""},
                                            {.name = "found", .unit = "%"},
@@ -88,34 +88,34 @@ double iterations_to_length(const std::vector<double>& history, double length) {
   for (std::size_t i = 0; i < history.size(); ++i) {
     if (history[i] <= length) return static_cast<double>(i + 1);
   }
-  return kNothing;
+  return kNoPlannerFigure;
 }
 
-std::vector<std::vector<double>> figures_of(const std::array<Planned, kMethods.size()>& all) {
+std::vector<std::vector<double>> figures_of(const std::array<Planned, kPlannerMethods.size()>& all) {
   std::vector<std::vector<double>> figures;
   const double astar = all[kAstar].route.length, optimum = all[kOptimum].route.length;
-  for (std::size_t m = 0; m < kMethods.size(); ++m) {
+  for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) {
     const plan::Route& route = all[m].route;
-    const bool is_found = route.status == plan::PlanStatus::kFound, iterates = kMethods[m].iterates && is_found;
-    figures.push_back({is_found ? 100.0 * (route.length / astar - 1.0) : kNothing,
-                       iterates ? plan::iterations_to_within(route.history, 0.01) : kNothing,
-                       iterates ? iterations_to_length(route.history, 1.03 * astar) : kNothing,
+    const bool is_found = route.status == plan::PlanStatus::kFound, iterates = kPlannerMethods[m].iterates && is_found;
+    figures.push_back({is_found ? 100.0 * (route.length / astar - 1.0) : kNoPlannerFigure,
+                       iterates ? plan::iterations_to_within(route.history, 0.01) : kNoPlannerFigure,
+                       iterates ? iterations_to_length(route.history, 1.03 * astar) : kNoPlannerFigure,
                        is_found ? 100.0 : 0.0,
-                       is_found ? 100.0 * (route.length / optimum - 1.0) : kNothing,
-                       is_found ? route.clearance : kNothing,
+                       is_found ? 100.0 * (route.length / optimum - 1.0) : kNoPlannerFigure,
+                       is_found ? route.clearance : kNoPlannerFigure,
                        1e-3 * static_cast<double>(route.num_expanded),
                        1e3 * all[m].seconds});
   }
   return figures;
 }
 
-std::array<Planned, kMethods.size()> plan_all(const PlannerProblem& problem, std::uint64_t seed) {
-  std::array<Planned, kMethods.size()> all;
-  for (std::size_t m = 0; m < kMethods.size(); ++m) all[m] = plan_by(kMethods[m], problem, seed);
+std::array<Planned, kPlannerMethods.size()> plan_all(const PlannerProblem& problem, std::uint64_t seed) {
+  std::array<Planned, kPlannerMethods.size()> all;
+  for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) all[m] = plan_by(kPlannerMethods[m], problem, seed);
   return all;
 }
 
-StudySample run(const std::vector<PlannerWorld>& worlds, std::uint64_t seed) {
+StudySample run_planners(const std::vector<PlannerWorld>& worlds, std::uint64_t seed) {
   StudySample sample;
   for (const PlannerWorld& world : worlds) {
     for (std::vector<double>& figures : figures_of(plan_all(world.problem(seed), seed))) sample.push_back(std::move(figures));
@@ -124,16 +124,16 @@ StudySample run(const std::vector<PlannerWorld>& worlds, std::uint64_t seed) {
 }
 
 /// Figure 1: by how much the best route so far is longer than A*'s, over the first two hundred iterations.
-render::LinePlot convergence(const std::array<Planned, kMethods.size()>& all, const std::string& world) {
+render::LinePlot convergence(const std::array<Planned, kPlannerMethods.size()>& all, const std::string& world) {
   constexpr std::size_t kShown = 200;
   constexpr double kMost = 25.0;
   render::LinePlot plot{.title = fmt::format("Longer than A*, best so far: {}", world), .unit = "%", .axis = {.label = "iteration", .max = kShown}, .max = kMost, .curves = {}, .marks = {}, .spans = {}};
-  for (std::size_t m = 0; m < kMethods.size(); ++m) {
-    if (!kMethods[m].iterates) continue;
-    render::Curve curve{.name = kMethods[m].title, .ink = kMethods[m].ink, .is_dashed = false, .points = {}};
+  for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) {
+    if (!kPlannerMethods[m].iterates) continue;
+    render::Curve curve{.name = kPlannerMethods[m].title, .ink = kPlannerMethods[m].ink, .is_dashed = false, .points = {}};
     for (std::size_t i = 0; i < kShown; ++i) {
       const std::vector<double>& history = all[m].route.history;
-      const double excess = i < history.size() ? 100.0 * (history[i] / all[kAstar].route.length - 1.0) : kNothing;
+      const double excess = i < history.size() ? 100.0 * (history[i] / all[kAstar].route.length - 1.0) : kNoPlannerFigure;
       if (excess <= kMost) curve.points.emplace_back(static_cast<double>(i + 1), excess);
     }
     plot.curves.push_back(std::move(curve));
@@ -141,7 +141,7 @@ render::LinePlot convergence(const std::array<Planned, kMethods.size()>& all, co
   return plot;
 }
 
-render::MapBlock routes_on(const PlannerProblem& problem, const std::array<Planned, kMethods.size()>& all) {
+render::MapBlock routes_on(const PlannerProblem& problem, const std::array<Planned, kPlannerMethods.size()>& all) {
   const GridGeometry& grid = problem.costs.geometry();
   OccupancyGrid map(grid, kFree);
   for (std::size_t i = 0; i < map.values().size(); ++i) {
@@ -151,9 +151,9 @@ render::MapBlock routes_on(const PlannerProblem& problem, const std::array<Plann
   Eigen::AlignedBox2d shown(grid.origin_m);
   shown.extend(grid.origin_m + grid.resolution_m * Eigen::Vector2d(grid.width, grid.height));
   block.picture = render::map_picture({.built = map, .T_world_map = {}, .truth = {}, .error_m = {}}, shown);
-  for (std::size_t m = 0; m < kMethods.size(); ++m) {
-    if (m != kOptimum && !kMethods[m].iterates) continue;
-    block.paths.push_back({kMethods[m].title, kMethods[m].ink, {plan::to_metres(grid, all[m].route.points)}});
+  for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) {
+    if (m != kOptimum && !kPlannerMethods[m].iterates) continue;
+    block.paths.push_back({kPlannerMethods[m].title, kPlannerMethods[m].ink, {plan::to_metres(grid, all[m].route.points)}});
   }
   for (const auto& [label, cell] : {std::pair("start", problem.start), std::pair("goal", problem.goal)}) {
     block.marks.push_back({.label = label, .ink = Ink::kTruth, .p_m = grid.center_of(cell)});
@@ -161,12 +161,12 @@ render::MapBlock routes_on(const PlannerProblem& problem, const std::array<Plann
   return block;
 }
 
-std::vector<render::Section> illustrate(const std::vector<PlannerWorld>& worlds, std::uint64_t seed) {
+std::vector<render::Section> illustrate_planners(const std::vector<PlannerWorld>& worlds, std::uint64_t seed) {
   render::Section plots{fmt::format("Convergence, seed {}", seed), {}};
   std::vector<render::Section> maps;
   for (const PlannerWorld& world : worlds) {
     const PlannerProblem problem = world.problem(seed);
-    const std::array<Planned, kMethods.size()> all = plan_all(problem, seed);
+    const std::array<Planned, kPlannerMethods.size()> all = plan_all(problem, seed);
     plots.blocks.emplace_back(convergence(all, world.name));
     maps.push_back({fmt::format("Routes, {}, seed {}", world.name, seed), {routes_on(problem, all)}});
   }
@@ -188,13 +188,13 @@ Study planner_study() {
                             "compares with; their papers are not known to us.",
               .default_seeds = 30,
               .compared_with = "the improved ants",
-              .figures = kFigures};
+              .figures = kPlannerFigures};
   for (const PlannerWorld& world : worlds) {
     const std::size_t reference = study.variants.size();
-    for (const PlannerMethod& method : kMethods) study.variants.push_back({.world = world.name, .method = method.title, .particles = 0, .reference = reference});
+    for (const PlannerMethod& method : kPlannerMethods) study.variants.push_back({.world = world.name, .method = method.title, .particles = 0, .reference = reference});
   }
-  study.illustrate = [worlds](std::uint64_t seed) { return illustrate(worlds, seed); };
-  study.run = [worlds = std::move(worlds)](std::uint64_t seed) { return run(worlds, seed); };
+  study.illustrate = [worlds](std::uint64_t seed) { return illustrate_planners(worlds, seed); };
+  study.run = [worlds = std::move(worlds)](std::uint64_t seed) { return run_planners(worlds, seed); };
   return study;
 }
 

@@ -15,7 +15,7 @@
 namespace patrol::app {
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoStreetFigure = std::numeric_limits<double>::quiet_NaN();
 constexpr int kSwarmParticles = 30;
 constexpr const char* kScenario = "worlds/street/scenarios/patrol.yaml";
 
@@ -28,7 +28,7 @@ struct GridMethod {
   std::vector<std::optional<double>> published{};  ///< box 1, box 2, well 3; m
 };
 
-const std::vector<GridMethod> kMethods = {{.name = "FastSLAM", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "none", .published = {1.05, 1.31, 1.58}},
+const std::vector<GridMethod> kStreetMethods = {{.name = "FastSLAM", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "none", .published = {1.05, 1.31, 1.58}},
                                           {.name = "WOA", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "woa", .published = {1.01, 1.23, 1.24}},
                                           {.name = "SCSO", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "scso"},
                                           {.name = "ISCSO", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "iscso", .published = {0.92, 1.17, 1.18}},
@@ -36,7 +36,7 @@ const std::vector<GridMethod> kMethods = {{.name = "FastSLAM", .particles = kSwa
                                           {.name = "scan matching (ours)", .particles = 8, .proposal = "scan_match", .optimizer = "none"},
                                           {.name = "pose graph (ours, the default)", .particles = 1, .proposal = "scan_match", .optimizer = "none", .mapping = "graph"}};
 
-const std::vector<StudyFigure> kFigures = {{.name = "box 1", .unit = "m", .is_compared = true},
+const std::vector<StudyFigure> kStreetFigures = {{.name = "box 1", .unit = "m", .is_compared = true},
                                            {.name = "box 2", .unit = "m", .is_compared = true},
                                            {.name = "well 3", .unit = "m", .is_compared = true},
                                            {.name = "map to nearest surface", .unit = "m"},
@@ -66,9 +66,9 @@ std::vector<double> figures_of(const Mapped& mapped, const StudyRun& patrol) {
   const Pose2 T_world_map = score::join_at_start(mapped.T_map_body, patrol.record.T_world_body);
   std::vector<double> figures;
   for (const score::StationError& station : score::station_errors(patrol.files.route, patrol.record.events, T_world_map, patrol.record.T_world_body, mapped.map, patrol.truth.reference)) {
-    figures.push_back(station.map_error_m.value_or(kNothing));
+    figures.push_back(station.map_error_m.value_or(kNoStreetFigure));
   }
-  figures.resize(3, kNothing);
+  figures.resize(3, kNoStreetFigure);
   figures.push_back(score::map_error(mapped.map, T_world_map, patrol.truth.reference).nearest_mean_m);
   figures.push_back(score::trajectory_error(mapped.T_map_body, T_world_map, patrol.record.T_world_body).ate_rmse_m);
   figures.push_back(mapped.seconds);
@@ -76,20 +76,20 @@ std::vector<double> figures_of(const Mapped& mapped, const StudyRun& patrol) {
   return figures;
 }
 
-StudySample run(std::uint64_t seed) {
+StudySample run_street(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun patrol = run_for_study(kScenario, {}, seed, folder.path());
   StudySample sample;
-  for (const GridMethod& method : kMethods) sample.push_back(figures_of(map_by(method, patrol), patrol));
+  for (const GridMethod& method : kStreetMethods) sample.push_back(figures_of(map_by(method, patrol), patrol));
   return sample;
 }
 
 /// The maps of all methods, each in the colours of its errors.
-std::vector<render::Section> illustrate(std::uint64_t seed) {
+std::vector<render::Section> illustrate_street(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun patrol = run_for_study(kScenario, {}, seed, folder.path());
   std::vector<render::Section> sections;
-  for (const GridMethod& method : kMethods) {
+  for (const GridMethod& method : kStreetMethods) {
     const Mapped mapped = map_by(method, patrol);
     sections.push_back({method.name, {mapped_block(mapped.map, mapped.T_map_body, patrol)}});
   }
@@ -106,12 +106,12 @@ Study street_study() {
                             "are of its own street, quadruped and lidar, and of one walk. box 1, box 2, well 3: how far the built map has the place from where it is.",
               .default_seeds = 5,
               .compared_with = "FastSLAM"};
-  study.figures = kFigures;
-  for (const GridMethod& method : kMethods) {
+  study.figures = kStreetFigures;
+  for (const GridMethod& method : kStreetMethods) {
     study.variants.push_back({.world = "street", .method = method.name, .particles = method.particles, .reference = 0, .published = method.published});
   }
-  study.run = run;
-  study.illustrate = illustrate;
+  study.run = run_street;
+  study.illustrate = illustrate_street;
   return study;
 }
 

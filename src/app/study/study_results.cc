@@ -11,7 +11,7 @@
 namespace patrol::app {
 namespace {
 
-io::Cell number(const std::optional<double>& value) { return value ? io::Cell{*value} : io::Cell{}; }
+io::TableValue number(const std::optional<double>& value) { return value ? io::TableValue{*value} : io::TableValue{}; }
 
 std::optional<double> published(const StudyVariant& variant, std::size_t figure) {
   return figure < variant.published.size() ? variant.published[figure] : std::nullopt;
@@ -47,7 +47,7 @@ std::vector<render::TableBlock> tables_of(const Study& study, const StudyResults
       if (variant.world != world) continue;
       const StudyResult& result = results[v][f];
       const auto paper = published(variant, f);
-      std::vector<render::Cell>& row = table.rows.emplace_back();
+      std::vector<render::TableCell>& row = table.rows.emplace_back();
       row.push_back({variant.method});
       if (has_particles) row.push_back({variant.particles > 0 ? std::to_string(variant.particles) : ""});
       if (has_published) row.push_back({paper ? fmt::format("{:.4g}", *paper) : "–", render::Tone::kFaint});
@@ -137,7 +137,7 @@ io::Table results_table(const Study& study, const StudyResults& results) {
       const StudyResult& result = results[v][f];
       if (study.figures[f].is_of_the_clock || result.num_seeds == 0) continue;
       const auto part = [](const std::optional<score::Interval>& interval, double score::Interval::* end) {
-        return interval ? io::Cell{(*interval).*end} : io::Cell{};
+        return interval ? io::TableValue{(*interval).*end} : io::TableValue{};
       };
       table.rows.push_back({variant.world, variant.method, static_cast<std::int64_t>(variant.particles), study.figures[f].name, study.figures[f].unit,
                             number(published(variant, f)), static_cast<std::int64_t>(result.num_seeds), result.mean,
@@ -168,14 +168,14 @@ io::Table samples_table(const Study& study, const std::vector<std::uint64_t>& se
   }
   for (std::size_t s = 0; s < samples.size(); ++s) {
     for (std::size_t v = 0; v < study.variants.size(); ++v) {
-      std::vector<io::Cell>& row = table.rows.emplace_back();
+      std::vector<io::TableValue>& row = table.rows.emplace_back();
       row.push_back(static_cast<std::int64_t>(seeds[s]));
       row.emplace_back(study.variants[v].world);
       row.emplace_back(study.variants[v].method);
       row.push_back(static_cast<std::int64_t>(study.variants[v].particles));
       for (std::size_t f = 0; f < study.figures.size(); ++f) {
         if (study.figures[f].is_of_the_clock) continue;
-        row.push_back(std::isfinite(samples[s][v][f]) ? io::Cell{samples[s][v][f]} : io::Cell{});
+        row.push_back(std::isfinite(samples[s][v][f]) ? io::TableValue{samples[s][v][f]} : io::TableValue{});
       }
     }
   }

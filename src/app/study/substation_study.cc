@@ -27,12 +27,12 @@ struct LogMethod {
 
 constexpr double kMinute_s = 60.0, kGigabyte_mb = 1000.0;
 
-const std::vector<LogMethod> kMethods = {
+const std::vector<LogMethod> kSubstationMethods = {
     {.name = "improved RBPF (submap_rbpf)", .method = "submap_rbpf", .published = {0.1522, std::log10(0.1522), 0.0707, {}, {}, {}, {}, {}, 43.93 * kMinute_s, 0.9 * kGigabyte_mb}, .ink = render::Ink::kEstimate},
     {.name = "Cartographer's class (graph)", .method = "graph", .published = {0.3491, std::log10(0.3491), {}, {}, {}, {}, {}, {}, 51.35 * kMinute_s, 1.3 * kGigabyte_mb}, .ink = render::Ink::kRanges},
     {.name = "plain RBPF (rbpf)", .method = "rbpf", .published = {2.7605, std::log10(2.7605), {}, {}, {}, {}, {}, {}, 21.01 * kMinute_s, 1.4 * kGigabyte_mb}, .ink = render::Ink::kOdometry}};
 
-const std::vector<StudyFigure> kFigures = {{.name = "map to nearest surface", .unit = "m", .is_compared = true},
+const std::vector<StudyFigure> kSubstationFigures = {{.name = "map to nearest surface", .unit = "m", .is_compared = true},
                                            {.name = "its logarithm to base 10", .unit = "", .is_compared = true},
                                            {.name = "variance of that", .unit = "m^2", .is_compared = true},
                                            {.name = "95 % of it below", .unit = "m"},
@@ -67,7 +67,7 @@ StudySample map_patrol(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun run = drive(kPatrol, seed, folder);
   StudySample sample;
-  for (const LogMethod& method : kMethods) sample.push_back(figures_of(map_log_of(run, method.method), run));
+  for (const LogMethod& method : kSubstationMethods) sample.push_back(figures_of(map_log_of(run, method.method), run));
   return sample;
 }
 
@@ -99,7 +99,7 @@ std::vector<render::Section> illustrate_patrol(std::uint64_t seed) {
                           .max = {}, .curves = {}, .marks = {}, .spans = {}};
   render::BoxPlot boxes{.caption = "The same, as boxes", .unit = "m", .boxes = {}};
   std::vector<render::Section> maps;
-  for (const LogMethod& method : kMethods) {
+  for (const LogMethod& method : kSubstationMethods) {
     const MappedRun mapped = map_log_of(run, method.method);
     const std::vector<double> errors = quantiles(sorted_errors_m(mapped, run), kPoints);
     render::Curve curve{.name = method.name, .ink = method.ink, .is_dashed = false, .points = {}};
@@ -117,7 +117,7 @@ StudySample map_row(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun run = drive(kRow, seed, folder);
   StudySample sample;
-  for (const LogMethod& method : kMethods) {
+  for (const LogMethod& method : kSubstationMethods) {
     const MappedRun mapped = map_log_of(run, method.method);
     const Pose2 T_world_map = score::join_at_start(mapped.T_map_body, run.record.T_world_body);
     sample.push_back({static_cast<double>(mapped.loops.wrong), static_cast<double>(mapped.loops.right),
@@ -130,7 +130,7 @@ std::vector<render::Section> illustrate_row(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun run = drive(kRow, seed, folder);
   std::vector<render::Section> maps;
-  for (const LogMethod& method : kMethods) {
+  for (const LogMethod& method : kSubstationMethods) {
     const MappedRun mapped = map_log_of(run, method.method);
     maps.push_back({method.name, {mapped_block(mapped.map, mapped.T_map_body, run)}});
   }
@@ -149,9 +149,9 @@ Study substation_study() {
                             "recall: of the graph's nodes that came back within 5 m of an older one, those with a right closure.",
               .default_seeds = 5,
               .compared_with = "plain RBPF"};
-  study.figures = kFigures;
-  for (const LogMethod& method : kMethods) {
-    study.variants.push_back({.world = "substation", .method = method.name, .particles = 0, .reference = kMethods.size() - 1, .published = method.published});
+  study.figures = kSubstationFigures;
+  for (const LogMethod& method : kSubstationMethods) {
+    study.variants.push_back({.world = "substation", .method = method.name, .particles = 0, .reference = kSubstationMethods.size() - 1, .published = method.published});
   }
   study.run = map_patrol;
   study.illustrate = illustrate_patrol;
@@ -167,7 +167,7 @@ Study row_study() {
               .default_seeds = 10,
               .compared_with = "plain RBPF"};
   study.figures = {{.name = "false closures", .unit = ""}, {.name = "right closures", .unit = ""}, {.name = "pose RMSE", .unit = "m", .is_compared = true}};
-  for (const LogMethod& method : kMethods) study.variants.push_back({.world = "row", .method = method.name, .particles = 0, .reference = kMethods.size() - 1});
+  for (const LogMethod& method : kSubstationMethods) study.variants.push_back({.world = "row", .method = method.name, .particles = 0, .reference = kSubstationMethods.size() - 1});
   study.run = map_row;
   study.illustrate = illustrate_row;
   return study;

@@ -9,9 +9,9 @@ namespace patrol::app {
 namespace {
 
 /// [seed][variant]
-using Figures = std::vector<std::vector<std::optional<double>>>;
+using SeedFigures = std::vector<std::vector<std::optional<double>>>;
 
-std::vector<double> column(const Figures& figures, std::size_t variant) {
+std::vector<double> column(const SeedFigures& figures, std::size_t variant) {
   std::vector<double> values;
   for (const auto& of_seed : figures) {
     if (of_seed[variant]) values.push_back(*of_seed[variant]);
@@ -19,7 +19,7 @@ std::vector<double> column(const Figures& figures, std::size_t variant) {
   return values;
 }
 
-BudgetShare share_of(const Figures& figures, std::size_t variant, const std::string& name) {
+BudgetShare share_of(const SeedFigures& figures, std::size_t variant, const std::string& name) {
   std::vector<double> differences;
   for (const auto& of_seed : figures) {
     if (of_seed[0] && of_seed[variant]) differences.push_back(*of_seed[0] - *of_seed[variant]);
@@ -28,7 +28,7 @@ BudgetShare share_of(const Figures& figures, std::size_t variant, const std::str
 }
 
 /// Of the seeds that gave every figure.
-void add_sums(const Figures& figures, Budget& budget) {
+void add_sums(const SeedFigures& figures, Budget& budget) {
   std::vector<double> sums, interactions;
   for (const auto& of_seed : figures) {
     if (!std::all_of(of_seed.begin(), of_seed.end(), [](const auto& figure) { return figure.has_value(); })) continue;
@@ -68,7 +68,7 @@ std::vector<Budget> make_budgets(const SweepManifest& manifest, const SweepRows&
 }
 
 Budget make_budget(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric) {
-  const Figures figures = figures_of(manifest, rows, metric);
+  const SeedFigures figures = figures_of(manifest, rows, metric);
   Budget budget{.metric = metric,
                 .as_it_is = score::mean_interval(column(figures, 0)),
                 .ideal = score::mean_interval(column(figures, manifest.variants.size() - 1)),
@@ -109,7 +109,7 @@ io::Table budget_table(const std::vector<Budget>& budgets) {
   io::Table table{.name = "budget", .columns = {"metric", "row", "pairs", "value", "low", "high"}, .rows = {}};
   for (const Budget& budget : budgets) {
     const auto add = [&](const std::string& row, std::optional<std::size_t> pairs, const std::optional<score::Interval>& interval) {
-      std::vector<io::Cell>& cells = table.rows.emplace_back();
+      std::vector<io::TableValue>& cells = table.rows.emplace_back();
       cells.emplace_back(budget.metric);
       cells.emplace_back(row);
       cells.resize(table.columns.size());

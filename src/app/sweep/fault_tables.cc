@@ -64,14 +64,14 @@ FaultGrid grid_of(const std::vector<FaultRow>& rows) {
 }  // namespace
 
 io::Table faults_table(const SweepManifest& manifest, const SweepRows& rows) {
-  const auto cell = [](const std::optional<double>& figure) { return figure ? io::Cell{*figure} : io::Cell{}; };
+  const auto cell = [](const std::optional<double>& figure) { return figure ? io::TableValue{*figure} : io::TableValue{}; };
   io::Table table{.name = "faults", .columns = {"fault", "seed", "executed", "outcome", "noticed", "end", "message"}, .rows = {}};
   for (const std::string& metric : manifest.metrics) {
     table.columns.push_back(metric);
     table.columns.push_back(metric + " more than without");
   }
   for (const FaultRow& row : fault_rows(manifest, rows)) {
-    std::vector<io::Cell>& cells = table.rows.emplace_back();
+    std::vector<io::TableValue>& cells = table.rows.emplace_back();
     cells.emplace_back(row.name);
     cells.push_back(static_cast<std::int64_t>(row.seed));
     cells.emplace_back(executed_text(row));
@@ -81,7 +81,7 @@ io::Table faults_table(const SweepManifest& manifest, const SweepRows& rows) {
     cells.emplace_back(row.message);
     for (std::size_t metric = 0; metric < row.figures.size(); ++metric) {
       cells.push_back(cell(row.figures[metric]));
-      cells.push_back(row.figures[metric] && row.without[metric] ? io::Cell{*row.figures[metric] - *row.without[metric]} : io::Cell{});
+      cells.push_back(row.figures[metric] && row.without[metric] ? io::TableValue{*row.figures[metric] - *row.without[metric]} : io::TableValue{});
     }
   }
   return table;

@@ -14,13 +14,13 @@
 namespace patrol::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
 constexpr std::array<std::string_view, 3> kKinds = {"sweep", "budget", "faults"};
 
-Json json_of(const SweepManifest& manifest) {
-  Json json{{"version", kVersion},
+OrderedJson json_of(const SweepManifest& manifest) {
+  OrderedJson json{{"version", kVersion},
             {"kind", kKinds.at(static_cast<std::size_t>(manifest.kind))},
             {"scenario", manifest.scenario},
             {"overrides", manifest.overrides},
@@ -29,8 +29,8 @@ Json json_of(const SweepManifest& manifest) {
             {"stop_when_decided", manifest.stop.when_decided},
             {"margin", manifest.stop.margin},
             {"seeds", manifest.seeds},
-            {"variants", Json::array()},
-            {"runs", Json::array()}};
+            {"variants", OrderedJson::array()},
+            {"runs", OrderedJson::array()}};
   for (const Variant& variant : manifest.variants) {
     json["variants"].push_back({{"name", variant.name}, {"overrides", variant.overrides}});
   }
@@ -41,7 +41,7 @@ Json json_of(const SweepManifest& manifest) {
   return json;
 }
 
-SweepManifest manifest_of(const Json& json) {
+SweepManifest manifest_of(const OrderedJson& json) {
   SweepManifest manifest;
   const auto kind = std::find(kKinds.begin(), kKinds.end(), json.at("kind").get<std::string>());
   if (kind == kKinds.end()) throw InputError("kind: must be sweep, budget or faults");
@@ -53,10 +53,10 @@ SweepManifest manifest_of(const Json& json) {
   json.at("stop_when_decided").get_to(manifest.stop.when_decided);
   json.at("margin").get_to(manifest.stop.margin);
   json.at("seeds").get_to(manifest.seeds);
-  for (const Json& variant : json.at("variants")) {
+  for (const OrderedJson& variant : json.at("variants")) {
     manifest.variants.push_back({.name = variant.at("name"), .overrides = variant.at("overrides")});
   }
-  for (const Json& run : json.at("runs")) {
+  for (const OrderedJson& run : json.at("runs")) {
     manifest.runs.push_back({.variant = run.at("variant"),
                              .seed = run.at("seed"),
                              .overrides = run.at("overrides"),
@@ -87,7 +87,7 @@ void save_manifest(const std::filesystem::path& file, const SweepManifest& manif
 SweepManifest load_manifest(const std::filesystem::path& file) {
   const std::string text = io::load_text(file);
   try {
-    const Json json = Json::parse(text);
+    const OrderedJson json = OrderedJson::parse(text);
     if (json.at("version") != kVersion) throw InputError("version: must be 1");
     return manifest_of(json);
   } catch (const std::exception& error) {

@@ -9,11 +9,11 @@
 namespace patrol::app {
 namespace {
 
-io::Cell number(double value) { return value; }
-io::Cell whole(std::size_t value) { return static_cast<std::int64_t>(value); }
+io::TableValue number(double value) { return value; }
+io::TableValue whole(std::size_t value) { return static_cast<std::int64_t>(value); }
 
 /// What the run's overrides say of a path; nothing if they do not.
-io::Cell value_of(const std::vector<std::string>& overrides, const std::string& path) {
+io::TableValue value_of(const std::vector<std::string>& overrides, const std::string& path) {
   for (const std::string& override : overrides) {
     if (override.starts_with(path + "=")) return override.substr(path.size() + 1);
   }
@@ -62,7 +62,7 @@ io::Table runs_table(const SweepManifest& manifest, const SweepRows& rows, const
   for (const std::size_t i : progress.counted) {
     const PlannedRun& run = manifest.runs[i];
     const RunVerdict& result = *rows[i];
-    std::vector<io::Cell>& row = table.rows.emplace_back();
+    std::vector<io::TableValue>& row = table.rows.emplace_back();
     row.emplace_back(manifest.variants[run.variant].name);
     for (const std::string& path : manifest.paths) row.push_back(value_of(run.overrides, path));
     row.push_back(static_cast<std::int64_t>(run.seed));
@@ -74,7 +74,7 @@ io::Table runs_table(const SweepManifest& manifest, const SweepRows& rows, const
     for (const auto& [path, value] : io::figures_of(result.metrics)) figures[path] = value;
     for (const std::string& path : paths) {
       const auto figure = figures.find(path);
-      row.push_back(figure == figures.end() ? io::Cell{} : number(figure->second));
+      row.push_back(figure == figures.end() ? io::TableValue{} : number(figure->second));
     }
   }
   return table;
@@ -85,21 +85,21 @@ io::Table comparison_table(const SweepManifest& manifest, const SweepRows& rows,
                   .columns = {"metric", "variant", "runs", "mean", "mean_low", "mean_high", "pairs", "difference", "difference_low",
                               "difference_high", "verdict"},
                   .rows = {}};
-  const auto add_interval = [](std::vector<io::Cell>& row, const std::optional<score::Interval>& interval) {
-    row.push_back(interval ? number(interval->low) : io::Cell{});
-    row.push_back(interval ? number(interval->high) : io::Cell{});
+  const auto add_interval = [](std::vector<io::TableValue>& row, const std::optional<score::Interval>& interval) {
+    row.push_back(interval ? number(interval->low) : io::TableValue{});
+    row.push_back(interval ? number(interval->high) : io::TableValue{});
   };
   const auto all = comparisons(manifest, rows, progress);
   for (std::size_t metric = 0; metric < all.size(); ++metric) {
     for (const VariantFigure& figure : all[metric]) {
-      std::vector<io::Cell>& row = table.rows.emplace_back();
+      std::vector<io::TableValue>& row = table.rows.emplace_back();
       row.emplace_back(manifest.metrics[metric]);
       row.emplace_back(manifest.variants[figure.variant].name);
       row.push_back(whole(figure.num_runs));
-      row.push_back(figure.num_runs > 0 ? number(figure.mean) : io::Cell{});
+      row.push_back(figure.num_runs > 0 ? number(figure.mean) : io::TableValue{});
       add_interval(row, figure.interval);
       row.push_back(whole(figure.num_pairs));
-      row.push_back(figure.difference ? number(figure.difference->center) : io::Cell{});
+      row.push_back(figure.difference ? number(figure.difference->center) : io::TableValue{});
       add_interval(row, figure.difference);
       row.emplace_back(figure.verdict);
     }

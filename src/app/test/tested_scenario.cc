@@ -92,13 +92,13 @@ void save_test_junit(const std::filesystem::path& file, const std::vector<Tested
 io::Table tests_table(const std::vector<TestedScenario>& tested) {
   io::Table table{.name = "tests", .columns = {"scenario", "end", "exit_code", "message", "metric", "wanted", "got", "is_met"}, .rows = {}};
   for (const TestedScenario& one : tested) {
-    const std::vector<io::Cell> head = {one.name, one.verdict->end, static_cast<std::int64_t>(one.verdict->code), one.verdict->message};
+    const std::vector<io::TableValue> head = {one.name, one.verdict->end, static_cast<std::int64_t>(one.verdict->code), one.verdict->message};
     if (one.verdict->checks.empty()) {
       table.rows.push_back(head);
       table.rows.back().resize(table.columns.size());
     }
     for (const CheckedExpectation& check : one.verdict->checks) {
-      std::vector<io::Cell>& row = table.rows.emplace_back(head);
+      std::vector<io::TableValue>& row = table.rows.emplace_back(head);
       for (const std::string& cell : {check.metric, check.wanted, check.got}) row.emplace_back(cell);
       row.emplace_back(static_cast<std::int64_t>(check.is_met));
     }

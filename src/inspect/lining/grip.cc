@@ -11,7 +11,7 @@ namespace patrol::inspect {
 namespace {
 
 constexpr double kFacesAlong = 0.7;   // minimum cosine between a normal and the axis
-constexpr double kPartner_m = 0.15, kBand_m = 0.03;
+constexpr double kGripPartner_m = 0.15, kGripBand_m = 0.03;
 constexpr double kBeyond_m = 0.3;     // a beam that is longer by this has passed the point
 constexpr int kColumns = 180, kRows = 90;
 
@@ -55,9 +55,9 @@ Grip grip(const ScanView& one, const ScanView& other, const Pose3& T_other_one, 
     const Eigen::Vector3d p = T_other_one * p_one;
     if (std::abs(normal.dot(axis_one)) < kFacesAlong) continue;
     const auto near = other.cloud.nearest(p, 1);
-    if (near.count > 0 && near.squared_m2[0] < kPartner_m * kPartner_m) {
+    if (near.count > 0 && near.squared_m2[0] < kGripPartner_m * kGripPartner_m) {
       const SurfaceCloud::Surface& surface = other.cloud.surfaces()[near.index[0]];
-      const bool is_same = std::abs(surface.normal.dot(T_other_one.rotation * normal)) > kFacesAlong && std::abs(surface.normal.dot(p - surface.mean)) < kBand_m;
+      const bool is_same = std::abs(surface.normal.dot(T_other_one.rotation * normal)) > kFacesAlong && std::abs(surface.normal.dot(p - surface.mean)) < kGripBand_m;
       found.same += is_same ? 1 : 0;
     } else if (ranges.looks_through(p)) {
       ++found.missing;

@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "core/angles.h"
 
 namespace patrol::inspect {
 namespace {
-
-constexpr double kRadian = std::numbers::pi / 180.0;
 
 /// Returns the design shifted to the left, rotated about the scanner and raised.
 LiningInMap moved_design(const LiningInMap& lining, const Eigen::Vector2d& about, const Eigen::Vector2d& left, const Eigen::Vector3d& step) {

@@ -16,8 +16,8 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kFar_m = 10.0;         // distance at which the rotation of a step counts
-constexpr double kFacing = 0.8;         // minimum cosine between the normals of a pair
+constexpr double kRegistrationArm_m = 10.0;         // distance at which the rotation of a step counts
+constexpr double kPairCosine = 0.8;         // minimum cosine between the normals of a pair
 // Point spacing on a surface: the distance of a pair exceeds that of its surfaces by up to this.
 constexpr double kSpacing_m = 0.1;
 constexpr std::size_t kMinPairs = 30;
@@ -61,7 +61,7 @@ std::optional<Pair> pair_of(const SurfaceCloud& target, const SurfaceCloud& sour
   const double reach_m = distance_m + kSpacing_m;
   if (near.count == 0 || near.squared_m2[0] > reach_m * reach_m) return std::nullopt;
   const SurfaceCloud::Surface& surface = target.surfaces()[near.index[0]];
-  if (std::abs(surface.normal.dot(T_target_source.rotation * source.surfaces()[i].normal)) < kFacing) return std::nullopt;
+  if (std::abs(surface.normal.dot(T_target_source.rotation * source.surfaces()[i].normal)) < kPairCosine) return std::nullopt;
   return Pair{.normal = surface.normal, .arm = p - T_target_source.position, .residual_m = surface.normal.dot(p - surface.mean)};
 }
 
@@ -99,7 +99,7 @@ Registration register_cloud(const SurfaceCloud& target, const SurfaceCloud& sour
     const Vector6 step = -H.ldlt().solve(b);
     result.T_target_source = moved(result.T_target_source, step);
     // Distant pairs need not converge completely before closer ones are used.
-    const double length_m = step.head<3>().norm() + kFar_m * step.tail<3>().norm();
+    const double length_m = step.head<3>().norm() + kRegistrationArm_m * step.tail<3>().norm();
     const bool is_last = distance_m <= settings.last_distance_m;
     if (is_last) result.converged = length_m < settings.step_tol_m;
     else if (length_m < std::max(settings.step_tol_m, 0.02 * distance_m)) distance_m = std::max(settings.last_distance_m, 0.5 * distance_m);

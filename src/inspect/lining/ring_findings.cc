@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string>
+
+#include "core/angles.h"
 
 namespace patrol::inspect {
 namespace {
 
-constexpr double kRadian = std::numbers::pi / 180.0;
 constexpr std::array kParabola{-3.0 / 35.0, 12.0 / 35.0, 17.0 / 35.0, 12.0 / 35.0, -3.0 / 35.0};
 
 /// Applies the squared patch scale, which the covariance already includes and the patch variances do not.
@@ -50,7 +50,7 @@ std::optional<SectorMove> move_at(const LiningGrid& grid, const std::vector<Sect
 }
 
 /// Returns the outward direction for a viewer along the axis: components to the right and up.
-Eigen::Vector2d outwards(double clock_deg) { return {std::sin(clock_deg * kRadian), std::cos(clock_deg * kRadian)}; }
+Eigen::Vector2d outwards(double clock_deg) { return {std::sin(clock_deg * kDegree), std::cos(clock_deg * kDegree)}; }
 
 }  // namespace
 

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/angles.h"
 #include "core/error.h"
 
 namespace patrol::inspect {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Returns element `index` of `count` uniform values from -max to max; 0 for a single value.
 double evenly(int index, int count, double max) { return count == 1 ? 0.0 : max * (2.0 * index / (count - 1) - 1.0); }

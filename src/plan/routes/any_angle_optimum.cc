@@ -9,7 +9,7 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kNotReached = std::numeric_limits<double>::infinity();
 
 /// Cells around a point as seen in one of the four quadrants: there, lines go up and to the right.
 class Quadrant {
@@ -94,7 +94,7 @@ class VisibilitySearch {
 
  private:
   struct Node {
-    double length = kInfinite;  ///< from the start, half cells
+    double length = kNotReached;  ///< from the start, half cells
     HalfCellPoint parent{};
     HalfCellPoint seen_from{.x = -1, .y = -1};  ///< the last corner from which it was checked
     bool is_closed = false;

@@ -6,7 +6,7 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 /// A tree over all nodes but node 0, and node 0's two cheapest edges.
 struct OneTree {
@@ -21,7 +21,7 @@ Matrix closed_tour(const TourProblem& problem) {
   const std::size_t count = problem.travel.size();
   const bool is_round = problem.start && problem.start == problem.end;
   const std::size_t first = is_round ? 0 : 1;  // node of station 0
-  Matrix cost(count + first, std::vector<double>(count + first, kInfinite));
+  Matrix cost(count + first, std::vector<double>(count + first, kNoBound));
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < count; ++j) cost[i + first][j + first] = std::min(problem.travel[i][j], problem.travel[j][i]);
     if (is_round) continue;
@@ -40,7 +40,7 @@ OneTree least_one_tree(const Matrix& cost, const std::vector<double>& weights) {
   const std::size_t count = cost.size();
   const auto edge = [&](std::size_t i, std::size_t j) { return cost[i][j] + weights[i] + weights[j]; };
   OneTree tree{.cost = 0.0, .degrees = std::vector<int>(count, 0)};
-  std::vector<double> nearest(count, kInfinite);
+  std::vector<double> nearest(count, kNoBound);
   std::vector<std::size_t> by(count, 1);
   std::vector<char> is_in(count, 0);
   is_in[1] = 1;
@@ -83,7 +83,7 @@ double travel_bound(const TourProblem& problem, double upper_bound, int iteratio
     const OneTree tree = least_one_tree(cost, weights);
     double bound = tree.cost;
     for (const double weight : weights) bound -= 2.0 * weight;
-    if (!std::isfinite(bound)) return kInfinite;
+    if (!std::isfinite(bound)) return kNoBound;
     stale = bound > best + 1e-9 ? 0 : stale + 1;
     best = std::max(best, bound);
     if (stale >= kPatience) pace *= 0.5, stale = 0;

@@ -14,7 +14,7 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kNoOrder = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-9;
 
 void check(const TourProblem& problem) {
@@ -87,7 +87,7 @@ class Tour {
 /// The order that ends soonest, every window kept; empty if there is none. `best[set * size + last]`: when `last` is left, all of the set done.
 std::vector<std::size_t> exact_order(const Tour& tour) {
   const std::size_t size = tour.size(), all = (std::size_t{1} << size) - 1;
-  std::vector<double> best((all + 1) * size, kInfinite);
+  std::vector<double> best((all + 1) * size, kNoOrder);
   std::vector<std::uint8_t> before((all + 1) * size, 0);
   std::vector<std::size_t> must_precede(size, 0);  // sets of stations
   for (std::size_t i = 0; i < size; ++i) {
@@ -111,7 +111,7 @@ std::vector<std::size_t> exact_order(const Tour& tour) {
     }
   }
   std::size_t last = size;
-  double soonest = kInfinite;
+  double soonest = kNoOrder;
   for (std::size_t i = 0; i < size; ++i) {
     // A round begins at the only station that none may precede.
     double done = best[all * size + i];

@@ -10,13 +10,13 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kNoCost = std::numeric_limits<double>::infinity();
 /// x and y of each via point, cells.
 using Coordinates = std::vector<double>;
 
 struct Particle {
   Coordinates at, velocity, best_at;
-  double best_cost = kInfinite;
+  double best_cost = kNoCost;
 };
 
 struct Swarm {
@@ -154,7 +154,7 @@ void TwoSwarms::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
   Flight flight(settings_, costs, factors(), start, goal);
   if (!flight.has_way()) return;
   Walk best;
-  best.cost = kInfinite;
+  best.cost = kNoCost;
   const auto judge = [&](Particle& particle) {
     Walk walk = flight.decode(particle.at);
     route.num_expanded += walk.num_steps;

@@ -19,7 +19,7 @@ enum class Tone { kPlain, kGood, kWarning, kBad, kFaint };
 /// One colour, one meaning, through all figures of a page (report.css).
 enum class Ink { kTruth, kEstimate, kBound, kOdometry, kRanges, kTrust, kEvent, kAlarm };
 
-struct Cell {
+struct TableCell {
   std::string text;
   Tone tone = Tone::kPlain;
 };
@@ -32,7 +32,7 @@ struct Column {
 struct TableBlock {
   std::string caption;
   std::vector<Column> columns;
-  std::vector<std::vector<Cell>> rows;
+  std::vector<std::vector<TableCell>> rows;
 };
 
 /// Tables that only some readers want: shown on demand, and in print.

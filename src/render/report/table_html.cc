@@ -23,7 +23,7 @@ std::string breakable_html(const std::string& text) {
   return html;
 }
 
-std::string cell_html(const Cell& cell, const Column& column) {
+std::string cell_html(const TableCell& cell, const Column& column) {
   const std::string classes = fmt::format("{}{}", column.is_number ? "number " : "", css_class(cell.tone));
   return fmt::format("<td class=\"{}\">{}</td>", classes, column.is_number ? io::escaped_markup(cell.text) : breakable_html(cell.text));
 }
@@ -100,7 +100,7 @@ std::string to_html(const TableBlock& block) {
   std::string html = "<div class=\"table\"><table>";
   if (!block.caption.empty()) html += fmt::format("<caption>{}</caption>", io::escaped_markup(block.caption));
   html += head_html(block.columns) + "<tbody>\n";
-  for (const std::vector<Cell>& row : block.rows) {
+  for (const std::vector<TableCell>& row : block.rows) {
     html += "<tr>";
     for (std::size_t i = 0; i < row.size() && i < block.columns.size(); ++i) html += cell_html(row[i], block.columns[i]);
     html += "</tr>\n";

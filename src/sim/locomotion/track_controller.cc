@@ -10,10 +10,10 @@ constexpr double kRestSpeed_mps = 0.005, kRestRate_radps = 0.005;   // asked les
 constexpr double kRestSprocket_radps = 0.5;  // a tick that comes and goes looks like 0.3
 constexpr double kBiasTime_s = 5.0;          // to learn the gyroscope's bias at rest
 constexpr double kLevelling_per_s = 0.5;   // of the gyroscope's attitude by the accelerometer
-constexpr double kSettling_s = 0.5;        // after switch-on the accelerometer alone
+constexpr double kLevelSettling_s = 0.5;        // after switch-on the accelerometer alone
 const double kFallenCosine = std::cos(60.0 * M_PI / 180.0);
 
-double approach(double value, double target, double max_change) {
+double approach_speed(double value, double target, double max_change) {
   return value + std::clamp(target - value, -max_change, max_change);
 }
 
@@ -52,8 +52,8 @@ TrackOrders TrackController::step(const Imu& imu, const TrackTicks& ticks, const
 void TrackController::follow_command(const VelocityCommand& command) {
   const double speed = std::clamp(command.vx_mps, -settings_.max_speed_mps, settings_.max_speed_mps);
   const double rate = std::clamp(command.yaw_rate_radps, -settings_.max_yaw_rate_radps, settings_.max_yaw_rate_radps);
-  speed_mps_ = approach(speed_mps_, speed, settings_.max_acceleration_mps2 * tick_s_);
-  yaw_rate_radps_ = approach(yaw_rate_radps_, rate, settings_.max_yaw_acceleration_radps2 * tick_s_);
+  speed_mps_ = approach_speed(speed_mps_, speed, settings_.max_acceleration_mps2 * tick_s_);
+  yaw_rate_radps_ = approach_speed(yaw_rate_radps_, rate, settings_.max_yaw_acceleration_radps2 * tick_s_);
 }
 
 /// The yaw rate to ask of the kinematics so that the gyroscope reads the one that is wanted.
@@ -106,7 +106,7 @@ void TrackController::watch_for_fall(const Imu& imu) {
   const Eigen::Vector3d rate = R_body_imu_ * imu.angular_velocity_radps;
   const Eigen::Vector3d force = R_body_imu_ * imu.linear_acceleration_mps2;
   up_in_body_ += tick_s_ * up_in_body_.cross(rate);
-  const double gain = age_s_ < kSettling_s ? 10.0 : kLevelling_per_s;
+  const double gain = age_s_ < kLevelSettling_s ? 10.0 : kLevelling_per_s;
   if (force.norm() > 1.0) up_in_body_ += gain * tick_s_ * (force.normalized() - up_in_body_);
   up_in_body_.normalize();
   fallen_s_ = up_in_body_.z() < kFallenCosine ? fallen_s_ + tick_s_ : 0.0;

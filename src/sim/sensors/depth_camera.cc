@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
+
+#include "core/angles.h"
 
 namespace patrol::sim {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kDarkest = 0.02;  // nothing throws back less
 
 /// The slope that the smaller of both differences has: that of the surface which the pixel is on, also beside an edge.

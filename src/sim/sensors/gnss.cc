@@ -3,10 +3,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angles.h"
+
 namespace patrol::sim {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kEarthRadius_m = 6378137.0;             // WGS 84 equatorial
 constexpr double kEccentricitySquared = 6.69437999014e-3;
 

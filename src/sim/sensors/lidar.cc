@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
+#include "core/angles.h"
 #include "core/error.h"
 
 namespace patrol::sim {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Two echoes further apart than a pulse of 10 ns is long are told apart; nearer than this they are one

@@ -8,11 +8,12 @@
 
 #include <fmt/format.h>
 
+#include "core/angles.h"
+
 namespace patrol::sim {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoReturn = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kMask = kRayEverything & ~static_cast<std::uint32_t>(kRayScanner);
 
 /// A surface without an edge bends the ranges of neighbouring beams by less than this.
@@ -70,7 +71,7 @@ void PanoramicScanner::begin(Time now, const Pose3& T_world_body) {
                .range_offset_m = settings_.range_offset_std_m * range_offset_.normal(number),
                .before_m = {},
                .points = {}};
-  const std::vector<double> nothing(elevation_.size(), kInfinity);
+  const std::vector<double> nothing(elevation_.size(), kNoReturn);
   scan_->before_m = {{{nothing, nothing}, {nothing, nothing}}};
   scan_->points.reserve(2 * azimuth_.size() * elevation_.size());
 }
@@ -135,14 +136,14 @@ void PanoramicScanner::fire_column(int column, const Pose3& T_world_scanner) {
 PanoramicScanner::Echo PanoramicScanner::look(const Pose3& T_world_scanner, const Eigen::Vector3d& direction) const {
   const Eigen::Vector3d ray = T_world_scanner.rotation * direction;
   const std::optional<RayHit> hit = scene_.cast(T_world_scanner.position, ray, settings_.range_max_m, kMask);
-  if (!hit) return {kInfinity, 0.0};
+  if (!hit) return {kNoReturn, 0.0};
   const double cosine = std::abs(hit->normal.dot(ray));
   const SurfaceOptics& surface = surfaces_[static_cast<std::size_t>(hit->geom)];
-  if (surface.lets_through(cosine) || cosine < std::cos(settings_.grazing_deg * kDegree)) return {kInfinity, 0.0};
+  if (surface.lets_through(cosine) || cosine < std::cos(settings_.grazing_deg * kDegree)) return {kNoReturn, 0.0};
   constexpr double kBlack = 0.02;
   const double light = std::max(kBlack, static_cast<double>(surface.reflectivity)) * cosine;
   const double reach_m = settings_.black_range_m * std::sqrt(light / kBlack);
-  if (dust_.clear_distance_m(hit->distance_m) > reach_m) return {kInfinity, 0.0};
+  if (dust_.clear_distance_m(hit->distance_m) > reach_m) return {kNoReturn, 0.0};
   return {hit->distance_m, light};
 }
 
@@ -161,7 +162,7 @@ PanoramicScanner::Echo PanoramicScanner::mix_over_width(const Pose3& T_world_sca
       light_sum += 0.25 * part.light;
     }
   }
-  return returned > 0.0 ? Echo{range_sum / returned, light_sum} : Echo{kInfinity, 0.0};
+  return returned > 0.0 ? Echo{range_sum / returned, light_sum} : Echo{kNoReturn, 0.0};
 }
 
 double PanoramicScanner::range_std_m(const Echo& echo) const {

@@ -10,14 +10,14 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/angles.h"
 #include "core/error.h"
 
 namespace patrol::sim {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kPulse_m = 0.065;  // 16 waves of 8 mm, there and back
+constexpr double kNoEcho = std::numeric_limits<double>::infinity();
+constexpr double kBurst_m = 0.065;  // 16 waves of 8 mm, there and back
 constexpr int kRays = 149;
 
 /// m/s, in dry air.
@@ -107,26 +107,26 @@ UltrasonicRing::Echo UltrasonicRing::listen(const Pose3& T_world_transducer, dou
   for (std::size_t first = 0, last = 0; last < parts.size(); ++last) {
     const RayHit& hit = parts[last].hit;
     sum += parts[last].strength;
-    for (; parts[first].hit.distance_m < hit.distance_m - kPulse_m; ++first) sum -= parts[first].strength;
+    for (; parts[first].hit.distance_m < hit.distance_m - kBurst_m; ++first) sum -= parts[first].strength;
     if (sum < settings_.least_echo * kRays) continue;
     return {.distance_m = hit.distance_m,
             .p_world = T_world_transducer.position + hit.distance_m * parts[last].direction,
             .normal = hit.normal,
             .geom = hit.geom};
   }
-  return {.distance_m = kInfinity};
+  return {.distance_m = kNoEcho};
 }
 
 /// What a transducer takes the echo of another's ping for: half its way. +Inf where it cannot hear it: from beyond twice its
 /// cone, or when the surface throws the sound elsewhere.
 double UltrasonicRing::heard_of_other_m(const Echo& echo, const Pose3& T_world_other, const Pose3& T_world_transducer) const {
-  if (!std::isfinite(echo.distance_m)) return kInfinity;
+  if (!std::isfinite(echo.distance_m)) return kNoEcho;
   const Eigen::Vector3d way = T_world_transducer.position - echo.p_world;
   const Eigen::Vector3d axis = T_world_transducer.rotation * Eigen::Vector3d::UnitX();
   const double off_axis = std::acos(std::clamp(-way.normalized().dot(axis), -1.0, 1.0));
-  if (off_axis > settings_.fov_deg * kDegree) return kInfinity;
+  if (off_axis > settings_.fov_deg * kDegree) return kNoEcho;
   const Eigen::Vector3d middle = (way.normalized() + (T_world_other.position - echo.p_world).normalized()).normalized();
-  if (strength(echo.geom, std::abs(middle.dot(echo.normal))) <= 0.0) return kInfinity;
+  if (strength(echo.geom, std::abs(middle.dot(echo.normal))) <= 0.0) return kNoEcho;
   return 0.5 * (echo.distance_m + way.norm());
 }
 

@@ -15,9 +15,9 @@
 namespace patrol::slam {
 namespace {
 
-constexpr std::size_t kSize = kCalibrationParameters.size();
+constexpr std::size_t kNumParameters = kCalibrationParameters.size();
 using Vector6 = CalibrationVector;
-using Matrix6 = Eigen::Matrix<double, kSize, kSize>;
+using Matrix6 = Eigen::Matrix<double, kNumParameters, kNumParameters>;
 
 constexpr double kPerMedian = 1.4826;    ///< standard deviation over the median absolute value, of a Gaussian
 constexpr double kLeastNoise = 1e-6;     ///< of a log without any
@@ -50,7 +50,7 @@ class Calibrator {
       : pairs_(pairs), before_(before), parameters_(before), settings_(settings) {}
 
   /// From the values before, with those that are held staying at them.
-  void solve(const std::array<bool, kSize>& is_held) {
+  void solve(const std::array<bool, kNumParameters>& is_held) {
     parameters_ = before_;
     move_noise_ = turn_noise_ = 1.0;
     converged_ = false;
@@ -71,8 +71,8 @@ class Calibrator {
   }
 
   /// As the curvature has it, and as the scores of runs of stretches have it.
-  Matrix6 curvature_covariance(const std::array<bool, kSize>& is_held) const { return inverse_of(curvature(false), is_held); }
-  Matrix6 covariance(const std::array<bool, kSize>& is_held) const {
+  Matrix6 curvature_covariance(const std::array<bool, kNumParameters>& is_held) const { return inverse_of(curvature(false), is_held); }
+  Matrix6 covariance(const std::array<bool, kNumParameters>& is_held) const {
     const std::size_t runs = std::min(kRuns, pairs_.size() / kStretchesPerRun);
     if (runs < kFewestRuns) return curvature_covariance(is_held);
     Matrix6 scores = Matrix6::Zero();
@@ -94,8 +94,8 @@ class Calibrator {
  private:
   static Matrix6 loose_information() { return kLooseStd.cwiseAbs2().cwiseInverse().asDiagonal(); }
 
-  static void hold(const std::array<bool, kSize>& is_held, Matrix6& H, Vector6& g) {
-    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(kSize); ++i) {
+  static void hold(const std::array<bool, kNumParameters>& is_held, Matrix6& H, Vector6& g) {
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(kNumParameters); ++i) {
       if (!is_held[static_cast<std::size_t>(i)]) continue;
       H.row(i).setZero();
       H.col(i).setZero();
@@ -104,11 +104,11 @@ class Calibrator {
     }
   }
 
-  static Matrix6 inverse_of(Matrix6 H, const std::array<bool, kSize>& is_held) {
+  static Matrix6 inverse_of(Matrix6 H, const std::array<bool, kNumParameters>& is_held) {
     Vector6 unused = Vector6::Zero();
     hold(is_held, H, unused);
     Matrix6 inverse = H.ldlt().solve(Matrix6::Identity());
-    for (std::size_t i = 0; i < kSize; ++i) {
+    for (std::size_t i = 0; i < kNumParameters; ++i) {
       if (is_held[i]) inverse(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) = 0.0;
     }
     return inverse;
@@ -174,10 +174,10 @@ class Calibrator {
 };
 
 /// The one that the log tells worst, of those that it tells worse than it should; none is left to hold.
-std::optional<std::size_t> worst_of(const Matrix6& covariance, const Vector6& max_std, const std::array<bool, kSize>& is_held) {
+std::optional<std::size_t> worst_of(const Matrix6& covariance, const Vector6& max_std, const std::array<bool, kNumParameters>& is_held) {
   std::optional<std::size_t> worst;
   double worst_ratio = 1.0;
-  for (std::size_t i = 0; i < kSize; ++i) {
+  for (std::size_t i = 0; i < kNumParameters; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const double ratio = std::sqrt(covariance(row, row)) / std::max(1e-12, max_std[row]);
     if (is_held[i] || !(ratio > worst_ratio)) continue;
@@ -209,7 +209,7 @@ CalibrationResult calibrate(const std::vector<MotionPair>& pairs, const Pose2& T
                         settings.max_std_distance_scale, settings.max_std_turn_scale, settings.max_std_steering_rad_per_m};
   Calibrator calibrator(pairs, before, settings);
   CalibrationResult result;
-  std::array<bool, kSize> is_held{};
+  std::array<bool, kNumParameters> is_held{};
   while (true) {
     calibrator.solve(is_held);
     const std::optional<std::size_t> worst = worst_of(calibrator.curvature_covariance(is_held), max_std, is_held);
@@ -219,7 +219,7 @@ CalibrationResult calibrate(const std::vector<MotionPair>& pairs, const Pose2& T
     is_held[*worst] = true;
   }
   result.covariance = calibrator.covariance(is_held);
-  for (std::size_t i = 0; i < kSize; ++i) {
+  for (std::size_t i = 0; i < kNumParameters; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     CalibratedParameter& parameter = result.parameters[i];
     parameter.before = before[row];

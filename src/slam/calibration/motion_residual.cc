@@ -8,8 +8,8 @@
 namespace patrol::slam {
 namespace {
 
-constexpr std::size_t kSize = 6;
-using Jet = ceres::Jet<double, kSize>;
+constexpr std::size_t kNumDerivatives = 6;
+using Jet = ceres::Jet<double, kNumDerivatives>;
 
 /// A pose whose angle is not wrapped, to take derivatives through.
 struct Motion {
@@ -34,8 +34,8 @@ Motion as_odometry_sees(const Motion& step, const Jet& distance_scale, const Jet
 }  // namespace
 
 MotionResidual motion_residual(const MotionPair& pair, const CalibrationVector& parameters, const MotionModelSettings& odometry) {
-  std::array<Jet, kSize> p;
-  for (std::size_t i = 0; i < kSize; ++i) p[i] = Jet(parameters[static_cast<Eigen::Index>(i)], static_cast<int>(i));
+  std::array<Jet, kNumDerivatives> p;
+  for (std::size_t i = 0; i < kNumDerivatives; ++i) p[i] = Jet(parameters[static_cast<Eigen::Index>(i)], static_cast<int>(i));
   const Motion T_body_lidar{p[0], p[1], p[2]};
   const Jet c = cos(p[2]), s = sin(p[2]);
   const Motion T_lidar_body{-c * p[0] - s * p[1], s * p[0] - c * p[1], -p[2]};

@@ -6,7 +6,7 @@ namespace patrol::slam {
 namespace {
 
 constexpr double kPyramidCell_m = 0.1;
-constexpr int kPyramidLevels = 7;
+constexpr int kSubmapPyramidLevels = 7;
 
 GridMap draw_map(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, const MapDrawing& drawing) {
   GridMap map(drawing.resolution_m, drawing.max_extent_m);
@@ -29,6 +29,6 @@ std::vector<MatchPoint> surface_points_of(const GridMap& map) {
 DrawnSubmap::DrawnSubmap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, const MapDrawing& drawing)
     : map_(draw_map(submap, keyframes, T_map_node, drawing)),
       surface_points_(surface_points_of(map_)),
-      pyramid_(map_, kPyramidCell_m, kPyramidLevels) {}
+      pyramid_(map_, kPyramidCell_m, kSubmapPyramidLevels) {}
 
 }  // namespace patrol::slam

@@ -53,14 +53,14 @@ std::vector<double> first_weights(const std::vector<int>& labels, bool balance_c
 }
 
 /// A stump without its vote, and its share of wrong ones.
-struct Candidate {
+struct StumpCandidate {
   DecisionStump stump;
   double error = 1.0;
 };
 
 /// Goes through the thresholds from below all values upwards; `wrong` is the weight of wrong votes of "+1 above".
-Candidate best_of_feature(std::size_t feature, const Order& order, const LabelledFeatures& training, const std::vector<double>& weights) {
-  Candidate best;
+StumpCandidate best_of_feature(std::size_t feature, const Order& order, const LabelledFeatures& training, const std::vector<double>& weights) {
+  StumpCandidate best;
   double wrong = 0.0, all = 0.0;
   for (const std::size_t i : order) {
     all += weights[i];
@@ -83,10 +83,10 @@ Candidate best_of_feature(std::size_t feature, const Order& order, const Labelle
   return best;
 }
 
-Candidate best_stump(const std::vector<Order>& orders, const LabelledFeatures& training, const std::vector<double>& weights) {
-  Candidate best;
+StumpCandidate best_stump(const std::vector<Order>& orders, const LabelledFeatures& training, const std::vector<double>& weights) {
+  StumpCandidate best;
   for (std::size_t f = 0; f < orders.size(); ++f) {
-    const Candidate candidate = best_of_feature(f, orders[f], training, weights);
+    const StumpCandidate candidate = best_of_feature(f, orders[f], training, weights);
     if (candidate.error < best.error) best = candidate;
   }
   return best;

@@ -9,7 +9,7 @@
 namespace patrol::slam {
 namespace {
 
-constexpr double kFar_m = 10.0;  // where a step's turn is judged
+constexpr double kIcpTurnArm_m = 10.0;  // where a step's turn is judged
 
 /// A source point, where it is now, and its nearest target point.
 struct Pair {
@@ -118,7 +118,7 @@ double largest_distance(const std::vector<Pair>& pairs) {
   return std::ranges::max(pairs, {}, &Pair::distance_m).distance_m;
 }
 
-bool is_small(const Pose2& T_step, double tol_m) { return T_step.position().norm() + kFar_m * std::abs(T_step.yaw) <= tol_m; }
+bool is_small(const Pose2& T_step, double tol_m) { return T_step.position().norm() + kIcpTurnArm_m * std::abs(T_step.yaw) <= tol_m; }
 
 }  // namespace
 

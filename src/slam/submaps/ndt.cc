@@ -17,7 +17,7 @@ namespace patrol::slam {
 namespace {
 
 constexpr double kMostNodes = 4000.0;  // along either axis
-constexpr double kFar_m = 10.0;        // where a step's turn is judged
+constexpr double kNdtTurnArm_m = 10.0;        // where a step's turn is judged
 constexpr double kMinWeight = 1e-6;    // a cell whose points all lie on its border has no shape
 
 /// One of the four nodes around a point.
@@ -182,7 +182,7 @@ Climb climb(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, con
     } else {
       damping *= 10.0;
     }
-    at.converged = damping > kMostDamping || (step.head<2>().norm() < step_tol && kFar_m * std::abs(step.z()) < step_tol);
+    at.converged = damping > kMostDamping || (step.head<2>().norm() < step_tol && kNdtTurnArm_m * std::abs(step.z()) < step_tol);
   }
   return at;
 }
@@ -191,14 +191,14 @@ Climb climb(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, con
 bool is_near_any(const Pose2& T_target_source, const std::vector<Climb>& climbs, double cell_m) {
   return std::ranges::any_of(climbs, [&](const Climb& other) {
     const Pose2& T = other.T_target_source;
-    return (T.position() - T_target_source.position()).norm() < 0.01 * cell_m && kFar_m * std::abs(wrap_angle(T.yaw - T_target_source.yaw)) < 0.01 * cell_m;
+    return (T.position() - T_target_source.position()).norm() < 0.01 * cell_m && kNdtTurnArm_m * std::abs(wrap_angle(T.yaw - T_target_source.yaw)) < 0.01 * cell_m;
   });
 }
 
 /// How the score falls off around its top, by the differences of its gradient half a node either way; never negative.
 Eigen::Matrix3d measured_information(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, const Pose2& T_target_source) {
   const double step_m = 0.25 * grid.cell_m();
-  const Eigen::Vector3d steps(step_m, step_m, step_m / kFar_m);
+  const Eigen::Vector3d steps(step_m, step_m, step_m / kNdtTurnArm_m);
   Eigen::Matrix3d fall;
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d step = steps[k] * Eigen::Vector3d::Unit(k);

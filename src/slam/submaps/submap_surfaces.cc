@@ -7,7 +7,7 @@
 namespace patrol::slam {
 namespace {
 
-constexpr int kPyramidLevels = 7;
+constexpr int kSurfacePyramidLevels = 7;
 
 }  // namespace
 
@@ -16,7 +16,7 @@ std::optional<SubmapSurfaces> describe_surfaces(const GridMap& map, const Submap
   if (static_cast<int>(points.size()) < settings.min_points) return std::nullopt;
   SubmapShape shape = describe_submap(points, map, settings.shape);
   std::vector<Eigen::Vector2d> facings = facings_of(points, map, settings.facing_radius_m);
-  return SubmapSurfaces{.shape = std::move(shape), .points = IcpPoints(std::move(points), settings.icp, std::move(facings)), .pyramid = LikelihoodPyramid(map, settings.pyramid_cell_m, kPyramidLevels)};
+  return SubmapSurfaces{.shape = std::move(shape), .points = IcpPoints(std::move(points), settings.icp, std::move(facings)), .pyramid = LikelihoodPyramid(map, settings.pyramid_cell_m, kSurfacePyramidLevels)};
 }
 
 }  // namespace patrol::slam

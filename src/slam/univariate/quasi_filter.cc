@@ -18,7 +18,7 @@ double normal_quantile(double probability) {
   return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * probability, DoublesStayDoubles());
 }
 
-double squared(double value) { return value * value; }
+double square_of(double value) { return value * value; }
 
 }  // namespace
 
@@ -70,9 +70,9 @@ std::vector<QuasiFilter::Branch> QuasiFilter::grow_branches(double observation) 
 QuasiFilter::Branch QuasiFilter::look_ahead(double expected, double observation) const {
   const double Q = model_.settings().process_var, R = model_.settings().observation_var;
   if (!settings_.looks_ahead) return {.expected = expected, .proposal_mean = expected, .proposal_std = std::sqrt(Q)};
-  const double evidence_var = R + squared(expected / 10.0) * Q + Q * Q / 200.0;
+  const double evidence_var = R + square_of(expected / 10.0) * Q + Q * Q / 200.0;
   const double surprise = observation - (expected * expected + Q) / 20.0;
-  const auto variance_at = [&](double state) { return 1.0 / (1.0 / Q + squared(state / 10.0) / R); };
+  const auto variance_at = [&](double state) { return 1.0 / (1.0 / Q + square_of(state / 10.0) / R); };
   const double mean = expected + variance_at(expected) * expected / 10.0 / R * (observation - model_.observation_of(expected));
   return {.expected = expected,
           .proposal_mean = mean,
@@ -82,8 +82,8 @@ QuasiFilter::Branch QuasiFilter::look_ahead(double expected, double observation)
 
 /// p(y | x) p(x | parent) / (q(x) p(y | parent)); without looking ahead, p(y | x).
 double QuasiFilter::log_weight(const Branch& branch, double state, double observation) const {
-  const double log_prior = -0.5 * squared(state - branch.expected) / model_.settings().process_var;
-  const double log_proposal = -0.5 * squared((state - branch.proposal_mean) / branch.proposal_std) - std::log(branch.proposal_std);
+  const double log_prior = -0.5 * square_of(state - branch.expected) / model_.settings().process_var;
+  const double log_proposal = -0.5 * square_of((state - branch.proposal_mean) / branch.proposal_std) - std::log(branch.proposal_std);
   return model_.log_likelihood(observation, state) + log_prior - log_proposal - branch.log_evidence;
 }
 

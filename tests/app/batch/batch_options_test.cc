@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 
-namespace patrol::app {
+namespace patrol::app::batch_options_test {
 namespace {
 
 TEST(BatchOptions, NoNumberOfJobsIsOneForEachCore) {
@@ -20,4 +20,4 @@ TEST(BatchOptions, WhatCannotBeIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::batch_options_test

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::app {
+namespace patrol::app::process_pool_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -101,4 +101,4 @@ TEST(ProcessPool, AThousandTasksLeaveNoFileOpen) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::process_pool_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::app {
+namespace patrol::app::program_test {
 namespace {
 
 TEST(Program, SaysItsOutputAndExitStatus) {
@@ -21,4 +21,4 @@ TEST(Program, AQuotedWordComesBackFromTheShell) {
 TEST(Program, OneThatThereIsNotIsAnError) { EXPECT_THROW(run_program({"patrol-no-such-program"}), std::runtime_error); }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::program_test

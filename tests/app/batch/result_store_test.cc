@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::result_store_test {
 namespace {
 
 RunVerdict sample_row() {
@@ -38,4 +38,4 @@ TEST(ResultStore, ADamagedRowIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::result_store_test

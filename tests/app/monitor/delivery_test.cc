@@ -14,7 +14,7 @@
 #include "tests/monitor/sample_results.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::delivery_test {
 namespace {
 
 using namespace patrol::test;
@@ -150,4 +150,4 @@ TEST(PlatformFrom, NeedsATokenThatIsOne) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::delivery_test

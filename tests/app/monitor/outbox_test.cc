@@ -9,7 +9,7 @@
 #include "tests/monitor/sample_results.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::outbox_test {
 namespace {
 
 using namespace patrol::test;
@@ -85,4 +85,4 @@ TEST(Outbox, ARunDirectoryWhoseResultsWaitIsNotUsedAgain) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::outbox_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::reporter_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -106,4 +106,4 @@ TEST_F(Reported, WhatNeverBeganLeavesNothing) {
 TEST(RunName, NeverComesTwice) { EXPECT_NE(new_run_name("short", 1), new_run_name("short", 1)); }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::reporter_test

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 
-namespace patrol::app {
+namespace patrol::app::plan_grid_test {
 namespace {
 
 PlanSetup setup_of(const PlanOptions& options) { return load_plan_setup(options); }
@@ -93,4 +93,4 @@ TEST(PlanGrid, SaysWhyNothingCanStandThere) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::plan_grid_test

@@ -6,7 +6,7 @@
 #include "io/map_server.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::plan_map_test {
 namespace {
 
 class PlanMapTest : public ::testing::Test {
@@ -69,4 +69,4 @@ TEST_F(PlanMapTest, WhatIsNoPointIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::plan_map_test

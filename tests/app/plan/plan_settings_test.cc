@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "plan/global_planner.h"
 
-namespace patrol::app {
+namespace patrol::app::plan_settings_test {
 namespace {
 
 PlanOptions options_of(std::vector<std::string> overrides) { return {.map = "m.yaml", .overrides = std::move(overrides)}; }
@@ -71,4 +71,4 @@ TEST(PlanSettings, WhatIsWrongIsNamed) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::plan_settings_test

@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::problem_file_test {
 namespace {
 
 using test::write_bytes;
@@ -111,4 +111,4 @@ TEST_F(ProblemFile, TheTableHasARowForEachProblemWithCellsAsTheFileNamesThem) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::problem_file_test

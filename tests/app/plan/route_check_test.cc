@@ -6,7 +6,7 @@
 #include "plan/routes/theta_star.h"
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::app {
+namespace patrol::app::route_check_test {
 namespace {
 
 using plan::test::draw, plan::test::keeps_clear, plan::test::random_ends, plan::test::random_grid;
@@ -102,4 +102,4 @@ TEST(RouteCheck, PassesEveryRouteOfThetaStarAndOfTheOptimumOnThreeHundredGrids) 
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::route_check_test

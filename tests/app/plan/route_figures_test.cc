@@ -7,7 +7,7 @@
 #include "app/plan/route_check.h"
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::app {
+namespace patrol::app::route_figures_test {
 namespace {
 
 using plan::test::draw, plan::test::length_of, plan::test::random_ends, plan::test::random_grid;
@@ -83,4 +83,4 @@ TEST(RouteFigures, LieBetweenTheReferencesOnAHundredGrids) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::route_figures_test

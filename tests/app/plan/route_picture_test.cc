@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 
-namespace patrol::app {
+namespace patrol::app::route_picture_test {
 namespace {
 
 /// Twenty cells by ten of 1 m, 24 pixels each: obstacles in the left column, what the inflation makes lethal beside them, one unknown row on top.
@@ -56,4 +56,4 @@ TEST(RoutePicture, AMapOfOneCellAndOneOfMillionsAreDrawn) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::route_picture_test

@@ -7,7 +7,7 @@
 
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::app {
+namespace patrol::app::tour_plan_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -96,4 +96,4 @@ TEST(TourPlan, TheWholeWayIsOnePieceAndAsLongAsItsLegs) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::tour_plan_test

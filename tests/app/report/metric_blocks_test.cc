@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::app {
+namespace patrol::app::metric_blocks_test {
 namespace {
 
 using render::TableBlock;
@@ -71,4 +71,4 @@ TEST(PerformanceBlocks, AreInOrderOfTimeWithTheRestLast) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::metric_blocks_test

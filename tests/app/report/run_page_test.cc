@@ -10,7 +10,7 @@
 #include "tests/support/small_run.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::run_page_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -148,4 +148,4 @@ TEST(MapBlocks, MarkAPlaceOnceAndJoinWhatLiesTogether) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::run_page_test

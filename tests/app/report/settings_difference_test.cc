@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::app {
+namespace patrol::app::settings_difference_test {
 
 bool operator==(const SettingDifference& a, const SettingDifference& b) { return a.path == b.path && a.standard == b.standard && a.value == b.value; }
 void PrintTo(const SettingDifference& difference, std::ostream* out) { *out << difference.path << ": " << difference.standard << " -> " << difference.value; }
@@ -61,4 +61,4 @@ TEST(SettingsDifferences, ARobotsOwnFileIsItsStandard) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::settings_difference_test

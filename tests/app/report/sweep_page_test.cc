@@ -7,7 +7,7 @@
 
 #include "app/report/comparison_blocks.h"
 
-namespace patrol::app {
+namespace patrol::app::sweep_page_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -109,4 +109,4 @@ TEST(SweepPage, VariantsAreNamedByTheLastPartOfTheirKeysUnlessTwoAreAlike) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::sweep_page_test

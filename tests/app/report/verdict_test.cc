@@ -5,7 +5,7 @@
 
 #include "tests/support/small_run.h"
 
-namespace patrol::app {
+namespace patrol::app::verdict_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -14,9 +14,9 @@ using test::small_run;
 
 /// The cells of the row that begins with `name`; empty if there is none.
 std::vector<std::string> row_of(const render::VerdictBlock& verdict, const std::string& name) {
-  for (const std::vector<render::Cell>& row : verdict.checks.rows) {
+  for (const std::vector<render::TableCell>& row : verdict.checks.rows) {
     std::vector<std::string> texts;
-    for (const render::Cell& cell : row) texts.push_back(cell.text);
+    for (const render::TableCell& cell : row) texts.push_back(cell.text);
     if (texts.front() == name) return texts;
   }
   return {};
@@ -83,4 +83,4 @@ TEST(Verdict, SaysOfEachKidnapWhatTheTruthInTheLogShows) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::verdict_test

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::run_directory_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -101,4 +101,4 @@ TEST(RunDirectory, OpensOnlyWhereALogLies) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::run_directory_test

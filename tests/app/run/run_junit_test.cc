@@ -5,7 +5,7 @@
 
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::run_junit_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -107,4 +107,4 @@ TEST(RunJunit, ARunThatCrashedIsAnErrorAndNotAFailure) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::run_junit_test

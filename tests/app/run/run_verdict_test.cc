@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::app {
+namespace patrol::app::run_verdict_test {
 namespace {
 
 CheckedExpectation make_check(bool is_met) {
@@ -53,4 +53,4 @@ TEST(RunVerdict, ComesBackFromJson) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::run_verdict_test

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <sstream>
 
-namespace patrol::app {
+namespace patrol::app::watch_frame_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -69,4 +69,4 @@ TEST(WatchFrame, TheNewestEventsStay) {
 TEST(WatchFrame, ATinyTerminalIsNoReasonToFail) { EXPECT_FALSE(watch_frame(in_a_field(), 1, 1).empty()); }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::watch_frame_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::app {
+namespace patrol::app::expectations_test {
 namespace {
 
 io::Metrics make_metrics() {
@@ -98,4 +98,4 @@ TEST(Expectations, OneMissedOfManyIsNotAllMet) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::expectations_test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace patrol::app {
+namespace patrol::app::goal_table_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -50,4 +50,4 @@ TEST(GoalTable, WithoutArrivalsThereIsNone) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::goal_table_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::app {
+namespace patrol::app::relation_table_test {
 namespace {
 
 TEST(RelationTable, HasTheFiguresInTheDigitsInWhichTheyArePublished) {
@@ -29,4 +29,4 @@ TEST(RelationTable, HasTheFiguresInTheDigitsInWhichTheyArePublished) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::relation_table_test

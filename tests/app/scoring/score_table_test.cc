@@ -5,7 +5,7 @@
 
 #include <sstream>
 
-namespace patrol::app {
+namespace patrol::app::score_table_test {
 namespace {
 
 /// The words of the line that begins with a metric; empty if there is none.
@@ -76,4 +76,4 @@ TEST(ScoreTable, LeavesOutListsOfPlainNumbers) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::score_table_test

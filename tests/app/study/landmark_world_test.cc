@@ -7,7 +7,7 @@
 
 #include "tests/support/moments.h"
 
-namespace patrol::app {
+namespace patrol::app::landmark_world_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -100,4 +100,4 @@ TEST(LandmarkWorld, TheSameSeedGivesTheSameRunAndSwitchingTheBiasOffMovesNoOther
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::landmark_world_test

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "plan/routes/grid_search.h"
 
-namespace patrol::app {
+namespace patrol::app::planner_problem_test {
 namespace {
 
 using plan::GridSearch;
@@ -36,4 +36,4 @@ TEST(PlannerProblem, IsDrawnBySeed) {
 TEST(PlannerProblem, RefusesAWorldThatIsNone) { EXPECT_THROW(world_problem("moon", 1), InputError); }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::planner_problem_test

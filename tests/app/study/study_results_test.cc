@@ -7,7 +7,7 @@
 
 #include "io/csv.h"
 
-namespace patrol::app {
+namespace patrol::app::study_results_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -82,4 +82,4 @@ TEST(Study, EveryVariantsReferenceLiesInItsOwnWorld) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::study_results_test

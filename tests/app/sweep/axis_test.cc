@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/support/moments.h"
 
-namespace patrol::app {
+namespace patrol::app::axis_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -113,4 +113,4 @@ TEST(Cross, NothingVariedIsOneVariant) {
 TEST(Cross, AnAxisTwiceIsRefused) { EXPECT_THROW(cross({parse_axis("a=1,2"), parse_axis("a=3,4")}), InputError); }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::axis_test

@@ -8,7 +8,7 @@
 #include "app/scenario.h"
 #include "app/sweep/imperfections.h"
 
-namespace patrol::app {
+namespace patrol::app::budget_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -89,4 +89,4 @@ TEST(Imperfections, EachHasANameOfItsOwnAndSettingsThatThereAre) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::budget_test

@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 
-namespace patrol::app {
+namespace patrol::app::comparison_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -139,4 +139,4 @@ TEST(Progress, LookingOftenFindsDifferencesBetweenEqualsInAtMostFivePercentOfSwe
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::comparison_test

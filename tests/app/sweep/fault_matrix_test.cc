@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::app {
+namespace patrol::app::fault_matrix_test {
 namespace {
 
 TEST(FaultMatrix, AFaultBecomesTheSettingThatDeclaresIt) {
@@ -18,4 +18,4 @@ TEST(FaultMatrix, AVariantsNameIsReadBackAsSensorAndKind) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::fault_matrix_test

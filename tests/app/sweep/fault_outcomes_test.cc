@@ -4,7 +4,7 @@
 
 #include "tests/app/sweep/fault_verdict.h"
 
-namespace patrol::app {
+namespace patrol::app::fault_outcomes_test {
 namespace {
 
 using test::fault_verdict;
@@ -22,4 +22,4 @@ TEST(FaultOutcome, IsTheWorstThatHappened) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::fault_outcomes_test

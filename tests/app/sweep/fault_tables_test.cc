@@ -5,7 +5,7 @@
 
 #include "tests/app/sweep/fault_verdict.h"
 
-namespace patrol::app {
+namespace patrol::app::fault_tables_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -22,8 +22,8 @@ TEST(FaultTables, SaysWhatBecameOfEachFaultAndWhatItCost) {
   rows[1]->metrics["pose"]["ate_rmse_m"] = 0.3;
 
   const io::Table table = faults_table(manifest, rows);
-  EXPECT_EQ(table.rows[1][3], io::Cell("stopped"));
-  EXPECT_EQ(table.rows[2][2], io::Cell("NOT EXECUTED"));
+  EXPECT_EQ(table.rows[1][3], io::TableValue("stopped"));
+  EXPECT_EQ(table.rows[2][2], io::TableValue("NOT EXECUTED"));
   EXPECT_NEAR(std::get<double>(table.rows[1].back()), 0.2, 1e-12);
   EXPECT_THAT(faults_text(manifest, rows), HasSubstr("3 runs: 2 survived, 1 stopped; 1 faults NOT EXECUTED."));
 }
@@ -47,4 +47,4 @@ TEST(FaultTables, ADocumentHasSensorsDownKindsAcrossAndTheWorstOfTheSeeds) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::fault_tables_test

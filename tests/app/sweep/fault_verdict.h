@@ -2,16 +2,16 @@
 
 #include "app/run/run_verdict.h"
 
-namespace patrol::app::test {
+namespace patrol::test {
 
 /// Of a run with one declared fault.
-inline RunVerdict fault_verdict(const char* end, bool is_completed, int collisions, bool is_executed = true) {
+inline app::RunVerdict fault_verdict(const char* end, bool is_completed, int collisions, bool is_executed = true) {
   return {.end = end,
-          .code = ExitCode::kDone,
+          .code = app::ExitCode::kDone,
           .message = "",
           .metrics = {{"mission", {{"completed", is_completed}, {"collisions", collisions}, {"sensor_faults_noticed", 1}}}, {"pose", {{"ate_rmse_m", 0.1}}}},
           .checks = {},
           .events = {{.what = "fault", .is_executed = is_executed}}};
 }
 
-}  // namespace patrol::app::test
+}  // namespace patrol::test

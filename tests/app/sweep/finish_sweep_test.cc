@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::finish_sweep_test {
 namespace {
 
 /// Two seeds of "as it is", "no noise" and "all ideal", with results of their own.
@@ -59,4 +59,4 @@ TEST(FinishSweep, APartOfAnotherSweepIsRefusedAndWhatIsCompleteStaysSo) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::finish_sweep_test

@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::manifest_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -69,4 +69,4 @@ TEST(Manifest, OneWithNothingToCompareIsRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::manifest_test

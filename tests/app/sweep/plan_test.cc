@@ -9,7 +9,7 @@
 #include "io/atomic_file.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::app {
+namespace patrol::app::plan_test {
 namespace {
 
 using ::testing::Contains;
@@ -119,4 +119,4 @@ TEST(PlanFaults, EachOfTheSevenKindsForEachSensorAndOneRunWithout) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::plan_test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace patrol::app {
+namespace patrol::app::slurm_engine_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -27,4 +27,4 @@ TEST(SlurmEngine, AShardsCommandIsTheCallWithItsOptions) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::slurm_engine_test

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace patrol::app {
+namespace patrol::app::sweep_options_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -34,4 +34,4 @@ TEST(SweepOptions, AnyNumberOfShardsHoldsEveryRunOnce) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::sweep_options_test

@@ -5,7 +5,7 @@
 
 #include "io/csv.h"
 
-namespace patrol::app {
+namespace patrol::app::sweep_tables_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -65,4 +65,4 @@ TEST(ComparisonTable, SaysThePairedDifference) {
 }
 
 }  // namespace
-}  // namespace patrol::app
+}  // namespace patrol::app::sweep_tables_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/lining_station.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::adjustment_test {
 namespace {
 
 std::vector<ThinPoint> points_of(const LiningReference& reference) {
@@ -103,4 +103,4 @@ TEST(Adjustment, RingThatHasMovedHasNoWeight) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::adjustment_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/lined_tunnel.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::grip_test {
 namespace {
 
 SurfaceCloud scan(const test::LinedTunnel& tunnel, double chainage_m, std::uint64_t seed) {
@@ -33,4 +33,4 @@ TEST(Grip, BareTunnelHasNone) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::grip_test

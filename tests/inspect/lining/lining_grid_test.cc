@@ -9,7 +9,7 @@
 #include "core/random.h"
 #include "tests/support/lined_tunnel.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::lining_grid_test {
 namespace {
 
 LiningInMap lining_in_map() { return {.design = test::LinedTunnel().lining, .invert_m = -0.3}; }
@@ -110,4 +110,4 @@ TEST(FitDesign, OfAHallThatIsNoTunnelThereIsNone) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::lining_grid_test

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/support/lining_station.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::lining_inspection_test {
 namespace {
 
 const Pose3 kT_body_scanner{{-0.2, 0.0, 0.5}, quaternion_from_yaw(0.0)};
@@ -143,4 +143,4 @@ TEST(LiningReference, IsThinnedAndStandsInMap) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::lining_inspection_test

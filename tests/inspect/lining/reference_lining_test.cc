@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "tests/support/lined_tunnel.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::reference_lining_test {
 namespace {
 
 const LiningInMap kLining{.design = test::LinedTunnel().lining, .invert_m = 0.0};
@@ -67,4 +67,4 @@ TEST(ReferenceLining, WhereNothingWasSeenNothingIsKnown) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::reference_lining_test

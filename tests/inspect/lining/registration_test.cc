@@ -6,7 +6,7 @@
 
 #include "tests/support/lined_tunnel.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::registration_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -55,4 +55,4 @@ TEST(Moved, StepTurnsAboutTheSourcesOriginAndShiftsIt) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::registration_test

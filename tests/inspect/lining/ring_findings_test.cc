@@ -8,7 +8,7 @@
 
 #include "tests/support/lined_tunnel.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::ring_findings_test {
 namespace {
 
 const LiningInMap kLining{.design = test::LinedTunnel().lining, .invert_m = -0.3};
@@ -113,4 +113,4 @@ TEST(ConvergenceLines, LineWithoutItsMarkIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::ring_findings_test

@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::robust_mean_test {
 namespace {
 
 TEST(RobustMean, SpreadOfANormalDistributionIsItsStandardDeviation) {
@@ -40,4 +40,4 @@ TEST(RobustMean, OfNothingIsNothing) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::robust_mean_test

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/random.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::surface_cloud_test {
 namespace {
 
 /// A wall at y = 4 m, 2 m by 2 m, a point every centimetre.
@@ -82,4 +82,4 @@ TEST(SurfaceCloud, OfNothingNothingIsNearest) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::surface_cloud_test

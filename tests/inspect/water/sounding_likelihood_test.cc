@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/support/soundings.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::sounding_likelihood_test {
 namespace {
 
 const ConductiveSphere kBody{.distance_m = 16.0, .radius_m = 6.0, .conductivity_spm = 0.6};
@@ -86,4 +86,4 @@ TEST(SoundingLikelihood, RefusesNoSoundingsAndGatesThatDiffer) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::sounding_likelihood_test

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/support/soundings.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::water_inversion_test {
 namespace {
 
 const ConductiveSphere kBody{.distance_m = 16.0, .radius_m = 6.0, .conductivity_spm = 0.6};
@@ -106,4 +106,4 @@ TEST(WaterInversion, RefusesPriorsThatLeaveNothingByName) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::water_inversion_test

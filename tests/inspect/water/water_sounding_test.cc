@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 
-namespace patrol::inspect {
+namespace patrol::inspect::water_sounding_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -146,4 +146,4 @@ TEST(WaterSounding, ServosThatSayNothingAreNotBelievedToBeThere) {
 }
 
 }  // namespace
-}  // namespace patrol::inspect
+}  // namespace patrol::inspect::water_sounding_test

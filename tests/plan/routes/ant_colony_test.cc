@@ -8,7 +8,7 @@
 #include "plan/routes/grid_search.h"
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::plan {
+namespace patrol::plan::ant_colony_test {
 namespace {
 
 constexpr double kExactTol = 1e-9;
@@ -108,4 +108,4 @@ TEST(AntColony, RefusesNoAntsAndAnEvaporationAboveOne) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::ant_colony_test

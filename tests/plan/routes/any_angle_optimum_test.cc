@@ -7,7 +7,7 @@
 
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::plan {
+namespace patrol::plan::any_angle_optimum_test {
 namespace {
 
 using test::draw, test::random_ends, test::random_grid;
@@ -110,4 +110,4 @@ TEST(AnyAngleOptimum, DoesNotSqueezeBetweenTwoCorners) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::any_angle_optimum_test

@@ -13,7 +13,9 @@
 #include "core/random.h"
 #include "plan/routes/route_planner.h"
 
-namespace patrol::plan::test {
+namespace patrol::test {
+
+using plan::Cost, plan::kFreeCost, plan::kLethalCost, plan::kMaxPassableCost;
 
 /// Drawn with the highest row on top: '#' lethal, '.' free, a digit d costs d ninths of the highest passable cost.
 inline Grid<Cost> draw(const std::vector<std::string>& drawing) {
@@ -109,4 +111,4 @@ inline double length_of(const std::vector<Eigen::Vector2d>& points) {
   return length;
 }
 
-}  // namespace patrol::plan::test
+}  // namespace patrol::test

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::plan {
+namespace patrol::plan::generated_grids_test {
 namespace {
 
 std::ptrdiff_t count_lethal(const Grid<Cost>& costs) { return std::count(costs.values().begin(), costs.values().end(), kLethalCost); }
@@ -52,4 +52,4 @@ TEST(GeneratedGrids, RefusesAnUnknownKind) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::generated_grids_test

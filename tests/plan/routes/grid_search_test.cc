@@ -6,7 +6,7 @@
 
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::plan {
+namespace patrol::plan::grid_search_test {
 namespace {
 
 using test::draw, test::random_ends, test::random_grid;
@@ -95,4 +95,4 @@ TEST(GridSearch, GoesAroundWhatCostsMoreThanTheDetour) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::grid_search_test

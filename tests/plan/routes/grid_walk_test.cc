@@ -6,7 +6,7 @@
 
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::plan {
+namespace patrol::plan::grid_walk_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -124,4 +124,4 @@ TEST(Walker, AWalkPulledTightIsStillAWalkAndNeverDearerOnTwoHundredRandomGrids) 
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::grid_walk_test

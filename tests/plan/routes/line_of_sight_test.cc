@@ -4,7 +4,7 @@
 
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::plan {
+namespace patrol::plan::line_of_sight_test {
 namespace {
 
 using test::draw, test::random_grid;
@@ -68,4 +68,4 @@ TEST(LinePrice, OnFreeGroundIsTheLength) {
 TEST(LinePrice, IsNoneAcrossALethalCell) { EXPECT_FALSE(line_price(draw({".#."}), cost_factors(0.0), {0, 0}, {2, 0})); }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::line_of_sight_test

@@ -8,7 +8,7 @@
 #include "tests/plan/routes/drawn_grid.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::plan {
+namespace patrol::plan::moving_ai_routes_test {
 namespace {
 
 constexpr double kPublishedTol = 1e-4;  // what issue 8 asks for on the benchmark's .scen files
@@ -60,4 +60,4 @@ TEST(MovingAiRoutes, LeadNotFromLandIntoWater) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::moving_ai_routes_test

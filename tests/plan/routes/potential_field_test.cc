@@ -6,7 +6,7 @@
 #include "tests/plan/routes/drawn_grid.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::plan {
+namespace patrol::plan::potential_field_test {
 namespace {
 
 using ::patrol::test::VectorNear;
@@ -31,4 +31,4 @@ TEST(PotentialForces, BesideALethalCellAreGeAndCuis) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::potential_field_test

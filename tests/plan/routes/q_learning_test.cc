@@ -7,7 +7,7 @@
 #include "plan/routes/generated_grids.h"
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::plan {
+namespace patrol::plan::q_learning_test {
 namespace {
 
 // With rewards that are certain, a rate of 1 and hopeful beginnings, the table ends at the true lengths along the shortest route.
@@ -30,4 +30,4 @@ TEST(QLearning, RefusesALearningRateOfZero) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::q_learning_test

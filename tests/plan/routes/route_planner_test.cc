@@ -12,7 +12,7 @@
 #include "tests/plan/routes/drawn_grid.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::plan {
+namespace patrol::plan::route_planner_test {
 namespace {
 
 using test::draw, test::random_ends, test::random_grid;
@@ -183,4 +183,4 @@ TEST(ToMetres, PutsACellsCentreWhereTheGridHasIt) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::route_planner_test

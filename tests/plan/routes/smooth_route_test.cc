@@ -6,7 +6,7 @@
 #include "plan/routes/line_of_sight.h"
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::plan {
+namespace patrol::plan::smooth_route_test {
 namespace {
 
 using test::draw, test::random_ends, test::random_grid;
@@ -53,4 +53,4 @@ TEST(SmoothRoute, KeepsTheClearanceOfTheStretchItReplaces) {
 TEST(SmoothRoute, OfTwoPointsIsThoseTwo) { EXPECT_EQ(smooth_route(draw({"..."}), 0.0, 1.0, {{0.5, 0.5}, {2.5, 0.5}}).size(), 2u); }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::smooth_route_test

@@ -6,7 +6,7 @@
 #include "plan/routes/grid_search.h"
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::plan {
+namespace patrol::plan::theta_star_test {
 namespace {
 
 using test::draw, test::random_ends, test::random_grid;
@@ -67,4 +67,4 @@ TEST(ThetaStar, TurnsAtTheCentreOfTheCellPastTheCorner) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::theta_star_test

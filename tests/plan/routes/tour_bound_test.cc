@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 
-namespace patrol::plan {
+namespace patrol::plan::tour_bound_test {
 namespace {
 
 constexpr double kExactTol = 1e-9;
@@ -60,4 +60,4 @@ TEST(TourBound, IsInfiniteIfTheStationsDoNotHangTogether) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::tour_bound_test

@@ -12,7 +12,7 @@
 #include "core/random.h"
 #include "plan/routes/tour_bound.h"
 
-namespace patrol::plan {
+namespace patrol::plan::tour_order_test {
 namespace {
 
 constexpr double kExactTol = 1e-9;
@@ -193,4 +193,4 @@ TEST(TourOrder, RefusesWhatIsNoProblem) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::tour_order_test

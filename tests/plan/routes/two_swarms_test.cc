@@ -8,7 +8,7 @@
 #include "plan/routes/grid_search.h"
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::plan {
+namespace patrol::plan::two_swarms_test {
 namespace {
 
 TEST(TwoSwarms, OnFreeGroundComesWithinOnePercentOfTheOctileDistance) {
@@ -34,4 +34,4 @@ TEST(TwoSwarms, RefusesNoParticles) {
 }
 
 }  // namespace
-}  // namespace patrol::plan
+}  // namespace patrol::plan::two_swarms_test

@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "tests/render/small_scene.h"
 
-namespace patrol::render {
+namespace patrol::render::approach_test {
 namespace {
 
 /// The robot's box reaches from x = -0.3 m to 0.3 m, from y = -0.15 m to 0.15 m. The walker is a cylinder of 0.2 m, its leg one of 0.1 m.
@@ -49,4 +49,4 @@ TEST_F(ApproachFinderTest, WhatIsFarOffIsNoApproach) { EXPECT_FALSE(finder.neare
 TEST_F(ApproachFinderTest, RefusesAStateOfAnotherModel) { EXPECT_THROW(finder.nearest(SimState{}), InputError); }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::approach_test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace patrol::render {
+namespace patrol::render::director_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -47,4 +47,4 @@ TEST(Director, SaysWhatIsShownAndHowFast) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::director_test

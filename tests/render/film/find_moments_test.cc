@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace patrol::render {
+namespace patrol::render::find_moments_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -127,4 +127,4 @@ TEST(FindMoments, WhatIsAnnouncedTakesItsPlaceInTime) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::find_moments_test

@@ -6,7 +6,7 @@
 #include "tests/render/small_scene.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::render {
+namespace patrol::render::run_history_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -42,4 +42,4 @@ TEST(RunHistory, IsWhatTheLogTellsOfTheWholeRun) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::run_history_test

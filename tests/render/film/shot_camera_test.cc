@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::render {
+namespace patrol::render::shot_camera_test {
 namespace {
 
 constexpr double kFrame_s = 1.0 / 30.0;
@@ -47,4 +47,4 @@ TEST(ShotCamera, FromAboveHasTheRobotAndWhereItBelievesToBe) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::shot_camera_test

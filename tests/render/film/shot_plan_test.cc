@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 
-namespace patrol::render {
+namespace patrol::render::shot_plan_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -94,4 +94,4 @@ TEST(ShotPlan, KnowsTheNamesOfItsCuts) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::shot_plan_test

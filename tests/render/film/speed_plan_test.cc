@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::render {
+namespace patrol::render::speed_plan_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -70,4 +70,4 @@ TEST(SpeedPlan, OfARunOfOneInstantShowsThatInstant) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::speed_plan_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace patrol::render {
+namespace patrol::render::decimation_test {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -69,4 +69,4 @@ TEST(Simplified, LeavesStandingStillAndShortPathsAlone) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::decimation_test

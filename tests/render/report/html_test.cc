@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace patrol::render {
+namespace patrol::render::html_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -29,4 +29,4 @@ TEST(DataUri, IsTheStandardsOwnExamples) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::html_test

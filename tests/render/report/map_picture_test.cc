@@ -6,7 +6,7 @@
 
 #include "tests/support/temporary_file.h"
 
-namespace patrol::render {
+namespace patrol::render::map_picture_test {
 namespace {
 
 const Color kPaper{255, 255, 255};
@@ -116,4 +116,4 @@ TEST(MapErrorColor, GrowsLighterFromEndToEnd) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::map_picture_test

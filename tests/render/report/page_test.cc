@@ -5,7 +5,7 @@
 
 #include <regex>
 
-namespace patrol::render {
+namespace patrol::render::page_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -136,4 +136,4 @@ TEST(SpanChart, HasAScaleWithZeroAndNegativeValuesInIt) {
 }
 
 }  // namespace
-}  // namespace patrol::render
+}  // namespace patrol::render::page_test

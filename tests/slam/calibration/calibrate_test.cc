@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "tests/slam/calibration/calibration_world.h"
 
-namespace patrol::slam {
+namespace patrol::slam::calibrate_test {
 namespace {
 
 using test::kWorn, test::record, test::wandering;
@@ -113,4 +113,4 @@ TEST(Calibrate, FewerThanTwentyStretchesAreRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::calibrate_test

@@ -5,7 +5,7 @@
 #include "tests/slam/calibration/calibration_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::calibration_test {
 namespace {
 
 using test::Pose2Near;
@@ -63,4 +63,4 @@ TEST(CalibratedScans, TheWayWithinAScanIsPutRightToo) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::calibration_test

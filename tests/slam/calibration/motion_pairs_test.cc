@@ -7,7 +7,7 @@
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::motion_pairs_test {
 namespace {
 
 /// What a lidar sees in a world of walls, all round.
@@ -132,4 +132,4 @@ TEST(MotionPairs, ADriveThroughAnOfficeCalibratesItsLidarAndWheels) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::motion_pairs_test

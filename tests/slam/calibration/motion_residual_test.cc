@@ -6,7 +6,7 @@
 
 #include "tests/slam/calibration/calibration_world.h"
 
-namespace patrol::slam {
+namespace patrol::slam::motion_residual_test {
 namespace {
 
 const CalibrationVector kTruth{test::kWorn.lidar_x_m, test::kWorn.lidar_y_m, test::kWorn.lidar_yaw_rad, test::kWorn.distance_scale, test::kWorn.turn_scale, test::kWorn.steering_rad_per_m};
@@ -41,4 +41,4 @@ TEST(MotionResidual, TheLidarsCovarianceIsTurnedIntoTheBody) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::motion_residual_test

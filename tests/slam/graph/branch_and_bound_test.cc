@@ -9,7 +9,7 @@
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::branch_and_bound_test {
 namespace {
 
 const Pose2 kMapped{8.0, 4.2, 0.0}, kSeen{9.3, 4.6, 0.5};
@@ -80,4 +80,4 @@ TEST(SearchWindow, FindsNothingAboveAScoreThatNoPoseReachesNorWithoutPoints) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::branch_and_bound_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace patrol::slam {
+namespace patrol::slam::degeneracy_test {
 namespace {
 
 /// Of points on a wall: each tells the distance to it.
@@ -47,4 +47,4 @@ TEST(WithoutDirection, NothingIsLeftAlongItAndAllAcross) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::degeneracy_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::slam {
+namespace patrol::slam::edge_weight_test {
 namespace {
 
 TEST(EdgeInformation, AMatchOfCountlessPointsIsAsSureAsItsSystematicError) {
@@ -28,4 +28,4 @@ TEST(EdgeInformation, IsSymmetricAndPositive) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::edge_weight_test

@@ -5,7 +5,7 @@
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::graph_slam_test {
 namespace {
 
 struct MappedDrive {
@@ -162,4 +162,4 @@ TEST(GraphSlam, BeforeAnyScanItHasNoPathAndAfterOneItStandsAtTheOrigin) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::graph_slam_test

@@ -9,7 +9,7 @@
 #include "slam/scan_integration.h"
 #include "tests/slam/graph/office_world.h"
 
-namespace patrol::slam {
+namespace patrol::slam::likelihood_pyramid_test {
 namespace {
 
 GridMap look_once(const Pose2& T_map_body) {
@@ -86,4 +86,4 @@ TEST(LikelihoodPyramid, OfAnEmptyMapIsZeroEverywhere) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::likelihood_pyramid_test

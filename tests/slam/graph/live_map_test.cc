@@ -4,7 +4,7 @@
 
 #include "tests/slam/graph/office_world.h"
 
-namespace patrol::slam {
+namespace patrol::slam::live_map_test {
 namespace {
 
 /// Scans along a room of 8 m x 4 m.
@@ -84,4 +84,4 @@ TEST(LiveMap, ATurnCountsByWhatItMovesTenMetresAway) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::live_map_test

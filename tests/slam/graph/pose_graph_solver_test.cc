@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::pose_graph_solver_test {
 namespace {
 
 using test::Pose2Near;
@@ -183,4 +183,4 @@ TEST(EdgeError, IsInTheFrameOfItsFirstNodeAndWrapsTheAngle) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::pose_graph_solver_test

@@ -7,7 +7,7 @@
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::scan_tracker_test {
 namespace {
 
 /// Drives a stretch of the corridor, with what odometry makes of each step.
@@ -85,4 +85,4 @@ TEST(ScanTracker, KeyframesComeEveryQuarterMetreAndSubmapsEveryThirtyKeyframes) 
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::scan_tracker_test

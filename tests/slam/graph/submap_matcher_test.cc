@@ -6,7 +6,7 @@
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::submap_matcher_test {
 namespace {
 
 using test::Pose2Near, test::drive_past;
@@ -51,4 +51,4 @@ TEST(MatchSubmaps, AmongIdenticalDoorsAMatchIsTakenOnlyWhereNoOtherCanBeMeant) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::submap_matcher_test

@@ -8,7 +8,7 @@
 
 #include "tests/slam/graph/drawn_submap.h"
 
-namespace patrol::slam {
+namespace patrol::slam::submap_test {
 namespace {
 
 // From (2, 1) in the world, looking along y: what lies in the world at (x, y) lies in the submap at (y - 1, 2 - x).
@@ -62,4 +62,4 @@ TEST(SubmapCache, DrawsOnceAndForgetsWhatWasUsedLongestAgo) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::submap_test

@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::way_uncertainty_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -78,4 +78,4 @@ TEST(Turned, AQuarterTurnSwapsTheVariancesOfXAndY) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::way_uncertainty_test

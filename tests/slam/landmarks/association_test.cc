@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace patrol::slam {
+namespace patrol::slam::association_test {
 namespace {
 
 const RangeBearingNoise kNoise{.range_std_m = 0.5, .bearing_std_rad = 0.1};
@@ -71,4 +71,4 @@ TEST(Associate, PredictsFromThePoseThatItIsGiven) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::association_test

@@ -6,7 +6,7 @@
 #include "tests/slam/landmarks/circle_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::batch_least_squares_test {
 namespace {
 
 using test::CircleWorld, test::dead_reckoning, test::drive, test::Drive, test::poses_of, test::rmse_m, test::run, test::VectorNear;
@@ -119,4 +119,4 @@ TEST(SolveBatch, ALandmarkThatIsNotInTheGuessStaysWithoutAPlace) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::batch_least_squares_test

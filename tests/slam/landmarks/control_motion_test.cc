@@ -7,7 +7,7 @@
 
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::control_motion_test {
 namespace {
 
 using test::Pose2Near;
@@ -103,4 +103,4 @@ TEST(ControlMotion, AnIncrementOfTwoAndMinusOneIsTwoDeviationsFasterAndOneLessTu
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::control_motion_test

@@ -11,7 +11,7 @@
 #include "tests/slam/landmarks/circle_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::ekf_slam_test {
 namespace {
 
 using test::CircleWorld, test::drive, test::Drive, test::poses_of, test::rmse_m, test::run, test::VectorNear;
@@ -247,4 +247,4 @@ TEST(EkfSlam, ALandmarkThatWasNotSeenHasNoPlace) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::ekf_slam_test

@@ -9,7 +9,7 @@
 #include "tests/slam/landmarks/circle_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::fast_slam_test {
 namespace {
 
 using test::CircleWorld, test::drive, test::Drive, test::poses_of, test::rmse_m, test::run, test::VectorNear;
@@ -208,4 +208,4 @@ TEST(FastSlam, ALandmarkThatWasNotSeenHasNoPlace) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::fast_slam_test

@@ -9,7 +9,7 @@
 #include "core/random.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::landmark_map_test {
 namespace {
 
 using test::VectorNear;
@@ -129,4 +129,4 @@ TEST(SightLikelihood, OfAThousandSightsIsTheSumOfTheFits) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::landmark_map_test

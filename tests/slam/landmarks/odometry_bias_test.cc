@@ -7,7 +7,7 @@
 #include "core/random.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::odometry_bias_test {
 namespace {
 
 using test::VectorNear;
@@ -62,4 +62,4 @@ TEST(OdometryBias, ThatWandersATenthEachStepIsKnownToTheSteadyStatesVariance) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::odometry_bias_test

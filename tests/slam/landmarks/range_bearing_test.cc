@@ -7,7 +7,7 @@
 
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::range_bearing_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -68,4 +68,4 @@ TEST(RangeBearingNoise, CovarianceIsTheSquaresOfHalfAMetreAndATenthOfARadian) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::range_bearing_test

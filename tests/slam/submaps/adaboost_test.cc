@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/random.h"
 
-namespace patrol::slam {
+namespace patrol::slam::adaboost_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;  // algebra
@@ -181,4 +181,4 @@ TEST(AdaBoost, WrongExamplesAreRefusedByName) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::adaboost_test

@@ -4,7 +4,7 @@
 
 #include "core/random.h"
 
-namespace patrol::slam {
+namespace patrol::slam::convex_hull_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;  // algebra
@@ -60,4 +60,4 @@ TEST(Intersection, OfASquareAndOneTurnedIsAnOctagon) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::convex_hull_test

@@ -9,7 +9,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/submap_points.h"
 
-namespace patrol::slam {
+namespace patrol::slam::effective_neighbour_icp_test {
 namespace {
 
 using test::make_yard, test::Pose2Near, test::RoomWorld, test::sample_walls;
@@ -206,4 +206,4 @@ TEST(AlignIcp, WithoutEnoughPointsThereIsNoMatch) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::effective_neighbour_icp_test

@@ -13,7 +13,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/submap_points.h"
 
-namespace patrol::slam {
+namespace patrol::slam::ndt_test {
 namespace {
 
 using test::make_yard, test::Pose2Near, test::RoomWorld, test::sample_walls;
@@ -194,4 +194,4 @@ TEST(Thinned, KeepsEveryThirdOfThree) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::ndt_test

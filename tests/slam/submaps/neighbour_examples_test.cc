@@ -7,7 +7,7 @@
 #include "slam/submaps/pair_features.h"
 #include "tests/slam/submaps/submap_drive.h"
 
-namespace patrol::slam {
+namespace patrol::slam::neighbour_examples_test {
 namespace {
 
 const test::SubmapDrive& office_drive() {
@@ -52,4 +52,4 @@ TEST(NeighbourExamples, TheSameSeedGivesTheSame) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::neighbour_examples_test

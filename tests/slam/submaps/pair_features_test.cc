@@ -12,7 +12,7 @@
 #include "tests/support/seen_submap.h"
 #include "tests/support/submap_points.h"
 
-namespace patrol::slam {
+namespace patrol::slam::pair_features_test {
 namespace {
 
 using test::make_yard, test::RoomWorld, test::see_submap, test::SeenSubmap, test::short_walk;
@@ -227,4 +227,4 @@ TEST(PairFeatures, AdaBoostTellsNeighboursFromStrangersOnASiteItHasNotSeen) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::pair_features_test

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/random.h"
 
-namespace patrol::slam {
+namespace patrol::slam::point_tree_test {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -74,4 +74,4 @@ TEST(SurfaceNormals, OfAWallStandsAcrossItAndOfACrossIsWorthNothing) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::point_tree_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::slam {
+namespace patrol::slam::seen_cells_test {
 namespace {
 
 using State = SeenCells::State;
@@ -48,4 +48,4 @@ TEST(SeenCells, VisitsWhatIsKnownAndNothingOfAnEmptyMap) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::seen_cells_test

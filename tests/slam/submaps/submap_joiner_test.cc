@@ -6,7 +6,7 @@
 #include "tests/slam/submaps/submap_drive.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::submap_joiner_test {
 namespace {
 
 /// What is seen on 8 m along a corridor from (x, y) on; in the frame of the first scan.
@@ -60,4 +60,4 @@ TEST(JoinSubmaps, AMatchThatLeavesTheRecognisedPlaceIsNone) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::submap_joiner_test

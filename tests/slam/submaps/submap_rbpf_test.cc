@@ -5,7 +5,7 @@
 #include "tests/slam/submaps/submap_drive.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam {
+namespace patrol::slam::submap_rbpf_test {
 namespace {
 
 using test::agreeing_neighbours, test::map_by_submaps, test::SubmapDrive;
@@ -86,4 +86,4 @@ TEST(SubmapRbpf, BeforeAnyScanItHasNoPathAndAfterOneItStandsAtTheOrigin) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::submap_rbpf_test

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/support/submap_points.h"
 
-namespace patrol::slam {
+namespace patrol::slam::submap_shape_test {
 namespace {
 
 using test::make_yard, test::sample_walls;
@@ -92,4 +92,4 @@ TEST(CircularCorrelation, FindsATurnAndSaysNothingOfEvenHistograms) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::submap_shape_test

@@ -2,7 +2,7 @@
 
 #include "tests/slam/swarm/swarm_trial.h"
 
-namespace patrol::slam {
+namespace patrol::slam::bat_test {
 namespace {
 
 using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphere, test::successes, test::worst_distance;
@@ -45,4 +45,4 @@ TEST(BatOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_judge(k
 TEST(BatOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kBats); }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::bat_test

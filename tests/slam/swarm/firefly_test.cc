@@ -2,7 +2,7 @@
 
 #include "tests/slam/swarm/swarm_trial.h"
 
-namespace patrol::slam {
+namespace patrol::slam::firefly_test {
 namespace {
 
 using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphere, test::successes, test::worst_distance;
@@ -79,4 +79,4 @@ TEST(ImprovedFireflyOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect
 TEST(ImprovedFireflyOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kImproved); }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::firefly_test

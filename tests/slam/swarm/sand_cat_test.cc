@@ -2,7 +2,7 @@
 
 #include "tests/slam/swarm/swarm_trial.h"
 
-namespace patrol::slam {
+namespace patrol::slam::sand_cat_test {
 namespace {
 
 using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphere, test::successes, test::worst_distance;
@@ -55,4 +55,4 @@ TEST(ImprovedSandCatOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect
 TEST(ImprovedSandCatOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kImproved); }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::sand_cat_test

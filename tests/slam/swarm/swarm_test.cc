@@ -4,7 +4,7 @@
 
 #include "tests/slam/swarm/swarm_trial.h"
 
-namespace patrol::slam {
+namespace patrol::slam::swarm_test {
 namespace {
 
 Position at(double x, double y) { return Eigen::Vector2d(x, y); }
@@ -52,4 +52,4 @@ TEST(TestFunctions, AreZeroAtTheOptimumAndLessATenthOfAMetreBeside) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::swarm_test

@@ -2,7 +2,7 @@
 
 #include "tests/slam/swarm/swarm_trial.h"
 
-namespace patrol::slam {
+namespace patrol::slam::whale_test {
 namespace {
 
 using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphere, test::successes, test::worst_distance;
@@ -62,4 +62,4 @@ TEST(WhaleOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_judge
 TEST(WhaleOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kWhales); }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::whale_test

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "tests/slam/univariate/growth_runs.h"
 
-namespace patrol::slam {
+namespace patrol::slam::exact_filter_test {
 namespace {
 
 using testing::HasSubstr;
@@ -105,4 +105,4 @@ TEST(ExactFilter, RefusesTheSignAsPrintedAndCellsOfZero) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::exact_filter_test

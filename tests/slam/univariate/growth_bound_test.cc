@@ -13,7 +13,7 @@
 
 /// The exact filter bounds all that see observations alone. What is significantly better has seen more than that, as the figures of paper 001,
 /// table 1, must have.
-namespace patrol::slam {
+namespace patrol::slam::growth_bound_test {
 namespace {
 
 constexpr std::size_t kSeeds = 40;
@@ -82,4 +82,4 @@ TEST(GrowthBound, OursWithAHundredAndFiftyParticlesIsWithinThreePercentOfIt) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::growth_bound_test

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "tests/slam/univariate/growth_runs.h"
 
-namespace patrol::slam {
+namespace patrol::slam::growth_filter_test {
 namespace {
 
 using testing::HasSubstr;
@@ -115,4 +115,4 @@ TEST(GrowthFilter, RefusesToHaveNoParticles) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::growth_filter_test

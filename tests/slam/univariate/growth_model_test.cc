@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 
-namespace patrol::slam {
+namespace patrol::slam::growth_model_test {
 namespace {
 
 using testing::HasSubstr;
@@ -86,4 +86,4 @@ TEST(GrowthModel, NamesTheSettingThatBreaksItsRule) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::growth_model_test

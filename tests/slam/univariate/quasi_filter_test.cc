@@ -12,7 +12,7 @@
 #include "slam/univariate/growth_filter.h"
 #include "tests/slam/univariate/growth_runs.h"
 
-namespace patrol::slam {
+namespace patrol::slam::quasi_filter_test {
 namespace {
 
 using testing::HasSubstr;
@@ -100,4 +100,4 @@ TEST(QuasiFilter, NamesTheSettingThatBreaksItsRule) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::quasi_filter_test

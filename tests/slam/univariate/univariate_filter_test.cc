@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::slam {
+namespace patrol::slam::univariate_filter_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -22,4 +22,4 @@ TEST(Summarize, OneParticleHasNoVariance) {
 }
 
 }  // namespace
-}  // namespace patrol::slam
+}  // namespace patrol::slam::univariate_filter_test
