@@ -17,8 +17,8 @@ namespace patrol::io {
 /// kinds: an edge between consecutive nodes is read as odometry, any other as a loop closure. FIX is checked and
 /// dropped, because the first node of a graph is always fixed.
 ///
-/// Throws InputError with file and line for any other record, a duplicate or undefined id, an edge from a node to
-/// itself, and information that is not positive definite.
+/// Throws InputError with file and line for any other record and a duplicate or undefined id. Also for an edge from a
+/// node to itself, and for information that is not positive definite.
 PoseGraph load_g2o(const std::filesystem::path& file);
 
 /// Formats a pose graph with the fewest digits that read back identically. Ids are node indices; the first node is

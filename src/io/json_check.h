@@ -5,9 +5,9 @@
 
 namespace patrol::io {
 
-/// Checks a JSON text in one pass without storing it. Throws InputError with file, line and JSON path for invalid JSON,
-/// numbers that overflow, duplicate keys, and lists with more than `max_entries` entries. The check of a list ends at
-/// its first excess entry.
+/// Checks a JSON text in one pass without storing it. Throws InputError for invalid JSON (with file and line), and for
+/// numbers that overflow, duplicate keys, deep nesting, and lists of more than `max_entries` entries (with file and JSON
+/// path). The check of a list ends at its first excess entry.
 void check_json(const std::string& file, const std::string& text, std::size_t max_entries);
 
 }  // namespace patrol::io

@@ -12,7 +12,7 @@ struct WaterSoundingSettings {
   double max_yaw_deg = 60.0;    ///< -60 to 60 in steps of 20
   int pitches = 5;
   double max_pitch_deg = 30.0;  ///< -30 to 30 in steps of 15
-  double settled_deg = 0.5;     ///< maximum encoder error and motion of a settled antenna
+  double settled_deg = 0.5;     ///< maximum angle error of a settled antenna, which must also have stopped
   double settle_s = 0.4;        ///< minimum duration of the settled state
   double turn_timeout_s = 8.0;  ///< the pose is skipped after this time
   double sounding_timeout_s = 5.0;
