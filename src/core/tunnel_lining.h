@@ -24,8 +24,8 @@ struct TunnelPlace {
 /// Surveyed design of a lined tunnel: axis, cross section and rings. Heights are above the invert. The section is a
 /// horseshoe: a half circle above the arcs of the side walls.
 ///
-/// Clock positions are for a viewer who looks along the axis. 0 deg is the crown (12 o'clock). 90 deg (3 o'clock) is the
-/// right wall at the height of the center of the half circle, 270 deg the left wall.
+/// Clock positions are for a viewer who looks along the axis. 0 deg is the crown (12 o'clock). 90 deg (3 o'clock) is
+/// the right wall at the height of the center of the half circle, 270 deg the left wall.
 struct TunnelLining {
   Pose2 T_route_start;              ///< pose of the axis at chainage 0, x along the axis, in the frame of the route
   std::vector<AxisElement> axis;    ///< extrapolated beyond both ends with the curvature there

@@ -19,9 +19,9 @@ enum class GyroVerdict {
 /// Gyro-aided odometry: yaw increments from the gyro, translation from the wheel odometry. Each translation increment
 /// is rotated by half of the yaw correction (midpoint rule).
 ///
-/// The gyro bias is the mean rate over all standstills of at least one second so far, which odometry detects. Before the
-/// first standstill the bias is the given value from an earlier pass over the log, or zero. Standstills and intervals
-/// without gyro messages keep the yaw increment of the odometry.
+/// The gyro bias is the mean rate over all standstills of at least one second so far, which odometry detects. Before
+/// the first standstill the bias is the given value from an earlier pass over the log, or zero. Standstills and
+/// intervals without gyro messages keep the yaw increment of the odometry.
 class GyroOdometry {
  public:
   explicit GyroOdometry(std::optional<double> earlier_bias_radps = {}) : earlier_bias_radps_(earlier_bias_radps) {}

@@ -16,12 +16,12 @@ struct NoReturnValue {
   std::uint64_t num_places = 0;    ///< number of robot positions with such readings
 };
 
-/// Detector of the range that encodes "no return" in the first scans of a log. Examples: 81.83 m and 8.19 m (SICK), 50 m,
-/// 5.6 m.
+/// Detector of the range that encodes "no return" in the first scans of a log. Examples: 81.83 m and 8.19 m (SICK), 50
+/// m, 5.6 m.
 ///
-/// Criteria: the value is at least 98 % of the maximum range and is bit-identical at many robot positions. It is read at
-/// least five times as often as any other single range not far below. A wall does not meet the criteria: while the robot
-/// moves, the maximum ranges vary and are few. A scan is examined only after the robot has moved since the last
+/// Criteria: the value is at least 98 % of the maximum range and is bit-identical at many robot positions. It is read
+/// at least five times as often as any other single range not far below. A wall does not meet the criteria: while the
+/// robot moves, the maximum ranges vary and are few. A scan is examined only after the robot has moved since the last
 /// examined one, because a stationary robot in front of a wall gives no evidence. If a lidar reports several such
 /// values (SICK codes differ by millimeters), the lowest is returned.
 class NoReturnFinder {

@@ -54,8 +54,8 @@ struct InertialError {
 ///   dp'   = R dv - [R v]x phi
 ///   phi'  = -R dbg
 ///   dv'   = R^T [g]x phi - [omega]x dv - [v]x dbg - dba
-/// P = F P F^T with F = I + dt A. F is applied to the rows in place, before and after a transposition of the symmetric P.
-/// Each row block uses only blocks that are not yet overwritten. Errors beyond the first fifteen are constant.
+/// P = F P F^T with F = I + dt A. F is applied to the rows in place, before and after a transposition of the symmetric
+/// P. Each row block uses only blocks that are not yet overwritten. Errors beyond the first fifteen are constant.
 template <typename Covariance>
 void propagate_inertial_errors(Covariance& P, double dt_s, const Eigen::Matrix3d& R, const Eigen::Vector3d& v,
                                const Eigen::Vector3d& omega) {
