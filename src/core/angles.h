@@ -2,9 +2,10 @@
 
 #include <numbers>
 
-/// Conversions between degrees and radians. Angles in the program are radians; degrees occur in settings, files and messages.
+/// Conversions between degrees and radians. Angles in the program are radians; degrees occur in settings, files and
+/// messages.
 ///
-/// A constant and a function of the same meaning round differently: x * kDegree rounds pi / 180 first, to_rad(x) rounds x * pi first.
+/// The constants and the functions round differently: x * kDegree rounds pi / 180 first, to_rad(x) rounds x * pi first.
 /// Replacing one by the other changes last bits, and with them the bytes of a log.
 namespace patrol {
 

@@ -6,24 +6,25 @@
 
 namespace patrol {
 
-/// Says +1 on one side of a threshold and -1 on the other.
+/// Weak classifier: votes +1 on one side of a threshold and -1 on the other.
 struct DecisionStump {
   std::size_t feature = 0;
   double threshold = 0.0;
-  int sign_above = 1;   ///< +1 or -1: what it says of values above the threshold
-  double weight = 0.0;  ///< of its vote; positive
+  int sign_above = 1;   ///< +1 or -1: vote for values above the threshold
+  double weight = 0.0;  ///< weight of the vote; positive
 
   int vote(const std::vector<double>& features) const { return features[feature] > threshold ? sign_above : -sign_above; }
 
   friend bool operator==(const DecisionStump&, const DecisionStump&) = default;
 };
 
-/// A vote of stumps (slam/submaps/adaboost.h trains them, io/adaboost_json.h keeps them).
+/// Weighted vote of decision stumps [Freund97]. Trained in slam/submaps/adaboost.h, stored by io/adaboost_json.h.
 struct BoostedStumps {
-  std::vector<std::string> features;  ///< [feature]: its name, so that a model is not asked about others than it has learnt
+  std::vector<std::string> features;  ///< [feature]: name, checked when a model is loaded
   std::vector<DecisionStump> stumps;
 
-  /// Share of the votes for +1 less that for -1: -1 ... 1, how sure it is; 0 without stumps. `values` [feature].
+  /// Returns the normalized weighted vote in [-1, 1]; 0 without stumps. Its magnitude is the confidence of the
+  /// classification. `values`: [feature].
   double margin(const std::vector<double>& values) const {
     double votes = 0.0, all = 0.0;
     for (const DecisionStump& stump : stumps) {

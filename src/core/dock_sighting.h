@@ -7,13 +7,13 @@
 
 namespace patrol {
 
-/// The charging post, found in one scan.
+/// Detection of the charging post in one scan.
 struct DockSighting {
   Time stamp{};
-  Pose2 T_level_docked;  ///< where the level body would stand when docked, from where it stands now
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in level; m, m, rad
-  double explained = 0.0;  ///< share of the beams about the post that end where its outline says
-  double rms_m = 0.0;      ///< of those, between range and outline
+  Pose2 T_level_docked;  ///< pose of `level` when docked, in the present `level` frame
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< covariance of x, y, yaw of `T_level_docked`; m, m, rad
+  double explained = 0.0;  ///< inlier ratio: fraction of the beams around the post that end on its outline
+  double rms_m = 0.0;      ///< root mean square range residual of the inliers, m
 };
 
 }  // namespace patrol

@@ -5,20 +5,20 @@
 #include <cmath>
 #include <numbers>
 
-/// The frames, and the poses between them.
+/// Coordinate frames and rigid transforms.
 ///
-///   world     the simulator's truth; z up; nobody in the stack can name it
-///   map       what SLAM builds; origin is the level body pose at the start; may jump on a loop closure
-///   odom      smooth and drifting; never jumps
-///   body      the robot's base (REP 105 `base_link`); x forward, y left, z up (REP 103)
-///   level     the body with roll and pitch removed, at the same origin (REP 105 `base_footprint`, kept at trunk height)
+///   world     ground-truth frame of the simulator; z up; unknown to the stack
+///   map       frame of the SLAM map; origin at the initial `level` pose; may jump on a loop closure
+///   odom      continuous odometry frame; drifts and never jumps
+///   body      base of the robot (REP 105 `base_link`); x forward, y left, z up (REP 103)
+///   level     gravity-aligned body frame: no roll or pitch, same origin (REP 105 `base_footprint` at trunk height)
 ///   <sensor>  `lidar`, `imu`, ...
 ///
-/// `T_a_b` takes coordinates in b to coordinates in a: p_a = T_a_b * p_b, and neighbouring names meet:
-/// T_world_map * T_map_body. Angles are radians, lengths metres.
+/// `T_a_b` maps coordinates in b to coordinates in a: p_a = T_a_b * p_b. Neighboring names meet in products:
+/// T_world_map * T_map_body. Angles are in radians, lengths in meters.
 namespace patrol {
 
-/// Names in messages and files (REP 105).
+/// Frame names in messages and files (REP 105).
 namespace frame_id {
 inline constexpr const char* kMap = "map";
 inline constexpr const char* kOdom = "odom";
@@ -27,10 +27,11 @@ inline constexpr const char* kLevel = "base_footprint";
 inline constexpr const char* kWorld = "world";
 }  // namespace frame_id
 
-/// The angle's representative in (-pi, pi].
+/// Returns the equivalent angle in (-pi, pi].
 inline double wrap_angle(double angle_rad) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
-  // Sums and differences of wrapped angles, to the bit what the slow remainder gives: one turn is taken off without rounding (Sterbenz).
+  // Fast path for sums and differences of wrapped angles. Subtracting one full turn is exact (Sterbenz lemma), so the
+  // result is bit-identical to that of std::remainder.
   if (std::abs(angle_rad) < 9.0) {
     if (angle_rad > std::numbers::pi) return angle_rad - kTurn;
     return angle_rad <= -std::numbers::pi ? angle_rad + kTurn : angle_rad;
@@ -39,11 +40,11 @@ inline double wrap_angle(double angle_rad) {
   return wrapped <= -std::numbers::pi ? wrapped + kTurn : wrapped;
 }
 
-/// A pose in the plane.
+/// Pose in the plane.
 struct Pose2 {
   double x = 0.0;    ///< m
   double y = 0.0;    ///< m
-  double yaw = 0.0;  ///< rad, counter-clockwise
+  double yaw = 0.0;  ///< rad, counterclockwise
 
   Eigen::Vector2d position() const { return {x, y}; }
   Eigen::Vector3d vector() const { return {x, y, yaw}; }
@@ -65,10 +66,10 @@ struct Pose2 {
   }
 };
 
-/// A pose in space.
+/// Pose in space.
 struct Pose3 {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();               ///< m
-  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< unit
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< unit quaternion
 
   Pose3 inverse() const { return {rotation.conjugate() * -position, rotation.conjugate()}; }
 
@@ -80,7 +81,7 @@ struct Pose3 {
   }
 };
 
-/// Heading of a rotation: the yaw of Rz(yaw) Ry(pitch) Rx(roll).
+/// Returns the yaw angle of a rotation Rz(yaw) Ry(pitch) Rx(roll), rad.
 inline double yaw_of(const Eigen::Quaterniond& q) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
@@ -89,14 +90,14 @@ inline Eigen::Quaterniond quaternion_from_yaw(double yaw_rad) {
   return {std::cos(yaw_rad / 2.0), 0.0, 0.0, std::sin(yaw_rad / 2.0)};
 }
 
-/// Rz(yaw) Ry(pitch) Rx(roll), the convention of URDF and of REP 103.
+/// Returns the rotation Rz(yaw) Ry(pitch) Rx(roll), the convention of URDF and REP 103.
 inline Eigen::Quaterniond quaternion_from_rpy(double roll_rad, double pitch_rad, double yaw_rad) {
   return Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()) *
          Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()) *
          Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX());
 }
 
-/// The pose's shadow on the ground plane.
+/// Projects a pose onto the ground plane: keeps x, y and yaw.
 inline Pose2 to_planar(const Pose3& T_a_b) {
   return {T_a_b.position.x(), T_a_b.position.y(), yaw_of(T_a_b.rotation)};
 }
@@ -105,15 +106,15 @@ inline Pose3 to_spatial(const Pose2& T_a_b, double z_m = 0.0) {
   return {{T_a_b.x, T_a_b.y, z_m}, quaternion_from_yaw(T_a_b.yaw)};
 }
 
-/// The same place and heading without roll and pitch.
+/// Returns the pose with roll and pitch removed; position and yaw are unchanged.
 inline Pose3 held_level(const Pose3& T_a_b) { return {T_a_b.position, quaternion_from_yaw(yaw_of(T_a_b.rotation))}; }
 
-/// Linear in position, spherical in rotation; fraction 0 gives a, 1 gives b.
+/// Interpolates linearly in position and spherically in rotation. Fraction 0 gives a, fraction 1 gives b.
 inline Pose3 interpolate(const Pose3& a, const Pose3& b, double fraction) {
   return {a.position + fraction * (b.position - a.position), a.rotation.slerp(fraction, b.rotation)};
 }
 
-/// Velocity of the body, expressed in the body.
+/// Velocity of the body relative to the world, expressed in the body frame.
 struct Twist3 {
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();   ///< m/s
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();  ///< rad/s

@@ -9,25 +9,25 @@
 
 namespace patrol {
 
-/// Column (along x) and row (along y) of a cell.
+/// Column (along x) and row (along y) of a grid cell.
 struct Cell {
   int col = 0;
   int row = 0;
   friend bool operator==(const Cell&, const Cell&) = default;
 };
 
-/// Where a grid lies: cell (0, 0) has its lower-left corner at `origin_m`; x grows with columns, y with rows. Axes are
-/// those of the frame the grid is in (no rotation).
+/// Placement and size of a grid. Cell (0, 0) has its lower-left corner at `origin_m`; columns grow with x, rows with y.
+/// The axes are parallel to those of the frame of the grid.
 struct GridGeometry {
   double resolution_m = 0.05;
-  int width = 0;   ///< columns
-  int height = 0;  ///< rows
+  int width = 0;   ///< number of columns
+  int height = 0;  ///< number of rows
   Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();
 
   bool contains(Cell cell) const {
     return cell.col >= 0 && cell.row >= 0 && cell.col < width && cell.row < height;
   }
-  /// The cell that holds p; may lie outside the grid.
+  /// Returns the cell that contains p; it may be outside the grid.
   Cell cell_at(const Eigen::Vector2d& p_m) const {
     return {static_cast<int>(std::floor((p_m.x() - origin_m.x()) / resolution_m)),
             static_cast<int>(std::floor((p_m.y() - origin_m.y()) / resolution_m))};
@@ -38,7 +38,7 @@ struct GridGeometry {
   std::size_t size() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 
-/// A dense grid, rows from low y to high y.
+/// Dense grid of values, stored row by row from low to high y.
 template <typename Value>
 class Grid {
  public:
@@ -61,7 +61,7 @@ class Grid {
   std::vector<Value> values_;
 };
 
-/// Occupancy in percent as in nav_msgs/OccupancyGrid: -1 unknown, 0 free ... 100 occupied.
+/// Occupancy in percent as in nav_msgs/OccupancyGrid: -1 unknown, 0 free to 100 occupied.
 using OccupancyGrid = Grid<std::int8_t>;
 
 inline constexpr std::int8_t kUnknown = -1;

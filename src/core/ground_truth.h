@@ -6,24 +6,24 @@
 #include "core/frames.h"
 #include "core/time.h"
 
-/// What only the twin knows. It goes round the stack, straight to the log, and only `score` and `render` read it; a test
-/// (tests/core/rooms_test.py) holds that no room of the stack includes this file.
+/// Ground truth from the simulator. Written to the log, never passed to the stack; only `score` and `render` read it.
+/// tests/core/rooms_test.py checks that no stack module includes this header.
 namespace patrol {
 
 struct GroundTruth {
   Time stamp{};
   Pose3 T_world_body;
-  Twist3 twist;  ///< in body
+  Twist3 twist;  ///< velocity in the body frame
 };
 
-/// Everything needed to draw the scene again, in the physics model's own order.
+/// Complete state of the physics model, in the order of MuJoCo. Sufficient to render the scene.
 struct SimState {
   Time stamp{};
   std::vector<double> qpos;
-  std::vector<double> mocap;  ///< per mocap body: x y z qw qx qy qz
+  std::vector<double> mocap;  ///< [mocap body]: x y z qw qx qy qz
 };
 
-/// The robot touched what it should not have (`first` is the robot's geom, `second` the other).
+/// Unintended contact of the robot. `first` is the geom of the robot, `second` the other geom.
 struct Collision {
   Time stamp{};
   std::string first;

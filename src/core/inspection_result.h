@@ -12,10 +12,11 @@
 #include "core/named_table.h"
 #include "core/time.h"
 
-/// What the robot found out about the tunnel: for the log, the report and the monitoring platform.
+/// Results of the tunnel inspection, for the log, the report and the monitoring server.
 namespace patrol {
 
-/// How much it matters. A notice is written down; a warning switches the light on, an alarm the siren too.
+/// Severity of a finding. A notice is recorded only; a warning switches the light on; an alarm also switches the siren
+/// on.
 enum class WarningLevel : std::uint8_t { kNone, kNotice, kWarning, kAlarm };
 
 inline constexpr std::array kWarningLevels = std::to_array<NamedValue<WarningLevel>>({
@@ -28,65 +29,66 @@ static_assert(is_in_order(kWarningLevels));
 
 constexpr std::string_view name_of(WarningLevel level) { return row_of(kWarningLevels, level).name; }
 
-/// A ring's lining in one direction, against the reference scan. Inwards is positive.
+/// Radial displacement of one angular cell of a ring, relative to the reference scan. Inward is positive.
 struct LiningCell {
   int ring = 0;
-  double clock_deg = 0.0;  ///< of its middle (core/tunnel_lining.h)
+  double clock_deg = 0.0;  ///< clock position of the cell center (core/tunnel_lining.h)
   double inward_m = 0.0;
-  double std_m = 0.0;      ///< of `inward_m`, registration included
-  int points = 0;          ///< of the new scan
+  double std_m = 0.0;      ///< standard deviation of `inward_m`, including the registration
+  int points = 0;          ///< number of points of the new scan in the cell
 };
 
-/// A chord of a ring between two marks on its lining, as surveyors measure it: longer is positive.
+/// Change in length of a chord between two points of a ring, the convergence of tunnel surveying. Lengthening is
+/// positive.
 struct ConvergenceLine {
   int ring = 0;
-  std::string name;  ///< e.g. "9-3": from nine to three o'clock
+  std::string name;  ///< clock positions of the ends, e.g. "9-3": from nine to three o'clock
   double change_m = 0.0;
   double std_m = 0.0;
 };
 
-/// A ring that has moved by more than the notice's threshold.
+/// Ring whose displacement exceeds the notice threshold.
 struct RingFinding {
   int ring = 0;
-  double clock_deg = 0.0;   ///< where it has moved most
-  double inward_m = 0.0;    ///< there
+  double clock_deg = 0.0;   ///< clock position of the maximum displacement
+  double inward_m = 0.0;    ///< maximum displacement, inward positive
   double std_m = 0.0;
   WarningLevel level = WarningLevel::kNotice;
-  Eigen::Vector3d p_map = Eigen::Vector3d::Zero();  ///< of that place, m
+  Eigen::Vector3d p_map = Eigen::Vector3d::Zero();  ///< point of maximum displacement, m
 };
 
-/// The lining about a station, from one panoramic scan and the reference scan of that station.
+/// Lining deformation around a station, from one panoramic scan and the reference scan of the station.
 struct LiningResult {
   Time stamp{};
   std::string station;
-  Pose2 T_map_body;                 ///< where the robot stood, as the registration has it
-  bool is_registered = false;       ///< otherwise the scans could not be laid on each other, and nothing below is said
-  double registration_rms_m = 0.0;  ///< of the points that the registration kept
-  double registration_share = 0.0;  ///< of the points that it kept
-  double correction_m = 0.0;        ///< by which the registration moved the robot's own estimate
+  Pose2 T_map_body;                 ///< pose from the registration; the estimate of the robot if that failed
+  bool is_registered = false;       ///< false: the registration failed; cells, lines and findings are empty
+  double registration_rms_m = 0.0;  ///< root mean square residual of the inliers of the registration
+  double registration_share = 0.0;  ///< inlier ratio of the registration
+  double correction_m = 0.0;        ///< distance between the registered pose and the robot's own estimate
   std::vector<LiningCell> cells;
   std::vector<ConvergenceLine> lines;
   std::vector<RingFinding> findings;
 };
 
-/// Water ahead of the face, from the soundings of one station.
+/// Water ahead of the tunnel face, from the TEM soundings of one station.
 struct WaterResult {
   Time stamp{};
   std::string station;
   Pose2 T_map_body;
   int soundings = 0;
-  double antenna_error_deg = 0.0;   ///< root mean square of what the mount read against what was asked
-  double rock_spm = 0.0;            ///< conductivity of the rock, S/m
-  double evidence = 0.0;            ///< natural logarithm of how much better a body explains the soundings than none
-  bool is_found = false;            ///< what follows is said only then; intervals hold the truth with 95 %
+  double antenna_error_deg = 0.0;   ///< root mean square error of the antenna angles: encoder reading minus command
+  double rock_spm = 0.0;            ///< electrical conductivity of the rock, S/m
+  double evidence = 0.0;            ///< natural logarithm of the Bayes factor of a conductive body against rock alone
+  bool is_found = false;            ///< the fields below are valid only if true; intervals are 95 % credible intervals
   WarningLevel level = WarningLevel::kNone;
-  Eigen::Vector3d p_map = Eigen::Vector3d::Zero();          ///< of the body's middle, m
-  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< of that, in map
-  double distance_m = 0.0;          ///< from the antenna to the body's middle
+  Eigen::Vector3d p_map = Eigen::Vector3d::Zero();          ///< center of the body, m
+  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< covariance of `p_map`
+  double distance_m = 0.0;          ///< distance from the antenna to the center of the body
   double distance_low_m = 0.0, distance_high_m = 0.0;
-  double azimuth_deg = 0.0;         ///< from the antenna, to the left of the body's x axis
-  double elevation_deg = 0.0;       ///< upwards
-  double radius_m = 0.0;            ///< of a sphere that does the same
+  double azimuth_deg = 0.0;         ///< azimuth from the antenna, positive to the left of the robot's x axis
+  double elevation_deg = 0.0;       ///< elevation, positive upward
+  double radius_m = 0.0;            ///< radius of the equivalent sphere
   double radius_low_m = 0.0, radius_high_m = 0.0;
 };
 

@@ -6,7 +6,7 @@ namespace patrol {
 
 Eigen::Vector3d foot_position(const LegGeometry& leg, const Eigen::Vector3d& joint_rad) {
   const double hip = joint_rad[1], knee = joint_rad[2];
-  // In the plane of the leg, after the abduction joint: x forward, z up.
+  // Foot in the plane of the leg, after the abduction joint: x forward, z up.
   const double x = -leg.thigh_m * std::sin(hip) - leg.shank_m * std::sin(hip + knee);
   const double z = -leg.thigh_m * std::cos(hip) - leg.shank_m * std::cos(hip + knee);
   const double c = std::cos(joint_rad[0]), s = std::sin(joint_rad[0]);
@@ -33,7 +33,7 @@ std::optional<Eigen::Vector3d> joint_angles(const LegGeometry& leg, const Eigen:
   const double offset = leg.abduction_offset_m;
   const double planar_squared = p.y() * p.y() + p.z() * p.z() - offset * offset;
   if (planar_squared < 0.0) return std::nullopt;
-  // Undo the abduction: in the leg's plane the foot lies at (x, z) with z < 0.
+  // Remove the abduction: in the plane of the leg the foot is at (x, z) with z < 0.
   const double z = -std::sqrt(planar_squared);
   const double abduction = std::atan2(p.z(), p.y()) - std::atan2(z, offset);
   const double cos_knee = (p.x() * p.x() + z * z - leg.thigh_m * leg.thigh_m - leg.shank_m * leg.shank_m) /

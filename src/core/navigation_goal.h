@@ -4,11 +4,11 @@
 
 namespace patrol {
 
-/// Where the mission wants the robot to stand, and how exactly.
+/// Goal pose of the navigation, with its tolerances.
 struct NavigationGoal {
   Pose2 T_map_body;
   double position_tol_m = 0.05;
-  double yaw_tol_rad = 0.05;  ///< pi: any heading will do, and the robot need not stop to turn
+  double yaw_tol_rad = 0.05;  ///< pi: any heading is accepted, and the robot does not turn in place at the goal
 
   friend bool operator==(const NavigationGoal& a, const NavigationGoal& b) {
     return a.T_map_body.vector() == b.T_map_body.vector() && a.position_tol_m == b.position_tol_m &&

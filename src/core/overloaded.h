@@ -2,7 +2,7 @@
 
 namespace patrol {
 
-/// For std::visit: a handler for each kind.
+/// Overload set for std::visit: one handler per alternative.
 template <typename... Handlers>
 struct Overloaded : Handlers... {
   using Handlers::operator()...;

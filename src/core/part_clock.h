@@ -6,11 +6,11 @@
 
 namespace patrol {
 
-/// Where the wall-clock time goes, by part ("physics", "lidar", "slam", ...). Feeds `performance` in metrics.json and
-/// nothing else: no decision may depend on it.
+/// Profiler of wall-clock time by stage ("physics", "lidar", "slam", ...). The results go to `performance` in
+/// metrics.json only: no decision may depend on them.
 class PartClock {
  public:
-  /// Adds the time until it goes out of scope to its part.
+  /// Scoped timer: adds its lifetime to the total of its stage.
   class Lap {
    public:
     explicit Lap(double& total_s) : total_s_(total_s), start_(std::chrono::steady_clock::now()) {}

@@ -9,22 +9,22 @@
 
 namespace patrol {
 
-/// What was measured of one node's place as seen from another.
+/// Relative pose measurement between two nodes of a pose graph.
 struct PoseGraphEdge {
   enum class Kind : std::uint8_t {
-    kOdometry,  ///< from keyframe to keyframe
-    kMatch,     ///< of a scan with the submap around it
-    kLoop,      ///< found again after a while: may be wrong, and is doubted where it does not fit
+    kOdometry,  ///< odometry between consecutive keyframes
+    kMatch,     ///< match of a scan with a submap around it
+    kLoop,      ///< loop closure: may be an outlier, hence gets a robust loss on request
   };
   int from = 0;
   int to = 0;
   Pose2 T_from_to;
-  Eigen::Matrix3d information = Eigen::Matrix3d::Identity();  ///< of x, y, yaw in `from`; 1/m^2, 1/rad^2
+  /// Information of x, y, yaw of `T_from_to`, expressed in `from`; 1/m^2, 1/rad^2.
+  Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
   Kind kind = Kind::kOdometry;
 };
 
-/// Places and what is known of how they lie to each other (Lu, Milios, "Globally consistent range scan alignment for environment mapping",
-/// Autonomous Robots 1997).
+/// Graph of node poses and relative pose measurements [Lu97].
 struct PoseGraph {
   std::vector<Pose2> T_map_node;
   std::vector<PoseGraphEdge> edges;

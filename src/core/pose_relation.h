@@ -5,8 +5,8 @@
 
 namespace patrol {
 
-/// How the robot truly stood at one instant as seen from where it stood at another, as a person found by looking at the scans of both
-/// (Kuemmerle et al., "On measuring the accuracy of SLAM algorithms", Autonomous Robots 2009).
+/// Reference pose of the robot at one instant relative to its pose at another instant. Determined by manual scan
+/// alignment [Kuemmerle09].
 struct PoseRelation {
   Time from{};
   Time to{};

@@ -10,7 +10,7 @@
 namespace patrol {
 namespace {
 
-/// FNV-1a, 64 bit: stable across builds and platforms, unlike std::hash.
+/// FNV-1a hash, 64 bits: stable across builds and platforms, unlike std::hash.
 std::uint64_t hash_of(std::string_view text) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   for (const char c : text) {
@@ -27,7 +27,7 @@ std::array<std::uint64_t, 4> bits_at(std::uint64_t seed, std::uint64_t stream, s
   return {out[0], out[1], out[2], out[3]};
 }
 
-/// 53 random bits, moved half a step up: never 0, never 1.
+/// Converts 53 random bits to the center of their interval: never 0, never 1.
 double to_unit(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5) * 0x1.0p-53; }
 
 }  // namespace
@@ -59,7 +59,7 @@ std::array<double, 4> RandomStream::normals(std::uint64_t tick, std::uint64_t in
   return drawn;
 }
 
-// Uniforms stand at even indices, normals at odd ones: neither moves the other.
+// Uniform numbers use even indices, normal numbers odd ones, so that the two do not affect each other.
 double RandomSequence::uniform() {
   const std::uint64_t n = next_uniform_++;
   if (n % 4 == 0) uniforms_ = stream_.uniforms(tick_, n / 2);

@@ -7,25 +7,26 @@
 
 namespace patrol {
 
-/// Random numbers addressed, not drawn: the value at (seed, stream name, tick, index) is always the same, whatever else
-/// was asked before and by whom. Switching one imperfection off therefore changes no other draw, and threads change
-/// nothing. Philox 4x64-10 (Salmon et al., SC'11), by Random123; our own distributions, since those of <random> differ
+/// Counter-based random numbers: the value at (seed, stream name, tick, index) does not depend on other calls, their
+/// order or their thread. Disabling one error source therefore leaves the random numbers of all others unchanged.
+/// Philox 4x64-10 [Salmon11] from Random123. The distributions are implemented here because those of <random> differ
 /// between standard libraries.
 class RandomStream {
  public:
-  /// `name` is a path such as "lidar/front/range" or "pedestrian/3".
+  /// Creates a stream. `name` is a path such as "lidar/front/range" or "pedestrian/3".
   RandomStream(std::uint64_t seed, std::string_view name);
 
-  /// Uniform in the open interval (0, 1).
+  /// Returns a uniform number in the open interval (0, 1).
   double uniform(std::uint64_t tick, std::uint64_t index = 0) const;
 
-  /// Standard normal (Box-Muller).
+  /// Returns a standard normal number (Box-Muller transform).
   double normal(std::uint64_t tick, std::uint64_t index = 0) const;
 
-  /// Four of one address, for the price of one. The first is uniform(tick, index).
+  /// Returns four uniform numbers of one counter at the cost of one. The first equals uniform(tick, index).
   std::array<double, 4> uniforms(std::uint64_t tick, std::uint64_t index = 0) const;
 
-  /// Four standard normals of one address, for about the price of two. The first is normal(tick, index).
+  /// Returns four standard normal numbers of one counter at about the cost of two. The first equals normal(tick,
+  /// index).
   std::array<double, 4> normals(std::uint64_t tick, std::uint64_t index = 0) const;
 
  private:
@@ -33,18 +34,18 @@ class RandomStream {
   std::uint64_t stream_;
 };
 
-/// Draws one after the other, where how many are needed depends on what they were: all of one tick of a stream.
+/// Sequence of random numbers within one tick of a stream, for algorithms that need a data-dependent number of them.
 class RandomSequence {
  public:
   RandomSequence(const RandomStream& stream, std::uint64_t tick) : stream_(stream), tick_(tick) {}
 
-  /// Uniform in the open interval (0, 1).
+  /// Returns a uniform number in the open interval (0, 1).
   double uniform();
-  /// Standard normal.
+  /// Returns a standard normal number.
   double normal();
-  /// Standard Cauchy.
+  /// Returns a standard Cauchy number.
   double cauchy();
-  /// 0 ... count - 1, each alike.
+  /// Returns a uniform integer in [0, count - 1].
   std::size_t index(std::size_t count);
 
  private:

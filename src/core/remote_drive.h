@@ -6,12 +6,13 @@
 
 namespace patrol {
 
-/// A place that a drive by remote control goes through.
+/// Waypoint of a teleoperated drive.
 struct DriveWaypoint {
-  Eigen::Vector2d p_m = Eigen::Vector2d::Zero();  ///< in the frame that the text says (site, world)
-  bool is_reverse = false;    ///< driven to backwards
-  bool is_mark = false;       ///< stop here, turn to the heading, mark the place as a goal
-  double heading_rad = 0.0;   ///< of a mark
+  /// Position, m, in a frame named by the user of the struct (site or world).
+  Eigen::Vector2d p_m = Eigen::Vector2d::Zero();
+  bool is_reverse = false;    ///< approach in reverse
+  bool is_mark = false;       ///< stop here, turn to the heading, save the pose as a goal
+  double heading_rad = 0.0;   ///< heading of the saved goal
 };
 
 using RemoteDrive = std::vector<DriveWaypoint>;

@@ -14,12 +14,12 @@
 
 namespace patrol {
 
-/// One three-joint leg (abduction about x, hip about y, knee about y), every length from the URDF.
+/// Geometry of a leg with three joints (abduction about x, hip about y, knee about y); all lengths are from the URDF.
 /// Left legs have positive `abduction_offset_m`.
 struct LegGeometry {
   std::string name;                                             ///< "FL", "FR", "RL", "RR"
-  Eigen::Vector3d hip_in_body = Eigen::Vector3d::Zero();  ///< abduction axis, m, in body
-  double abduction_offset_m = 0.0;                              ///< from abduction axis to thigh along y
+  Eigen::Vector3d hip_in_body = Eigen::Vector3d::Zero();  ///< position of the abduction axis in body, m
+  double abduction_offset_m = 0.0;  ///< distance from the abduction axis to the thigh along y
   double thigh_m = 0.0;
   double shank_m = 0.0;
   double foot_radius_m = 0.0;
@@ -32,48 +32,51 @@ struct JointLimit {
   double effort_nm = 0.0;
 };
 
-/// A pair of tracks, driven by a sprocket each.
+/// Geometry of a pair of tracks, each driven by one sprocket.
 struct TrackGeometry {
-  double gauge_m = 0.0;            ///< between the middles of the two tracks
-  double width_m = 0.0;            ///< of one track
-  double contact_length_m = 0.0;   ///< between the axles of the outermost road wheels
-  double sprocket_radius_m = 0.0;  ///< of the belt's pitch line: the belt runs at this times the sprocket's rate
-  double body_height_m = 0.0;      ///< of the body's origin above level ground under the belts
+  double gauge_m = 0.0;            ///< distance between the center lines of the two tracks
+  double width_m = 0.0;            ///< width of one track
+  double contact_length_m = 0.0;   ///< distance between the axles of the outermost road wheels
+  double sprocket_radius_m = 0.0;  ///< pitch radius: belt speed over sprocket rate
+  double body_height_m = 0.0;      ///< height of the body origin above level ground
 };
 
-/// Turns the coil of the water detector: a yaw joint (to the left) and on it a pitch joint (downwards), whose axes meet in the coil's middle.
+/// Pan-tilt mount of the TEM coil: a yaw joint (positive to the left) followed by a pitch joint (positive downward).
+/// Both axes intersect in the center of the coil.
 struct AntennaGeometry {
-  Pose3 T_body_mount;  ///< there; the coil's axis is x of it at yaw 0 and pitch 0
+  Pose3 T_body_mount;  ///< intersection of the joint axes; its x axis is the coil axis at yaw 0 and pitch 0
   JointLimit yaw, pitch;
   double stowed_yaw_rad = 0.0;
-  double stowed_pitch_rad = -std::numbers::pi / 2.0;  ///< the loop lies flat
+  double stowed_pitch_rad = -std::numbers::pi / 2.0;  ///< the plane of the coil is horizontal
 
   Pose3 T_body_tem(double yaw_rad, double pitch_rad) const {
     return T_body_mount * Pose3{Eigen::Vector3d::Zero(), quaternion_from_rpy(0.0, pitch_rad, yaw_rad)};
   }
 };
 
-/// What the robot knows of itself, read from its URDF (io/urdf.h).
+/// Kinematic and geometric description of a robot, read from its URDF (io/urdf.h).
 struct RobotDescription {
   std::string name;
   double mass_kg = 0.0;
   std::vector<LegGeometry> legs;          ///< FL, FR, RL, RR; empty for a robot without legs
-  std::optional<TrackGeometry> tracks;    ///< of a tracked robot
-  std::optional<AntennaGeometry> antenna;    ///< of a robot with a link `tem_mount`
-  std::vector<std::string> joint_names;   ///< leg by leg: abduction, hip, knee; or the sprockets: left, right
+  std::optional<TrackGeometry> tracks;    ///< tracked robots only
+  std::optional<AntennaGeometry> antenna;    ///< robots with a link `tem_mount` only
+  /// Leg by leg: abduction, hip, knee; for tracked robots the sprockets: left, right.
+  std::vector<std::string> joint_names;
   std::vector<JointLimit> joint_limits;   ///< [joint]
-  std::vector<Eigen::Vector2d> footprint_m;    ///< convex hull of the collision shapes in level, counter-clockwise
-  /// Fixed frames: "lidar", "lidar3d", "imu", "tdlas", "gnss", "uwb", "scanner", "tem_mount", "depth_camera", "ultrasonic_0", "ultrasonic_1" ...
+  std::vector<Eigen::Vector2d> footprint_m;    ///< convex hull of the collision shapes in level, counterclockwise
+  /// Poses of the fixed frames: "lidar", "lidar3d", "imu", "tdlas", "gnss", "uwb", "scanner", "tem_mount",
+  /// "depth_camera", "ultrasonic_0", "ultrasonic_1" ...
   std::map<std::string, Pose3> T_body_sensor;
 
-  /// Of the circle about the body's origin that holds the outline.
+  /// Returns the radius of the circle around the body origin that encloses the footprint.
   double outline_radius_m() const {
     double radius_m = 0.0;
     for (const Eigen::Vector2d& corner : footprint_m) radius_m = std::max(radius_m, corner.norm());
     return radius_m;
   }
 
-  /// Throws InputError when the robot has no such frame.
+  /// Returns the pose of a sensor frame in body. Throws InputError if the robot has no such frame.
   const Pose3& T_body(const std::string& sensor) const {
     const auto frame = T_body_sensor.find(sensor);
     if (frame == T_body_sensor.end()) throw InputError("robot " + name + ": there is no link named " + sensor);

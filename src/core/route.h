@@ -29,7 +29,7 @@ static_assert(is_in_order(kStationTypes));
 
 constexpr std::string_view name_of(StationType type) { return row_of(kStationTypes, type).name; }
 
-/// Task of the robot at a goal; the letters are those of nav.json (paper 004, table 1).
+/// Task of the robot at a goal; the letters are those of nav.json ([Liu21, table 1]).
 enum class GoalType : std::uint8_t { kStop, kVia, kScan, kOperator };
 
 inline constexpr std::array kGoalTypes = std::to_array<NamedValue<GoalType>>({
@@ -42,42 +42,43 @@ static_assert(is_in_order(kGoalTypes));
 
 constexpr std::string_view name_of(GoalType type) { return row_of(kGoalTypes, type).name; }
 
-/// A place of the inspection route, in the route's frame: `site`, the frame of the survey, or `map`. The robot's start pose in
-/// `site` is surveyed too, and joins the two (inspect/route_frame.h).
+/// Station of the inspection route, in the frame of the route: `site` (the survey frame) or `map`. The surveyed start
+/// pose of the robot in `site` relates the two frames (inspect/route_frame.h).
 struct Station {
   int number = 0;
   std::string name;  ///< e.g. "regulator_box_2"
   StationType type = StationType::kInspect;
-  Pose2 T_route_body;  ///< where the robot shall stand
-  Eigen::Vector3d p_route_target = Eigen::Vector3d::Zero();  ///< what the instrument looks at, m
-  double accuracy_m = 0.2;  ///< how near the standing place counts as reached
-  int priority = 0;         ///< lower ones come first, where the robot orders its stations itself
-  double earliest_s = 0.0;  ///< of the mission: work there does not begin before, and
-  double latest_s = std::numeric_limits<double>::infinity();  ///< if it can be helped, not after
+  Pose2 T_route_body;  ///< pose of the robot at the station
+  Eigen::Vector3d p_route_target = Eigen::Vector3d::Zero();  ///< target point of the instrument, m
+  double accuracy_m = 0.2;  ///< position tolerance at the station
+  int priority = 0;         ///< lower values are visited first if the robot orders the stations itself
+  double earliest_s = 0.0;  ///< start of the time window since mission start: no work before it
+  /// End of the time window since mission start; a soft limit.
+  double latest_s = std::numeric_limits<double>::infinity();
 };
 
-/// The post at which the robot charges: where its body is when it is docked, and the post's outline at the lidar's height.
+/// Charging post: pose of the docked robot and outline of the post at lidar height.
 struct Dock {
   Pose2 T_route_docked;
-  std::vector<Eigen::Vector2d> profile_m;  ///< polyline in the docked body's frame
+  std::vector<Eigen::Vector2d> profile_m;  ///< polyline in the frame of the docked body
 };
 
-/// The order of stations, and lines that the robot must not walk across (full-height kerbs, which its 2D lidar cannot
-/// see but the survey knows).
+/// Stations in their order, and keep-out lines that the robot must not cross. Keep-out lines are surveyed full-height
+/// curbs, which the 2D lidar cannot detect.
 struct Route {
   std::vector<Station> stations = {};
-  std::vector<std::vector<Eigen::Vector2d>> keep_out_lines = {};  ///< polylines in the route's frame, m
-  std::vector<UwbAnchor> anchors = {};                            ///< in the route's frame
+  std::vector<std::vector<Eigen::Vector2d>> keep_out_lines = {};  ///< polylines in the frame of the route, m
+  std::vector<UwbAnchor> anchors = {};                            ///< positions in the frame of the route
   std::optional<Dock> dock = {};
   std::optional<TunnelLining> lining = {};
 };
 
-/// A place to drive to, marked in `map` by driving there: an entry of nav.json (paper 004, table 1).
+/// Goal pose in `map`, saved while a person drove the robot there: an entry of nav.json [Liu21, table 1].
 struct MarkedGoal {
   int number = 0;
   Pose2 T_map_body;
   GoalType type = GoalType::kStop;
-  double accuracy_m = 0.1;  ///< how near counts as reached
+  double accuracy_m = 0.1;  ///< position tolerance
 };
 
 }  // namespace patrol

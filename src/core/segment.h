@@ -6,7 +6,7 @@
 
 namespace patrol {
 
-/// From a point to the nearest point of the straight line between two others, which may be the same.
+/// Returns the distance from point p to the segment from a to b. The segment may be a single point.
 inline double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Eigen::Vector2d ab = b - a;
   const double length2 = ab.squaredNorm();

@@ -12,8 +12,9 @@
 #include "core/error.h"
 #include "core/named_table.h"
 
-/// Settings are plain structs with their defaults in place. Each lists its fields once, in a static function, and from
-/// that list they are read from YAML, written out with every default, and checked (io/settings_yaml.h):
+/// Conventions for settings. Settings are plain structs with default member values. Each struct lists its fields once,
+/// in a static function; this list serves reading from YAML, writing with all defaults, and validation
+/// (io/settings_yaml.h):
 ///
 ///   struct LidarSettings {
 ///     double range_noise_m = 0.03;   ///< standard deviation
@@ -25,11 +26,11 @@
 ///     }
 ///   };
 ///
-/// Field types: bool, int, std::uint64_t, double, std::string, std::vector<double>, std::vector<std::string>, another
-/// settings struct, and std::vector of settings structs. Names carry their unit.
+/// Field types: bool, int, std::uint64_t, double, std::string, std::vector<double>, std::vector<std::string>, other
+/// settings structs, and std::vector of settings structs. Names contain the unit.
 namespace patrol {
 
-/// What a field may be. Numbers: closed interval; strings: one of `allowed` unless that is empty.
+/// Admissible values of a field. Numbers: closed interval. Strings: one of `allowed`, or any if that is empty.
 struct Limits {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -53,7 +54,7 @@ Limits one_of(const Table& table) {
   return limits;
 }
 
-/// The rule as a person would say it; empty if there is none.
+/// Returns the rule as text for error messages.
 inline std::string rule_of(const Limits& limits) {
   if (!limits.allowed.empty()) return fmt::format("must be one of {}", fmt::join(limits.allowed, ", "));
   const bool has_min = std::isfinite(limits.min), has_max = std::isfinite(limits.max);
@@ -75,7 +76,7 @@ inline bool allows(const Limits& limits, const std::string& value) {
   return false;
 }
 
-/// Checks one field; for use through `validate`.
+/// Checks one field; used through `validate`.
 class Validator {
  public:
   explicit Validator(std::string prefix) : prefix_(std::move(prefix)) {}
@@ -107,7 +108,7 @@ class Validator {
   std::string prefix_;
 };
 
-/// Throws InputError "<prefix>.<field> = <value>: <rule>" for the first field that breaks its rule.
+/// Throws InputError "<prefix>.<field> = <value>: <rule>" for the first invalid field.
 template <typename Settings>
 void validate(const Settings& settings, const std::string& prefix = "") {
   Validator validator(prefix);

@@ -4,11 +4,11 @@
 
 namespace patrol {
 
-/// What an ideal lidar in the horizontal plane meets along one beam.
+/// Return of an ideal horizontal 2D lidar along one beam.
 struct SurfaceReturn {
-  Eigen::Vector2d direction;  ///< of the beam, unit, in world
+  Eigen::Vector2d direction;  ///< unit vector of the beam, in world
   double range_m = 0.0;
-  Eigen::Vector3d normal;     ///< of the surface, unit, in world, towards the lidar
+  Eigen::Vector3d normal;     ///< unit normal of the surface, in world, pointing to the lidar
 };
 
 }  // namespace patrol

@@ -18,7 +18,8 @@ using Complex = std::complex<double>;
 // Modified spherical Bessel functions i_n (finite at the origin) and k_n (decaying, here with k_0 = e^-x / x), n = 0 ... order + 1.
 using Orders = std::array<Complex, kMaxOrder + 2>;
 
-/// Downwards (Miller), since upwards i_n drowns in rounding; scaled by i_0 = sinh(x) / x.
+/// Computes i_n by downward recurrence (Miller), because upward recurrence loses all digits; scaled with i_0 = sinh(x)
+/// / x.
 Orders bessel_i(Complex x, int order) {
   constexpr int kAhead = 12;
   Orders values{};
@@ -51,7 +52,8 @@ Orders bessel_k(Complex x, int order) {
   return values;
 }
 
-/// As many multipoles as the static field of a perfect conductor needs for 10^-5: they fall as (a / R)^(2n).
+/// Returns the number of multipoles that the static field of a perfect conductor needs for 1e-5. Multipole n decreases
+/// as (a / R)^(2n).
 int order_for(const ConductiveSphere& sphere) {
   const double fall = 2.0 * std::log(sphere.distance_m / sphere.radius_m);
   return std::clamp(static_cast<int>(std::ceil(std::log(1e5) / fall)) + 2, 3, kMaxOrder);
@@ -61,11 +63,11 @@ struct Field {
   Complex axial, transverse;
 };
 
-/// The sphere's field H at the dipole and along it, per unit moment, of Laplace frequency `s`. With g = sqrt(mu0 sigma s) in the
-/// rock and x = g R it is, multipole by multipole,
+/// Returns the secondary field H of the sphere at the dipole and along it, per unit moment, at Laplace frequency `s`.
+/// With g = sqrt(mu0 sigma s) in the rock and x = g R, the contribution of multipole n is
 ///   axial       g / (4 pi R^2) (2n + 1) n (n + 1)   TE_n k_n(x)^2
 ///   transverse  g^3 / (4 pi) (2n + 1) / 2         ( TE_n ((x k_n(x))' / x)^2 - TM_n k_n(x)^2 )
-/// where TE_n, TM_n are what the sphere reflects of i_n into k_n: tangential E and H pass its surface unbroken.
+/// TE_n and TM_n are the reflection coefficients of the sphere from i_n into k_n: tangential E and H are continuous.
 Field sphere_field(double rock_spm, const ConductiveSphere& sphere, int order, Complex s) {
   const Complex root = std::sqrt(s);
   const Complex g1 = std::sqrt(kMu0 * rock_spm) * root, g2 = std::sqrt(kMu0 * sphere.conductivity_spm) * root;
@@ -89,14 +91,14 @@ Field sphere_field(double rock_spm, const ConductiveSphere& sphere, int order, C
   return field;
 }
 
-/// A point of the contour that the inverse transform is summed along, with the times `t` and the weights of the sum taken in.
+/// Node of the inversion contour. `st` is the Laplace frequency times t; the weight includes the exponential.
 struct ContourPoint {
   Complex st;
   Complex weight;
 };
 
-/// Talbot's contour as Weideman and Trefethen optimised it, twelve points of which six mirror the others: error 3.89^-12 = 1e-7 of the decay's
-/// scale at that time.
+/// Returns Talbot's contour with the optimized parameters of [Trefethen06]. Twelve nodes, six of which mirror the
+/// others. The error is 3.89^-12 = 1e-7 of the scale of the decay at time t.
 std::array<ContourPoint, 6> talbot_contour() {
   std::array<ContourPoint, 6> contour;
   constexpr double kPoints = 12.0;
@@ -139,7 +141,7 @@ SphereRate sphere_rate(double rock_spm, const ConductiveSphere& sphere, double t
   return rate;
 }
 
-// A decay times t^(5/2) is smooth in log t: between the nodes it is the cubic through four of them.
+// The decay times t^(5/2) is smooth in log t: interpolate it by cubic Lagrange polynomials through four nodes.
 TemGates::TemGates(const TemWindow& window) {
   constexpr double kNodesPerDecade = 9.0;
   const auto [first, last] = std::minmax_element(window.gate_s.begin(), window.gate_s.end());

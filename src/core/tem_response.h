@@ -4,56 +4,58 @@
 
 #include <vector>
 
-/// What a transient-electromagnetic (TEM) sounding measures about rock and water: the physics that the twin plays and the robot inverts.
-/// The coil is a magnetic dipole that sends and receives at one place; its current, on for long, is switched off at t = 0; rates are
-/// -dB/dt along its axis per unit of its moment, T/s per A m2.
+/// Response model of transient-electromagnetic (TEM) soundings of rock and water, used by the simulator and by the
+/// inversion. The coil is a magnetic dipole that transmits and receives at the same point. Its current, long since
+/// steady, is switched off at t = 0. Rates are -dB/dt along the coil axis per unit of dipole moment, T/s per A m2.
 ///
-/// Assumed: one homogeneous rock all about, the tunnel's air left out, as is usual in soundings ahead of a face; a body of water or mud
-/// is a homogeneous sphere; displacement currents are left out; everything has the permeability of the vacuum.
+/// Assumptions: homogeneous rock everywhere, without the air of the tunnel, as is usual for soundings ahead of a face.
+/// A body of water or mud is a homogeneous sphere. Displacement currents are neglected; the permeability is that of the
+/// vacuum.
 namespace patrol {
 
-/// Of the rock alone, closed form: mu0 (mu0 sigma)^(3/2) / (8 pi^(3/2)) t^(-5/2), the transform of the s^(3/2) in the dipole's own field
-/// (Ward and Hohmann, "Electromagnetic theory for geophysical applications", 1988, eq. 2.56 at no distance). A coil of radius b may be
-/// taken for a dipole while t >> mu0 sigma b^2: for 0.3 m in rock of 0.01 S/m that is 1 ns.
+/// Returns the rate of the rock alone, in closed form: mu0 (mu0 sigma)^(3/2) / (8 pi^(3/2)) t^(-5/2). It is the inverse
+/// transform of the s^(3/2) term in the field of the dipole at its own position [Ward88, eq. 2.56 at zero distance]. A
+/// coil of radius b acts as a dipole while t >> mu0 sigma b^2: 1 ns for 0.3 m in rock of 0.01 S/m.
 double rock_rate(double rock_spm, double time_s);
 
-/// A body in the rock, seen from the coil.
+/// Conductive sphere in the rock, relative to the coil.
 struct ConductiveSphere {
-  double distance_m = 0.0;  ///< from the coil to its middle, more than its radius
+  double distance_m = 0.0;  ///< distance from the coil to the center of the sphere; greater than the radius
   double radius_m = 0.0;
   double conductivity_spm = 0.0;
 };
 
-/// What a sphere adds, for a coil that points at its middle and for one across: at an angle psi between, by symmetry,
-/// cos^2(psi) axial + sin^2(psi) transverse.
+/// Secondary rate of a sphere for a coil axis through its center (axial) and perpendicular to that direction
+/// (transverse). At an angle psi between axis and direction the rate is, by symmetry, cos^2(psi) axial + sin^2(psi)
+/// transverse.
 struct SphereRate {
   double axial = 0.0;
   double transverse = 0.0;
 };
 
-/// Exact, host included: the dipole's field in spherical multipoles of both kinds, each reflected by the sphere (Wait, "A conducting sphere in a
-/// time varying magnetic field", Geophysics 16, 1951; for a dipole in a conductive whole space Nabighian, "Quasi-static transient response
-/// of a conducting permeable sphere in a dipolar field", Geophysics 35, 1970, and Ward and Hohmann, 1988), back to time along Talbot's
-/// contour (Trefethen, Weideman and Schmelzer, "Talbot quadratures and rational approximations", BIT 46, 2006).
-/// The tests hold it to the Born integral in rock (1 %, its own error) and to Wait's decay in the void (0.3 %). Not for times so early that
-/// mu0 sigma a^2 / t passes 10^4.
+/// Returns the rate that a sphere adds, exactly and with the conductive host included. The dipole field is expanded in
+/// spherical multipoles of both kinds, each reflected by the sphere [Wait51]; dipole in a conductive whole space after
+/// [Nabighian70], [Ward88]. The inverse Laplace transform is summed along Talbot's contour [Trefethen06]. The tests
+/// compare it with the Born integral in rock (1 %, the error of that integral) and with Wait's decay in a nonconductive
+/// host (0.3 %). Not valid for times so early that mu0 sigma a^2 / t exceeds 10^4.
 SphereRate sphere_rate(double rock_spm, const ConductiveSphere& sphere, double time_s);
 
-/// How an instrument sees a decay: the current falls in a straight ramp and not at once, and each gate takes the mean over its width.
+/// Waveform and gates of an instrument: the current decreases in a linear ramp, and each gate averages over its width.
 struct TemWindow {
-  std::vector<double> gate_s;  ///< [gate]: geometric middle, after the end of the ramp
+  std::vector<double> gate_s;  ///< [gate]: geometric mean of the gate limits, after the end of the ramp
   double ramp_s = 2.6e-6;
-  double gate_width = 0.15;    ///< of a gate, over its middle
+  double gate_width = 0.15;    ///< ratio of gate width to gate center
 };
 
-/// The gates as sums over the decay at a few instants: a decay is dear, and one serves all gates.
+/// Gate averages as weighted sums over the decay at a few nodes. Evaluating the decay is expensive, and all gates share
+/// the nodes.
 class TemGates {
  public:
   explicit TemGates(const TemWindow& window);
 
-  /// The instants at which a decay after a sudden switch-off is asked for, s.
+  /// Times after a sudden switch-off at which the decay is evaluated, s.
   const std::vector<double>& node_s() const { return node_s_; }
-  /// `node_rate`: [node]. Returns [gate].
+  /// Returns the gate averages, [gate]. `node_rate`: rates at the nodes, [node].
   Eigen::VectorXd gated(const Eigen::VectorXd& node_rate) const { return weights_ * node_rate; }
 
  private:
@@ -61,10 +63,10 @@ class TemGates {
   Eigen::MatrixXd weights_;  ///< [gate][node]
 };
 
-/// The same of rock and sphere, [gate].
+/// Returns the gated rate of the rock, [gate].
 Eigen::VectorXd gated_rock(const TemGates& gates, double rock_spm);
 struct GatedSphere {
-  Eigen::VectorXd axial, transverse;  ///< [gate]
+  Eigen::VectorXd axial, transverse;  ///< gated rates of the sphere, [gate]
 };
 GatedSphere gated_sphere(const TemGates& gates, double rock_spm, const ConductiveSphere& sphere);
 

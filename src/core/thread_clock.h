@@ -4,7 +4,7 @@
 
 namespace patrol {
 
-/// Time that this thread has computed, s: what else the machine does is not in it.
+/// Returns the CPU time of the calling thread, s. Unaffected by the load of the machine.
 inline double thread_seconds() {
   timespec now{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -6,7 +6,8 @@
 
 namespace patrol {
 
-/// Time since the run's start, and durations. Integers, so that schedules never drift and stamps compare exactly.
+/// Time since the start of the run, or a duration. Integer nanoseconds: schedules do not drift and stamps compare
+/// exactly.
 using Time = std::chrono::nanoseconds;
 
 constexpr double to_seconds(Time time) { return static_cast<double>(time.count()) * 1e-9; }

@@ -8,19 +8,19 @@
 
 namespace patrol {
 
-/// A pose of the body in `map`, `odom` or `world` at an instant.
+/// Pose of the body in `map`, `odom` or `world` at an instant.
 struct StampedPose {
   Time stamp{};
   Pose3 pose;
 };
 
-/// Poses in strictly growing order of time.
+/// Poses with strictly increasing stamps.
 using Trajectory = std::vector<StampedPose>;
 
-/// The pose at `stamp`, interpolated between its neighbours; none outside the trajectory.
+/// Returns the interpolated pose at `stamp`; nullopt outside the trajectory.
 std::optional<Pose3> pose_at(const Trajectory& trajectory, Time stamp);
 
-/// Length of the path in the ground plane, m.
+/// Returns the length of the path in the ground plane, m.
 double planar_length_m(const Trajectory& trajectory);
 
 }  // namespace patrol

@@ -9,7 +9,7 @@
 namespace patrol {
 namespace {
 
-/// The pose of an element's axis a way along it.
+/// Returns the pose of an axis element at a distance along it.
 Pose2 along(const Pose2& start, double curvature_1pm, double way_m) {
   const double turn = curvature_1pm * way_m;
   if (std::abs(turn) < 1e-12) return start * Pose2{way_m, 0.0, 0.0};
@@ -82,7 +82,7 @@ double TunnelLining::clock_deg(const TunnelPlace& place) const {
 double TunnelLining::radius_at(double clock_deg) const {
   const double across = std::abs(std::sin(clock_deg * kDegree)), up = std::cos(clock_deg * kDegree);
   if (up >= 0.0) return crown_radius_m;
-  // The side wall's circle has its centre beyond the axis, at the height of the half circle's.
+  // The circle of a side wall has its center beyond the axis, at the height of the center of the half circle.
   const double beyond_m = side_radius_m - crown_radius_m;
   return -beyond_m * across + std::sqrt(side_radius_m * side_radius_m - beyond_m * beyond_m * (1.0 - across * across));
 }

@@ -8,48 +8,48 @@
 
 namespace patrol {
 
-/// A piece of a tunnel's axis of one curvature.
+/// Section of the tunnel axis with constant curvature.
 struct AxisElement {
   double length_m = 0.0;
-  double curvature_1pm = 0.0;  ///< to the left; 0: straight
+  double curvature_1pm = 0.0;  ///< positive to the left; 0: straight
 };
 
-/// Where a point is in a tunnel.
+/// Tunnel coordinates of a point.
 struct TunnelPlace {
-  double chainage_m = 0.0;  ///< along the axis
-  double left_m = 0.0;      ///< of the axis
+  double chainage_m = 0.0;  ///< distance along the axis
+  double left_m = 0.0;      ///< lateral offset from the axis, positive to the left
   double height_m = 0.0;
 };
 
-/// The design of a lined tunnel, as the surveyors have it: axis, section and rings. Heights are over the invert. The section is a
-/// horseshoe: a half circle, and below its centre the arcs of the side walls.
+/// Surveyed design of a lined tunnel: axis, cross section and rings. Heights are above the invert. The section is a
+/// horseshoe: a half circle above the arcs of the side walls.
 ///
-/// Clock positions are of one who looks along the axis: 0 deg the crown (12 o'clock), 90 deg the right wall at the height of the
-/// half circle's centre (3 o'clock), 270 deg the left.
+/// Clock positions are for a viewer who looks along the axis. 0 deg is the crown (12 o'clock). 90 deg (3 o'clock) is
+/// the right wall at the height of the center of the half circle, 270 deg the left wall.
 struct TunnelLining {
-  Pose2 T_route_start;              ///< of the axis at chainage 0, x along it; in the route's frame
-  std::vector<AxisElement> axis;    ///< goes on beyond its ends as it is there
+  Pose2 T_route_start;              ///< pose of the axis at chainage 0, x along the axis, in the frame of the route
+  std::vector<AxisElement> axis;    ///< extrapolated beyond both ends with the curvature there
   double crown_radius_m = 0.0;
-  double crown_centre_m = 0.0;      ///< height of the half circle's centre
-  double side_radius_m = 0.0;       ///< of the walls below it
-  double first_ring_m = 0.0;        ///< chainage at which ring 1 begins
+  double crown_centre_m = 0.0;      ///< height of the center of the half circle
+  double side_radius_m = 0.0;       ///< radius of the side walls below the half circle
+  double first_ring_m = 0.0;        ///< chainage at the start of ring 1
   double ring_length_m = 0.0;
-  int rings = 0;                    ///< 1 ... rings
+  int rings = 0;                    ///< number of rings, numbered from 1
 
-  /// In the route's frame, from chainage and offset to the left; and backwards.
+  /// Returns the point at a chainage and an offset to the left, in the frame of the route.
   Eigen::Vector2d point_at(double chainage_m, double left_m) const;
   TunnelPlace place_of(const Eigen::Vector3d& p_route) const;
-  double heading_at(double chainage_m) const;  ///< in the route's frame, rad
+  double heading_at(double chainage_m) const;  ///< heading of the axis in the frame of the route, rad
 
-  /// 0 where there is none.
+  /// Returns the ring number at a chainage; 0 outside the rings.
   int ring_at(double chainage_m) const;
   double middle_of_ring_m(int ring) const { return first_ring_m + (ring - 0.5) * ring_length_m; }
 
-  /// About the half circle's centre, 0 ... 360.
+  /// Returns the clock position around the center of the half circle, 0 to 360.
   double clock_deg(const TunnelPlace& place) const;
-  /// From that centre to the intrados in a direction, m.
+  /// Returns the distance from the center of the half circle to the intrados in a direction, m.
   double radius_at(double clock_deg) const;
-  /// A point of the intrados, in the route's frame.
+  /// Returns a point of the intrados in the frame of the route.
   Eigen::Vector3d intrados(double chainage_m, double clock_deg) const;
 };
 

@@ -6,23 +6,23 @@
 
 namespace patrol::inspect {
 
-/// The methane columns read while the robot stands and aims.
+/// Statistics of the methane columns measured while the robot is stationary and aims at a target.
 class GasMeasurement {
  public:
   void add(const GasReading& reading);
 
   int count() const { return count_; }
   double mean_ppm_m() const { return mean_ppm_m_; }
-  /// Of the mean; 0 for fewer than two readings.
+  /// Returns the standard error of the mean; 0 for fewer than two readings.
   double standard_error_ppm_m() const;
-  /// Mean length of the beam, where it met something.
+  /// Returns the mean beam length of the readings with a return; nullopt if there are none.
   std::optional<double> beam_m() const;
 
  private:
   Time last_stamp_ = Time::min();
   int count_ = 0;
   double mean_ppm_m_ = 0.0;
-  double sum_of_squares_ = 0.0;  ///< about the mean (Welford 1962)
+  double sum_of_squares_ = 0.0;  ///< sum of squared deviations from the mean [Welford62]
   int num_echoes_ = 0;
   double sum_of_lengths_m_ = 0.0;
 };

@@ -4,7 +4,7 @@
 
 namespace patrol::inspect {
 
-/// A surveyed route in `map`: the survey also says where in `site` the robot starts, which is map's origin.
+/// Transforms a surveyed route from `site` to `map`. The surveyed start pose of the robot is the origin of map.
 Route to_map(const Route& route_in_site, const Pose2& T_site_start);
 
 }  // namespace patrol::inspect

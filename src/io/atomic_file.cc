@@ -35,7 +35,7 @@ class InputFile {
 }  // namespace
 
 void save_text(const std::filesystem::path& file, std::string_view text) {
-  // Of this process alone: others may write the same file.
+  // Use a name that is unique to the process: other processes may write the same file.
   const std::filesystem::path temporary = file.string() + "." + std::to_string(::getpid()) + ".part";
   std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
   out << text;
@@ -71,7 +71,7 @@ std::string load_text(const std::filesystem::path& file, std::uintmax_t max_byte
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) throw refuse(fmt::format("cannot be read: {}", std::strerror(errno)));
     text.append(block.data(), static_cast<std::size_t>(count));
-    if (text.size() > max_bytes) throw too_large;  // files of /proc have a size of 0, and others may grow
+    if (text.size() > max_bytes) throw too_large;  // files in /proc have size 0, and files may grow while they are read
   }
   return text;
 }

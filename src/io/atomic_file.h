@@ -6,11 +6,11 @@
 
 namespace patrol::io {
 
-/// Writes the whole file or nothing: into a file beside it that then takes its name. Throws InputError when the place
-/// cannot be written to.
+/// Writes a file atomically: into a temporary file in the same folder, which is then renamed. Throws InputError if the
+/// folder is not writable.
 void save_text(const std::filesystem::path& file, std::string_view text);
 
-/// The whole file. Throws InputError when there is none, or it cannot be read.
+/// Returns the whole content of a file. Throws InputError if the file is missing or cannot be read.
 std::string load_text(const std::filesystem::path& file);
 
 }  // namespace patrol::io

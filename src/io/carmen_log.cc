@@ -15,16 +15,17 @@
 namespace patrol::io {
 namespace {
 
-constexpr double kMostMount_m = 2.0;     ///< a lidar sits no further from the robot's middle
+constexpr double kMostMount_m = 2.0;     ///< maximum distance of the lidar from the robot origin
 constexpr double kSameMount_m = 0.05, kSameMountRad = 0.05;
-constexpr double kEqualPoses = 1e-6;     ///< m, rad: the last digit that CARMEN writes
+constexpr double kEqualPoses = 1e-6;     ///< m, rad: last digit written by CARMEN
 constexpr double kLargestStepDeg = 5.0;
 constexpr int kLinesToChooseFrom = 1000;
 
-/// By how much they say: their own angles and pose, a pose, angles, and front before rear.
+/// Lidar messages by decreasing information: own angles and pose, pose, angles; front before rear.
 constexpr std::array<std::string_view, 6> kLasers = {"ROBOTLASER1", "FLASER", "RAWLASER1", "ROBOTLASER2", "RLASER", "RAWLASER2"};
 
-/// Instruments that the old messages do not describe, by their number of beams: Hokuyo's URG-04LX (1024 steps a turn) and UTM-30LX.
+/// Known instruments that the old messages do not describe, by number of beams: Hokuyo URG-04LX (1024 steps per turn)
+/// and UTM-30LX.
 struct KnownStep {
   std::size_t num_beams;
   double step_deg;
@@ -33,7 +34,7 @@ constexpr double kUrgStepDeg = 360.0 / 1024.0;
 constexpr std::array<KnownStep, 7> kKnownSteps = {
     {{682, kUrgStepDeg}, {683, kUrgStepDeg}, {769, kUrgStepDeg}, {540, 0.5}, {541, 0.5}, {1080, 0.25}, {1081, 0.25}}};
 
-/// "FLASER", "NMEAGGA", "WIFI-SCAN": what a line begins with, if it is a line of a log.
+/// Returns whether a word is a message name, the first word of a log line: "FLASER", "NMEAGGA", "WIFI-SCAN".
 bool is_message_name(std::string_view word) {
   constexpr std::size_t kLongest = 40;
   const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_'; };
@@ -51,7 +52,7 @@ std::string choose_laser(const std::filesystem::path& file) {
   return best < kLasers.size() ? std::string(kLasers[best]) : "";
 }
 
-/// REP 117.
+/// Converts a range to the conventions of REP 117: NaN invalid, +Inf no return.
 float to_range(double range_m, double no_return_m) {
   if (std::isnan(range_m) || range_m <= 0.0) return std::numeric_limits<float>::quiet_NaN();
   return range_m >= no_return_m ? std::numeric_limits<float>::infinity() : static_cast<float>(range_m);
@@ -142,7 +143,8 @@ void CarmenLog::add(CarmenScan scan) {
   sort_in(sorter_, {.scan = to_laser_scan(std::move(scan)), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar}, options_, place() + laser_);
 }
 
-/// CARMEN's rear lidar looks back, and its offset counts backwards (carmen robot_laser).
+/// Returns the mount of the lidar from the parameters. The rear lidar of CARMEN points backward, and its offset is
+/// measured backward (carmen robot_laser).
 Pose2 CarmenLog::parameter_mount() const {
   const bool is_rear = is_rear_laser(laser_);
   const std::string prefix = is_rear ? "robot_rearlaser" : "robot_frontlaser";

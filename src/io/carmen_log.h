@@ -11,17 +11,20 @@
 
 namespace patrol::io {
 
-/// A log of CARMEN (.log, .clf), plain or in gzip. The scans of one lidar are given out, with the robot's raw odometry; what is not
-/// needed for that is ignored and counted.
+/// Reader of a CARMEN log (.log, .clf), plain or gzip-compressed. Returns the scans of one lidar with the raw odometry
+/// of the robot; other messages are ignored and counted.
 ///
-/// - Which lidar, unless the options say so: of those that the log's first thousand lines hold, the one whose message says most.
-/// - Beams: ROBOTLASERn and RAWLASERn say where they point. FLASER and RLASER have PARAM laser_front_laser_resolution (degrees), or
-///   the step of the instruments that are known by their number of beams, else they span 180 deg. An even number of beams starts at
-///   minus half the span and ends a step before its end (beam i of 180 at -90 deg + i), an odd number ends at it.
-/// - The lidar's place is that of the log's first scan and then kept: its laser pose seen from its robot pose. Where these are equal
-///   it is PARAM robot_frontlaser_offset (and _side_offset, _angular_offset), else zero; likewise where they are more than 2 m apart,
-///   as in logs whose first pose was corrected afterwards. Later scans whose poses say otherwise are counted, not followed.
-/// - RAWLASERn has no pose: it is given the newest ODOM before it, and skipped when there is none.
+/// - Lidar, unless set in the options: the one with the most informative message among those in the first thousand
+///   lines.
+/// - Beam angles: given in ROBOTLASERn and RAWLASERn. For FLASER and RLASER the step is PARAM
+///   laser_front_laser_resolution (degrees), or that of the instruments known by their number of beams; otherwise the
+///   span is 180 deg. An even number of beams starts at minus half the span and ends one step before its end (beam i of
+///   180 at -90 deg + i); an odd number includes the end.
+/// - Lidar pose in the body: the laser pose of the first scan relative to its robot pose, constant from then on. If
+///   these poses are equal: PARAM robot_frontlaser_offset (and _side_offset, _angular_offset), otherwise zero. The
+///   parameters also apply if the poses are more than 2 m apart, as in logs whose first pose was corrected afterwards.
+///   Later scans with a different relative pose are counted; their relative pose is ignored.
+/// - RAWLASERn has no pose: it gets the pose of the preceding ODOM message, and is skipped if there is none.
 class CarmenLog : public ScanLog {
  public:
   CarmenLog(const std::filesystem::path& file, const ScanLogOptions& options);
@@ -44,7 +47,7 @@ class CarmenLog : public ScanLog {
 
   ScanLogOptions options_;
   LineReader lines_;
-  int line_ = 0;  ///< the number of the line at hand
+  int line_ = 0;  ///< number of the current line
   std::string laser_;
   std::map<std::string, double> parameters_;
   std::optional<CarmenOdometry> odometry_;

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t kTailWords = 3;        ///< ipc_timestamp ipc_hostname logger_timestamp
 constexpr std::size_t kPoseWords = 3;
-constexpr std::size_t kDriveWords = 5;       ///< of ROBOTLASERn: tv rv forward_safety_dist side_safety_dist turn_axis
-constexpr double kMaxAngleRad = 7.0;         ///< a full turn and what rounding adds
+constexpr std::size_t kDriveWords = 5;  ///< words of ROBOTLASERn: tv rv forward_safety_dist side_safety_dist turn_axis
+constexpr double kMaxAngleRad = 7.0;         ///< one turn plus rounding
 
-/// Too few or too many words are told before any of them is taken for another.
+/// Checks the number of remaining words before any of them is interpreted.
 void expect_words(const LineFields& fields, std::size_t expected, const char* after) {
   const std::size_t words = fields.num_words();
   if (words != expected) throw FieldError(fmt::format("holds {} words after its {}, must be {}: cut off, or wrongly counted", words, after, expected));
@@ -25,7 +25,7 @@ std::size_t read_count(LineFields& fields, const char* what, std::int64_t min) {
   return static_cast<std::size_t>(fields.integer(what, min, static_cast<std::int64_t>(kMostCarmenBeams)));
 }
 
-/// The count may be wrong: it must not ask for more than the line holds.
+/// Reads a counted list. The count is checked against the number of words in the line before memory is allocated.
 template <typename Number>
 std::vector<Number> read_numbers(LineFields& fields, std::size_t count, const char* what) {
   const std::size_t words = fields.num_words();
@@ -41,8 +41,9 @@ void read_poses(LineFields& fields, CarmenScan& scan) {
   scan.T_odom_body = fields.pose("the robot's pose");
 }
 
-/// Angles are in the file with six digits, which add up to hundredths of a degree from beam to beam: where the field of view is as
-/// many steps as there are beams, or gaps between them, it says more than the step.
+/// Returns a refined angle increment. Angles in the file have six decimal digits, whose rounding adds up to hundredths
+/// of a degree over a scan. The field of view is more accurate if it equals the number of beams, or of gaps between
+/// them, times the step.
 double exact_increment(double step_rad, double field_of_view_rad, std::size_t num_beams) {
   constexpr double kRoundingRad = 1e-3;
   const auto beams = static_cast<double>(num_beams);
@@ -52,8 +53,8 @@ double exact_increment(double step_rad, double field_of_view_rad, std::size_t nu
   return step_rad;
 }
 
-/// laser_type start_angle field_of_view angular_resolution maximum_range accuracy remission_mode num_readings ranges
-/// num_remissions remissions
+/// Reads a message of the new formats: laser_type start_angle field_of_view angular_resolution maximum_range accuracy
+/// remission_mode num_readings ranges num_remissions remissions.
 void read_new_scan(LineFields& fields, CarmenScan& scan) {
   const auto angle = [&](const char* what) {
     const double value = fields.number(what);

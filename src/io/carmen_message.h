@@ -8,18 +8,20 @@
 #include "core/frames.h"
 #include "core/time.h"
 
-/// The lines of a CARMEN log (carmen.sourceforge.net, "Logging data"): "name contents ipc_timestamp ipc_hostname logger_timestamp".
+/// Parser of CARMEN log lines (carmen.sourceforge.net, "Logging data"): "name contents ipc_timestamp ipc_hostname
+/// logger_timestamp".
 namespace patrol::io {
 
-/// A message of a lidar: FLASER and RLASER (the old ones: front and rear), RAWLASERn and ROBOTLASERn (the new ones; 1 front, 2 rear).
+/// Lidar message. Old formats: FLASER (front) and RLASER (rear). New formats: RAWLASERn and ROBOTLASERn (1 front, 2
+/// rear).
 struct CarmenScan {
   Time stamp{};  ///< ipc_timestamp
-  std::vector<double> ranges_m;         ///< [beam], as in the file
-  std::vector<float> remissions;        ///< [beam], or empty
-  /// Where the beams point, in the lidar; the old messages do not say (carmen_log.cc decides).
+  std::vector<double> ranges_m;         ///< [beam], m, unmodified
+  std::vector<float> remissions;        ///< [beam]; may be empty
+  /// Beam angles in the lidar frame; not part of the old messages (see carmen_log.cc).
   std::optional<double> angle_min_rad, angle_increment_rad;
-  std::optional<double> range_max_m;    ///< of the new messages, when it is above 0
-  std::optional<Pose2> T_odom_lidar;    ///< RAWLASERn has neither
+  std::optional<double> range_max_m;    ///< new messages only, if positive
+  std::optional<Pose2> T_odom_lidar;    ///< neither pose is part of RAWLASERn
   std::optional<Pose2> T_odom_body;
 };
 
@@ -28,21 +30,22 @@ struct CarmenOdometry {
   Pose2 T_odom_body;
 };
 
-/// A setting of the robot, as "robot_frontlaser_offset 0.08".
+/// Robot parameter, such as "robot_frontlaser_offset 0.08".
 struct CarmenParameter {
   std::string_view name;
   std::string_view value;
 };
 
-/// No line has more beams.
+/// Maximum number of beams per message.
 inline constexpr std::size_t kMostCarmenBeams = 10'000;
 
-/// Whether this name is that of a lidar's message, by its family.
+/// Format of a lidar message.
 enum class CarmenLaserFamily { kOld, kRaw, kRobot };
+/// Returns the format of the lidar message with this name; nullopt for other messages.
 std::optional<CarmenLaserFamily> carmen_laser_family(std::string_view name);
 bool is_rear_laser(std::string_view name);
 
-/// What follows the name of a message. Throw FieldError: the contents end too early, hold too much, or something that is no number.
+/// Parse the text after the message name. Throw FieldError if the text is too short, too long or not numeric.
 CarmenScan parse_carmen_scan(CarmenLaserFamily family, std::string_view contents);
 CarmenOdometry parse_carmen_odometry(std::string_view contents);
 CarmenParameter parse_carmen_parameter(std::string_view contents);

@@ -7,8 +7,9 @@
 
 namespace patrol::io {
 
-/// RFC 4180 with a header line, numbers in the fewest digits that read back as the same; whole or not at all.
+/// Formats a table as CSV (RFC 4180) with a header line. Numbers have the fewest digits that read back identically.
 std::string to_csv(const Table& table);
+/// Writes a table as CSV, atomically.
 void save_csv(const std::filesystem::path& file, const Table& table);
 
 }  // namespace patrol::io

@@ -6,11 +6,12 @@
 
 namespace patrol::io {
 
-/// SHA-256 in hexadecimal, as `sha256sum` prints it.
+/// Returns the SHA-256 digest in hexadecimal, as printed by `sha256sum`.
 std::string sha256(std::string_view content);
 std::string sha256_of_file(const std::filesystem::path& file);
 
-/// Of all files below a folder, by their names and contents; hidden ones and the folder `except` are left out.
+/// Returns the digest of all files in a folder and its subfolders, by name and content. Hidden files and the folder
+/// `except` are skipped.
 std::string sha256_of_folder(const std::filesystem::path& folder, const std::string& except = "");
 
 }  // namespace patrol::io

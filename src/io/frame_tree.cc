@@ -5,9 +5,9 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::size_t kMostGenerations = 64;  ///< a loop of parents ends here
+constexpr std::size_t kMostGenerations = 64;  ///< maximum depth of the tree; also ends cyclic chains
 
-/// tf2 knows no leading slash; ROS 1's names had one.
+/// Removes the leading slash of ROS 1 frame names; tf2 does not use it.
 std::string plain(const std::string& frame) { return frame.starts_with('/') ? frame.substr(1) : frame; }
 
 std::optional<Pose3> pose_at_stamp(const std::deque<StampedPose>& poses, Time stamp) {

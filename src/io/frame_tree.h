@@ -14,36 +14,39 @@
 
 namespace patrol::io {
 
-/// How frames lie to each other, as /tf and /tf_static tell it: each has one parent. What moves is remembered for a while only.
+/// Transform buffer for /tf and /tf_static, as in tf2. Each frame has one parent; moving transforms are kept for
+/// `kMemory`.
 class FrameTree {
  public:
-  static constexpr Time kMemory = std::chrono::seconds(10);  ///< of what moves
-  static constexpr std::size_t kMostPoses = 2'000;           ///< likewise, of one frame
-  static constexpr std::size_t kMostFrames = 1'000;          ///< further ones are not noted: no robot has as many
+  static constexpr Time kMemory = std::chrono::seconds(10);  ///< buffer length of moving transforms
+  static constexpr std::size_t kMostPoses = 2'000;           ///< maximum number of buffered transforms per frame
+  /// Maximum number of frames; more than any robot has, further frames are ignored.
+  static constexpr std::size_t kMostFrames = 1'000;
 
   void add_static(const FrameTransform& transform);
-  /// What is not newer than what is known of the frame is dropped, and so is all that was known of it when it changes its parent.
+  /// Adds a moving transform. A transform that is not newer than the latest one of its frame is dropped. If the parent
+  /// of the frame changes, the earlier transforms are discarded.
   void add(const FrameTransform& transform);
 
-  /// Where `child` is seen from `parent` at an instant, over whatever lies between them; none when that is not known, or not for
-  /// this instant.
+  /// Returns the pose of `child` in `parent` at an instant, over any chain of frames; nullopt if the chain is not
+  /// connected at this instant.
   std::optional<Pose3> find(const std::string& parent, const std::string& child, Time stamp) const;
 
  private:
   struct Link {
     std::string parent;
     bool is_static = false;
-    std::deque<StampedPose> T_parent_child;  ///< by growing stamp; one if static
+    std::deque<StampedPose> T_parent_child;  ///< by increasing stamp; one entry if static
   };
   struct Ancestor {
     std::string frame;
     Pose3 T_frame_child;
   };
-  /// The frame itself first, then as far up as is known at the instant.
+  /// Returns the frame itself and its ancestors, as far as known at the instant.
   std::vector<Ancestor> ancestors(const std::string& frame, Time stamp) const;
   Link* link_of(const FrameTransform& transform);
 
-  std::map<std::string, Link> links_;  ///< by child
+  std::map<std::string, Link> links_;  ///< by child frame
 };
 
 }  // namespace patrol::io

@@ -30,7 +30,7 @@ Eigen::Matrix3d read_information(LineFields& fields) {
   return information;
 }
 
-/// Ids as they stand in the file, until all vertices are known.
+/// Reader that keeps the ids of the file until all vertices are known.
 class G2oReader {
  public:
   explicit G2oReader(const std::filesystem::path& file) : lines_(file) {}
@@ -52,7 +52,7 @@ class G2oReader {
   }
 
  private:
-  /// An id that some line names.
+  /// Reference of a line to an id.
   struct Naming {
     Id id;
     int line;
@@ -114,7 +114,7 @@ class G2oReader {
   }
 
   LineReader lines_;
-  int line_ = 0;  ///< the number of the line at hand
+  int line_ = 0;  ///< number of the current line
   PoseGraph graph_;
   std::unordered_map<Id, int> node_of_;
   std::vector<std::pair<Naming, Naming>> ends_;  ///< [edge]

@@ -6,17 +6,18 @@
 namespace patrol::io {
 namespace {
 
-constexpr Time kLongestGap = std::chrono::milliseconds(500);  ///< between two messages of the gyro
-constexpr Time kMemory = std::chrono::seconds(300);           ///< scans come later than the gyro by less
+constexpr Time kLongestGap = std::chrono::milliseconds(500);  ///< maximum time between gyro messages
+constexpr Time kMemory = std::chrono::seconds(300);  ///< buffer length; must exceed the delay of scans behind the gyro
 constexpr std::size_t kMostHeadings = 300'000;
-constexpr double kStandingSpeed_mps = 0.005, kStandingRateRadps = 0.005;  ///< by odometry
-constexpr double kMostBiasRadps = 0.05;       ///< who turns faster than this does not stand, whatever the wheels say
+constexpr double kStandingSpeed_mps = 0.005, kStandingRateRadps = 0.005;  ///< standstill thresholds of the odometry
+constexpr double kMostBiasRadps = 0.05;       ///< maximum gyro rate of a standstill, whatever the wheels report
 constexpr double kShortestStandstill_s = 1.0;
-constexpr double kEnoughTurnsRad2 = 0.05;     ///< sum of squares over the steps, to compare by: three rad at 1 deg a step
-constexpr double kSlopeTol = 0.02, kResidualTol = 0.05;  ///< of turns that agree
-constexpr double kSlopeLimit = 0.5, kResidualLimit = 0.5;  ///< of turns that have anything in common
+/// Minimum sum of squared yaw increments for a verdict: three rad at 1 deg per step.
+constexpr double kEnoughTurnsRad2 = 0.05;
+constexpr double kSlopeTol = 0.02, kResidualTol = 0.05;  ///< limits for kAgrees
+constexpr double kSlopeLimit = 0.5, kResidualLimit = 0.5;  ///< limits for kUnrelated
 
-/// The same way, seen from the middle of the turn.
+/// Replaces the yaw of a step and rotates its translation by half of the yaw change (midpoint rule).
 Pose2 with_turn(const Pose2& step, double turn_rad) {
   const Eigen::Vector2d move = Eigen::Rotation2Dd(0.5 * (turn_rad - step.yaw)) * step.position();
   return {move.x(), move.y(), wrap_angle(turn_rad)};
@@ -104,7 +105,8 @@ void GyroOdometry::compare(double odometry_rad, double gyro_rad, double dt_s) {
 
 GyroVerdict GyroOdometry::verdict() const {
   if (!(tt_ > 0.0)) return GyroVerdict::kUnknown;
-  const double gg = gg_ - gt_ * gt_ / tt_, og = og_ - ot_ * gt_ / tt_, oo = oo_ - ot_ * ot_ / tt_;  // without what grows with time
+  // Remove the part proportional to time, the bias.
+  const double gg = gg_ - gt_ * gt_ / tt_, og = og_ - ot_ * gt_ / tt_, oo = oo_ - ot_ * ot_ / tt_;
   if (gg < kEnoughTurnsRad2) return GyroVerdict::kUnknown;
   const double slope = og / gg, residual = std::sqrt(std::max(0.0, oo - slope * og) / gg);
   if (slope < kSlopeLimit || slope > 1.0 / kSlopeLimit || residual > kResidualLimit) return GyroVerdict::kUnrelated;

@@ -19,7 +19,7 @@ double figure_of(const JsonObject& object, const char* key) {
   return object.member(key).is_null() ? std::numeric_limits<double>::quiet_NaN() : object.number(key);
 }
 
-/// A length, a spread or a share: not below nothing.
+/// Reads a length, a standard deviation or a ratio; must not be negative.
 double size_of(const JsonObject& object, const char* key) {
   const double value = figure_of(object, key);
   if (value < 0.0) object.fail(fmt::format("{} must not be negative", key));
@@ -61,7 +61,7 @@ Eigen::Vector3d point_of(const JsonObject& object, const char* key) {
   return {p[0], p[1], p[2]};
 }
 
-/// Each entry of a list, read by `read(JsonObject)`.
+/// Reads each entry of a list with `read(JsonObject)`.
 template <typename Entry, typename Read>
 std::vector<Entry> entries(const JsonObject& object, const char* list, const std::string& place, const std::vector<std::string>& keys, Read read) {
   std::vector<Entry> all;
@@ -69,7 +69,7 @@ std::vector<Entry> entries(const JsonObject& object, const char* list, const std
   return all;
 }
 
-/// What is said of a body of water that was found.
+/// Adds the fields of a detected body of water.
 void add_body(Json& json, const WaterResult& result) {
   json["position_m"] = point(result.p_map);
   for (int row = 0; row < 3; ++row) json["covariance_m2"].push_back(point(result.covariance_m2.row(row)));

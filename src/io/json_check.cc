@@ -14,10 +14,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kNumberOverflow = 406;  // the library's number for it
+constexpr int kNumberOverflow = 406;  // exception id of the library
 constexpr std::size_t kMostDepth = 20;
 
-/// Is told of every value as the library meets it.
+/// SAX handler that checks each value while the library parses it.
 class Checker final : public nlohmann::json_sax<Json> {
  public:
   Checker(const std::string& file, const std::string& text, std::size_t max_entries)
@@ -53,12 +53,12 @@ class Checker final : public nlohmann::json_sax<Json> {
   }
 
  private:
-  /// A list or an object that has begun and not ended.
+  /// List or object that has not ended yet.
   struct Level {
     bool is_list = false;
-    std::size_t num_entries = 0;   ///< of a list
-    std::set<std::string> keys{};  ///< of an object
-    std::string key{};             ///< the newest
+    std::size_t num_entries = 0;   ///< entries of a list
+    std::set<std::string> keys{};  ///< keys of an object
+    std::string key{};             ///< most recent key
   };
 
   bool count() {
@@ -78,7 +78,7 @@ class Checker final : public nlohmann::json_sax<Json> {
     return true;
   }
   [[noreturn]] void refuse(const std::string& what) const {
-    std::string place;  // "waypoints[3]", nothing at the top
+    std::string place;  // e.g. "waypoints[3]"; empty at the top level
     for (const Level& level : open_) {
       if (level.is_list) place += fmt::format("[{}]", level.num_entries - 1);
       else if (!level.key.empty()) place += (place.empty() ? "" : ".") + level.key;

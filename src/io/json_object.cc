@@ -15,7 +15,7 @@
 namespace patrol::io {
 namespace {
 
-constexpr double kLeastUpright = 0.707;  // cosine of the tilt; who writes w first has the robot stand on its head
+constexpr double kLeastUpright = 0.707;  // cosine of the maximum tilt; also catches quaternions written as w, x, y, z
 
 }  // namespace
 

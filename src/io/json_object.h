@@ -13,14 +13,15 @@ namespace patrol::io {
 
 using Json = nlohmann::json;
 
-/// Throws InputError, naming the file and the place, when it is not JSON, says a key twice, or has a list of more than `max_entries`.
+/// Reads a JSON file. Throws InputError with file and JSON path for invalid JSON, duplicate keys, and lists of more
+/// than `max_entries` entries.
 Json load_json(const std::filesystem::path& file, std::size_t max_entries = 100'000);
 
-/// Reads the members of one JSON object and knows where it stands: whatever is missing, unknown or of the wrong kind is refused
-/// with an InputError that names the place ("site.json: stations[2]") and the key.
+/// Checked access to the members of one JSON object. Throws InputError with its path ("site.json: stations[2]") and the
+/// key if a member is missing, unknown or of the wrong type.
 class JsonObject {
  public:
-  /// `json` must outlive this; `keys` are all that it may hold.
+  /// Creates the accessor. `json` must outlive it; `keys` are the admissible keys.
   JsonObject(std::string place, const Json& json, const std::vector<std::string>& keys);
 
   bool has(const char* key) const { return json_.contains(key); }
@@ -38,9 +39,9 @@ class JsonObject {
   }
   bool flag(const char* key) const;
   std::vector<double> numbers(const char* key, std::size_t count) const;
-  /// From `position` (x, y, z) and `orientation` (quaternion x, y, z, w of length 1, upright).
+  /// Returns a pose from `position` (x, y, z) and `orientation` (unit quaternion x, y, z, w, upright).
   Pose2 pose() const;
-  /// At least two points [x, y].
+  /// Returns a polyline of at least two points [x, y].
   std::vector<Eigen::Vector2d> polyline(const char* key) const;
 
   [[noreturn]] void fail(const std::string& what) const;

@@ -16,7 +16,7 @@ auto count(const std::vector<JunitCase>& cases, JunitResult result) {
   return std::count_if(cases.begin(), cases.end(), [&](const JunitCase& c) { return c.result == result; });
 }
 
-/// The counts that JUnit puts on a suite and on the whole.
+/// Formats the counts of a JUnit suite or of all suites.
 std::string tally(const std::vector<JunitCase>& cases, double time_s) {
   return fmt::format(R"(tests="{}" failures="{}" errors="{}" skipped="{}" time="{:.3f}")", cases.size(),
                      count(cases, JunitResult::kFailure), count(cases, JunitResult::kError),

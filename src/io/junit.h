@@ -14,11 +14,11 @@ struct JunitCase {
   std::string name;
   double time_s = 0.0;
   JunitResult result = JunitResult::kPassed;
-  std::string message;  ///< why it did not pass: one line
-  std::string details;  ///< more of it, if there is more
+  std::string message;  ///< reason of the result if not passed; one line
+  std::string details;  ///< further details; may be empty
 };
 
-/// One run's report. Properties are what a reader needs to run it again: scenario, seed, version.
+/// JUnit report of one run. The properties identify the run for a repetition: scenario, seed, version.
 struct JunitSuite {
   std::string name;
   double time_s = 0.0;
@@ -26,13 +26,14 @@ struct JunitSuite {
   std::vector<JunitCase> cases;
 };
 
-/// Writes JUnit XML as the common CI servers read it (testsuites, testsuite, testcase), whole or not at all.
+/// Writes JUnit XML for common CI servers (testsuites, testsuite, testcase), atomically.
 void save_junit(const std::filesystem::path& file, const std::vector<JunitSuite>& suites);
 
-/// What `save_junit` wrote. Throws InputError when it is not that.
+/// Reads a file of `save_junit`. Throws InputError if it has another format.
 std::vector<JunitSuite> load_junit(const std::filesystem::path& file);
 
-/// The report that stands there from before the run until its end: red, so that a killed run never looks green.
+/// Returns the failing report written before a run. It is replaced at the end of the run, so that a killed run never
+/// passes.
 JunitSuite unfinished_junit(const std::string& suite);
 
 }  // namespace patrol::io

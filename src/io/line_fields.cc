@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 constexpr double kFurthest_m = 1e8;
-constexpr std::int64_t kMaxSeconds = 9'000'000'000;  ///< fits int64 nanoseconds
+constexpr std::int64_t kMaxSeconds = 9'000'000'000;  ///< limit of int64 nanoseconds, with margin
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// As it is quoted in messages.
+/// Quotes a word for error messages, truncated.
 std::string quoted(std::string_view word) {
   constexpr std::size_t kMost = 24;
   return word.size() <= kMost ? fmt::format("'{}'", word) : fmt::format("'{}...'", word.substr(0, kMost));
@@ -25,12 +25,13 @@ std::string quoted(std::string_view word) {
 
 template <typename Number>
 bool parse_all(std::string_view text, Number& value) {
-  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);  // from_chars knows no plus
+  // std::from_chars does not accept a plus sign.
+  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc{} && end == text.data() + text.size();
 }
 
-/// The fraction's digits as nanoseconds; negative when they are no digits.
+/// Converts the digits of the fraction to nanoseconds; negative if they are not digits.
 std::int64_t parse_fraction(std::string_view digits) {
   if (!std::all_of(digits.begin(), digits.end(), is_digit)) return -1;
   std::int64_t nanoseconds = 0;
@@ -53,7 +54,7 @@ std::optional<Time> parse_stamp(std::string_view text) {
     const std::int64_t count = seconds * kNanosecondsPerSecond + nanoseconds;
     return Time{is_negative ? -count : count};
   }
-  double number = 0.0;  // ".5", "1e3"
+  double number = 0.0;  // fallback for ".5", "1e3"
   if (!parse_all(text, number) || !(std::abs(number) <= static_cast<double>(kMaxSeconds))) return std::nullopt;
   return from_seconds(number);
 }

@@ -12,36 +12,37 @@
 
 namespace patrol::io {
 
-/// A line's word is not what belongs there; the reader of the file adds where.
+/// Invalid word in a line. The message has no file and line; the caller adds them.
 class FieldError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Seconds in decimal figures as integer nanoseconds: exact, where a double of seconds since 1970 is good to a tenth of a
-/// microsecond. Digits beyond the ninth are cut off. None when it is no number, or too large (292 years).
+/// Parses decimal seconds as integer nanoseconds, exactly. A double of seconds since 1970 resolves only 0.1
+/// microseconds. Digits beyond the ninth are truncated. Returns nullopt if the text is not a number or exceeds 292
+/// years.
 std::optional<Time> parse_stamp(std::string_view text);
 
-/// The same with nine digits after the point: what parse_stamp reads back as it was.
+/// Formats a stamp in seconds with nine decimals, which parse_stamp reads back exactly.
 std::string format_stamp(Time stamp);
 
-/// Takes a line of words, parted by blanks, apart. `what` names the word in messages. Throws FieldError.
+/// Tokenizer of a line of words separated by blanks. `what` names the word in error messages. Throws FieldError.
 class LineFields {
  public:
   explicit LineFields(std::string_view line) : rest_(line) { skip_blanks(); }
 
   bool is_empty() const { return rest_.empty(); }
-  /// How many words are left.
+  /// Returns the number of remaining words.
   std::size_t num_words() const;
 
   std::string_view word(const char* what);
-  /// Any number, "inf" and "nan" too.
+  /// Reads a number, including "inf" and "nan".
   double any_number(const char* what);
-  /// A finite one.
+  /// Reads a finite number.
   double number(const char* what);
   std::int64_t integer(const char* what, std::int64_t min, std::int64_t max);
   Time stamp(const char* what);
-  /// x y yaw; m, rad. No further than 100,000 km away; the yaw is wrapped.
+  /// Reads a pose x y yaw; m, rad. At most 100,000 km from the origin; the yaw is wrapped.
   Pose2 pose(const char* what);
 
  private:

@@ -14,7 +14,8 @@ namespace {
 
 constexpr unsigned kGzipBufferBytes = 1U << 16;
 constexpr std::size_t kReadBytes = std::size_t{1} << 15;
-constexpr std::size_t kMostDroppedBytes = std::size_t{1} << 26;  ///< of one line: a disk's zeros have no end
+/// Maximum length of a skipped line; longer runs, such as zeros of a damaged disk, end the reading.
+constexpr std::size_t kMostDroppedBytes = std::size_t{1} << 26;
 
 }  // namespace
 
@@ -35,7 +36,7 @@ double LineReader::progress() const {
   return std::min(1.0, static_cast<double>(gzoffset(gzip_.get())) / size_);
 }
 
-/// Reads on, behind what is in the buffer; false at the file's end.
+/// Appends data to the buffer; returns false at the end of the file.
 bool LineReader::fill() {
   if (is_at_end_) return false;
   if (begin_ > 0 && end_ + kReadBytes > buffer_.size()) {
@@ -43,7 +44,8 @@ bool LineReader::fill() {
     end_ -= begin_;
     begin_ = 0;
   }
-  if (end_ + kReadBytes > buffer_.size()) buffer_.resize(2 * buffer_.size());  // a long line: no more than its most bytes are asked for
+  // A long line; the size stays bounded by kMaxLineBytes.
+  if (end_ + kReadBytes > buffer_.size()) buffer_.resize(2 * buffer_.size());
   const int got = gzread(gzip_.get(), buffer_.data() + end_, static_cast<unsigned>(kReadBytes));
   if (got > 0) {
     end_ += static_cast<std::size_t>(got);

@@ -8,33 +8,34 @@
 #include <string_view>
 #include <vector>
 
-struct gzFile_s;  // zlib's
+struct gzFile_s;  // type of zlib
 
 namespace patrol::io {
 
-/// The lines of a text file, plain or in gzip, one after the other. Whatever the file holds, no more than a line's most bytes and a
-/// buffer are in memory.
+/// Sequential reader of the lines of a text file, plain or gzip-compressed. Memory is bounded by one line of maximum
+/// length plus a buffer, whatever the file contains.
 class LineReader {
  public:
-  /// A longer line comes cut to this: it is none of a log's.
+  /// Maximum length of a line; longer lines are truncated and marked.
   static constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
 
   struct Line {
-    int number = 0;         ///< from 1
-    std::string_view text;  ///< without its end; lives until the next call
-    bool is_cut = false;    ///< the line is longer
+    int number = 0;         ///< starts at 1
+    std::string_view text;  ///< without the line end; valid until the next call
+    bool is_cut = false;    ///< true: the line was longer than kMaxLineBytes
   };
 
-  /// Throws InputError when there is no such file, or it cannot be read.
+  /// Opens a file. Throws InputError if it is missing or cannot be read.
   explicit LineReader(const std::filesystem::path& file);
 
-  /// None at the end. Throws InputError when the disk fails.
+  /// Returns the next line; nullopt at the end. Throws InputError on a read error of the disk.
   std::optional<Line> next();
 
-  /// Why the lines ended before the file ("the gzip data are cut off"; a line that goes on and on); known once the last was read.
+  /// Reason why reading ended before the end of the file (truncated gzip data, endless line). Valid after the last
+  /// line.
   const std::optional<std::string>& damage() const { return damage_; }
 
-  /// Share of the file (as it lies on the disk) that was read, 0 ... 1.
+  /// Returns the fraction of the file read, in bytes on disk, 0 to 1.
   double progress() const;
   const std::filesystem::path& file() const { return file_; }
 
@@ -49,9 +50,9 @@ class LineReader {
 
   std::filesystem::path file_;
   std::unique_ptr<gzFile_s, Close> gzip_;
-  double size_ = 0.0;  ///< of the file, bytes
+  double size_ = 0.0;  ///< size of the file, bytes
   std::vector<char> buffer_;
-  std::size_t begin_ = 0, end_ = 0;  ///< of what is in the buffer and not yet given out
+  std::size_t begin_ = 0, end_ = 0;  ///< range of unread bytes in the buffer
   int number_ = 0;
   bool is_inside_cut_line_ = false;
   bool is_at_end_ = false;

@@ -28,7 +28,7 @@ std::string byte_difference(std::string_view was, std::string_view is) {
                      static_cast<unsigned char>(*a));
 }
 
-/// The first field that differs, in words; the first byte where no field tells them apart (or none can be read).
+/// Describes the first field that differs, or the first byte if no field does or the message cannot be decoded.
 std::string content_difference(const McapMessage& was, const McapMessage& is) {
   try {
     const auto before = ros_fields(was.channel.type, was.channel.definition, was.cdr);
@@ -38,7 +38,7 @@ std::string content_difference(const McapMessage& was, const McapMessage& is) {
         return fmt::format("{} is {}, was {}", after[i].path, after[i].value, before[i].value);
       }
     }
-  } catch (const std::exception&) {  // no definition, or not one that we read
+  } catch (const std::exception&) {  // missing or unsupported definition
   }
   return byte_difference(was.cdr, is.cdr);
 }

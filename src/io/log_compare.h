@@ -8,17 +8,17 @@
 
 namespace patrol::io {
 
-/// Where two logs part.
+/// First difference between two logs.
 struct LogDifference {
-  std::string topic;  ///< empty if it is not about a message
+  std::string topic;  ///< empty if the difference is not in a message
   Time log_time{};
-  std::string what;   ///< a phrase: "ranges[417] is 3.26, was 3.25"
+  std::string what;   ///< phrase such as "ranges[417] is 3.26, was 3.25"
 };
 
-/// The first message at which `again` is not byte for byte what `log` is; none if the files are equal.
+/// Returns the first message of `again` that is not byte-identical to that of `log`; nullopt if the files are equal.
 std::optional<LogDifference> first_difference(const std::filesystem::path& log, const std::filesystem::path& again);
 
-/// "/scan at 12.300000000 s: ranges[417] is 3.26, was 3.25".
+/// Formats a difference: "/scan at 12.300000000 s: ranges[417] is 3.26, was 3.25".
 std::string describe(const LogDifference& difference);
 
 }  // namespace patrol::io

@@ -6,8 +6,8 @@
 
 namespace patrol::io {
 
-/// A map as a grey PNG of one pixel per cell, north up: occupied 0, free 254, unknown 205, as map_server has them. Throws
-/// std::runtime_error when it is too large for one.
+/// Renders a map as a gray PNG of one pixel per cell, north up: occupied 0, free 254, unknown 205, as in map_server.
+/// Throws std::runtime_error if the map is too large for a PNG.
 std::string map_png(const OccupancyGrid& map);
 
 }  // namespace patrol::io

@@ -33,7 +33,7 @@ unsigned char error_pixel(float error_m) {
   return static_cast<unsigned char>(std::min<double>(kLargestError, std::round(1e3 * error_m)));
 }
 
-/// Binary PGM of a grid; an image's rows run from the top.
+/// Formats a grid as a binary PGM; the rows of the image start at the top.
 template <typename Value, typename PixelOf>
 std::string to_pgm(const Grid<Value>& grid, const PixelOf& pixel_of_value) {
   const GridGeometry& geometry = grid.geometry();
@@ -44,20 +44,20 @@ std::string to_pgm(const Grid<Value>& grid, const PixelOf& pixel_of_value) {
   return image;
 }
 
-/// An 8-bit grey image: [row from the top * width + column].
+/// Gray image, 8 bits per pixel: [row from the top * width + column].
 struct Image {
   int width = 0, height = 0;
   std::vector<unsigned char> pixels;
 };
 
-/// A PGM's next number; comments are skipped. -1 if there is none.
+/// Reads the next number of a PGM and skips comments; -1 if there is none.
 int pgm_number(std::istream& in) {
   while (in >> std::ws && in.peek() == '#') in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   int value = -1;
   return in >> value ? value : -1;
 }
 
-/// PGM, binary (P5) or in figures (P2).
+/// Reads a PGM image, binary (P5) or ASCII (P2).
 Image load_pgm(const std::filesystem::path& file) {
   std::istringstream in(load_text(file));
   const auto refuse = [&](const std::string& what) { throw InputError(file.string() + ": " + what); };
@@ -68,7 +68,7 @@ Image load_pgm(const std::filesystem::path& file) {
   const int maximum = pgm_number(in);
   if ((magic != "P5" && magic != "P2") || maximum != kMostPixelValue) refuse("is not an 8-bit PGM");
   if (image.width <= 0 || image.height <= 0) refuse(fmt::format("is {} x {} pixels: holds no map", image.width, image.height));
-  // Each pixel takes at least a byte of the file: a wrong size must not fill the memory.
+  // Each pixel takes at least one byte of the file: check the size before memory is allocated.
   const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   const std::string pixels = fmt::format("{} x {} pixels", image.width, image.height);
   if (count > size) refuse("ends too early for " + pixels);
@@ -88,7 +88,7 @@ Image load_pgm(const std::filesystem::path& file) {
   return image;
 }
 
-/// What the YAML says. One that is not written keeps its value here.
+/// Content of the YAML file of a map, with defaults for missing keys.
 struct MapFile {
   std::string image;
   std::string mode = "trinary";
@@ -110,7 +110,7 @@ struct MapFile {
   }
 };
 
-/// The image's path is made one that opens.
+/// Reads the YAML file; `image` becomes a path relative to the working directory.
 MapFile load_map_file(const std::filesystem::path& file) {
   const YAML::Node document = load_document(file, {});
   const auto refuse = [&](const char* key, const std::string& what) {
@@ -126,7 +126,7 @@ MapFile load_map_file(const std::filesystem::path& file) {
   if (map.origin[2] != 0.0) refuse("origin", "a turned map (yaw other than 0) is not read");
   if (map.free_thresh > map.occupied_thresh) refuse("free_thresh", "must not be above occupied_thresh");
   const std::filesystem::path image = file.parent_path() / map.image;
-  std::error_code ignored;  // of a name that is none
+  std::error_code ignored;  // error for an invalid name
   if (!std::filesystem::is_regular_file(image, ignored)) refuse("image", "there is no file " + image.string());
   map.image = image.string();
   return map;

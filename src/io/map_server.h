@@ -6,16 +6,18 @@
 
 namespace patrol::io {
 
-/// map_server's pair of files: `file` is the YAML, the PGM image lies beside it under the same name. Trinary: occupied 0, free 254,
-/// unknown 205; the origin is the lower-left corner. Other people's may be PGM in figures too, negated, with other thresholds, but
-/// not turned, nor of another mode. Throws InputError with the file, the line and the key.
+/// Write and read a map as the file pair of the ROS map_server. `file` is the YAML file; the PGM image has the same
+/// name and is in the same folder. Trinary mode: occupied 0, free 254, unknown 205; the origin is the lower-left
+/// corner. Also readable: ASCII PGM, negated images, other thresholds. Rotated maps and other modes are rejected. Throw
+/// InputError with file, line and key.
 void save_map(const std::filesystem::path& file, const OccupancyGrid& map);
 OccupancyGrid load_map(const std::filesystem::path& file);
-/// The image that a map's YAML names. Throws likewise.
+/// Returns the image named in the YAML file of a map. Throws InputError with file, line and key.
 std::filesystem::path map_image(const std::filesystem::path& file);
 
-/// Errors of a map's occupied cells, on its own cells: a PGM, in millimetres, 254 for that and more, 255 where nothing is occupied (NaN in
-/// memory). Throws InputError when the image is not of the map's size.
+/// Write and read the errors of the occupied cells of a map, on the grid of the map. The PGM holds millimeters: 254
+/// stands for this value and more, 255 for cells that are not occupied (NaN in memory). `load_map_errors` throws
+/// InputError if the image has another size than the map.
 void save_map_errors(const std::filesystem::path& file_pgm, const Grid<float>& errors_m);
 Grid<float> load_map_errors(const std::filesystem::path& file_pgm, const GridGeometry& geometry);
 

@@ -5,8 +5,8 @@
 
 namespace patrol::io {
 
-/// Text as it stands in XML 1.0 or HTML, between tags or in an attribute. Control characters have no place there: spaces, but for line ends
-/// and tabs.
+/// Escapes text for XML 1.0 or HTML, between tags or in an attribute. Control characters become spaces, except line
+/// ends and tabs.
 std::string escaped_markup(std::string_view text);
 
 }  // namespace patrol::io

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-/// The MCAP format (mcap.dev/spec): what writer and reader share. A record is an opcode, the length of its content
-/// (uint64) and the content; numbers are little-endian, texts carry their length (uint32).
+/// Elements of the MCAP format (mcap.dev/spec) used by writer and reader. A record is an opcode, the length of its
+/// content (uint64) and the content. Numbers are little-endian; strings are preceded by their length (uint32).
 namespace patrol::io::mcap {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they lie in memory");
@@ -31,7 +31,7 @@ enum Opcode : std::uint8_t {
   kDataEnd = 0x0f,
 };
 
-/// Puts records together.
+/// Serializer of records.
 class Bytes {
  public:
   template <typename Integer>
@@ -63,13 +63,13 @@ class Bytes {
   std::string bytes_;
 };
 
-/// The bytes are not what the format says; the reader of the file adds where.
+/// Bytes that violate the format. The message has no file and position; the caller adds them.
 class Damage : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Takes a record's content apart. Throws Damage when it ends too early.
+/// Parser of the content of a record. Throws Damage if the content is too short.
 class Fields {
  public:
   explicit Fields(std::string_view bytes) : bytes_(bytes) {}

@@ -13,7 +13,8 @@
 namespace patrol::io {
 namespace {
 
-/// Larger records, and chunks once unpacked, are taken for damage, not for data: what a file says of its sizes must not fill the memory.
+/// Maximum size of a record and of an unpacked chunk. Larger values are treated as damage, because sizes in the file
+/// must not determine the memory use.
 constexpr std::uint64_t kMaxRecordBytes = std::uint64_t{1} << 28;
 
 Time to_time(std::uint64_t nanoseconds) { return Time{static_cast<std::int64_t>(nanoseconds)}; }
@@ -103,11 +104,11 @@ void McapReader::read_summary(std::uint64_t start, std::uint64_t end) {
     if (opcode == mcap::kChannel) note_channel(content);
     if (opcode == mcap::kChunkIndex) note_chunk(content);
     if (opcode == mcap::kStatistics) {
-      content.take(8 + 2 + 4 + 4 + 4 + 4 + 8);  // counts and the first message's time
+      content.take(8 + 2 + 4 + 4 + 4 + 4 + 8);  // counts and the time of the first message
       last_time_ = to_time(content.number<std::uint64_t>());
     }
   }
-  if (channels_.empty()) unwanted_chunks_.clear();  // they stand in the chunks: pass none over
+  if (channels_.empty()) unwanted_chunks_.clear();  // the channels are in the chunks: skip none
 }
 
 void McapReader::note_chunk(mcap::Fields content) {
@@ -166,7 +167,7 @@ std::optional<McapMessage> McapReader::next() {
   }
 }
 
-/// Goes to the file's next record that can hold messages and lays it out in `rest_of_chunk_`; false at the end or cut.
+/// Advances to the next record with messages and stores it in `rest_of_chunk_`; returns false at the end or truncation.
 bool McapReader::read_record() {
   while (!is_at_end_) {
     record_start_ = offset_;
@@ -179,7 +180,7 @@ bool McapReader::read_record() {
     const std::uint64_t start = offset_ + mcap::kRecordHeadSize;
     if (length > size_ - start) {
       if (is_complete()) throw mcap::Damage(fmt::format("a record of {} bytes does not fit in the file", length));
-      break;  // the cut
+      break;  // truncation
     }
     offset_ = start + length;
     if (opcode == mcap::kDataEnd || opcode == mcap::kFooter) break;

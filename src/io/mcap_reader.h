@@ -16,47 +16,48 @@
 
 namespace patrol::io {
 
-/// What its messages are.
+/// Channel of an MCAP file: topic and message type.
 struct McapChannel {
   std::string topic;
   std::string type;        ///< "sensor_msgs/msg/LaserScan"
-  std::string definition;  ///< of the type, with all that it uses
+  std::string definition;  ///< message definition, including all types that it uses
 };
 
-/// One message as it stands in the file.
+/// Serialized message of an MCAP file. Valid until the next call of the reader.
 struct McapMessage {
   const McapChannel& channel;
   Time log_time;
   std::string_view cdr;
 };
 
-/// What to read of a file; by default everything.
+/// Selection of the messages to read; all by default.
 struct McapSelection {
   std::vector<std::string> topics;  ///< all if empty
   Time from = Time::min();          ///< log time
-  Time to = Time::max();            ///< log time, included
-  bool use_summary = true;          ///< else the file is read from front to back, and a damaged summary does no harm
+  Time to = Time::max();            ///< log time, inclusive
+  bool use_summary = true;          ///< false: read the file sequentially, which works with a damaged summary
 };
 
-/// Reads a file's messages in their order, with the help of the summary when there is one: chunks that hold nothing of
-/// the selection are passed over. A file that was cut off (by a crash) is read up to the cut.
+/// Reader of the messages of an MCAP file in file order. Uses the summary, if present, to skip chunks without selected
+/// messages. A truncated file (crash of the writer) is read up to the truncation.
 ///
-/// Throws InputError, naming file and byte, when it is no MCAP file or damaged otherwise.
+/// Throws InputError with file and byte offset if the file is not MCAP or is otherwise damaged.
 class McapReader {
  public:
   explicit McapReader(const std::filesystem::path& path, McapSelection selection = {});
 
-  /// The next message; it lives until the next call. None at the end, or at the cut. After damage another call goes on with the record
-  /// behind the damaged one; where that begins cannot be told of every damage: then the same is thrown again.
+  /// Returns the next message, valid until the next call; nullopt at the end or truncation. After an InputError another
+  /// call continues with the record after the damaged one. If that record cannot be found, the same error is thrown
+  /// again.
   std::optional<McapMessage> next();
 
-  /// Whether the writer came to its end: the file has its summary.
+  /// Returns whether the writer closed the file: the summary is present.
   bool is_complete() const { return footer_start_ > 0; }
 
-  /// Share of the file that was read, 0 ... 1.
+  /// Returns the fraction of the file read, 0 to 1.
   double progress() const { return size_ > 0 ? static_cast<double>(offset_) / static_cast<double>(size_) : 1.0; }
 
-  /// Log time of the last message, as the summary says; none in a file that was cut off.
+  /// Returns the log time of the last message according to the summary; nullopt in a truncated file.
   std::optional<Time> last_time() const { return last_time_; }
 
  private:
@@ -77,8 +78,8 @@ class McapReader {
   McapSelection selection_;
   std::uint64_t size_ = 0;
   std::uint64_t footer_start_ = 0;
-  std::uint64_t offset_ = 0;        ///< of the next record in the file
-  std::uint64_t record_start_ = 0;  ///< of the record at hand, for messages about damage
+  std::uint64_t offset_ = 0;        ///< offset of the next record in the file
+  std::uint64_t record_start_ = 0;  ///< offset of the current record, for error messages
   bool is_at_end_ = false;
   std::optional<Time> last_time_;
 
@@ -87,12 +88,12 @@ class McapReader {
   };
   std::map<std::uint16_t, Schema> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;
-  std::set<std::uint64_t> unwanted_chunks_;  ///< by offset
+  std::set<std::uint64_t> unwanted_chunks_;  ///< by offset in the file
   std::string record_, chunk_;
-  std::string_view rest_of_chunk_;  ///< of chunk_
+  std::string_view rest_of_chunk_;  ///< unread part of chunk_
 };
 
-/// Calls `handle` for every message of the selection, in the file's order. Returns whether the file is complete.
+/// Calls `handle` for each selected message in file order. Returns whether the file is complete.
 bool read_mcap(const std::filesystem::path& path, const std::function<void(const McapMessage&)>& handle,
                const McapSelection& selection = {});
 

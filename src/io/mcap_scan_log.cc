@@ -12,12 +12,12 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::size_t kMostWaiting = 256;  ///< scans; odometry that comes later than these is taken for missing
+constexpr std::size_t kMostWaiting = 256;  ///< maximum number of waiting scans; later odometry is treated as missing
 constexpr std::size_t kMostBeams = 10'000;
-constexpr double kQuaternionTol = 1e-3;          ///< of a quaternion's length
+constexpr double kQuaternionTol = 1e-3;          ///< tolerance of the norm of a quaternion
 constexpr double kFurthestPose_m = 1e8;
-constexpr double kMaxScanAngle_rad = 7.0;       ///< a full turn and what rounding adds
-constexpr double kFastestRadps = 1e3;      ///< that anything turns
+constexpr double kMaxScanAngle_rad = 7.0;       ///< one turn plus rounding
+constexpr double kFastestRadps = 1e3;      ///< maximum plausible rate
 constexpr const char* kTfStaticSuffix = "/tf_static";
 
 void expect_pose(const Pose3& pose, const char* whose) {
@@ -36,14 +36,14 @@ void expect_scan(const LaserScan& scan) {
   if (!std::isfinite(scan.time_increment_s) || !std::isfinite(scan.scan_time_s)) throw DecodeError("a scan whose times are not finite");
 }
 
-/// When the last beam was fired; with the first, where the scan does not say so credibly.
+/// Returns the time of the last beam, or of the first if the scan has no plausible beam times.
 Time last_beam(const LaserScan& scan) {
   constexpr double kLongest_s = 1.0;
   const double span_s = scan.time_increment_s * static_cast<double>(scan.ranges_m.size() - 1);
   return span_s > 0.0 && span_s <= kLongest_s ? scan.stamp + from_seconds(span_s) : scan.stamp;
 }
 
-/// REP 117, which drivers follow more or less.
+/// Applies REP 117, which many drivers follow only in part.
 void tidy_ranges(LaserScan& scan, double no_return_m) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   if (!(scan.range_max_m > 0.0)) scan.range_max_m = no_return_m;
@@ -90,12 +90,12 @@ std::optional<RecordedScan> McapScanLog::next() {
   }
 }
 
-/// After damage the reader goes on with the file's next record, unless it cannot tell where that begins.
+/// Returns the next message. After damage the reader continues with the next record of the file, if it can find one.
 std::optional<McapMessage> McapScanLog::next_message() {
   while (true) {
     try {
       return reader_.next();
-    } catch (const InputError& error) {  // names the byte
+    } catch (const InputError& error) {  // the message contains the byte offset
       if (damage_at_ == reader_.progress()) return std::nullopt;
       damage_at_ = reader_.progress();
       refuse_or_skip(options_, "damaged parts of the file", error.what());
@@ -177,7 +177,7 @@ std::optional<Pose3> McapScanLog::odometry_at(Time stamp) const {
   return (has_topic ? odometry_ : frames_).find(frame_id::kOdom, frame_id::kBody, stamp);
 }
 
-/// The scans that odometry has passed go on to be sorted.
+/// Passes on the scans whose stamps odometry has reached.
 void McapScanLog::resolve_waiting() {
   std::deque<WaitingScan> still_waiting;
   for (WaitingScan& waiting : waiting_) {
@@ -189,7 +189,7 @@ void McapScanLog::resolve_waiting() {
 }
 
 void McapScanLog::add_placed(WaitingScan waiting, const Pose2& T_odom_body, const Pose2& T_odom_last) {
-  if (odometry_topic_.empty()) uses_tf_ = true;  // from now on: two sources may differ
+  if (odometry_topic_.empty()) uses_tf_ = true;  // from now on use tf only: two sources may differ
   const Pose2 T_body_lidar = to_planar(mount_of(waiting));
   sort_in(sorter_, {.scan = std::move(waiting.scan), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar, .T_first_last = T_odom_body.inverse() * T_odom_last}, options_,
           fmt::format("{}: {}", file_.string(), scan_topic_));
@@ -200,7 +200,8 @@ std::optional<Pose3> McapScanLog::place_in_body(const std::string& frame, Time s
   return place ? place : frames_.find(frame_id::kBody, frame, stamp);
 }
 
-/// Turns the beams of a lidar that hangs upside down round, so that its planar place says all.
+/// Returns the mount of the lidar. Reverses the beams of a lidar mounted upside down, so that the planar pose is
+/// sufficient.
 Pose3 McapScanLog::mount_of(WaitingScan& waiting) {
   const std::optional<Pose3> T_body_lidar = place_in_body(waiting.frame, waiting.scan.stamp);
   if (!T_body_lidar) {

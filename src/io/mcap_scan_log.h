@@ -11,19 +11,24 @@
 
 namespace patrol::io {
 
-/// A log in MCAP with ROS 2 messages: sensor_msgs/LaserScan, and odometry from nav_msgs/Odometry or, where the file has none, from tf
-/// (odom -> base_link; whichever can place a scan first), interpolated to the scan's stamp. Also the log.mcap of `patrol run`.
+/// Reader of 2D lidar scans from an MCAP log with ROS 2 messages, also the log.mcap of `patrol run`. Scans are
+/// sensor_msgs/LaserScan. Odometry is nav_msgs/Odometry or, if the file has none, tf (odom -> base_link), whichever
+/// covers a scan first; it is interpolated to the stamp of the scan.
 ///
-/// - Odometry in the frames `world` and `map` is not the robot's own opinion and is passed over, unless its topic was asked for.
-/// - The lidar's place is the planar part of /tf_static from the odometry's child frame (or base_link) to the scan's frame; a lidar
-///   that hangs upside down is turned round. Without such a transform it is the body's origin, which is counted.
-/// - A scan waits for odometry beyond its stamp. Those that find none, before the first and after the last, are skipped and counted.
-/// - sensor_msgs/Imu: the rate about the body's z axis, by /tf_static from base_link to the IMU's frame; without such a transform the IMU is level, which is
-///   counted. With `imu: on` its turns take the place of odometry's (gyro_odometry.h); `auto` only watches it.
-/// - A file that was cut off is read up to the cut.
+/// - Odometry in the frames `world` and `map` is not an estimate of odometry and is ignored, unless its topic is
+///   selected.
+/// - The lidar pose is the planar part of /tf_static from the child frame of the odometry (or base_link) to the frame
+///   of the scan. The beams of a lidar mounted upside down are reversed. Without a transform the pose is the body
+///   origin, which is counted in the summary.
+/// - A scan waits until odometry has passed its stamp. Scans before the first and after the last odometry are skipped
+///   and counted.
+/// - sensor_msgs/Imu: the rate about the z axis of the body, using /tf_static from base_link to the frame of the IMU.
+///   Without a transform the IMU is assumed level, which is counted. With `imu: on` its yaw increments replace those of
+///   odometry (gyro_odometry.h); with `auto` they are only monitored.
+/// - A truncated file is read up to the truncation.
 class McapScanLog : public ScanLog {
  public:
-  /// `gyro_bias_radps`: as an earlier look at the file found it.
+  /// Opens a log. `gyro_bias_radps`: gyro bias from an earlier pass over the file.
   McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options, std::optional<double> gyro_bias_radps = {});
 
   std::optional<RecordedScan> next() override;
@@ -56,13 +61,13 @@ class McapScanLog : public ScanLog {
   ScanLogOptions options_;
   McapReader reader_;
   std::string scan_topic_, odometry_topic_, imu_topic_, body_frame_;
-  FrameTree odometry_;  ///< of the odometry topic alone
-  FrameTree frames_;    ///< of tf
+  FrameTree odometry_;  ///< odometry topic only
+  FrameTree frames_;    ///< transforms of /tf and /tf_static
   GyroOdometry gyro_;
   bool uses_tf_ = false;
   std::deque<WaitingScan> waiting_;
   ScanSorter sorter_;
-  std::optional<double> damage_at_;  ///< how far the file was read then
+  std::optional<double> damage_at_;  ///< progress at the damage
   bool is_at_end_ = false, is_gyro_noted_ = false;
 };
 

@@ -38,7 +38,7 @@ McapWriter::McapWriter(const std::filesystem::path& path)
   put(record.view());
 }
 
-// What an error of the program leaves behind is still worth reading: the last messages before it most of all.
+// After an error of the program the last messages before it are needed: write the open chunk.
 McapWriter::~McapWriter() {
   try {
     if (!is_closed_) flush_chunk();
@@ -229,7 +229,7 @@ void McapWriter::write_summary() {
   const std::uint64_t offsets_start = start + summary.size();
   summary.raw(offsets.view());
 
-  // The checksum covers the summary and the footer up to the checksum itself.
+  // The checksum covers the summary and the footer up to the checksum field.
   summary.record_head(mcap::kFooter, mcap::kFooterSize - mcap::kRecordHeadSize);
   summary.number(start);
   summary.number(offsets_start);

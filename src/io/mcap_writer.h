@@ -17,27 +17,27 @@ struct ZSTD_CCtx_s;
 
 namespace patrol::io {
 
-/// Writes an MCAP file: profile ros2, schemas ros2msg, messages cdr, chunks compressed with zstd, a summary with indexes,
-/// checksums throughout. The same calls give the same bytes.
+/// Writer of MCAP files: profile ros2, schemas ros2msg, messages cdr, zstd-compressed chunks, a summary with indexes,
+/// and checksums throughout. The same calls produce the same bytes.
 ///
-/// Each chunk (1 MB or one second) goes to the file as it fills, so that what was written before a crash can be read up
-/// to the last whole chunk. Without `close` the file is left without its summary: readers can tell that it is cut off.
+/// Each chunk (1 MB or one second) is written when it is complete: after a crash the file is readable up to the last
+/// complete chunk. Without `close` the file has no summary, by which readers recognize truncation.
 class McapWriter {
  public:
   using ChannelId = std::uint16_t;
 
-  /// Throws InputError when the file cannot be made.
+  /// Creates the file. Throws InputError if this fails.
   explicit McapWriter(const std::filesystem::path& path);
   ~McapWriter();
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
-  /// `definition`: the ROS 2 message definition with all that it uses.
+  /// Adds a channel. `definition`: ROS 2 message definition, including all types that it uses.
   ChannelId add_channel(const std::string& topic, const std::string& type, const std::string& definition);
 
   void write(ChannelId channel, Time log_time, std::string_view cdr);
 
-  /// Writes what is left, and the summary.
+  /// Writes the remaining messages and the summary.
   void close();
 
  private:
@@ -56,15 +56,15 @@ class McapWriter {
 
   std::filesystem::path path_;
   std::ofstream file_;
-  std::uint64_t offset_ = 0;  ///< where the next byte goes
-  std::uint32_t crc_ = 0;     ///< of everything written so far
+  std::uint64_t offset_ = 0;  ///< position of the next byte
+  std::uint32_t crc_ = 0;     ///< checksum of all bytes written
   bool is_closed_ = false;
   std::unique_ptr<ZSTD_CCtx_s, std::size_t (*)(ZSTD_CCtx_s*)> compressor_;
   std::string packed_;
 
-  std::vector<std::string> schema_types_;     ///< [schema - 1]
-  mcap::Bytes schemas_, channels_;            ///< records, for the summary
-  std::vector<std::uint32_t> message_count_;  ///< [channel - 1]
+  std::vector<std::string> schema_types_;     ///< [schema id - 1]
+  mcap::Bytes schemas_, channels_;            ///< records for the summary
+  std::vector<std::uint32_t> message_count_;  ///< [channel id - 1]
   std::uint64_t total_count_ = 0;
   std::uint64_t first_time_ = 0, last_time_ = 0;
 

@@ -10,20 +10,22 @@
 
 namespace patrol::io {
 
-/// metrics.json: a tree of named figures that keeps its order. A figure that could not be computed is null.
+/// Content of metrics.json: an ordered tree of named metrics. A metric that could not be computed is null.
 using Metrics = nlohmann::ordered_json;
 
-/// Whole or not at all; two spaces of indentation, not a number written as null.
+/// Writes metrics.json atomically, indented by two spaces. NaN and infinity become null.
 void save_metrics(const std::filesystem::path& file, const Metrics& metrics);
 
-/// Throws InputError when there is no such file or it is not JSON.
+/// Reads metrics.json. Throws InputError if the file is missing or is not JSON.
 Metrics load_metrics(const std::filesystem::path& file);
 
-/// The figure at a path such as "pose.ate_rmse_m", "stations.0.map_error_m" or "stations.regulator_box_2.map_error_m" (an
-/// entry of a list goes by its place or its "name"). True counts as 1, false as 0. None if there is no figure there.
+/// Returns the metric at a path such as "pose.ate_rmse_m", "stations.0.map_error_m" or
+/// "stations.regulator_box_2.map_error_m". Entries of a list are addressed by index or by their "name". True counts as
+/// 1, false as 0. Returns nullopt if there is no number at the path.
 std::optional<double> metric_at(const Metrics& metrics, const std::string& path);
 
-/// Every figure with its path, in the tree's order: entries of lists by name if they have one. Words and nulls are left out.
+/// Returns all metrics with their paths, in tree order. Entries of lists are addressed by name if they have one.
+/// Strings and nulls are skipped.
 std::vector<std::pair<std::string, double>> figures_of(const Metrics& metrics);
 
 }  // namespace patrol::io

@@ -21,12 +21,12 @@ constexpr std::string_view kLand = ".GS", kWater = "W", kBlocked = "@OT";
 
 bool is_one_of(char terrain, std::string_view kinds) { return kinds.find(terrain) != std::string_view::npos; }
 
-/// The file's lines without a carriage return, each error with its place.
+/// Line reader that removes carriage returns and adds the position to errors.
 class Lines {
  public:
   explicit Lines(const std::filesystem::path& file) : reader_(file) {}
 
-  /// None at the end.
+  /// Returns the next line; nullopt at the end.
   std::optional<std::string_view> next() {
     const std::optional<LineReader::Line> line = reader_.next();
     if (!line) {
@@ -53,7 +53,7 @@ struct GridHeader {
   int width = 0, height = 0;
 };
 
-/// Up to and including the line "map".
+/// Reads the header up to and including the line "map".
 GridHeader read_grid_header(Lines& lines) {
   GridHeader header;
   bool has_type = false;
@@ -85,7 +85,7 @@ GridHeader read_grid_header(Lines& lines) {
 }
 
 std::vector<std::string_view> split_words(std::string_view text) {
-  // Names of maps may hold blanks where tabs part the fields.
+  // With tabs as separators map names may contain blanks.
   const std::string_view separators = text.find('\t') != std::string_view::npos ? "\t" : " ";
   std::vector<std::string_view> fields;
   while (!text.empty()) {
@@ -137,7 +137,7 @@ MovingAiMap load_moving_ai_map(const std::filesystem::path& file) {
   const GridHeader header = read_grid_header(lines);
   const auto width = static_cast<std::size_t>(header.width), height = static_cast<std::size_t>(header.height);
   if (width * height > kMostCells) lines.refuse(fmt::format("map: {} x {} cells, at most {} are read", width, height, kMostCells));
-  std::vector<char> from_top;  // grows with what is there, not with what the header says
+  std::vector<char> from_top;  // grows with the data, not with the size in the header
   for (std::size_t row = 0; row < height; ++row) {
     const auto text = lines.next();
     if (!text) lines.refuse_file(fmt::format("ends after {} of {} rows", row, height));

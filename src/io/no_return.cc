@@ -6,10 +6,10 @@
 namespace patrol::io {
 namespace {
 
-constexpr double kMove_m = 0.2, kTurnRad = 0.2;  ///< to another place
+constexpr double kMove_m = 0.2, kTurnRad = 0.2;  ///< motion to a new position
 constexpr std::uint64_t kMostPlaces = 500, kMostReadings = 1'000'000;
-constexpr float kTopShare = 0.98F;       ///< of the largest range: codes for no return lie from here on
-constexpr float kNeighbourShare = 0.75F; ///< and ranges to compare with from here to there
+constexpr float kTopShare = 0.98F;       ///< codes for no return are above this fraction of the maximum range
+constexpr float kNeighbourShare = 0.75F; ///< lower bound of the ranges compared with the codes
 constexpr std::uint64_t kFewestPlaces = 10, kFewestReadings = 20, kTimesAsOften = 5;
 
 }  // namespace

@@ -9,23 +9,25 @@
 
 namespace patrol::io {
 
-/// What a lidar reports where nothing came back, if it reports a range there.
+/// Range that a lidar reports instead of "no return".
 struct NoReturnValue {
   double range_m = 0.0;
-  std::uint64_t num_readings = 0;  ///< that were it, in the scans looked at
-  std::uint64_t num_places = 0;    ///< from which
+  std::uint64_t num_readings = 0;  ///< number of readings with this value in the examined scans
+  std::uint64_t num_places = 0;    ///< number of robot positions with such readings
 };
 
-/// Finds in a log's first scans the range that stands for no return: 81.83 m or 8.19 m of a SICK, 50 m, 5.6 m.
+/// Detector of the range that encodes "no return" in the first scans of a log. Examples: 81.83 m and 8.19 m (SICK), 50
+/// m, 5.6 m.
 ///
-/// It is at the very top of the ranges, is the same to the bit from many places, and is read at least five times as often as any other single range not far
-/// below. No wall is all of that: seen while the robot moves, its farthest ranges differ, and few. Scans are looked at where the robot has moved since the
-/// last one, so that standing before a wall proves nothing. A lidar that reports several such values (SICK's codes differ by millimetres) has the lowest of
-/// them found.
+/// Criteria: the value is at least 98 % of the maximum range and is bit-identical at many robot positions. It is read
+/// at least five times as often as any other single range not far below. A wall does not meet the criteria: while the
+/// robot moves, the maximum ranges vary and are few. A scan is examined only after the robot has moved since the last
+/// examined one, because a stationary robot in front of a wall gives no evidence. If a lidar reports several such
+/// values (SICK codes differ by millimeters), the lowest is returned.
 class NoReturnFinder {
  public:
   void add(const RecordedScan& recorded);
-  /// More scans would not change its mind.
+  /// Returns whether enough scans were examined; further scans are not needed.
   bool has_seen_enough() const;
   std::optional<NoReturnValue> find() const;
 
@@ -36,7 +38,7 @@ class NoReturnFinder {
 
   std::optional<Pose2> T_odom_place_;
   std::uint64_t num_places_ = 0, num_readings_ = 0;
-  std::map<float, Count> counts_;  ///< by range, m; of those that are not far below the top
+  std::map<float, Count> counts_;  ///< by range, m; ranges within 25 % of the maximum only
 };
 
 }  // namespace patrol::io

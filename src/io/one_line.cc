@@ -5,7 +5,7 @@
 namespace patrol::io {
 namespace {
 
-/// Length of the UTF-8 sequence at the start of `text`; 0 when the bytes are not UTF-8.
+/// Returns the length of the UTF-8 sequence at the start of `text`; 0 if the bytes are not valid UTF-8.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);

@@ -6,11 +6,12 @@
 
 namespace patrol::io {
 
-/// Length in bytes of the control character at the start of UTF-8 text: C0, DEL or C1 (U+0080 ... U+009F). 0: there is none.
+/// Returns the length in bytes of the control character at the start of UTF-8 text: C0, DEL or C1 (U+0080 to U+009F). 0
+/// if the text starts with another character.
 std::size_t control_length(std::string_view text);
 bool has_control_characters(std::string_view text);
 
-/// Text for one line of a terminal or a log: line ends, other control characters and bytes that are not UTF-8 are written out.
+/// Formats text for one line of a terminal or a log: line ends, other control characters and invalid UTF-8 are escaped.
 std::string on_one_line(std::string_view text);
 
 }  // namespace patrol::io

@@ -57,7 +57,8 @@ std::optional<NumberType> type_of(char type, std::size_t bytes) {
   if (type != 'I' && type != 'U') return std::nullopt;
   for (const NumberType known : {NumberType::kInt8, NumberType::kInt16, NumberType::kInt32, NumberType::kInt64}) {
     if (bytes_of(known) != bytes) continue;
-    return type == 'I' ? known : static_cast<NumberType>(static_cast<int>(known) + 1);  // each is followed by its unsigned fellow
+    // Each signed type is followed by its unsigned counterpart.
+    return type == 'I' ? known : static_cast<NumberType>(static_cast<int>(known) + 1);
   }
   return std::nullopt;
 }

@@ -5,14 +5,15 @@
 
 #include "core/sensors/registry.h"
 
-/// Point clouds in PCD, the Point Cloud Library's format, version 0.7.
+/// Point clouds in PCD, the format of the Point Cloud Library, version 0.7.
 namespace patrol::io {
 
-/// Binary: x, y, z in metres and intensity, as floats; one row, the viewpoint at the origin.
+/// Writes binary PCD: x, y, z in meters and intensity, as floats; one row, viewpoint at the origin.
 void save_pcd(const std::filesystem::path& file, const std::vector<ScannerPoint>& points);
 
-/// The fields x, y, z and intensity (0 where there is none), of any type; DATA ascii or binary. Points stay in the file's own frame,
-/// whatever its VIEWPOINT. Throws InputError that says what is wrong; takes no more memory than a few times the file's size.
+/// Reads the fields x, y, z and intensity (0 if missing), of any type; DATA ascii or binary. Points remain in the frame
+/// of the file; VIEWPOINT is ignored. Throws InputError for an invalid file. Memory is bounded by a small multiple of
+/// the file size.
 std::vector<ScannerPoint> load_pcd(const std::filesystem::path& file);
 
 }  // namespace patrol::io

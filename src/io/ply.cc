@@ -44,7 +44,7 @@ void read_element(FileText& text, LineFields& fields, PlyHeader& header) {
   header.num_points = static_cast<std::size_t>(count);
 }
 
-/// True at the header's last line.
+/// Reads a line of the header; returns true at its last line.
 bool read_header_line(FileText& text, std::string_view line, PlyHeader& header) {
   LineFields fields(line);
   if (fields.is_empty()) return false;

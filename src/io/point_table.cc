@@ -53,7 +53,7 @@ double number_at(const char* bytes, NumberType type) {
   return 0.0;
 }
 
-/// False when one is not finite, as a float.
+/// Converts numbers to a point; returns false if one is not finite as a float.
 bool make_point(const std::array<double, 4>& numbers, ScannerPoint& point) {
   constexpr double kMost = 1e30;
   for (const double number : numbers) {
@@ -71,7 +71,7 @@ std::size_t bytes_of(NumberType type) {
 }
 
 FileText::FileText(const std::filesystem::path& file) : file_(file.string()) {
-  std::error_code is_no_file;  // and has no size
+  std::error_code is_no_file;  // set if there is no file; the size is then undefined
   if (const std::uintmax_t size = std::filesystem::file_size(file, is_no_file); !is_no_file && size > kMostBytes) {
     throw InputError(fmt::format("{}: is larger than {} bytes: not read", file_, kMostBytes));
   }
@@ -124,7 +124,7 @@ std::vector<ScannerPoint> PointTable::read_binary() {
 }
 
 std::vector<ScannerPoint> PointTable::read_figures() {
-  // Each number takes at least a figure and a blank: a wrong count must not fill the memory.
+  // Each number takes at least a digit and a blank: check the count before memory is allocated.
   if (num_points_ > (text_.rest().size() + 1) / (2 * row_numbers_)) {
     throw InputError(fmt::format("{}: ends too early for {} points", text_.file(), num_points_));
   }

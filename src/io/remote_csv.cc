@@ -17,14 +17,14 @@ namespace patrol::io {
 namespace {
 
 constexpr std::array<const char*, 5> kRemoteColumns = {"time_s", "vx_mps", "yaw_rate_radps", "mark", "hand_over"};
-constexpr double kLongestDrive_s = 86400.0;  // as a scenario's time limit
-constexpr double kFastest = 100.0;      // m/s, rad/s: what is beyond is a slip of the pen
+constexpr double kLongestDrive_s = 86400.0;  // maximum time limit of a scenario
+constexpr double kFastest = 100.0;      // m/s, rad/s; larger values are treated as input errors
 
 using Row = std::array<double, kRemoteColumns.size()>;
 
 std::string header() { return fmt::format("{}", fmt::join(kRemoteColumns, ",")); }
 
-/// One number for each column. `refuse` does not return.
+/// Reads one number per column. `refuse` does not return.
 template <typename Refuse>
 Row read_row(const std::string& line, const Refuse& refuse) {
   const auto num_cells = static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) + 1;
@@ -42,7 +42,7 @@ Row read_row(const std::string& line, const Refuse& refuse) {
   return row;
 }
 
-/// `since`: the command before.
+/// Reads a command. `since`: stamp of the previous command.
 template <typename Refuse>
 RemoteCommand read_command(const std::string& line, std::optional<Time> since, const Refuse& refuse) {
   const auto [time_s, vx_mps, yaw_rate_radps, mark, hand_over] = read_row(line, refuse);

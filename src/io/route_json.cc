@@ -33,7 +33,7 @@ Station read_station(const std::string& place, const Json& json) {
   return station;
 }
 
-/// Events and scores name stations: each name and number stands for one.
+/// Checks that station names and numbers are unique, because events and scores refer to stations by them.
 void check_unique(const std::string& file, const std::vector<Station>& stations) {
   std::set<std::string> names;
   std::set<int> numbers;

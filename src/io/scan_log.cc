@@ -15,8 +15,9 @@ namespace {
 
 constexpr std::size_t kMostComplaints = 5;
 constexpr int kMostScansLookedAt = 5000;
-constexpr double kNoSuchRange_m = 1e4;  ///< the most that the options allow
-constexpr std::size_t kMostNames = 50;  ///< of ignored messages that are told apart: a damaged file may hold any number
+constexpr double kNoSuchRange_m = 1e4;  ///< maximum of the option no_return_m
+/// Maximum number of distinct names of ignored messages: a damaged file may contain any number.
+constexpr std::size_t kMostNames = 50;
 
 std::string counts(const std::map<std::string, std::uint64_t>& by_name) {
   std::string text;
@@ -41,7 +42,7 @@ struct FirstLook {
   std::optional<double> gyro_bias_radps;
 };
 
-/// What is wrong with the file is left to the reading proper to say.
+/// Runs the first pass over a log. Errors in the file are ignored here and reported by the actual pass.
 FirstLook look_at(const std::filesystem::path& file, ScanLogOptions options) {
   options.skip_bad_lines = true;
   options.no_return_m = kNoSuchRange_m;
@@ -60,10 +61,10 @@ FirstLook look_at(const std::filesystem::path& file, ScanLogOptions options) {
   return {.no_return = finder.find(), .gyro = log->gyro()->verdict(), .gyro_bias_radps = log->gyro()->bias_radps()};
 }
 
-/// The options with what the look found, which is told in `found`.
+/// Returns the options changed by the results of the first pass, which are also described in `found`.
 ScanLogOptions followed(const FirstLook& look, ScanLogOptions options, std::vector<std::string>& found) {
   if (options.finds_no_return && look.no_return && look.no_return->range_m <= options.no_return_m) {
-    options.no_return_m = look.no_return->range_m * (1.0 - 1e-6);  // the file's digits, rounded
+    options.no_return_m = look.no_return->range_m * (1.0 - 1e-6);  // margin for the rounded digits in the file
     found.push_back(fmt::format("{:.4g} m is no return: {} readings from {} places are it to the bit (log.finds_no_return)", look.no_return->range_m,
                                 look.no_return->num_readings, look.no_return->num_places));
   }

@@ -16,14 +16,16 @@
 namespace patrol::io {
 
 struct ScanLogOptions {
-  bool skip_bad_lines = false;   ///< what cannot be read is counted instead of refused
-  double no_return_m = 80.0;     ///< ranges from here on, or from the sensor's own maximum, are no returns
-  bool finds_no_return = true;   ///< and so is a value that the log itself shows to be none (io/no_return.h)
-  std::string carmen_laser;      ///< the message that holds the scans, as "FLASER"; empty: the best that the log has
-  std::string scan_topic;        ///< of an MCAP file; empty: that of its first scan
-  std::string odometry_topic;    ///< of an MCAP file; empty: that of its first odometry; without any: tf
-  std::string imu = "auto";      ///< of an MCAP file: on, its gyro turns odometry (io/gyro_odometry.h); auto, where the log's first scans show that odometry turns otherwise
-  std::string imu_topic = "";    ///< of an MCAP file; empty: that of its first IMU
+  bool skip_bad_lines = false;   ///< count and skip unreadable records instead of throwing
+  double no_return_m = 80.0;     ///< ranges from here on, or from the maximum of the sensor, are "no return"
+  bool finds_no_return = true;   ///< detect a range value in the log that encodes "no return" (io/no_return.h)
+  std::string carmen_laser;      ///< message with the scans, e.g. "FLASER"; empty: the most informative one in the log
+  std::string scan_topic;        ///< MCAP only; empty: topic of the first scan
+  std::string odometry_topic;    ///< MCAP only; empty: topic of the first odometry message, or tf if there is none
+  /// MCAP only; on: yaw increments from the gyro (io/gyro_odometry.h), auto: only if the first scans show that gyro and
+  /// odometry disagree, off: never.
+  std::string imu = "auto";
+  std::string imu_topic = "";    ///< MCAP only; empty: topic of the first IMU message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -38,56 +40,58 @@ struct ScanLogOptions {
   }
 };
 
-/// What a log was found to hold, up to where it was read.
+/// Statistics of a log up to the current position.
 struct ScanLogSummary {
-  std::uint64_t num_read = 0;       ///< lines, or messages
-  std::uint64_t num_scans = 0;      ///< given out
-  std::uint64_t num_reordered = 0;  ///< of these: came after a later one
-  std::uint64_t num_same_stamp = 0;  ///< of these: bear the stamp of the one before
-  std::map<std::string, std::uint64_t> ignored;  ///< by name of the message: not asked for, or not known
-  std::vector<std::string> found;                ///< what the log itself showed, and was followed
-  std::map<std::string, std::uint64_t> assumed;  ///< of these, by what: the file says nothing, or otherwise
-  std::map<std::string, std::uint64_t> skipped;  ///< by reason: should have been of use
-  std::vector<std::string> complaints;           ///< the first of what was skipped, each with its place
+  std::uint64_t num_read = 0;       ///< number of lines or messages read
+  std::uint64_t num_scans = 0;      ///< number of scans returned
+  std::uint64_t num_reordered = 0;  ///< number of these that were preceded by a later scan in the file
+  std::uint64_t num_same_stamp = 0;  ///< number of these with the same stamp as the previous scan
+  std::map<std::string, std::uint64_t> ignored;  ///< number by message name: not selected, or of unknown type
+  std::vector<std::string> found;                ///< properties detected in the log and applied
+  /// Number of scans by assumption: the file has no or conflicting information.
+  std::map<std::string, std::uint64_t> assumed;
+  std::map<std::string, std::uint64_t> skipped;  ///< number by reason: needed, but unusable
+  std::vector<std::string> complaints;           ///< first errors of skipped records, each with its position
 };
 
-/// "12 lines, 3 SYNC, 4 lines that cannot be read": what a file without a scan held.
+/// Formats the statistics of a file without scans: "12 lines, 3 SYNC, 4 lines that cannot be read".
 std::string counted(const ScanLogSummary& summary);
 
-/// The summary in a few lines for a terminal.
+/// Formats the statistics in a few lines for a terminal.
 std::string to_text(const ScanLogSummary& summary);
 
-/// A recorded log of a 2D lidar and odometry, read from front to back: memory does not grow with the file. Ranges follow REP 117:
-/// +Inf no return, NaN invalid (0 or less in the file).
+/// Sequential reader of a recorded log of 2D lidar and odometry; memory does not grow with the file. Ranges follow REP
+/// 117: +Inf no return, NaN invalid (0 or less in the file).
 ///
-/// Stamps never fall from scan to scan, but they may repeat: real logs have scans of one stamp, in the order in which they came. A
-/// log's lines need not be in order; they are put in order as far as a few scans can be waited for (io/scan_sorter.h). A scan that
-/// comes later than that is refused, or skipped.
+/// Stamps never decrease from scan to scan but may repeat; scans with equal stamps keep the order of the file. Records
+/// may be out of order: they are sorted within a window of a few scans (io/scan_sorter.h). A scan that arrives later
+/// than that is an error or is skipped.
 class ScanLog {
  public:
   virtual ~ScanLog() = default;
 
-  /// The next scan; none at the end. Throws InputError, naming file and place, at what cannot be read, and at the end when the
-  /// file held no scan at all.
+  /// Returns the next scan; nullopt at the end. Throws InputError with file and position for an unreadable record, and
+  /// at the end if the file contained no scan.
   virtual std::optional<RecordedScan> next() = 0;
 
-  /// Share of the file that was read, 0 ... 1.
+  /// Returns the fraction of the file read, 0 to 1.
   virtual double progress() const = 0;
 
   const ScanLogSummary& summary() const { return summary_; }
 
-  /// Notes in the summary what was found before this reading.
+  /// Adds to the summary a property that was detected before this pass.
   void add_found(const std::string& what) { summary_.found.push_back(what); }
 
-  /// The log's gyro and what the scans so far told of it; null where it has none.
+  /// Returns the gyro of the log with its statistics so far; null if the log has none.
   virtual const GyroOdometry* gyro() const { return nullptr; }
 
  protected:
   void count_ignored(const std::string& name);
-  /// Throws InputError(complaint), or counts it when bad lines are skipped.
+  /// Throws InputError(complaint), or counts it if `skip_bad_lines` is set.
   void refuse_or_skip(const ScanLogOptions& options, const std::string& reason, const std::string& complaint);
   void count_skipped(const std::string& reason, const std::string& complaint);
-  /// Refuses or skips a scan that comes too late to be put in order. `place`: what a complaint begins with.
+  /// Adds a scan to the sorter; rejects or skips one that is too late for sorting. `place`: prefix of the error
+  /// message.
   void sort_in(ScanSorter& sorter, RecordedScan scan, const ScanLogOptions& options, const std::string& place);
   void count_given_out(const RecordedScan& scan);
 
@@ -97,8 +101,9 @@ class ScanLog {
   std::optional<Time> last_stamp_;
 };
 
-/// Opens a log by what the file holds: MCAP, else CARMEN's text, plain or in gzip. Unless the options say otherwise its first scans are looked at first, for
-/// what stands for no return, whether odometry turns as the gyro does, and the gyro's bias. Throws InputError.
+/// Opens a log by the content of the file: MCAP, otherwise CARMEN text, plain or gzip-compressed. Unless disabled in
+/// the options, a first pass over the first scans detects the "no return" value, disagreement between gyro and
+/// odometry, and the gyro bias. Throws InputError.
 std::unique_ptr<ScanLog> open_scan_log(const std::filesystem::path& file, const ScanLogOptions& options = {});
 
 }  // namespace patrol::io

@@ -10,15 +10,15 @@
 
 namespace patrol::io {
 
-/// Puts scans in order of time by holding a few back. Those of one stamp keep the order in which they came. A scan with a stamp far
-/// ahead of the others does no harm: it is held back until the end.
+/// Sorts scans by stamp within a window of `kWindow` scans. Scans with equal stamps keep their order. A scan whose
+/// stamp is far ahead of the others does not affect them: it is kept until the end.
 class ScanSorter {
  public:
-  static constexpr std::size_t kWindow = 32;  ///< scans that are held back
+  static constexpr std::size_t kWindow = 32;  ///< number of scans kept for sorting
 
   enum class Order { kInOrder, kReordered, kTooLate };
 
-  /// Too late: a later one was already taken; this one is dropped.
+  /// Adds a scan. kTooLate: a later scan was already taken, and this one is dropped.
   Order add(RecordedScan scan) {
     const Time stamp = scan.scan.stamp;
     if (last_taken_ && stamp < *last_taken_) return Order::kTooLate;
@@ -28,7 +28,7 @@ class ScanSorter {
     return order;
   }
 
-  /// The earliest, once enough are held, or none is to come any more.
+  /// Returns the earliest scan if the window is full or the log is at its end.
   std::optional<RecordedScan> take(bool is_at_end) {
     if (held_.empty() || (!is_at_end && held_.size() <= kWindow)) return std::nullopt;
     std::optional<RecordedScan> first = std::move(held_.front());
@@ -38,11 +38,11 @@ class ScanSorter {
   }
 
   bool is_empty() const { return held_.empty(); }
-  /// Of the last one taken.
+  /// Returns the stamp of the last scan taken.
   std::optional<Time> last_taken() const { return last_taken_; }
 
  private:
-  std::deque<RecordedScan> held_;  ///< by growing stamp
+  std::deque<RecordedScan> held_;  ///< by increasing stamp
   std::optional<Time> last_taken_;
 };
 

@@ -38,7 +38,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-/// Puts one "path=value" into the document, making sections on the way.
+/// Applies one "path=value" to the document and creates missing sections.
 void apply_override(YAML::Node root, const std::string& override) {
   const std::size_t equals = override.find('=');
   if (equals == std::string::npos || equals == 0) {
@@ -71,7 +71,8 @@ void apply_override(YAML::Node root, const std::string& override) {
 
 }  // namespace
 
-int line_of(const YAML::Node& node) { return node.Mark().is_null() ? 0 : node.Mark().line + 1; }  // yaml-cpp counts from 0
+// yaml-cpp counts lines from 0.
+int line_of(const YAML::Node& node) { return node.Mark().is_null() ? 0 : node.Mark().line + 1; }
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
   std::string nearest;

@@ -16,10 +16,10 @@
 #include "io/atomic_file.h"
 #include "io/expectations.h"
 
-/// Settings structs (core/settings.h) from YAML and back. A wrong file gives one sentence: file, line, key, rule.
+/// Conversion of settings structs (core/settings.h) from and to YAML. Errors name file, line, key and rule.
 namespace patrol::io {
 
-/// Reads one document into a struct, field by field, and complains about whatever is left over.
+/// Reads a YAML document into a struct, field by field, and rejects remaining keys.
 class SettingsReader {
  public:
   SettingsReader(std::string file, YAML::Node node, std::string path) : file_(std::move(file)), node_(std::move(node)), path_(std::move(path)) {
@@ -34,7 +34,7 @@ class SettingsReader {
     read(child, key(name), value, limits);
   }
 
-  /// Unknown and repeated keys.
+  /// Throws InputError for unknown and duplicate keys.
   void finish() const;
 
   template <typename Settings>
@@ -55,7 +55,7 @@ class SettingsReader {
   }
 
  private:
-  /// Reads nothing but one field.
+  /// Visitor that reads only one field.
   struct Only {
     SettingsReader& reader;
     std::string wanted;
@@ -104,7 +104,7 @@ class SettingsReader {
   std::vector<std::string> known_;
 };
 
-/// Writes every field, defaults included.
+/// Writes all fields, including those with default values.
 class SettingsWriter {
  public:
   explicit SettingsWriter(YAML::Emitter& out) : out_(out) {}
@@ -145,16 +145,16 @@ class SettingsWriter {
   YAML::Emitter& out_;
 };
 
-/// The file's document with the overrides ("a.b.0.c=value") put in. Throws InputError.
+/// Loads a file and applies overrides ("a.b.0.c=value"). Throws InputError.
 YAML::Node load_document(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 
-/// The overrides alone: without a file every value is a default or one of them.
+/// Returns a document that contains only the overrides; all other values are defaults.
 YAML::Node document_of(const std::vector<std::string>& overrides);
 
-/// Where it stands in its file, from 1; 0 for what an override made.
+/// Returns the line of a node in its file, starting at 1; 0 for nodes from overrides.
 int line_of(const YAML::Node& node);
 
-/// What the file says is put over what `settings` holds already.
+/// Reads a file with overrides into `settings`; keys that are missing keep their present values.
 template <typename Settings>
 void read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides, Settings& settings) {
   SettingsReader::read_section(file.string(), load_document(file, overrides), "", settings);
@@ -167,7 +167,7 @@ Settings load_settings(const std::filesystem::path& file, const std::vector<std:
   return settings;
 }
 
-/// Defaults, and what `--set` says over them. Throws InputError that names --set and the key.
+/// Returns the defaults with the overrides of `--set`. Throws InputError with "--set" and the key.
 template <typename Settings>
 Settings settings_of(const std::vector<std::string>& overrides) {
   Settings settings;
@@ -175,7 +175,7 @@ Settings settings_of(const std::vector<std::string>& overrides) {
   return settings;
 }
 
-/// Every field, defaults included, below a line of comment if there is one.
+/// Formats all fields as YAML, including defaults, preceded by an optional comment line.
 template <typename Settings>
 std::string to_yaml(const Settings& settings, const std::string& comment = "") {
   YAML::Emitter out;
@@ -189,7 +189,7 @@ void save_settings(const std::filesystem::path& file, const Settings& settings, 
   save_text(file, to_yaml(settings, comment));
 }
 
-/// The known word nearest to `word` by edit distance; empty when none is near.
+/// Returns the known word with the smallest edit distance to `word`; empty if none is similar.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace patrol::io

@@ -17,7 +17,7 @@ namespace {
 using Database = std::unique_ptr<sqlite3, decltype(&sqlite3_close)>;
 using Statement = std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)>;
 
-/// The name as SQL takes it, whatever is in it.
+/// Returns a quoted SQL identifier for any name.
 std::string identifier(const std::string& name) {
   std::string quoted = "\"";
   for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -62,7 +62,7 @@ void write_all(const std::filesystem::path& file, const std::vector<Table>& tabl
   const int opened = sqlite3_open(file.string().c_str(), &raw);
   const Database database(raw, sqlite3_close);
   check(opened == SQLITE_OK, raw);
-  execute(raw, "PRAGMA journal_mode = OFF");  // it is a new file that takes its name when it is whole
+  execute(raw, "PRAGMA journal_mode = OFF");  // safe: the database is a temporary file until it is complete
   execute(raw, "BEGIN");
   for (const Table& table : tables) write(raw, table);
   execute(raw, "COMMIT");

@@ -7,8 +7,8 @@
 
 namespace patrol::io {
 
-/// A new SQLite database of these tables, whole or not at all. The same tables give the same bytes (with one release of
-/// SQLite). Throws InputError when the place cannot be written to.
+/// Writes a new SQLite database with these tables, atomically. The same tables produce the same bytes with the same
+/// release of SQLite. Throws InputError if the file cannot be written.
 void save_sqlite(const std::filesystem::path& file, const std::vector<Table>& tables);
 
 }  // namespace patrol::io

@@ -24,7 +24,7 @@ std::filesystem::path index_file(const std::filesystem::path& folder) { return f
 
 std::filesystem::path cloud_file(const std::filesystem::path& folder, const std::string& station) { return folder / (station + ".ply"); }
 
-/// What names a file beside this one: letters, digits and underlines.
+/// Returns whether a name is usable as a file name: letters, digits and underscores, at most 64.
 bool is_plain(const std::string& name) {
   const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; };
   return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), plain);

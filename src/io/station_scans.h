@@ -9,20 +9,20 @@
 
 namespace patrol::io {
 
-/// A panoramic scan that is kept for later ones to be compared with.
+/// Stored panoramic scan, a reference for later scans of the station.
 struct StationScan {
   std::string station;
-  Pose3 T_map_scanner;               ///< of `scanner_level`, upright
-  std::vector<ScannerPoint> points;  ///< in map
+  Pose3 T_map_scanner;               ///< pose of the upright frame `scanner_level`
+  std::vector<ScannerPoint> points;  ///< points in map
 };
 
-/// Writes <folder>/scans.json, which says where each was made, and <folder>/<station>.ply. The folder is made if need be.
+/// Writes <folder>/scans.json with the scan poses and <folder>/<station>.ply. Creates the folder if necessary.
 void save_station_scans(const std::filesystem::path& folder, const std::vector<StationScan>& scans);
 
-/// Throws InputError, naming file and place, when one is missing or wrong.
+/// Reads stored scans. Throws InputError with file and JSON path if one is missing or invalid.
 std::vector<StationScan> load_station_scans(const std::filesystem::path& folder);
 
-/// The files that `load_station_scans` reads.
+/// Returns the files read by `load_station_scans`.
 std::vector<std::filesystem::path> station_scan_files(const std::filesystem::path& folder);
 
 }  // namespace patrol::io

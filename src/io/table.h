@@ -7,7 +7,7 @@
 
 namespace patrol::io {
 
-/// What a cell may hold; nothing: there is no such figure.
+/// Content of a table cell; monostate: no value.
 using TableValue = std::variant<std::monostate, std::int64_t, double, std::string>;
 
 struct Table {

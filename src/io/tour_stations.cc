@@ -15,11 +15,11 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::size_t kMostStations = 200;  // ways between all pairs are planned
+constexpr std::size_t kMostStations = 200;  // paths between all pairs are planned
 constexpr double kLongest_s = 1e7;
 constexpr const char* kStationColumns = "name, x, y and, if wanted, service_s, earliest_s, latest_s, priority";
 
-/// `refuse` does not return.
+/// Splits a line into cells. `refuse` does not return.
 template <typename Refuse>
 std::vector<std::string> split_cells(std::string_view line, const Refuse& refuse) {
   std::vector<std::string> cells(1);
@@ -122,7 +122,7 @@ class StationReader {
 
   LineReader lines_;
   int number_ = 0;
-  std::map<std::string, std::size_t> columns_;  ///< by name, where in a line
+  std::map<std::string, std::size_t> columns_;  ///< column name to its index in a line
   std::vector<TourStation> stations_;
 };
 

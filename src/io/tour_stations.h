@@ -7,18 +7,19 @@
 
 namespace patrol::io {
 
-/// A place that a tour is to visit.
+/// Station of a tour, a traveling-salesman problem with time windows.
 struct TourStation {
   std::string name = {};
-  double x = 0.0, y = 0.0;  ///< as the tour's map names places
-  double service_s = 0.0;   ///< spent there
-  double earliest_s = 0.0, latest_s = std::numeric_limits<double>::infinity();  ///< when the service may begin, from the tour's start
-  int priority = 0;         ///< all stations of a lower one come first
-  int line = 0;             ///< of the file
+  double x = 0.0, y = 0.0;  ///< position in the coordinates of the map of the tour
+  double service_s = 0.0;   ///< time spent at the station
+  /// Time window for the start of the service, since the start of the tour.
+  double earliest_s = 0.0, latest_s = std::numeric_limits<double>::infinity();
+  int priority = 0;         ///< stations with lower values are all visited first
+  int line = 0;             ///< line number in the file
 };
 
-/// A table (RFC 4180) whose header names, in any order, the columns name, x, y and, if they are there, service_s, earliest_s, latest_s, priority; of
-/// these four an empty cell is the default. Throws InputError with the file and the line.
+/// Reads stations from CSV (RFC 4180). Columns, in any order: name, x, y and optionally service_s, earliest_s,
+/// latest_s, priority. An empty cell of an optional column means its default. Throws InputError with file and line.
 std::vector<TourStation> load_tour_stations(const std::filesystem::path& file);
 
 }  // namespace patrol::io

@@ -12,7 +12,7 @@
 namespace patrol::io {
 namespace {
 
-constexpr double kUnitTol = 1e-3;  ///< of a quaternion's length: files carry as few as four digits
+constexpr double kUnitTol = 1e-3;  ///< tolerance of the norm of a quaternion: some files have only four digits
 
 StampedPose parse_pose(LineFields fields) {
   StampedPose entry{.stamp = fields.stamp("t"), .pose = {}};

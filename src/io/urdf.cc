@@ -26,24 +26,24 @@ constexpr std::array kLegNames = {"FL", "FR", "RL", "RR"};
 constexpr std::array kSideNames = {"left", "right"};
 constexpr std::array kTrackNames = {"left_track", "right_track"};
 
-/// A usual standing posture (abduction, hip, knee), at which the footprint is taken.
+/// Nominal standing posture (abduction, hip, knee), rad, for the footprint.
 const Eigen::Vector3d kStandingPosture(0.0, 0.8, -1.6);
 
-/// Line of the first place that names `name`, 0 if none does.
+/// Returns the first line that contains `name` in quotes; 0 if there is none.
 int line_of(const std::string& text, const std::string& name) {
   const std::size_t at = text.find('"' + name + '"');
   if (at == std::string::npos) return 0;
   return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
 }
 
-/// What a track's belt runs round: a cylinder across the robot.
+/// Wheel inside the belt of a track: a cylinder across the robot.
 struct Wheel {
-  Eigen::Vector3d centre_m;  ///< in body
+  Eigen::Vector3d centre_m;  ///< position in body
   double radius_m;
   double width_m;
 };
 
-/// Reads elements of one file, with errors that say where.
+/// Reader of the elements of one URDF file. Errors contain the line.
 class UrdfReader {
  public:
   explicit UrdfReader(const std::string& path) : path_(path), text_(load_text(path)) {
@@ -88,7 +88,7 @@ Pose3 to_pose(const urdf::Pose& pose) {
           Eigen::Quaterniond(pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z)};
 }
 
-/// Whether every word is a finite number.
+/// Returns whether all words are finite numbers.
 bool are_numbers(const std::string& words_text) {
   std::istringstream words(words_text);
   for (std::string word; words >> word;) {
@@ -101,7 +101,8 @@ bool are_numbers(const std::string& words_text) {
   return true;
 }
 
-/// urdfdom takes "nan" for a number, and of "inf" it does not say where: refuse them at the text.
+/// Rejects numbers that are not finite, in the text of the file. urdfdom accepts "nan" and reports "inf" without a
+/// position.
 void UrdfReader::check_numbers() const {
   const std::regex numbers(
       R"rx((xyz|rpy|size|scale|radius|length|value|i[xyz][xyz]|lower|upper|effort|velocity)\s*=\s*"([^"]*)")rx");
@@ -112,7 +113,7 @@ void UrdfReader::check_numbers() const {
   }
 }
 
-/// Names every joint whose parent or child link is missing; urdfdom only fails.
+/// Reports every joint with a missing parent or child link; the message of urdfdom does not name them.
 void UrdfReader::check_links() const {
   for (const std::string tag : {"parent", "child"}) {
     const std::string opening = "<" + tag + " link=\"";
@@ -126,7 +127,7 @@ void UrdfReader::check_links() const {
   }
 }
 
-/// Keeps what urdfdom would print, for as long as it lives.
+/// Captures the messages of urdfdom during its lifetime.
 class ParserErrors : public console_bridge::OutputHandler {
  public:
   ParserErrors() { console_bridge::useOutputHandler(this); }
@@ -147,9 +148,9 @@ void UrdfReader::parse() {
   if (!model_) throw InputError(path_ + ": is not a URDF that urdfdom can read (check_urdf says more)");
 }
 
-/// urdfdom lets a link have two parents, and joints go round in a circle beside the tree.
+/// Rejects links with two parents and cycles of joints, both of which urdfdom accepts.
 void UrdfReader::check_tree() const {
-  std::map<std::string, std::string> parent_of;  // link -> link
+  std::map<std::string, std::string> parent_of;  // child link to parent link
   for (const auto& [name, joint] : model_->joints_) {
     if (!parent_of.emplace(joint->child_link_name, joint->parent_link_name).second) {
       fail(joint->child_link_name, "two joints name this link as their child");
@@ -159,13 +160,14 @@ void UrdfReader::check_tree() const {
     std::size_t steps = 0;
     for (auto at = parent_of.find(name); at != parent_of.end(); at = parent_of.find(at->second)) {
       if (++steps <= parent_of.size()) continue;
-      for (const auto& [ignored, held] : model_->links_) held->child_links.clear();  // else, in a circle, they hold each other for ever
+      // Break the shared-pointer cycle, which would leak.
+      for (const auto& [ignored, held] : model_->links_) held->child_links.clear();
       fail(name, "the joints go round in a circle here");
     }
   }
 }
 
-/// Principal moments of a body are positive, and none is more than the two others together.
+/// Checks that principal moments of inertia are positive and satisfy the triangle inequality.
 void UrdfReader::check_inertias() const {
   for (const auto& [name, link] : model_->links_) {
     if (!link->inertial) continue;
@@ -173,7 +175,7 @@ void UrdfReader::check_inertias() const {
     Eigen::Matrix3d inertia;
     inertia << i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz;
     const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
-    constexpr double kRounding = 1e-4;  // files carry few digits
+    constexpr double kRounding = 1e-4;  // files have few digits
     if (moments[0] > 0.0 && moments[2] <= (moments[0] + moments[1]) * (1.0 + kRounding)) continue;
     fail(name, fmt::format("the inertia is of no body: its principal moments are {:.3g}, {:.3g} and {:.3g} kg m2", moments[0],
                            moments[1], moments[2]));
@@ -246,14 +248,15 @@ JointLimit UrdfReader::read_limit(const std::string& name) const {
   return {.lower_rad = lower, .upper_rad = upper, .velocity_radps = limits->velocity, .effort_nm = limits->effort};
 }
 
-/// Where the belt touches level ground, in body.
+/// Returns the height of the contact with level ground in body.
 double underside_m(const std::vector<Wheel>& wheels) {
   double bottom = std::numeric_limits<double>::infinity();
   for (const Wheel& wheel : wheels) bottom = std::min(bottom, wheel.centre_m.z() - wheel.radius_m);
   return bottom;
 }
 
-/// Road wheels are those whose bottoms are the lowest: the belt lies on the ground between the first and the last.
+/// Returns the distance between the first and the last road wheel. Road wheels are the lowest wheels, between which the
+/// belt is on the ground.
 double contact_length_m(const std::vector<Wheel>& wheels) {
   constexpr double kLevel_m = 1e-3;
   const double bottom = underside_m(wheels);
@@ -266,7 +269,7 @@ double contact_length_m(const std::vector<Wheel>& wheels) {
   return front - rear;
 }
 
-/// The trunk's box, and the standing feet or the tracks, seen from above.
+/// Returns the footprint: the trunk box and the feet in the standing posture, or the tracks, seen from above.
 std::vector<Eigen::Vector2d> UrdfReader::read_footprint(const RobotDescription& robot) const {
   std::vector<Eigen::Vector2d> points;
   const urdf::LinkConstSharedPtr base = model_->getLink(frame_id::kBody);

@@ -6,9 +6,10 @@
 
 namespace patrol::io {
 
-/// Reads a robot's URDF: legs (links `<leg>_abduction`, `<leg>_thigh`, `<leg>_shank`, `<leg>_foot`) or tracks (links
-/// `<side>_track`, whose collision shapes are the wheels that the belt runs round, and `<side>_sprocket`), joint limits,
-/// footprint and sensor frames. Throws InputError, naming file and element, for anything missing or not finite.
+/// Reads the URDF of a robot: legs or tracks, joint limits, footprint and sensor frames. Legs: links `<leg>_abduction`,
+/// `<leg>_thigh`, `<leg>_shank`, `<leg>_foot`. Tracks: links `<side>_track`, whose collision shapes are the wheels
+/// inside the belt, and `<side>_sprocket`. Throws InputError with file and element if anything is missing or not
+/// finite.
 RobotDescription load_robot_description(const std::string& path);
 
 }  // namespace patrol::io

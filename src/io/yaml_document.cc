@@ -39,7 +39,7 @@ class LimitChecker final : public YAML::EventHandler {
   void OnMapEnd() override { close(); }
 
  private:
-  /// A list or map whose end has not been reached.
+  /// List or map that has not ended yet.
   struct Open {
     YAML::anchor_t anchor = 0;
     std::size_t num_nodes_before = 0;
@@ -72,7 +72,7 @@ class LimitChecker final : public YAML::EventHandler {
   const std::string& place_;
   bool has_lines_;
   int num_documents_ = 0;
-  std::size_t num_nodes_ = 0;  ///< aliases expanded
+  std::size_t num_nodes_ = 0;  ///< with aliases expanded
   std::map<YAML::anchor_t, std::size_t> nodes_by_anchor_;
   std::vector<Open> open_;
 };

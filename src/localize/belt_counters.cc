@@ -7,9 +7,10 @@
 namespace patrol::localize {
 namespace {
 
-constexpr Time kMaxInterval = std::chrono::milliseconds(500);  // the middle of a longer one says nothing
+constexpr Time kMaxInterval = std::chrono::milliseconds(500);  // the mean speed over a longer interval is meaningless
 constexpr Time kDisbelief = std::chrono::milliseconds(300);
-constexpr double kSmoothing_s = 0.1;  // sees the acceleration through the counters' steps
+// Long compared with the encoder quantization, short compared with acceleration phases.
+constexpr double kSmoothing_s = 0.1;
 
 }  // namespace
 

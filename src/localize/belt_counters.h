@@ -6,7 +6,7 @@
 
 namespace patrol::localize {
 
-/// Speed of the two belts over the robot's body, by their counters; forwards is positive.
+/// Speed of the two belts relative to the robot's body, from the track encoders; forward is positive.
 struct TrackSpeed {
   double left_mps = 0.0;
   double right_mps = 0.0;
@@ -15,35 +15,37 @@ struct TrackSpeed {
   double difference_mps() const { return right_mps - left_mps; }
 };
 
-/// What two readings of the counters say.
+/// Motion of the belts between two encoder readings.
 struct BeltInterval {
   Time start{}, end{};
   TrackSpeed speed{};
-  TrackSpeed smooth{};             ///< over the last tenth of a second or so
-  double acceleration_mps2 = 0.0;  ///< of the smooth mean speed, smoothed again: nearly free of the counters' steps
+  TrackSpeed smooth{};             ///< smoothed with a time constant of 0.1 s
+  /// Derivative of the smoothed mean speed, smoothed again; nearly free of quantization.
+  double acceleration_mps2 = 0.0;
   double step_mps = 0.0;           ///< speed of one tick in the interval
 
   double dt_s() const { return to_seconds(end - start); }
   Time middle() const { return start + (end - start) / 2; }
 };
 
-/// Speeds of the belts from the running counts of their Hall sensors.
+/// Track encoders: belt speeds from the running counts of the Hall sensors.
 class BeltCounters {
  public:
   struct Settings {
     double metres_per_tick;
-    double max_acceleration_mps2;  ///< beyond, the counts are not believed (a counter has started anew) until they last
+    double max_acceleration_mps2;  ///< larger accelerations are rejected as a counter restart, unless they persist
   };
   explicit BeltCounters(const Settings& settings) : settings_(settings) {}
 
-  /// Stamps must grow. None at the first reading, after a long gap, and where the counts cannot be believed.
+  /// Adds a reading; stamps must increase. Returns nullopt for the first reading, after a long gap, and for implausible
+  /// counts.
   std::optional<BeltInterval> add(const TrackTicks& ticks);
 
-  /// No tick has come for a while.
+  /// Returns whether there was no tick for at least `kStandstill`.
   bool stand() const { return stand_since_ && last_ && last_->stamp - *stand_since_ >= kStandstill; }
-  /// Since when; only while they stand.
+  /// Returns the start of the standstill; valid only while `stand()` is true.
   Time stand_since() const { return *stand_since_; }
-  /// The newest reading that was used.
+  /// Returns the most recent reading.
   const std::optional<TrackTicks>& last() const { return last_; }
 
   static constexpr Time kStandstill = std::chrono::milliseconds(300);

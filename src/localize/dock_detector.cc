@@ -17,14 +17,16 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kWidth_stds = 4.0;       // beyond so many standard deviations a beam is an outlier
-constexpr double kCoarseWidth_m = 0.2;    // of the support while the post is being looked for
-constexpr int kCoarseSteps = 2;           // to each side of the expected pose
+constexpr double kWidth_stds = 4.0;       // cutoff of a beam error in standard deviations
+constexpr double kCoarseWidth_m = 0.2;    // cutoff of the support during the coarse search
+constexpr int kCoarseSteps = 2;           // coarse steps to each side of the expected pose
 constexpr std::size_t kNumCandidates = 4;
 constexpr double kFineStep_m = 0.02;
 constexpr double kFinest_m = 0.0005;
-constexpr double kRadPerMetre = 4.0;      // a step of the search in yaw, per step in position: half a post's width apart
-constexpr double kMaxStd_m = 0.05;        // in the search's steps: more leaves a direction open
+// Ratio of the yaw step to the position step of the search, for half the width of a post.
+constexpr double kRadPerMetre = 4.0;
+// Maximum standard deviation in search coordinates; larger values mean a degenerate direction.
+constexpr double kMaxStd_m = 0.05;
 
 }  // namespace
 
@@ -47,7 +49,7 @@ std::optional<DockSighting> DockDetector::detect(const LevelScan& scan, const Po
   const std::vector<Beam> hits = hits_near(beams, scan.origin_m, T_level_expected);
   Fit fit = refine(hits, scan.origin_m, T_level_expected);
   DockSighting sighting{.stamp = scan.stamp, .T_level_docked = fit.T_level_docked};
-  if (!judge(beams, scan.origin_m, sighting)) {  // not where it is expected: all around
+  if (!judge(beams, scan.origin_m, sighting)) {  // not at the expected pose: search around it
     fit = search(hits, scan.origin_m, T_level_expected);
     sighting.T_level_docked = fit.T_level_docked;
     if (!judge(beams, scan.origin_m, sighting)) return std::nullopt;
@@ -60,7 +62,7 @@ std::optional<DockSighting> DockDetector::detect(const LevelScan& scan, const Po
 
 double DockDetector::reach_m() const { return radius_m_ + settings_.search_m * std::sqrt(2.0) + settings_.margin_m; }
 
-// All beams that could meet the post, wherever within the search it stands, and those past its ends.
+// Returns the beams that could hit the post anywhere in the search range, and those that pass its ends.
 std::vector<DockDetector::Beam> DockDetector::beams_about(const LevelScan& scan, const Pose2& T_level_expected) const {
   const Eigen::Vector2d to_post = T_level_expected * middle_m_ - scan.origin_m;
   std::vector<Beam> beams;
@@ -76,7 +78,7 @@ std::vector<DockDetector::Beam> DockDetector::beams_about(const LevelScan& scan,
   return beams;
 }
 
-// The only ones that can support a pose.
+// Returns the hits near the post, the only beams that can support a pose.
 std::vector<DockDetector::Beam> DockDetector::hits_near(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
                                                         const Pose2& T_level_expected) const {
   const Eigen::Vector2d middle = T_level_expected * middle_m_;
@@ -117,8 +119,8 @@ double DockDetector::support(const std::vector<Beam>& beams, const Eigen::Vector
   return total;
 }
 
-/// Moved in level, or turned about the middle of the outline: about the docked body, half a metre off, a turn would move the
-/// outline aside, and axis by axis the search would creep along a ridge.
+/// Translates the pose in level, or rotates it about the center of the outline. A rotation about the docked body, half
+/// a meter away, would also shift the outline. The coordinate search would then follow a narrow ridge in small steps.
 Pose2 DockDetector::moved(const Pose2& T_level_docked, int axis, double step_m) const {
   if (axis == 0) return {T_level_docked.x + step_m, T_level_docked.y, T_level_docked.yaw};
   if (axis == 1) return {T_level_docked.x, T_level_docked.y + step_m, T_level_docked.yaw};
@@ -149,7 +151,7 @@ DockDetector::Fit DockDetector::search(const std::vector<Beam>& beams, const Eig
   return *std::min_element(candidates.begin(), candidates.end(), has_more);
 }
 
-/// From a pose that is good to some centimetres.
+/// Refines a pose with an error of a few centimeters.
 DockDetector::Fit DockDetector::refine(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
                                        const Pose2& T_level_docked) const {
   const double width_m = kWidth_stds * settings_.range_std_m;
@@ -158,7 +160,7 @@ DockDetector::Fit DockDetector::refine(const std::vector<Beam>& beams, const Eig
   return fit;
 }
 
-/// Pattern search: a step along each axis that gains is taken; when none does, the step is halved.
+/// Pattern search: takes each step along an axis that increases the support, and halves the step size when none does.
 void DockDetector::climb(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, double width_m, double step_m,
                          Fit& fit) const {
   while (step_m >= kFinest_m) {
@@ -176,8 +178,8 @@ void DockDetector::climb(const std::vector<Beam>& beams, const Eigen::Vector2d& 
   }
 }
 
-// The support near its top is N - sum(error^2) / w^2, so that its second differences give the information, sum(J^T J) /
-// sigma^2. The step is as wide as the noise, which takes in what the edges say.
+// Near its maximum the support is N - sum(error^2) / w^2, so its second differences give the information, sum(J^T J) /
+// sigma^2. The step equals the noise, in order to include the information of the edges.
 std::optional<Eigen::Matrix3d> DockDetector::covariance(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
                                                         const Fit& fit) const {
   const double width_m = kWidth_stds * settings_.range_std_m, step_m = settings_.range_std_m;
@@ -196,7 +198,7 @@ std::optional<Eigen::Matrix3d> DockDetector::covariance(const std::vector<Beam>&
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
   if (eigen.eigenvalues().minCoeff() < 1.0 / (kMaxStd_m * kMaxStd_m)) return std::nullopt;
 
-  // From steps of the search to x, y, yaw of the docked body: a turn about the middle moves it.
+  // Transform from search coordinates to x, y, yaw of the docked body: a rotation about the center moves it.
   const Eigen::Vector2d arm = fit.T_level_docked.position() - fit.T_level_docked * middle_m_;
   Eigen::Matrix3d J;
   J << 1.0, 0.0, -kRadPerMetre * arm.y(),
@@ -205,7 +207,8 @@ std::optional<Eigen::Matrix3d> DockDetector::covariance(const std::vector<Beam>&
   return J * information.inverse() * J.transpose();
 }
 
-/// Whether beam for beam the outline is there, and free ground beside it.
+/// Evaluates a detection: inlier ratio over the predicted beams, with free space next to the post. Sets the quality
+/// fields and returns whether the detection is accepted.
 bool DockDetector::judge(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, DockSighting& sighting) const {
   const Pose2 T_docked_level = sighting.T_level_docked.inverse();
   const Eigen::Vector2d origin = T_docked_level * origin_m;

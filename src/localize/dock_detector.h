@@ -10,14 +10,14 @@
 namespace patrol::localize {
 
 struct DockDetectorSettings {
-  double search_m = 0.3;        ///< the post is looked for so far from where it is expected, along and across
-  double search_rad = 0.2;      ///< and turned by so much
-  double range_std_m = 0.025;   ///< of one beam
-  double margin_m = 0.15;       ///< the post's ends are free-standing by so much: hits there speak against it
-  double min_explained = 0.75;  ///< share of the beams about the post
+  double search_m = 0.3;        ///< search range around the expected position, longitudinal and lateral
+  double search_rad = 0.2;      ///< search range around the expected heading
+  double range_std_m = 0.025;   ///< standard deviation of the range of one beam
+  double margin_m = 0.15;  ///< free space required next to the ends of the post: hits there count against the detection
+  double min_explained = 0.75;  ///< minimum inlier ratio of the beams around the post
   double max_rms_m = 0.04;
-  int min_beams = 25;           ///< on the post
-  double max_range_m = 4.0;     ///< farther away it is not looked for
+  int min_beams = 25;           ///< minimum number of beams on the post
+  double max_range_m = 4.0;     ///< maximum distance of the expected post for a search
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -32,26 +32,27 @@ struct DockDetectorSettings {
   }
 };
 
-/// Finds the charging post by its outline. For a supposed pose each beam has a range at which it should meet the outline; a
-/// beam supports the pose by 1 - (error / w)^2 within w. The pose with the most support is searched coarsely around the expected
-/// one, then step by step down to a millimetre: a maximum likelihood with outliers cut off. Because the whole outline is
-/// cast and not each hit assigned to its nearest line, the silhouette's edges count as well: even a flat face has a middle.
+/// Detector of the charging post by its outline. For a pose hypothesis, the outline predicts a range for each beam. A
+/// beam supports the hypothesis by 1 - (error / w)^2 if the error is below w: a maximum-likelihood estimate with
+/// truncated outliers. The pose with maximum support is searched on a coarse grid around the expected pose and then
+/// refined to less than a millimeter. Casting the complete outline, instead of assigning hits to their nearest lines,
+/// also uses the silhouette edges. Thus even a flat face constrains the lateral position.
 ///
-/// Says nothing when the shape is not there: too few beams of those that should meet it do, other hits adjoin its ends (a
-/// wall), or one direction stays open.
+/// Returns no detection if too few of the predicted beams match, if other hits adjoin the ends (a wall), or if a
+/// direction is degenerate.
 class DockDetector {
  public:
-  /// `profile_m`: the post's outline at the lidar's height as a polyline in the docked body's frame. Throws InputError when
-  /// it has fewer than two points.
+  /// Creates the detector. `profile_m`: outline of the post at lidar height, a polyline in the frame of the docked
+  /// body. Throws InputError if it has fewer than two points.
   DockDetector(const DockDetectorSettings& settings, std::vector<Eigen::Vector2d> profile_m);
 
-  /// `T_level_expected`: where the docked body should be, from where the level body is.
+  /// Searches the post in a scan. `T_level_expected`: expected docked pose in the present `level` frame.
   std::optional<DockSighting> detect(const LevelScan& scan, const Pose2& T_level_expected) const;
 
  private:
   struct Beam {
-    Eigen::Vector2d direction;  ///< in level, unit
-    double range_m;             ///< from the lidar
+    Eigen::Vector2d direction;  ///< unit vector in level
+    double range_m;             ///< range from the lidar
     bool is_hit;
   };
   struct Fit {
@@ -62,11 +63,11 @@ class DockDetector {
   std::vector<Beam> beams_about(const LevelScan& scan, const Pose2& T_level_expected) const;
   std::vector<Beam> hits_near(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
                               const Pose2& T_level_expected) const;
-  /// From the middle of the expected post to the farthest thing that matters.
+  /// Returns the radius around the center of the expected post that contains all relevant beams.
   double reach_m() const;
   double support(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, const Pose2& T_level_docked,
                  double width_m) const;
-  /// Distance along a ray to the outline; infinite if it passes by.
+  /// Returns the distance along a ray to the outline; infinite if the ray misses it.
   double cast(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction) const;
   Pose2 moved(const Pose2& T_level_docked, int axis, double step_m) const;
   Fit search(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, const Pose2& T_level_expected) const;
@@ -78,8 +79,8 @@ class DockDetector {
 
   DockDetectorSettings settings_;
   std::vector<Eigen::Vector2d> profile_m_;
-  Eigen::Vector2d middle_m_;  ///< of the outline, in the docked body's frame
-  double radius_m_ = 0.0;     ///< about it
+  Eigen::Vector2d middle_m_;  ///< center of the outline, in the frame of the docked body
+  double radius_m_ = 0.0;     ///< maximum distance of the outline from its center
 };
 
 }  // namespace patrol::localize

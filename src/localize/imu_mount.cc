@@ -3,9 +3,9 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kMaxRate_radps = 35.0;  // beyond what a MEMS gyro of 2000 deg/s reads
+constexpr double kMaxRate_radps = 35.0;  // above the measuring range of a MEMS gyro, 2000 deg/s
 constexpr double kMaxForce_mps2 = 16.0 * 9.81 * 1.8;
-constexpr Time kMaxStep = std::chrono::milliseconds(50);  // a longer gap tells no angular acceleration
+constexpr Time kMaxStep = std::chrono::milliseconds(50);  // no angular acceleration is computed over a longer gap
 
 }  // namespace
 

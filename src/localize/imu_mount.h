@@ -7,15 +7,15 @@
 
 namespace patrol::localize {
 
-/// Within what a MEMS unit can read at all, and finite.
+/// Returns whether a reading is finite and within the measuring range of MEMS units.
 bool is_plausible(const Imu& imu);
 
-/// Brings readings of a unit mounted anywhere to the body's origin: turned, and without what its lever arm adds.
+/// Transforms readings of an IMU with any mounting pose to the body origin: rotation and lever-arm compensation.
 class ImuMount {
  public:
   explicit ImuMount(const Pose3& T_body_imu) : T_body_imu_(T_body_imu) {}
 
-  /// In order of stamps: the lever arm needs the change of the rate.
+  /// Transforms a reading. Call in order of stamps, because the lever arm needs the angular acceleration.
   InertialSample to_body(const Imu& imu);
 
  private:

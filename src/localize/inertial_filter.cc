@@ -11,8 +11,8 @@ namespace {
 constexpr double kStartTiltStd_rad = 0.05;
 constexpr double kStartVelocityStd_mps = 0.1;
 constexpr double kGate = 16.27;  // 99.9 % of chi-square, three degrees of freedom
-// Without an IMU.
-constexpr double kCoastYawRateStd = 0.05;  // rad/sqrt(s): what the feet tell of the yaw rate, slip included
+// Process noise without an IMU.
+constexpr double kCoastYawRateStd = 0.05;  // rad/sqrt(s): yaw rate from the feet, including slip
 constexpr double kCoastTiltStd = 0.15;     // rad/sqrt(s)
 constexpr double kCoastVelocityStd = 1.0;  // m/s/sqrt(s)
 
@@ -26,14 +26,14 @@ InertialFilter::InertialFilter(const Settings& settings, const InertialSample& f
     P_.diagonal().segment<3>(block).setConstant(std * std);
   };
   set_std(kRotation, kStartTiltStd_rad);
-  P_(kRotation + 2, kRotation + 2) = 0.0;  // odom is where it started
+  P_(kRotation + 2, kRotation + 2) = 0.0;  // zero by definition of odom
   set_std(kVelocity, kStartVelocityStd_mps);
   set_std(kGyroBias, settings.gyro_bias_std_radps);
   set_std(kAccelBias, settings.accel_bias_std_mps2);
 }
 
 void InertialFilter::predict(double dt_s, const InertialSample& sample) {
-  // Trapezoidal: the mean of the last sample and this one holds over the step.
+  // Trapezoidal rule: the mean of the previous sample and this one applies to the step.
   const Eigen::Vector3d omega = 0.5 * (last_.rate_radps + sample.rate_radps) - gyro_bias_;
   const Eigen::Vector3d force = 0.5 * (last_.force_mps2 + sample.force_mps2) - accel_bias_;
   last_ = sample;
@@ -95,8 +95,8 @@ void InertialFilter::correct_gyro_bias(const Eigen::Vector3d& bias_radps, const 
   const Gain W = P_.middleCols<3>(kGyroBias);
   Eigen::Matrix3d S = W.middleRows<3>(kGyroBias);
   S.diagonal() += variance;
-  // What the bias has done to place and heading so far stays: odom must not jump. With rows of the gain left out the
-  // covariance follows Joseph's form (Schmidt's consider update).
+  // Do not correct position and yaw for past bias errors, because odom must not jump. With rows of the gain set to
+  // zero, the covariance update has Joseph's form (Schmidt's consider update).
   Gain K = W * S.inverse();
   K.middleRows<3>(kPosition).setZero();
   K.row(kRotation + 2).setZero();

@@ -5,56 +5,57 @@
 
 #include "core/frames.h"
 
-/// Strapdown inertial navigation of the body over short steps, and how its errors grow: what the filters of both robots share.
+/// Strapdown inertial navigation over short steps and its error propagation, common to the filters of both robots.
 namespace patrol::localize {
 
 inline constexpr double kGravity_mps2 = 9.81;
 
-/// Rate and specific force at the trunk's origin, in body, as measured (bias included).
+/// Angular rate and specific force at the trunk origin, in body, as measured (including bias).
 struct InertialSample {
   Eigen::Vector3d rate_radps = Eigen::Vector3d::Zero();
   Eigen::Vector3d force_mps2 = Eigen::Vector3d::Zero();
 };
 
-/// What the filter knows. Velocity is of the trunk's origin, in body.
+/// Motion state of the trunk. The velocity is that of the trunk origin, in body.
 struct TrunkMotion {
   Pose3 T_odom_body;
   Eigen::Vector3d v_body = Eigen::Vector3d::Zero();      ///< m/s
   Eigen::Vector3d omega_body = Eigen::Vector3d::Zero();  ///< rad/s, bias removed
 };
 
-/// [v]x: cross_matrix(v) * w = v x w.
+/// Returns [v]x: cross_matrix(v) * w = v x w.
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v);
 
-/// Rotation by a vector, to third order: for steps of a few milliradians.
+/// Returns the rotation by a vector, to third order: for steps of a few milliradians.
 Eigen::Quaterniond rotation_by(const Eigen::Vector3d& angle_rad);
 
-/// Roll and pitch at which gravity reads `force` at rest; yaw 0.
+/// Returns roll and pitch for which gravity reads `force` at rest; yaw 0.
 Eigen::Quaterniond tilt_of(const Eigen::Vector3d& force);
 
-/// One step of dead reckoning, and where it was linearised.
+/// Dead-reckoning step with its linearization point.
 struct InertialStep {
-  TrunkMotion after;  ///< its omega is that of the step
-  Eigen::Matrix3d R_odom_body = Eigen::Matrix3d::Identity();  ///< half way
-  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();           ///< half way, m/s
+  TrunkMotion after;  ///< its omega is the mean rate of the step
+  Eigen::Matrix3d R_odom_body = Eigen::Matrix3d::Identity();  ///< at the middle of the step
+  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();           ///< at the middle of the step, m/s
 };
 
-/// `omega_radps` and `force_mps2` hold on average over the step, in body, bias removed.
+/// Integrates one step. `omega_radps` and `force_mps2` are means over the step, in body, without bias.
 InertialStep integrate(const TrunkMotion& before, double dt_s, const Eigen::Vector3d& omega_radps,
                        const Eigen::Vector3d& force_mps2);
 
-/// Rows and columns of an error covariance: position in odom, rotation in odom, velocity in body, gyro bias, accelerometer bias;
-/// whatever a filter adds comes after.
+/// Layout of the rows and columns of an error covariance: position in odom, rotation in odom, velocity in body, gyro
+/// bias, accelerometer bias. The additional states of a filter follow.
 struct InertialError {
   static constexpr int kPosition = 0, kRotation = 3, kVelocity = 6, kGyroBias = 9, kAccelBias = 12, kSize = 15;
 };
 
-/// With R_true = exp(phi) R, omega_true = omega - dbg, force_true = force - dba, to first order:
+/// Propagates the error covariance. With R_true = exp(phi) R, omega_true = omega - dbg, force_true = force - dba, to
+/// first order:
 ///   dp'   = R dv - [R v]x phi
 ///   phi'  = -R dbg
 ///   dv'   = R^T [g]x phi - [omega]x dv - [v]x dbg - dba
-/// P = F P F^T with F = I + dt A. F acts on rows in place (each row block uses only blocks not yet overwritten), once before and
-/// once after transposing the symmetric P. Errors beyond the first fifteen stand still.
+/// P = F P F^T with F = I + dt A. F is applied to the rows in place, before and after a transposition of the symmetric
+/// P. Each row block uses only blocks that are not yet overwritten. Errors beyond the first fifteen are constant.
 template <typename Covariance>
 void propagate_inertial_errors(Covariance& P, double dt_s, const Eigen::Matrix3d& R, const Eigen::Vector3d& v,
                                const Eigen::Vector3d& omega) {

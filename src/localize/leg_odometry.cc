@@ -61,7 +61,7 @@ std::optional<double> yaw_rate_by_feet(const StanceFeet& feet) {
     p_mean += foot.p_contact.head<2>() / feet.count;
     v_mean += foot.v_contact.head<2>() / feet.count;
   }
-  // Feet at rest on the ground: seen from the trunk they turn the other way round their mean.
+  // For feet at rest on the ground, the rotation seen from the trunk is opposite to that of the trunk.
   double moment = 0.0, inertia = 0.0;
   for (const StanceFoot& foot : feet) {
     const Eigen::Vector2d p = foot.p_contact.head<2>() - p_mean, v = foot.v_contact.head<2>() - v_mean;

@@ -18,7 +18,7 @@ PoseEstimate MapPoseTracker::at(Time stamp, const Pose2& T_odom_body) const {
   const Eigen::Vector2d way = T_map_body.position() - (T_map_odom_ * T_odom_corrected_).position();
   const double turn = std::abs(wrap_angle(T_odom_body.yaw - T_odom_corrected_.yaw));
 
-  // An error of heading at the correction swings the way since round.
+  // A heading error at the correction rotates the distance traveled since then.
   Eigen::Matrix3d swing = Eigen::Matrix3d::Identity();
   swing(0, 2) = -way.y();
   swing(1, 2) = way.x();

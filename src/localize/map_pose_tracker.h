@@ -4,24 +4,25 @@
 
 namespace patrol::localize {
 
-/// How much odometry adds to the uncertainty of a pose, per way and turn since the last correction.
+/// Growth of the pose uncertainty by odometry, per distance and rotation since the last correction.
 struct OdometryDrift {
   double way_std_m_per_m = 0.02;
   double turn_std_rad_per_m = 0.005;
   double turn_std_rad_per_rad = 0.01;
 };
 
-/// The level body in `map` at any time: SLAM's last correction carried on by the smooth odometry,
-/// T_map_body = T_map_odom * T_odom_body. Before any correction map and odom are one.
+/// Pose of the level body in `map` at any time: the last correction of SLAM composed with the continuous odometry,
+/// T_map_body = T_map_odom * T_odom_body. Before the first correction map and odom are identical.
 class MapPoseTracker {
  public:
   explicit MapPoseTracker(const OdometryDrift& drift = {}) : drift_(drift) {}
 
-  /// SLAM has placed the body at `stamp`, when odometry had it at `T_odom_body`. Corrections older than the
-  /// last are ignored.
+  /// Sets the SLAM pose at `stamp`, at which the odometry pose was `T_odom_body`. Corrections older than the last one
+  /// are ignored.
   void correct(Time stamp, const Pose2& T_odom_body, const Pose2& T_map_body,
                const Eigen::Matrix3d& covariance);
 
+  /// Returns the pose and its covariance at `stamp`, at which the odometry pose is `T_odom_body`.
   PoseEstimate at(Time stamp, const Pose2& T_odom_body) const;
   const Pose2& T_map_odom() const { return T_map_odom_; }
 
@@ -29,7 +30,7 @@ class MapPoseTracker {
   OdometryDrift drift_;
   Time corrected_{};
   Pose2 T_map_odom_;
-  Pose2 T_odom_corrected_;  ///< where the body was at the last correction
+  Pose2 T_odom_corrected_;  ///< odometry pose at the last correction
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
 };
 

@@ -9,13 +9,12 @@
 
 namespace patrol::localize {
 
-/// The trunk's motion over the last second or so, in a ring; for beams and measurements that are true of the
-/// past.
+/// Ring buffer of the recent trunk motion, for beams and measurements with past stamps.
 class MotionHistory {
  public:
   explicit MotionHistory(std::size_t capacity) : ring_(capacity) {}
 
-  /// Stamps must grow; the same stamp again replaces the newest entry.
+  /// Adds a motion. Stamps must increase; an equal stamp replaces the newest entry.
   void push(Time stamp, const TrunkMotion& motion);
 
   void clear() { size_ = 0; }
@@ -25,7 +24,7 @@ class MotionHistory {
   Time newest() const { return at(size_ - 1).stamp; }
   const TrunkMotion& newest_motion() const { return at(size_ - 1).motion; }
 
-  /// Interpolated; none outside of what is remembered.
+  /// Returns the interpolated motion; nullopt outside the buffer.
   std::optional<TrunkMotion> motion_at(Time stamp) const;
   std::optional<Pose3> pose_at(Time stamp) const;
 
@@ -34,7 +33,7 @@ class MotionHistory {
     Time stamp{};
     TrunkMotion motion;
   };
-  /// The entries around a stamp and how far it lies from the first to the second.
+  /// Entries around a stamp, and the interpolation fraction from the first to the second.
   struct Bracket {
     const Entry& before;
     const Entry& after;

@@ -11,7 +11,7 @@
 namespace patrol::localize {
 namespace {
 
-constexpr int kFrozenRangeRepeats = 5;  // equal readings of one anchor in a row: noise never does that
+constexpr int kFrozenRangeRepeats = 5;  // equal consecutive readings of one anchor, which noise practically excludes
 
 const RangeFilterSettings& checked(const RangeFilterSettings& settings) {
   validate(settings, "uwb");
@@ -40,7 +40,7 @@ double normal_density(double x, double std) {
   return std::exp(-0.5 * x * x / (std * std)) / (std * std::sqrt(2.0 * std::numbers::pi));
 }
 
-/// Density of a normal plus an exponential variable (exponentially modified Gaussian).
+/// Returns the density of the sum of a normal and an exponential variable (exponentially modified Gaussian).
 double excess_density(double x, double std, double mean_excess) {
   const double exponent = 0.5 * std * std / (mean_excess * mean_excess) - x / mean_excess;
   const double tail = 0.5 * std::erfc((std / mean_excess - x / std) / std::numbers::sqrt2);
@@ -76,7 +76,7 @@ RangeFilter::State RangeFilter::moved(State state, Time stamp, const Pose3& T_od
   const Pose2 step = to_planar(state.T_odom_body).inverse() * to_planar(T_odom_body);
   const double way_m = step.position().norm(), turn_rad = std::abs(step.yaw);
 
-  // Odometry's step, less what is believed to be wrong with it.
+  // Odometry increment, corrected by its estimated error.
   const Eigen::Vector3d drift_step = dt_s * twist_std.cwiseProduct(state.drift);
   const Pose2 before = state.T_map_body;
   state.T_map_body = before * Pose2{step.x + drift_step.x(), step.y + drift_step.y(), step.yaw + drift_step.z()};
@@ -137,7 +137,7 @@ double RangeFilter::innovation(const UwbRange& range, const Pose3& T_odom_body, 
   const double z_then = state_.z_m + T_odom_body.position.z() - state_.T_odom_body.position.z();
   const Eigen::Vector3d antenna = uwb_antenna_in_level(T_odom_body.rotation, T_body_uwb_, z_then);
   const PredictedRange expected = predict_uwb_range(anchors_.at(range.anchor), T_map_then, antenna, calibration_);
-  // An error of heading now swings the way back to the range's instant round.
+  // A heading error at the present pose rotates the motion back to the time of the range.
   const Eigen::Vector2d back = T_map_then.position() - state_.T_map_body.position();
   H.setZero();
   H.head<3>() = expected.by_pose;

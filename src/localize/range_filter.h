@@ -15,27 +15,30 @@
 namespace patrol::localize {
 
 struct RangeFilterSettings {
-  // Ranges.
-  std::vector<double> bias_distance_m = UwbCalibration{}.distance_m;  ///< what a clear range reads too much,
-  std::vector<double> bias_m = UwbCalibration{}.bias_m;               ///< by distance; both empty: nothing
+  // UWB ranges.
+  /// Bias of a line-of-sight range at each distance of `bias_distance_m`.
+  std::vector<double> bias_distance_m = UwbCalibration{}.distance_m;
+  std::vector<double> bias_m = UwbCalibration{}.bias_m;               ///< both lists empty: no bias
   double range_std_m = 0.1;
-  double blocked_share = 0.3;     ///< of the ranges, expected off the line of sight,
-  double blocked_excess_m = 0.5;  ///< and by how much those are too long on average
-  double min_clear_probability = 0.1;  ///< a long range that is less likely than this to be clear is refused
-  double max_short_sigmas = 3.3;       ///< a range that is shorter than expected by more is refused: 99.9 %
-  // Odometry: its errors' standard deviations come with it; here is how long they last, and what is white.
+  double blocked_share = 0.3;     ///< prior probability of a non-line-of-sight (NLOS) range
+  double blocked_excess_m = 0.5;  ///< mean bias of NLOS ranges
+  /// Ranges that are too long and have a smaller line-of-sight probability are rejected.
+  double min_clear_probability = 0.1;
+  double max_short_sigmas = 3.3;       ///< ranges that are too short by more standard deviations are rejected: 99.9 %
+  // Odometry. The standard deviations of its errors are part of its output; here are their correlation lengths and
+  // white noise.
   double along_length_m = 8.0;  ///< scale, slip
   double across_length_m = 4.0;
-  double turn_time_s = 300.0;  ///< bias, from one standstill to the next
+  double turn_time_s = 300.0;  ///< gyro bias, from one standstill to the next
   double way_std_m_per_sqrt_m = 0.003;
   double turn_std_rad_per_sqrt_s = 3.5e-4;
   double turn_std_rad_per_sqrt_rad = 0.002;
   double height_std_m_per_sqrt_m = 0.02;
   double start_height_std_m = 0.05;
-  // Never locked out.
-  int window = 30;                  ///< of ranges, over which refusals are counted
-  double min_accepted_share = 0.4;  ///< of the window; if fewer, it is the estimate that is doubted
-  double doubt_std_m = 0.5;         ///< and spread by this
+  // Recovery from a wrong estimate.
+  int window = 30;                  ///< number of ranges over which rejections are counted
+  double min_accepted_share = 0.4;  ///< minimum acceptance ratio of the window; below it the covariance is inflated
+  double doubt_std_m = 0.5;         ///< standard deviation added to x and y
   double doubt_std_rad = 0.05;
 
   template <typename Self, typename Visitor>
@@ -64,53 +67,57 @@ struct RangeFilterSettings {
 
 enum class RangeVerdict : std::uint8_t {
   kAccepted,
-  kTooLong,   ///< most likely off the line of sight
-  kTooShort,  ///< nothing makes a range shorter: an outlier, or the estimate is wrong
-  kUnusable,  ///< not finite or negative, of an anchor that nobody surveyed, heard before, frozen, or before the start
+  kTooLong,   ///< probably NLOS
+  kTooShort,  ///< outlier or wrong estimate, because no effect shortens a range
+  kUnusable,  ///< not finite, negative, unknown anchor, old stamp, frozen, or before the start
 };
 
 struct RangeOutcome {
   RangeVerdict verdict = RangeVerdict::kUnusable;
-  double innovation_m = 0.0;        ///< read less expected
-  double variance_m2 = 0.0;         ///< of the innovation, if the path is clear
-  double clear_probability = 0.0;   ///< that it is
+  double innovation_m = 0.0;        ///< measured minus predicted range
+  double variance_m2 = 0.0;         ///< variance of the innovation of a line-of-sight range
+  double clear_probability = 0.0;   ///< posterior probability of line of sight
 
   bool is_accepted() const { return verdict == RangeVerdict::kAccepted; }
-  /// Normalised innovation squared: chi-square of one degree of freedom over the clear ranges of a consistent filter.
+  /// Returns the normalized innovation squared: chi-square with one degree of freedom over the line-of-sight ranges of
+  /// a consistent filter.
   double nis() const { return variance_m2 > 0.0 ? innovation_m * innovation_m / variance_m2 : 0.0; }
 };
 
-/// Extended Kalman filter of the body in `map`: odometry's increments predict, each UWB range by itself corrects (tight coupling:
-/// one range from one anchor says what it can). State: x, y, yaw; the body's height over map's origin (a tunnel is not flat, and
-/// anchors hang high); and three slowly changing errors of odometry, as multiples of the standard deviations that odometry states
-/// with its twist: along, across, turn. So a scale that is one percent off is learnt, and not mistaken for noise.
+/// Extended Kalman filter of the body pose in `map`: predicted with odometry increments, corrected with single UWB
+/// ranges (tight coupling). State: x, y, yaw; height of the body above the origin of map (tunnels are not level, and
+/// anchors are mounted high); and three slowly varying odometry errors. These errors are longitudinal, lateral and yaw,
+/// in multiples of the standard deviations that odometry reports for its twist. Thus a scale error of one percent is
+/// estimated and not treated as noise.
 ///
-/// Ranges off the line of sight are too long, never too short. Each range is weighed by the probability that it is clear, a clear
-/// one being Gaussian about what is expected and a blocked one Gaussian plus exponential (Bellusci et al. 2009; Prorok, Gonon,
-/// Martinoli, "Online model estimation of ultra-wideband TDOA measurements for mobile robot localization", ICRA 2012, have the
-/// like): its variance is divided by it. Least likely ones are refused. When most of the ranges of a window are refused, the
-/// estimate is doubted instead, and spread until they fit again.
+/// NLOS ranges are too long, never too short. The model of a line-of-sight innovation is a Gaussian, that of an NLOS
+/// innovation a Gaussian plus an exponential variable, similar to [Bellusci09] and [Prorok12]. The variance of each
+/// range is divided by its line-of-sight probability; the least probable ranges are rejected. If most ranges of a
+/// window are rejected, the covariance is inflated until ranges are accepted again.
 class RangeFilter {
  public:
-  /// Throws InputError for settings out of range, tables of unlike length, or two anchors of one number.
+  /// Creates the filter. Throws InputError for settings out of range, bias tables of different lengths, or duplicate
+  /// anchor numbers.
   RangeFilter(const RangeFilterSettings& settings, const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb);
 
-  /// The body is there, and odometry has it at `T_odom_body`; its height is map's origin's plus `z_m`.
+  /// Starts at a pose, at which the odometry pose is `T_odom_body`; the height above the origin of map is `z_m`.
   void start_at(const PoseEstimate& start, const Pose3& T_odom_body, double z_m = 0.0);
   bool has_started() const { return has_started_; }
 
-  /// Odometry has moved on; `twist_std` as TrackOdometry::twist_std. Stamps must grow; older ones are ignored.
+  /// Predicts with a new odometry pose; `twist_std` as in TrackOdometry::twist_std. Stamps must increase; older ones
+  /// are ignored.
   void predict(Time stamp, const Pose3& T_odom_body, const Eigen::Vector3d& twist_std);
-  /// A range, perhaps older than the newest prediction; `T_odom_body` is where odometry had the body at its stamp.
+  /// Corrects with a range, possibly older than the newest prediction. `T_odom_body`: odometry pose at the stamp of the
+  /// range.
   RangeOutcome add(const UwbRange& range, const Pose3& T_odom_body);
 
-  /// At `stamp`, not before the newest prediction, when odometry has the body at `T_odom_body`.
+  /// Returns the estimate at `stamp`, not before the newest prediction, for the odometry pose `T_odom_body`.
   PoseEstimate estimate(Time stamp, const Pose3& T_odom_body) const;
 
   double height_m() const { return state_.z_m; }
-  /// How often the estimate has been doubted.
+  /// Returns how many times the covariance was inflated after too many rejections.
   std::uint64_t doubts() const { return doubts_; }
-  /// Of the last window of ranges; 1 before any.
+  /// Returns the acceptance ratio over the last window of ranges; 1 before the first range.
   double accepted_share() const;
 
  private:
@@ -121,10 +128,10 @@ class RangeFilter {
     Pose3 T_odom_body;
     Pose2 T_map_body;
     double z_m = 0.0;
-    Eigen::Vector3d drift = Eigen::Vector3d::Zero();  ///< along, across, turn; standard normal at first
+    Eigen::Vector3d drift = Eigen::Vector3d::Zero();  ///< longitudinal, lateral, yaw; prior standard normal
     Eigen::Matrix<double, kSize, kSize> P = Eigen::Matrix<double, kSize, kSize>::Zero();
   };
-  /// What was last heard from an anchor.
+  /// Most recent range of an anchor.
   struct Heard {
     Time stamp{};
     double range_m = 0.0;
@@ -132,7 +139,7 @@ class RangeFilter {
   };
   State moved(State state, Time stamp, const Pose3& T_odom_body, const Eigen::Vector3d& twist_std) const;
   bool is_usable(const UwbRange& range);
-  /// Innovation, and its gradient by the state.
+  /// Returns the innovation and its gradient with respect to the state.
   double innovation(const UwbRange& range, const Pose3& T_odom_body, Vector& H) const;
   double clear_probability(double innovation_m, double std_m) const;
   RangeVerdict judge(const RangeOutcome& outcome) const;

@@ -8,9 +8,9 @@
 namespace patrol::localize {
 namespace {
 
-constexpr std::size_t kNumKnots = 33;  // poses over a scan; between them the lidar's pose is linear
+constexpr std::size_t kNumKnots = 33;  // poses over a scan; the lidar pose is interpolated linearly between them
 
-/// The lidar's pose as a matrix, which blends linearly: over 3 ms at 1 rad/s that is exact to 1e-6.
+/// Lidar pose as a matrix, which is interpolated linearly: the error over 3 ms at 1 rad/s is 1e-6.
 struct Knot {
   Eigen::Matrix3d R;
   Eigen::Vector3d p;
@@ -98,7 +98,7 @@ void ScanLeveler::add_beam(const Ray& ray, float range_m, double body_height_m, 
 double ScanLeveler::length_in_band(const Ray& ray, double body_height_m) const {
   const double height_m = body_height_m + ray.start.z();
   const double rise = ray.direction.z();
-  // The lower edge rises with the distance s, min + margin s; so does the beam, height + rise s.
+  // The lower edge of the band rises with the distance s, as min + margin s; the beam height is height + rise s.
   const double sink = settings_.tilt_margin_rad - rise;
   const double until_low =
       sink > 0.0 ? (height_m - settings_.min_height_m) / sink : std::numeric_limits<double>::infinity();

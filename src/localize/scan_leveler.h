@@ -12,15 +12,16 @@
 namespace patrol::localize {
 
 struct ScanLevelerSettings {
-  double min_height_m = 0.15;  ///< of an obstacle, above the ground under the feet; a kerb's 0.12 m is lower
+  /// Height limits of obstacles above the ground under the feet; a curb of 0.12 m is lower.
+  double min_height_m = 0.15;
   double max_height_m = 1.5;
   double tilt_margin_rad =
-      0.008;  ///< how much the ground may seem to rise with distance: error of the tilt, and slope
-  double self_radius_m = 0.32;  ///< hits nearer to the body's vertical axis are the robot itself
+      0.008;  ///< margin for an apparent rise of the ground with distance: tilt error and slope
+  double self_radius_m = 0.32;  ///< hits closer to the vertical axis of the body are the robot itself
   double no_return_free_m =
-      6.0;  ///< a beam that meets nothing is believed free so far (glass and black give none either)
-  double max_range_m = 30.0;  ///< hits farther away are left out
-  bool stabilized = false;    ///< the lidar is held level by a gimbal: the body's tilt is not the scan's
+      6.0;  ///< a beam without return clears this distance only: glass and black surfaces give no return
+  double max_range_m = 30.0;  ///< hits farther away are excluded
+  bool stabilized = false;    ///< the lidar is on a stabilized gimbal: scans are level although the body tilts
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -36,29 +37,28 @@ struct ScanLevelerSettings {
 
 using PoseLookup = std::function<std::optional<Pose3>(Time)>;
 
-/// Frees a 2D scan of the robot's motion: each beam is put where the lidar was at that beam's own instant,
-/// and its end is expressed in the level frame at the last beam's instant (the newest, so that the result is
-/// current).
+/// Motion compensation of a 2D scan. The origin of each beam is the lidar position at the time of this beam. Beam ends
+/// are expressed in the level frame at the time of the last beam, so that the result is current.
 ///
-/// A tilted beam is believed only inside a band of heights above the ground: what it hits below (the ground,
-/// a kerb) or above is no obstacle, and the beam is known free as far as it stays within the band.
+/// A tilted beam is used only within a height band above the ground. Hits below (ground, curb) or above the band are
+/// not obstacles; the beam then clears the part within the band.
 class ScanLeveler {
  public:
   ScanLeveler(const Pose3& T_body_lidar, const ScanLevelerSettings& settings);
 
-  /// None if the poses do not cover the whole scan, or the scan has no beams.
+  /// Returns the compensated scan; nullopt if the poses do not cover the scan, or if it has no beams.
   std::optional<LevelScan> level(const LaserScan& scan, const BodyEstimator& odometry) const;
   std::optional<LevelScan> level(const LaserScan& scan, const PoseLookup& T_odom_body_at,
                                  double body_height_m) const;
 
  private:
-  /// A beam in level: a point moves from `start` along `direction` (unit length).
+  /// Beam in level: a point moves from `start` along `direction` (unit length).
   struct Ray {
     Eigen::Vector3d start;
     Eigen::Vector3d direction;
   };
   void add_beam(const Ray& ray, float range_m, double body_height_m, LevelScan& level) const;
-  /// How far along the ray the height stays within the band.
+  /// Returns the length of the ray within the height band.
   double length_in_band(const Ray& ray, double body_height_m) const;
 
   Pose3 T_body_lidar_;

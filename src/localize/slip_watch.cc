@@ -6,8 +6,8 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kSigmas = 4.0;       // of the roughness
-constexpr double kMaxLateness_s = 0.5;  // of the belts behind the IMU
+constexpr double kSigmas = 4.0;       // significance threshold for the roughness
+constexpr double kMaxLateness_s = 0.5;  // maximum delay of the belts behind the IMU
 
 }  // namespace
 
@@ -15,7 +15,8 @@ void SlipWatch::reset() {
   readings_.clear();
 }
 
-// Roughness: neighbouring accelerations of a smooth ride are alike; half the squared difference is the variance of what is not.
+// Roughness: consecutive accelerations of a smooth ride are similar. Half their squared difference is the variance of
+// the rough part.
 void SlipWatch::add_acceleration(Time stamp, double dt_s, double acceleration_mps2) {
   Sum sum = sums_.empty() ? Sum{} : sums_.back();
   const double rough = acceleration_mps2 - last_acceleration_;

@@ -7,26 +7,27 @@
 
 namespace patrol::localize {
 
-/// The belts gained or lost speed that the accelerometer has not felt (or the other way round) within the last second or so.
+/// Evidence of slip: a speed change of the belts that differs from that of the accelerometer, within about a second.
 struct SlipEvidence {
-  double forward_mps = 0.0;     ///< what the body does by the accelerometer, from the speed that was believed before
-  double disagreement_mps = 0.0;  ///< belts less accelerometer
+  double forward_mps = 0.0;     ///< body speed: estimate at the start of the window plus integrated acceleration
+  double disagreement_mps = 0.0;  ///< belts minus accelerometer
   double duration_s = 0.0;
 };
 
-/// Compares the change of the belts' speed with the acceleration that the IMU has summed up over a sliding window. An IMU cannot
-/// tell rest from steady motion, but it can tell that belts which have just run up have not taken the body along.
+/// Slip detector: compares the speed change of the belts with the integrated IMU acceleration over a sliding window. An
+/// IMU cannot distinguish rest from steady motion. It does show whether the body accelerated together with the belts.
 class SlipWatch {
  public:
   struct Settings {
     double window_s;
-    double threshold_mps;  ///< least disagreement that counts; more where the ride is rough
+    double threshold_mps;  ///< minimum disagreement; increased on a rough ride
   };
   explicit SlipWatch(const Settings& settings) : settings_(settings) {}
 
-  /// At each IMU step: forward acceleration over the step that ends at `stamp`, gravity removed.
+  /// Adds an IMU step: forward acceleration over the step that ends at `stamp`, without gravity.
   void add_acceleration(Time stamp, double dt_s, double acceleration_mps2);
-  /// At each reading of the belts, not newer than the newest acceleration: their mean speed, and the body's believed one.
+  /// Adds a belt reading, not newer than the newest acceleration: mean belt speed and estimated body speed. Returns
+  /// evidence if there is slip.
   std::optional<SlipEvidence> add_speed(Time stamp, double belts_mps, double believed_mps);
   /// Starts a new window.
   void reset();
@@ -34,8 +35,8 @@ class SlipWatch {
  private:
   struct Sum {
     Time stamp{};
-    double speed_mps = 0.0;     ///< acceleration summed up
-    double variance_m2ps2 = 0.0;  ///< of that sum, by the roughness of what was summed; summed up
+    double speed_mps = 0.0;     ///< integrated acceleration
+    double variance_m2ps2 = 0.0;  ///< accumulated variance of the integral, from the roughness of the acceleration
   };
   struct Reading {
     Sum sum;

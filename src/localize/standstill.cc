@@ -10,18 +10,19 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kEndShare = 0.2;          // of the window, at each end, is averaged
-constexpr double kMaxGap_s = 0.02;         // between samples
-constexpr double kMaxSlip_m = 0.001;       // residual of the rigid fit at any foot
-constexpr double kMaxRotation_rad = 0.02;  // beyond this it does not stand
+constexpr double kEndShare = 0.2;          // fraction of the window that is averaged at each end
+constexpr double kMaxGap_s = 0.02;         // maximum time between samples
+constexpr double kMaxSlip_m = 0.001;       // maximum residual of the rigid fit per foot
+constexpr double kMaxRotation_rad = 0.02;  // maximum rotation of a standing trunk
 
 struct SmallRotation {
   Eigen::Vector3d angle_rad;
-  Eigen::Matrix3d information;  ///< of the angle, for feet known to 1 m
+  Eigen::Matrix3d information;  ///< information of the angle for a foot standard deviation of 1 m
   double max_residual_m;
 };
 
-// The trunk turns by theta over feet that stay: q - p = -theta x p = [p]x theta, about the feet's mean.
+// Rotation of the trunk by theta over stationary feet: q - p = -theta x p = [p]x theta, relative to the mean of the
+// feet.
 SmallRotation fit_rotation(const std::array<Eigen::Vector3d, kNumLegs>& before,
                            const std::array<Eigen::Vector3d, kNumLegs>& after) {
   Eigen::Vector3d before_mean = Eigen::Vector3d::Zero(), after_mean = Eigen::Vector3d::Zero();

@@ -10,31 +10,30 @@
 
 namespace patrol::localize {
 
-/// The gyro's bias, seen while the robot stands.
+/// Measurement of the gyro bias during a standstill.
 struct GyroBiasReading {
   Eigen::Vector3d bias_radps = Eigen::Vector3d::Zero();  ///< in body
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();    ///< (rad/s)2
 };
 
-/// Measures the gyro's bias while all feet stand. A standing trunk still sways, so its rate is not taken to
-/// be zero: how far it has turned is read from the feet (a rigid fit of their positions in body), and what
-/// the gyro has summed up beyond that is bias. Windows in which a foot slipped (the fit leaves a residual)
-/// are thrown away.
+/// Estimator of the gyro bias while all feet are on the ground. A standing trunk still sways, so its rate is not
+/// assumed zero. Its rotation is measured with the feet (rigid fit of their positions in body); the rest of the
+/// integrated gyro rate is bias. Windows with a slipping foot (residual of the fit) are rejected.
 class StandstillBiasMeter {
  public:
   struct Settings {
     double window_s;
     double gyro_noise_radps_per_sqrt_hz;
-    double foot_std_m;  ///< of a foot's mean position at one end of the window: encoder noise, averaged, and
-                        ///< creep
+    /// Standard deviation of the mean foot position at one end of the window: averaged encoder noise, and creep.
+    double foot_std_m;
   };
   explicit StandstillBiasMeter(const Settings& settings) : settings_(settings) {}
 
-  /// One instant: the contacts of all feet in body and the gyro as read. A reading at the end of each whole
-  /// window.
+  /// Adds a sample: contact points of all feet in body, and the raw gyro rate. Returns a bias measurement at the end of
+  /// each complete window.
   std::optional<GyroBiasReading> add(Time stamp, const StanceFeet& all_feet,
                                      const Eigen::Vector3d& gyro_radps);
-  /// A foot was lifted, or data is missing.
+  /// Starts a new window, after a foot was lifted or data were missing.
   void reset() { is_open_ = false; }
 
  private:
@@ -57,7 +56,7 @@ class StandstillBiasMeter {
   Time start_{};
   Time last_{};
   Eigen::Vector3d last_gyro_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d gyro_angle_rad_ = Eigen::Vector3d::Zero();  ///< summed up since the window's start
+  Eigen::Vector3d gyro_angle_rad_ = Eigen::Vector3d::Zero();  ///< integrated since the start of the window
   End first_, final_;
 };
 

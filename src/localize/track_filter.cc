@@ -17,10 +17,10 @@ constexpr double kTrackStartVelocityStd_mps = 0.05;
 constexpr double kTrackGate = 16.27;     // 99.9 % of chi-square, three degrees of freedom
 constexpr double kLostSpeedStd_mps = 0.1;
 constexpr double kBeltSmoothing_s = 1.0;
-constexpr double kTakeBack_s = 0.5;       // after a loss of grip; the first readings say nearly all
+constexpr double kTakeBack_s = 0.5;       // after a loss of traction; the first readings contain nearly all information
 constexpr int kPlace[4] = {Error::kPosition, Error::kPosition + 1, Error::kPosition + 2, Error::kRotation + 2};
-// Without an IMU.
-constexpr double kTrackCoastYawRateStd = 0.05;  // rad/sqrt(s): what the belts tell of the yaw rate
+// Process noise without an IMU.
+constexpr double kTrackCoastYawRateStd = 0.05;  // rad/sqrt(s): yaw rate from the belts
 constexpr double kTrackCoastTiltStd = 0.03;     // rad/sqrt(s)
 constexpr double kTrackCoastVelocityStd = 1.0;  // m/s/sqrt(s)
 
@@ -41,7 +41,7 @@ TrackFilter::TrackFilter(const Settings& settings, const InertialSample& first) 
 }
 
 void TrackFilter::predict(double dt_s, const InertialSample& sample) {
-  // Trapezoidal: the mean of the last sample and this one holds over the step.
+  // Trapezoidal rule: the mean of the previous sample and this one applies to the step.
   const Eigen::Vector3d omega = 0.5 * (last_.rate_radps + sample.rate_radps) - gyro_bias_;
   const Eigen::Vector3d force = 0.5 * (last_.force_mps2 + sample.force_mps2) - accel_bias_;
   last_ = sample;
@@ -79,7 +79,7 @@ void TrackFilter::coast(double dt_s, double yaw_rate_radps) {
   P_.diagonal().segment<3>(Error::kVelocity).array() += dt_s * kTrackCoastVelocityStd * kTrackCoastVelocityStd;
 }
 
-// First-order Gauss-Markov: what is remembered shrinks by a, and (1 - a^2) of the usual variance comes anew.
+// First-order Gauss-Markov process: the value decays by a, and (1 - a^2) of the stationary variance is added.
 void TrackFilter::wander(double way_m, double turn_rad, double slip_std) {
   const auto forget = [this](int row, double& value, double a, double std) {
     value *= a;
@@ -96,8 +96,8 @@ void TrackFilter::wander(double way_m, double turn_rad, double slip_std) {
 // With p = p_true - dp, omega = omega_true + dbg and s = scale + slip = s_true - ds, the innovation
 // ((1 - s) u, 0, 0) - v - omega x p is dv + [p]x dbg + [omega]x dp + u (ds, 0, 0) + noise.
 //
-// The u that weighs slip must not share the noise of the reading it is compared with: counters in steps of 1 to 2 mm would drive
-// scale up by percents. So it is smoothed over a second, and the IMU carries it through accelerations meanwhile.
+// The speed u that multiplies slip must not share the noise of the reading. Encoder steps of 1 to 2 mm would otherwise
+// bias the scale by several percent. It is therefore smoothed over one second and predicted with the IMU in between.
 void TrackFilter::correct_speed(double dt_s, double belts_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps) {
   smooth_belts_mps_ += std::min(1.0, dt_s / kBeltSmoothing_s) * (belts_mps - smooth_belts_mps_);
   const Eigen::Vector3d p(turn_centre_m_.x(), turn_centre_m_.y(), -settings_.height_m);
@@ -166,7 +166,7 @@ void TrackFilter::set_origin() {
   for (const int row : kPlace) isolate(row, 0.0);
 }
 
-// With rows of the gain left out the covariance follows Joseph's form (Schmidt's consider update).
+// With rows of the gain set to zero, the covariance update has Joseph's form (Schmidt's consider update).
 void TrackFilter::apply(const Gain& W, const Eigen::Matrix3d& S, const Eigen::Vector3d& innovation) {
   Gain K = W * S.inverse();
   if (takes_back_s_ <= 0.0) {

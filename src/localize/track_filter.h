@@ -6,89 +6,92 @@
 
 namespace patrol::localize {
 
-/// Error-state Kalman filter of a tracked body: position, attitude, velocity, gyro and accelerometer bias, as InertialFilter, and
-/// what lies between the belts and the ground:
+/// Error-state Kalman filter of a tracked robot: position, attitude, velocity, gyro and accelerometer bias as in
+/// InertialFilter, and the states of the track-soil interaction:
 ///
-///   scale        of the belts (wear, tension): constant, the share by which they seem to go too far
-///   slip         share of the belts' way that the ground does not give back; wanders with the way
-///   turn centre  (x, y) in body, m: the point that goes straight on while the body turns, the mean of the tracks' instantaneous
-///                centres of rotation (Mandow et al., "Experimental kinematics for wheeled skid-steer mobile robots", IROS 2007);
-///                wanders with the turn
+///   scale        relative belt distance error (wear, tension): constant; positive if the encoders read too much
+///   slip         longitudinal slip ratio; Gauss-Markov process over distance
+///   turn center  (x, y) in body, m: mean of the instantaneous centers of rotation of the tracks [Mandow07], the point
+///                that moves straight ahead while the body rotates; Gauss-Markov process over rotation
 ///
-/// The belts say how fast that point p goes, at the ground: v + omega x p = ((1 - scale - slip) u, 0, 0), u their mean speed. The
-/// yaw rate is the gyro's: what the belts' difference says of it is mostly scrub. Nothing measures yaw or position, and nothing that
-/// is learnt later corrects them (after a kilometre a hair's breadth of scale would be a centimetre of place, again and again):
-/// odom is smooth. Only what the IMU alone has drifted while the belts had lost their grip is taken back.
+/// The belts measure the velocity of the turn center p at ground level: v + omega x p = ((1 - scale - slip) u, 0, 0),
+/// with u the mean belt speed. The yaw rate is that of the gyro, because the difference of the belt speeds is dominated
+/// by scrub. Yaw and position are not measured, and later estimates do not correct them: odom must not jump. (After a
+/// kilometer a tiny change of scale would repeatedly shift the position by a centimeter.) Exception: the drift of the
+/// IMU during a loss of traction is corrected.
 class TrackFilter {
  public:
   struct Settings {
     double gyro_noise_radps_per_sqrt_hz;
-    double gyro_bias_std_radps;  ///< at switch-on
+    double gyro_bias_std_radps;  ///< at power-on
     double gyro_bias_walk_radps_per_sqrt_s;
     double accel_noise_mps2_per_sqrt_hz;
-    double accel_bias_std_mps2;  ///< at switch-on
+    double accel_bias_std_mps2;  ///< at power-on
     double accel_bias_walk_mps2_per_sqrt_s;
-    double turn_std_rad_per_sqrt_rad;  ///< the gyro's scale and misalignment, on turns
+    double turn_std_rad_per_sqrt_rad;  ///< gyro scale factor and misalignment, during rotation
     double scale_std;
-    double slip_length_m;           ///< of belt, over which slip forgets
-    double turn_centre_x_std_m;     ///< sideways slip on turns
-    double turn_centre_y_std_m;     ///< the sides grip unlike
-    double turn_centre_length_rad;  ///< of turn, over which the centre forgets
-    double height_m;                ///< of the body's origin above the ground
+    double slip_length_m;           ///< correlation length of slip, in belt distance
+    double turn_centre_x_std_m;     ///< longitudinal offset: lateral slip during rotation
+    double turn_centre_y_std_m;     ///< lateral offset: different traction of the two sides
+    double turn_centre_length_rad;  ///< correlation angle of the turn center
+    double height_m;                ///< height of the body origin above the ground
   };
 
-  /// Starts at odom's origin, heading along x, tilted as gravity in the first sample says.
+  /// Starts at the origin of odom with heading along x; tilt from gravity in the first sample.
   TrackFilter(const Settings& settings, const InertialSample& first);
 
-  /// From the last sample to this one.
+  /// Predicts from the previous sample to this one.
   void predict(double dt_s, const InertialSample& sample);
-  /// Without IMU: keeps velocity and tilt, turns with the rate that the belts tell.
+  /// Predicts without IMU: velocity and tilt are constant, the yaw rate is that of the belts.
   void coast(double dt_s, double yaw_rate_radps);
 
-  /// The belts have run: slip and the turn's centre wander on. `slip_std` is what slip usually is on this ground, in this turn.
+  /// Propagates slip and turn center over a belt motion. `slip_std`: stationary standard deviation of slip on this
+  /// ground in this maneuver.
   void wander(double way_m, double turn_rad, double slip_std);
-  /// What the belts said over `dt_s`, when the body moved as `then`; standard deviations of the velocity of the turn's centre, in
-  /// body. An innovation beyond the 99.9 % bound is believed less rather than refused.
+  /// Corrects with the belt speed over `dt_s`, during which the body motion was `then`. `std_mps`: standard deviations
+  /// of the velocity of the turn center, in body. An innovation beyond the 99.9 % bound is down-weighted instead of
+  /// rejected.
   void correct_speed(double dt_s, double belts_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps);
-  /// Any velocity, for when nothing better is known.
+  /// Corrects with a velocity estimate, when no better measurement is available.
   void correct_velocity(const Eigen::Vector3d& v_body, double std_mps);
   void correct_gyro_bias(const Eigen::Vector3d& bias_radps, const Eigen::Vector3d& variance);
 
-  /// The belts and the IMU do not agree: the body goes at `forward_mps`, by the IMU; `way_std_m` is what the past may have got
-  /// wrong.
+  /// Starts a loss of traction: the body speed is set to the IMU estimate `forward_mps`. `way_std_m`: standard
+  /// deviation of the distance error accumulated so far.
   void lose_grip(double forward_mps, double way_std_m);
-  /// The belts hold, at rest or at this speed: what was learnt of slip before is void.
+  /// Ends a loss of traction, at rest or at this speed; resets the slip estimate.
   void regain_grip(double belts_mps, double slip_std);
-  /// Odom's origin and its x axis are here.
+  /// Resets odom: its origin and x axis become those of the present pose.
   void set_origin();
 
   const TrunkMotion& motion() const { return motion_; }
   const Eigen::Vector3d& gyro_bias_radps() const { return gyro_bias_; }
   Eigen::Vector3d up_in_body() const { return motion_.T_odom_body.rotation.conjugate() * Eigen::Vector3d::UnitZ(); }
-  /// About odom's z.
+  /// Returns the yaw rate about the z axis of odom.
   double yaw_rate_radps() const { return (motion_.T_odom_body.rotation * motion_.omega_body).z(); }
-  /// As the IMU alone has it over the last step, in body, gravity removed, m/s2.
+  /// Returns the IMU forward acceleration of the last step, in body, without gravity, m/s2.
   double forward_acceleration_mps2() const { return forward_acceleration_mps2_; }
   double scale() const { return scale_; }
   double slip() const { return slip_; }
   const Eigen::Vector2d& turn_centre_m() const { return turn_centre_m_; }
 
-  /// Error covariance: the rows and columns of InertialError, then these.
+  /// Error covariance: rows and columns of InertialError, followed by these.
   static constexpr int kScale = InertialError::kSize, kSlip = kScale + 1, kTurnCentre = kSlip + 1, kSize = kTurnCentre + 2;
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   const Covariance& covariance() const { return P_; }
-  /// What scale, slip and the turn's centre leave open of the velocity ahead and to the left, (m/s)2.
+  /// Returns the variance of the longitudinal and lateral velocity from scale, slip and turn center, (m/s)2.
   Eigen::Vector2d lasting_velocity_variance() const;
-  /// Of x, y, yaw in odom.
+  /// Returns the covariance of x, y, yaw in odom.
   Eigen::Matrix3d planar_covariance() const;
 
  private:
   using Gain = Eigen::Matrix<double, kSize, 3>;
   void shift(const Eigen::Matrix<double, kSize, 1>& error);
   void apply(const Gain& W, const Eigen::Matrix3d& S, const Eigen::Vector3d& innovation);
-  /// What is learnt from now on does not correct what place and heading have got wrong so far.
+  /// Removes the correlation of position and yaw with the other states: later corrections leave their past errors
+  /// unchanged.
   void forget_what_place_owes();
-  /// Cuts row and column off from the rest.
+  /// Removes all correlations of a state and sets its variance.
   void isolate(int row, double variance);
 
   Settings settings_;
@@ -100,8 +103,8 @@ class TrackFilter {
   Eigen::Vector2d turn_centre_m_ = Eigen::Vector2d::Zero();
   InertialSample last_;
   double forward_acceleration_mps2_ = 0.0;
-  double takes_back_s_ = 0.0;      ///< corrections move the place, too, for so much longer
-  double smooth_belts_mps_ = 0.0;  ///< carried by the IMU, slowly corrected by the belts
+  double takes_back_s_ = 0.0;      ///< remaining time in which corrections also change position and yaw
+  double smooth_belts_mps_ = 0.0;  ///< belt speed, predicted with the IMU and slowly corrected by the encoders
   Covariance P_ = Covariance::Zero();
 };
 

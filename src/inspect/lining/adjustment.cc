@@ -15,16 +15,18 @@
 namespace patrol::inspect {
 namespace {
 
-constexpr int kRounds = 6;               // of finding patches anew
-constexpr double kSettled_m = 2e-5, kFar_m = 10.0;  // a smaller step, seen that far away, ends them
-constexpr double kMinReach_m = 0.003;    // within a cell: a bulge is not flat
-constexpr double kPatch_m = 0.5;         // of surfaces other than the lining's
-constexpr double kInside_m = 0.1;        // nearer the design is the lining, or what is fixed flat to it
+constexpr int kRounds = 6;               // maximum number of patch associations
+// Convergence limit of a step, and the distance at which its rotation counts.
+constexpr double kSettled_m = 2e-5, kFar_m = 10.0;
+constexpr double kMinReach_m = 0.003;    // minimum cutoff within a cell, because a bulge is not flat
+constexpr double kPatch_m = 0.5;         // patch size of surfaces other than the lining
+constexpr double kInside_m = 0.1;        // points closer to the design are the lining or flat fixtures on it
 constexpr double kPartner_m = 0.15, kFixtureBand_m = 0.03, kFacing = 0.8;
 constexpr int kMinPatchPoints = 5;
-// A normal's part along the tunnel, when no larger, is taken for its noise: thousands of points of the wall would hold the scan by it.
+// Normal components along the tunnel up to this value are treated as noise and removed. Otherwise thousands of wall
+// points would constrain the position along the tunnel with that noise.
 constexpr double kMinAlong = 0.3;
-constexpr double kMaxCount = 8.0;        // a mean of more points is no better: what is left is texture
+constexpr double kMaxCount = 8.0;        // more points do not improve a mean: the remaining error is texture
 
 struct Samples {
   std::vector<double> offsets_m, weights;
@@ -41,7 +43,7 @@ struct Samples {
 
 Vector7 derivative(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm) {
   Vector7 J;
-  // A range that is too long by the offset puts its point that much too far out.
+  // A range that is too long by the offset moves its point outward by the same amount.
   J << normal, arm.cross(normal), -normal.dot(arm.normalized());
   return J;
 }
@@ -56,7 +58,7 @@ Patch patch_of(const Samples& samples, int cell, double extra_var_m2) {
   return patch;
 }
 
-/// Which patch of a surface other than the lining's: place and the axis that it faces most.
+/// Identifies a patch of a surface other than the lining: grid cell and dominant axis of the normal.
 using PatchKey = std::tuple<std::int64_t, std::int64_t, std::int64_t, Eigen::Index>;
 
 PatchKey patch_key(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
@@ -97,7 +99,7 @@ class Adjuster {
     return means(cells, others);
   }
 
-  /// One least-squares step on the patches, with the biweights that it settles on.
+  /// Computes one least-squares step over the patches, with the biweights iterated to convergence.
   Vector7 solve(const std::vector<Patch>& patches, Adjustment& state) const {
     const Vector7 from_guess = offset_from_guess(state);
     Vector7 prior;
@@ -140,7 +142,7 @@ class Adjuster {
     const SurfaceCloud::Surface& surface = target_.surfaces()[near.index[0]];
     const double offset_m = surface.normal.dot(p - surface.mean);
     if (std::abs(surface.normal.dot(normal)) < kFacing || std::abs(offset_m) > kFixtureBand_m) return;
-    const double side = surface.normal.dot(arm) > 0.0 ? -1.0 : 1.0;  // towards the scanner
+    const double side = surface.normal.dot(arm) > 0.0 ? -1.0 : 1.0;  // toward the scanner
     const double along = surface.normal.dot(axis_map_);
     const Eigen::Vector3d held = std::abs(along) < kMinAlong ? Eigen::Vector3d(surface.normal - along * axis_map_) : surface.normal;
     others[patch_key(surface.mean, surface.normal)].add(side * offset_m, derivative(side * held, arm), source_.points()[i].count);
@@ -172,7 +174,7 @@ class Adjuster {
   const ReferenceLining& reference_;
   const SurfaceCloud &target_, &source_;
   Pose3 guess_;
-  Eigen::Vector3d axis_map_;  ///< of the tunnel, where the scanner is
+  Eigen::Vector3d axis_map_;  ///< tunnel axis at the scanner
   const LiningSettings& settings_;
 };
 
@@ -196,7 +198,7 @@ Adjustment adjust(const LiningInMap& lining, const LiningGrid& grid, const Refer
   for (int round = 0;; ++round) {
     result.patches = adjuster.patches(result.T_map_scanner, result.range_offset_m);
     const Vector7 step = adjuster.solve(result.patches, result);
-    // The patches at the end are those of the pose at the end.
+    // Leave the loop before the pose changes: the final patches belong to the final pose.
     if (round == kRounds || step.head<3>().norm() + kFar_m * step.segment<3>(3).norm() + std::abs(step[6]) < kSettled_m) break;
     result.T_map_scanner = moved(result.T_map_scanner, step.head<6>());
     result.range_offset_m += step[6];

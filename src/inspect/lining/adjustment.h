@@ -12,34 +12,35 @@
 
 namespace patrol::inspect {
 
-/// What is estimated: a step's way and turn about the scanner, in map, and the scanner's range offset.
+/// Parameters: translation and rotation of a step about the scanner, in map, and the range offset of the scanner.
 using Vector7 = Eigen::Matrix<double, 7, 1>;
 using Matrix7 = Eigen::Matrix<double, 7, 7>;
 
-/// The mean over a patch of surface, of the new scan against the reference.
+/// Mean offset of the new scan from the reference over a surface patch.
 struct Patch {
-  int cell = -1;           ///< of the lining; -1: another surface
-  double offset_m = 0.0;   ///< of the lining inwards, otherwise along the surface's normal
-  double var_m2 = 0.0;     ///< of both scans' scatter, and of what that does not show
-  Vector7 J = Vector7::Zero();  ///< its derivative with what is estimated
-  int points = 0;          ///< of the new scan, before thinning
-  double square_m2 = 0.0;  ///< mean of the points' squared offsets about the patch's
+  int cell = -1;           ///< cell of the lining; -1: another surface
+  double offset_m = 0.0;   ///< inward for the lining, otherwise along the surface normal toward the scanner
+  double var_m2 = 0.0;     ///< from the scatter of both scans, plus unmodeled surface effects
+  Vector7 J = Vector7::Zero();  ///< derivative of the offset with respect to the parameters
+  int points = 0;          ///< number of points of the new scan, before downsampling
+  double square_m2 = 0.0;  ///< mean squared deviation of the point offsets from the patch offset
 };
 
 struct Adjustment {
   Pose3 T_map_scanner;
-  double range_offset_m = 0.0;      ///< ranges of the new scan are too long by that, against the reference's
+  double range_offset_m = 0.0;      ///< range error of the new scan relative to the reference; positive: too long
   Matrix7 covariance = Matrix7::Identity();
-  double scale = 1.0;               ///< standard deviations of the patches were that many times too small, and have been corrected
-  std::vector<Patch> patches;       ///< at the end
-  std::vector<double> weights;      ///< [patch], 0 ... 1: one that has moved has 0
-  double rms_m = 0.0;               ///< of the points of patches that were kept
+  /// Factor by which the patch standard deviations were increased to match the residuals; at least 1.
+  double scale = 1.0;
+  std::vector<Patch> patches;       ///< patches at the final pose
+  std::vector<double> weights;      ///< [patch], robust weight 0 to 1; 0 for deformed patches
+  double rms_m = 0.0;               ///< root mean square offset of the points in the inlier patches
 };
 
-/// The last step of registration, where millimetres count: least squares over patches, the cells of the lining and half a metre of everything
-/// else, each with its own standard deviation, so that residuals that belong together count once. Patches that do not fit to what most say have
-/// moved and do not pull (Tukey's biweight; "stable areas", as in Wujanz, "Terrestrial Laser Scanning for Geodetic Deformation Monitoring",
-/// 2016). The robot's own estimate is a prior, which holds what no surface does.
+/// Refines the registration to millimeters: least squares over surface patches, which are the cells of the lining and
+/// 0.5 m pieces of all other surfaces. Each patch has one residual with its own standard deviation, so that correlated
+/// point residuals count once. Deformed patches are down-weighted with Tukey's biweight (the "stable areas" of
+/// [Wujanz16]). The pose estimate of the robot is a prior for the degenerate directions.
 Adjustment adjust(const LiningInMap& lining, const LiningGrid& grid, const ReferenceLining& reference, const SurfaceCloud& target_map,
                   const SurfaceCloud& source, const Pose3& T_map_scanner_start, const Pose3& T_map_scanner_guess, const LiningSettings& settings);
 

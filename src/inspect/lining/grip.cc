@@ -10,12 +10,12 @@
 namespace patrol::inspect {
 namespace {
 
-constexpr double kFacesAlong = 0.7;   // cosine between a normal and the axis
+constexpr double kFacesAlong = 0.7;   // minimum cosine between a normal and the axis
 constexpr double kGripPartner_m = 0.15, kGripBand_m = 0.03;
-constexpr double kBeyond_m = 0.3;     // a beam that goes that much farther has passed a point
+constexpr double kBeyond_m = 0.3;     // a beam that is longer by this has passed the point
 constexpr int kColumns = 180, kRows = 90;
 
-/// The nearest that a scan shows in each of 2 degrees by 2.
+/// Minimum range of a scan per direction cell of 2 x 2 degrees.
 class NearestRanges {
  public:
   explicit NearestRanges(const ScanView& view) : p_scanner_(view.p_scanner), ranges_m_(kColumns * kRows, kNothing) {

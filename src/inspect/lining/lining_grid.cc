@@ -11,7 +11,7 @@
 namespace patrol::inspect {
 namespace {
 
-/// The design moved to the left, turned about the scanner and lifted.
+/// Returns the design shifted to the left, rotated about the scanner and raised.
 LiningInMap moved_design(const LiningInMap& lining, const Eigen::Vector2d& about, const Eigen::Vector2d& left, const Eigen::Vector3d& step) {
   LiningInMap result = lining;
   const Pose2 T_map_pivot{about.x(), about.y(), 0.0};
@@ -23,7 +23,7 @@ LiningInMap moved_design(const LiningInMap& lining, const Eigen::Vector2d& about
   return result;
 }
 
-/// Height of the invert by the crown over the scanner: the outermost that is seen there.
+/// Returns the height of the invert from the crown above the scanner, using the outermost points there.
 std::optional<double> invert_by_crown(const TunnelLining& design, const std::vector<ThinPoint>& points, const Eigen::Vector3d& scanner) {
   const double here_m = design.place_of(scanner).chainage_m;
   std::vector<double> heights;
@@ -51,8 +51,9 @@ LiningPoint lining_point(const LiningInMap& lining, const Eigen::Vector3d& p_map
   LiningPoint point{.chainage_m = place.chainage_m, .clock_deg = clock_deg > 180.0 ? clock_deg - 360.0 : clock_deg};
   if (!(radius_m > 0.0)) return point;
   point.inward_m = design.radius_at(clock_deg) - radius_m;
-  // Inwards, across the surface: radially above the half circle's centre, below it towards the side wall's centre, beyond the axis.
-  // There the radial way to the surface is longer than the one across it by the cosine between the two.
+  // Inward normal of the surface. Above the center of the half circle it is radial. Below, it points to the center of
+  // the side wall arc, beyond the axis. There the radial distance is longer than the normal one by the cosine between
+  // both directions.
   const double side = place.left_m > 0.0 ? 1.0 : -1.0;
   const double beyond_m = up_m < 0.0 ? side * (design.side_radius_m - design.crown_radius_m) : 0.0;
   const Eigen::Vector2d radial = -Eigen::Vector2d(place.left_m, up_m) / radius_m;
@@ -69,7 +70,7 @@ LiningGrid::LiningGrid(const LiningInMap& lining, const Eigen::Vector3d& p_map_s
       ring_length_m(lining.design.ring_length_m),
       first_ring_m(lining.design.first_ring_m),
       joint_margin_m(settings.joint_margin_m) {
-  // Rings that lie within reach as a whole.
+  // Rings that are completely in range.
   const double here_m = lining.design.place_of(p_map_scanner).chainage_m - first_ring_m;
   const int low = static_cast<int>(std::ceil((here_m - settings.reach_m) / ring_length_m - 1e-9)) + 1;
   const int high = static_cast<int>(std::floor((here_m + settings.reach_m) / ring_length_m + 1e-9));
@@ -114,7 +115,7 @@ std::optional<LiningInMap> fit_design(const TunnelLining& design_in_map, const s
       const double ratio = point.inward_m / kernel_m;
       if (std::abs(point.chainage_m - here_m) > settings.reach_m || std::abs(point.clock_deg) > lowest_deg || std::abs(ratio) >= 1.0) continue;
       const Eigen::Vector2d arm = thin.p.head<2>() - about;
-      // The design moves, so the point moves against it the other way.
+      // Moving the design has the opposite effect of moving the point.
       const Eigen::Vector3d J(-point.gradient.head<2>().dot(left), -(point.gradient.y() * arm.x() - point.gradient.x() * arm.y()), -point.gradient.z());
       const double weight = (1.0 - ratio * ratio) * (1.0 - ratio * ratio);
       H += weight * J * J.transpose();

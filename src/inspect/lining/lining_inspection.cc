@@ -22,8 +22,8 @@ std::vector<ThinPoint> thin_points(const LiningReference& reference) {
   return points;
 }
 
-/// Whether the two scans are of one place: something that faces along the tunnel holds them, and is the same in both. One of them may
-/// show a truck that the other does not, so the better share counts.
+/// Returns whether the two scans are of one position: the position along the tunnel is constrained, and axial surfaces
+/// overlap. One scan may contain a truck that the other does not, so the larger of both overlap ratios is tested.
 bool is_same_place(const ScanView& source, const ScanView& target_map, const Adjustment& fine, const Eigen::Vector3d& axis_map, const LiningSettings& settings) {
   const Eigen::Matrix3d covariance_m2 = fine.covariance.topLeftCorner<3, 3>();
   if (std::sqrt(axis_map.dot(covariance_m2 * axis_map)) > settings.max_along_std_m) return false;

@@ -11,16 +11,18 @@
 
 namespace patrol::inspect {
 
-/// Deformation of a lining from two panoramic scans (paper 004): the new one is laid on the reference, the rings are cut into cells by the clock,
-/// and in each the lining is compared with itself, along the radius (the idea of M3C2: Lague, Brodu, Leroux 2013, with the design's
-/// radius as the direction). What stands before the wall in either scan is left out.
+/// Tunnel-lining deformation from two terrestrial laser scans [Liu21]. The new scan is registered to the reference,
+/// each ring is divided into angular cells, and the radial displacement of each cell is estimated. The method is M3C2
+/// [Lague13] with the design radius as direction. Objects in front of the wall in either scan are excluded.
 ///
-/// Moves are seen against what most of the surroundings do: if all rings within reach and the ground move alike, nothing is found.
+/// Displacements are relative to the majority of the surroundings: a common motion of all rings in range and the ground
+/// is not detected.
 class LiningInspection {
  public:
-  /// Throws InputError naming the setting that breaks its rule.
+  /// Creates the inspection. Throws InputError with the name of an invalid setting.
   LiningInspection(const LiningSettings& settings, const TunnelLining& design_in_map, const Pose3& T_body_scanner);
 
+  /// Compares a scan with the reference scan of the station. `T_map_scanner_guess`: pose estimate of the robot.
   LiningResult inspect(Time stamp, const std::string& station, const PanoramicScan& scan, const LiningReference& reference,
                        const Pose3& T_map_scanner_guess) const;
 

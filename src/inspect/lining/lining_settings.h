@@ -4,13 +4,13 @@
 
 namespace patrol::inspect {
 
-/// Laying a cloud of points on another, coarse to fine.
+/// Settings of the coarse-to-fine registration of two point clouds.
 struct RegistrationSettings {
-  double first_distance_m = 1.0;  ///< pairs may be that far apart at first, half as far each time that the steps have become small
-  double last_distance_m = 0.05;  ///< and that far at last
-  int sample = 6000;              ///< points of the new scan, in equal parts from all directions that surfaces face
+  double first_distance_m = 1.0;  ///< initial maximum distance of pairs, halved each time the steps have become small
+  double last_distance_m = 0.05;  ///< final maximum distance of pairs
+  int sample = 6000;  ///< number of points of the new scan, balanced over the directions of the surface normals
   int max_iterations = 80;
-  double step_tol_m = 2e-4;       ///< a smaller step, seen 10 m away, has converged
+  double step_tol_m = 2e-4;       ///< convergence limit of a step, for points 10 m away
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -22,29 +22,34 @@ struct RegistrationSettings {
   }
 };
 
-/// What the comparison of two scans takes for granted, and from when on it matters.
+/// Assumptions and thresholds of the comparison of two scans.
 struct LiningSettings {
-  double near_m = 1.5;                ///< nearer to the scanner is the robot itself
-  double spacing_m = 0.08;            ///< points are averaged over that
-  double reach_m = 16.0;              ///< rings are compared that far along the tunnel, to both sides of the scanner
-  double sector_deg = 10.0;           ///< of the clock; a cell is a ring's part in one sector
-  double lowest_clock_deg = 110.0;    ///< middle of the lowest sector on either side: below it is the ground
-  double joint_margin_m = 0.1;        ///< left out on both sides of a joint between rings: localisation and registration err along the tunnel
-  double band_m = 0.06;               ///< the lining lies that near the design, and moves by less
-  int min_points = 12;                ///< thinned ones; a cell with fewer in either scan is not reported
-  double surface_std_m = 0.0001;      ///< of a cell, from what neither averaging nor scatter shows: facets, texture
-  double fixture_std_m = 0.003;       ///< of half a metre of any surface other than the lining's
-  double range_offset_std_m = 0.001;  ///< of a scanner from scan to scan, all ranges alike; it is estimated with the pose
-  double guess_std_m = 0.3;           ///< of the robot's own estimate
+  double near_m = 1.5;                ///< points closer to the scanner are excluded as parts of the robot
+  double spacing_m = 0.08;            ///< averaging distance of the points
+  double reach_m = 16.0;              ///< comparison range along the tunnel, to both sides of the scanner
+  double sector_deg = 10.0;           ///< angular width of a cell; a cell is the part of a ring in one sector
+  double lowest_clock_deg = 110.0;    ///< center of the lowest sector on each side; the ground is below
+  /// Excluded on both sides of a ring joint, because localization and registration have axial errors.
+  double joint_margin_m = 0.1;
+  double band_m = 0.06;               ///< maximum distance of the lining from the design, including its displacement
+  int min_points = 12;  ///< minimum number of downsampled points of a cell in both scans; other cells are not reported
+  /// Standard deviation of a cell from errors that neither averaging nor scatter shows: facets, texture.
+  double surface_std_m = 0.0001;
+  double fixture_std_m = 0.003;       ///< standard deviation of a 0.5 m patch of any surface other than the lining
+  /// Standard deviation of the range offset between scans, common to all ranges; estimated with the pose.
+  double range_offset_std_m = 0.001;
+  double guess_std_m = 0.3;           ///< standard deviation of the pose estimate of the robot
   double guess_std_deg = 2.0;
-  double min_share = 0.5;             ///< of the points that have a partner in the reference, fewer is no registration
-  double max_correction_m = 0.8;      ///< of the robot's own estimate: it is not that far off, another place is
-  double max_along_std_m = 0.005;     ///< of the registered position along the tunnel; a greater one says that nothing holds it there
-  double min_grip_share = 0.4;        ///< of the surfaces that face along the tunnel, which alone tell one place from another
+  double min_share = 0.5;             ///< minimum inlier ratio of the registration
+  /// Maximum correction of the pose estimate of the robot; larger ones indicate a registration to another position.
+  double max_correction_m = 0.8;
+  /// Maximum standard deviation of the registered position along the tunnel; larger ones indicate degeneracy.
+  double max_along_std_m = 0.005;
+  double min_grip_share = 0.4;        ///< minimum axial overlap: agreement of surfaces that face along the tunnel
   double notice_mm = 2.0;
   double warning_mm = 5.0;
   double alarm_mm = 10.0;
-  double significance = 4.5;          ///< standard deviations that a finding is away from nothing
+  double significance = 4.5;          ///< minimum ratio of a finding to its standard deviation
   RegistrationSettings registration;
 
   template <typename Self, typename Visitor>

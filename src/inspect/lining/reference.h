@@ -7,18 +7,19 @@
 
 namespace patrol::inspect {
 
-/// What is kept of the first scan of a station.
+/// Stored reference scan of a station.
 struct LiningReference {
-  Pose3 T_map_scanner;               ///< where it was made; x of `scanner_level`
-  std::vector<ScannerPoint> points;  ///< in map, each a mean of neighbouring beams; its intensity likewise
+  Pose3 T_map_scanner;               ///< pose of `scanner_level`, the upright scanner frame
+  std::vector<ScannerPoint> points;  ///< points in map; position and intensity are means of neighboring beams
 };
 
 struct ReferenceSettings {
-  double spacing_m = 0.1;  ///< points are averaged over that
-  double near_m = 1.5;     ///< nearer to the scanner is the robot itself
-  double far_m = 30.0;     ///< farther away points are too thin to be surfaces
+  double spacing_m = 0.1;  ///< averaging distance of the points
+  double near_m = 1.5;     ///< points closer to the scanner are excluded as parts of the robot
+  double far_m = 30.0;     ///< points farther away are excluded: too sparse for surfaces
 };
 
+/// Creates a reference from a scan and its pose.
 LiningReference make_reference(const PanoramicScan& scan, const Pose3& T_map_scanner, const ReferenceSettings& settings = {});
 
 }  // namespace patrol::inspect

@@ -11,10 +11,11 @@
 namespace patrol::inspect {
 namespace {
 
-constexpr double kMinBand_m = 0.006;                 // about a cell's median: what lies off it by that is the lining in any case
+// Minimum band around the median of a cell; points within it always belong to the lining.
+constexpr double kMinBand_m = 0.006;
 constexpr double kMinRadius_m = 0.15, kMaxRadius_m = 0.6;
 constexpr int kMinNeighbours = 3;
-// A plane's slope against the design has a standard deviation of 10 mm/m, a point of 2 mm.
+// Prior standard deviation of the slope against the design: 10 mm/m. Standard deviation of a point: 2 mm.
 constexpr double kSlopePrior_m2 = 0.002 * 0.002 / (0.01 * 0.01);
 
 }  // namespace

@@ -9,17 +9,18 @@
 
 namespace patrol::inspect {
 
-/// The lining as the reference scan shows it, unrolled: how far it lies inside the design, as a function of chainage and clock. Each ring
-/// is one surface; across a joint nothing is interpolated.
+/// Surface of the lining in the reference scan, unrolled: inward offset from the design as a function of chainage and
+/// clock position. Each ring is a separate surface; there is no interpolation across ring joints.
 class ReferenceLining {
  public:
   ReferenceLining(const LiningInMap& lining, const LiningGrid& grid, const std::vector<ThinPoint>& points_map, const LiningSettings& settings);
 
-  /// By a plane through the points about it, whose slope is held near the design's; none where there are too few.
+  /// Returns the inward offset at a point, from a plane fitted to the points around it. The slope has a prior near the
+  /// design. Returns nullopt if there are too few points.
   std::optional<double> inward_m(const LiningPoint& point, int cell) const;
 
   int points(int cell) const { return static_cast<int>(cells_[static_cast<std::size_t>(cell)].points.size()); }
-  /// Of a cell's mean, by the scatter about the planes.
+  /// Returns the variance of the mean of a cell, from the scatter around the planes.
   double var_m2(int cell) const { return cells_[static_cast<std::size_t>(cell)].var_m2; }
 
  private:
@@ -28,10 +29,10 @@ class ReferenceLining {
   };
   struct Cell {
     std::vector<Point> points;
-    double radius_m = 0.0;  ///< of the neighbourhood of a point
+    double radius_m = 0.0;  ///< neighborhood radius of a point
     double var_m2 = 0.0;
   };
-  /// `without`: a point that does not count, or null.
+  /// Returns the inward offset at a point of the unrolled cell. `without`: point to exclude, or null.
   std::optional<double> inward_m(double chainage_m, double arc_m, int cell, const Point* without) const;
 
   LiningGrid grid_;

@@ -16,12 +16,13 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kRegistrationArm_m = 10.0;         // where a step's turn is judged
-constexpr double kPairCosine = 0.8;         // cosine between the normals of a pair
-constexpr double kSpacing_m = 0.1;      // between points of a surface: partners are that much farther apart than surfaces
+constexpr double kRegistrationArm_m = 10.0;         // distance at which the rotation of a step counts
+constexpr double kPairCosine = 0.8;         // minimum cosine between the normals of a pair
+// Point spacing on a surface: the distance of a pair exceeds that of its surfaces by up to this.
+constexpr double kSpacing_m = 0.1;
 constexpr std::size_t kMinPairs = 30;
 
-/// Which way a surface faces, either side alike: a cube has three pairs of faces of 3 x 3 cells.
+/// Returns the bin of a normal, without sign: the three pairs of cube faces have 3 x 3 cells each.
 int direction_of(const Eigen::Vector3d& normal) {
   Eigen::Index axis = 0;
   const double most = normal.cwiseAbs().maxCoeff(&axis);
@@ -30,7 +31,8 @@ int direction_of(const Eigen::Vector3d& normal) {
   return static_cast<int>(axis) * 9 + third(u) * 3 + third(v);
 }
 
-/// Points of the cloud, the same number of each direction as far as there are so many, spread over each evenly.
+/// Samples points of the cloud: equal numbers from all normal directions, as far as available, and uniformly within
+/// each.
 std::vector<std::size_t> sample_of(const SurfaceCloud& cloud, int size) {
   std::array<std::vector<std::size_t>, 27> facing;
   for (std::size_t i = 0; i < cloud.points().size(); ++i) {
@@ -49,7 +51,7 @@ std::vector<std::size_t> sample_of(const SurfaceCloud& cloud, int size) {
 }
 
 struct Pair {
-  Eigen::Vector3d normal, arm;  // in target; the arm from the source's origin
+  Eigen::Vector3d normal, arm;  // in target; `arm` is measured from the origin of the source
   double residual_m = 0.0;
 };
 
@@ -96,7 +98,7 @@ Registration register_cloud(const SurfaceCloud& target, const SurfaceCloud& sour
     H.diagonal().array() += 1e-6 * H.trace();
     const Vector6 step = -H.ldlt().solve(b);
     result.T_target_source = moved(result.T_target_source, step);
-    // Far pairs need not be settled to the last digit before nearer ones take over.
+    // Distant pairs need not converge completely before closer ones are used.
     const double length_m = step.head<3>().norm() + kRegistrationArm_m * step.tail<3>().norm();
     const bool is_last = distance_m <= settings.last_distance_m;
     if (is_last) result.converged = length_m < settings.step_tol_m;

@@ -10,20 +10,22 @@ namespace patrol::inspect {
 
 struct Registration {
   Pose3 T_target_source;
-  double rms_m = 0.0;   ///< across the target's surfaces, of the sample's points that have a partner at last
-  double share = 0.0;   ///< of the sample's points that have one, and lie no more than `last_distance_m` off its surface
+  double rms_m = 0.0;   ///< root mean square distance of the final pairs from the target surfaces
+  /// Inlier ratio: fraction of the sampled points with a pair at most `last_distance_m` off its surface.
+  double share = 0.0;
   int iterations = 0;
   bool converged = false;
 };
 
-/// Lays a cloud on another: iterated closest points on the target's surfaces (Chen, Medioni 1992) in six degrees of freedom, on a
-/// sample of all directions alike (Rusinkiewicz, Levoy, "Efficient Variants of the ICP Algorithm", 3DIM 2001, section 3.1), so that
-/// the few surfaces that face along a tunnel hold it too. Pairs whose surfaces face differently are none, far ones count little
-/// (Geman, McClure), and the distance up to which there are any shrinks, so that what has moved does not pull.
+/// Registers a point cloud to another with point-to-plane ICP [Chen92] in six degrees of freedom. The sample is
+/// balanced over the normal directions [Rusinkiewicz01, section 3.1], so that the few surfaces that face along a tunnel
+/// also constrain the pose. Pairs with different normals are rejected and distant ones down-weighted (Geman-McClure).
+/// The maximum pair distance decreases, which excludes deformed surfaces.
 Registration register_cloud(const SurfaceCloud& target, const SurfaceCloud& source, const Pose3& T_target_source_start,
                             const RegistrationSettings& settings);
 
-/// The pose after a small step: moved by `step`'s first three, turned by its last three about the origin of the source, in target.
+/// Applies a small step in target: the first three elements translate, the last three rotate about the origin of the
+/// source.
 Pose3 moved(const Pose3& T_target_source, const Eigen::Matrix<double, 6, 1>& step);
 
 }  // namespace patrol::inspect

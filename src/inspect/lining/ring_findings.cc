@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array kParabola{-3.0 / 35.0, 12.0 / 35.0, 17.0 / 35.0, 12.0 / 35.0, -3.0 / 35.0};
 
-/// The square of the patches' scale is a part of the covariance already, not of their own variances.
+/// Applies the squared patch scale, which the covariance already includes and the patch variances do not.
 double own_var(const Patch& patch, const Adjustment& adjustment) { return patch.var_m2 * adjustment.scale * adjustment.scale; }
 
 double std_of(double own_var_m2, const Vector7& J, const Adjustment& adjustment) {
@@ -38,7 +38,7 @@ WarningLevel level_of(double moved_mm, const LiningSettings& settings) {
 
 struct Line {
   const char* name;
-  double from_deg, to_deg;  ///< clock
+  double from_deg, to_deg;  ///< clock positions of the ends
 };
 constexpr std::array kChords{Line{"9-3", 270.0, 90.0}, Line{"10-2", 300.0, 60.0}, Line{"12-9", 0.0, 270.0}, Line{"12-3", 0.0, 90.0}};
 
@@ -49,7 +49,7 @@ std::optional<SectorMove> move_at(const LiningGrid& grid, const std::vector<Sect
   return ring[static_cast<std::size_t>(sector)];
 }
 
-/// To the right and up, of one who looks along the axis.
+/// Returns the outward direction for a viewer along the axis: components to the right and up.
 Eigen::Vector2d outwards(double clock_deg) { return {std::sin(clock_deg * kDegree), std::cos(clock_deg * kDegree)}; }
 
 }  // namespace
@@ -112,7 +112,8 @@ std::vector<ConvergenceLine> convergence_lines(const LiningInMap& lining, const 
       const auto from = move_at(grid, sectors, line.from_deg), to = move_at(grid, sectors, line.to_deg);
       if (!from || !to) continue;
       const Eigen::Vector2d chord = lining.design.radius_at(line.to_deg) * outwards(line.to_deg) - lining.design.radius_at(line.from_deg) * outwards(line.from_deg);
-      // A mark goes inwards against its outward direction; the chord grows by how far its ends go apart along it.
+      // An inward displacement of an end is opposite to its outward direction. The chord grows by the separation of its
+      // ends.
       const double from_part = chord.normalized().dot(outwards(line.from_deg)), to_part = -chord.normalized().dot(outwards(line.to_deg));
       const double own_var_m2 = from_part * from_part * from->own_var_m2 + to_part * to_part * to->own_var_m2;
       lines.push_back({.ring = ring,

@@ -17,8 +17,8 @@ namespace patrol::inspect {
 namespace {
 
 constexpr double kNearest_m = 0.01, kFarthest_m = 1e4;
-// Of the variances along the principal axes: across a surface at most this share of the middle one, which is at least
-// this share of the largest: a row of points is no surface.
+// Limits on the principal variances of a surface. Smallest over middle: at most kThickness. Middle over largest: at
+// least kNarrowness, because a row of points is not a surface.
 constexpr double kThickness = 0.1, kNarrowness = 0.01;
 
 struct Cloud {
@@ -34,8 +34,9 @@ struct Cloud {
 
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
 
-/// A beam's cell: by its direction, in cells that are about a spacing wide at the point's range. Cells in space would take points by their noise
-/// where a wall runs along a face between two of them, and the means would lie up to half its standard deviation off.
+/// Direction cell of a beam, about one spacing wide at the range of the point. Spatial cells would assign points by
+/// their noise where a wall runs along a cell boundary. This would bias the means by up to half the standard deviation
+/// of the noise.
 struct Beam {
   std::uint64_t cell = 0;
   float range_m = 0.0F;

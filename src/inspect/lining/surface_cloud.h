@@ -12,19 +12,21 @@
 
 namespace patrol::inspect {
 
-/// The mean of neighbouring beams that hit the same surface. On a curved wall it lies within spacing^2 / (12 radius) of it.
+/// Mean of neighboring beams on one surface. On a curved wall its distance to the wall is at most spacing^2 / (12
+/// radius).
 struct ThinPoint {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
   double intensity = 0.0;
-  int count = 0;  ///< of the scan's points
+  int count = 0;  ///< number of averaged scan points
 };
 
-/// Points in the scanner's frame, averaged to about a spacing; never across a step in range of more than that. What is nearer than
-/// `near_m` is left out. Throws InputError when a point is
-/// not finite or farther than 10 km.
+/// Downsamples points, given in the scanner frame, to about the spacing, but never across a range step larger than the
+/// spacing. Points closer than `near_m` are excluded. Throws InputError for points that are not finite or farther than
+/// 10 km.
 std::vector<ThinPoint> thin(const std::vector<ScannerPoint>& points, double spacing_m, double near_m = 0.0);
 
-/// Thinned points that know their surfaces (nanoflann's k-d tree). Equal distances are settled the same way every time.
+/// Downsampled points with their local surfaces, in a k-d tree (nanoflann). Ties in distance are resolved
+/// deterministically.
 class SurfaceCloud {
  public:
   explicit SurfaceCloud(std::vector<ThinPoint> points);
@@ -34,17 +36,18 @@ class SurfaceCloud {
 
   static constexpr std::size_t kNeighbours = 10;
   struct Surface {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();    ///< of the nearest points
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, either side; zero where they are no surface
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();    ///< mean of the nearest points
+    /// Unit vector of either sign; zero if the points do not form a surface.
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
 
   const std::vector<ThinPoint>& points() const;
-  /// [point]: the principal plane of its nearest points.
+  /// [point]: principal plane of the nearest points.
   const std::vector<Surface>& surfaces() const { return surfaces_; }
 
   struct Neighbours {
     std::size_t count = 0;
-    std::array<std::uint32_t, kNeighbours> index{};  ///< nearest first
+    std::array<std::uint32_t, kNeighbours> index{};  ///< by increasing distance
     std::array<double, kNeighbours> squared_m2{};
   };
   Neighbours nearest(const Eigen::Vector3d& p, std::size_t count) const;

@@ -29,15 +29,15 @@ TemWindow window_of(const SoundingErrorSettings& settings, const std::vector<Aim
   return {.gate_s = gate_s, .ramp_s = settings.ramp_s, .gate_width = settings.gate_width};
 }
 
-/// The six products of an axis's components that a quadratic form is made of.
+/// Returns the six products of the components of an axis that span the quadratic forms.
 Eigen::Matrix<double, 6, 1> products(const Eigen::Vector3d& a) {
   return {a.x() * a.x(), a.y() * a.y(), a.z() * a.z(), 2.0 * a.x() * a.y(), 2.0 * a.x() * a.z(), 2.0 * a.y() * a.z()};
 }
 
-/// What the soundings say with little of their noise: gate by gate the quadratic form of the axis that fits them best, and nothing where
-/// that does not stand out of the noise. Errors that grow with the signal have to be sized by this. Sized by the readings themselves, a gain
-/// that shrinks all readings would shrink the noise with them and look likely (Peelle's puzzle: D'Agostini, "On the use of the covariance
-/// matrix to fit correlated data", Nucl. Instrum. Meth. A 346, 1994). `rate`, `std`: [gate][sounding].
+/// Returns soundings with reduced noise: per gate the best-fitting quadratic form of the axis, or zero if it is not
+/// significant. Errors proportional to the signal must be scaled with this estimate and not with the readings.
+/// Otherwise a gain that shrinks all readings would shrink their errors too and become more likely (Peelle's puzzle
+/// [DAgostini94]). `rate`, `std`: [gate][sounding].
 Eigen::MatrixXd smoothed(const Eigen::MatrixXd& rate, const Eigen::MatrixXd& std, const std::vector<Eigen::Vector3d>& axes) {
   constexpr Eigen::Index kEnough = 12;
   const Eigen::Index count = rate.cols();
@@ -52,7 +52,8 @@ Eigen::MatrixXd smoothed(const Eigen::MatrixXd& rate, const Eigen::MatrixXd& std
   return smooth;
 }
 
-/// d ln(rate) / dt of the mean over the soundings, where there is one on both sides; else that of rock. [gate], 1/s.
+/// Returns d ln(rate) / dt of the mean over the soundings, [gate], 1/s. Gates without significant neighbors use that of
+/// rock.
 Eigen::VectorXd log_slopes(const std::vector<double>& gate_s, const Eigen::VectorXd& mean) {
   const auto gates = static_cast<Eigen::Index>(gate_s.size());
   Eigen::VectorXd slopes(gates);

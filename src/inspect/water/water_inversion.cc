@@ -20,13 +20,13 @@ namespace {
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
-/// ln rock, ln distance, y/x and z/x of the direction in body, ln radius, ln conductivity of the water.
+/// Elements: ln rock, ln distance, y/x and z/x of the direction in body, ln radius, ln conductivity of the water.
 using Parameters = Eigen::Matrix<double, 6, 1>;
 
 struct Body {
   double rock_spm;
   ConductiveSphere sphere;
-  Eigen::Vector3d towards;  ///< unit, from the coil, in body
+  Eigen::Vector3d towards;  ///< unit vector from the coil, in body
 };
 
 Body body_of(const Parameters& p) {
@@ -48,7 +48,7 @@ Parameters draw(const WaterPriorSettings& prior, RandomSequence& random) {
   }
 }
 
-/// Logarithm of the density that `draw` draws from, but for a constant.
+/// Returns the logarithm of the density sampled by `draw`, up to a constant.
 double log_prior(const WaterPriorSettings& prior, const Parameters& p) {
   if (p[0] < std::log(prior.min_rock_spm) || p[0] > std::log(prior.max_rock_spm)) return kNever;
   if (p[4] < std::log(prior.min_radius_m) || p[4] > std::log(prior.max_radius_m)) return kNever;
@@ -56,7 +56,7 @@ double log_prior(const WaterPriorSettings& prior, const Parameters& p) {
   const double secant_squared = 1.0 + p[2] * p[2] + p[3] * p[3];
   if (secant_squared > std::pow(std::cos(prior.max_angle_deg * kDegree), -2)) return kNever;
   const double water = (p[5] - std::log(prior.water_spm)) / prior.water_log_std;
-  // Volume: R^2 dR = R^3 d ln R; solid angle: d(y/x) d(z/x) = sec^3 of it.
+  // Volume element: R^2 dR = R^3 d ln R. Solid angle element: d(y/x) d(z/x) / sec^3.
   return 3.0 * p[1] - 1.5 * std::log(secant_squared) - 0.5 * water * water;
 }
 
@@ -66,11 +66,11 @@ struct Particle {
 };
 
 struct Posterior {
-  std::vector<Particle> particles;  ///< alike
+  std::vector<Particle> particles;  ///< equally weighted
   double log_evidence = 0.0;
 };
 
-/// ln of the mean of e^values.
+/// Returns ln of the mean of e^values.
 double log_mean_exp(const std::vector<double>& values) {
   const double top = *std::max_element(values.begin(), values.end());
   double sum = 0.0;
@@ -78,7 +78,7 @@ double log_mean_exp(const std::vector<double>& values) {
   return top + std::log(sum / static_cast<double>(values.size()));
 }
 
-/// Share of the particles that weights e^(step ln L) leave worth something: (sum w)^2 / (n sum w^2).
+/// Returns the effective sample size for weights e^(step ln L), as a fraction: (sum w)^2 / (n sum w^2).
 double worth(const std::vector<Particle>& particles, double step) {
   double top = kNever, sum = 0.0, squares = 0.0;
   for (const Particle& particle : particles) top = std::max(top, particle.log_likelihood);
@@ -89,7 +89,7 @@ double worth(const std::vector<Particle>& particles, double step) {
   return sum * sum / (squares * static_cast<double>(particles.size()));
 }
 
-/// The next step towards temperature 1, by halving.
+/// Returns the next step toward temperature 1, by bisection.
 double next_step(const std::vector<Particle>& particles, double left) {
   constexpr double kWorth = 0.5;
   if (worth(particles, left) >= kWorth) return left;
@@ -109,7 +109,7 @@ std::vector<Particle> resampled(const std::vector<Particle>& particles, const st
   return chosen;
 }
 
-/// Cholesky factor of the particles' covariance, a little rounder than that.
+/// Returns the Cholesky factor of the covariance of the particles, regularized by a small isotropic part.
 Eigen::Matrix<double, 6, 6> spread_of(const std::vector<Particle>& particles) {
   Parameters mean = Parameters::Zero();
   for (const Particle& particle : particles) mean += particle.p / static_cast<double>(particles.size());
@@ -121,11 +121,12 @@ Eigen::Matrix<double, 6, 6> spread_of(const std::vector<Particle>& particles) {
   return covariance.llt().matrixL();
 }
 
-/// Metropolis steps of each particle, some wide and some narrow: beside a posterior that bends, one width would not move all.
+/// Applies Metropolis steps of several widths to each particle: no single width suits a curved posterior.
 template <typename LogLikelihood>
 void move(std::vector<Particle>& particles, double temperature, const WaterSettings& settings, const LogLikelihood& log_likelihood,
           RandomSequence& random) {
-  constexpr double kWidths[] = {1.6, 0.8, 0.3};  // times the covariance's factor; 2.38 / sqrt(6) = 0.97 is best for a normal one
+  // Factors on the Cholesky factor; 2.38 / sqrt(6) = 0.97 is optimal for a normal posterior.
+  constexpr double kWidths[] = {1.6, 0.8, 0.3};
   const Eigen::Matrix<double, 6, 6> spread = spread_of(particles);
   for (Particle& particle : particles) {
     for (int step = 0; step < settings.moves; ++step) {
@@ -165,7 +166,7 @@ struct RockAlone {
   double log_evidence, mean_spm;
 };
 
-/// Rock alone has one number: the sum over a grid fine beside the gain's uncertainty.
+/// Evaluates rock alone by a sum over its conductivity, on a grid finer than the gain uncertainty.
 RockAlone rock_alone(const WaterPriorSettings& prior, const SoundingLikelihood& likelihood) {
   constexpr int kSteps = 3000;
   std::vector<double> rocks_spm, values;
@@ -201,7 +202,7 @@ WarningLevel level_of(const WaterSettings& settings, double nearest_m) {
   return nearest_m <= settings.warning_distance_m ? WarningLevel::kWarning : WarningLevel::kNotice;
 }
 
-/// What the particles say of the body.
+/// Computes the body fields of the result from the particles.
 void describe_body(const std::vector<Particle>& particles, const WaterSettings& settings, const AntennaGeometry& antenna, WaterResult& result) {
   const double count = static_cast<double>(particles.size());
   const Pose3 T_map_level = to_spatial(result.T_map_body);
@@ -220,7 +221,7 @@ void describe_body(const std::vector<Particle>& particles, const WaterSettings& 
   }
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& place : places) covariance += (place - p_coil_mean) * (place - p_coil_mean).transpose() / count;
-  // The antenna's own misalignment turns everything about it.
+  // The misalignment of the antenna rotates the body position about it.
   const double across_std_m = settings.alignment_std_deg * kDegree * p_coil_mean.norm();
   const Eigen::Vector3d ahead = p_coil_mean.normalized();
   covariance += across_std_m * across_std_m * (Eigen::Matrix3d::Identity() - ahead * ahead.transpose());

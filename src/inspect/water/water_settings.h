@@ -4,18 +4,19 @@
 
 namespace patrol::inspect {
 
-/// How the antenna is set for soundings ahead of the face. A body's response is a quadratic form of the coil's axis: six numbers a gate,
-/// which few directions would give; 35, as the paper's robot takes, spread as far as the mount turns, tell the form from steel and noise.
+/// Antenna orientations for soundings ahead of the face. The response of a body is a quadratic form of the coil axis:
+/// six numbers per gate. The 35 orientations of [Liu21], spread over the range of the mount, separate that form from
+/// steel and noise.
 struct WaterSoundingSettings {
   int yaws = 7;
-  double max_yaw_deg = 60.0;    ///< -60 ... 60 in steps of 20
+  double max_yaw_deg = 60.0;    ///< -60 to 60 in steps of 20
   int pitches = 5;
-  double max_pitch_deg = 30.0;  ///< -30 ... 30 in steps of 15
-  double settled_deg = 0.5;     ///< the antenna is there when its servos read this close to what was asked, and no longer change
-  double settle_s = 0.4;        ///< for so long
-  double turn_timeout_s = 8.0;  ///< then the pose is left out
+  double max_pitch_deg = 30.0;  ///< -30 to 30 in steps of 15
+  double settled_deg = 0.5;     ///< maximum angle error of a settled antenna, which must also have stopped
+  double settle_s = 0.4;        ///< minimum duration of the settled state
+  double turn_timeout_s = 8.0;  ///< the pose is skipped after this time
   double sounding_timeout_s = 5.0;
-  int give_up_after = 3;        ///< poses left out in a row
+  int give_up_after = 3;        ///< maximum number of consecutively skipped poses
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -31,16 +32,16 @@ struct WaterSoundingSettings {
   }
 };
 
-/// What is known of the instrument (its data sheet) and how far it, the mount and the model are trusted; standard deviations.
+/// Instrument parameters (data sheet) and standard deviations of the errors of instrument, mount and model.
 struct SoundingErrorSettings {
-  double ramp_s = 2.6e-6;             ///< the current's
-  double gate_width = 0.15;           ///< of a gate, over its middle
-  double model_std = 0.02;            ///< of a gate's rate, over it: what the model leaves out
-  double gain_std = 0.03;             ///< the same in all soundings
-  double sounding_gain_std = 0.01;    ///< from one to the next: the current, and the coil's angle
-  double time_shift_std_s = 5e-8;     ///< of the gates, the same in all soundings
-  double steel_rate = 1e-8;           ///< at 10 us of what steel near by may add, T/s per A m2
-  double steel_anisotropy = 0.3;      ///< of its share that changes with the coil's direction
+  double ramp_s = 2.6e-6;             ///< ramp time of the current
+  double gate_width = 0.15;           ///< ratio of gate width to gate center
+  double model_std = 0.02;            ///< relative model error of a gate
+  double gain_std = 0.03;             ///< relative gain error common to all soundings
+  double sounding_gain_std = 0.01;    ///< relative gain error of each sounding: current and coil angle
+  double time_shift_std_s = 5e-8;     ///< time shift of the gates, common to all soundings
+  double steel_rate = 1e-8;           ///< response of nearby steel at 10 us, T/s per A m2
+  double steel_anisotropy = 0.3;      ///< anisotropic part of the steel response, relative to `steel_rate`
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -55,17 +56,19 @@ struct SoundingErrorSettings {
   }
 };
 
-/// What is believed of rock and water before the soundings, and what they are worth.
+/// Prior of rock and water.
 struct WaterPriorSettings {
-  double min_rock_spm = 3e-4;       ///< conductivity, uniform in its logarithm between these
+  double min_rock_spm = 3e-4;       ///< limits of the rock conductivity, uniform in its logarithm
   double max_rock_spm = 0.03;
-  double water_spm = 0.6;           ///< median of the conductivity of water or mud, as a probe in what seeps from the face reads it
-  double water_log_std = 0.2;       ///< standard deviation of its logarithm
-  double min_radius_m = 2.0;        ///< uniform in its logarithm between these
+  double water_spm = 0.6;  ///< median conductivity of water or mud, as measured by a probe in the seepage of the face
+  double water_log_std = 0.2;       ///< standard deviation of the logarithm of the conductivity
+  double min_radius_m = 2.0;        ///< limits of the radius, uniform in its logarithm
   double max_radius_m = 10.0;
-  double max_distance_m = 40.0;     ///< to the body's middle, which is anywhere alike in the cone ahead: behind the robot it would do the same
-  double max_angle_deg = 50.0;      ///< half angle of the cone about the body's x axis
-  double min_clearance_m = 1.0;     ///< from the antenna to the body's nearest point
+  /// Maximum distance to the center of the body, which is uniform in a cone ahead; behind the robot it would be
+  /// indistinguishable.
+  double max_distance_m = 40.0;
+  double max_angle_deg = 50.0;      ///< half angle of the cone around the x axis of the robot
+  double min_clearance_m = 1.0;     ///< minimum distance from the antenna to the nearest point of the body
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -85,11 +88,13 @@ struct WaterSettings {
   WaterSoundingSettings sounding;
   SoundingErrorSettings errors;
   WaterPriorSettings prior;
-  int particles = 400;               ///< of the posterior
-  int moves = 6;                     ///< Metropolis steps of each, at each temperature
-  double min_evidence = 5.0;         ///< logarithm of the Bayes factor above which a body is reported: 150 to 1
-  double alignment_std_deg = 0.4;    ///< of the antenna's axis on the robot, besides what its servos read
-  double warning_distance_m = 30.0;  ///< a body whose nearest point may be this near is warned of
+  int particles = 400;               ///< number of posterior particles
+  int moves = 6;                     ///< Metropolis steps per particle and temperature
+  double min_evidence = 5.0;         ///< minimum logarithm of the Bayes factor for a detection: 150 to 1
+  /// Standard deviation of the antenna axis on the robot, in addition to the encoder errors.
+  double alignment_std_deg = 0.4;
+  /// A body is a warning if the near limit of its nearest point is within this distance.
+  double warning_distance_m = 30.0;
   double alarm_distance_m = 15.0;
 
   template <typename Self, typename Visitor>

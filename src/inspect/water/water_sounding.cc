@@ -11,7 +11,7 @@
 namespace patrol::inspect {
 namespace {
 
-/// Step `index` of `count` from -max to max; the middle for one.
+/// Returns element `index` of `count` uniform values from -max to max; 0 for a single value.
 double evenly(int index, int count, double max) { return count == 1 ? 0.0 : max * (2.0 * index / (count - 1) - 1.0); }
 
 void check_reach(const char* name, double angle_deg, const JointLimit& limit) {
@@ -64,7 +64,7 @@ void WaterSounding::see(const AntennaState& state) {
   state_ = state;
 }
 
-/// Only what was read since the order counts.
+/// Returns whether the antenna is settled. Readings before the command are ignored.
 bool WaterSounding::is_settled(Time now) const {
   return steady_since_ && state_->stamp > since_ && now - std::max(*steady_since_, since_) >= from_seconds(settings_.settle_s);
 }

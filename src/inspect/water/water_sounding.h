@@ -15,31 +15,33 @@ struct AntennaPose {
   double pitch_rad = 0.0;
 };
 
-/// Row by row, to and fro. Throws InputError, naming the setting, for a pose that the mount does not reach.
+/// Returns the antenna poses in boustrophedon order. Throws InputError with the setting if the mount cannot reach a
+/// pose.
 std::vector<AntennaPose> antenna_poses(const WaterSoundingSettings& settings, const AntennaGeometry& antenna);
 
-/// A sounding and where the coil was, by its servos.
+/// Sounding with the encoder angles of the coil.
 struct AimedSounding {
   AntennaPose pose;
   TemSounding sounding;
 };
 
-/// Takes the soundings of one station: turns the antenna, waits until its servos say that it is there, has a sounding made; pose by pose;
-/// stows the antenna at the end. The robot stands still meanwhile.
+/// Sequence of soundings at one station. Turns the antenna to each pose, waits until the encoders confirm it, requests
+/// a sounding, and stows the antenna at the end. The robot must be stationary.
 class WaterSounding {
  public:
   WaterSounding(const WaterSoundingSettings& settings, const AntennaGeometry& antenna, Time start);
 
-  /// At any rate above a few hertz, with the newest of each: the next order, if there is one.
+  /// Advances the sequence and returns the next command, if any. Call at a few hertz or more with the latest messages.
   std::optional<InstrumentCommand> step(Time now, const std::optional<AntennaState>& antenna, const std::optional<TemSounding>& sounding);
 
   bool is_over() const { return phase_ == Phase::kOver; }
-  /// Said once it is over: the servos have read the stowed pose. Otherwise the robot should not drive.
+  /// Returns whether the encoders confirm the stowed pose; valid when the sequence is over. If not, the robot should
+  /// not drive.
   bool is_stowed() const { return is_stowed_; }
   const std::vector<AimedSounding>& soundings() const { return soundings_; }
   int num_poses() const { return static_cast<int>(poses_.size()); }
   int num_left_out() const { return left_out_; }
-  /// Root mean square of the angle between the axes asked for and read, over the soundings.
+  /// Returns the root mean square angle between commanded and measured axes over the soundings.
   double antenna_error_deg() const;
 
  private:
@@ -54,11 +56,11 @@ class WaterSounding {
   WaterSoundingSettings settings_;
   AntennaPose stowed_;
   std::vector<AntennaPose> poses_;
-  std::size_t next_ = 0;  ///< pose
+  std::size_t next_ = 0;  ///< index of the next pose
   Phase phase_ = Phase::kTurning;
   bool has_begun_ = false, is_stowed_ = false;
   AntennaPose asked_;
-  Time since_;  ///< of the phase
+  Time since_;  ///< start of the phase
   std::optional<AntennaState> state_;
   std::optional<Time> steady_since_;
   std::vector<AimedSounding> soundings_;
