@@ -23,7 +23,7 @@ class Reported : public testing::Test {
     station.T_route_body = {4.0, 5.0, 0.0};
     files_.route.stations = {station};
   }
-  void see(const StackMessage& message) { reporter_.see(message); }
+  void see(const stack::StackMessage& message) { reporter_.see(message); }
   std::vector<Json> results(const std::string& kind) {
     std::vector<Json> list;
     std::istringstream lines(test::read_bytes(folder_ / "outbox.jsonl"));
@@ -58,18 +58,18 @@ TEST_F(Reported, PosesAreThinnedToOneASecond) {
   for (int i = 0; i <= 300; ++i) {
     PoseEstimate pose;
     pose.stamp = std::chrono::milliseconds(20 * i);
-    see(StackMessage(pose));
+    see(stack::StackMessage(pose));
   }
   EXPECT_EQ(results("pose").size(), 7U);  // at 0, 1, ... 6 s
 }
 
 TEST_F(Reported, AMapIsSentWhenItChangedAtMostEveryTenSecondsAndAtTheEnd) {
   reporter_.begin(files_);
-  for (int s = 0; s <= 30; ++s) see(StackMessage(MapUpdate{.stamp = std::chrono::seconds(s), .map = map_with(s < 15 ? kUnknown : s < 27 ? kFree : kOccupied)}));
+  for (int s = 0; s <= 30; ++s) see(stack::StackMessage(MapUpdate{.stamp = std::chrono::seconds(s), .map = map_with(s < 15 ? kUnknown : s < 27 ? kFree : kOccupied)}));
   std::vector<long> times;
   for (const Json& map : results("map")) times.push_back(std::lround(map["time_s"].get<double>()));
   EXPECT_EQ(times, (std::vector{0L, 15L, 27L}));
-  see(StackMessage(MapUpdate{.stamp = std::chrono::seconds(31), .map = map_with(kUnknown)}));
+  see(stack::StackMessage(MapUpdate{.stamp = std::chrono::seconds(31), .map = map_with(kUnknown)}));
   reporter_.finish("finished", "");
   EXPECT_EQ(std::lround(results("map").back()["time_s"].get<double>()), 31);
   EXPECT_EQ(results("map").size(), 4U);
@@ -84,7 +84,7 @@ TEST_F(Reported, AnEventKeepsItsWordsFigureAndPlace) {
   event.text = "Leak.";
   event.value = 640.0;
   event.p_map_target = {3.0, 4.0};
-  see(StackMessage(event));
+  see(stack::StackMessage(event));
   const Json data = results("event").at(0)["data"];
   EXPECT_EQ(data["value"], 640.0);
   EXPECT_EQ(data["position_m"], Json({3.0, 4.0}));

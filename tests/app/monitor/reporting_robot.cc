@@ -103,23 +103,23 @@ class Drive {
   void go_to(double now_s) {
     const Time stamp = from_seconds(now_s);
     const double along_m = kLength_m * std::min(1.0, now_s / seconds_);
-    reporter_.see(app::StackMessage(PoseEstimate{.stamp = stamp, .T_map_body = place_at(along_m)}));
-    reporter_.see(app::StackMessage(MapUpdate{.stamp = stamp, .map = street_map(along_m + 8.0)}));
+    reporter_.see(stack::StackMessage(PoseEstimate{.stamp = stamp, .T_map_body = place_at(along_m)}));
+    reporter_.see(stack::StackMessage(MapUpdate{.stamp = stamp, .map = street_map(along_m + 8.0)}));
     while (stations_ < 4 && along_m >= kLength_m / 4.0 * (stations_ + 1)) arrive(stamp, ++stations_, place_at(along_m));
   }
 
  private:
   void arrive(Time stamp, int number, const Pose2& at) {
     const std::string name = name_of_station(is_tunnel_, number);
-    reporter_.see(app::StackMessage(event_at(stamp, EventKind::kStationReached, name, fmt::format("At {}.", name), 0.0, at)));
+    reporter_.see(stack::StackMessage(event_at(stamp, EventKind::kStationReached, name, fmt::format("At {}.", name), 0.0, at)));
     if (is_tunnel_) {
-      reporter_.see(app::StackMessage(lining_at(stamp, name, 1 + 12 * (number - 1), 1.5 * number + 0.9 * (variant_ % 8))));
-      if (number == 4) reporter_.see(app::StackMessage(water_at(stamp)));
+      reporter_.see(stack::StackMessage(lining_at(stamp, name, 1 + 12 * (number - 1), 1.5 * number + 0.9 * (variant_ % 8))));
+      if (number == 4) reporter_.see(stack::StackMessage(water_at(stamp)));
       return;
     }
     const double column = number == 3 ? 640.0 + 10.0 * variant_ : 4.0 + number + variant_ % 5;
-    reporter_.see(app::StackMessage(event_at(stamp, EventKind::kGasMeasured, name, fmt::format("{}: {:.0f} ppm m of methane.", name, column), column, at)));
-    if (column > 200.0) reporter_.see(app::StackMessage(event_at(stamp, EventKind::kGasAlarm, name, fmt::format("Leak at {}: {:.0f} ppm m of methane.", name, column), column, at)));
+    reporter_.see(stack::StackMessage(event_at(stamp, EventKind::kGasMeasured, name, fmt::format("{}: {:.0f} ppm m of methane.", name, column), column, at)));
+    if (column > 200.0) reporter_.see(stack::StackMessage(event_at(stamp, EventKind::kGasAlarm, name, fmt::format("Leak at {}: {:.0f} ppm m of methane.", name, column), column, at)));
   }
 
   app::Reporter& reporter_;

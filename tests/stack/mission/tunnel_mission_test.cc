@@ -158,7 +158,7 @@ TEST(TunnelMission, ARobotThatIsLateToKnowHowItMovesStandsForOneAndAHalfSecondsF
   TunnelMission tour({.navigations = 1, .starts_docked = false}, two_goals(), false);
   Time started{};
   for (Time now = std::chrono::seconds(7); started == Time{}; now += kStep) {
-    if (tour.step(now, {}).mode == Motion::kNavigate) started = now;
+    if (tour.step(now, {}).task.motion == Motion::kNavigate) started = now;
   }
   EXPECT_NEAR(to_seconds(started), 8.5, 0.06);
 }
