@@ -23,6 +23,13 @@ bool holds_data(const std::filesystem::path& root) {
   return std::filesystem::is_directory(root / "worlds") && std::filesystem::is_directory(root / "models");
 }
 
+/// The data installed with the running program: `share/patrol` next to its `bin`. Empty for a program that cannot be located.
+std::filesystem::path installed_data() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? std::filesystem::path() : program.parent_path().parent_path() / "share" / "patrol";
+}
+
 /// Names of the folders in `parent`, sorted, for "known: ..." in messages.
 std::string folders_in(const std::filesystem::path& parent) {
   std::vector<std::string> names;
@@ -83,6 +90,7 @@ std::filesystem::path find_data_root(const std::filesystem::path& scenario) {
     if (holds_data(folder)) return folder;
   }
   if (holds_data(std::filesystem::current_path())) return std::filesystem::current_path();
+  if (const std::filesystem::path installed = installed_data(); holds_data(installed)) return installed;
   return PATROL_SOURCE_DIR;
 }
 

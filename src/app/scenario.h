@@ -165,8 +165,8 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<std:
 /// Every setting written out, under a line of comment.
 void save_scenario(const std::filesystem::path& file, const Scenario& scenario, const std::string& comment);
 
-/// Where worlds and models lie: the nearest folder above `scenario` that holds `worlds/` and `models/`, else the
-/// working directory, else the source tree that the program was built from.
+/// Folder of the worlds and models: the nearest folder above `scenario` that holds `worlds/` and `models/`, else the
+/// working directory, else the data installed with the program, else the source tree that the program was built from.
 std::filesystem::path find_data_root(const std::filesystem::path& scenario);
 
 /// Where the files lie that a scenario names: mission, map and its image, goals, remote control. Throws InputError, naming file and key,
