@@ -9,8 +9,8 @@ namespace patrol {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// Solution x of A x = b for a symmetric, positive or negative semidefinite A, by a pivoted LDLT decomposition. Elements are not
-/// finite for an A or b that is not; a direction in which A is zero contributes nothing.
+/// Solution x of A x = b for a symmetric, positive or negative semidefinite A, by a pivoted LDLT decomposition. A pivot that is zero
+/// or not a number contributes nothing: callers check finite input themselves.
 Eigen::Vector2d solve_symmetric(const Eigen::Matrix2d& A, const Eigen::Vector2d& b);
 Eigen::Vector3d solve_symmetric(const Eigen::Matrix3d& A, const Eigen::Vector3d& b);
 Vector6d solve_symmetric(const Matrix6d& A, const Vector6d& b);
