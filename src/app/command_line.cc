@@ -1,9 +1,17 @@
 #include "app/command_line.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <functional>
+#include <iostream>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -248,7 +256,8 @@ void add_monitor(CLI::App& app, Call& call) {
   MonitorOptions& monitor = call.monitor;
   CLI::App* command = app.add_subcommand("monitor", "The monitoring platform: takes results from robots and shows them, until it is interrupted");
   command->add_option("--port", monitor.port, "Port to listen at; 0: any that is free")->capture_default_str();
-  command->add_option("--host", monitor.host, "Address to listen at; 0.0.0.0: of every network")->capture_default_str();
+  command->add_option("--host", monitor.host, "Address or host name to listen at; 0.0.0.0: of every network")->capture_default_str();
+  command->add_option("--allow-host", monitor.allowed_hosts, "Host name under which it is reached, besides its address; may be repeated");
   command->add_option("--data", monitor.data, "Directory of what it keeps")->capture_default_str();
   command->add_option("--token", monitor.token_file, "File of the token (default: PATROL_TOKEN, else one is made in the directory)");
   command->callback([&] { call.chosen = [&] { return monitor_command(call.monitor); }; });
@@ -278,9 +287,55 @@ void refuse_unknown_command(const CLI::App& app, int argc, const char* const* ar
   throw InputError(fmt::format("there is no command '{}' (known: {})", word, fmt::join(known, ", ")));
 }
 
+/// Does not throw when standard error cannot be written.
 int report(const std::string& what, ExitCode code) {
-  fmt::print(stderr, "patrol: {}\n", io::on_one_line(what));
+  std::fputs(fmt::format("patrol: {}\n", io::on_one_line(what)).c_str(), stderr);  // fmt::print would throw on failure
   return static_cast<int>(code);
+}
+
+/// Seeds: decimal digits only. CLI11 takes -1 for 2^64 - 1, and 010 for 8.
+std::string refuse_bad_seed(const std::string& text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_octal = text.size() > 1 && text.front() == '0';
+  if (error == std::errc() && end == text.data() + text.size() && !is_octal) return "";
+  return fmt::format("{} is no seed: must be a whole number in 0 ... {}", text, std::numeric_limits<std::uint64_t>::max());
+}
+
+/// Numbers of options are times, lengths, speeds and the like. CLI11 takes 1e400 for infinity.
+std::string refuse_bad_number(const std::string& text) {
+  constexpr double kMaxNumber = 1e9;
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (!text.empty() && *end == '\0' && std::abs(value) <= kMaxNumber) return "";
+  return fmt::format("{} is out of range: must be a number in -1e9 ... 1e9", text);
+}
+
+/// Checks that CLI11 leaves out, for every option of every command by the type of its value.
+void add_number_checks(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands({})) {
+    for (CLI::Option* option : command->get_options()) {
+      const std::string type = option->get_type_name();
+      if (type == "UINT") option->check(CLI::Validator(refuse_bad_seed, "", "seed"));
+      if (type == "FLOAT") option->check(CLI::Validator(refuse_bad_number, "", "number"));
+    }
+  }
+}
+
+/// Parses the call and runs its command. Exceptions become one line on standard error.
+int run_parsed(CLI::App& app, Call& call, int argc, const char* const* argv) {
+  try {
+    refuse_unknown_command(app, argc, argv);
+    app.parse(argc, argv);
+    return static_cast<int>(call.chosen());
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    return report(error.what(), ExitCode::kWrongInput);
+  } catch (const InputError& error) {
+    return report(error.what(), ExitCode::kWrongInput);
+  } catch (const std::exception& error) {
+    return report(error.what(), ExitCode::kProgramFailed);
+  }
 }
 
 }  // namespace
@@ -296,19 +351,12 @@ int run_command_line(int argc, const char* const* argv) {
                          add_slam, add_calibrate, add_train, add_solve, add_plan, add_study, add_test, add_monitor, add_send, add_list}) {
     add(app, call);
   }
+  add_number_checks(app);
 
-  try {
-    refuse_unknown_command(app, argc, argv);
-    app.parse(argc, argv);
-    return static_cast<int>(call.chosen());
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
-    return report(error.what(), ExitCode::kWrongInput);
-  } catch (const InputError& error) {
-    return report(error.what(), ExitCode::kWrongInput);
-  } catch (const std::exception& error) {
-    return report(error.what(), ExitCode::kProgramFailed);
-  }
+  const int code = run_parsed(app, call, argc, argv);
+  const bool is_written = std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (is_written || code == static_cast<int>(ExitCode::kWrongInput) || code == static_cast<int>(ExitCode::kProgramFailed)) return code;
+  return report(fmt::format("standard output: cannot be written: {}", std::strerror(errno)), ExitCode::kProgramFailed);
 }
 
 }  // namespace patrol::app

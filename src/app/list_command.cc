@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -19,7 +20,8 @@ template <typename Keep>
 std::vector<std::string> files_below(const std::filesystem::path& root, const std::string& folder, const Keep& keep) {
   std::vector<std::string> found;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
-    if (entry.is_regular_file() && keep(entry.path())) found.push_back(std::filesystem::relative(entry.path(), root).string());
+    std::error_code ignored;  // of a link that leads to itself
+    if (entry.is_regular_file(ignored) && keep(entry.path())) found.push_back(std::filesystem::relative(entry.path(), root).string());
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -48,15 +50,26 @@ std::vector<std::string> allowed(const std::string& field) {
   return visitor.values;
 }
 
-}  // namespace
-
-ExitCode list_command() {
-  const std::filesystem::path root = find_data_root("");
+/// Scenarios, worlds and robots. A program without its data lists everything else.
+void print_data() {
+  std::filesystem::path root;
+  try {
+    root = find_data_root("");
+  } catch (const InputError& error) {
+    fmt::print("scenarios, worlds, robots\n  none: {}\n", error.what());
+    return;
+  }
   print("scenarios", files_below(root, "worlds", [](const auto& file) { return file.parent_path().filename() == "scenarios"; }));
   print("worlds", files_below(root, "worlds", [](const auto& file) {
           return file.extension() == ".xml" && file.stem() == file.parent_path().filename();
         }));
   print("robots", files_below(root, "models", [](const auto& file) { return file.extension() == ".urdf"; }));
+}
+
+}  // namespace
+
+ExitCode list_command() {
+  print_data();
   print("sensors", allowed<sim::FaultSettings>("sensor"));
   print("lidar presets", allowed<sim::LidarSettings>("preset"));
   print("sensor faults", allowed<sim::FaultSettings>("kind"));

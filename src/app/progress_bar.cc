@@ -5,13 +5,13 @@
 #include <csignal>
 #include <cstdio>
 
-#include <fmt/format.h>
-
 namespace patrol::app {
 namespace {
 
 // A signal handler can reach nothing but a global.
 volatile std::sig_atomic_t interrupts = 0;
+
+constexpr int kCounted[] = {SIGINT, SIGTERM, SIGHUP};
 
 void count_interrupt(int signal) {
   interrupts = interrupts + 1;
@@ -21,35 +21,43 @@ void count_interrupt(int signal) {
   }
 }
 
+const std::string kClear = "\r\033[K";
+
+/// Writes to standard error. Does not throw when its terminal is gone: the work goes on.
+void write(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
 }  // namespace
 
 ProgressBar::ProgressBar() : is_terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() {
-  if (has_drawn_) fmt::print(stderr, "\r\033[K");
+  if (has_drawn_) write(kClear);
 }
 
 void ProgressBar::show(const std::string& line) {
   if (!is_terminal_) return;
-  fmt::print(stderr, "\r\033[K{}", line);
+  write(kClear + line);
   std::fflush(stderr);
   has_drawn_ = true;
 }
 
 void ProgressBar::say(const std::string& line) {
-  fmt::print(stderr, "{}{}\n", has_drawn_ ? "\r\033[K" : "", line);
+  write((has_drawn_ ? kClear : "") + line + "\n");
   has_drawn_ = false;
 }
 
 InterruptGuard::InterruptGuard() {
   interrupts = 0;
-  std::signal(SIGINT, count_interrupt);
-  std::signal(SIGTERM, count_interrupt);
+  for (const int signal : kCounted) {
+    // nohup's way to keep a program alive when its terminal is closed
+    if (std::signal(signal, count_interrupt) == SIG_IGN && signal == SIGHUP) std::signal(signal, SIG_IGN);
+  }
 }
 
 InterruptGuard::~InterruptGuard() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  for (const int signal : kCounted) {
+    if (std::signal(signal, SIG_DFL) == SIG_IGN && signal == SIGHUP) std::signal(signal, SIG_IGN);
+  }
 }
 
 bool InterruptGuard::is_interrupted() const { return interrupts > 0; }

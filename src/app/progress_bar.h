@@ -23,7 +23,8 @@ class ProgressBar {
   bool has_drawn_ = false;
 };
 
-/// Counts Ctrl-C (SIGINT) and SIGTERM instead of dying of the first one, while it lives.
+/// Counts SIGINT (Ctrl-C), SIGTERM and SIGHUP (closed terminal) instead of ending the process at the first one, while it lives. A SIGHUP
+/// that the caller ignores (nohup) stays ignored.
 class InterruptGuard {
  public:
   InterruptGuard();

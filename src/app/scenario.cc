@@ -1,6 +1,8 @@
 #include "app/scenario.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -20,14 +22,21 @@ namespace patrol::app {
 namespace {
 
 bool holds_data(const std::filesystem::path& root) {
-  return std::filesystem::is_directory(root / "worlds") && std::filesystem::is_directory(root / "models");
+  std::error_code ignored;
+  return std::filesystem::is_directory(root / "worlds", ignored) && std::filesystem::is_directory(root / "models", ignored);
 }
 
-/// The data installed with the running program: `share/patrol` next to its `bin`. Empty for a program that cannot be located.
-std::filesystem::path installed_data() {
+/// Data of the program's own installation (bin/patrol and share/patrol) or of the tree that its build folder lies in; empty if there are
+/// none.
+std::filesystem::path data_root_of_program() {
   std::error_code error;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return error ? std::filesystem::path() : program.parent_path().parent_path() / "share" / "patrol";
+  if (error) return {};
+  const std::filesystem::path outer = program.parent_path().parent_path();
+  for (const std::filesystem::path& root : {outer / "share/patrol", outer}) {
+    if (holds_data(root)) return root;
+  }
+  return {};
 }
 
 /// Names of the folders in `parent`, sorted, for "known: ..." in messages.
@@ -85,13 +94,19 @@ void save_scenario(const std::filesystem::path& file, const Scenario& scenario, 
 }
 
 std::filesystem::path find_data_root(const std::filesystem::path& scenario) {
+  if (const char* named = std::getenv("PATROL_DATA"); named != nullptr && *named != '\0') {
+    if (!holds_data(named)) throw InputError(fmt::format("PATROL_DATA = {}: must be a folder that holds the folders worlds and models", named));
+    return std::filesystem::absolute(named);
+  }
   std::filesystem::path folder = scenario.empty() ? std::filesystem::current_path() : std::filesystem::absolute(scenario).parent_path();
   for (; folder != folder.parent_path(); folder = folder.parent_path()) {
     if (holds_data(folder)) return folder;
   }
   if (holds_data(std::filesystem::current_path())) return std::filesystem::current_path();
-  if (const std::filesystem::path installed = installed_data(); holds_data(installed)) return installed;
-  return PATROL_SOURCE_DIR;
+  if (const std::filesystem::path found = data_root_of_program(); !found.empty()) return found;
+  if (holds_data(PATROL_SOURCE_DIR)) return PATROL_SOURCE_DIR;
+  throw InputError("the folders worlds and models were found neither beside the scenario nor beside the program: set PATROL_DATA to the "
+                   "folder that holds them");
 }
 
 std::vector<std::filesystem::path> named_files(const Scenario& scenario, const std::filesystem::path& data_root) {

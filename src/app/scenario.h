@@ -165,8 +165,9 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<std:
 /// Every setting written out, under a line of comment.
 void save_scenario(const std::filesystem::path& file, const Scenario& scenario, const std::string& comment);
 
-/// Folder of the worlds and models: the nearest folder above `scenario` that holds `worlds/` and `models/`, else the
-/// working directory, else the data installed with the program, else the source tree that the program was built from.
+/// Folder that holds `worlds/` and `models/`: the environment variable PATROL_DATA; else the nearest such folder above `scenario`; else the
+/// working directory; else ../share/patrol or .. seen from the program's folder; else the source tree that the program was built from.
+/// Throws InputError when there is none, or PATROL_DATA names another folder.
 std::filesystem::path find_data_root(const std::filesystem::path& scenario);
 
 /// Where the files lie that a scenario names: mission, map and its image, goals, remote control. Throws InputError, naming file and key,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -21,11 +22,12 @@ std::string sha256_of_file(const std::filesystem::path& file) { return sha256(lo
 
 std::string sha256_of_folder(const std::filesystem::path& folder, const std::string& except) {
   std::vector<std::filesystem::path> files;
+  std::error_code ignored;  // of a link that leads to itself
   for (auto entry = std::filesystem::recursive_directory_iterator(folder); entry != std::filesystem::end(entry); ++entry) {
     const std::string name = entry->path().filename().string();
     const bool is_left_out = name.starts_with('.') || (entry.depth() == 0 && name == except);
-    if (is_left_out && entry->is_directory()) entry.disable_recursion_pending();
-    if (!is_left_out && entry->is_regular_file()) files.push_back(entry->path());
+    if (is_left_out && entry->is_directory(ignored)) entry.disable_recursion_pending();
+    if (!is_left_out && entry->is_regular_file(ignored)) files.push_back(entry->path());
   }
   std::sort(files.begin(), files.end());
   std::string listing;

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "io/json_check.h"
+#include "io/one_line.h"
 #include "io/settings_yaml.h"
 
 namespace patrol::io {
@@ -59,9 +60,8 @@ double JsonObject::number(const char* key) const {
 }
 
 std::string JsonObject::word(const char* key) const {
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
   const Json& value = member(key);
-  if (!value.is_string() || std::ranges::any_of(value.get<std::string>(), is_control)) fail(fmt::format("{} must be a word", key));
+  if (!value.is_string() || has_control_characters(value.get_ref<const std::string&>())) fail(fmt::format("{} must be a word", key));
   return value.get<std::string>();
 }
 

@@ -27,7 +27,7 @@ class JsonObject {
   const Json& list(const char* key) const;
   int whole(const char* key) const;
   double number(const char* key) const;  ///< finite
-  std::string word(const char* key) const;  ///< without control characters
+  std::string word(const char* key) const;  ///< without control characters (C0, DEL, C1)
   bool flag(const char* key) const;
   std::vector<double> numbers(const char* key, std::size_t count) const;
   /// From `position` (x, y, z) and `orientation` (quaternion x, y, z, w of length 1, upright).

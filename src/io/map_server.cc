@@ -122,8 +122,8 @@ MapFile load_map_file(const std::filesystem::path& file) {
   }
   MapFile map;
   SettingsReader::read_section(file.string(), document, "", map);
-  if (map.origin.size() != 2 && map.origin.size() != 3) refuse("origin", "must be a list x, y, yaw");
-  if (map.origin.size() == 3 && map.origin[2] != 0.0) refuse("origin", "a turned map (yaw other than 0) is not read");
+  if (map.origin.size() != 3) refuse("origin", "must be three numbers: x, y, yaw");
+  if (map.origin[2] != 0.0) refuse("origin", "a turned map (yaw other than 0) is not read");
   if (map.free_thresh > map.occupied_thresh) refuse("free_thresh", "must not be above occupied_thresh");
   const std::filesystem::path image = file.parent_path() / map.image;
   std::error_code ignored;  // of a name that is none

@@ -1,6 +1,7 @@
 #include "io/moving_ai.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -113,10 +114,23 @@ MovingAiProblem parse_problem(std::string_view text) {
   problem.goal = cell(6, "goal x", "goal y");
   problem.optimal_length = LineFields(fields[8]).number("optimal length");
   if (problem.optimal_length < 0.0) throw FieldError("optimal length: must be at least 0");
+  problem.length_rounding = rounding_of(fields[8]);
   return problem;
 }
 
 }  // namespace
+
+double rounding_of(std::string_view length) {
+  constexpr int kMinDigits = 6;
+  const double value = LineFields(length).number("optimal length");
+  if (value == 0.0) return 0.0;
+  const std::string_view mantissa = length.substr(0, length.find_first_of("eE"));
+  const std::size_t first = std::min(mantissa.find_first_of("123456789"), mantissa.size());
+  const std::string_view significant = mantissa.substr(first);
+  const auto given = static_cast<int>(std::count_if(significant.begin(), significant.end(), [](char c) { return c != '.'; }));
+  const double exponent_of_first = std::floor(std::log10(std::abs(value)));
+  return 0.5 * std::pow(10.0, exponent_of_first - std::max(given, kMinDigits) + 1);
+}
 
 MovingAiMap load_moving_ai_map(const std::filesystem::path& file) {
   Lines lines(file);

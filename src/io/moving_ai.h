@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/grid.h"
@@ -28,8 +29,13 @@ struct MovingAiProblem {
   int width = 0, height = 0;    ///< of the map
   Cell start = {}, goal = {};
   double optimal_length = 0.0;  ///< cells: eight neighbours, sqrt 2 for a diagonal, none past the corner of a blocked cell
+  double length_rounding = 0.0;  ///< cells: largest rounding error of `optimal_length`, by the digits that the file gives
   int line = 0;                 ///< of the file
 };
+
+/// Largest rounding error of a length as written: half a unit of its last significant digit, or of the sixth where fewer digits
+/// are given. Many .scen files print six significant digits and drop trailing zeros: "1024" may stand for 1024.004.
+double rounding_of(std::string_view length);
 
 /// Throws InputError with the file and the line.
 std::vector<MovingAiProblem> load_moving_ai_problems(const std::filesystem::path& file);

@@ -1,11 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
 namespace patrol::io {
 
-/// Text for one line of a terminal or a log: line ends and other control characters in it are written out.
+/// Length in bytes of the control character at the start of UTF-8 text: C0, DEL or C1 (U+0080 ... U+009F). 0: there is none.
+std::size_t control_length(std::string_view text);
+bool has_control_characters(std::string_view text);
+
+/// Text for one line of a terminal or a log: line ends, other control characters and bytes that are not UTF-8 are written out.
 std::string on_one_line(std::string_view text);
 
 }  // namespace patrol::io

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <set>
 
+#include "io/yaml_document.h"
+
 namespace patrol::io {
 namespace {
 
@@ -42,12 +44,7 @@ void apply_override(YAML::Node root, const std::string& override) {
   if (equals == std::string::npos || equals == 0) {
     throw InputError("--set " + override + ": must be path=value, e.g. sensors.lidar.range_noise_m=0.05");
   }
-  YAML::Node value;
-  try {
-    value = YAML::Load(override.substr(equals + 1));
-  } catch (const YAML::Exception& error) {
-    throw InputError("--set " + override + ": " + error.msg);
-  }
+  const YAML::Node value = parse_yaml("--set " + override, override.substr(equals + 1), false);
   const std::vector<std::string> path = split(override.substr(0, equals), '.');
   YAML::Node node = root;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -172,14 +169,10 @@ void SettingsWriter::write_expectations(const Expectations& expectations) {
 }
 
 YAML::Node load_document(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": there is no such file");
-  YAML::Node document;
-  try {
-    document = YAML::LoadFile(file.string());
-  } catch (const YAML::Exception& error) {
-    throw input_error(file.string(), error.mark.is_null() ? 0 : error.mark.line + 1, "is not YAML: " + error.msg);
+  YAML::Node document = load_yaml(file);
+  if (!document.IsDefined() || document.IsNull()) {
+    throw InputError(file.string() + ": is empty: must be a map of keys and values, {} if it says nothing");
   }
-  if (!document.IsDefined() || document.IsNull()) document = YAML::Node(YAML::NodeType::Map);
   if (!document.IsMap()) throw InputError(file.string() + ": must be a map of keys and values");
   for (const std::string& override : overrides) apply_override(document, override);
   return document;

@@ -1,5 +1,8 @@
 #include "monitor/database.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -58,7 +61,18 @@ std::string Statement::text(int column) const {
   return bytes == nullptr ? "" : std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column)));
 }
 
+namespace {
+
+/// SQLite would create it readable by all.
+void create_for_owner(const std::filesystem::path& file) {
+  const int created = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (created >= 0) ::close(created);
+}
+
+}  // namespace
+
 Database::Database(const std::filesystem::path& file) {
+  create_for_owner(file);
   sqlite3* database = nullptr;
   const int opened = sqlite3_open(file.string().c_str(), &database);
   database_.reset(database);

@@ -59,7 +59,7 @@ class Statement {
 /// cut. Whatever fails later throws std::runtime_error.
 class Database {
  public:
-  /// Made when it is not there. Throws InputError when it cannot be opened or is not a database.
+  /// Creates the file, readable by its owner only, when it does not exist; its log and journal get the same mode. Throws InputError when it cannot be opened or is not a database.
   explicit Database(const std::filesystem::path& file);
 
   Statement prepare(std::string_view sql) { return Statement(database_.get(), sql); }

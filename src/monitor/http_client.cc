@@ -44,7 +44,8 @@ asio::awaitable<HttpAnswer> exchange(asio::io_context& context, const Url& url, 
 std::optional<HttpAnswer> post_json(const Url& url, const std::string& path, const std::string& token, const std::string& body, double limit_s,
                                     std::string* why) {
   http::request<http::string_body> request(http::verb::post, path, 11);
-  request.set(http::field::host, fmt::format("{}:{}", url.host, url.port));
+  const std::string host = url.host.find(':') == std::string::npos ? url.host : "[" + url.host + "]";
+  request.set(http::field::host, fmt::format("{}:{}", host, url.port));
   request.set(http::field::authorization, "Bearer " + token);
   request.set(http::field::content_type, "application/json");
   request.keep_alive(false);

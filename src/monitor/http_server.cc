@@ -1,7 +1,10 @@
 #include "monitor/http_server.h"
 
+#include <sys/socket.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <list>
 #include <utility>
@@ -23,6 +26,7 @@
 
 #include "core/error.h"
 #include "io/one_line.h"
+#include "monitor/byte_budget.h"
 #include "monitor/url.h"
 
 namespace patrol::monitor {
@@ -40,12 +44,35 @@ constexpr std::size_t kLingerBytes = 1 << 24;
 
 std::chrono::milliseconds milliseconds(double seconds) { return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds)); }
 
+std::size_t to_bytes(double megabytes) { return static_cast<std::size_t>(1e6 * megabytes); }
+
 auto into(Error& error) { return asio::redirect_error(asio::use_awaitable, error); }
 
-HttpRequest head_of(const Parser& parser, const std::string& peer) {
+/// Connection's two ends, as texts.
+struct Ends {
+  std::string peer;
+  std::string local;
+};
+
+std::string text_of(asio::ip::address address) {
+  if (address.is_v6() && address.to_v6().is_v4_mapped()) address = asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
+  return address.to_string();
+}
+
+Ends ends_of(const asio::ip::tcp::socket& socket) {
+  Error error;
+  const auto remote = socket.remote_endpoint(error);
+  if (error) return {.peer = "?", .local = {}};
+  const auto local = socket.local_endpoint(error);
+  return {.peer = text_of(remote.address()), .local = error ? "" : text_of(local.address())};
+}
+
+HttpRequest head_of(const Parser& parser, const Ends& ends) {
   const auto& message = parser.get();
   HttpRequest head;
-  head.peer = peer;
+  head.peer = ends.peer;
+  head.local = ends.local;
+  if (message.count(http::field::host) == 1) head.host = std::string(message[http::field::host]);
   head.method = std::string(message.method_string());
   head.authorization = std::string(message[http::field::authorization]);
   split_target(std::string(message.target()), head.path, head.parameters);
@@ -56,6 +83,33 @@ HttpResponse refusal_of(const Error& error) {
   if (error == http::error::header_limit) return refusal(431, "the header is too large");
   if (error == http::error::body_limit) return refusal(413, "the body is too large");
   return refusal(400, "this is not an HTTP request");
+}
+
+/// Refusal of a request whose body might be delimited in another way by somebody else, or that has a body where none is expected.
+std::optional<HttpResponse> refusal_of_framing(const Parser& parser) {
+  const auto& message = parser.get();
+  const std::size_t num_codings = message.count(http::field::transfer_encoding);
+  if (num_codings > 1 || (num_codings == 1 && !beast::iequals(message[http::field::transfer_encoding], "chunked"))) {
+    return refusal(501, "Transfer-Encoding must be chunked, or none");
+  }
+  if (num_codings == 1 && (message.count(http::field::content_length) > 0 || message.version() != 11)) {
+    return refusal(400, "Transfer-Encoding goes neither with Content-Length nor with HTTP/1.0");
+  }
+  const bool has_body = num_codings > 0 || parser.content_length().value_or(0) > 0;
+  const bool is_read = message.method() == http::verb::get || message.method() == http::verb::head;
+  if (has_body && is_read) return refusal(400, fmt::format("a {} request must have no body", std::string(message.method_string())));
+  return std::nullopt;
+}
+
+/// Endpoint of an address or a host name; an IPv4 address is preferred. Throws system_error when the name is unknown.
+asio::ip::tcp::endpoint endpoint_of(asio::io_context& context, const HttpServerSettings& settings) {
+  Error error;
+  const auto address = asio::ip::make_address(settings.host, error);
+  if (!error) return {address, static_cast<unsigned short>(settings.port)};
+  asio::ip::tcp::resolver resolver(context);
+  const auto found = resolver.resolve(settings.host, std::to_string(settings.port), asio::ip::resolver_base::passive);
+  const auto v4 = std::find_if(found.begin(), found.end(), [](const auto& one) { return one.endpoint().address().is_v4(); });
+  return v4 != found.end() ? v4->endpoint() : found.begin()->endpoint();
 }
 
 http::response<http::string_body> to_message(HttpResponse&& response, unsigned version, bool keeps_alive) {
@@ -79,10 +133,11 @@ HttpResponse refusal(int status, const std::string& why) {
 class HttpServer::Connections {
  public:
   Connections(const HttpServerSettings& settings, HttpHandler& handler, Log log)
-      : settings_(settings), handler_(handler), log_(std::move(log)), context_(1), acceptor_(context_), signals_(context_, SIGINT, SIGTERM) {
+      : settings_(settings), handler_(handler), log_(std::move(log)),
+        bodies_(to_bytes(settings.max_bodies_mb)), answers_(to_bytes(settings.max_answers_mb)), context_(1), acceptor_(context_), signals_(context_, SIGINT, SIGTERM) {
     validate(settings, "monitor");
     try {
-      const asio::ip::tcp::endpoint place(asio::ip::make_address(settings.host), static_cast<unsigned short>(settings.port));
+      const asio::ip::tcp::endpoint place = endpoint_of(context_, settings);
       acceptor_.open(place.protocol());
       acceptor_.set_option(asio::socket_base::reuse_address(true));
       acceptor_.bind(place);
@@ -101,12 +156,32 @@ class HttpServer::Connections {
   void stop() { context_.stop(); }
 
  private:
-  /// Stands in `waiting_` while its header is awaited, else in `busy_`.
-  struct Connection {
+  /// Listed in `waiting_` while its header is awaited, else in `busy_`; in neither once it has ended.
+  struct Connection : Ends {
+    Connection(beast::tcp_stream&& accepted, std::list<Connection*>& busy)
+        : Ends(ends_of(accepted.socket())), stream(std::move(accepted)), place(busy.insert(busy.end(), this)), list(&busy) {}
+    ~Connection() { list->erase(place); }
+    Connection(const Connection&) = delete;
+    Connection& operator=(const Connection&) = delete;
+
+    void move_to(std::list<Connection*>& other) {
+      other.splice(other.end(), *list, place);
+      list = &other;
+    }
+
     beast::tcp_stream stream;
-    std::string peer;
-    std::list<Connection*>::iterator place{};
+    std::list<Connection*>::iterator place;
+    std::list<Connection*>* list;
   };
+
+  /// Writes a log line. A log that throws must end neither a connection nor the server.
+  template <typename... Values>
+  void log(fmt::format_string<const Values&...> form, const Values&... values) noexcept {
+    try {
+      log_(fmt::format(form, values...));
+    } catch (...) {  // the request is worth more than its line
+    }
+  }
 
   asio::awaitable<void> accept() {
     asio::steady_timer pause(context_);
@@ -118,8 +193,12 @@ class HttpServer::Connections {
         co_await pause.async_wait(into(error));
         continue;
       }
-      if (waiting_.size() + busy_.size() >= static_cast<std::size_t>(settings_.max_connections)) close_one();
-      asio::co_spawn(context_, serve(std::move(socket)), asio::detached);
+      try {
+        if (waiting_.size() + busy_.size() >= static_cast<std::size_t>(settings_.max_connections)) close_one();
+        asio::co_spawn(context_, serve(std::move(socket)), asio::detached);
+      } catch (const std::exception& failure) {  // no memory for this one
+        log("a connection given up: {}", failure.what());
+      }
     }
   }
 
@@ -128,8 +207,8 @@ class HttpServer::Connections {
     Connection* waits = first_open(waiting_);
     Connection* one = waits != nullptr ? waits : first_open(busy_);
     if (one == nullptr) return;
-    log_(fmt::format("{} closed: too many connections, and it is the slowest", one->peer));
     one->stream.close();
+    log("{} closed: too many connections, and it is the slowest", one->peer);
   }
 
   static Connection* first_open(const std::list<Connection*>& list) {
@@ -138,69 +217,103 @@ class HttpServer::Connections {
   }
 
   asio::awaitable<void> serve(asio::ip::tcp::socket socket) {
-    Error error;
-    const auto endpoint = socket.remote_endpoint(error);
-    Connection connection{.stream = beast::tcp_stream(std::move(socket)), .peer = error ? "?" : endpoint.address().to_string()};
-    connection.place = busy_.insert(busy_.end(), &connection);
+    Connection connection(beast::tcp_stream(std::move(socket)), busy_);
     try {
       beast::flat_buffer buffer(static_cast<std::size_t>(settings_.max_header_kb) * 1024 + 65536);
       double limit_s = settings_.header_limit_s;
       while (co_await serve_one(connection, buffer, limit_s)) limit_s = settings_.idle_limit_s;
     } catch (const std::exception& failure) {
-      log_(fmt::format("{} given up: {}", connection.peer, failure.what()));
+      log("{} given up: {}", connection.peer, failure.what());
     }
-    busy_.erase(connection.place);
   }
 
-  /// A request and its answer. False: the connection is at its end.
+  /// Serves one request. False: the connection is at its end.
   asio::awaitable<bool> serve_one(Connection& connection, beast::flat_buffer& buffer, double limit_s) {
     Parser parser;
     parser.header_limit(static_cast<std::uint32_t>(settings_.max_header_kb) * 1024);
-    parser.body_limit(static_cast<std::uint64_t>(1e6 * settings_.max_body_mb));
-
-    Error error;
-    waiting_.splice(waiting_.end(), busy_, connection.place);
-    connection.stream.expires_after(milliseconds(limit_s));
-    co_await http::async_read_header(connection.stream, buffer, parser, into(error));
-    busy_.splice(busy_.end(), waiting_, connection.place);
+    parser.body_limit(to_bytes(settings_.max_body_mb));
+    const Error error = co_await read_header(connection, buffer, parser, limit_s);
     if (error == http::error::end_of_stream || error == asio::error::connection_reset || error == asio::error::operation_aborted) co_return false;
     if (error == beast::error::timeout) {
-      if (parser.got_some() || buffer.size() > 0) log_(fmt::format("{} given up: no whole header within {} s", connection.peer, limit_s));
+      if (parser.got_some() || buffer.size() > 0) log("{} given up: no whole header within {} s", connection.peer, limit_s);
       co_return false;
     }
     connection.stream.expires_after(milliseconds(settings_.request_limit_s));
-    HttpRequest request = head_of(parser, connection.peer);
-    if (error) {
-      co_await refuse(connection, request, refusal_of(error));
-      co_return false;
-    }
-    if (std::optional<HttpResponse> refused = handler_.refuse(request)) {
+    HttpRequest request = head_of(parser, connection);
+    std::optional<HttpResponse> refused = error ? refusal_of(error) : refusal_of_framing(parser);
+    if (!refused) refused = handler_.refuse(request);
+    const std::size_t body_bytes = parser.chunked() ? to_bytes(settings_.max_body_mb) : parser.content_length().value_or(0);
+    std::optional<ByteBudget::Claim> body_claim = bodies_.claim(refused ? 0 : body_bytes);
+    if (!body_claim) refused = busy("too many bodies are on their way");
+    if (refused) {
       co_await refuse(connection, request, std::move(*refused));
       co_return false;
     }
+    const bool is_read = co_await read_body(connection, buffer, parser, request);
+    if (!is_read || (request.method == "GET" && has_gone(connection))) co_return false;
+
+    HttpResponse response = answer(request);
+    request.body = std::string();
+    body_claim.reset();
+    const bool is_sent = co_await send(connection, request, std::move(response), parser.get());
+    co_return is_sent;
+  }
+
+  asio::awaitable<Error> read_header(Connection& connection, beast::flat_buffer& buffer, Parser& parser, double limit_s) {
+    Error error;
+    connection.move_to(waiting_);
+    connection.stream.expires_after(milliseconds(limit_s));
+    co_await http::async_read_header(connection.stream, buffer, parser, into(error));
+    connection.move_to(busy_);
+    co_return error;
+  }
+
+  /// Reads the body into the request. False: the connection is at its end.
+  asio::awaitable<bool> read_body(Connection& connection, beast::flat_buffer& buffer, Parser& parser, HttpRequest& request) {
+    Error error;
     if (beast::iequals(parser.get()[http::field::expect], "100-continue")) {
       http::response<http::empty_body> go_on(http::status::continue_, parser.get().version());
       co_await http::async_write(connection.stream, go_on, into(error));
     }
     if (!error) co_await http::async_read(connection.stream, buffer, parser, into(error));
     if (error == beast::error::timeout) {
-      log_(fmt::format("{} given up: {} {}: no whole body within {} s", connection.peer, request.method, request.path, settings_.request_limit_s));
-      co_return false;
+      log("{} given up: {} {}: no whole body within {} s", connection.peer, request.method, request.path, settings_.request_limit_s);
     }
     if (error == http::error::body_limit || error == http::error::bad_chunk || error == http::error::bad_chunk_extension) {
       co_await refuse(connection, request, refusal_of(error));
-      co_return false;
     }
-    if (error) co_return false;  // the peer has gone
-
     request.body = std::move(parser.get().body());
-    HttpResponse response = answer(request);
-    auto message = to_message(std::move(response), parser.get().version(), parser.get().keep_alive());
+    co_return !error;
+  }
+
+  /// Sends an answer. False: the connection is at its end.
+  asio::awaitable<bool> send(Connection& connection, const HttpRequest& request, HttpResponse response, const Parser::value_type& asked) {
+    std::optional<ByteBudget::Claim> claim = answers_.claim(response.body.size());
+    if (!claim) {
+      response = busy("too many answers wait to be read");
+      log_refusal(request, response);
+    }
+    Error error;
+    auto message = to_message(std::move(response), asked.version(), asked.keep_alive());
     co_await http::async_write(connection.stream, message, into(error));
     if (error == beast::error::timeout) {
-      log_(fmt::format("{} given up: {} {}: the answer was not read within {} s", connection.peer, request.method, request.path, settings_.request_limit_s));
+      log("{} given up: {} {}: the answer was not read within {} s", connection.peer, request.method, request.path,
+          settings_.request_limit_s);
     }
     co_return !error && message.keep_alive();
+  }
+
+  /// Whether the peer has closed its side: no answer is computed for it.
+  static bool has_gone(Connection& connection) {
+    char byte = 0;
+    const ssize_t count = ::recv(connection.stream.socket().native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
+    return count == 0 || (count < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR);
+  }
+
+  static HttpResponse busy(const std::string& why) {
+    HttpResponse response = refusal(503, why + ": try again in a second");
+    response.headers.emplace_back("Retry-After", "1");
+    return response;
   }
 
   HttpResponse answer(const HttpRequest& request) {
@@ -215,7 +328,7 @@ class HttpServer::Connections {
   }
 
   void log_refusal(const HttpRequest& request, const HttpResponse& response) {
-    log_(fmt::format("{} {} {} {}: {}", request.peer, response.status, request.method, request.path, response.body));
+    log("{} {} {} {}: {}", request.peer, response.status, request.method, request.path, response.body);
   }
 
   /// Says no and hangs up: what is still coming is thrown away for a moment, or the peer would never see the answer.
@@ -236,10 +349,11 @@ class HttpServer::Connections {
   HttpServerSettings settings_;
   HttpHandler& handler_;
   Log log_;
+  std::list<Connection*> waiting_, busy_;  ///< the longest first; they outlive the connections, which end with the context
+  ByteBudget bodies_, answers_;
   asio::io_context context_;
   asio::ip::tcp::acceptor acceptor_;
   asio::signal_set signals_;
-  std::list<Connection*> waiting_, busy_;  ///< the longest first
 };
 
 HttpServer::HttpServer(const HttpServerSettings& settings, HttpHandler& handler, Log log)

@@ -13,7 +13,7 @@
 namespace patrol::monitor {
 
 struct HttpServerSettings {
-  std::string host = "127.0.0.1";  ///< address to listen at; who is to reach it from elsewhere says so
+  std::string host = "127.0.0.1";  ///< address or host name to listen at; by default only this computer reaches it
   int port = 8080;                 ///< 0: any that is free
   double header_limit_s = 5.0;     ///< from the connection, or the request before, to the end of the header
   double request_limit_s = 30.0;   ///< from the header to the end of the answer
@@ -21,6 +21,8 @@ struct HttpServerSettings {
   int max_connections = 400;       ///< at once; one more, and the one that has waited longest for its header goes
   int max_header_kb = 16;
   double max_body_mb = 8.0;
+  double max_bodies_mb = 64.0;     ///< request bodies of all connections together; a request beyond it is refused with 503
+  double max_answers_mb = 64.0;    ///< answers of all connections together that wait to be read; one beyond it is replaced by 503
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -32,11 +34,15 @@ struct HttpServerSettings {
     visit("max_connections", self.max_connections, between(1, 900));
     visit("max_header_kb", self.max_header_kb, between(1, 1024));
     visit("max_body_mb", self.max_body_mb, between(0.001, 256.0));
+    visit("max_bodies_mb", self.max_bodies_mb, between(0.001, 4096.0));
+    visit("max_answers_mb", self.max_answers_mb, between(0.001, 4096.0));
   }
 };
 
 struct HttpRequest {
   std::string peer;           ///< address
+  std::string local;          ///< address at which the peer reached the server
+  std::string host;           ///< Host header; empty unless there is exactly one
   std::string method;         ///< GET, POST, ...
   std::string path;           ///< as it was sent, without what follows the `?`
   std::map<std::string, std::string, std::less<>> parameters;

@@ -1,9 +1,11 @@
 #include "monitor/queries.h"
 
 #include <algorithm>
+#include <charconv>
 
 #include <fmt/format.h>
 
+#include "core/error.h"
 #include "core/inspection_result.h"
 #include "io/base64.h"
 #include "io/json_object.h"
@@ -13,7 +15,7 @@ namespace {
 
 using io::Json;
 
-constexpr int kMostChanges = 500;
+constexpr int kMostChanges = 200;
 constexpr int kMostTrackPoints = 600;
 constexpr int kMostRings = 500;
 constexpr int kMostRingRows = 40;  // of one ring
@@ -21,6 +23,10 @@ constexpr int kMostGasRows = 2'000;
 constexpr int kMostLines = 2'000;
 constexpr int kMostStations = 20;
 constexpr int kMostPage = 200;
+constexpr int kMostRunStations = 500;  // in one answer, as the following
+constexpr int kMostCells = 4'000;
+constexpr int kPageLines = 400;
+constexpr int kPageRings = 100;
 
 Json value_of(const Statement& row, int column) {
   switch (row.type(column)) {
@@ -70,23 +76,37 @@ Json findings_page(Database& database, const AlarmsPage& page) {
   return objects_of(rows.bind(page.before, std::clamp(page.limit, 1, kMostPage)));
 }
 
-/// At most so many of a run's places, evenly.
+/// At most 600 of a run's positions, in equal steps, and the last.
 Json track_of(Database& database, std::int64_t run, std::int64_t num_poses) {
   Json track = Json::array();
   const std::int64_t step = num_poses / kMostTrackPoints + 1;
-  Statement row = database.prepare("SELECT x, y FROM poses WHERE run = ?1 AND (place % ?2 = 0 OR place = ?3) ORDER BY place");
-  row.bind(run, step, num_poses - 1);
-  while (row.step()) track.push_back({row.number(0), row.number(1)});
+  Statement row = database.prepare("SELECT x, y FROM poses WHERE run = ?1 AND place = ?2");
+  const auto add = [&](std::int64_t place) {
+    if (row.bind(run, place).step()) track.push_back({row.number(0), row.number(1)});
+  };
+  for (std::int64_t place = 0; place < num_poses; place += step) add(place);
+  if (num_poses > 0 && (num_poses - 1) % step != 0) add(num_poses - 1);
   return track;
 }
 
 Json map_geometry(Database& database, std::int64_t seq) {
-  Statement row = database.prepare("SELECT data FROM results WHERE seq = ?1");
+  Statement row = database.prepare("SELECT json_remove(data, '$.png_base64') FROM results WHERE seq = ?1");
   if (!row.bind(seq).step()) return nullptr;
   Json map = Json::parse(row.text(0));
-  map.erase("png_base64");
   map["seq"] = seq;
   return map;
+}
+
+/// One page of a run's stations, and the number at which the next page begins.
+void add_stations(Json& json, Database& database, std::int64_t run, std::int64_t first) {
+  Statement row = database.prepare("SELECT value FROM runs, json_each(stations) WHERE number = ?1 LIMIT ?2 OFFSET ?3");
+  row.bind(run, kMostRunStations + 1, first);
+  Json list = Json::array();
+  while (row.step()) list.push_back(Json::parse(row.text(0)));
+  const bool has_more = list.size() > static_cast<std::size_t>(kMostRunStations);
+  if (has_more) list.erase(list.size() - 1);
+  json["stations"] = std::move(list);
+  json["next_station"] = has_more ? Json(first + kMostRunStations) : Json(nullptr);
 }
 
 /// The newest result of each station, their data as they were stored.
@@ -104,29 +124,57 @@ std::string newest_of(Database& database, const std::string& world, const char* 
   return "[" + list + "]";
 }
 
-Json lines_of(Database& database, const std::string& world) {
-  Statement rows = database.prepare("SELECT ring, name, made_ms, change_m, std_m, before_m FROM lines WHERE world = ?1 ORDER BY ring, name LIMIT ?2");
-  return objects_of(rows.bind(world, kMostLines));
+/// One page of the cells of the newest scans; moves `page` to the next, and returns whether there is one.
+bool add_scans(Json& scans, Database& database, const std::string& world, LiningPage& page) {
+  Statement scan = database.prepare(
+      "SELECT seq, results.robot, results.run, results.time_s, results.made_ms, results.summary FROM newest JOIN results USING (seq) "
+      "WHERE newest.world = ?1 AND newest.kind = 'lining' ORDER BY newest.made_ms DESC, seq DESC LIMIT ?2 OFFSET ?3");
+  scan.bind(world, std::max<std::int64_t>(kMostStations - page.scan, 0), page.scan);
+  Statement cell = database.prepare("SELECT value FROM results, json_each(data, '$.cells') WHERE seq = ?1 LIMIT ?2 OFFSET ?3");
+  scans = Json::array();
+  for (int num_left = kMostCells; scan.step(); ++page.scan, page.cell = 0) {
+    if (num_left == 0) return true;
+    Json data = Json::parse(scan.text(5));
+    Json& cells = data["cells"] = Json::array();
+    for (cell.bind(scan.integer(0), num_left, page.cell); cell.step();) cells.push_back(Json::parse(cell.text(0)));
+    num_left -= static_cast<int>(cells.size());
+    page.cell += static_cast<std::int64_t>(cells.size());
+    scans.push_back({{"seq", scan.integer(0)}, {"robot", scan.text(1)}, {"run", scan.text(2)}, {"time_s", scan.number(3)},
+                     {"made_ms", scan.integer(4)}, {"data", std::move(data)}});
+    if (num_left == 0) return true;
+  }
+  return false;
+}
+
+bool add_lines(Json& lines, Database& database, const std::string& world, LiningPage& page) {
+  Statement rows =
+      database.prepare("SELECT ring, name, made_ms, change_m, std_m, before_m FROM lines WHERE world = ?1 ORDER BY ring, name LIMIT ?2 OFFSET ?3");
+  const std::int64_t limit = std::clamp<std::int64_t>(kMostLines - page.line, 0, kPageLines);
+  lines = objects_of(rows.bind(world, limit, page.line));
+  page.line += limit;
+  return static_cast<std::int64_t>(lines.size()) == limit && page.line < kMostLines;
 }
 
 /// [ring, made_ms, inward_m, std_m, clock_deg], the newest of each ring, in the order of time.
-Json rings_of(Database& database, const std::string& world) {
+bool add_rings(Json& rings, Database& database, const std::string& world, LiningPage& page) {
   Statement numbers = database.prepare(
       "WITH RECURSIVE known (ring) AS (SELECT min(ring) FROM rings WHERE world = ?1 UNION ALL "
       "SELECT (SELECT min(ring) FROM rings WHERE world = ?1 AND ring > known.ring) FROM known WHERE known.ring IS NOT NULL) "
-      "SELECT ring FROM known WHERE ring IS NOT NULL LIMIT ?2");
+      "SELECT ring FROM known WHERE ring IS NOT NULL LIMIT ?2 OFFSET ?3");
   Statement row = database.prepare("SELECT made_ms, inward_m, std_m, clock_deg FROM rings WHERE world = ?1 AND ring = ?2 ORDER BY made_ms DESC LIMIT ?3");
-  Json list = Json::array();
-  numbers.bind(world, kMostRings);
-  while (numbers.step()) {
+  const std::int64_t limit = std::clamp<std::int64_t>(kMostRings - page.ring, 0, kPageRings);
+  rings = Json::array();
+  std::int64_t count = 0;
+  for (numbers.bind(world, limit, page.ring); numbers.step(); ++count) {
     const std::int64_t ring = numbers.integer(0);
     Json one = Json::array();
     row.bind(world, ring, kMostRingRows);
     while (row.step()) one.push_back({ring, row.integer(0), row.number(1), value_of(row, 2), row.number(3)});
     std::reverse(one.begin(), one.end());
-    list.insert(list.end(), one.begin(), one.end());
+    rings.insert(rings.end(), one.begin(), one.end());
   }
-  return list;
+  page.ring += limit;
+  return count == limit && page.ring < kMostRings;
 }
 
 }  // namespace
@@ -136,7 +184,9 @@ std::string changes(Database& database, std::int64_t since, std::int64_t now_ms)
   revision.step();
   Json json = {{"revision", revision.integer(0)}, {"now_ms", now_ms}, {"open", open_count(database)}};
   Statement rows = database.prepare(std::string(kRobots) + " WHERE robots.revision > ?1 ORDER BY robots.robot LIMIT ?2");
-  json["robots"] = objects_of(rows.bind(since, kMostChanges));
+  json["robots"] = objects_of(rows.bind(since, kMostChanges + 1));
+  json["more_robots"] = json["robots"].size() > static_cast<std::size_t>(kMostChanges);
+  if (json["more_robots"]) json["robots"].erase(json["robots"].size() - 1);
   if (since == 0) {
     json["findings"] = findings_page(database, {.limit = kMostPage});
     for (Json& open : findings_page(database, {.only_open = true, .limit = kMostPage})) json["findings"].push_back(std::move(open));
@@ -148,25 +198,29 @@ std::string changes(Database& database, std::int64_t since, std::int64_t now_ms)
   return json.dump();
 }
 
-std::string robots(Database& database) {
-  Statement rows = database.prepare(std::string(kRobots) + " ORDER BY robots.robot");
-  return Json{{"robots", objects_of(rows)}}.dump();
+std::string robots(Database& database, const RobotsPage& page) {
+  Statement rows = database.prepare(std::string(kRobots) + " WHERE robots.robot > ?1 ORDER BY robots.robot LIMIT ?2");
+  const int limit = std::clamp(page.limit, 1, kMostPage);
+  Json list = objects_of(rows.bind(page.after, limit + 1));
+  const bool has_more = list.size() > static_cast<std::size_t>(limit);
+  if (has_more) list.erase(list.size() - 1);
+  return Json{{"robots", list}, {"more", has_more}}.dump();
 }
 
 std::string alarms(Database& database, const AlarmsPage& page) {
   return Json{{"findings", findings_page(database, page)}, {"open", open_count(database)}}.dump();
 }
 
-std::optional<std::string> run_details(Database& database, const std::string& robot, const std::string& run) {
+std::optional<std::string> run_details(Database& database, const std::string& robot, const std::string& run, std::int64_t station) {
   Statement row = database.prepare(
-      "SELECT number, poses, map_seq, stations, robot, run, world, scenario, state, message FROM runs "
+      "SELECT number, poses, map_seq, robot, run, world, scenario, state, message FROM runs "
       "WHERE robot = ?1 AND (?2 = '' OR run = ?2) ORDER BY first_ms DESC LIMIT 1");
   if (!row.bind(robot, run).step()) return std::nullopt;
   Json json = object_of(row);
   const std::int64_t number = row.integer(0);
   json["track"] = track_of(database, number, row.integer(1));
   json["map"] = row.is_null(2) ? Json(nullptr) : map_geometry(database, row.integer(2));
-  json["stations"] = Json::parse(row.text(3));
+  add_stations(json, database, number, station);
   Statement findings = database.prepare(std::string(kFindings) + " WHERE findings.run = ?1 ORDER BY findings.number DESC LIMIT ?2");
   json["findings"] = objects_of(findings.bind(number, kMostPage));
   Statement runs = database.prepare("SELECT run, first_ms, state FROM runs WHERE robot = ?1 ORDER BY first_ms DESC LIMIT 50");
@@ -174,9 +228,32 @@ std::optional<std::string> run_details(Database& database, const std::string& ro
   return json.dump();
 }
 
-std::string lining(Database& database, const std::string& world) {
-  return fmt::format(R"({{"scans":{},"lines":{},"rings":{}}})", newest_of(database, world, "lining"), lines_of(database, world).dump(),
-                     rings_of(database, world).dump());
+std::string LiningPage::text() const { return fmt::format("{}.{}.{}.{}", scan, cell, line, ring); }
+
+LiningPage lining_page_from(const std::string& text) {
+  constexpr std::int64_t kMax = 1'000'000;
+  LiningPage page;
+  if (text.empty()) return page;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  bool is_page = true;
+  for (std::int64_t* number : {&page.scan, &page.cell, &page.line, &page.ring}) {
+    const auto [next, error] = std::from_chars(at, end, *number);
+    is_page = is_page && error == std::errc() && *number >= 0 && *number <= kMax;
+    is_page = is_page && (number == &page.ring ? next == end : next != end && *next == '.');
+    if (!is_page) throw InputError("after must be the `next` of the page before");
+    at = next + 1;
+  }
+  return page;
+}
+
+std::string lining(Database& database, const std::string& world, const LiningPage& page) {
+  LiningPage next = page;
+  Json json;
+  const bool has_scans = add_scans(json["scans"], database, world, next), has_lines = add_lines(json["lines"], database, world, next),
+             has_rings = add_rings(json["rings"], database, world, next);
+  json["next"] = has_scans || has_lines || has_rings ? Json(next.text()) : Json(nullptr);
+  return json.dump();
 }
 
 std::string water(Database& database, const std::string& world) { return fmt::format(R"({{"water":{}}})", newest_of(database, world, "water")); }

@@ -1,7 +1,7 @@
 #include "monitor/result.h"
 
+#include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <set>
 
 #include <fmt/chrono.h>
@@ -158,15 +158,18 @@ std::string to_utc(std::int64_t milliseconds) {
 }
 
 std::int64_t from_utc(const std::string& text) {
-  int year = 0, month = 0, day = 0, hour = 0, minute = 0, second = 0, fraction = 0, used = 0;
-  const int fields = std::sscanf(text.c_str(), "%4d-%2d-%2dT%2d:%2d:%2d.%3dZ%n", &year, &month, &day, &hour, &minute, &second, &fraction, &used);
-  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)), std::chrono::day(static_cast<unsigned>(day))};
-  constexpr std::size_t kLength = 24;
-  const bool is_time = fields == 7 && text.size() == kLength && static_cast<std::size_t>(used) == kLength && date.ok() && year >= 1970 && hour >= 0 && hour < 24 &&
-                       minute >= 0 && minute < 60 && second >= 0 && second < 60 && fraction >= 0;
-  if (!is_time) throw InputError("must be a time such as 2026-11-22T10:45:33.120Z");
-  const auto day_start = std::chrono::sys_days(date).time_since_epoch();
-  return std::chrono::milliseconds(day_start + std::chrono::hours(hour) + std::chrono::minutes(minute) + std::chrono::seconds(second)).count() + fraction;
+  constexpr std::string_view kForm = "0000-00-00T00:00:00.000Z";
+  const auto refuse = [] { return InputError("must be a time such as 2026-11-22T10:45:33.120Z"); };
+  const auto matches = [](char form, char c) { return form == '0' ? c >= '0' && c <= '9' : c == form; };
+  if (!std::equal(kForm.begin(), kForm.end(), text.begin(), text.end(), matches)) throw refuse();
+  const auto number = [&](std::size_t at, std::size_t length) { return std::stoi(text.substr(at, length)); };
+  const int year = number(0, 4), month = number(5, 2), day = number(8, 2), hour = number(11, 2), minute = number(14, 2), second = number(17, 2);
+  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  if (!date.ok() || year < 1970 || hour >= 24 || minute >= 60 || second >= 60) throw refuse();
+  const auto time = std::chrono::sys_days(date).time_since_epoch() + std::chrono::hours(hour) + std::chrono::minutes(minute) +
+                    std::chrono::seconds(second);
+  return std::chrono::milliseconds(time).count() + number(20, 3);
 }
 
 std::int64_t now_ms() {

@@ -19,7 +19,7 @@ namespace {
 using io::Json;
 
 constexpr std::string_view kAlarms = "/api/alarms/", kAcknowledge = "/acknowledge", kMaps = "/api/maps/", kResults = "/api/results";
-constexpr std::size_t kLongestWho = 80, kLongestNote = 500;
+constexpr std::size_t kLongestWho = 80, kLongestNote = 500, kMaxShownHost = 100;
 constexpr const char* kPolicy = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
                                 "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
@@ -75,6 +75,16 @@ int limit_of(const HttpRequest& request, int otherwise) { return static_cast<int
 
 HttpResponse fresh(std::string json) { return {.body = std::move(json), .headers = {{"Cache-Control", "no-store"}}}; }
 
+/// Token of an Authorization header; empty when its scheme is another. Schemes have no case (RFC 9110, 11.1).
+std::string_view bearer_token(std::string_view header) {
+  constexpr std::string_view kScheme = "bearer ";
+  const auto is_same_letter = [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); };
+  if (header.size() < kScheme.size() || !std::equal(kScheme.begin(), kScheme.end(), header.begin(), is_same_letter)) return {};
+  header.remove_prefix(kScheme.size());
+  header.remove_prefix(std::min(header.find_first_not_of(' '), header.size()));
+  return header;
+}
+
 bool is_place_to_post(std::string_view path) { return path == kResults || number_in(path, kAlarms, kAcknowledge).has_value(); }
 
 bool is_place_to_get(std::string_view path) {
@@ -91,15 +101,17 @@ HttpResponse get(Database& database, const HttpRequest& request) {
             .headers = {{"Cache-Control", "no-cache"}, {"Content-Security-Policy", kPolicy}, {"Referrer-Policy", "no-referrer"}}};
   }
   if (path == "/api/changes") return fresh(changes(database, count(request, "since", 0), now_ms()));
-  if (path == "/api/robots") return fresh(robots(database));
+  if (path == "/api/robots") return fresh(robots(database, {.after = parameter(request, "after"), .limit = limit_of(request, 200)}));
   if (path == "/api/alarms") {
     return fresh(alarms(database, {.only_open = parameter(request, "open") == "1", .before = count(request, "before", 0), .limit = limit_of(request, 100)}));
   }
   if (path == "/api/run") {
-    const auto details = run_details(database, parameter(request, "robot"), parameter(request, "run"));
+    const auto details = run_details(database, parameter(request, "robot"), parameter(request, "run"), count(request, "station", 0));
     return details ? fresh(*details) : refusal(404, "there is no such robot or run");
   }
-  if (path == "/api/lining") return fresh(lining(database, parameter(request, "world")));
+  if (path == "/api/lining") {
+    return fresh(lining(database, parameter(request, "world"), lining_page_from(parameter(request, "after"))));
+  }
   if (path == "/api/water") return fresh(water(database, parameter(request, "world")));
   if (path == "/api/gas") return fresh(gas(database, parameter(request, "world")));
   if (path == "/api/history") {
@@ -113,9 +125,14 @@ HttpResponse get(Database& database, const HttpRequest& request) {
 
 }  // namespace
 
-Service::Service(Store& store, std::string token, HttpServer::Log log) : store_(store), token_(std::move(token)), log_(std::move(log)) {}
+Service::Service(Store& store, std::string token, HttpServer::Log log, HostNames hosts)
+    : store_(store), token_(std::move(token)), log_(std::move(log)), hosts_(std::move(hosts)) {}
 
 std::optional<HttpResponse> Service::refuse(const HttpRequest& head) {
+  if (!hosts_.allow(head.host, head.local)) {
+    const std::string host = head.host.substr(0, kMaxShownHost);
+    return refusal(421, fmt::format("Host '{}': not a name of this platform: must be its address, localhost, or a name of --allow-host", host));
+  }
   const bool posts = is_place_to_post(head.path), gets = is_place_to_get(head.path);
   if (!posts && !gets) return refusal(404, "there is nothing here");
   const std::string allowed = posts ? "POST" : "GET";
@@ -124,10 +141,8 @@ std::optional<HttpResponse> Service::refuse(const HttpRequest& head) {
     no.headers.emplace_back("Allow", allowed);
     return no;
   }
-  constexpr std::string_view kBearer = "Bearer ";
-  const std::string_view shown = head.authorization;
-  if (posts && !(shown.starts_with(kBearer) && is_same_token(shown.substr(kBearer.size()), token_))) {
-    HttpResponse no = refusal(401, shown.empty() ? "a token is needed: Authorization: Bearer ..." : "this is not the token");
+  if (posts && !is_same_token(bearer_token(head.authorization), token_)) {
+    HttpResponse no = refusal(401, head.authorization.empty() ? "a token is needed: Authorization: Bearer ..." : "this is not the token");
     no.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"patrol\"");
     return no;
   }

@@ -44,7 +44,8 @@ std::string token_of_folder(const std::filesystem::path& folder) {
   if (std::filesystem::exists(file)) return load_token(file);
   const std::string token = new_token(), line = token + "\n";
   const std::filesystem::path temporary = folder / "token.part";
-  const int out = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  ::unlink(temporary.c_str());  // an earlier one might have another owner or mode
+  const int out = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   const bool is_written = out >= 0 && ::write(out, line.data(), line.size()) == static_cast<ssize_t>(line.size()) && ::fsync(out) == 0;
   if (out >= 0) ::close(out);
   if (!is_written) throw InputError(fmt::format("{}: cannot be written", file.string()));

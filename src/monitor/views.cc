@@ -36,6 +36,7 @@ CREATE TABLE IF NOT EXISTS lines (world TEXT NOT NULL, ring INTEGER NOT NULL, na
   PRIMARY KEY (world, ring, name)) STRICT, WITHOUT ROWID;
 CREATE TABLE IF NOT EXISTS newest (world TEXT NOT NULL, kind TEXT NOT NULL, station TEXT NOT NULL, made_ms INTEGER NOT NULL, seq INTEGER NOT NULL,
   PRIMARY KEY (world, kind, station)) STRICT, WITHOUT ROWID;
+UPDATE robots SET made_ms = received_ms WHERE made_ms > received_ms + 60000;
 )sql";
 
 namespace {
@@ -52,10 +53,17 @@ WarningLevel level_of(const std::string& event_kind) {
   return level == kLevels.end() ? WarningLevel::kNone : level->second;
 }
 
+/// Time at which a result counts as made: a robot's clock that is ahead of the platform's must not outdo all that comes later.
+std::int64_t counted_ms(const Result& result, const Filed& filed) {
+  return result.made_ms > filed.received_ms + kClockTolerance_ms ? filed.received_ms : result.made_ms;
+}
+
 /// Enters one result.
 class Entry {
  public:
-  Entry(Database& database, const Result& result, const Filed& filed) : database_(database), result_(result), filed_(filed) { open_run(); }
+  Entry(Database& database, const Result& result, const Filed& filed) : database_(database), result_(result), filed_(filed), made_ms_(counted_ms(result, filed)) {
+    open_run();
+  }
 
   void enter() {
     const Json data = Json::parse(result_.data);
@@ -74,7 +82,7 @@ class Entry {
   void open_run() {
     database_.prepared("INSERT INTO runs (robot, run, world, first_ms, last_ms) VALUES (?1, ?2, ?3, ?4, ?4) "
                       "ON CONFLICT (robot, run) DO UPDATE SET first_ms = min(first_ms, ?4), last_ms = max(last_ms, ?4)")
-        .bind(result_.robot, result_.run, result_.world, result_.made_ms)
+        .bind(result_.robot, result_.run, result_.world, made_ms_)
         .run();
     run_ = database_.find_integer("SELECT number FROM runs WHERE robot = ?1 AND run = ?2", result_.robot, result_.run).value();
   }
@@ -82,14 +90,14 @@ class Entry {
   /// Results of an earlier run may come late: the robot stays where its newest has it.
   bool touch_robot(bool is_mark) {
     database_.prepared("INSERT INTO robots (robot, run, made_ms, received_ms, time_s, revision) VALUES (?1, ?2, ?3, ?4, ?5, ?6) ON CONFLICT (robot) DO NOTHING")
-        .bind(result_.robot, run_, result_.made_ms, filed_.received_ms, result_.time_s, filed_.revision)
+        .bind(result_.robot, run_, made_ms_, filed_.received_ms, result_.time_s, filed_.revision)
         .run();
     if (is_mark) database_.prepared("UPDATE robots SET mark_revision = ?2, revision = ?2 WHERE robot = ?1").bind(result_.robot, filed_.revision).run();
     database_.prepared("UPDATE robots SET x = NULL, y = NULL, yaw = NULL, at = '', run = ?2 WHERE robot = ?1 AND run != ?2 AND made_ms <= ?3")
-        .bind(result_.robot, run_, result_.made_ms)
+        .bind(result_.robot, run_, made_ms_)
         .run();
     database_.prepared("UPDATE robots SET made_ms = ?2, received_ms = ?3, time_s = ?4, revision = ?5 WHERE robot = ?1 AND run = ?6 AND made_ms <= ?2")
-        .bind(result_.robot, result_.made_ms, filed_.received_ms, result_.time_s, filed_.revision, run_)
+        .bind(result_.robot, made_ms_, filed_.received_ms, result_.time_s, filed_.revision, run_)
         .run();
     return database_.changes() > 0;
   }
@@ -123,7 +131,7 @@ class Entry {
     add_finding(level_of(kind), kind, subject, data["text"], p_map);
     if (kind == "gas_measured" && data["value"].is_number()) {
       database_.prepared("INSERT OR REPLACE INTO gas VALUES (?1, ?2, ?3, ?4, ?5)")
-          .bind(result_.world, subject, result_.made_ms, run_, data["value"].get<double>())
+          .bind(result_.world, subject, made_ms_, run_, data["value"].get<double>())
           .run();
     }
     if (kind == "goal_marked") {
@@ -150,14 +158,14 @@ class Entry {
     }
     for (const auto& [ring, cell] : most) {
       database_.prepared("INSERT OR REPLACE INTO rings VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)")
-          .bind(result_.world, ring, result_.made_ms, run_, lining.station, cell.inward_m, cell.std_m, cell.clock_deg)
+          .bind(result_.world, ring, made_ms_, run_, lining.station, cell.inward_m, cell.std_m, cell.clock_deg)
           .run();
     }
     for (const ConvergenceLine& line : lining.lines) {
       if (!std::isfinite(line.change_m)) continue;
       database_.prepared("INSERT INTO lines VALUES (?1, ?2, ?3, ?4, ?5, ?6, NULL) "
                         "ON CONFLICT DO UPDATE SET before_m = change_m, made_ms = ?4, change_m = ?5, std_m = ?6 WHERE made_ms <= ?4")
-          .bind(result_.world, line.ring, line.name, result_.made_ms, line.change_m, line.std_m)
+          .bind(result_.world, line.ring, line.name, made_ms_, line.change_m, line.std_m)
           .run();
     }
     for (const RingFinding& finding : lining.findings) {
@@ -179,7 +187,7 @@ class Entry {
 
   void enter_newest(const std::string& station) {
     database_.prepared("INSERT INTO newest VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT DO UPDATE SET made_ms = ?4, seq = ?5 WHERE made_ms <= ?4")
-        .bind(result_.world, result_.kind, station, result_.made_ms, filed_.seq)
+        .bind(result_.world, result_.kind, station, made_ms_, filed_.seq)
         .run();
   }
 
@@ -194,6 +202,7 @@ class Entry {
   Database& database_;
   const Result& result_;
   const Filed& filed_;
+  std::int64_t made_ms_;  ///< time that decides which result is the newest
   std::int64_t run_ = 0;
 };
 

@@ -16,6 +16,10 @@ struct Filed {
 /// lines, and the newest scan and sounding of each station. They can be made again from `results`.
 extern const char* const kViews;
 
+/// Largest lead of a robot's clock over the platform's. A result whose stamp is later counts in the tables as made when it was received;
+/// the result itself is kept as it was sent.
+inline constexpr std::int64_t kClockTolerance_ms = 60'000;
+
 /// Enters a new result there.
 void update_views(Database& database, const Result& result, const Filed& filed);
 

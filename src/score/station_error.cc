@@ -2,7 +2,9 @@
 
 #include <Eigen/Dense>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 #include "core/linear_algebra.h"
@@ -17,6 +19,15 @@ constexpr double kRobust_m = 0.05;        // beyond it a cell's say falls (Cauch
 constexpr int kMinPoints = 30;
 constexpr int kIterations = 20;
 constexpr double kWeakShare = 0.03;       // directions with less information than this share of the best are not moved
+
+// Search for displacements that a fit from the map as it lies cannot reach.
+constexpr double kSearch_m = 3.0;         // along either axis
+constexpr double kSearchStep_m = 0.1;
+constexpr double kSearchRobust_m = 0.1;   // kRobust_m for poses between the steps
+constexpr double kSearchTurn_deg = 2.0;   // step of the yaw, two to either side
+constexpr int kSearchTurns = 2;
+constexpr std::size_t kMaxSearchPoints = 300;
+constexpr double kAsGoodShare = 0.9;      // of two fits whose scores are in at least this ratio the smaller motion counts
 
 std::vector<Eigen::Vector2d> points_round(const OccupancyGrid& built, const Pose2& T_world_map, const Eigen::Vector2d& center,
                                           double radius_m) {
@@ -54,6 +65,58 @@ Eigen::Vector3d step(const DistanceField& field, const std::vector<Eigen::Vector
   return result;
 }
 
+Pose2 refine(const DistanceField& field, const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& center, Pose2 motion,
+             double radius_m) {
+  for (int i = 0; i < kIterations; ++i) {
+    const Eigen::Vector3d change = step(field, points, center, motion, radius_m);
+    motion = {motion.x + change.x(), motion.y + change.y(), motion.yaw + change.z() / radius_m};
+    if (change.norm() < 1e-5) break;
+  }
+  return motion;
+}
+
+/// Mean weight of the moved points: 1 if all lie on surfaces, towards 0 if all are much farther than `robust_m`.
+double score_of(const DistanceField& field, const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& center,
+                const Pose2& motion, double robust_m) {
+  double sum = 0.0;
+  for (const Eigen::Vector2d& point : points) {
+    const double ratio = field.distance_m(center + motion * point) / robust_m;
+    sum += 1.0 / (1.0 + ratio * ratio);
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+/// Smallest motion of a grid of motions that fits nearly as well as the best of them. Of motions along a straight wall, which all fit
+/// alike, that is the one across the wall.
+Pose2 search(const DistanceField& field, const std::vector<Eigen::Vector2d>& all, const Eigen::Vector2d& center, double radius_m) {
+  std::vector<Eigen::Vector2d> points;
+  const std::size_t stride = all.size() / kMaxSearchPoints + 1;
+  for (std::size_t i = 0; i < all.size(); i += stride) points.push_back(all[i]);
+
+  struct Candidate {
+    Pose2 motion;
+    double score;
+    double size_m;
+  };
+  std::vector<Candidate> candidates;
+  double best = 0.0;
+  const int steps = static_cast<int>(std::lround(kSearch_m / kSearchStep_m));
+  for (int turn = -kSearchTurns; turn <= kSearchTurns; ++turn) {
+    const double yaw = turn * kSearchTurn_deg * std::numbers::pi / 180.0;
+    for (int i = -steps; i <= steps; ++i) {
+      for (int j = -steps; j <= steps; ++j) {
+        const Pose2 motion{kSearchStep_m * i, kSearchStep_m * j, yaw};
+        const double score = score_of(field, points, center, motion, kSearchRobust_m);
+        candidates.push_back({motion, score, std::hypot(motion.x, motion.y, yaw * radius_m)});
+        best = std::max(best, score);
+      }
+    }
+  }
+  std::erase_if(candidates, [&](const Candidate& candidate) { return candidate.score < kAsGoodShare * best; });
+  const auto is_smaller = [](const Candidate& a, const Candidate& b) { return a.size_m < b.size_m; };
+  return std::min_element(candidates.begin(), candidates.end(), is_smaller)->motion;
+}
+
 }  // namespace
 
 std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2& T_world_map,
@@ -62,13 +125,13 @@ std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2
   const std::vector<Eigen::Vector2d> points = points_round(built, T_world_map, p_world_target, radius_m);
   if (points.size() < kMinPoints) return std::nullopt;
   const DistanceField field(occupied_cells(reference.cells));
-  Pose2 motion;
-  for (int i = 0; i < kIterations; ++i) {
-    const Eigen::Vector3d change = step(field, points, p_world_target, motion, radius_m);
-    motion = {motion.x + change.x(), motion.y + change.y(), motion.yaw + change.z() / radius_m};
-    if (change.norm() < 1e-5) break;
-  }
-  return motion.position().norm();
+  if (!std::isfinite(field.distance_m(p_world_target))) return std::nullopt;
+  const auto score = [&](const Pose2& motion) { return score_of(field, points, p_world_target, motion, kRobust_m); };
+  const Pose2 near = refine(field, points, p_world_target, {}, radius_m);
+  if (score(near) >= kAsGoodShare) return near.position().norm();  // no score exceeds 1
+  const Pose2 far = refine(field, points, p_world_target, search(field, points, p_world_target, radius_m), radius_m);
+  const bool is_near_as_good = score(near) >= kAsGoodShare * score(far);
+  return (is_near_as_good ? near : far).position().norm();
 }
 
 std::vector<StationError> station_errors(const Route& route_in_world, const std::vector<Event>& events,

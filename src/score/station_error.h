@@ -23,10 +23,11 @@ struct StationError {
   std::optional<double> map_error_m;  ///< how far the built map has the station's target from its true place
 };
 
-/// The station's target lies in the built map where its surroundings do. They are laid over the reference by the rigid motion that
-/// fits the occupied cells within `radius_m` best (Gauss-Newton on the reference's distance field, robust); how far that moves
-/// the target is the map's error there. Directions that the surroundings do not show (along a single straight wall) are
-/// not moved. None if there is too little to fit.
+/// Displacement of a station's target in the built map, m. The occupied cells within `radius_m` of the target are registered to the
+/// reference by a rigid motion (Gauss-Newton on the reference's distance field, robust); the displacement is how far the motion
+/// moves the target. Gauss-Newton starts twice: from the map as it lies, and from the best of a grid of motions up to 3 m along
+/// either axis and 4 degrees. The second result counts where it fits clearly better: larger errors are found up to that limit.
+/// Directions that the surroundings do not show (along a single straight wall) are not moved. None if there is too little to fit.
 std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2& T_world_map,
                                          const ReferenceMap& reference, const Eigen::Vector2d& p_world_target,
                                          double radius_m = 6.0);

@@ -1,8 +1,9 @@
 #include "sim/twin.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -19,16 +20,40 @@ namespace {
 /// A touch that is lost for less than this is still the same touch.
 constexpr Time kSameTouch = std::chrono::milliseconds(500);
 
-/// Worlds name what is for walking on (worlds/street/street.xml).
-bool is_for_walking(std::string_view geom) {
-  constexpr std::array kPrefixes = {"ground", "pavement", "kerb", "carriageway", "dropped_kerb"};
-  return std::any_of(kPrefixes.begin(), kPrefixes.end(),
-                     [&](std::string_view prefix) { return geom.substr(0, prefix.size()) == prefix; });
+bool begins_with_one_of(std::string_view name, std::initializer_list<std::string_view> prefixes) {
+  return std::any_of(prefixes.begin(), prefixes.end(), [&](std::string_view prefix) { return name.starts_with(prefix); });
+}
+
+std::string_view name_of(const mjModel& model, int geom) {
+  const char* name = mj_id2name(&model, mjOBJ_GEOM, geom);
+  return name == nullptr ? std::string_view() : name;
+}
+
+/// Height of the highest point of a geom's box in world, m.
+double top_m(const mjModel& model, const mjData& data, int geom) {
+  const mjtNum* box = model.geom_aabb + 6 * geom;  // center and half sizes, in the geom
+  const mjtNum* up = data.geom_xmat + 9 * geom + 6;
+  double top = data.geom_xpos[3 * geom + 2];
+  for (int axis = 0; axis < 3; ++axis) top += up[axis] * box[axis] + std::abs(up[axis]) * box[3 + axis];
+  return top;
+}
+
+/// Whether a contact is walking or driving, not a collision. `lowest_m`: height of the robot's lowest contact at this instant.
+/// Worlds name the ground ("ground", "pavement", "carriageway", "dropped_kerb"), on which every contact is walking. Curb stones
+/// ("kerb") count as ground where the contact is from above (its normal within 45 degrees of the vertical), and on their sides
+/// where the stone rises by at most 15 cm over the robot's lowest contact, as curbs of streets do. The side of a higher stone is
+/// an obstacle.
+bool is_footing(const mjModel& model, const mjData& data, const mjContact& contact, int geom, double lowest_m) {
+  constexpr double kMaxCurb_m = 0.15;
+  const std::string_view name = name_of(model, geom);
+  if (begins_with_one_of(name, {"ground", "pavement", "carriageway", "dropped_kerb"})) return true;
+  if (!name.starts_with("kerb")) return false;
+  const bool is_from_above = std::abs(contact.frame[2]) >= std::sqrt(0.5);  // frame: normal first
+  return is_from_above || top_m(model, data, geom) - lowest_m <= kMaxCurb_m;
 }
 
 std::string geom_name(const mjModel& model, int geom) {
-  const char* name = mj_id2name(&model, mjOBJ_GEOM, geom);
-  if (name != nullptr && *name != '\0') return name;
+  if (const std::string_view name = name_of(model, geom); !name.empty()) return std::string(name);
   const char* body = mj_id2name(&model, mjOBJ_BODY, model.geom_bodyid[geom]);
   return fmt::format("geom {} of {}", geom, body == nullptr ? "?" : body);
 }
@@ -157,13 +182,18 @@ void Twin::put_at(const Pose2& T_world_body) {
 
 void Twin::note_collisions() {
   const mjModel& model = *model_.physics;
+  const auto is_robot = [&](int geom) { return model.body_rootid[model.geom_bodyid[geom]] == robot_body_; };
+  double lowest_m = std::numeric_limits<double>::infinity();
   for (int i = 0; i < data_->ncon; ++i) {
-    int robot_geom = data_->contact[i].geom[0], other = data_->contact[i].geom[1];
-    const auto is_robot = [&](int geom) { return model.body_rootid[model.geom_bodyid[geom]] == robot_body_; };
+    const mjContact& contact = data_->contact[i];
+    if (is_robot(contact.geom[0]) != is_robot(contact.geom[1])) lowest_m = std::min(lowest_m, contact.pos[2]);
+  }
+  for (int i = 0; i < data_->ncon; ++i) {
+    const mjContact& contact = data_->contact[i];
+    int robot_geom = contact.geom[0], other = contact.geom[1];
     if (!is_robot(robot_geom)) std::swap(robot_geom, other);
     if (!is_robot(robot_geom) || is_robot(other)) continue;
-    const char* other_name = mj_id2name(&model, mjOBJ_GEOM, other);
-    if (other_name != nullptr && is_for_walking(other_name)) continue;
+    if (is_footing(model, *data_, contact, other, lowest_m)) continue;
 
     const Collision collision{.stamp = now_, .first = geom_name(model, robot_geom), .second = geom_name(model, other)};
     const std::string& thing = collision.second;

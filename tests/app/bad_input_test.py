@@ -3,11 +3,13 @@
 
 usage: bad_input_test.py PATROL SOURCE_DIR
 """
+import os
 import pathlib
 import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
@@ -58,6 +60,66 @@ class BadInput(unittest.TestCase):
     def test_out_of_range_names_the_rule(self):
         file = self.scenario("sensors:\n  lidar: {range_noise_m: -1}\n")
         self.refuse_run(file, says=["scenario.yaml:2", "range_noise_m", "at least 0"])
+
+    def test_a_second_document_or_text_after_the_first(self):
+        file = self.scenario("world: street\n---\nworld: tunnel\n")
+        self.refuse_run(file, says=["scenario.yaml:2", "one document"])
+        self.refuse_run(SHORT, "--set", "leaks=[]x", says=["--set leaks=[]x", "one document"])
+
+    def test_an_empty_scenario_or_calibration(self):
+        file = self.scenario("# nothing\n")
+        self.refuse_run(file, says=["scenario.yaml", "is empty"])
+        log = pathlib.Path(self.folder.name) / "log.log"
+        log.write_text("FLASER 3 1 1 1 0 0 0 0 0 0 0 host 0\n")
+        self.refuse("slam", log, "--calibration", file, "--out", self.out, says=["scenario.yaml", "is empty"])
+
+    def test_an_origin_of_two_numbers(self):
+        world = pathlib.Path(self.folder.name) / "map.yaml"
+        world.write_text("image: map.pgm\nresolution: 1\norigin: [0, 0]\n")
+        self.refuse("plan", world, "--from", "0,0", "--to", "1,1", "--out", self.out, says=["map.yaml:3", "origin", "three numbers"])
+
+    def test_seeds_that_are_no_seeds(self):
+        for seed in ("-1", "18446744073709551616", "1.5", "010", "0x10"):
+            self.refuse_run(SHORT, f"--seed={seed}", says=["--seed", seed])
+        self.refuse("slam", "absent.log", "--seed=-1", "--out", self.out, says=["--seed", "-1"])
+        self.refuse("plan", "absent.yaml", "--seed=-1", "--out", self.out, says=["--seed", "-1"])
+
+    def test_numbers_that_are_not_finite(self):
+        for number in ("1e400", "inf", "nan", "1e10"):
+            self.refuse_variants("sweep", f"--run-limit-s={number}", says=["--run-limit-s", number])
+        self.refuse_variants("localizability", "--step-m=1e400", says=["--step-m", "1e400"])
+        self.refuse_variants("faults", "--start-s=nan", says=["--start-s", "nan"])
+        self.refuse_variants("faults", "--duration-s=1e400", says=["--duration-s", "1e400"])
+        self.refuse_variants("sweep", "--margin=1e400", says=["--margin", "1e400"])
+        for option in ("--speed", "--slow", "--still"):
+            self.refuse("replay", "absent", f"{option}=1e400", says=[option, "1e400"])
+        self.refuse("send", "absent", "--to=http://localhost:1", "--limit-s=1e400", says=["--limit-s", "1e400"])
+        for option in ("--radius-m", "--speed-mps"):
+            self.refuse("plan", "absent.yaml", f"{option}=-1e400", says=[option, "1e400"])
+        for option in ("--max-dt", "--ref-x"):
+            self.refuse("score", "absent", f"{option}=1e400", says=[option, "1e400"])
+
+    def test_devices_pipes_and_large_files(self):
+        folder = pathlib.Path(self.folder.name)
+        os.mkfifo(folder / "pipe")
+        large = self.scenario("world: street\n")
+        begin = time.monotonic()
+        self.refuse_run(SHORT, "--set", "mission=/dev/zero", says=["/dev/zero", "not a regular file"])
+        self.refuse_run(SHORT, "--set", f"mission={folder / 'pipe'}", says=["pipe", "not a regular file"])
+        self.refuse_run("/dev/zero", says=["/dev/zero", "not a regular file"])
+        os.truncate(large, 17 << 20)
+        self.refuse_run(large, says=["scenario.yaml", "too large"])
+        self.assertLess(time.monotonic() - begin, 4.0, "four refusals, each well under a second")
+
+    def test_a_yaml_list_without_end_takes_little_memory(self):
+        file = self.scenario("world: street\nactors: [" + "1," * (7 << 20) + "1]\n")
+        code = ("import resource, subprocess, sys; done = subprocess.run(sys.argv[1:], capture_output=True, text=True); "
+                "print(done.returncode, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss // 1024, done.stderr)")
+        done = subprocess.run([sys.executable, "-c", code, PATROL, "run", file, "--out", self.out], capture_output=True, text=True, timeout=60)
+        returncode, memory_mb, said = done.stdout.split(maxsplit=2)
+        self.assertEqual(returncode, "2")
+        self.assertIn("too many values", said)
+        self.assertLess(int(memory_mb), 300)
 
     def test_truncated_yaml(self):
         file = self.scenario("sensors:\n  lidar: {range_noise_m: 0.03\n")
@@ -115,6 +177,21 @@ class BadInput(unittest.TestCase):
         (pathlib.Path(self.folder.name) / "sweep.json").write_text("{}")
         self.refuse("report", self.folder.name, says=[self.folder.name])
         self.assertFalse((pathlib.Path(self.folder.name) / "report.html").exists())
+
+    def test_a_users_files_stay(self):
+        folder = pathlib.Path(self.folder.name)
+        for name in ("scans/notes.ply", "log.mcap/notes"):
+            run = folder / name.split("/")[0].replace(".", "_")
+            (run / name).parent.mkdir(parents=True)
+            (run / name).write_text("mine")
+            self.refuse("run", SHORT, "--out", run, says=[str(run), name.split("/")[0]])
+            self.assertEqual((run / name).read_text(), "mine")
+        run = folder / "linked"
+        run.mkdir()
+        (folder / "precious").write_text("mine")
+        (run / "INCOMPLETE").symlink_to(folder / "precious")
+        self.refuse("run", SHORT, "--out", run, says=["INCOMPLETE", "not a plain file"])
+        self.assertEqual((folder / "precious").read_text(), "mine")
 
     def test_unwritable_output(self):
         self.refuse("run", SHORT, "--out", "/proc/patrol", says=["/proc/patrol"])

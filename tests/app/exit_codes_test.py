@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Scripts build on the exit codes and on what a run leaves behind: 0 as expected, 1 an expectation missed, 3 interrupted, 4 time limit.
+"""Scripts build on the exit codes and on what a run leaves behind: 0 as expected, 1 an expectation missed, 2 wrong input, 3 interrupted
+or nothing printed, 4 time limit.
 
 usage: exit_codes_test.py PATROL SOURCE_DIR
 """
 import json
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -71,19 +73,49 @@ class ExitCodes(unittest.TestCase):
         self.assertEqual(self.junit().get("failures"), "1")
         self.assertNotIn("pose", json.loads((self.out / "metrics.json").read_text()))
 
-    def test_interrupted_is_3_and_stays_red(self):
-        file = self.scenario("")
-        run = subprocess.Popen([PATROL, "run", file, "--set", "stack.mission.start_wait_s=300", "--out", self.out],
+    def start_long_run(self):
+        """A run that has begun to write, and goes on for 300 simulated seconds."""
+        run = subprocess.Popen([PATROL, "run", self.scenario(""), "--set", "stack.mission.start_wait_s=300", "--out", self.out],
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=SOURCE)
         deadline = time.monotonic() + 60
         while not (self.out / "log.mcap").exists() and time.monotonic() < deadline:
             time.sleep(0.05)
-        run.send_signal(signal.SIGINT)
-        _, said = run.communicate(timeout=60)
-        self.assertEqual(run.returncode, 3, said)
+        return run
+
+    def test_interrupted_is_3_and_stays_red(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(number):
+                run = self.start_long_run()
+                run.send_signal(number)
+                _, said = run.communicate(timeout=60)
+                self.assertEqual(run.returncode, 3, said)
+                self.assertTrue((self.out / "INCOMPLETE").exists())
+                self.assertFalse((self.out / "metrics.json").exists())
+                self.assertEqual(self.junit().get("errors"), "1")
+                self.assertEqual((self.out / "log.mcap").read_bytes()[-8:], b"\x89MCAP0\r\n", "the log has its footer")
+                shutil.rmtree(self.out)
+
+    def test_a_second_run_into_the_same_directory_is_2_and_a_killed_one_does_not_block(self):
+        run = self.start_long_run()
+        done = self.run_patrol("time_limit_s: 0.1\n")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        self.assertIn("another process writes a run there", done.stderr)
+        self.assertTrue((self.out / "log.mcap").exists())
+        run.kill()
+        run.communicate(timeout=60)
         self.assertTrue((self.out / "INCOMPLETE").exists())
-        self.assertFalse((self.out / "metrics.json").exists())
-        self.assertEqual(self.junit().get("errors"), "1")
+        self.assertEqual(self.run_patrol("time_limit_s: 0.1\n").returncode, 4)
+        self.assert_complete()
+
+    @unittest.skipUnless(pathlib.Path("/dev/full").exists(), "no /dev/full here")
+    def test_results_that_cannot_be_printed_are_3(self):
+        self.assertEqual(self.run_patrol("time_limit_s: 0.5\n").returncode, 4)
+        for arguments in (["list"], ["score", self.out], ["--help"], ["--version"], ["run", "--help"]):
+            with self.subTest(arguments), open("/dev/full", "w") as full:
+                done = subprocess.run([PATROL, *arguments], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60, cwd=SOURCE)
+                self.assertEqual(done.returncode, 3, done.stderr)
+                self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
 
 
 if __name__ == "__main__":

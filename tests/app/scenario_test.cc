@@ -81,6 +81,20 @@ TEST(Scenario, ElsewhereItTakesTheWorkingDirectoryOrTheSourceTree) {
   EXPECT_EQ(from_working_directory, folder / "elsewhere");
 }
 
+TEST(Scenario, DataLieWhereTheEnvironmentSays) {
+  const TemporaryFolder folder;
+  for (const char* name : {"worlds", "models", "other/worlds", "other/models", "empty"}) std::filesystem::create_directories(folder / name);
+  ::setenv("PATROL_DATA", (folder / "other").c_str(), 1);
+  const std::filesystem::path named = find_data_root(folder / "worlds/my.yaml");
+  ::setenv("PATROL_DATA", (folder / "empty").c_str(), 1);
+  EXPECT_THROW(find_data_root(folder / "worlds/my.yaml"), InputError);
+  ::setenv("PATROL_DATA", "", 1);
+  const std::filesystem::path unnamed = find_data_root(folder / "worlds/my.yaml");
+  ::unsetenv("PATROL_DATA");
+  EXPECT_EQ(named, folder / "other");
+  EXPECT_EQ(unnamed, folder.path());
+}
+
 // What `patrol run` writes beside its results runs again: everything that was set comes back.
 TEST(Scenario, ResolvedAndReadAgainIsTheSame) {
   const TemporaryFolder folder;

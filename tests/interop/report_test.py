@@ -96,6 +96,21 @@ class RunReport(PageCase, unittest.TestCase):
     def make_page(cls):
         return report(RUN, cls.path / "report.html")
 
+    def test_a_replay_next_to_the_page_plays(self):
+        run = self.path / "run"
+        shutil.copytree(RUN, run)
+        subprocess.run([PATROL, "replay", run, "--speed", "30", "--size", "160x90", "--out", run / "replay.mp4"], check=True, capture_output=True, timeout=120)
+        with open(run / "replay.mp4", "ab") as video:  # over what is embedded: an MP4 box of kind "free"
+            video.write((7 << 20).to_bytes(4, "big") + b"free" + bytes((7 << 20) - 8))
+        self.browser.get(report(run, run / "report.html").as_uri())
+        self.assertEqual(self.run_script("return document.querySelector('video').getAttribute('src');"), "replay.mp4")
+        size = self.browser.execute_async_script("""const done = arguments[0], video = document.querySelector('video');
+          if (video.videoWidth > 0) done([video.videoWidth, video.controls]);
+          video.addEventListener('loadedmetadata', () => done([video.videoWidth, video.controls]));
+          video.addEventListener('error', () => done(video.error.message));
+          setTimeout(() => done('nothing was loaded'), 10000);""")
+        self.assertEqual(size, [160, True])
+
     def test_every_plot_is_drawn(self):
         for width in (400, 1280):
             self.show(width)

@@ -1,5 +1,6 @@
 #include "io/atomic_file.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <gtest/gtest.h>
@@ -7,6 +8,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "io/bounded_read.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::io::atomic_file_test {
@@ -66,6 +68,20 @@ TEST(LoadText, GivesEveryByteAndRefusesWhatIsNoFile) {
   EXPECT_EQ(load_text(folder / "empty.txt"), "");
   EXPECT_THROW(load_text(folder / "missing.txt"), InputError);
   EXPECT_THROW(load_text(folder.path()), InputError);
+}
+
+TEST(LoadText, RefusesDevicesPipesAndFilesOverTheLimit) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_THROW(load_text(folder / "pipe"), InputError);
+  EXPECT_THROW(load_text("/dev/zero"), InputError);
+  std::filesystem::create_symlink("loop", folder / "loop");
+  EXPECT_THROW(load_text(folder / "loop"), InputError);
+  save_text(folder / "a.txt", "12345");
+  EXPECT_EQ(load_text(folder / "a.txt", 5), "12345");
+  EXPECT_THROW(load_text(folder / "a.txt", 4), InputError);
+  std::filesystem::resize_file(folder / "a.txt", kMaxFileBytes + 1);  // sparse
+  EXPECT_THROW(load_text(folder / "a.txt"), InputError);
 }
 
 }  // namespace

@@ -123,12 +123,14 @@ TEST_F(MapServer, WrongKeysAreNamedWithTheirLine) {
   EXPECT_EQ(complaint("resolution: 1\norigin: [0, 0, 0]\n"), "m.yaml: image: is missing");
   EXPECT_EQ(complaint(image + "origin: [0, 0, 0]\n"), "m.yaml: resolution: is missing");
   EXPECT_EQ(complaint(image + "resolution: 1\n"), "m.yaml: origin: is missing");
-  EXPECT_EQ(complaint(""), "m.yaml: image: is missing");
+  EXPECT_EQ(complaint("{}\n"), "m.yaml: image: is missing");
+  EXPECT_EQ(complaint(""), "m.yaml: is empty: must be a map of keys and values, {} if it says nothing");
   EXPECT_EQ(complaint(image + "resolution: .nan\norigin: [0, 0, 0]\n"), "m.yaml:2: resolution: must be a finite number, not .nan");
   EXPECT_EQ(complaint(image + "resolution: -1\norigin: [0, 0, 0]\n"),
             "m.yaml:2: resolution: -1 is out of range: must lie in 0.001 ... 10");
   EXPECT_EQ(complaint(image + "resolution: 1\norigin: 0\n"), "m.yaml:3: origin: must be a list");
-  EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0]\n"), "m.yaml:3: origin: must be a list x, y, yaw");
+  EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0]\n"), "m.yaml:3: origin: must be three numbers: x, y, yaw");
+  EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0, 0]\n"), "m.yaml:3: origin: must be three numbers: x, y, yaw");
   EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0, north, 0]\n"), "m.yaml:3: origin.1: must be a number, not north");
   EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0, 0, 0.5]\n"),
             "m.yaml:3: origin: a turned map (yaw other than 0) is not read");

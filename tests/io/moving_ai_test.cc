@@ -97,9 +97,21 @@ TEST_F(MovingAi, AProblemsRowsCountFromTheTopOfTheFile) {
   EXPECT_EQ(problems[0].start, (Cell{1, 17}));
   EXPECT_EQ(problems[0].goal, (Cell{29, 0}));
   EXPECT_DOUBLE_EQ(problems[0].optimal_length, 31.04163056);
+  EXPECT_DOUBLE_EQ(problems[0].length_rounding, 0.5e-8);
   EXPECT_EQ(problems[1].bucket, 3);
   EXPECT_EQ(problems[1].line, 3);
   EXPECT_EQ(problems[1].start, (Cell{0, 19}));
+}
+
+TEST(MovingAiLength, IsRoundedToItsLastDigitOrToTheSixthWhereZerosMayBeDropped) {
+  EXPECT_DOUBLE_EQ(rounding_of("128.586"), 0.5e-3);
+  EXPECT_DOUBLE_EQ(rounding_of("1285.86"), 0.5e-2);
+  EXPECT_DOUBLE_EQ(rounding_of("31.04163056"), 0.5e-8);
+  EXPECT_DOUBLE_EQ(rounding_of("1024"), 0.5e-2) << "1024.00";
+  EXPECT_DOUBLE_EQ(rounding_of("5"), 0.5e-5) << "5.00000";
+  EXPECT_DOUBLE_EQ(rounding_of("0.0414"), 0.5e-7);
+  EXPECT_DOUBLE_EQ(rounding_of("1.28586e+02"), 0.5e-3);
+  EXPECT_DOUBLE_EQ(rounding_of("0.00000000"), 0.0);
 }
 
 TEST_F(MovingAi, ProblemsThatAreNoneAreRefusedInOneLineWithThePlace) {

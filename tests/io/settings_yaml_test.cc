@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/yaml_document.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::io::settings_yaml_test {
@@ -108,7 +109,40 @@ TEST(LoadSettings, TakesWhatIsSaidAndLeavesTheDefaults) {
   EXPECT_THAT(scenario.tags, ElementsAre("a", "b"));
 }
 
-TEST(LoadSettings, AnEmptyFileIsAllDefaults) { EXPECT_EQ(load("").seed, 1U); }
+TEST(LoadSettings, AnEmptyMapIsAllDefaultsAndAnEmptyFileIsRefused) {
+  EXPECT_EQ(load("{}\n").seed, 1U);
+  for (const char* empty : {"", "\n", "# nothing\n", "---\n"}) EXPECT_THAT(complaint_about(empty), StartsWith("a.yaml: is empty")) << empty;
+}
+
+TEST(LoadSettings, ASecondDocumentIsRefused) {
+  EXPECT_THAT(complaint_about("seed: 2\n---\nseed: 3\n"), StartsWith("a.yaml:2: holds more after its first YAML document"));
+  EXPECT_THAT(complaint_about("{seed: 2}\nseed: 3\n"), StartsWith("a.yaml:2: "));
+  EXPECT_EQ(load("---\nseed: 2\n...\n").seed, 2U);
+}
+
+TEST(LoadSettings, TooManyValuesAreRefusedAliasesCountedAsWhatTheyRepeat) {
+  std::string list = "wind_mps: [";
+  for (int i = 0; i < 250'000; ++i) list += "1,";
+  EXPECT_THAT(complaint_about(list + "1]\n"), StartsWith("a.yaml:1: holds too many values: at most 200000 are read"));
+  std::string laughs = "a: &a [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n";
+  for (char c = 'b'; c < 'i'; ++c) {
+    const std::string one = fmt::format("*{}", static_cast<char>(c - 1));
+    laughs += fmt::format("{0}: &{0} [{1}, {1}, {1}, {1}, {1}, {1}, {1}, {1}, {1}, {1}]\n", c, one);
+  }
+  EXPECT_THAT(complaint_about(laughs), HasSubstr("holds too many values"));
+  EXPECT_THAT(complaint_about("tags: &a [*a]\n"), StartsWith("a.yaml:1: an alias refers to a node that contains it"));
+  EXPECT_THAT(complaint_about("tags: " + std::string(100'000, '[')), StartsWith("a.yaml:1: "));
+  EXPECT_THAT(load("tags: [&a b, *a]\n").tags, ElementsAre("b", "b"));
+}
+
+TEST(LoadSettings, AFileOverTheLimitIsRefused) {
+  const TemporaryFolder folder;
+  test::write_bytes(folder / "a.yaml", "seed: 1\n");
+  std::filesystem::resize_file(folder / "a.yaml", kMaxYamlBytes + 1);
+  EXPECT_THROW(load_settings<Scenario>(folder / "a.yaml", {}), InputError);
+  std::filesystem::create_symlink("b.yaml", folder / "b.yaml");
+  EXPECT_THROW(load_settings<Scenario>(folder / "b.yaml", {}), InputError);
+}
 
 TEST(LoadSettings, APresetSetsWhatIsNotSaidBesideIt) {
   const Lidar lidar = load("sensors: {lidar: {range_noise_m: 0.02, preset: utm30lx}}\n").sensors.lidar;
@@ -217,9 +251,9 @@ TEST(Overrides, ReachSectionsAndListsAndMakeSections) {
 TEST(Overrides, TheLastOfTwoWins) { EXPECT_EQ(load("seed: 1\n", {"seed=2", "seed=3"}).seed, 3U); }
 
 TEST(Overrides, AreComplainedAboutLikeTheFile) {
-  EXPECT_THAT(complaint_about("", {"sensors.lidar.range_nois_m=1"}),
+  EXPECT_THAT(complaint_about("{}", {"sensors.lidar.range_nois_m=1"}),
               HasSubstr("sensors.lidar.range_nois_m: unknown key; did you mean range_noise_m?"));
-  EXPECT_THAT(complaint_about("", {"seed"}), HasSubstr("--set seed: must be path=value"));
+  EXPECT_THAT(complaint_about("{}", {"seed"}), HasSubstr("--set seed: must be path=value"));
   EXPECT_THAT(complaint_about("leaks: [{at: a}]\n", {"leaks.1.at=b"}),
               HasSubstr("--set leaks.1.at=b: the list has 1 entries"));
   EXPECT_THAT(complaint_about("leaks: [{at: a}]\n", {"leaks.first.at=b"}),
@@ -227,6 +261,7 @@ TEST(Overrides, AreComplainedAboutLikeTheFile) {
   EXPECT_THAT(complaint_about("leaks: [{at: a}]\n", {"leaks.0x.at=b"}),
               HasSubstr("must be a number: the place in a list"));
   EXPECT_THAT(complaint_about("seed: 1\n", {"seed.x=b"}), HasSubstr("lies below a plain value"));
+  EXPECT_EQ(complaint_about("seed: 1\n", {"leaks=[]x"}), "--set leaks=[]x: holds more after its first YAML document: one document is allowed");
 }
 
 TEST(SaveSettings, WritesEveryDefaultAndReadsBackTheSame) {
@@ -250,7 +285,7 @@ TEST(SaveSettings, WritesEveryDefaultAndReadsBackTheSame) {
 
 TEST(SaveSettings, ACommentStandsAtTheHeadAndIsNotRead) {
   const TemporaryFolder folder;
-  save_settings(folder / "a.yaml", load(""), "made by hand: [odd]\nseed: 7");
+  save_settings(folder / "a.yaml", load("{}\n"), "made by hand: [odd]\nseed: 7");
   EXPECT_THAT(read_bytes(folder / "a.yaml"), StartsWith("# made by hand: [odd]\n# seed: 7\n"));
   EXPECT_EQ(load_settings<Scenario>(folder / "a.yaml", {}).seed, 1U);
 }

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <mutex>
@@ -30,9 +31,12 @@ class Echo final : public HttpHandler {
   }
   HttpResponse answer(const HttpRequest& request) override {
     if (request.path == "/broken") throw std::runtime_error("it broke");
+    if (request.path == "/slow") std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    if (request.path == "/counted") ++num_counted;
     if (request.path == "/large") return {.body = std::string(50'000'000, 'x'), .headers = {}};
     return {.body = std::to_string(request.body.size()), .headers = {}};
   }
+  std::atomic<int> num_counted = 0;
 };
 
 /// A plain socket, for what no client would send.
@@ -72,6 +76,7 @@ class Server : public testing::Test {
     settings.port = 0;
     server_ = std::make_unique<HttpServer>(settings, echo_, [this](const std::string& line) {
       const std::lock_guard lock(mutex_);
+      if (is_log_broken_) throw std::runtime_error("no space left on device");
       log_ += line + "\n";
     });
     thread_ = std::thread([this] { server_->run(); });
@@ -100,6 +105,7 @@ class Server : public testing::Test {
   std::thread thread_;
   std::mutex mutex_;
   std::string log_;
+  bool is_log_broken_ = false;
 };
 
 constexpr HttpServerSettings kSmall{.header_limit_s = 0.3, .request_limit_s = 0.6, .idle_limit_s = 0.5, .max_connections = 20, .max_header_kb = 4, .max_body_mb = 0.01};
@@ -196,6 +202,114 @@ TEST_F(Server, AHundredSilentPeersKeepNobodyWaiting) {
   EXPECT_TRUE(is_alive());
   EXPECT_LT(Clock::now() - from, std::chrono::seconds(1));
   EXPECT_NE(log().find("too many connections"), std::string::npos);
+}
+
+TEST_F(Server, BodiesOnTheirWayTogetherHaveALimit) {
+  HttpServerSettings settings = kSmall;
+  settings.request_limit_s = 60.0;
+  settings.max_bodies_mb = 0.03;
+  start(settings);
+  const std::string head = "POST / HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer key\r\n";
+  std::vector<std::unique_ptr<Peer>> unfinished;
+  for (const char* length : {"Content-Length: 9000\r\n\r\n", "Content-Length: 9000\r\n\r\n", "Transfer-Encoding: chunked\r\n\r\n"}) {
+    unfinished.push_back(std::make_unique<Peer>(port()));
+    unfinished.back()->send(head + length);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  Peer peer(port());
+  peer.send(head + "Content-Length: 9000\r\n\r\n");
+  const std::string text = peer.rest();
+  EXPECT_EQ(text.find("HTTP/1.1 503 "), 0U) << text;
+  EXPECT_NE(text.find("Retry-After: 1"), std::string::npos);
+  EXPECT_TRUE(is_alive());  // four bytes fit
+  unfinished.clear();
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(post(std::string(9000, 'x'))->body, "9000");  // their share is free again
+}
+
+TEST_F(Server, AnswersThatNobodyReadsTogetherHaveALimit) {
+  HttpServerSettings settings = kSmall;
+  settings.request_limit_s = 60.0;
+  settings.max_answers_mb = 60.0;
+  start(settings);
+  Peer silent(port());
+  silent.send("GET /large HTTP/1.1\r\nHost: x\r\n\r\n");
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  Peer peer(port());
+  peer.send("GET /large HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  EXPECT_EQ(peer.rest().find("HTTP/1.1 503 "), 0U);
+  EXPECT_TRUE(is_alive());
+}
+
+TEST_F(Server, AGetRequestHasNoBody) {
+  start(kSmall);
+  for (const char* length : {"Content-Length: 5\r\n\r\nhello", "Transfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n0\r\n\r\n"}) {
+    for (const char* method : {"GET", "HEAD"}) {
+      Peer peer(port());
+      peer.send(std::string(method) + " / HTTP/1.1\r\nHost: x\r\n" + length);
+      EXPECT_EQ(peer.rest().find("HTTP/1.1 400 "), 0U) << method << length;
+    }
+  }
+  Peer peer(port());
+  peer.send("GET / HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\nConnection: close\r\n\r\n");
+  EXPECT_EQ(peer.rest().find("HTTP/1.1 200 "), 0U);
+}
+
+TEST_F(Server, AnUnknownTransferCodingIsRefusedAndItsBodyIsNoSecondRequest) {
+  start(kSmall);
+  for (const char* coding : {"xchunked", "gzip, chunked", "chunked, chunked", "identity", "chunked;a=b", "chunked\r\nTransfer-Encoding: chunked",
+                             "chunked\r\nContent-Length: 5"}) {
+    Peer peer(port());
+    peer.send(std::string("POST / HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer key\r\nTransfer-Encoding: ") + coding +
+              "\r\n\r\nGET /second HTTP/1.1\r\nHost: x\r\n\r\n");
+    const std::string text = peer.rest();
+    EXPECT_TRUE(text.starts_with("HTTP/1.1 501 ") || text.starts_with("HTTP/1.1 400 ")) << coding << ": " << text;
+    EXPECT_EQ(text.find("HTTP/1.1 ", 1), std::string::npos) << coding << ": " << text;
+  }
+  EXPECT_TRUE(is_alive());
+}
+
+TEST_F(Server, NothingIsComputedForAPeerThatHasGone) {
+  start(kSmall);
+  for (int i = 0; i < 10; ++i) {
+    Peer peer(port());
+    peer.send("GET /slow HTTP/1.1\r\nHost: x\r\n\r\n");
+    peer.send("GET /counted HTTP/1.1\r\nHost: x\r\n\r\n");
+  }
+  EXPECT_TRUE(is_alive());
+  EXPECT_EQ(echo_.num_counted, 0);
+}
+
+TEST_F(Server, ListensAtAHostName) {
+  HttpServerSettings settings = kSmall;
+  settings.host = "localhost";
+  start(settings);
+  EXPECT_TRUE(is_alive());
+}
+
+TEST_F(Server, ALogThatThrowsEndsNeitherAConnectionNorTheServer) {
+  HttpServerSettings settings = kSmall;
+  settings.max_connections = 5;
+  settings.header_limit_s = 60.0;
+  start(settings);
+  {
+    const std::lock_guard lock(mutex_);
+    is_log_broken_ = true;
+  }
+  EXPECT_EQ(post("four", "wrong")->status, 401);
+  std::vector<std::unique_ptr<Peer>> silent;
+  for (int i = 0; i < 20; ++i) {
+    silent.push_back(std::make_unique<Peer>(port()));
+    silent.back()->send("GET / HT");
+  }
+  EXPECT_TRUE(is_alive());
+  silent.clear();
+  for (int i = 0; i < 20; ++i) {
+    Peer peer(port());
+    peer.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9000\r\n\r\n");
+    EXPECT_EQ(peer.rest().find("HTTP/1.1 401 "), 0U);
+  }
+  EXPECT_TRUE(is_alive());
 }
 
 TEST_F(Server, AnAddressThatIsTakenIsAWrongInput) {

@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <set>
+
+#include "core/error.h"
 #include "monitor/store.h"
+#include "monitor/views.h"
 #include "tests/monitor/sample_results.h"
 #include "tests/support/temporary_file.h"
 
@@ -40,6 +45,30 @@ TEST_F(Queries, ResultsOfAnEarlierRunThatComeLateDoNotMoveTheRobot) {
   const Json robot = Json::parse(robots(database()))["robots"][0];
   EXPECT_EQ(robot["x"], 7.0);
   EXPECT_EQ(robot["run"], "run_1");
+}
+
+TEST_F(Queries, AStampOfTheFutureDoesNotFreezeARobot) {
+  Result ahead = pose_result(1, 9.0), lining_ahead = lining_result(2, 4.0, "run_0");
+  ahead.made_ms = lining_ahead.made_ms = kNoon_ms + 1'000'000'000'000;
+  add({ahead, lining_ahead});
+  Result later = result_of("pose", {{"x", 3.0}, {"y", 2.0}, {"yaw", 0.5}}, 4, "run_2"), later_lining = lining_result(5, 12.0, "run_2");
+  later.made_ms = later_lining.made_ms = kNoon_ms + 60'000;
+  store_.add({later, later_lining}, kNoon_ms + 60'000);
+  const Json robot = Json::parse(robots(database()))["robots"][0];
+  EXPECT_EQ(robot["x"], 3.0);
+  EXPECT_EQ(robot["run"], "run_2");
+  EXPECT_EQ(robot["made_ms"], kNoon_ms + 60'000);
+  const Json site = Json::parse(lining(database(), "street"));
+  EXPECT_EQ(site["scans"][0]["run"], "run_2");
+  EXPECT_EQ(site["lines"][0]["change_m"], -0.012);
+  EXPECT_EQ(run()["run"], "run_2");
+}
+
+TEST_F(Queries, AStampWithinTheToleranceCountsAsItIs) {
+  Result ahead = pose_result(1, 9.0);
+  ahead.made_ms = kNoon_ms + 50'000 + kClockTolerance_ms;
+  add({ahead});
+  EXPECT_EQ(Json::parse(robots(database()))["robots"][0]["made_ms"], ahead.made_ms);
 }
 
 TEST_F(Queries, ChangesGiveWhatIsNewSinceARevision) {
@@ -91,6 +120,84 @@ TEST_F(Queries, ALiningHasItsRingsOverTimeAndItsNewestScan) {
   EXPECT_EQ(json["rings"][1][2], 0.012);
   EXPECT_EQ(json["lines"][0]["change_m"], -0.012);
   EXPECT_EQ(json["lines"][0]["before_m"], -0.004);
+}
+
+TEST_F(Queries, RobotsComeInPagesByName) {
+  for (int i = 0; i < 450; ++i) add({result_of("pose", {{"x", 1.0}, {"y", 0.0}, {"yaw", 0.0}}, 1, "run_1", fmt::format("r{:03}", i))});
+  std::set<std::string> names;
+  std::string after;
+  int num_pages = 0;
+  for (bool has_more = true; has_more; ++num_pages) {
+    const Json page = Json::parse(robots(database(), {.after = after}));
+    ASSERT_LE(page["robots"].size(), 200U);
+    for (const Json& robot : page["robots"]) names.insert(after = robot["robot"].get<std::string>());
+    has_more = page["more"].get<bool>();
+  }
+  EXPECT_EQ(num_pages, 3);
+  EXPECT_EQ(names.size(), 450U);
+  const Json first = Json::parse(changes(database(), 0, kNoon_ms));
+  EXPECT_EQ(first["robots"].size(), 200U);
+  EXPECT_TRUE(first["more_robots"].get<bool>());
+}
+
+TEST_F(Queries, StationsOfARunComeInPages) {
+  Json stations = Json::array();
+  for (int i = 0; i < 1200; ++i) stations.push_back({{"name", fmt::format("s{}", i)}, {"type", "inspect"}, {"position_m", {1.0, 2.0}}});
+  add({result_of("status", {{"state", "started"}, {"scenario", "short"}, {"message", ""}, {"stations", stations}}, 0)});
+  Json all = Json::array();
+  for (Json next = 0; !next.is_null();) {
+    const Json page = Json::parse(run_details(database(), "spot-1", "", next.get<std::int64_t>()).value());
+    ASSERT_LE(page["stations"].size(), 500U);
+    all.insert(all.end(), page["stations"].begin(), page["stations"].end());
+    next = page["next_station"];
+  }
+  EXPECT_EQ(all, stations);
+}
+
+/// Lining with 10,000 cells, 900 lines and 900 findings.
+Result long_lining(int sequence, const std::string& station) {
+  Json data = Json::parse(lining_result(sequence, 12.0).data);
+  data["station"] = station;
+  Json cell = data["cells"][0], line = data["lines"][0], finding = data["findings"][0];
+  for (const char* list : {"cells", "lines", "findings"}) data[list] = Json::array();
+  for (int i = 0; i < 10'000; ++i) {
+    cell["ring"] = 1 + i / 50;
+    cell["clock_deg"] = i % 50;
+    data["cells"].push_back(cell);
+  }
+  for (int i = 0; i < 900; ++i) {
+    line["ring"] = finding["ring"] = 1 + i;
+    data["lines"].push_back(line);
+    data["findings"].push_back(finding);
+  }
+  return result_of("lining", data, sequence);
+}
+
+TEST_F(Queries, ALongLiningComesInPages) {
+  add({long_lining(1, "a"), long_lining(2, "b"), lining_result(3, 4.0)});
+  std::map<std::int64_t, std::size_t> num_cells;
+  std::set<std::pair<int, int>> cells;
+  std::size_t num_lines = 0, num_pages = 0;
+  std::set<int> rings;
+  for (Json next = ""; !next.is_null(); ++num_pages) {
+    const std::string text = lining(database(), "street", lining_page_from(next.get<std::string>()));
+    EXPECT_LT(text.size(), 1'000'000U);
+    const Json page = Json::parse(text);
+    for (const Json& scan : page["scans"]) {
+      num_cells[scan["seq"].get<std::int64_t>()] += scan["data"]["cells"].size();
+      if (scan["data"]["station"] == "a") for (const Json& cell : scan["data"]["cells"]) cells.emplace(cell["ring"].get<int>(), cell["clock_deg"].get<int>());
+    }
+    num_lines += page["lines"].size();
+    for (const Json& ring : page["rings"]) rings.insert(ring[0].get<int>());
+    next = page["next"];
+    ASSERT_LT(num_pages, 20U);
+  }
+  EXPECT_EQ(num_pages, 6U);  // of 4,000 cells each
+  EXPECT_EQ(num_cells, (std::map<std::int64_t, std::size_t>{{1, 10'000}, {2, 10'000}, {3, 3}}));
+  EXPECT_EQ(cells.size(), 10'000U);
+  EXPECT_EQ(num_lines, 900U);
+  EXPECT_EQ(rings.size(), 200U);
+  for (const char* wrong : {"x", "1", "1.2.3", "1.2.3.4.5", "-1.0.0.0", "1.2.3.x", "9999999999.0.0.0", "1..2.3"}) EXPECT_THROW(lining_page_from(wrong), InputError) << wrong;
 }
 
 TEST_F(Queries, ALineOfAnOlderScanThatComesLateDoesNotReplaceTheNewer) {

@@ -42,6 +42,9 @@ TEST(Result, EachFieldIsHeldToItsRule) {
   EXPECT_EQ(refusal_with("/robot", ""), "result: robot must have 1 ... 200 bytes");
   EXPECT_EQ(refusal_with("/id", std::string(201, 'x')), "result: id must have 1 ... 200 bytes");
   EXPECT_EQ(refusal_with("/run", "a\nb"), "result: run must be a word");
+  EXPECT_EQ(refusal_with("/robot", "a\xc2\x9b" "31m"), "result: robot must be a word");  // C1: starts a sequence as ESC [ does
+  EXPECT_EQ(refusal_with("/robot", "a\x7f"), "result: robot must be a word");
+  EXPECT_EQ(refusal_with("/robot", "Gr\xc3\xb6\xc3\x9f" "e"), "");
   EXPECT_EQ(refusal_with("/sequence", -1), "result: sequence must not be negative");
   EXPECT_EQ(refusal_with("/time_s", "1"), "result: time_s must be a number");
   EXPECT_EQ(refusal_with("/made_utc", "yesterday"), "result: made_utc must be a time such as 2026-11-22T10:45:33.120Z");
@@ -66,6 +69,8 @@ TEST(Result, AMapMustBeAPngOfItsSize) {
   const char* kTwoByOne = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAAAAADRSSBWAAAAC0lEQVR4nGP4xwAAAf8A/5ijSg0AAAAASUVORK5CYII=";
   EXPECT_EQ(map(kTwoByOne, 2), "");
   EXPECT_EQ(map(kTwoByOne, 3), "result.data: png_base64 must have 3 x 1 pixels, it has 2 x 1");
+  const char* kTwoWithTheTopBit = "iVBORw0KGgoAAAANSUhEUoAAAAIAAAABCAAAAADRSSBW";  // width 0x80000002
+  EXPECT_EQ(map(kTwoWithTheTopBit, 2), "result.data: png_base64 must be a PNG in base64");
   EXPECT_EQ(map("PHNjcmlwdD4=", 2), "result.data: png_base64 must be a PNG in base64");
 }
 
@@ -87,7 +92,8 @@ TEST(Utc, GoesThereAndBackToTheMillisecond) {
   EXPECT_EQ(to_utc(kNoon_ms + 7), "2026-11-21T12:00:00.007Z");
   EXPECT_EQ(from_utc("2026-11-21T12:00:00.007Z"), kNoon_ms + 7);
   EXPECT_EQ(from_utc("1970-01-01T00:00:00.000Z"), 0);
-  for (const char* wrong : {"2026-02-29T12:00:00.000Z", "2026-11-21T24:00:00.000Z", "2026-11-21T12:00:00Z", "2026-11-21 12:00:00.000Z", "2026-11-21T12:00:00.000+"}) {
+  for (const char* wrong : {"2026-02-29T12:00:00.000Z", "2026-11-21T24:00:00.000Z", "2026-11-21T12:00:00Z", "2026-11-21 12:00:00.000Z", "2026-11-21T12:00:00.000+", "+026-11-21T12:00:00.000Z",
+                            "2026- 1-21T12:00:00.000Z", "2026-11-21T+1:00:00.000Z", "2026-11-21T12:00:00. 07Z", "2026-11-21T12:00:00.-07Z"}) {
     EXPECT_THROW(from_utc(wrong), InputError) << wrong;
   }
 }

@@ -17,7 +17,7 @@ class Platform : public testing::Test {
  protected:
   /// As the server does it: the head first.
   HttpResponse ask(const std::string& method, const std::string& path, const std::string& body = "", const std::string& authorization = std::string("Bearer ") + kToken) {
-    HttpRequest request{.peer = "10.0.0.7", .method = method, .path = path, .parameters = {}, .authorization = authorization, .body = {}};
+    HttpRequest request{.peer = "10.0.0.7", .local = "10.0.0.5", .host = host_, .method = method, .path = path, .parameters = {}, .authorization = authorization, .body = {}};
     if (auto refused = service_.refuse(request)) return *refused;
     request.body = body;
     return service_.answer(request);
@@ -25,8 +25,8 @@ class Platform : public testing::Test {
 
   TemporaryFolder folder_;
   Store store_{folder_.path()};
-  std::string log_;
-  Service service_{store_, kToken, [this](const std::string& line) { log_ += line + "\n"; }};
+  std::string log_, host_ = "10.0.0.5:8080";
+  Service service_{store_, kToken, [this](const std::string& line) { log_ += line + "\n"; }, HostNames({"tunnel-office"})};
 };
 
 TEST_F(Platform, TakesResultsAndSaysOfEachWhatBecameOfIt) {
@@ -51,6 +51,29 @@ TEST_F(Platform, ChangesNeedTheToken) {
     for (const char* shown : {"", "Bearer", "Bearer ", "Bearer 0123456789abcdeg", "Basic 0123456789abcdef", "0123456789abcdef"}) EXPECT_EQ(ask("POST", path, "", shown).status, 401) << shown;
   }
   EXPECT_EQ(Json::parse(ask("GET", "/api/robots", "", "").body)["robots"].size(), 0U);
+}
+
+TEST_F(Platform, AnotherHostNameIs421InOneLineForReadingAndWriting) {
+  for (const char* allowed : {"localhost:8080", "tunnel-office", "10.0.0.5:8080"}) {
+    host_ = allowed;
+    EXPECT_EQ(ask("GET", "/api/robots", "", "").status, 200) << allowed;
+  }
+  for (const char* other : {"evil.example:8080", "", "10.0.0.6"}) {
+    host_ = other;
+    EXPECT_EQ(ask("GET", "/api/robots", "", "").status, 421) << other;
+    EXPECT_EQ(ask("GET", "/").status, 421) << other;
+    EXPECT_EQ(ask("POST", "/api/results", "[]").status, 421) << other;
+  }
+  host_ = "evil.example";
+  EXPECT_EQ(ask("GET", "/").body,
+            R"({"error":"Host 'evil.example': not a name of this platform: must be its address, localhost, or a name of --allow-host"})");
+}
+
+TEST_F(Platform, TheSchemeOfTheTokenHasNoCase) {
+  for (const char* scheme : {"bearer ", "BEARER ", "Bearer  "}) {
+    EXPECT_EQ(ask("POST", "/api/results", "[]", std::string(scheme) + kToken).status, 200) << scheme;
+  }
+  EXPECT_EQ(ask("POST", "/api/results", "[]", std::string("bearerx ") + kToken).status, 401);
 }
 
 TEST_F(Platform, UnknownPathsAre404AndOtherMethods405) {

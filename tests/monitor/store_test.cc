@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include "core/error.h"
 #include "tests/monitor/sample_results.h"
 #include "tests/support/temporary_file.h"
@@ -54,6 +56,22 @@ TEST(Store, WhatItKeptIsThereWhenItIsOpenedAgain) {
   Store again(folder.path());
   EXPECT_EQ(count(again, "results"), 2);
   EXPECT_EQ(again.add({pose_result(1)}, kNoon_ms), std::vector{Stored::kKnown});
+}
+
+TEST(Store, ItsFilesAreReadableByTheirOwnerOnly) {
+  const TemporaryFolder folder;
+  const mode_t mask = ::umask(0);
+  Store store(folder.path());
+  store.add({pose_result(1)}, kNoon_ms);
+  ::umask(mask);
+  int num_files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    struct stat info{};
+    ASSERT_EQ(::stat(entry.path().c_str(), &info), 0);
+    EXPECT_EQ(info.st_mode & 0777U, 0600U) << entry.path();
+    ++num_files;
+  }
+  EXPECT_GE(num_files, 4);  // lock, database, write-ahead log and its index
 }
 
 TEST(Store, ASecondOneOnTheSameFolderIsRefused) {

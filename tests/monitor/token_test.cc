@@ -20,6 +20,16 @@ TEST(Token, IsMadeOnceForItsOwnersEyesAlone) {
   EXPECT_EQ(info.st_mode & 0777U, 0600U);
 }
 
+TEST(Token, IsItsOwnersAloneAlthoughAnotherFileWasLeftInItsPlace) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "token.part", "");
+  ASSERT_EQ(::chmod((folder / "token.part").c_str(), 0644), 0);
+  token_of_folder(folder.path());
+  struct stat info{};
+  ASSERT_EQ(::stat((folder / "token").c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777U, 0600U);
+}
+
 TEST(Token, OfAFileIsItsFirstLine) { EXPECT_EQ(load_token(test::TemporaryFile("token", "0123456789abcdef\r\nmore\n").path()), "0123456789abcdef"); }
 
 TEST(Token, TooShortOrNotPlainIsRefused) {

@@ -52,6 +52,42 @@ TEST(MapDisplacement, OfATurnedMapIsThatOfTheTarget) {
   EXPECT_NEAR(*displacement, expected_m, 0.002);
 }
 
+// Beyond half a meter a cell has no part in a fit from the map as it lies.
+TEST(MapDisplacement, OfAMapUpToTwoMetersOffIsThatAlongEitherAxisAndDiagonally) {
+  const double half = std::sqrt(0.5);
+  for (const double off_m : {0.3, 0.5, 0.8, 1.0, 1.3, 1.6, 2.0}) {
+    for (const Eigen::Vector2d& direction : {Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(-1.0, 0.0), Eigen::Vector2d(0.0, 1.0),
+                                             Eigen::Vector2d(0.0, -1.0), Eigen::Vector2d(half, half), Eigen::Vector2d(-half, half),
+                                             Eigen::Vector2d(half, -half), Eigen::Vector2d(-half, -half)}) {
+      const Pose2 T_world_map{off_m * direction.x(), off_m * direction.y(), 0.0};
+      const auto displacement = map_displacement_m(make_walls(), T_world_map, all_seeable(make_walls()), kTarget);
+      ASSERT_TRUE(displacement);
+      EXPECT_NEAR(*displacement, off_m, 0.01) << direction.transpose();
+    }
+  }
+}
+
+TEST(MapDisplacement, OfAMapThatIsFarOffAndTurnedIsThatOfTheTarget) {
+  for (const double yaw_deg : {-3.0, 3.0}) {
+    const Pose2 T_world_map{1.2, -0.9, yaw_deg * kDeg};
+    const auto displacement = map_displacement_m(make_walls(), T_world_map, all_seeable(make_walls()), kTarget);
+    const double expected_m = (T_world_map * kTarget - kTarget).norm();
+    ASSERT_TRUE(displacement);
+    EXPECT_NEAR(*displacement, expected_m, 0.1) << yaw_deg << " degrees";
+  }
+}
+
+TEST(MapDisplacement, AcrossASingleWallAMeterIsAMeterAndAlongItNothing) {
+  const auto displacement = map_displacement_m(make_walls(false), {0.2, 1.0, 0.0}, all_seeable(make_walls(false)), {2.5, 4.8}, 1.5);
+  ASSERT_TRUE(displacement);
+  EXPECT_NEAR(*displacement, 1.0, 0.01);
+}
+
+TEST(MapDisplacement, OfAReferenceWithoutSurfacesThereIsNone) {
+  const OccupancyGrid empty({.resolution_m = 0.025, .width = 400, .height = 400}, kFree);
+  EXPECT_FALSE(map_displacement_m(make_walls(), {}, all_seeable(empty), kTarget));
+}
+
 TEST(MapDisplacement, AlongASingleWallNothingIsSaid) {
   const Eigen::Vector2d before_the_middle(2.5, 4.8);
   const auto displacement = map_displacement_m(make_walls(false), {0.2, 0.05, 0.0},

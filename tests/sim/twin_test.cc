@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <numbers>
+#include <string>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "core/error.h"
 #include "io/urdf.h"
@@ -152,6 +155,46 @@ TEST(Twin, RingsOfAWorldWithoutALiningCannotBeMoved) {
   settings.lining_moves = {{.kind = "settlement", .first_ring = 2, .last_ring = 2, .inward_mm = 6.0}};
   EXPECT_THAT([&] { SmallTwin(kTrackedUrdf, make_flat_world(), settings); },
               testing::ThrowsMessage<InputError>("lining.0.first_ring = 2: the mission's file describes no lining"));
+}
+
+std::string kerb(double x_m, double height_m, double half_length_m = 0.09) {
+  return fmt::format(R"(<geom name="kerb_0" type="box" pos="{} 0 {}" size="{} 3 0.2"/>)", x_m + half_length_m, height_m - 0.2,
+                     half_length_m);
+}
+
+// The tunnel's stones are 22 cm high.
+TEST(Twin, ADriveAgainstTheSideOfACurbStoneThatIsHigherThanAStreetsIsACollision) {
+  for (const std::string& urdf : {kTrackedUrdf, kRobotUrdf}) {
+    for (const double height_m : {0.17, 0.22, 0.3}) {
+      SmallTwin twin(urdf, make_flat_world(kerb(1.0, height_m)));
+      twin.run(0.4, 4.0);
+      const auto collisions = twin->take_collisions();
+      ASSERT_FALSE(collisions.empty()) << urdf << ", " << height_m << " m";
+      EXPECT_EQ(collisions[0].second, "kerb_0");
+    }
+  }
+}
+
+TEST(Twin, WalkingAndDrivingOverALowCurbStoneIsNone) {
+  for (const std::string& urdf : {kTrackedUrdf, kRobotUrdf}) {
+    for (const double height_m : {0.05, 0.12}) {
+      SmallTwin twin(urdf, make_flat_world(kerb(1.0, height_m, 5.0)));
+      twin.run(0.4, 5.0);
+      EXPECT_THAT(twin->take_collisions(), testing::IsEmpty()) << urdf << ", " << height_m << " m";
+      if (height_m < 0.1) {
+        EXPECT_GT(twin->truth().T_world_body.position.x(), 1.2) << urdf << ": it went over";
+      }
+    }
+  }
+}
+
+TEST(Twin, StandingAndDrivingOnTopOfAHighCurbStoneIsNone) {
+  for (const std::string& urdf : {kTrackedUrdf, kRobotUrdf}) {
+    SmallTwin twin(urdf, make_flat_world(kerb(2.0, 0.22, 5.0)));
+    twin->put_at({5.0, 0.0, 0.0});
+    twin.run(0.4, 2.0);
+    EXPECT_THAT(twin->take_collisions(), testing::IsEmpty()) << urdf;
+  }
 }
 
 TEST(Twin, PutDownOnRubbleItDrivesOn) {

@@ -75,6 +75,7 @@ class Child {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) std::_Exit(EXIT_FAILURE);  // it died before we said so
     std::signal(SIGINT, SIG_IGN);  // a Ctrl-C goes to all; the parent decides
+    std::signal(SIGHUP, SIG_IGN);  // so does a closed terminal
     std::signal(SIGTERM, SIG_DFL);
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);

@@ -21,6 +21,7 @@ namespace {
 const OutputKind kCalibrating = {.name = "calibration of a log",
                                  .unfinished = "The log has not been calibrated.",
                                  .made = {"calibration.yaml", "stretches.csv", "metrics.json", "settings.yaml"},
+                                 .proof = "settings.yaml",
                                  .kept = {"*.part"}};
 
 /// Everything that `--set` reaches.
@@ -134,7 +135,7 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     log = calibrate_once(options.log, settings, known, fmt::format("{}, {} of {}", options.log.filename().string(), pass, settings.passes));
     if (!log) break;
   }
-  begin_output(options.out, kCalibrating);  // not before: a log that is damaged half way leaves nothing
+  const OutputLock lock = begin_output(options.out, kCalibrating);  // not before: a log that is damaged half way leaves nothing
   if (!log) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", options.out.string());
     return ExitCode::kProgramFailed;

@@ -31,6 +31,7 @@ namespace {
 const OutputKind kMapping = {.name = "mapping of a log",
                              .unfinished = "The log has not been mapped to its end.",
                              .made = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o", "performance.csv", "metrics.json", "settings.yaml", "report.html"},
+                             .proof = "settings.yaml",
                              .kept = {"*.part"}};
 
 /// Everything that `--set` reaches.
@@ -134,7 +135,7 @@ ExitCode slam_command(const SlamOptions& options) {
   const double wall_s = wall_seconds(), thread_s = thread_seconds();
   MappedLog mapped;
   const bool is_whole = map_log(*log, settings, options.log.filename().string(), *mapper, mapped);
-  begin_output(options.out, kMapping);  // not before: a log that is damaged half way leaves nothing
+  const OutputLock lock = begin_output(options.out, kMapping);  // not before: a log that is damaged half way leaves nothing
   if (!is_whole) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", options.out.string());
     return ExitCode::kProgramFailed;

@@ -1,22 +1,19 @@
+#include <unistd.h>
+
 #include <cstdlib>
 
 #include <fmt/format.h>
 
 #include "app/commands.h"
-#include "io/one_line.h"
+#include "monitor/host_names.h"
 #include "monitor/http_server.h"
+#include "monitor/line_log.h"
 #include "monitor/service.h"
 #include "monitor/store.h"
 #include "monitor/token.h"
 
 namespace patrol::app {
 namespace {
-
-/// One line each, whatever the other side sent.
-void log_line(const std::string& text) {
-  constexpr std::size_t kLongest = 500;
-  fmt::print(stderr, "{} {}\n", monitor::to_utc(monitor::now_ms()), io::on_one_line(text.substr(0, kLongest)));
-}
 
 std::string token_for(const MonitorOptions& options) {
   if (options.token_file) return monitor::load_token(*options.token_file);
@@ -27,15 +24,25 @@ std::string token_for(const MonitorOptions& options) {
   return monitor::token_of_folder(options.data);
 }
 
+/// Names of the options; the name to listen at is one of them.
+monitor::HostNames hosts_of(const MonitorOptions& options) {
+  std::vector<std::string> names = options.allowed_hosts;
+  if (!options.host.empty()) names.push_back(options.host);
+  return monitor::HostNames(names);
+}
+
 }  // namespace
 
 ExitCode monitor_command(const MonitorOptions& options) {
+  monitor::survive_lost_output();
+  monitor::LineLog log(STDERR_FILENO);
+  const auto log_line = [&log](const std::string& text) { log.write_with_time(text); };
   monitor::Store store(options.data);
-  monitor::Service service(store, token_for(options), log_line);
+  monitor::Service service(store, token_for(options), log_line, hosts_of(options));
   monitor::HttpServer server({.host = options.host, .port = options.port}, service, log_line);
   const bool has_own_token = !options.token_file && std::getenv("PATROL_TOKEN") == nullptr;
-  fmt::print(stderr, "patrol: monitoring at http://{}:{}/{}\n", options.host, server.port(),
-             has_own_token ? fmt::format(", token in {}", (options.data / "token").string()) : "");
+  log.write(fmt::format("patrol: monitoring at http://{}:{}/{}", options.host, server.port(),
+                        has_own_token ? fmt::format(", token in {}", (options.data / "token").string()) : ""));
   server.run();
   return ExitCode::kDone;
 }

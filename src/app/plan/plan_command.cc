@@ -44,7 +44,7 @@ ExitCode plan_problems(const PlanOptions& options) {
   if (!solved) return interrupted();
   const ProblemReport report{.file_name = options.map.filename().string(), .settings = settings, .solved = *solved};
   if (options.out) {
-    begin_output(*options.out, kPlanOutput);
+    const OutputLock lock = begin_output(*options.out, kPlanOutput);
     io::save_csv(*options.out / "problems.csv", problem_table(report));
     io::save_metrics(*options.out / "plan.json", to_json(report));
     io::save_settings(*options.out / "settings.yaml", settings);
@@ -105,7 +105,7 @@ ExitCode plan_one(const PlanOptions& options) {
   const plan::Route& route = report.figures.route;
   const bool is_found = route.status == plan::PlanStatus::kFound;
   if (options.out) {
-    begin_output(*options.out, kPlanOutput);
+    const OutputLock lock = begin_output(*options.out, kPlanOutput);
     const std::vector<Eigen::Vector2d> points_m = plan::to_metres(grid, route.points);
     if (is_found) io::save_csv(*options.out / "route.csv", route_table(ground.map, points_m));
     io::save_metrics(*options.out / "plan.json", to_json(report));
@@ -137,7 +137,7 @@ ExitCode plan_stations(const PlanOptions& options) {
   const TourReport report{.map = ground.map, .map_name = ground.map_name, .setup = ground.setup, .costs = ground.costs,
                           .p_from_m = ground.p_from_m, .p_end_m = p_end_m, .stops = stops, .tour = *tour};
   if (options.out) {
-    begin_output(*options.out, kPlanOutput);
+    const OutputLock lock = begin_output(*options.out, kPlanOutput);
     if (tour->order.is_found) {
       io::save_csv(*options.out / "tour.csv", tour_table(report));
       io::save_csv(*options.out / "route.csv", route_table(ground.map, tour->points_m));

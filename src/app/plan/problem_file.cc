@@ -50,7 +50,7 @@ std::optional<std::string> failure_of(const SolvedProblem& solved, const plan::R
   if (!solved.is_found()) return "there is no route: the file says there is";
   if (const auto fault = find_fault(costs, route, problem.start, problem.goal, planner == "any_angle_optimum")) return "the route " + *fault;
   if (must_agree(planner) && !solved.agrees()) return fmt::format("is {:.6f} cells long, published {:.6f}", solved.length, problem.optimal_length);
-  if (is_any_angle(planner) && solved.length > problem.optimal_length + kPublishedTol) {
+  if (is_any_angle(planner) && solved.length > problem.optimal_length + solved.published_tol()) {
     return fmt::format("is {:.6f} cells long, longer than {:.6f} over eight neighbours", solved.length, problem.optimal_length);
   }
   return std::nullopt;

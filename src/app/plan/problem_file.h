@@ -12,8 +12,8 @@
 
 namespace patrol::app {
 
-/// A published optimum may differ by its last digits.
-inline constexpr double kPublishedTol = 1e-4;  ///< cells
+/// Tolerance on a published optimum beside the rounding of its digits, cells.
+inline constexpr double kPublishedTol = 1e-4;
 
 /// What a planner made of one problem of a .scen file.
 struct SolvedProblem {
@@ -26,7 +26,9 @@ struct SolvedProblem {
   std::optional<std::string> failure = {};  ///< which check fails, as a sentence
 
   bool is_found() const { return status == plan::PlanStatus::kFound; }
-  bool agrees() const { return is_found() && std::abs(length - problem.optimal_length) <= kPublishedTol; }
+  /// Largest difference of the length from the published one that its digits allow, cells.
+  double published_tol() const { return kPublishedTol + problem.length_rounding; }
+  bool agrees() const { return is_found() && std::abs(length - problem.optimal_length) <= published_tol(); }
   /// To the published optimum; none where that is 0.
   std::optional<double> ratio() const {
     return is_found() && problem.optimal_length > 0.0 ? std::optional(length / problem.optimal_length) : std::nullopt;

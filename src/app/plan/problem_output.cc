@@ -51,7 +51,7 @@ std::string to_text(const ProblemReport& report) {
   const std::size_t count = report.solved.size(), failed = num_failed(report);
   std::string text = fmt::format("{}: {} problems by {}\nroutes             {} found, each checked against every lethal cell\n", report.file_name, count,
                                  report.settings.planner, summary.num_found);
-  text += fmt::format("published lengths  {} agree to {} cells{}, worst difference {:.3g} cells\n", summary.num_agree, kPublishedTol,
+  text += fmt::format("published lengths  {} agree to their last digit{}, worst difference {:.3g} cells\n", summary.num_agree,
                       must_agree(report.settings.planner) ? "" : " (need not)", summary.worst_difference);
   if (!summary.ratios.empty()) {
     text += fmt::format("length / optimum   mean {:.6f}, median {:.6f}, least {:.6f}, worst {:.6f}\n", mean_of(summary.ratios),

@@ -11,6 +11,7 @@ namespace patrol::app {
 const OutputKind kPlanOutput = {.name = "plan",
                                 .unfinished = "The plan was not finished.",
                                 .made = {"route.csv", "tour.csv", "problems.csv", "plan.json", "settings.yaml", "route.png", "*.part"},
+                                .proof = "settings.yaml",
                                 .kept = {}};
 
 namespace {

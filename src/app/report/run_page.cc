@@ -44,7 +44,7 @@ Blocks replay_blocks(const RunContents& run, const std::filesystem::path& page_f
                          std::filesystem::absolute(video).lexically_normal().parent_path();
   if (!is_beside) return {};
   return {render::VideoBlock{.mp4 = "", .address = "replay.mp4",
-                             .caption = fmt::format("too large for the page, it has to lie beside it ({} MiB are put in at most)", kLargestEmbedded >> 20)}};
+                             .caption = "Rendered from the log by patrol replay. Plays from replay.mp4, which must stay next to this page."}};
 }
 
 std::vector<std::pair<std::string, std::string>> facts_of(const RunContents& run) {

@@ -13,8 +13,9 @@ const OutputKind kRun = {
     .name = "run",
     .unfinished = "This run has not ended: what lies here is not a result.",
     .made = {"scenario.yaml", "log.mcap", "metrics.json", "junit.xml", "estimate.tum", "truth.tum", "odometry.tum", "map.yaml", "map.pgm",
-             "truth_map.yaml", "truth_map.pgm", "report.html", "replay.mp4", "nav.json", "remote.csv", "scans", "map_errors.pgm", "localizability.csv", "still_*.png", "outbox.jsonl", "outbox.sent",
+             "truth_map.yaml", "truth_map.pgm", "report.html", "replay.mp4", "nav.json", "remote.csv", "scans/scans.json", "scans/*.ply", "map_errors.pgm", "localizability.csv", "still_*.png", "outbox.jsonl", "outbox.sent",
              "outbox.refused.jsonl", "*.part"},
+    .proof = "scenario.yaml",
     .kept = {}};
 
 }  // namespace
@@ -27,8 +28,7 @@ RunDirectory begin_run_directory(const std::filesystem::path& root) {
   if (const std::size_t waiting = num_waiting_results(root); waiting > 0) {
     throw InputError(fmt::format("{}: {} results of an earlier run wait there for the platform: patrol send them, or name another directory", root.string(), waiting));
   }
-  begin_output(root, kRun);
-  return {root};
+  return {.root = root, .lock = std::make_shared<const OutputLock>(begin_output(root, kRun))};
 }
 
 RunDirectory open_run_directory(const std::filesystem::path& root) {

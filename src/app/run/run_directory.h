@@ -1,13 +1,17 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
+
+#include "app/output_directory.h"
 
 namespace patrol::app {
 
 /// The files of a run directory (README, "The run directory").
 struct RunDirectory {
   std::filesystem::path root;
+  std::shared_ptr<const OutputLock> lock = nullptr;  ///< of a run that is being written
 
   std::filesystem::path scenario() const { return root / "scenario.yaml"; }
   std::filesystem::path log() const { return root / "log.mcap"; }

@@ -18,6 +18,7 @@ namespace {
 const OutputKind kLocalizability = {.name = "map of localisability",
                                     .unfinished = "Not every place has been looked from.",
                                     .made = {"localizability.csv", "localizability.png", "*.part"},
+                                    .proof = "localizability.csv",
                                     .kept = {}};
 
 /// A logarithmic scale from a tenth of a millimetre to a metre.
@@ -55,7 +56,7 @@ ExitCode localizability_command(const LocalizabilityOptions& options) {
   if (!(options.step_m >= 0.05 && options.step_m <= 10.0)) throw InputError(fmt::format("--step-m {}: must lie in 0.05 ... 10", options.step_m));
   const Scenario scenario = load_scenario(options.scenario, options.overrides);
   const LocalizabilityMap map = map_localizability(scenario, load_scenario_files(scenario, find_data_root(options.scenario)), options.step_m);
-  begin_output(options.out, kLocalizability);
+  const OutputLock lock = begin_output(options.out, kLocalizability);
   io::save_csv(options.out / "localizability.csv", table_of(map));
   render::save_png(options.out / "localizability.png", picture_of(map, scenario.world));
   complete_output(options.out);

@@ -26,6 +26,7 @@ namespace {
 const OutputKind kStudy = {.name = "study",
                            .unfinished = "Not every seed of this study has been run: tables come at the end. The same command goes on.",
                            .made = {"results.csv", "runs.csv", "performance.csv", "report.html"},
+                           .proof = "study.json",
                            .kept = {"study.json", "seeds", "*.part"}};
 
 /// "N": the first N after those that methods were tuned on; or "A..B".
@@ -98,7 +99,7 @@ ExitCode study_command(const StudyOptions& options) {
   const std::vector<std::uint64_t> seeds = held_out_seeds(options.seeds.value_or(std::to_string(study.default_seeds)));
   const BatchSettings settings = batch_settings({.jobs = options.jobs, .run_limit_s = options.seed_limit_s, .keep = "none"});
 
-  begin_output(options.out, kStudy);
+  const OutputLock lock = begin_output(options.out, kStudy);
   io::save_metrics(options.out / "study.json", {{"study", study.name}, {"seeds", seeds}});
   const SampleStore store(options.out / "seeds", study);
   if (!run_seeds(study, seeds, store, settings.pool)) throw std::runtime_error(fmt::format("interrupted; {} is incomplete, the same command goes on", options.out.string()));

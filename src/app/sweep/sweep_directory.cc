@@ -14,12 +14,14 @@ namespace {
 const OutputKind kSweep = {.name = "sweep",
                            .unfinished = "Not every run of this sweep has ended: tables come at the end. The same command goes on.",
                            .made = {"runs.csv", "comparison.csv", "budget.csv", "faults.csv", "faults.md", "sweep.sqlite", "report.html"},
-                           .kept = {"sweep.json", "runs", "work", "slurm", "*.part"}};
+                           .proof = "sweep.json",
+                           .kept = {"sweep.json", "runs", "work", "slurm", "*.part"},
+                           .is_shared = true};
 
 }  // namespace
 
 SweepDirectory begin_sweep_directory(const std::filesystem::path& root, const SweepManifest& manifest) {
-  begin_output(root, kSweep);
+  const OutputLock shared = begin_output(root, kSweep);
   const SweepDirectory directory{root};
   save_manifest(directory.manifest(), manifest);
   return directory;

@@ -17,7 +17,8 @@ namespace {
 
 const OutputKind kTest = {.name = "test",
                           .unfinished = "Not every scenario has ended.",
-                          .made = {"junit.xml", "tests.csv", "summary.md", "report.html", "runs", "work", "*.part"},
+                          .made = {"junit.xml", "tests.csv", "summary.md", "report.html", "runs/[0-9][0-9][0-9][0-9]_*", "work/*-*-*", "*.part"},
+                          .proof = "junit.xml",
                           .kept = {}};
 
 std::vector<BatchRun> runs_of(const std::vector<TestedScenario>& tested, const TestOptions& options) {
@@ -44,7 +45,7 @@ ExitCode test_command(const TestOptions& options) {
     fmt::print(stderr, "patrol: {}: holds no scenario (*.yaml): nothing was executed\n", options.scenarios.string());
     return ExitCode::kNothingExecuted;
   }
-  begin_output(options.out, kTest);
+  const OutputLock lock = begin_output(options.out, kTest);
   save_test_junit(options.out / "junit.xml", tested);
 
   const bool is_through = run_batch(runs_of(tested, options), settings, options.out);

@@ -1,6 +1,7 @@
 #include "app/test/tested_scenario.h"
 
 #include <algorithm>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -15,11 +16,12 @@ namespace {
 bool is_scenario(const std::filesystem::path& file) { return file.extension() == ".yaml" || file.extension() == ".yml"; }
 
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& scenarios) {
-  if (std::filesystem::is_regular_file(scenarios)) return {scenarios};
-  if (!std::filesystem::is_directory(scenarios)) throw InputError(fmt::format("{}: there is no such file or folder", scenarios.string()));
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(scenarios, ignored)) return {scenarios};
+  if (!std::filesystem::is_directory(scenarios, ignored)) throw InputError(fmt::format("{}: there is no such file or folder", scenarios.string()));
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(scenarios)) {
-    if (entry.is_regular_file() && is_scenario(entry.path())) files.push_back(entry.path());
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(scenarios)) {  // does not follow links to folders
+    if (entry.is_regular_file(ignored) && is_scenario(entry.path())) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;

@@ -20,6 +20,34 @@ async function ask(path, parameters = {}) {
   return answer.json();
 }
 
+const kMaxPages = 100;
+
+/// Everything of an answer that comes in pages: `next(page)` gives the parameters of the page that follows, or null.
+async function askAll(path, parameters, next, merge) {
+  const all = await ask(path, parameters);
+  for (let i = 1, more = next(all); more && i < kMaxPages; ++i) {
+    const page = await ask(path, { ...parameters, ...more });
+    merge(all, page);
+    more = next(page);
+  }
+  return all;
+}
+
+const askRobots = () => askAll('/api/robots', {}, (page) => (page.more ? { after: page.robots[page.robots.length - 1].robot } : null), (all, page) => all.robots.push(...page.robots));
+
+const askRun = (robot, run) => askAll('/api/run', { robot, run }, (page) => (page.next_station == null ? null : { run: page.run, station: page.next_station }),
+  (all, page) => all.stations.push(...page.stations));
+
+const askLining = (world) => askAll('/api/lining', { world }, (page) => (page.next == null ? null : { after: page.next }), (all, page) => {
+  for (const scan of page.scans) {  // a long scan goes on
+    const last = all.scans[all.scans.length - 1];
+    if (last && last.seq === scan.seq) last.data.cells.push(...scan.data.cells);
+    else all.scans.push(scan);
+  }
+  all.lines.push(...page.lines);
+  all.rings.push(...page.rings);
+});
+
 /// One that the platform did not answer is tried again when it does.
 const attempt = (refresh) => { refresh().catch(() => state.missed.add(refresh)); };
 
@@ -127,7 +155,7 @@ const map = new MapView($('#map'));
 async function refreshRun() {
   const { chosen, run } = state;
   if (!chosen) return map.show(null, [], []);
-  const details = await ask('/api/run', { robot: chosen, run });
+  const details = await askRun(chosen, run);
   if (chosen !== state.chosen || run !== state.run) return;
   state.details = details;
   $('#run').replaceChildren(...details.runs.map((one, i) => make('option', { value: i === 0 ? '' : one.run, textContent: `${dayAndClock(one.first_ms)}  ${one.run}`, selected: one.run === details.run })));
@@ -154,7 +182,7 @@ function showMap() {
 async function refreshWorld() {
   const robot = state.robots.get(state.chosen), world = robot ? robot.world : '';
   $('#site').textContent = world ? 'Site: ' + world : '';
-  const [lining, water, gas] = await Promise.all([ask('/api/lining', { world }), ask('/api/water', { world }), ask('/api/gas', { world })]);
+  const [lining, water, gas] = await Promise.all([askLining(world), ask('/api/water', { world }), ask('/api/gas', { world })]);
   const now = state.robots.get(state.chosen);
   if ((now ? now.world : '') !== world) return;
   state.water = water.water;
@@ -216,6 +244,7 @@ function showLive(isOn) {
 
 async function poll() {
   const news = await ask('/api/changes', { since: state.revision });
+  if (news.more_robots) news.robots = (await askRobots()).robots;
   showLive(true);
   const missed = [...state.missed];
   state.missed.clear();

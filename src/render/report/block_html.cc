@@ -29,12 +29,8 @@ std::string to_html(const KeyFigures& block) {
 
 std::string to_html(const VideoBlock& block) {
   const std::string caption = fmt::format("<figcaption>{}</figcaption>", io::escaped_markup(block.caption));
-  if (block.mp4.empty()) {
-    return fmt::format("<p class=\"note\"><a href=\"{}\">{}</a>: {}</p>\n", io::escaped_markup(block.address), io::escaped_markup(block.address),
-                       io::escaped_markup(block.caption));
-  }
-  return fmt::format("<figure class=\"video\"><video controls preload=\"metadata\" src=\"{}\"></video>{}</figure>\n",
-                     data_uri("video/mp4", block.mp4), caption);
+  const std::string source = block.mp4.empty() ? io::escaped_markup(block.address) : data_uri("video/mp4", block.mp4);
+  return fmt::format("<figure class=\"video\"><video controls preload=\"metadata\" src=\"{}\"></video>{}</figure>\n", source, caption);
 }
 
 const char* css_class(Tone tone) {

@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kGridEnd =
     "</div>\n<p class=\"note hint\">Drag over a stretch of a plot to zoom all of them, double-click for the whole.</p>\n";
 constexpr const char* kPolicy =
-    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; media-src data:";
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; media-src data: 'self' file:";
 
 /// "Error over time" -> "error-over-time".
 std::string anchor_of(const std::string& title) {

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
+
+#include <fmt/format.h>
 
 #include "core/angles.h"
 
@@ -22,6 +25,12 @@ double bend_m(double before_m, double range_m, double after_m) {
   return std::isfinite(bend) ? bend : 0.0;
 }
 
+/// Stream of one imperfection in one epoch: "scanner/range" for inspections, "scanner/reference/range" for references.
+RandomStream stream_of(const PanoramicScannerSettings& settings, std::uint64_t seed, std::string_view imperfection) {
+  const std::string_view epoch = settings.epoch == "reference" ? "reference/" : "";
+  return {seed, fmt::format("scanner/{}{}", epoch, imperfection)};
+}
+
 }  // namespace
 
 PanoramicScanner::PanoramicScanner(const PanoramicScannerSettings& settings, const LidarScene& scene, const Pose3& T_body_scanner,
@@ -31,11 +40,11 @@ PanoramicScanner::PanoramicScanner(const PanoramicScannerSettings& settings, con
       T_body_scanner_(T_body_scanner),
       dust_(dust),
       surfaces_(surface_optics(scene.model())),
-      range_noise_(seed, "scanner/range"),
-      range_offset_(seed, "scanner/range_offset"),
-      angle_noise_(seed, "scanner/angle"),
-      tilt_error_(seed, "scanner/tilt"),
-      dropout_(seed, "scanner/dropout") {
+      range_noise_(stream_of(settings, seed, "range")),
+      range_offset_(stream_of(settings, seed, "range_offset")),
+      angle_noise_(stream_of(settings, seed, "angle")),
+      tilt_error_(stream_of(settings, seed, "tilt")),
+      dropout_(stream_of(settings, seed, "dropout")) {
   validate(settings, "sensors.scanner");
   const auto pairs = static_cast<int>(std::lround(180.0 / settings.step_deg));
   for (int pair = 0; pair < pairs; ++pair) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,7 @@ namespace patrol::sim {
 /// steps of 0.009 degrees (here: every 40th). A stated "+-" is read as two standard deviations, a plain figure as one.
 struct PanoramicScannerSettings {
   bool enabled = false;
+  std::string epoch = "inspection";  ///< measurement epoch of a scan: "reference" or "inspection"; independent noise in each
   double step_deg = 0.36;            ///< from direction to direction, about and up: 1000 columns of 417
   double elevation_min_deg = -60.0;  ///< of the lowest direction; below it the instrument sees its own foot
   double duration_s = 30.0;          ///< of a scan
@@ -41,6 +43,7 @@ struct PanoramicScannerSettings {
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("enabled", self.enabled);
+    visit("epoch", self.epoch, one_of({"reference", "inspection"}));
     visit("step_deg", self.step_deg, between(0.09, 10.0));
     visit("elevation_min_deg", self.elevation_min_deg, between(-90.0, 80.0));
     visit("duration_s", self.duration_s, between(0.1, 3600.0));
@@ -66,7 +69,7 @@ struct PanoramicScannerSettings {
 ///
 /// A surface's light is its reflectivity times the cosine of the incidence. Range noise follows the sheet: its six figures are met to
 /// its last digit by the variance noise^2 + grey_noise^2 (range / 10 m) (0.1 / light)^2. Every imperfection draws from its own random
-/// stream, addressed by scan and beam. Where the range jumps, a beam is spread over its width and returns the mean of what it meets,
+/// stream, addressed by epoch, scan and beam: a reference scan has independent noise even under an inspection's seed. Where the range jumps, a beam is spread over its width and returns the mean of what it meets,
 /// however far apart: the instrument measures the phase of its light. Not modelled: dust's own echoes, the compensator's limit of 2
 /// degrees, colour.
 class PanoramicScanner {

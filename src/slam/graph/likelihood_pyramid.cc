@@ -23,12 +23,15 @@ Cell LikelihoodPyramid::cell_of(const Eigen::Vector2d& p_map) const {
   return {static_cast<int>(std::floor(p_map.x() / resolution_m_)), static_cast<int>(std::floor(p_map.y() / resolution_m_))};
 }
 
-// Empty, to hold all that the map knows and what counts around it.
+// Zeros over all tiles, widened by `kReach`. Means of hits lie up to half a map cell from the centers, and slightly more after
+// rounding to float: an extent of the centers alone would not hold the cells of means at the tiles' edges.
 LikelihoodPyramid::Level LikelihoodPyramid::extent_of(const GridMap& map) const {
   constexpr int kMax = std::numeric_limits<int>::max();
   int low_col = kMax, low_row = kMax, high_col = -kMax, high_row = -kMax;
+  const Eigen::Vector2d margin = Eigen::Vector2d::Constant(map.resolution_m());
   map.for_each_tile([&](Cell first, const GridTile&) {
-    const Cell low = cell_of(map.center_of(first)), high = cell_of(map.center_of({first.col + GridTile::kSize - 1, first.row + GridTile::kSize - 1}));
+    const Cell last{first.col + GridTile::kSize - 1, first.row + GridTile::kSize - 1};
+    const Cell low = cell_of(map.center_of(first) - margin), high = cell_of(map.center_of(last) + margin);
     low_col = std::min(low_col, low.col), low_row = std::min(low_row, low.row);
     high_col = std::max(high_col, high.col), high_row = std::max(high_row, high.row);
   });

@@ -3,6 +3,7 @@
 
 usage: monitor_test.py PATROL
 """
+import fcntl
 import json
 import pathlib
 import signal
@@ -84,6 +85,63 @@ class Refusals(PlatformCase):
         self.refuse(400, "POST", "/api/results", json.dumps({**event(1), "a\nb\x1b[31m": 1}), self.platform.token)
         self.assertEqual(len(self.platform.log.read_text().splitlines()), before + 1)
         self.assertNotIn("\x1b", self.platform.log.read_text())
+
+
+    def test_another_host_name(self):
+        self.refuse(421, "GET", "/api/robots", says="not a name of this platform", Host="evil.example")
+        self.refuse(421, "POST", "/api/results", "[]", self.platform.token, Host="evil.example:80")
+        self.assertEqual(self.platform.ask("GET", "/api/robots", Host="localhost:80")[0], 200)
+
+
+class Output(unittest.TestCase):
+    """The platform lives on when its log cannot be written."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = pathlib.Path(folder.name)
+
+    def serve(self, redirection, **more):
+        """Starts a platform whose stderr goes elsewhere, on a port of its own."""
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        command = f'exec "{PATROL}" monitor --port {port} --data "{self.path / "data"}" {redirection}'
+        process = subprocess.Popen(["sh", "-c", command], **more)
+        self.addCleanup(lambda: (process.kill(), process.wait()))
+        return process, port
+
+    def check(self, process, port):
+        for i in range(200):
+            try:
+                with socket.create_connection(("127.0.0.1", port), timeout=10) as connection:
+                    connection.sendall(b"GET /nothing HTTP/1.1\r\nHost: localhost\r\n\r\n")  # a line for the log
+                    self.assertTrue(connection.recv(100).startswith(b"HTTP/1.1 404 "))
+            except ConnectionRefusedError:
+                self.assertLess(i, 150)
+                self.assertIsNone(process.poll())
+                time.sleep(0.1)
+        self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(timeout=10), 0)
+
+    def test_stderr_closed(self):
+        self.check(*self.serve("2>&-"))
+        self.assertEqual((self.path / "data/lock").read_bytes(), b"", "the log went into another file")
+
+    def test_stderr_full(self):
+        self.check(*self.serve("2>/dev/full"))
+
+    def test_the_reader_of_stderr_gone(self):
+        process, port = self.serve("", stderr=subprocess.PIPE)
+        process.stderr.close()
+        self.check(process, port)
+
+    def test_nobody_reads_stderr(self):
+        process, port = self.serve("", stderr=subprocess.PIPE)
+        self.addCleanup(process.stderr.close)
+        fcntl.fcntl(process.stderr, fcntl.F_SETPIPE_SZ, 4096)
+        self.check(process, port)
 
 
 class Names(PlatformCase):

@@ -57,6 +57,21 @@ TEST_F(ProblemFile, APublishedLengthThatIsWrongIsNamedByItsLine) {
   EXPECT_NE(to_text(report).find("\n  a.map.scen:3: is 5.000000 cells long"), std::string::npos);
 }
 
+// A strip of 129 columns: from the start three rows down aslant, then straight on: 125 + 3 sqrt 2 = 129.242641. Six digits: 129.243.
+TEST_F(ProblemFile, ALengthAgreesWithinTheRoundingOfItsPublishedDigits) {
+  const std::string row(129, '.');
+  write_bytes(folder / "strip.map", "type octile\nheight 4\nwidth 129\nmap\n" + row + "\n" + row + "\n" + row + "\n" + row + "\n");
+  const auto fails = [&](const std::string& length, const std::string& planner) {
+    return solve("32\tstrip.map\t129\t4\t0\t0\t128\t3\t" + length + "\n", planner)[0].failure.has_value();
+  };
+  for (const std::string length : {"129.243", "129.24264", "129.24264069"}) EXPECT_FALSE(fails(length, "astar")) << length;
+  for (const std::string length : {"129.113", "129.372", "129.242", "129.244", "129.24300000", "129", "129.2"}) {
+    EXPECT_TRUE(fails(length, "astar")) << length;
+  }
+  EXPECT_FALSE(fails("129.243", "any_angle_optimum"));
+  EXPECT_TRUE(fails("127", "any_angle_optimum"));
+}
+
 TEST_F(ProblemFile, AnAnyAngleRouteMayBeShorterButNotLonger) {
   const std::vector<SolvedProblem> theta = solve("1\ta.map\t5\t3\t0\t0\t3\t1\t4.00000000\n1\ta.map\t5\t3\t0\t2\t3\t0\t2.00000000\n", "theta_star");
   EXPECT_FALSE(theta[0].failure);

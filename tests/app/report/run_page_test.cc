@@ -76,7 +76,7 @@ TEST(RunPage, OfARunThatWasCutOffRightAfterItsFirstEstimateHasNoErrors) {
   EXPECT_TRUE(blocks_of<render::LinePlot>(error_blocks(run)).empty());
 }
 
-TEST(RunPage, PutsASmallReplayInAndLinksALargeOneThatLiesBeside) {
+TEST(RunPage, EmbedsASmallReplayAndPlaysALargeOneFromTheFileNextToThePage) {
   const test::TemporaryFolder folder;
   RunContents run = small_run();
   run.directory.root = folder.path();
@@ -91,6 +91,7 @@ TEST(RunPage, PutsASmallReplayInAndLinksALargeOneThatLiesBeside) {
   EXPECT_EQ(replays(folder / "report.html").at(0).mp4, "film");
   std::filesystem::resize_file(folder / "replay.mp4", 7 << 20);
   EXPECT_EQ(replays(folder / "report.html").at(0).address, "replay.mp4");
+  EXPECT_THAT(render::to_html(run_page(run, folder / "report.html")), HasSubstr("<video controls preload=\"metadata\" src=\"replay.mp4\">"));
   EXPECT_TRUE(replays(folder / "elsewhere/report.html").empty());
 }
 

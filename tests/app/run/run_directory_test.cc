@@ -55,23 +55,41 @@ TEST(RunDirectory, AFolderThatHoldsSomethingElseIsRefusedAndLeftAsItWas) {
   const TemporaryFolder folder;
   test::write_bytes(folder / "thesis.tex", "three years of work");
   test::write_bytes(folder / "metrics.json", "mine");
-  EXPECT_THAT([&] { begin_run_directory(folder.path()); },
+  EXPECT_THAT([&] { (void)begin_run_directory(folder.path()); },
               ThrowsMessage<InputError>(HasSubstr("thesis.tex")));
   EXPECT_EQ(test::read_bytes(folder / "thesis.tex"), "three years of work");
   EXPECT_EQ(test::read_bytes(folder / "metrics.json"), "mine");
   EXPECT_FALSE(std::filesystem::exists(folder / "INCOMPLETE"));
 }
 
+TEST(RunDirectory, AnEarlierRunsScansAreRemovedAndAUsersFilesAreNot) {
+  const TemporaryFolder folder;
+  test::write_bytes(folder / "scenario.yaml", "old");
+  std::filesystem::create_directory(folder / "scans");
+  test::write_bytes(folder / "scans/scans.json", "old");
+  test::write_bytes(folder / "scans/notes.txt", "mine");
+  EXPECT_THAT([&] { (void)begin_run_directory(folder.path()); }, ThrowsMessage<InputError>(HasSubstr("scans/notes.txt")));
+  EXPECT_EQ(test::read_bytes(folder / "scans/notes.txt"), "mine");
+  std::filesystem::remove(folder / "scans/notes.txt");
+  const RunDirectory run = begin_run_directory(folder.path());
+  EXPECT_FALSE(std::filesystem::exists(run.scans()));
+
+  std::filesystem::create_directory(folder / "log.mcap");
+  test::write_bytes(folder / "log.mcap/mine", "mine");
+  EXPECT_THAT([&] { (void)begin_run_directory(folder.path()); }, ThrowsMessage<InputError>(HasSubstr("log.mcap")));
+  EXPECT_EQ(test::read_bytes(folder / "log.mcap/mine"), "mine");
+}
+
 TEST(RunDirectory, AFolderInsideIsNotPartOfARun) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "holiday");
-  EXPECT_THAT([&] { begin_run_directory(folder.path()); }, ThrowsMessage<InputError>(HasSubstr("holiday")));
+  EXPECT_THAT([&] { (void)begin_run_directory(folder.path()); }, ThrowsMessage<InputError>(HasSubstr("holiday")));
 }
 
 TEST(RunDirectory, AFileInItsPlaceIsRefused) {
   const TemporaryFolder folder;
   test::write_bytes(folder / "run", "a file");
-  EXPECT_THAT([&] { begin_run_directory(folder / "run"); }, ThrowsMessage<InputError>(HasSubstr("run")));
+  EXPECT_THAT([&] { (void)begin_run_directory(folder / "run"); }, ThrowsMessage<InputError>(HasSubstr("run")));
 }
 
 TEST(RunDirectory, OpensOnlyWhereALogLies) {

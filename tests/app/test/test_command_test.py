@@ -42,6 +42,16 @@ class TestCommand(unittest.TestCase):
     def suites(self):
         return {suite.get("name"): suite for suite in xml.etree.ElementTree.parse(self.out / "junit.xml").getroot().iter("testsuite")}
 
+    def test_links_that_lead_back_are_not_followed(self):
+        self.add("first")
+        (self.scenarios / "self").symlink_to("self")
+        (self.scenarios / "self.yaml").symlink_to("self.yaml")
+        (self.scenarios / "up").symlink_to(".")
+        (self.scenarios / "away.yaml").symlink_to("nowhere.yaml")
+        done = self.run_test()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(sorted(self.suites()), ["first"])
+
     def test_all_passed_is_0_with_a_suite_for_each(self):
         self.add("first")
         self.add("deep/second", "  mission.distance_m: {min: -1, max: 1}\n")

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
 #include "slam/scan_integration.h"
 #include "tests/slam/graph/office_world.h"
 
@@ -37,6 +41,42 @@ TEST(LikelihoodPyramid, EveryLevelBoundsAllShiftsWithinItsCell) {
     const int level = static_cast<int>(6.0 * u[2]), col = static_cast<int>(500.0 * u[0]) - 50, row = static_cast<int>(400.0 * u[1]) - 50, side = 1 << level;
     const int at_shift = pyramid.value(0, col + static_cast<int>(side * shift[0]), row + static_cast<int>(side * shift[1]));
     ASSERT_GE(pyramid.value(level, col, row), at_shift) << "level " << level << ", cell " << col << ", " << row;
+  }
+}
+
+// The offset from the center, -2.5 cm, rounds to a float beyond the edge: the surface is in the pyramid's cell before the tile.
+TEST(LikelihoodPyramid, HoldsHitsOnTheLowEdgesOfTiles) {
+  GridMap at_left(0.05, 4000.0), at_bottom(0.05, 4000.0);
+  at_left.add_hit({-1.6, 0.02});
+  at_bottom.add_hit({0.02, -1.6});
+  const LikelihoodPyramid left(at_left, 0.1, 7), bottom(at_bottom, 0.1, 7);
+  for (int along = -40; along < 40; ++along) {
+    for (int across = -40; across < 40; ++across) {
+      const int steps_across = std::abs(across + 17), steps_along = std::abs(along);
+      const bool is_near = steps_across <= 2 && steps_along <= 2;
+      const int squared_distance = steps_across * steps_across + steps_along * steps_along;
+      const int expected = is_near ? static_cast<int>(std::lround(100.0 * std::exp(-0.5 * squared_distance))) : 0;
+      ASSERT_EQ(left.value(0, across, along), expected) << "left, " << across << ", " << along;
+      ASSERT_EQ(bottom.value(0, along, across), expected) << "bottom, " << along << ", " << across;
+    }
+  }
+}
+
+// The cells of the pyramid need not be a multiple of the map's.
+TEST(LikelihoodPyramid, HoldsHitsOnAllEdgesOfTilesWhateverTheResolution) {
+  for (const double resolution_m : {0.03, 0.05, 0.07, 0.1, 0.13}) {
+    for (int edge = -64; edge <= 64; edge += 32) {
+      GridMap map(0.05, 4000.0);
+      map.add_hit({0.05 * edge - 1e-9, 0.05 * edge});
+      map.add_hit({0.05 * edge, 0.05 * edge - 1e-9});
+      const LikelihoodPyramid pyramid(map, resolution_m, 3);
+      int highest = 0;
+      const int center = static_cast<int>(std::floor(0.05 * edge / resolution_m));
+      for (int col = center - 1; col <= center + 1; ++col) {
+        for (int row = center - 1; row <= center + 1; ++row) highest = std::max(highest, pyramid.value(0, col, row));
+      }
+      EXPECT_EQ(highest, LikelihoodPyramid::kOnSurface) << resolution_m << " m, edge " << edge;
+    }
   }
 }
 

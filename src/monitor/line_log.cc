@@ -1,0 +1,56 @@
+#include "monitor/line_log.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+
+#include <fmt/format.h>
+
+#include "io/one_line.h"
+#include "monitor/result.h"
+
+namespace patrol::monitor {
+namespace {
+
+constexpr std::size_t kMaxText = 500;  // bytes; written out at most 2,000, which a pipe takes whole
+
+}  // namespace
+
+void LineLog::write(const std::string& text) noexcept {
+  try {
+    const std::string lost = num_lost_ > 0 ? fmt::format("{} lines before this one could not be written\n", num_lost_) : "";
+    if (write_bytes(lost + io::on_one_line(text.substr(0, kMaxText)) + "\n")) num_lost_ = 0;
+    else ++num_lost_;
+  } catch (const std::exception&) {  // no memory
+    ++num_lost_;
+  }
+}
+
+void LineLog::write_with_time(const std::string& text) noexcept {
+  try {
+    write(fmt::format("{} {}", to_utc(now_ms()), text));
+  } catch (const std::exception&) {
+    ++num_lost_;
+  }
+}
+
+bool LineLog::write_bytes(const std::string& bytes) const {
+  pollfd output{.fd = descriptor_, .events = POLLOUT, .revents = 0};
+  if (::poll(&output, 1, 0) != 1 || (output.revents & POLLOUT) == 0) return false;  // a full pipe would make the server wait
+  ssize_t count = -1;
+  do count = ::write(descriptor_, bytes.data(), bytes.size());
+  while (count < 0 && errno == EINTR);
+  return count == static_cast<ssize_t>(bytes.size());
+}
+
+void survive_lost_output() {
+  std::signal(SIGPIPE, SIG_IGN);
+  for (int descriptor = 0; descriptor <= STDERR_FILENO; ++descriptor) {
+    if (::fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) ::open("/dev/null", O_RDWR);  // takes the lowest number that is free
+  }
+}
+
+}  // namespace patrol::monitor
