@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "io/atomic_file.h"
 #include "io/line_fields.h"
 #include "io/line_reader.h"
@@ -25,8 +26,7 @@ Eigen::Matrix3d read_information(LineFields& fields) {
   for (int row = 0; row < 3; ++row) {
     for (int col = row; col < 3; ++col) information(row, col) = information(col, row) = fields.number("information");
   }
-  const Eigen::LLT<Eigen::Matrix3d> root(information);
-  if (root.info() != Eigen::Success || !root.matrixLLT().allFinite()) throw FieldError("information is not positive definite");
+  if (!is_positive_definite(information)) throw FieldError("information is not positive definite");
   return information;
 }
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/segment.h"
 
 namespace patrol::localize {
@@ -195,8 +196,8 @@ std::optional<Eigen::Matrix3d> DockDetector::covariance(const std::vector<Beam>&
   }
   const double w_per_std = width_m / settings_.range_std_m;
   const Eigen::Matrix3d information = 0.25 * w_per_std * w_per_std * (curvature + curvature.transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
-  if (eigen.eigenvalues().minCoeff() < 1.0 / (kMaxStd_m * kMaxStd_m)) return std::nullopt;
+  const SymmetricEigen<3> eigen = symmetric_eigen(information);
+  if (eigen.values.minCoeff() < 1.0 / (kMaxStd_m * kMaxStd_m)) return std::nullopt;
 
   // Transform from search coordinates to x, y, yaw of the docked body: a rotation about the center moves it.
   const Eigen::Vector2d arm = fit.T_level_docked.position() - fit.T_level_docked * middle_m_;

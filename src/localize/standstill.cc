@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "localize/inertial_motion.h"
 
 namespace patrol::localize {
@@ -37,7 +38,7 @@ SmallRotation fit_rotation(const std::array<Eigen::Vector3d, kNumLegs>& before,
     normal += lever.transpose() * lever;
     right += lever.transpose() * ((after[leg] - after_mean) - (before[leg] - before_mean));
   }
-  const Eigen::Vector3d angle = normal.ldlt().solve(right);
+  const Eigen::Vector3d angle = solve_symmetric(normal, right);
   double worst = 0.0;
   for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
     const Eigen::Vector3d p = before[leg] - before_mean;

@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "core/angles.h"
+#include "core/linear_algebra.h"
 #include "score/distance_field.h"
 #include "score/map_error.h"
 
@@ -56,12 +57,12 @@ Eigen::Vector3d step(const DistanceField& field, const std::vector<Eigen::Vector
     information += weight * row * row.transpose();
     gradient += weight * distance * row;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
+  const SymmetricEigen<3> eigen = symmetric_eigen(information);
   Eigen::Vector3d result = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
-    const double value = eigen.eigenvalues()[i];
-    if (value <= kWeakShare * eigen.eigenvalues()[2]) continue;
-    result -= eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(gradient) / value);
+    const double value = eigen.values[i];
+    if (value <= kWeakShare * eigen.values[2]) continue;
+    result -= eigen.vectors.col(i) * (eigen.vectors.col(i).dot(gradient) / value);
   }
   return result;
 }

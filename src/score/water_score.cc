@@ -4,6 +4,8 @@
 
 #include <set>
 
+#include "core/linear_algebra.h"
+
 namespace patrol::score {
 namespace {
 
@@ -47,7 +49,7 @@ WaterScore water_score(const std::vector<WaterResult>& results, const std::vecto
       finding.radius_error_m = result.radius_m - body.radius_m;
       finding.distance_holds = way_m.norm() >= result.distance_low_m && way_m.norm() <= result.distance_high_m;
       finding.radius_holds = body.radius_m >= result.radius_low_m && body.radius_m <= result.radius_high_m;
-      finding.position_holds = error_m.dot(covariance_m2.ldlt().solve(error_m)) <= kChiSquared3;
+      finding.position_holds = error_m.dot(solve_symmetric(covariance_m2, error_m)) <= kChiSquared3;
     }
     score.findings.push_back(finding);
   }

@@ -4,13 +4,15 @@
 
 #include <utility>
 
+#include "core/linear_algebra.h"
+
 namespace patrol::slam {
 
 GridStep::GridStep(std::vector<Particle>& particles, std::vector<PoseGaussian> predictions, const std::vector<MatchPoint>& points, double likelihood_gain,
                    const ScanMatcherSettings& settings)
     : particles_(particles), predictions_(std::move(predictions)), points_(points), likelihood_gain_(likelihood_gain), settings_(settings),
       positions_(particles.size()) {
-  for (const PoseGaussian& prediction : predictions_) roots_.push_back(prediction.covariance.llt().matrixL());
+  for (const PoseGaussian& prediction : predictions_) roots_.push_back(cholesky_factor(prediction.covariance));
 }
 
 Position GridStep::draw(std::size_t, RandomSequence& random) const {

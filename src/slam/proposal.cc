@@ -5,10 +5,12 @@
 
 #include <cmath>
 
+#include "core/linear_algebra.h"
+
 namespace patrol::slam {
 
 Pose2 Proposal::sample(const Eigen::Vector3d& unit) const {
-  const Eigen::Matrix3d L = posterior.covariance.llt().matrixL();
+  const Eigen::Matrix3d L = cholesky_factor(posterior.covariance);
   return shifted(posterior.mean, L * unit);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/linear_algebra.h"
 #include "slam/local_line.h"
 
 namespace patrol::slam {
@@ -100,7 +101,7 @@ std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<Matc
     Eigen::Vector3d b = sum.b;
     if (prior) b += prior_information * prior->offset_of(result.T_map_body);
     H.diagonal() += Eigen::Vector3d::Constant(1e-9 * H.trace());  // without a prior a direction may be degenerate
-    const Eigen::Vector3d step = -H.ldlt().solve(b);
+    const Eigen::Vector3d step = -solve_symmetric(H, b);
     if (!step.allFinite()) return std::nullopt;
 
     result.T_map_body = shifted(result.T_map_body, step);

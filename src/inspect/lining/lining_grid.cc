@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/angles.h"
+#include "core/linear_algebra.h"
 
 namespace patrol::inspect {
 namespace {
@@ -123,7 +124,7 @@ std::optional<LiningInMap> fit_design(const TunnelLining& design_in_map, const s
       near += std::abs(point.inward_m) < 0.1 ? 1 : 0;
     }
     if (near < kMinPoints) return std::nullopt;
-    const Eigen::Vector3d step = -H.ldlt().solve(b);
+    const Eigen::Vector3d step = -solve_symmetric(H, b);
     lining = moved_design(lining, about, left, step);
     if (kernel_m == kLastKernel_m && step.norm() < 1e-6) break;
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/angles.h"
+#include "core/linear_algebra.h"
 #include "inspect/lining/robust_mean.h"
 
 namespace patrol::inspect {
@@ -73,7 +74,7 @@ std::optional<double> ReferenceLining::inward_m(double chainage_m, double arc_m,
     }
   }
   if (neighbours < kMinNeighbours) return std::nullopt;
-  return H.ldlt().solve(b)[0];
+  return solve_symmetric(H, b)[0];
 }
 
 }  // namespace patrol::inspect

@@ -10,6 +10,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/linear_algebra.h"
+
 namespace patrol::inspect {
 namespace {
 
@@ -96,7 +98,7 @@ Registration register_cloud(const SurfaceCloud& target, const SurfaceCloud& sour
     }
     if (pairs < kMinPairs) return result;
     H.diagonal().array() += 1e-6 * H.trace();
-    const Vector6 step = -H.ldlt().solve(b);
+    const Vector6 step = -solve_symmetric(H, b);
     result.T_target_source = moved(result.T_target_source, step);
     // Distant pairs need not converge completely before closer ones are used.
     const double length_m = step.head<3>().norm() + kRegistrationArm_m * step.tail<3>().norm();

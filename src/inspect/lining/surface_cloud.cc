@@ -12,6 +12,7 @@
 #include <nanoflann.hpp>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 
 namespace patrol::inspect {
 namespace {
@@ -107,10 +108,9 @@ SurfaceCloud::Surface surface_of(const std::vector<ThinPoint>& points, const Sur
     const Eigen::Vector3d offset = points[near.index[i]].p - surface.mean;
     scatter += offset * offset.transpose();
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
-  axes.computeDirect(scatter);
-  const Eigen::Vector3d& spread = axes.eigenvalues();
-  if (spread[0] < kThickness * spread[1] && spread[1] > kNarrowness * spread[2]) surface.normal = axes.eigenvectors().col(0);
+  const SymmetricEigen<3> axes = symmetric_eigen_direct(scatter);
+  const Eigen::Vector3d& spread = axes.values;
+  if (spread[0] < kThickness * spread[1] && spread[1] > kNarrowness * spread[2]) surface.normal = axes.vectors.col(0);
   return surface;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/particle_weights.h"
 #include "localize/amcl/distance_to_occupied.h"
 
@@ -75,7 +76,7 @@ void MonteCarloLocalizer::start_at(const Pose2& T_map_body, const Eigen::Matrix3
   belief_ = {.mean = T_map_body, .covariance = covariance};
   belief_.covariance.diagonal() += kLeastStd.cwiseAbs2();
   clump_weight_ = 1.0;
-  const Eigen::Matrix3d L = belief_.covariance.llt().matrixL();
+  const Eigen::Matrix3d L = cholesky_factor(belief_.covariance);
   PoseBins bins(settings_.kld);
   while (cloud_.size() < static_cast<std::size_t>(kld_particles(bins.size(), settings_.kld))) {
     const std::array<double, 4> unit = start_noise_.normals(starts_, cloud_.size());

@@ -5,12 +5,14 @@
 #include <array>
 #include <cmath>
 
+#include "core/linear_algebra.h"
+
 namespace patrol::localize {
 
 void move_particles(ParticleCloud& cloud, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings,
                     const RandomStream& noise, std::uint64_t tick) {
   const slam::PoseGaussian step = slam::predict_motion({}, T_before_now, dt_s, settings.noise);
-  const Eigen::Matrix3d L = step.covariance.llt().matrixL();
+  const Eigen::Matrix3d L = cholesky_factor(step.covariance);
   const double kept = std::exp(-T_before_now.position().norm() / settings.way_scale_memory_m);
   const double renewed = settings.way_scale_std * std::sqrt(1.0 - kept * kept);
   for (std::size_t i = 0; i < cloud.size(); ++i) {

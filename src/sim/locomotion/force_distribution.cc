@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "core/linear_algebra.h"
+
 namespace patrol::sim {
 namespace {
 
@@ -46,7 +48,7 @@ FootVectors distribute_wrench(const Eigen::Vector3d& force, const Eigen::Vector3
   gram.diagonal().tail<3>().array() += kMomentRidge;
   Vector6 wrench;
   wrench << force, moment;
-  const Vector6 multiplier = gram.ldlt().solve(wrench);
+  const Vector6 multiplier = solve_symmetric(gram, wrench);
   const Eigen::Vector3d pull = multiplier.head<3>(), twist = multiplier.tail<3>();
   for (int leg = 0; leg < kNumLegs; ++leg) {
     if (!is_stance[leg]) continue;

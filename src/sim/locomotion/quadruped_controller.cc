@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/frames.h"
+#include "core/linear_algebra.h"
 #include "sim/locomotion/swing_trajectory.h"
 
 namespace patrol::sim {
@@ -149,7 +150,7 @@ void QuadrupedController::update_ground(const TrunkState& trunk) {
     right += row * foothold.z();
   }
   normal.diagonal().head<2>().array() += 1e-3;
-  const Eigen::Vector3d plane = normal.ldlt().solve(right);
+  const Eigen::Vector3d plane = solve_symmetric(normal, right);
   const double blend = tick_s_ / kGroundTime_s;
   slope_ += blend * (plane.head<2>() - slope_);
   slope_ = slope_.cwiseMax(-0.4).cwiseMin(0.4);

@@ -1,6 +1,6 @@
 #include "slam/graph/degeneracy.h"
 
-#include <Eigen/Eigenvalues>
+#include "core/linear_algebra.h"
 
 namespace patrol::slam {
 
@@ -9,9 +9,9 @@ std::optional<Eigen::Vector2d> open_direction(const Eigen::Matrix3d& information
   // Information of the position with free heading (Schur complement).
   const Eigen::Vector2d with_yaw = information.topRightCorner<2, 1>();
   const Eigen::Matrix2d position = information.topLeftCorner<2, 2>() - with_yaw * with_yaw.transpose() / information(2, 2);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(position);  // ascending eigenvalues
-  if (axes.eigenvalues()[0] >= open_share * axes.eigenvalues()[1]) return std::nullopt;
-  return Eigen::Vector2d(axes.eigenvectors().col(0));
+  const SymmetricEigen<2> axes = symmetric_eigen(position);  // the smaller eigenvalue first
+  if (axes.values[0] >= open_share * axes.values[1]) return std::nullopt;
+  return Eigen::Vector2d(axes.vectors.col(0));
 }
 
 Eigen::Matrix3d without_direction(const Eigen::Matrix3d& information, const Eigen::Vector2d& direction) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/linear_algebra.h"
 #include "slam/particle_filter.h"
 
 namespace patrol::slam {
@@ -131,7 +132,7 @@ FastSlam::Proposal FastSlam::propose(const Particle& particle, const Control& co
     }
     mean += information.inverse() * gradient;
   }
-  const Eigen::Matrix2d root = Eigen::Matrix2d(information.inverse()).llt().matrixL();
+  const Eigen::Matrix2d root = cholesky_factor(Eigen::Matrix2d(information.inverse()));
   return {.mean = mean, .root = root, .log_normalizer = -std::log(root(0, 0) * root(1, 1))};
 }
 

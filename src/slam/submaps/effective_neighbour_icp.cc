@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/linear_algebra.h"
+
 namespace patrol::slam {
 namespace {
 
@@ -104,7 +106,7 @@ Pose2 step_on_lines(const LineEquations& lines, const Pose2& T_target_source) {
   const double shift = lines.H(0, 0) + lines.H(1, 1);
   Eigen::Matrix3d H = lines.H;
   H.diagonal() += kDamping * Eigen::Vector3d(shift, shift, lines.H(2, 2));
-  const Eigen::Vector3d step = H.ldlt().solve(lines.b);
+  const Eigen::Vector3d step = solve_symmetric(H, lines.b);
   if (!step.allFinite()) return T_target_source;
   return {T_target_source.x + step.x(), T_target_source.y + step.y(), wrap_angle(T_target_source.yaw + step.z())};
 }

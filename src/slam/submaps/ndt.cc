@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "slam/submaps/point_tree.h"
 
 namespace patrol::slam {
@@ -64,10 +65,9 @@ struct CellSums {
 
 /// Inverse of the covariance, with both standard deviations at least `min_std_m`.
 Eigen::Matrix2d floored_information(const Eigen::Matrix2d& covariance, double min_std_m) {
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
-  axes.computeDirect(covariance);
-  const Eigen::Vector2d variances = axes.eigenvalues().cwiseMax(min_std_m * min_std_m);
-  return axes.eigenvectors() * variances.cwiseInverse().asDiagonal() * axes.eigenvectors().transpose();
+  const SymmetricEigen<2> axes = symmetric_eigen_direct(covariance);
+  const Eigen::Vector2d variances = axes.values.cwiseMax(min_std_m * min_std_m);
+  return axes.vectors * variances.cwiseInverse().asDiagonal() * axes.vectors.transpose();
 }
 
 }  // namespace
@@ -172,7 +172,7 @@ Climb climb(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, con
     ++at.iterations;
     Eigen::Matrix3d H = at.score.curvature;
     H.diagonal() *= 1.0 + damping;
-    const Eigen::Vector3d step = H.ldlt().solve(at.score.gradient);
+    const Eigen::Vector3d step = solve_symmetric(H, at.score.gradient);
     const Pose2 T_next = stepped(at.T_target_source, step);
     const NdtScore next = step.allFinite() ? grid.score(points, T_next) : NdtScore{};
     if (next.value > at.score.value) {
@@ -206,8 +206,8 @@ Eigen::Matrix3d measured_information(const NdtGrid& grid, const std::vector<Eige
     const Eigen::Vector3d behind = grid.score(points, stepped(T_target_source, -step)).gradient;
     fall.col(k) = (behind - ahead) / (2.0 * steps[k]);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(0.5 * (fall + fall.transpose()));
-  return axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.eigenvectors().transpose();
+  const SymmetricEigen<3> axes = symmetric_eigen(Eigen::Matrix3d(0.5 * (fall + fall.transpose())));
+  return axes.vectors * axes.values.cwiseMax(0.0).asDiagonal() * axes.vectors.transpose();
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <optional>
 
+#include "core/linear_algebra.h"
+
 namespace patrol::slam {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr double kLeastSeenShare = 0.1;
 template <int N>
 double mahalanobis(const Eigen::Matrix<double, N, 1>& offset, const Eigen::Matrix<double, N, N>& covariance) {
   const Eigen::Matrix<double, N, N> regular = covariance + 1e-12 * Eigen::Matrix<double, N, N>::Identity();
-  const double squared = offset.dot(regular.ldlt().solve(offset));
+  const double squared = offset.dot(solve_symmetric(regular, offset));
   return squared < kMostDeviations * kMostDeviations ? std::sqrt(std::max(0.0, squared)) : kMostDeviations;
 }
 
@@ -30,7 +32,7 @@ Eigen::Matrix2d center_covariance(const SubmapShape& source, const PoseGaussian&
   return J * T_target_source.covariance * J.transpose();
 }
 
-double largest_variance(const Eigen::Matrix2d& covariance) { return std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).eigenvalues()[1]); }
+double largest_variance(const Eigen::Matrix2d& covariance) { return std::max(0.0, symmetric_eigen(covariance).values[1]); }
 
 double hull_overlap(const SubmapShape& target, const SubmapShape& source, const Pose2& T_target_source) {
   ConvexPolygon moved;

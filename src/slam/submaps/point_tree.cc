@@ -10,6 +10,7 @@
 #include <nanoflann.hpp>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 
 namespace patrol::slam {
 namespace {
@@ -82,10 +83,9 @@ SurfaceNormal normal_of(const PointTree& tree, const std::vector<PointTree::Neig
     const Eigen::Vector2d offset = tree.points()[neighbour.index] - mean;
     scatter += offset * offset.transpose();
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
-  axes.computeDirect(scatter);
-  if (!(axes.eigenvalues()[1] > 0.0)) return {};  // coincident points
-  return {.normal = axes.eigenvectors().col(0), .straightness = 1.0 - std::max(0.0, axes.eigenvalues()[0]) / axes.eigenvalues()[1]};
+  const SymmetricEigen<2> axes = symmetric_eigen_direct(scatter);
+  if (!(axes.values[1] > 0.0)) return {};  // coincident points
+  return {.normal = axes.vectors.col(0), .straightness = 1.0 - std::max(0.0, axes.values[0]) / axes.values[1]};
 }
 
 }  // namespace
