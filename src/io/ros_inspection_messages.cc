@@ -151,6 +151,3 @@ PATROL_ROS_MESSAGE(LiningResult);
 PATROL_ROS_MESSAGE(WaterResult);
 
 }  // namespace patrol::io
-
-#undef PATROL_ROS_SENSOR
-#undef PATROL_ROS_MESSAGE

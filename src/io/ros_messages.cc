@@ -181,6 +181,3 @@ PATROL_ROS_MESSAGE(Collision);
 PATROL_ROS_MESSAGE(TransformSet);
 
 }  // namespace patrol::io
-
-#undef PATROL_ROS_SENSOR
-#undef PATROL_ROS_MESSAGE

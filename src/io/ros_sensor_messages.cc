@@ -234,6 +234,3 @@ PATROL_ROS_SENSOR(RemoteCommand,
                   "std_msgs/Header header\nfloat64 vx_mps\nfloat64 yaw_rate_radps\nbool mark\nbool hand_over\n");
 
 }  // namespace patrol::io
-
-#undef PATROL_ROS_SENSOR
-#undef PATROL_ROS_MESSAGE

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-namespace patrol {
+namespace patrol::sensor_registry_test {
 namespace {
 
 TEST(SensorRegistry, NamesAndTopicsAreUniqueAndEveryEntryIsDocumented) {
@@ -61,4 +61,4 @@ TEST(SensorRegistry, OverridesOfErrorSourcesNameSettings) {
 }
 
 }  // namespace
-}  // namespace patrol
+}  // namespace patrol::sensor_registry_test

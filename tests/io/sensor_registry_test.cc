@@ -9,7 +9,7 @@
 #include "io/ros_messages.h"
 #include "io/run_log.h"
 
-namespace patrol::io {
+namespace patrol::io::sensor_registry_test {
 namespace {
 
 /// Message with a stamp and, where an empty message has one, a main reading away from zero.
@@ -47,4 +47,4 @@ TEST(SensorRegistry, TheLogWritesEverySensorOnTheTopicOfTheRegistry) {
 }
 
 }  // namespace
-}  // namespace patrol::io
+}  // namespace patrol::io::sensor_registry_test

@@ -8,7 +8,7 @@
 #include "io/ros_messages.h"
 #include "tests/support/moments.h"
 
-namespace patrol::sim {
+namespace patrol::sim::barometer_test {
 namespace {
 
 BarometerSettings ideal() {
@@ -104,4 +104,4 @@ TEST(Barometer, TheMessageComesBackFromItsRosEncoding) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::barometer_test

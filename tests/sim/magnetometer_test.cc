@@ -10,7 +10,7 @@
 #include "io/ros_messages.h"
 #include "tests/sim/small_world.h"
 
-namespace patrol::sim {
+namespace patrol::sim::magnetometer_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -124,4 +124,4 @@ TEST(Magnetometer, TheMessageComesBackFromItsRosEncoding) {
 }
 
 }  // namespace
-}  // namespace patrol::sim
+}  // namespace patrol::sim::magnetometer_test

@@ -20,6 +20,3 @@ namespace patrol::io {
 PATROL_ROS_SENSOR(FluidPressure, "std_msgs/Header header\nfloat64 fluid_pressure\nfloat64 variance\n");
 
 }  // namespace patrol::io
-
-#undef PATROL_ROS_SENSOR
-#undef PATROL_ROS_MESSAGE

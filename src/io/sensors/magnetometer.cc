@@ -22,6 +22,3 @@ PATROL_ROS_SENSOR(MagneticField,
                   "std_msgs/Header header\ngeometry_msgs/Vector3 magnetic_field\nfloat64[9] magnetic_field_covariance\n");
 
 }  // namespace patrol::io
-
-#undef PATROL_ROS_SENSOR
-#undef PATROL_ROS_MESSAGE
