@@ -18,7 +18,8 @@ double air_pressure_pa(const BarometerSettings& settings, double height_m) {
 Barometer::Barometer(const BarometerSettings& settings, std::uint64_t seed)
     : settings_(settings),
       offset_pa_(settings.offset_pa * RandomStream(seed, "barometer/offset").normal(0)),
-      coefficient_pa_per_k_(settings.temperature_coefficient_pa_per_k * RandomStream(seed, "barometer/temperature").normal(0)),
+      coefficient_pa_per_k_(settings.temperature_coefficient_pa_per_k *
+                            RandomStream(seed, "barometer/temperature").normal(0)),
       keep_(std::exp(-1.0 / (settings.rate_hz * settings.drift_time_s))),
       noise_(seed, "barometer/noise"),
       drift_(seed, "barometer/drift") {
@@ -29,9 +30,10 @@ FluidPressure Barometer::read(double height_m, Time now, std::uint64_t index) {
   const double step = settings_.drift_pa * drift_.normal(index);
   drift_pa_ = index == 0 ? step : keep_ * drift_pa_ + std::sqrt(1.0 - keep_ * keep_) * step;
   const double warming_k = settings_.warming_k * (1.0 - std::exp(-to_seconds(now) / settings_.warming_time_s));
-  double pressure_pa = air_pressure_pa(settings_, height_m) + offset_pa_ + coefficient_pa_per_k_ * warming_k + drift_pa_ +
-                       settings_.noise_pa * noise_.normal(index);
-  if (settings_.resolution_pa > 0.0) pressure_pa = settings_.resolution_pa * std::round(pressure_pa / settings_.resolution_pa);
+  const double error_pa = offset_pa_ + coefficient_pa_per_k_ * warming_k + drift_pa_ + settings_.noise_pa * noise_.normal(index);
+  const double step_pa = settings_.resolution_pa;
+  double pressure_pa = air_pressure_pa(settings_, height_m) + error_pa;
+  if (step_pa > 0.0) pressure_pa = step_pa * std::round(pressure_pa / step_pa);
   return {.stamp = now, .pressure_pa = pressure_pa, .std_pa = settings_.noise_pa};
 }
 

@@ -42,7 +42,8 @@ Magnetometer::Magnetometer(const MagnetometerSettings& settings, const mjModel& 
   const int robot = mj_name2id(&view, mjOBJ_BODY, frame_id::kBody);
   for (int geom = 0; geom < view.ngeom; ++geom) {
     const int body = view.geom_bodyid[geom];
-    if (settings.steel_fill <= 0.0 || view.body_rootid[body] == robot || !is_steel(view, geom, settings.steel_names)) continue;
+    const bool is_of_robot = view.body_rootid[body] == robot;
+    if (settings.steel_fill <= 0.0 || is_of_robot || !is_steel(view, geom, settings.steel_names)) continue;
     const mjtNum* box = view.geom_aabb + 6 * geom;  // center, half sizes; in the geom's frame
     const double volume_m3 = settings.steel_fill * 8.0 * box[3] * box[4] * box[5];
     const Eigen::Vector3d center = rotation_of(view.geom_quat + 4 * geom) * Eigen::Vector3d(box);
@@ -64,7 +65,8 @@ Magnetometer::Magnetometer(const MagnetometerSettings& settings, const mjModel& 
 Eigen::Vector3d Magnetometer::field_t(const mjData& data, const Eigen::Vector3d& p_world) const {
   Eigen::Vector3d field_t = geomagnetic_t_;
   for (const SteelSphere& sphere : steel_) {
-    const Eigen::Vector3d center = Eigen::Vector3d(data.xpos + 3 * sphere.body) + rotation_of(data.xquat + 4 * sphere.body) * sphere.p_body;
+    const Eigen::Quaterniond rotation = rotation_of(data.xquat + 4 * sphere.body);
+    const Eigen::Vector3d center = Eigen::Vector3d(data.xpos + 3 * sphere.body) + rotation * sphere.p_body;
     const Eigen::Vector3d offset = p_world - center;
     const double distance_m = std::max(offset.norm(), sphere.radius_m);  // on the surface at most
     const Eigen::Vector3d direction = offset.normalized();
