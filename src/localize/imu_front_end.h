@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "localize/frozen_readings.h"
 #include "localize/imu_mount.h"
 #include "localize/motion_history.h"

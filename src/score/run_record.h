@@ -6,6 +6,7 @@
 #include "core/ground_truth.h"
 #include "core/inspection_result.h"
 #include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "core/trajectory.h"
 
 namespace patrol::score {

@@ -6,6 +6,7 @@
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/route.h"
+#include "core/sensors/registry.h"
 #include "localize/dock_detector.h"
 #include "plan/control/docking.h"
 #include "plan/navigation/navigator.h"

@@ -8,6 +8,7 @@
 #include "core/messages.h"
 #include "core/navigation_goal.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "plan/control/differential_approach.h"
 #include "plan/navigation/motion_check.h"
 #include "plan/navigation/navigation_step.h"

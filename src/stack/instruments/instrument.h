@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "stack/instruments/inspection_order.h"
 #include "stack/instruments/standing_place.h"
 #include "stack/instruments/warning_light.h"

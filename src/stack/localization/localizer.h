@@ -2,6 +2,7 @@
 
 #include "core/grid.h"
 #include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "stack/output/stack_output.h"
 
 namespace patrol::stack {

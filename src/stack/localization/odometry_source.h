@@ -7,6 +7,7 @@
 
 #include "core/messages.h"
 #include "core/robot_description.h"
+#include "core/sensors/registry.h"
 #include "stack/settings/stack_settings.h"
 
 namespace patrol::stack {

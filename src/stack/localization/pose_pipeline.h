@@ -7,6 +7,7 @@
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/route.h"
+#include "core/sensors/registry.h"
 #include "localize/map_pose_tracker.h"
 #include "localize/scan_leveler.h"
 #include "stack/instruments/standing_place.h"

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "core/uwb.h"
 #include "localize/range_filter.h"
 

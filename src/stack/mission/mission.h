@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/messages.h"
+#include "core/sensors/registry.h"
 #include "stack/mission/task.h"
 
 namespace patrol::stack {
