@@ -11,7 +11,7 @@ namespace {
 constexpr Time kSpacing = std::chrono::milliseconds(500);
 
 /// Confidence of the estimate with the same stamp.
-std::optional<double> trust_of_estimate(const std::vector<LocalizationTrust>& trusts, Time stamp) {
+std::optional<double> confidence_at(const std::vector<LocalizationTrust>& trusts, Time stamp) {
   const auto found = std::ranges::lower_bound(trusts, stamp, {}, &LocalizationTrust::stamp);
   if (found == trusts.end() || found->stamp != stamp) return std::nullopt;
   return found->trust;
@@ -33,7 +33,7 @@ std::vector<TrackedLocalizability> track_localizability(const RunRecord& record,
                      .sample = {.truth = oracle(p_world_m),
                                 .claimed_std_m = std::sqrt(std::max(own.large, 0.0)),
                                 .claimed_direction_rad = T_world_map.yaw + own.large_direction_rad,
-                                .trust = trust_of_estimate(record.trusts, stamp)}});
+                                .trust = confidence_at(record.trusts, stamp)}});
   }
   return track;
 }

@@ -1,5 +1,7 @@
 #include "score/run_score.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace patrol::score::run_score_test {
@@ -14,11 +16,12 @@ OccupancyGrid wall_map() {
   return map;
 }
 
-/// Four meters along x in four seconds, estimated without error.
-RunRecord straight_run() {
+/// Two meters along x and two along y in four seconds, estimated without error.
+RunRecord perfect_run() {
   RunRecord record;
   for (int i = 0; i <= 40; ++i) {
-    const StampedPose pose{.stamp = from_seconds(0.1 * i), .pose = to_spatial({0.1 * i, 0.0, 0.0})};
+    const Pose2 T_world_body{0.1 * std::min(i, 20), 0.1 * std::max(i - 20, 0), 0.0};
+    const StampedPose pose{.stamp = from_seconds(0.1 * i), .pose = to_spatial(T_world_body)};
     record.T_world_body.push_back(pose);
     record.T_map_body.push_back(pose);
     record.T_odom_body.push_back(pose);
@@ -40,7 +43,7 @@ Event event_of(EventKind kind, Time stamp, const std::string& subject = "") {
 }
 
 TEST(MissionScore, CountsEventsByTheirKind) {
-  RunRecord record = straight_run();
+  RunRecord record = perfect_run();
   record.events = {event_of(EventKind::kSensorFault, 1s, "imu"), event_of(EventKind::kSensorFault, 2s, "lidar"),
                    event_of(EventKind::kSensorRecovered, 3s, "imu"), event_of(EventKind::kMissionCompleted, 4s)};
   record.collisions.resize(2);
@@ -54,14 +57,14 @@ TEST(MissionScore, CountsEventsByTheirKind) {
 }
 
 TEST(RunRecord, HasAnEstimateWithThreePosesOdometryAndAMap) {
-  RunRecord record = straight_run();
+  RunRecord record = perfect_run();
   EXPECT_TRUE(record.has_estimate());
   record.map = {};
   EXPECT_FALSE(record.has_estimate());
 }
 
 TEST(EstimateScore, OfAPerfectRunHasNoErrorAndOnlyThePartsThatTheLogHas) {
-  RunRecord record = straight_run();
+  RunRecord record = perfect_run();
   record.events = {event_of(EventKind::kReplan, 1s), event_of(EventKind::kRecovery, 2s), event_of(EventKind::kRecovery, 3s)};
   const EstimateScore score = estimate_score(record, wall_references());
   EXPECT_NEAR(score.pose.ate_rmse_m, 0.0, 1e-9);
@@ -77,11 +80,11 @@ TEST(EstimateScore, OfAPerfectRunHasNoErrorAndOnlyThePartsThatTheLogHas) {
 TEST(EstimateScore, PlacesAGivenMapWhereTheSurveySays) {
   RunReferences references = wall_references();
   references.T_world_map = Pose2{0.5, 0.0, 0.0};
-  EXPECT_NEAR(estimate_score(straight_run(), references).pose.ate_rmse_m, 0.5, 1e-9);
+  EXPECT_NEAR(estimate_score(perfect_run(), references).pose.ate_rmse_m, 0.5, 1e-9);
 }
 
 TEST(EstimateScore, ScoresLocalizationOnAKnownMapAndEachKidnap) {
-  RunRecord record = straight_run();
+  RunRecord record = perfect_run();
   for (const StampedPose& pose : record.T_map_body) record.trusts.push_back({.stamp = pose.stamp, .trust = 0.9});
   RunReferences references = wall_references();
   references.kidnaps = {1s, 2s};
