@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A program outside of the project, built against the installed package, makes of a run's log the map that the run made.
+"""A program outside of the project, built against the installed package, makes of a run's log the map that the run made, but for
+single cells: a log holds the angles of a scan in single precision.
 
 usage: stack_example_test.py BUILD_DIR SOURCE_DIR RUN_DIR
 """
@@ -30,7 +31,9 @@ class StackExample(unittest.TestCase):
             said = run(folder / "build/stack_example", SOURCE / "models/quadruped/quadruped.urdf", SOURCE / "worlds/street/routes/short.json",
                        RUN / "log.mcap", folder / "map.yaml")
             self.assertIn("messages published", said)
-            self.assertEqual((folder / "map.pgm").read_bytes(), (RUN / "map.pgm").read_bytes())
+            made, expected = (folder / "map.pgm").read_bytes(), (RUN / "map.pgm").read_bytes()
+            self.assertEqual(len(made), len(expected))
+            self.assertLess(sum(a != b for a, b in zip(made, expected)), 1e-4 * len(expected))
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ TEST(MapThenLocalize, LocalizesOnItsOwnMapFromWhereTheMappingEnded) {
       EXPECT_LT((pose.T_map_body.position() - truth.position()).norm(), 0.03) << i;
     }
   };
-  drive(1, 20);
+  drive(0, 20);
   EXPECT_TRUE(localizer->is_mapping());
   EXPECT_TRUE(localizer->knows_pose());
   localizer->finish_map(pose);
