@@ -24,7 +24,8 @@ class StackExample(unittest.TestCase):
     def test_makes_the_map_of_the_run_from_its_log(self):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            run("cmake", "--install", BUILD, "--prefix", folder / "installed")
+            for component in ("core", "io", "slam", "localize", "plan", "inspect", "stack"):
+                run("cmake", "--install", BUILD, "--prefix", folder / "installed", "--component", component)
             run("cmake", "-S", SOURCE / "tests/interop/stack_example", "-B", folder / "build", "-DCMAKE_BUILD_TYPE=Release",
                 f"-DCMAKE_PREFIX_PATH={folder / 'installed'}")
             run("cmake", "--build", folder / "build")
