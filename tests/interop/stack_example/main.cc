@@ -21,7 +21,12 @@ int main(int argc, char** argv) {
     now = log_time;
     stack.handle(message);
   };
-  patrol::io::LogHandlers handlers{.scan = feed, .imu = feed, .joints = feed, .contacts = feed, .gas = feed};
+  patrol::io::LogHandlers handlers;
+  handlers.on<patrol::LaserScan>(feed);
+  handlers.on<patrol::Imu>(feed);
+  handlers.on<patrol::JointState>(feed);
+  handlers.on<patrol::FootContacts>(feed);
+  handlers.on<patrol::GasReading>(feed);
   patrol::io::read_run_log(argv[3], handlers);
   const patrol::OccupancyGrid map = stack.final_map(now).map;
   patrol::io::save_map(argv[4], map);
