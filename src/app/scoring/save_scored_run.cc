@@ -42,7 +42,7 @@ void save_localizability(const std::filesystem::path& file_csv, const std::vecto
     const double claimed_deg = kDegPerRad * std::remainder(sample.claimed_direction_rad, std::numbers::pi);
     table.rows.push_back({to_seconds(at.stamp), at.p_world_m.x(), at.p_world_m.y(), sample.truth.weak_std_m,
                           kDegPerRad * sample.truth.weak_direction_rad, sample.truth.strong_std_m, sample.claimed_std_m, claimed_deg,
-                          sample.trust ? io::Cell{*sample.trust} : io::Cell{}});
+                          sample.trust ? io::TableValue{*sample.trust} : io::TableValue{}});
   }
   io::save_csv(file_csv, table);
 }
