@@ -5,12 +5,13 @@
 
 namespace patrol {
 
-/// A scan of a recorded log, and where odometry had the robot then. The stamp is the log's own clock.
+/// Scan of a recorded log with the odometry pose at its stamp. The stamp is in the log's clock.
 struct RecordedScan {
   LaserScan scan;
   Pose2 T_odom_body;
   Pose2 T_body_lidar;
-  Pose2 T_first_last = {};  ///< how odometry says that the body moved from the first beam to the last; identity where the log does not say when each was fired
+  Pose2 T_first_last = {};  ///< odometry motion of the body from the first to the last beam; identity if the log has no
+                            ///< beam times
 };
 
 }  // namespace patrol
