@@ -36,8 +36,8 @@ struct RemoteOperatorSettings {
   }
 };
 
-/// Teleoperator who walks behind the robot, observes its pose and drives it along a route by pure pursuit [Coulter92],
-/// with a reaction time and steering noise.
+/// Teleoperator who walks behind the robot, observes its pose and drives it along a route by pure pursuit [Coulter92].
+/// Reaction time and steering noise are modeled.
 ///
 /// At marked waypoints the operator stops, turns the robot to the heading, presses the button and waits while the robot
 /// is busy. At the end the operator hands over control.

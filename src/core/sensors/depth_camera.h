@@ -11,7 +11,7 @@
 
 namespace patrol {
 
-/// Frame of the infrared depth camera. A pixel (column u, row v, from the top left) of depth d is the point
+/// Frame of the infrared depth camera. Pixels are (column u, row v) from the top left. A pixel of depth d is the point
 /// (d, -(u - cx) d / fx, -(v - cy) d / fy) in `depth_camera`, whose x axis is the optical axis.
 struct DepthImage {
   Time stamp{};

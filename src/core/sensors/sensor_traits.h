@@ -8,8 +8,8 @@
 /// Description of a sensor type.
 ///
 /// Each header core/sensors/<name>.h contains the message of one sensor, the settings of its simulation and its
-/// registry entry, a specialization of SensorTraits. core/sensors/registry.h lists the messages. Twin, faults, sensor
-/// monitor, log, fault matrix, error budget, settings and `patrol list` derive from that list.
+/// registry entry, a specialization of SensorTraits. core/sensors/registry.h lists the messages. Simulator, faults,
+/// sensor monitor, log, fault matrix, error budget, settings and `patrol list` derive from that list.
 namespace patrol {
 
 /// Age limit that the sensor monitor applies to a sensor's messages.

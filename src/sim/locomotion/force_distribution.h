@@ -17,8 +17,9 @@ struct FrictionLimits {
   double max_normal_n = 220.0;
 };
 
-/// Returns the minimum-norm ground forces of the stance feet for a wrench (force, moment about the origin of `feet`),
-/// clipped to the friction pyramid of each foot. All in one frame with z up; N and N m. Swing feet get zero.
+/// Returns the minimum-norm ground forces of the stance feet for a wrench: force, and moment about the origin of
+/// `feet`. Each force is then clipped to the friction pyramid of its foot. All in one frame with z up; N and N m. Swing
+/// feet get zero.
 FootVectors distribute_wrench(const Eigen::Vector3d& force, const Eigen::Vector3d& moment, const FootVectors& feet,
                               const FootFlags& is_stance, const FrictionLimits& limits);
 

@@ -53,9 +53,9 @@ using JointTorques = Eigen::Matrix<double, 3 * kNumLegs, 1>;
 
 /// Trotting controller: converts a velocity command to joint torques from joint encoders, IMU and foot contacts.
 ///
-/// Stance feet share a wrench on the trunk (height, roll, pitch, yaw, velocity) by virtual model control [Pratt01].
-/// Swing feet move to the touch-down points of [Raibert86]. Without a command, and once slow, the robot stands on four
-/// feet.
+/// Stance feet jointly exert a wrench on the trunk (height, roll, pitch, yaw, velocity) by virtual model control
+/// [Pratt01]. Swing feet move to the touch-down points of [Raibert86]. Without a command, and once slow, the robot
+/// stands on four feet.
 class QuadrupedController {
  public:
   QuadrupedController(const RobotDescription& robot, const LocomotionSettings& settings, double tick_s = 0.002);

@@ -14,8 +14,8 @@ struct FootMotion {
 };
 
 /// Returns the trajectory of a foot from lift-off to touch-down: a cycloid along the ground, at rest at both ends. The
-/// foot rises during the first kUp of the swing, stays at the apex, and descends from kDown on, so that it clears the
-/// edge of a step. `fraction` of the swing is 0 ... 1; the apex is `clearance_m` above the higher end.
+/// foot rises during the first kUp of the swing, stays at the apex, and descends from kDown on. So it clears the edge
+/// of a step. `fraction` of the swing is 0 ... 1; the apex is `clearance_m` above the higher end.
 inline FootMotion swing_foot(const Eigen::Vector3d& lift_off, const Eigen::Vector3d& touch_down, double clearance_m,
                              double fraction, double duration_s) {
   constexpr double pi = std::numbers::pi;

@@ -16,7 +16,7 @@ namespace patrol::sim {
 ///
 /// The ground acts on a sprocket by virtual work: contact force times surface velocity per rad/s of the sprocket. The
 /// torque is that of the last physics evaluation, one tick old; the inertia that the sprocket sees through its gear
-/// (robot_model.cc) keeps this stable. Not modeled: tension of the belt, and lugs.
+/// (robot_model.cc) keeps this stable. Not modeled: track tension and lugs.
 class TrackBelts {
  public:
   /// Sets the friction of the track geoms in `physics`. Throws InputError when the model lacks the robot's tracks.

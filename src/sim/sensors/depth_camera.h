@@ -31,7 +31,8 @@ struct SurfaceImage {
   std::vector<float> reflectivity;  ///< reflectivity, 0 ... 1; 0 if nothing is in range
 };
 
-/// Renderer of the world for the camera. The twin has no renderer; the program provides one (render/depth_renderer.h).
+/// Renderer of the world for the camera. The simulator has no renderer; the program provides one
+/// (render/depth_renderer.h).
 class DepthImager {
  public:
   virtual ~DepthImager() = default;

@@ -17,9 +17,9 @@ namespace patrol::sim {
 /// Lidar model. Fires each beam at its own instant from the robot's pose at that instant. Each error source has its own
 /// random stream, indexed by revolution and beam, so that one can be removed without changing the others.
 ///
-/// If the range changes by 0.1 to 1.5 m between consecutive beams, the light of the second beam is spread over both
-/// surfaces and returns an intermediate range (mixed pixel). Over a larger change the receiver separates the two
-/// returns and keeps that of the beam axis. Not modeled: the beam width elsewhere, multiple returns, sunlight.
+/// Mixed pixels: if the range changes by 0.1 to 1.5 m between consecutive beams, the second beam is spread over both
+/// surfaces and returns an intermediate range. Over a larger change the receiver separates the two returns and keeps
+/// that of the beam axis. Not modeled: the beam width elsewhere, multiple returns, sunlight.
 class Lidar {
  public:
   /// One ring yields scans, several yield clouds. `name` is the prefix of the random streams; `own_housing` is the

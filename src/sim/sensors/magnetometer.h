@@ -14,10 +14,10 @@ namespace patrol::sim {
 
 /// Magnetometer among steel.
 ///
-/// A steel geom outside the robot is modeled as a sphere of high permeability, centered in the geom's bounding box,
-/// whose volume is `steel_fill` of that box. The geomagnetic field induces a dipole in it [Jackson99, section 5.11].
-/// The robot's own steel is the hard and soft iron: reading = soft_iron * field + hard_iron, in the sensor's frame,
-/// both constant over a run. Not modeled: permanent magnetization of steel outside the robot, dipoles that induce each
+/// A steel geom outside the robot is modeled as a sphere of high permeability in the center of the geom's bounding box.
+/// Its volume is `steel_fill` of that box. The geomagnetic field induces a dipole in it [Jackson99, section 5.11]. The
+/// robot's own steel is the hard and soft iron: reading = soft_iron * field + hard_iron, in the sensor's frame, both
+/// constant over a run. Not modeled: permanent magnetization of steel outside the robot, dipoles that induce each
 /// other, currents of motors and cables.
 class Magnetometer {
  public:

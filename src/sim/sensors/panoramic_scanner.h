@@ -28,9 +28,9 @@ namespace patrol::sim {
 /// its own random stream, indexed by epoch, scan and beam. So a reference scan has independent noise even with the seed
 /// of an inspection.
 ///
-/// At range discontinuities a beam is spread over its width and returns the mean range, regardless of the distance
-/// between the surfaces, because the instrument measures phase. Not modeled: false returns of dust, the compensator's
-/// limit of 2 degrees, color.
+/// At range discontinuities a beam is spread over its width and returns the mean range. The distance between the
+/// surfaces does not matter, because the instrument measures phase. Not modeled: false returns of dust, the
+/// compensator's limit of 2 degrees, color.
 class PanoramicScanner {
  public:
   /// Dust reduces the light.

@@ -26,7 +26,7 @@ namespace patrol::sim {
 class SensorSuite {
  public:
   /// `view` must outlive the suite; `plume` is in world. Throws InputError when an enabled sensor has no frame on the
-  /// robot or requires something that the world lacks, and when the depth camera is enabled without
+  /// robot or requires something that the world lacks. Throws InputError also when the depth camera is enabled without
   /// `make_depth_imager`.
   SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
               const mjModel& view, const GasPlume& plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
@@ -41,7 +41,8 @@ class SensorSuite {
     deliver(reading.stamp, latency_s<Message>(settings_), reading);
   }
 
-  /// Passes a command of the stack to the instruments. The twin moves the antenna itself (sim/antenna_mount.h).
+  /// Passes a command of the stack to the instruments. The antenna itself is moved by AntennaMount
+  /// (sim/antenna_mount.h).
   void command(const InstrumentCommand& command);
   /// Returns whether an instrument is taking a measurement for which the robot must stand still.
   bool is_busy() const;

@@ -33,8 +33,8 @@ std::vector<Pose3> transducers_of(const RobotDescription& robot) {
   }
 }
 
-/// Returns directions uniformly distributed over a cone about x, on a golden-angle spiral: no two have the same height
-/// at any rotation.
+/// Returns directions uniformly distributed over a cone about x, on a golden-angle spiral: no two have equal heights at
+/// any rotation.
 std::vector<Eigen::Vector3d> cone(double full_angle_rad) {
   const double golden_rad = std::numbers::pi * (3.0 - std::sqrt(5.0));
   const double cap = 1.0 - std::cos(0.5 * full_angle_rad);  // height of the spherical cap along x

@@ -23,7 +23,7 @@ namespace patrol::sim {
 ///
 /// Transducers that fire together may receive each other's nearest echo and report half the path length. Not modeled:
 /// the robot's own shapes (a ring is mounted clear of them), double reflections, dust (far smaller than the
-/// wavelength), motion during a ping (2 cm at 1 m/s).
+/// wavelength). Motion during a ping is neglected (2 cm at 1 m/s).
 class UltrasonicRing {
  public:
   /// Throws InputError when the robot has no frame `ultrasonic_0`, or when slots are too short for the echo from

@@ -26,7 +26,7 @@ enum class InspectionFeedback { kUnderWay, kDone, kFailed };
 /// State of an order after a control period.
 struct InspectionProgress {
   InspectionFeedback feedback = InspectionFeedback::kUnderWay;
-  std::string failure = {};  ///< one sentence with kFailed if the instrument knows the reason; otherwise empty
+  std::string failure = {};  ///< one sentence with kFailed if the instrument reports a reason; otherwise empty
 };
 
 }  // namespace patrol::stack

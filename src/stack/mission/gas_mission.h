@@ -24,7 +24,8 @@ struct GasMissionSettings {
   double measure_s = 3.0;             ///< duration of the readings at each station
   double max_measure_s = 8.0;         ///< timeout; a station without enough readings by then is "not measured"
   int min_readings = 10;
-  double alarm_column_ppm_m = 200.0;  ///< alarm threshold, equal to about a hundred meters of clean air
+  double alarm_column_ppm_m = 200.0;  ///< alarm threshold, equal to the column over approximately a hundred meters of
+                                      ///< clean air
   double position_tol_m = 0.08;       ///< tolerance at a station; the route's own accuracy applies if tighter
   double yaw_tol_rad = 0.06;
 

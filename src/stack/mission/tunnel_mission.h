@@ -64,9 +64,9 @@ struct TunnelMissionSettings {
 /// the operator was present at the mapping drive, and R is treated as N.
 ///
 /// Events: goal_marked, mapping_done, navigation_started, goal_reached, goal_failed, inspection_failed,
-/// remote_requested, remote_ended, docked, dock_failed, lost, relocalized, cannot_localize, mission_completed (every
-/// goal of every run reached, every inspection and docking done), mission_failed. Subjects are "goal_2",
-/// "navigation_7", "sounding_1"; the value of a goal event is the number of its run.
+/// remote_requested, remote_ended, docked, dock_failed, lost, relocalized, cannot_localize. At the end
+/// mission_completed (every goal of every run reached, every inspection and docking done) or mission_failed. Subjects
+/// are "goal_2", "navigation_7", "sounding_1"; the value of a goal event is the number of its run.
 class TunnelMission final : public Mission {
  public:
   /// `goals`: in map; empty: they are saved during teleoperation. Without a map, teleoperation comes first, to make

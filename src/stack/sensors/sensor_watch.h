@@ -48,9 +48,9 @@ struct SensorChange {
 /// Checks for each sensor that has ever published: messages arrive in time, stamps agree with the clock, readings
 /// change as the robot moves. Plausible errors (a drift, a spike) are not detected.
 ///
-/// The robot must not drive without its lidar, the only sensor of obstacles ahead, or without its encoders, since the
-/// IMU alone loses the pose within seconds. It can drive without all others, including IMU and foot sensors, because
-/// odometry continues without them.
+/// The robot must not drive without its lidar, the only sensor of obstacles ahead. It must not drive without its
+/// encoders either, since the IMU alone loses the pose within seconds. It can drive without all others, including IMU
+/// and foot sensors, because odometry continues without them.
 class SensorWatch {
  public:
   explicit SensorWatch(const SensorWatchSettings& settings) : settings_(settings) {}
