@@ -72,7 +72,7 @@ class Twin {
 
   GroundTruth truth() const;
   SimState state() const;
-  /// Returns the contacts that began since the last call; one entry per contact, not per tick.
+  /// Removes and returns the collisions that began since the last call; one entry per collision, not per tick.
   std::vector<Collision> take_collisions();
   /// Returns whether the robot has fallen, according to the firmware's own sensors.
   bool has_fallen() const { return locomotion_->has_fallen(); }

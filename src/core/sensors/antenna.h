@@ -22,7 +22,7 @@ struct AntennaSettings {
   double max_acceleration_radps2 = 2.0;
   double stiffness_nm_per_rad = 60.0;     ///< stiffness of the position loop
   double damping_nms_per_rad = 6.0;
-  double dead_band_deg = 0.1;             ///< position error below which the servo is unpowered
+  double dead_band_deg = 0.1;             ///< dead band: a servo at rest exerts no position torque below this error
   double resolution_deg = 0.088;
   double backlash_deg = 0.33;             ///< total backlash between encoder and coil
   double alignment_std_deg = 0.3;         ///< standard deviation of the alignment of a servo on its bracket, constant
