@@ -12,10 +12,10 @@
 #include "core/named_table.h"
 #include "core/time.h"
 
-/// Events of a mission: their kinds, the texts and classes of the kinds, and the message.
+/// Event kinds of a mission, with the text and class of each kind, and the event message.
 namespace patrol {
 
-/// Kind of an event. The text of each kind in logs and reports stands in `kEventKinds`, and nowhere else.
+/// Kind of an event. `kEventKinds` is the only table of their texts in logs and reports.
 enum class EventKind : std::uint8_t {
   kForeign,
   // gas mission
@@ -141,43 +141,44 @@ static_assert(is_in_order(kEventKinds));
 constexpr std::string_view name_of(EventKind kind) { return row_of(kEventKinds, kind).name; }
 constexpr EventClass class_of(EventKind kind) { return row_of(kEventKinds, kind).event_class; }
 constexpr WarningLevel level_of(EventKind kind) { return row_of(kEventKinds, kind).level; }
-/// Whether an event of this kind reports a hazard, a failed task or a fault.
+/// Returns whether an event of this kind reports a hazard, a failed task or a fault.
 constexpr bool is_failure(EventKind kind) { return class_of(kind) != EventClass::kInformation; }
 
-/// Kind of that text; kForeign for texts that are not in the table.
+/// Returns the kind whose text is `name`; kForeign for texts that are not in the table.
 constexpr EventKind event_kind_named(std::string_view name) {
   const EventKindRow* row = find_named(kEventKinds, name);
   return row == nullptr ? EventKind::kForeign : row->value;
 }
 
-/// Kind of the event that reports a lining displacement of this level; kForeign for `kNone`.
+/// Returns the kind of the event that reports a lining displacement of this level; kForeign for `kNone`.
 constexpr EventKind lining_event(WarningLevel level) {
   constexpr std::array kKinds = {EventKind::kForeign, EventKind::kLiningNotice, EventKind::kLiningWarning, EventKind::kLiningAlarm};
   return kKinds[static_cast<std::size_t>(level)];
 }
 
-/// Kind of the event that reports water ahead at this level; kForeign for `kNone`.
+/// Returns the kind of the event that reports water ahead at this level; kForeign for `kNone`.
 constexpr EventKind water_event(WarningLevel level) {
   constexpr std::array kKinds = {EventKind::kForeign, EventKind::kWaterNotice, EventKind::kWaterWarning, EventKind::kWaterAlarm};
   return kKinds[static_cast<std::size_t>(level)];
 }
 
-/// Something that happened in the mission, for the log, the report and the score.
+/// Event of the mission, for the log, the report and the score.
 ///
-/// A log of another program may hold kinds that are not in the table. They are read as kForeign with their text in `foreign_kind`:
-/// reports and pages show them by it, a rewritten log keeps it, and scores ignore the event.
+/// A log of another program may contain kinds that are not in the table. They are read as kForeign with their text in
+/// `foreign_kind`. Reports and pages show that text, a rewritten log keeps it, and scores ignore the event.
 struct Event {
   Time stamp{};
   EventKind kind = EventKind::kForeign;
   std::string subject = {};  ///< object of the event, e.g. "regulator_box_2"
   std::string text = {};     ///< one sentence for a person
-  double value = 0.0;        ///< quantity of the kind, e.g. ppm m
+  double value = 0.0;        ///< value of the quantity that the kind reports, e.g. ppm m
   Pose2 T_map_body = {};     ///< estimated pose of the robot
-  Eigen::Vector2d p_map_target = Eigen::Vector2d::Zero();  ///< position of the object, m; that of the robot if it has none
+  Eigen::Vector2d p_map_target = Eigen::Vector2d::Zero();  ///< position of the object in map, m; the robot's position
+                                                           ///< if the event has no object
   std::string foreign_kind = {};  ///< text of a kind that is not in the table; empty for all others
 };
 
-/// Text of the event's kind, also of a kind that is not in the table.
+/// Returns the text of the event's kind, also for a kind that is not in the table.
 inline std::string kind_text(const Event& event) {
   return std::string(event.kind == EventKind::kForeign ? std::string_view(event.foreign_kind) : name_of(event.kind));
 }

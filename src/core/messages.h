@@ -13,11 +13,11 @@
 #include "core/inspection_result.h"
 #include "core/time.h"
 
-/// Messages between the robot's parts, as on a real robot. Those of sensors are in core/sensors/<name>.h, listed in
-/// core/sensors/registry.h. SI units; a stamp is the instant that the content is true of, not the instant of sending.
+/// Messages between the components of a robot. Sensor messages are in core/sensors/<name>.h, listed in
+/// core/sensors/registry.h. SI units. A stamp is the instant at which the content is valid, not the instant of sending.
 namespace patrol {
 
-/// The velocity asked of the robot, in `level`.
+/// Velocity command, in `level`.
 struct VelocityCommand {
   Time stamp{};
   double vx_mps = 0.0;
@@ -25,69 +25,69 @@ struct VelocityCommand {
   double yaw_rate_radps = 0.0;
 };
 
-/// One panoramic scan, now; the robot stands still until it is there.
+/// Request for one panoramic scan, taken at once. The robot stands still until the scan is complete.
 struct ScanCommand {
   Time stamp{};
 };
 
-/// Turn the antenna there, and hold it.
+/// Target direction of the antenna, held until the next command.
 struct AntennaCommand {
   Time stamp{};
   double yaw_rad = 0.0;
   double pitch_rad = 0.0;
 };
 
-/// One sounding, now, where the antenna is.
+/// Request for one sounding, taken at once at the present antenna pose.
 struct SoundingCommand {
   Time stamp{};
 };
 
-/// Warning light and siren.
+/// State of the warning light and the siren.
 struct WarningCommand {
   Time stamp{};
   bool light = false;
   bool siren = false;
 };
 
-/// What the stack asks of the inspection's instruments.
+/// Command of the stack to the inspection instruments.
 using InstrumentCommand = std::variant<ScanCommand, AntennaCommand, SoundingCommand, WarningCommand>;
 
-/// Smooth, drifting: the body in `odom`.
+/// Odometry estimate: pose of the body in `odom`, continuous but drifting.
 struct OdometryEstimate {
   Time stamp{};
   Pose3 T_odom_body;
-  Twist3 twist;  ///< in body
-  Eigen::Matrix3d planar_covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in odom; m, m, rad
+  Twist3 twist;  ///< twist of the body, in body
+  Eigen::Matrix3d planar_covariance = Eigen::Matrix3d::Zero();  ///< covariance of x, y, yaw in odom; m, m, rad
 };
 
-/// The level body in `map`.
+/// Pose estimate of the level body in `map`.
 struct PoseEstimate {
   Time stamp{};
   Pose2 T_map_body;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in map; m, m, rad
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< covariance of x, y, yaw in map; m, m, rad
 };
 
-/// The same by odometry and UWB ranges alone, without map or lidar: a second opinion.
+/// Pose estimate from odometry and UWB ranges alone, without map or lidar. Independent check of the localization.
 struct RangePoseEstimate : PoseEstimate {};
 
-/// How far the localisation believes itself: "am I lost?".
+/// Self-assessment of the localization: its confidence and whether it is lost.
 struct LocalizationTrust {
   Time stamp{};
-  double trust = 0.0;          ///< 0 lost ... 1 sure
-  double weak_std_m = 0.0;     ///< standard deviation of the position along its weakest direction
-  double weak_direction_rad = 0.0;  ///< that direction, in map, -pi/2 ... pi/2
-  bool is_lost = false;        ///< the robot does not know where it is, and says so
+  double trust = 0.0;          ///< confidence: 0 lost ... 1 certain
+  double weak_std_m = 0.0;     ///< largest principal standard deviation of the position
+  double weak_direction_rad = 0.0;  ///< direction of `weak_std_m`, in map, -pi/2 ... pi/2
+  bool is_lost = false;        ///< true when localization has reported failure
 };
 
 struct ParticleSet {
   Time stamp{};
-  std::vector<Pose2> T_map_body;  ///< [particle]
-  std::vector<double> weights;    ///< [particle], sum 1
+  std::vector<Pose2> T_map_body;  ///< particle poses, [particle]
+  std::vector<double> weights;    ///< weights, [particle], sum 1
 };
 
 struct MapUpdate {
   Time stamp{};
-  OccupancyGrid map;  ///< in `map`
+  OccupancyGrid map;  ///< map, in `map`
 };
 
 struct Path {
@@ -95,15 +95,16 @@ struct Path {
   std::vector<Pose2> T_map_body;
 };
 
-/// A 2D scan freed of the robot's motion: beams in `level` at `stamp`, ends that hit the ground removed.
+/// 2D scan after motion compensation: beams in `level` at `stamp`, without beam ends on the ground.
 struct LevelScan {
   struct Beam {
-    Eigen::Vector2f end_m;  ///< in level; the hit, or where the beam was last known free
+    Eigen::Vector2f end_m;  ///< end of the beam, in level: the hit, or the farthest point known to be free
     bool is_hit;
   };
   Time stamp{};
-  Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();  ///< the lidar, in level
-  double tilt_rad = 0.0;  ///< of the lidar's plane at the stamp: tilted far, it cuts walls that lean elsewhere than a map has them
+  Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();  ///< position of the lidar, in level
+  double tilt_rad = 0.0;  ///< tilt of the lidar's plane at the stamp; a strongly tilted plane cuts inclined walls off
+                          ///< their mapped position
   std::vector<Beam> beams;
 };
 

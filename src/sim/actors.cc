@@ -13,17 +13,17 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kCorner_m = 0.4;       // a corner's heading is smoothed over this much way on both sides
+constexpr double kCorner_m = 0.4;       // the heading is smoothed over this length on both sides of a corner
 constexpr double kGroundStep_m = 0.1;
 constexpr double kAcceleration_mps2 = 1.5;
-constexpr double kHipWidth_m = 0.09;    // of each hip from the middle
+constexpr double kHipWidth_m = 0.09;    // lateral offset of each hip from the center
 constexpr double kThigh_m = 0.43, kShank_m = 0.43;
-constexpr double kStep_m = 0.65;        // length of a step; a stride is two
+constexpr double kStep_m = 0.65;        // length of a step; a stride is two steps
 
-constexpr double kForesight_s = 1.5;    // so far ahead one sees where the robot will be
+constexpr double kForesight_s = 1.5;    // prediction horizon for the robot's position
 constexpr double kForesightStep_s = 0.25;
 
-/// Half of what one takes up, along and across the course; across with the room one likes to keep.
+/// Half extents of an actor along and across its course; the lateral one includes a comfort margin.
 struct Extent {
   double half_length_m, half_width_m;
 };
@@ -48,8 +48,8 @@ std::string known_actors(const mjModel& model) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Height of what one stands on at a place: the highest still, touchable surface below the knee of somebody who comes
-/// from ground of height `from_m`.
+/// Returns the ground height at a position: the highest static collision surface below knee height, for a person on
+/// ground of height `from_m`.
 double ground_at(const mjModel& model, const mjData& data, const Eigen::Vector2d& place, double from_m) {
   constexpr double kKnee_m = 0.5, kThrough_m = 1e-6;
   const mjtNum down[3] = {0.0, 0.0, -1.0};
@@ -73,28 +73,30 @@ void set_pose(mjData& data, int mocap, const Eigen::Vector3d& position, const Ei
   std::copy_n(quaternion, 4, data.mocap_quat + 4 * mocap);
 }
 
-constexpr double kLeg_m = kThigh_m + kShank_m - 0.012;  // from hip to ankle when it stands, the knee a little bent
+constexpr double kLeg_m = kThigh_m + kShank_m - 0.012;  // distance from hip to ankle when standing with a slightly bent
+                                                        // knee
 
-/// Share of a full stride that one takes at a speed.
+/// Returns the fraction of the full stride length that is used at a speed.
 double stride_share(double speed_mps) { return std::min(speed_mps / 0.4, 1.0); }
 
-/// Where a foot is in its stride: 0 ... 0.5 it stands, then it swings. `side` 0 is the left one.
+/// Returns the phase of a foot in its stride: stance for 0 ... 0.5, then swing. `side` 0 is left.
 double stride_phase(double walked_m, int side) {
   const double stride = walked_m / (2.0 * kStep_m) + 0.5 * side;
   return stride - std::floor(stride);
 }
 
-/// Way of a foot ahead of the hip.
+/// Returns the distance of a foot ahead of the hip.
 double foot_forward_m(double phase) { return kStep_m * (phase < 0.5 ? 0.5 - 2.0 * phase : -0.5 + 2.0 * (phase - 0.5)); }
 
-/// The hip passes over the foot that stands like the end of a stiff pendulum.
+/// Returns the drop of the hip as it passes over the stance foot like the end of a stiff pendulum.
 double hip_drop_m(double walked_m, double speed_mps) {
   const double left = stride_phase(walked_m, 0);
   const double forward = stride_share(speed_mps) * foot_forward_m(left < 0.5 ? left : stride_phase(walked_m, 1));
   return kLeg_m - std::sqrt(kLeg_m * kLeg_m - forward * forward);
 }
 
-/// Angles of thigh and knee (about y, forwards positive for the thigh) that put the ankle at (forward, down) from the hip.
+/// Returns the angles of thigh and knee that put the ankle at (forward, down) from the hip. Both are about y; the thigh
+/// is positive forward.
 std::pair<double, double> leg_angles(double forward_m, double down_m) {
   const double reach = std::min(std::hypot(forward_m, down_m), kThigh_m + kShank_m - 1e-3);
   const double cos_knee = (reach * reach - kThigh_m * kThigh_m - kShank_m * kShank_m) / (2.0 * kThigh_m * kShank_m);
@@ -182,7 +184,9 @@ bool Actors::must_wait(const Actor& actor, const RobotInView& robot) {
     const Eigen::Vector2d to_robot = robot.p_world + in_s * robot.v_world_mps - p_actor;
     const double gap_m = to_robot.dot(ahead) - extent.half_length_m;
     const double across_m = std::abs(to_robot.x() * ahead.y() - to_robot.y() * ahead.x());
-    const double nearest_m = in_s > 0.0 ? robot.radius_m : -extent.half_length_m;  // nearer, it is better to walk on
+    const double nearest_m = in_s > 0.0 ? robot.radius_m : -extent.half_length_m;  // an actor closer than this clears
+                                                                                   // the robot's path sooner by walking
+                                                                                   // on
     if (gap_m > nearest_m && gap_m < actor.settings.yield_distance_m && across_m < extent.half_width_m + robot.radius_m) return true;
   }
   return false;
@@ -212,7 +216,7 @@ void Actors::place(const Actor& actor, mjData& data) const {
   const double along = along_path(actor);
   const bool is_turned = is_returning(actor) && actor.settings.kind != "car";  // a car reverses
   const double heading = actor.path.heading_rad(along) + (is_turned ? std::numbers::pi : 0.0);
-  // People do not jump up kerbs: the hip rises over a step's length.
+  // Average the ground height so that the hip rises at curbs over a step length instead of at once.
   const auto ground_at_index = [&](double at) {
     const auto i = static_cast<std::size_t>(std::clamp(at / kGroundStep_m, 0.0, static_cast<double>(actor.ground_m.size() - 1)));
     return actor.ground_m[i];
@@ -226,7 +230,7 @@ void Actors::place(const Actor& actor, mjData& data) const {
   if (has_legs) place_legs(actor, origin, heading, data);
 }
 
-// Each foot stands for half a stride while the hip passes over it, then swings twice as fast to the next place.
+// Each foot is in stance for half a stride while the hip passes over it, then swings forward at twice the speed.
 void Actors::place_legs(const Actor& actor, const Eigen::Vector3d& hip, double heading_rad, mjData& data) const {
   const Eigen::Quaterniond yaw = quaternion_from_yaw(heading_rad);
   const double share = stride_share(actor.speed_mps);

@@ -25,15 +25,16 @@ struct WaypointSettings {
   }
 };
 
-/// Somebody who moves through the world on a path of their own, and stops for the robot.
+/// Settings of a pedestrian or car that moves along a path and stops for the robot.
 struct ActorSettings {
-  std::string name;                     ///< of the world's mocap body, e.g. "pedestrian_1"
+  std::string name;                     ///< name of the world's mocap body, e.g. "pedestrian_1"
   std::string kind = "pedestrian";
   std::vector<WaypointSettings> path;
   double speed_mps = 1.2;
   double start_s = 0.0;
-  bool loop = true;                     ///< there and back again (a car reverses); otherwise it stops at the end
-  double yield_distance_m = 1.5;        ///< stops while the robot's middle is this near ahead of it
+  bool loop = true;                     ///< true: moves back and forth along the path (a car reverses); false: stops at
+                                        ///< the end
+  double yield_distance_m = 1.5;        ///< stops while the robot's center is within this distance ahead
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -47,14 +48,14 @@ struct ActorSettings {
   }
 };
 
-/// What somebody sees of the robot, in world.
+/// Robot as the actors observe it, in world.
 struct RobotInView {
   Eigen::Vector2d p_world;
   Eigen::Vector2d v_world_mps = Eigen::Vector2d::Zero();
-  double radius_m = 0.0;  ///< of the circle about its outline
+  double radius_m = 0.0;  ///< radius of the circle around the robot's outline
 };
 
-/// A polyline walked at constant speed, with rounded heading at its corners.
+/// Polyline traversed at constant speed, with the heading smoothed at its corners.
 class ActorPath {
  public:
   ActorPath() = default;
@@ -62,39 +63,41 @@ class ActorPath {
 
   double length_m() const { return along_.empty() ? 0.0 : along_.back(); }
   Eigen::Vector2d position(double along_m) const;
-  /// Direction of travel, smoothed over the corner, rad.
+  /// Returns the direction of travel, smoothed over the corner, rad.
   double heading_rad(double along_m) const;
 
  private:
   std::vector<Eigen::Vector2d> points_;
-  std::vector<double> along_;  ///< [point]: way from the start, m
+  std::vector<double> along_;  ///< [point], distance along the path from its start, m
 };
 
-/// People and cars: mocap bodies moved along their paths. Where they are depends on nothing but time and the robot's way, so the
-/// same run has the same traffic. They stop for a robot that is in their way, or will be if it goes on as it does; one who
-/// already walks across the robot's way walks on.
+/// Pedestrians and cars: mocap bodies moved along their paths.
 ///
-/// A pedestrian's legs swing with the way walked: the foot that stands stays where it is. Parts are found by name: `<name>`,
-/// `<name>_thigh_left`, `<name>_shank_left`, `..._right`.
+/// Their poses depend only on time and on the robot's motion, so runs with equal robot motion have equal traffic. An
+/// actor stops for a robot that is, or at its present velocity will be, in the actor's path. A pedestrian that is
+/// already crossing the robot's path keeps walking.
+///
+/// The legs of a pedestrian swing with the walked distance; the stance foot stays in place. Body parts are found by
+/// name: `<name>`, `<name>_thigh_left`, `<name>_shank_left`, `..._right`.
 class Actors {
  public:
   /// Throws InputError when the world has no such actor.
   Actors(const mjModel& model, const std::vector<ActorSettings>& settings);
 
-  /// Moves everybody on to `now` and writes their poses.
+  /// Advances all actors to `now` and writes their poses.
   void advance(Time now, const RobotInView& robot, mjData& data);
 
-  /// Where everybody is, in world.
+  /// Returns the positions of all actors, in world.
   std::vector<Eigen::Vector2d> positions() const;
 
  private:
   struct Actor {
     ActorSettings settings;
     ActorPath path;
-    std::array<int, 5> mocap;  ///< body, thigh and shank left, thigh and shank right; -1 where there is none
-    double base_height_m;      ///< of the body's origin, as the world's file puts it over its ground
-    std::vector<double> ground_m;  ///< height of the ground every kGroundStep_m of the path
-    double walked_m = 0.0;     ///< in all
+    std::array<int, 5> mocap;  ///< mocap ids: body, left thigh, left shank, right thigh, right shank; -1 if absent
+    double base_height_m;      ///< height of the body's origin above its ground in the world file
+    std::vector<double> ground_m;  ///< ground height at every kGroundStep_m of the path
+    double walked_m = 0.0;     ///< total distance walked
     double speed_mps = 0.0;
   };
 

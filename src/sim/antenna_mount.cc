@@ -18,7 +18,7 @@ int joint_id(const mjModel& physics, const char* name) {
   return joint;
 }
 
-/// The speed at which a servo can still stop in time over `way_rad`.
+/// Returns the speed from which a servo can stop within `way_rad`.
 double braking_speed(double way_rad, double acceleration_radps2) {
   return std::copysign(std::sqrt(2.0 * acceleration_radps2 * std::abs(way_rad)), way_rad);
 }

@@ -14,23 +14,25 @@
 
 namespace patrol::sim {
 
-/// The mount's servos: they turn the joints of the physics, and stow the antenna until they are told otherwise. What the encoder reads is
-/// the coil's angle, and the alignment, and half the backlash to the side that the servo has come from, in whole steps.
+/// Servos of the antenna mount. They drive the joints of the physics model and keep the antenna stowed until a command
+/// arrives.
+///
+/// Encoder reading: coil angle + alignment + half the backlash toward the side of the last motion, quantized.
 class AntennaMount {
  public:
   /// Throws InputError when the model has no such joints.
   AntennaMount(const AntennaSettings& settings, const AntennaGeometry& mount, const mjModel& physics, std::uint64_t seed);
 
-  /// Where the servos shall go; what their stops do not let them reach, they stop short of.
+  /// Sets the target direction, clamped to the joint limits.
   void command(const AntennaCommand& command);
 
-  /// One tick, with the physics evaluated and not yet stepped.
+  /// Advances the servos by one tick, after the physics is evaluated and before it is stepped.
   void step(const mjModel& physics, mjData& data);
 
-  /// The encoders, whenever they are read out.
+  /// Returns the encoder readings if a reading is due.
   std::optional<AntennaState> read(const mjData& data, Time now);
 
-  /// By the encoders: not stowed.
+  /// Returns whether the antenna is not stowed, according to the encoders.
   bool is_out(const mjData& data) const;
 
  private:
@@ -40,7 +42,7 @@ class AntennaMount {
     double stowed_rad;
     double alignment_rad;
     double target_rad, setpoint_rad, speed_radps = 0.0;
-    double slack_rad = 0.0;  ///< half the backlash, on the side that the servo has come from
+    double slack_rad = 0.0;  ///< half the backlash, signed by the side of the last motion
   };
   double encoder_rad(const Servo& servo, const mjData& data) const;
 
@@ -49,7 +51,7 @@ class AntennaMount {
   std::uint64_t count_ = 0;
 };
 
-/// Sets the antenna's joints among `qpos` (nq) to where they are stowed, if the model has any.
+/// Sets the antenna joints in `qpos` (nq) to their stowed angles if the model has an antenna.
 void stow_antenna(const mjModel& model, mjtNum* qpos);
 
 }  // namespace patrol::sim

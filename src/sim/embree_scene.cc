@@ -12,7 +12,7 @@
 namespace patrol::sim {
 namespace {
 
-/// Half of the box, along the axes of its frame, that holds a geom of round shape.
+/// Returns the half size of the bounding box of a round geom, along the axes of its frame.
 Eigen::Vector3d half_extent(const PlacedGeom& geom) {
   const Eigen::Map<const Matrix3> R(geom.rotation);
   const Eigen::Map<const Eigen::Vector3d> size(geom.size);
@@ -33,7 +33,7 @@ void round_bounds(const RTCBoundsFunctionArguments* arguments) {
   const auto& geom = *static_cast<const PlacedGeom*>(arguments->geometryUserPtr);
   const Eigen::Map<const Eigen::Vector3d> centre(geom.position);
   const Eigen::Vector3d half =
-      half_extent(geom).array() + 1e-4;  // more than a float loses over a world of a kilometre
+      half_extent(geom).array() + 1e-4;  // exceeds the rounding error of float in a world of one kilometer
   const Eigen::Vector3f lower = (centre - half).cast<float>(), upper = (centre + half).cast<float>();
   *arguments->bounds_o = {.lower_x = lower.x(),
                           .lower_y = lower.y(),
@@ -65,7 +65,7 @@ void intersect_round(const RTCIntersectFunctionNArguments* arguments) {
   hit.primID = 0;
 }
 
-/// Corners and faces of one geom, in the frame of its Embree scene.
+/// Vertices and faces of one geom, in the frame of its Embree scene.
 struct Triangles {
   std::vector<Eigen::Vector3f> corners;
   std::vector<std::array<unsigned, 3>> faces;
@@ -103,7 +103,7 @@ Triangles mesh_triangles(const mjModel& model, int mesh) {
   return triangles;
 }
 
-/// A height field under construction: MuJoCo's rows run along y, its columns along x.
+/// Builder of a height field's triangles. MuJoCo's rows run along y, its columns along x.
 class HeightFieldTriangles {
  public:
   HeightFieldTriangles(const mjModel& model, int hfield)
@@ -112,9 +112,8 @@ class HeightFieldTriangles {
         rows_(static_cast<unsigned>(model.hfield_nrow[hfield])),
         columns_(static_cast<unsigned>(model.hfield_ncol[hfield])) {}
 
-  /// The surface, each cell split along the diagonal that mj_ray takes, from (row, column) to (row + 1,
-  /// column + 1); walls down from its edge to height 0; and the box below that which MuJoCo gives it for a
-  /// base.
+  /// Builds the surface, walls from its edges down to height 0, and the base box of MuJoCo. Each cell is split along
+  /// the diagonal of mj_ray, from (row, column) to (row + 1, column + 1).
   Triangles make() {
     add_surface();
     for (unsigned column = 0; column + 1 < columns_; ++column) {
@@ -147,7 +146,7 @@ class HeightFieldTriangles {
     }
   }
 
-  /// Below the edge between two corners of the surface.
+  /// Adds a wall below the edge between two vertices of the surface.
   void add_wall(unsigned a, unsigned b) {
     const auto foot = static_cast<unsigned>(made_.corners.size());
     for (const unsigned corner : {a, b}) {
@@ -169,7 +168,7 @@ class HeightFieldTriangles {
   }
 
   const float* heights_;  ///< [row][column], 0 ... 1
-  const mjtNum* size_;    ///< half along x, half along y, of the greatest height, of the base
+  const mjtNum* size_;    ///< half size along x, half size along y, maximum height, base thickness
   unsigned rows_, columns_;
   Triangles made_;
 };

@@ -15,7 +15,7 @@ namespace patrol::sim {
 
 using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-/// A geom placed in a frame: that of the world, or that of the body which it moves with.
+/// Geom with its pose in a frame: world, or the body that it is attached to.
 struct PlacedGeom {
   int geom;
   int type;
@@ -24,14 +24,14 @@ struct PlacedGeom {
   mjtNum size[3];
 };
 
-/// Spheres, capsules, cylinders and ellipsoids.
+/// Returns whether the type is a sphere, capsule, cylinder or ellipsoid.
 bool is_round(int type);
 
-/// Meshes, height fields and what else has its shape in the model, and not in the geom's size.
+/// Returns whether the shape is stored in the model instead of in the geom's size: meshes, height fields and others.
 bool is_asset(int type);
 
-/// Geoms that keep their places to each other, in Embree: boxes, planes, meshes and height fields as
-/// triangles, and MuJoCo's own ray test for round shapes.
+/// Rigid set of geoms in Embree: boxes, planes, meshes and height fields as triangles; MuJoCo's own ray test for round
+/// shapes.
 class EmbreeScene {
  public:
   EmbreeScene(RTCDevice device, RTCBuildQuality quality);
@@ -39,12 +39,12 @@ class EmbreeScene {
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-  /// Throws InputError for a geom of a type that no ray can be cast at (a signed distance field, for one).
+  /// Throws InputError for a geom type that no ray can be cast at, e.g. a signed distance field.
   void add(const mjModel& model, const PlacedGeom& placed);
-  /// After the last geom, before the first ray.
+  /// Builds the scene. Call after the last `add` and before the first `cast`.
   void build();
 
-  /// First hit nearer than `max_range_m`; the normal is not yet turned towards the origin.
+  /// Returns the first hit within `max_range_m`. Its normal is not yet oriented toward the origin.
   std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                              double max_range_m) const;
 
@@ -56,7 +56,7 @@ class EmbreeScene {
 
   RTCDevice device_;
   RTCScene scene_;
-  std::vector<int> geoms_;  ///< [geometry of the scene]
+  std::vector<int> geoms_;  ///< geom ids, [geometry of the scene]
   std::vector<std::unique_ptr<PlacedGeom>> rounds_;
 };
 

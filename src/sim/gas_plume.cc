@@ -19,7 +19,7 @@ struct BriggsUrban {
   double sigma_z_slope;
 };
 
-/// Briggs' urban curves near the source, where sigma grows in proportion to the distance.
+/// Returns the slopes of Briggs' urban curves near the source, where sigma is proportional to the distance.
 BriggsUrban briggs_urban(char stability) {
   switch (stability) {
     case 'A':
@@ -43,7 +43,7 @@ Eigen::Vector2d downwind_of(double direction_deg) {
 
 Eigen::Vector3d leak_source(const mjModel& world, const LeakSettings& leak) {
   const int site = mj_name2id(&world, mjOBJ_SITE, leak.at.c_str());
-  // Sites of leaks belong to the world body: their place is their own.
+  // Sites of leaks belong to the world body, so their local position is in world.
   if (site >= 0) return Eigen::Vector3d(world.site_pos + 3 * site);
   std::string known;
   for (int i = 0; i < world.nsite; ++i) {
@@ -78,7 +78,7 @@ double GasPlume::plume_kgpm3(const Leak& leak, const Eigen::Vector3d& point) con
   const double distance = std::max(along, 0.0);
   const double sigma_y = std::hypot(kSourceSize_m, sigma_y_slope_ * distance);
   const double sigma_z = std::hypot(kSourceSize_m, sigma_z_slope_ * distance);
-  // Upwind of the source only its own puff is left.
+  // Upwind of the source only the puff at the source contributes.
   const double upwind = along < 0.0 ? std::exp(-0.5 * along * along / (kSourceSize_m * kSourceSize_m)) : 1.0;
   const auto lobe = [&](double height) { return std::exp(-0.5 * height * height / (sigma_z * sigma_z)); };
   return leak.rate_kgps / (2.0 * std::numbers::pi * speed_mps_ * sigma_y * sigma_z) *
@@ -91,7 +91,7 @@ double GasPlume::concentration_kgpm3(const Eigen::Vector3d& point, double now_s)
   for (const Leak& leak : leaks_) {
     if (now_s >= leak.start_s) sum += plume_kgpm3(leak, point);
   }
-  return std::min(sum, kMethaneDensity_kgpm3);  // no more than pure methane
+  return std::min(sum, kMethaneDensity_kgpm3);  // at most pure methane
 }
 
 double GasPlume::column_ppm_m(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double length_m,

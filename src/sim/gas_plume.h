@@ -11,7 +11,7 @@
 
 namespace patrol::sim {
 
-/// Methane escaping at a site of the world.
+/// Methane leak at a site of the world.
 struct LeakSettings {
   std::string at;           ///< name of the site, e.g. "regulator_box_2"
   double rate_g_s = 1.0;
@@ -27,8 +27,8 @@ struct LeakSettings {
 
 struct WindSettings {
   double speed_mps = 1.5;
-  double direction_deg = 240.0;  ///< from which it blows, clockwise from north (+y)
-  std::string stability = "D";   ///< Pasquill class: A very unstable ... F stable
+  double direction_deg = 240.0;  ///< direction from which the wind blows, clockwise from north (+y)
+  std::string stability = "D";   ///< Pasquill stability class: A very unstable ... F stable
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -38,27 +38,29 @@ struct WindSettings {
   }
 };
 
-/// Where it escapes, in world. Throws InputError when the world has no such site.
+/// Returns the position of the leak, in world. Throws InputError when the world has no such site.
 Eigen::Vector3d leak_source(const mjModel& world, const LeakSettings& leak);
 
-/// kg/m3 of methane at 20 degC, 1 atm, per unit of volume fraction.
+/// Density of methane at 20 degC and 1 atm, kg/m3 per unit of volume fraction.
 inline constexpr double kMethaneDensity_kgpm3 = 0.668;
 
-/// Steady Gaussian plumes with reflection at the ground (Turner, Workbook of Atmospheric Dispersion Estimates, 1970, eq. 3.1),
-/// their spread by Briggs' urban curves (1973) from the distance downwind. Those curves were fitted beyond 100 m; nearer, they are
-/// extrapolated, and the source is a puff of `kSourceSize_m`, so that the concentration at the leak itself stays finite. Buildings
-/// do not turn the wind.
+/// Steady Gaussian plumes with reflection at the ground [Turner70, eq. 3.1].
+///
+/// The dispersion coefficients are Briggs' urban curves [Briggs73] of the downwind distance. They were fitted beyond
+/// 100 m and are extrapolated below. The source is a puff of `kSourceSize_m`, so that the concentration at the leak is
+/// finite. Buildings do not deflect the wind.
 class GasPlume {
  public:
   /// Throws InputError when a leak names a site that the world does not have.
   GasPlume(const mjModel& world, const std::vector<LeakSettings>& leaks, const WindSettings& wind);
-  /// One leak at a given place.
+  /// Constructs the plume of one leak at `source`, in world.
   GasPlume(const Eigen::Vector3d& source, double rate_g_s, const WindSettings& wind);
 
-  /// kg/m3 at a point in world.
+  /// Returns the concentration at a point in world, kg/m3.
   double concentration_kgpm3(const Eigen::Vector3d& point, double now_s) const;
 
-  /// Integral of the volume fraction along a beam, in ppm m. Sampled every 2 cm near a leak, coarser away from it.
+  /// Returns the integral of the volume fraction along a beam, ppm m. Sampled every 2 cm near a leak, coarser away from
+  /// it.
   double column_ppm_m(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double length_m, double now_s) const;
 
   bool is_empty() const { return leaks_.empty(); }

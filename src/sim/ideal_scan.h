@@ -7,14 +7,15 @@
 
 namespace patrol::sim {
 
-/// A lidar without any imperfection: level, in an instant, of as many beams as asked, evenly all around.
+/// Ideal lidar: level, instantaneous, with uniformly spaced beams over the full circle.
 struct IdealScanSettings {
   int beams = 720;
   double range_max_m = 30.0;
-  double grazing_deg = 85.0;  ///< a surface met flatter than this sends nothing back
+  double grazing_deg = 85.0;  ///< maximum angle of incidence; surfaces beyond it return nothing
 };
 
-/// What stands still and moves in `scene`, seen from `p_world_m`; beams that meet nothing are left out.
+/// Returns the hits of an ideal lidar at `p_world_m`, on static and moving objects of `scene`. Beams without a hit are
+/// omitted.
 std::vector<SurfaceReturn> ideal_scan(const LidarScene& scene, const Eigen::Vector3d& p_world_m, const IdealScanSettings& settings);
 
 }  // namespace patrol::sim

@@ -32,18 +32,18 @@ std::uint32_t mask_of(const mjModel& model, int body) {
   return name == "scanner" ? kRayScanner : kRayRobot;
 }
 
-/// What moves as one: the geoms of a body and of everything welded to it.
+/// Rigid group of geoms: a body and everything welded to it.
 struct MovingPart {
   int body;
   std::uint32_t mask;
-  std::vector<PlacedGeom> geoms;                       ///< in the body's frame
-  std::unique_ptr<EmbreeScene> assets;                 ///< meshes and height fields of `geoms`; or null
-  Eigen::AlignedBox3d box;                             ///< about all of them, in the body's frame
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the body, in world
+  std::vector<PlacedGeom> geoms;                       ///< poses in the body's frame
+  std::unique_ptr<EmbreeScene> assets;                 ///< meshes and height fields of `geoms`; null if there are none
+  Eigen::AlignedBox3d box;                             ///< bounding box of all geoms, in the body's frame
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< position of the body, in world
   Matrix3 rotation = Matrix3::Identity();
 };
 
-/// True when the ray meets the box before `reach_m`, or begins in it.
+/// Returns whether the ray enters the box before `reach_m` or starts inside it.
 bool meets(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
            double reach_m) {
   const Eigen::Array3d inverse = direction.array().inverse();
@@ -53,8 +53,7 @@ bool meets(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin, const 
   return !(enter > leave || leave < 0.0 || enter > reach_m);
 }
 
-/// The boxes about the moving parts, along the axes of the world, laid out for the compiler to test four at a
-/// time.
+/// Axis-aligned bounding boxes of the moving parts in world, stored so that the compiler can test four at a time.
 class Boxes {
  public:
   void resize(std::size_t count) {
@@ -72,15 +71,15 @@ class Boxes {
     }
   }
 
-  /// Calls `visit` with the index of every box that the ray may meet before `reach_m`, or begins in.
+  /// Calls `visit` with the index of every box that the ray may enter before `reach_m` or starts inside.
   template <typename Visit>
   void visit_met(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float reach_m,
                  Visit visit) const {
-    // A component of nothing is made very small: its inverse is finite, and no product below is 0 x infinity.
+    // Replace zero components by a tiny value, so that the inverse is finite and no product below is 0 x infinity.
     const Eigen::Array3f inverse =
         (direction.array().abs() < 1e-12f).select(1e-12f, direction.array()).inverse();
     constexpr std::size_t kChunk = 64;
-    std::array<float, kChunk> stay;  // length of the ray in the box; negative where it passes by
+    std::array<float, kChunk> stay;  // length of the ray inside the box; negative if it misses
     for (std::size_t begin = 0; begin < lower_[0].size(); begin += kChunk) {
       const std::size_t count = std::min(kChunk, lower_[0].size() - begin);
       for (std::size_t k = 0; k < count; ++k) {
@@ -104,7 +103,7 @@ class Boxes {
   }
 
  private:
-  std::array<std::vector<float>, 3> lower_, upper_;  ///< [axis][part]
+  std::array<std::vector<float>, 3> lower_, upper_;  ///< bounds, [axis][part]
 };
 
 }  // namespace
@@ -162,7 +161,7 @@ struct LidarScene::Impl {
         MovingPart{.body = body, .mask = mask, .geoms = {}, .assets = nullptr, .box = {}});
   }
 
-  /// Puts a box about everything on a part.
+  /// Computes the bounding box of a part.
   void enclose(MovingPart& part) const {
     for (const PlacedGeom& placed : part.geoms) {
       const Eigen::Map<const Eigen::Vector3d> position(placed.position),
@@ -185,7 +184,7 @@ struct LidarScene::Impl {
     }
   }
 
-  /// Takes the hit on a part for `best` if it is nearer than `reach_m`, and shortens that.
+  /// Replaces `best` by the hit on a part if it is nearer than `reach_m`, and reduces `reach_m`.
   static void cast_at(const MovingPart& part, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                       double& reach_m, std::optional<RayHit>& best) {
     const Eigen::Vector3d from = part.rotation.transpose() * (origin - part.position);
@@ -229,7 +228,7 @@ struct LidarScene::Impl {
   RTCDevice device;
   std::unique_ptr<EmbreeScene> still;
   std::vector<MovingPart> parts;
-  Boxes boxes;  ///< [part]
+  Boxes boxes;  ///< bounding boxes, [part]
 };
 
 LidarScene::LidarScene(const mjModel& view) : impl_(std::make_unique<Impl>(view)) {}

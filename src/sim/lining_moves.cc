@@ -13,7 +13,7 @@
 namespace patrol::sim {
 namespace {
 
-/// Share of `inward_mm` that reaches a clock position.
+/// Returns the fraction of `inward_mm` that applies at a clock position.
 double share_at(const LiningMoveSettings& move, double clock_deg) {
   if (move.kind == "settlement") return std::max(0.0, std::cos(clock_deg * kDegree));
   if (move.kind == "bulge") {
@@ -36,7 +36,7 @@ void check(const std::vector<LiningMoveSettings>& moves, const std::optional<Tun
   }
 }
 
-/// Of the corners of the lining's mesh: which are the intrados'. The outer face lies decimetres further out.
+/// Tolerance for recognizing vertices of the intrados. The outer face is decimeters farther out.
 constexpr double kIntradosTol_m = 0.05;
 
 }  // namespace
@@ -68,7 +68,7 @@ void move_lining(const std::vector<LiningMoveSettings>& moves, const std::option
     if (std::abs(radius_m - design->radius_at(clock_deg)) > kIntradosTol_m) continue;
     const double inward = inward_m(moves, design->ring_at(place.chainage_m), clock_deg);
     if (inward == 0.0) continue;
-    const double kept = 1.0 - inward / radius_m;  // of the way from the half circle's centre
+    const double kept = 1.0 - inward / radius_m;  // fraction of the distance from the half circle's center that remains
     const Eigen::Vector2d moved = design->point_at(place.chainage_m, kept * place.left_m);
     const Eigen::Vector3d p_moved(moved.x(), moved.y(), design->crown_centre_m + kept * (place.height_m - design->crown_centre_m));
     in_mesh = (T_world_mesh.inverse() * p_moved).cast<float>();

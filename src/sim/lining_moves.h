@@ -11,18 +11,20 @@
 
 namespace patrol::sim {
 
-/// How some rings of the lining have moved since they were built, each in the same way. Directions are the clock positions of
-/// core/tunnel_lining.h.
-///   convergence: all of a ring inwards by `inward_mm`;
-///   settlement: its half circle sinks by that, which is inwards by the cosine of the clock position; the walls below stay;
-///   bulge: inwards by that at `clock_deg`, falling to nothing at `half_width_deg` to both sides as cos^2 does.
+/// Deformation of a range of lining rings since construction, equal for all rings of the range. Directions are the
+/// clock positions of core/tunnel_lining.h.
+///
+/// - convergence: the whole ring moves inward by `inward_mm`.
+/// - settlement: the half circle moves down by `inward_mm`, which is inward by the cosine of the clock position; the
+/// walls below stay.
+/// - bulge: moves inward by `inward_mm` at `clock_deg`, decreasing as cos^2 to zero at `half_width_deg` on both sides.
 struct LiningMoveSettings {
   std::string kind = "convergence";
   int first_ring = 1;
   int last_ring = 1;
-  double inward_mm = 0.0;  ///< negative: outwards
-  double clock_deg = 0.0;         ///< of a bulge
-  double half_width_deg = 20.0;  ///< of a bulge
+  double inward_mm = 0.0;  ///< negative: outward
+  double clock_deg = 0.0;         ///< center of a bulge
+  double half_width_deg = 20.0;  ///< half width of a bulge
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -35,12 +37,14 @@ struct LiningMoveSettings {
   }
 };
 
-/// By how much the intrados of a ring has moved there, towards the half circle's centre. Moves add up.
+/// Returns the displacement of a ring's intrados at `clock_deg`, toward the center of the half circle. Deformations add
+/// up.
 double inward_m(const std::vector<LiningMoveSettings>& moves, int ring, double clock_deg);
 
-/// Moves the inner face of the mesh of geom `lining`, whose corners stand on both sides of every joint between rings. For a view
-/// model that nothing was made of yet: no scene, no picture. Throws InputError naming `lining.<index>.<field>` when a setting breaks
-/// its rule, the ring does not exist, or the world has no lining. `design` is in world.
+/// Deforms the inner face of the mesh of geom `lining`, whose vertices are on both sides of every joint between rings.
+///
+/// Precondition: no scene and no renderer has been made of `view`. `design` is in world. Throws InputError naming
+/// `lining.<index>.<field>` when a setting is out of range, the ring does not exist, or the world has no lining.
 void move_lining(const std::vector<LiningMoveSettings>& moves, const std::optional<TunnelLining>& design, mjModel& view);
 
 }  // namespace patrol::sim

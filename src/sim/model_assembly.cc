@@ -14,7 +14,7 @@
 namespace patrol::sim {
 namespace {
 
-/// Every geom that no contact can involve goes; masses are stated in the files, so nothing else changes.
+/// Removes every geom that cannot be in contact. Masses are explicit in the files, so nothing else changes.
 void strip_untouchable(mjSpec& spec) { spec.compiler.discardvisual = 1; }
 
 SpecPtr load_world(const std::string& world_xml, const std::vector<PropSettings>& props) {
@@ -50,7 +50,8 @@ void refuse_start_inside_something(const mjModel& model, const std::vector<doubl
   }
 }
 
-/// With sleep enabled, MuJoCo works out the poses of what stands still once and not at every step. The robot never sleeps.
+/// Enables sleep, with which MuJoCo computes the poses of static bodies once instead of at every step. The robot never
+/// sleeps.
 void spare_still_bodies(mjSpec& spec) {
   spec.option.enableflags |= mjENBL_SLEEP;
   mjs_findBody(&spec, frame_id::kBody)->sleep = mjSLEEP_NEVER;
@@ -60,7 +61,7 @@ void spare_still_bodies(mjSpec& spec) {
 
 double ground_height_m(const mjModel& model, const mjData& data, const Stance& stance, const Pose2& T_world_body,
                        double eye_height_m) {
-  constexpr mjtByte kScenery[mjNGROUP] = {1, 1, 1, 1, 0, 0};  // not the robot's own groups
+  constexpr mjtByte kScenery[mjNGROUP] = {1, 1, 1, 1, 0, 0};  // all groups but the robot's own
   const mjtNum down[3] = {0.0, 0.0, -1.0};
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const Eigen::Vector2d& support : stance.support_m) {

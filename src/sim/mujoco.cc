@@ -10,7 +10,7 @@
 namespace patrol::sim {
 namespace {
 
-/// MuJoCo's messages end in new lines and hold some; ours are one line.
+/// Returns a MuJoCo message as one line, without its line breaks.
 std::string one_line(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
   std::replace(text.begin(), text.end(), '\n', ' ');

@@ -19,7 +19,8 @@ using ModelPtr = std::unique_ptr<mjModel, Deleter<mj_deleteModel>>;
 using DataPtr = std::unique_ptr<mjData, Deleter<mj_deleteData>>;
 using SpecPtr = std::unique_ptr<mjSpec, Deleter<mj_deleteSpec>>;
 
-/// Throw InputError with MuJoCo's own words (which name the line) when the model is wrong.
+/// Loads, parses or compiles a model. Throws InputError with MuJoCo's message, which names the line, when the model is
+/// invalid.
 SpecPtr load_spec(const std::string& path);
 SpecPtr parse_spec(const std::string& xml);
 ModelPtr compile(mjSpec& spec, const std::string& name);

@@ -8,9 +8,10 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kReach_m = 0.8;    // of a robot from its origin, lying on its side with its legs stretched
-constexpr double kMoveOn_m = 0.2;   // way after which the tree is planted anew
-constexpr double kInTime_m = 0.05;  // more than anything goes in a tick
+constexpr double kReach_m = 0.8;    // maximum extent of a robot from its origin, lying on its side with its legs
+                                    // stretched
+constexpr double kMoveOn_m = 0.2;   // travel after which the tree is rebuilt
+constexpr double kInTime_m = 0.05;  // exceeds the motion of any body in one tick
 
 }  // namespace
 
@@ -64,8 +65,7 @@ void NearbyScenery::plant_tree(const Eigen::Vector3d& robot) {
   physics_.body_bvhnum[0] = planted_nodes_;
 }
 
-/// Writes the tree over [begin, end) behind the nodes planted so far, parents first as MuJoCo does; returns
-/// its root.
+/// Appends the tree over [begin, end) to the nodes written so far, parents first as in MuJoCo; returns its root.
 int NearbyScenery::plant(std::vector<Leaf>::iterator begin, std::vector<Leaf>::iterator end, int depth) {
   const int node = planted_nodes_++;
   Eigen::Vector3d lower = begin->centre - begin->half, upper = begin->centre + begin->half;

@@ -8,20 +8,21 @@
 
 namespace patrol::sim {
 
-/// Spares MuJoCo the search for contacts with what is out of the robot's reach. MuJoCo looks for the world's
-/// geoms in a tree of boxes, for each body of the robot anew, and in a street that tree is deep: here it is
-/// replaced by one of the few geoms about the robot whenever that has moved on. Actors out of reach are
-/// switched off. What is left out could not have touched the robot: contacts are the same with and without.
+/// Broad-phase culling of contacts for MuJoCo.
+///
+/// MuJoCo searches a static bounding-volume tree of the world's geoms for each body of the robot; in a street that tree
+/// is deep. This class replaces it by a tree of the few geoms near the robot and rebuilds it when the robot has moved.
+/// It disables contacts of distant actors. Contacts are identical with and without culling.
 class NearbyScenery {
  public:
-  /// `physics` must outlive this; its tree and its actors' contact bits are changed.
+  /// `physics` must outlive this; its tree and the contact bits of its actors are changed.
   explicit NearbyScenery(mjModel& physics);
 
-  /// With poses of now, or of one tick ago, in `data`.
+  /// Updates the culling with the poses in `data`, which may be one tick old.
   void update(const mjData& data);
 
  private:
-  /// A geom of the world body and its box along the world's axes; as a node of the tree holds it.
+  /// Geom of the world body and its axis-aligned bounding box, as stored in a tree node.
   struct Leaf {
     int geom;
     Eigen::Vector3d centre, half;
@@ -29,7 +30,7 @@ class NearbyScenery {
   struct Actor {
     int body;
     int contype, conaffinity;
-    double radius_m;  ///< about its origin
+    double radius_m;  ///< radius around the body's origin
   };
 
   void plant_tree(const Eigen::Vector3d& robot);
@@ -37,9 +38,9 @@ class NearbyScenery {
 
   mjModel& physics_;
   int robot_;
-  std::vector<Leaf> leaves_;  ///< all
+  std::vector<Leaf> leaves_;  ///< all geoms of the world body
   std::vector<Actor> actors_;
-  std::vector<Leaf> near_;  ///< those in the tree now
+  std::vector<Leaf> near_;  ///< geoms in the present tree
   int planted_nodes_ = 0;
   Eigen::Vector3d planted_about_;
 };

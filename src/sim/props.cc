@@ -18,7 +18,7 @@ namespace patrol::sim {
 namespace {
 
 constexpr std::array kLowKinds = {"rebar", "kerb", "hose", "brick"};
-constexpr double kFoot_m = 0.1;  // in the ground
+constexpr double kFoot_m = 0.1;  // depth below the ground surface
 
 using Color = std::array<float, 4>;
 constexpr Color kRust = {0.42f, 0.24f, 0.14f, 1.0f}, kStone = {0.56f, 0.55f, 0.52f, 1.0f},
@@ -38,7 +38,7 @@ mjsGeom* add_geom(mjsBody& body, mjtGeom type, const PropSettings& prop, const C
   return geom;
 }
 
-/// What can be touched of a prop carries its name.
+/// Makes a geom collidable and names it.
 void make_solid(mjsGeom& geom, int number) {
   mjs_setName(geom.element, fmt::format("prop_{}", number).c_str());
   geom.contype = 1;
@@ -56,7 +56,7 @@ void add_block(mjsBody& body, const PropSettings& prop, int number, int group, c
   make_solid(*block, number);
 }
 
-/// Lies along the prop's long side, `aside_m` to its left.
+/// Adds a rod along the object's long side, `aside_m` to its left.
 mjsGeom* add_rod(mjsBody& body, const PropSettings& prop, double radius_m, double aside_m, double height_m,
                  const Color& color) {
   mjsGeom* rod = add_geom(body, mjGEOM_CAPSULE, prop, color);
@@ -64,7 +64,7 @@ mjsGeom* add_rod(mjsBody& body, const PropSettings& prop, double radius_m, doubl
   rod->pos[0] -= aside_m * std::sin(turn);
   rod->pos[1] += aside_m * std::cos(turn);
   rod->pos[2] = height_m;
-  // A capsule's axis is z: first laid along x, then turned.
+  // The axis of a capsule is z: rotate it to x, then by the object's angle.
   const double s = std::sqrt(0.5), w = std::cos(turn / 2.0), z = std::sin(turn / 2.0);
   const double laid[4] = {w * s, -z * s, w * s, z * s};
   std::copy_n(laid, 4, rod->quat);
@@ -96,7 +96,8 @@ void add_truck(mjsBody& body, const PropSettings& prop, int number) {
     geom->pos[2] = part.centre[2];
     std::copy(part.half.begin(), part.half.end(), geom->size);
     if (!is_wheel) continue;
-    const double half = std::sqrt(0.5), w = geom->quat[0], z = geom->quat[3];  // a cylinder's axis is z: first laid along y, then turned
+    const double half = std::sqrt(0.5), w = geom->quat[0], z = geom->quat[3];  // the axis of a cylinder is z: rotate it
+                                                                               // to y, then by the object's angle
     const double laid[4] = {w * half, w * half, z * half, z * half};
     std::copy_n(laid, 4, geom->quat);
   }
@@ -114,7 +115,7 @@ void add_prop(mjsBody& body, const PropSettings& prop, int number) {
 
 struct RoutePlace {
   Eigen::Vector2d point;
-  Eigen::Vector2d ahead;  ///< unit
+  Eigen::Vector2d ahead;  ///< unit vector along the route
 };
 
 double length_m(const std::vector<WaypointSettings>& route) {

@@ -11,12 +11,12 @@
 
 namespace patrol::sim {
 
-/// Something that lies about on a building site and that a 2D lidar looks over; or a truck that is parked there.
+/// Object lying on a building site below the plane of a 2D lidar, or a parked truck.
 struct PropSettings {
   std::string kind = "rebar";
-  double x_m = 0.0;  ///< of its middle, in world
+  double x_m = 0.0;  ///< center, in world
   double y_m = 0.0;
-  double turn_deg = 0.0;  ///< of its long side from x, anticlockwise
+  double turn_deg = 0.0;  ///< angle of the long side from x, counterclockwise
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -27,30 +27,30 @@ struct PropSettings {
   }
 };
 
-/// How long, wide and high a kind of prop is.
+/// Dimensions of a kind of object.
 struct PropSize {
   double length_m;
   double width_m;
-  double height_m;  ///< above z = 0; it also goes 0.1 m into uneven ground
+  double height_m;  ///< height above z = 0; the object extends another 0.1 m into uneven ground
 };
 
-/// rebar: a bundle of 2 m; kerb: a kerbstone on its side; hose: 1.6 m of a 10 cm hose; brick: two on one
-/// another; truck: a dump truck, its nose along x (sim/truck_prop.h).
+/// Returns the dimensions of a kind. rebar: a bundle of 2 m; kerb: a kerbstone on its side; hose: 1.6 m of a 10 cm
+/// hose; brick: two bricks, stacked; truck: a dump truck with its nose along x (sim/truck_prop.h).
 PropSize prop_size(const std::string& kind);
 
-/// Adds the props to a world: each is one touchable geom `prop_<number>`, from 1, in group 0 (a bundle of
-/// rebar and a truck: a hull in group 3, and their parts to be seen). They lie at z = 0, where tunnel and street have their
-/// ground to within centimetres. Throws InputError naming `props.<index>.<field>` when a setting breaks its
-/// rule.
+/// Adds the objects to a world. Each is one collision geom `prop_<number>`, from 1, in group 0. A rebar bundle and a
+/// truck have a hull in group 3 and visual parts. Objects lie at z = 0, within centimeters of the ground of tunnel and
+/// street. Throws InputError naming `props.<index>.<field>` when a setting is out of range.
 void add_props(mjSpec& world, const std::vector<PropSettings>& props);
 
-/// Low obstacles in a robot's way: the route is cut into `count` equal parts, and one lies somewhere in each.
+/// Low obstacles along a robot's route. The route is divided into `count` equal parts, each with one obstacle at a
+/// random position.
 struct LowObstacleSettings {
   int count = 0;
   std::vector<WaypointSettings> route;
-  double clear_ends_m = 4.0;  ///< of the route at both its ends nothing is put on
-  double beside_m = 0.5;      ///< the middles lie this far from the route at most
-  double apart_m = 2.0;       ///< the middles of neighbours are at least this way apart along the route
+  double clear_ends_m = 4.0;  ///< length at both ends of the route that stays free of obstacles
+  double beside_m = 0.5;      ///< maximum lateral offset of the centers from the route
+  double apart_m = 2.0;       ///< minimum distance between the centers of neighbors along the route
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -62,8 +62,8 @@ struct LowObstacleSettings {
   }
 };
 
-/// Kinds, places and turns by seed; obstacle i is the same whatever the others are. Throws InputError when
-/// the route is too short for so many.
+/// Returns obstacles with kinds, positions and angles determined by `seed`; obstacle i does not depend on the others.
+/// Throws InputError when the route is too short for `count` obstacles.
 std::vector<PropSettings> scatter_low_obstacles(const LowObstacleSettings& settings, std::uint64_t seed);
 
 }  // namespace patrol::sim

@@ -7,16 +7,16 @@ namespace patrol::sim {
 namespace {
 
 constexpr double kLookAhead_m = 1.2;
-constexpr double kAtMark_m = 0.08;     // near enough to a mark to stop
-constexpr double kPassed_m = 0.6;      // near enough to any other waypoint to go for the next
+constexpr double kAtMark_m = 0.08;     // distance to a marked waypoint at which to stop
+constexpr double kPassed_m = 0.6;      // distance to any other waypoint at which to continue with the next
 constexpr double kAligned_rad = 0.03;
-constexpr double kTurnFirst_rad = 0.9; // the way leads off by more: turn in place
-constexpr double kLook_s = 1.5;        // standing still before and after the button
-constexpr double kMeeting_m = 1.5;     // the robot is where they wait
-constexpr double kStands_m = 0.02;     // it has not moved by more
-constexpr double kStands_s = 4.0;      // for so long
+constexpr double kTurnFirst_rad = 0.9; // direction error above which to turn in place
+constexpr double kLook_s = 1.5;        // standstill before and after the button press
+constexpr double kMeeting_m = 1.5;     // distance within which the robot has arrived at the operator
+constexpr double kStands_m = 0.02;     // maximum motion of a robot that stands still
+constexpr double kStands_s = 4.0;      // required duration of the standstill
 
-/// Speed that a person dares so far before a stop.
+/// Returns the speed at a distance before a stop.
 double speed_before_stop(double left_m) { return std::clamp(0.6 * left_m, 0.08, 10.0); }
 
 }  // namespace
@@ -125,7 +125,7 @@ bool RemoteOperator::passed(const Pose2& T_world_body) const {
   const Eigen::Vector2d to_waypoint = waypoint().p_m - T_world_body.position();
   const bool stops = waypoint().is_mark || next_ + 1 == drive_.size();
   if (to_waypoint.norm() < (stops ? kAtMark_m : kPassed_m)) return true;
-  // Beyond the waypoint, seen along the leg: do not turn back for a miss of a few centimetres.
+  // Accept a waypoint that has been passed along the leg: do not turn back for a miss of a few centimeters.
   const Eigen::Vector2d leg = waypoint().p_m - leg_start_m_;
   return leg.norm() > 0.1 && to_waypoint.dot(leg) < 0.0 && to_waypoint.norm() < 2.0 * kPassed_m;
 }
@@ -139,7 +139,8 @@ bool RemoteOperator::is_somebody_ahead(const Pose2& T_world_body, const std::vec
   });
 }
 
-/// A point of the leg, look-ahead beyond the robot's foot on it; the waypoint itself at the leg's end.
+/// Returns the pursuit point on the leg, kLookAhead_m beyond the robot's projection; at the end of the leg the waypoint
+/// itself.
 Eigen::Vector2d RemoteOperator::pursued_point(const Eigen::Vector2d& p_world_body) const {
   const Eigen::Vector2d leg = waypoint().p_m - leg_start_m_;
   if (leg.norm() < 0.1) return waypoint().p_m;

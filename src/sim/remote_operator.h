@@ -16,12 +16,13 @@ namespace patrol::sim {
 
 struct RemoteOperatorSettings {
   double speed_mps = 0.8;
-  double yaw_rate_radps = 0.6;         ///< of a turn in place
-  double reaction_s = 0.25;            ///< what is seen leads to a command after this
-  double steering_noise_radps = 0.03;  ///< standard deviation of what the hand adds to each command
-  double stop_for_people_m = 2.0;      ///< waits while somebody is this near ahead of the robot
+  double yaw_rate_radps = 0.6;         ///< yaw rate of a turn in place
+  double reaction_s = 0.25;            ///< delay from an observation to the resulting command
+  double steering_noise_radps = 0.03;  ///< standard deviation of the steering noise added to each command
+  double stop_for_people_m = 2.0;      ///< stops while a person is within this distance ahead of the robot
   double rate_hz = 10.0;
-  bool meets_robot = false;            ///< waits at the drive's first place until the robot has come there and stands
+  bool meets_robot = false;            ///< true: waits at the first waypoint until the robot has arrived and stands
+                                       ///< still
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -35,15 +36,18 @@ struct RemoteOperatorSettings {
   }
 };
 
-/// A person who walks behind the robot with the remote control, sees where it is, and drives it along a way (pure pursuit, Coulter
-/// 1992) with a human's reaction time and an unsteady hand. At marks they stop, turn the robot to the heading, press the button, and wait
-/// while they see it busy; at the end they hand over.
+/// Teleoperator who walks behind the robot, observes its pose and drives it along a route by pure pursuit [Coulter92].
+/// Reaction time and steering noise are modeled.
+///
+/// At marked waypoints the operator stops, turns the robot to the heading, presses the button and waits while the robot
+/// is busy. At the end the operator hands over control.
 class RemoteOperator {
  public:
-  /// `drive` in world.
+  /// `drive` is in world.
   RemoteOperator(const RemoteOperatorSettings& settings, RemoteDrive drive, std::uint64_t seed);
 
-  /// Call at every tick; a command when one is due. Nothing before they have met, and nothing after the hand-over.
+  /// Returns a command when one is due. Call at every tick. Returns nothing before operator and robot have met and
+  /// after the handover.
   std::optional<RemoteCommand> step(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people,
                                     bool is_busy = false);
 
@@ -66,7 +70,8 @@ class RemoteOperator {
   std::size_t next_ = 0;
   Eigen::Vector2d leg_start_m_ = Eigen::Vector2d::Zero();
   bool has_started_ = false;
-  std::optional<std::pair<Time, Pose2>> stands_since_;  ///< while waiting for the robot
+  std::optional<std::pair<Time, Pose2>> stands_since_;  ///< start of the present standstill, while waiting for the
+                                                        ///< robot
   Time phase_start_{};
   std::uint64_t count_ = 0;
   std::deque<std::pair<Time, Pose2>> seen_;

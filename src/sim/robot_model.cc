@@ -15,13 +15,13 @@
 namespace patrol::sim {
 namespace {
 
-// Legs of this class reflect about this much rotor inertia through their gears, with the friction of a good bearing
-// (tuned so that the passive leg swings as the public robot description's damping says).
+// Leg joints: reflected rotor inertia typical of legs of this class, friction of a good bearing. Tuned so that the
+// passive leg swings like the damping in the public robot description.
 constexpr double kArmature = 0.01;
 constexpr double kDamping = 0.1;
 constexpr double kFrictionLoss = 0.2;
 
-// A rubber foot on asphalt: firm (6 ms), with the friction of the foot whatever it stands on.
+// Rubber foot on asphalt: time constant of 6 ms; the friction of the foot applies on any ground.
 constexpr double kFootFriction = 0.8;
 
 void set_pose(const urdf::Pose& pose, double position[3], double quaternion[4]) {
@@ -76,7 +76,7 @@ void add_visuals(const urdf::Link& link, mjsBody& body) {
     set_colour(visual->material.get(), *geom);
     geom->contype = geom->conaffinity = 0;
     geom->group = kGroupRobotVisual;
-    geom->density = 0.0;  // a link without an <inertial> weighs nothing
+    geom->density = 0.0;  // a link without <inertial> has no mass
   }
 }
 
@@ -87,7 +87,7 @@ void add_collisions(const urdf::Link& link, mjsBody& body) {
     mjsGeom* geom = mjs_addGeom(&body, nullptr);
     set_pose(collision->origin, geom->pos, geom->quat);
     set_shape(*collision->geometry, *geom);
-    // MuJoCo's capsules collide faster and rounder than its cylinders; the length stays that of the URDF.
+    // MuJoCo's capsules collide faster and more smoothly than its cylinders; the length remains that of the URDF.
     if (geom->type == mjGEOM_CYLINDER) geom->type = mjGEOM_CAPSULE;
     geom->contype = kRobotContype;
     geom->conaffinity = kRobotConaffinity;
@@ -121,7 +121,8 @@ void set_inertia(const urdf::Inertial& inertial, mjsBody& body) {
 
 bool is_antenna(const urdf::Joint& joint) { return joint.name.starts_with("tem_"); }
 
-/// A digital servo's gear of 200 : 1 behind a small coreless motor. Viscous, not dry: dry friction is a constraint, and costs physics.
+/// Sets a digital servo's 200 : 1 gear behind a small coreless motor. Its friction is viscous, because dry friction is
+/// a constraint and slows the physics.
 void set_servo_gear(mjsJoint& hinge) {
   hinge.armature = 0.02;
   hinge.damping[0] = 0.3;
@@ -141,7 +142,7 @@ void add_joint(mjSpec& spec, const urdf::Joint& joint, mjsBody& body) {
   } else if (is_sprocket) {
     hinge->armature = sprocket_armature();
     hinge->frictionloss = joint.dynamics ? joint.dynamics->friction : 0.0;
-    hinge->solref_friction[0] = 0.01;  // as firm as the ground: the parking brake is this friction too
+    hinge->solref_friction[0] = 0.01;  // as stiff as the ground, because this friction is also the parking brake
     hinge->solimp_friction[0] = hinge->solimp_friction[1] = 0.999;
   } else {
     hinge->armature = kArmature;
@@ -150,7 +151,7 @@ void add_joint(mjSpec& spec, const urdf::Joint& joint, mjsBody& body) {
   }
   if (!is_sprocket) {
     hinge->limited = mjLIMITED_TRUE;
-    const double unit = spec.compiler.degree ? kDegPerRad : 1.0;  // a spec holds angles as its world's file writes them
+    const double unit = spec.compiler.degree ? kDegPerRad : 1.0;  // a spec uses the angle unit of its world file
     hinge->range[0] = joint.limits->lower * unit;
     hinge->range[1] = joint.limits->upper * unit;
   }
@@ -169,14 +170,14 @@ bool is_sprocket(const urdf::Link& link) {
   return link.parent_joint && link.parent_joint->type == urdf::Joint::CONTINUOUS;
 }
 
-/// `load_n` is what each road wheel carries, if the robot has any.
+/// `load_n` is the load of each road wheel, if the robot has any.
 void add_link(mjSpec& spec, const urdf::Link& link, double load_n, mjsBody& body) {
   mjs_setName(body.element, link.name.c_str());
   if (link.inertial) set_inertia(*link.inertial, body);
   add_visuals(link, body);
   if (is_track(link)) {
     add_wheels(link, load_n, body);
-  } else if (!is_sprocket(link)) {  // the belt covers it
+  } else if (!is_sprocket(link)) {  // covered by the track
     add_collisions(link, body);
   }
   for (const urdf::LinkSharedPtr& child : link.child_links) {
@@ -202,7 +203,7 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& path) {
   return model;
 }
 
-/// On feet: two links of 0.213 m at 0.8 rad, and the foot.
+/// Returns the stance on feet: two links of 0.213 m at 0.8 rad, plus the foot.
 Stance stance_on_feet() { return {.height_m = 0.322, .support_m = {Eigen::Vector2d::Zero()}, .eye_height_m = 0.3}; }
 
 bool has_tracks(const urdf::ModelInterface& model) { return model.getLink("left_track") != nullptr; }

@@ -10,14 +10,15 @@
 namespace patrol::sim {
 namespace {
 
-// Springs: 4.6 Hz for the whole robot, at a third of critical damping.
+// Springs: natural frequency of 4.6 Hz for the whole robot, damping ratio of one third.
 constexpr double kSpringStiffness = 6000.0, kSpringDamping = 150.0;  // N/m, N s/m
-constexpr double kDroop_m = 0.02, kBump_m = 0.03;                    // travel from where they carry the robot
+constexpr double kDroop_m = 0.02, kBump_m = 0.03;                    // travel from the loaded position
 constexpr double kWheelMass_kg = 0.8, kWheelInertia_kgm2 = 0.002;
 constexpr double kGravity_mps2 = 9.81;
 
-// Rotor (flat brushless motors of 100 to 300 W: 1.2e-4 to 3.1e-4 kg m2) through a gear of 30, the belt's 6 kg at its pitch line,
-// and the wheels that it turns. Less than 0.2 and the ground's grip, one tick late, makes belt and motor ring.
+// Sum of the rotor inertia (flat brushless motors of 100 to 300 W: 1.2e-4 to 3.1e-4 kg m2) through a gear of 30, 6 kg
+// of belt at its pitch line, and the driven wheels. Below 0.2 the contact torque, one tick late, makes track and motor
+// oscillate.
 constexpr double kSprocketArmature_kgm2 = 0.25;
 
 void set(double* to, std::initializer_list<double> values) { std::copy(values.begin(), values.end(), to); }
@@ -27,7 +28,7 @@ const urdf::Cylinder& wheel_shape(const urdf::Collision& wheel) {
   return static_cast<const urdf::Cylinder&>(*wheel.geometry);
 }
 
-/// Height of the lowest point of a track's wheels, in the link, m.
+/// Returns the height of the lowest point of a track's wheels, in the link, m.
 double bottom_m(const urdf::Link& track) {
   double bottom = std::numeric_limits<double>::infinity();
   for (const urdf::CollisionSharedPtr& wheel : track.collision_array) {
@@ -40,7 +41,7 @@ bool is_road_wheel(const urdf::Link& track, const urdf::Collision& wheel) {
   return wheel.origin.position.z - wheel_shape(wheel).radius < bottom_m(track) + 1e-3;
 }
 
-/// The body that carries a road wheel, pressed down by `load_n` where it stands in the URDF.
+/// Adds the body of a road wheel, with its spring loaded by `load_n` at its position in the URDF.
 mjsBody* add_suspension(const urdf::Collision& wheel, double load_n, mjsBody& track) {
   mjsBody* carrier = mjs_addBody(&track, nullptr);
   mjs_setName(carrier->element, (wheel.name + "_carrier").c_str());
@@ -62,7 +63,8 @@ mjsBody* add_suspension(const urdf::Collision& wheel, double load_n, mjsBody& tr
   return carrier;
 }
 
-/// A wheel rounded at its edges, as wide as the URDF says: a capsule across, or a sphere where the wheel is no wider than high.
+/// Adds a wheel with rounded edges of the width in the URDF: a transverse capsule, or a sphere if the wheel is not
+/// wider than high.
 void add_wheel(const urdf::Collision& wheel, mjsBody& body, bool is_at_origin) {
   const urdf::Cylinder& shape = wheel_shape(wheel);
   mjsGeom* geom = mjs_addGeom(&body, nullptr);
@@ -80,7 +82,7 @@ void add_wheel(const urdf::Collision& wheel, mjsBody& body, bool is_at_origin) {
   geom->group = kGroupRobotCollision;
   geom->condim = 3;
   geom->priority = 1;
-  set(geom->solimp, {0.995, 0.999, 0.001});  // creeps by half a millimetre a second on 10 degrees
+  set(geom->solimp, {0.995, 0.999, 0.001});  // creeps by half a millimeter per second on 10 degrees
 }
 
 }  // namespace

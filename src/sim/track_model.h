@@ -8,28 +8,33 @@
 
 namespace patrol::sim {
 
-// A track in the physics: its belt's road wheels on springs, and the wheels at its ends on the chassis. None of them turns: the
-// belt's motion is the motion of their surfaces (locomotion/track_belts.h). On springs, since on a rigid chassis a handful of
-// wheels carries everything, and the robot turns like a cart on four wheels.
+// Track in the physics model: road wheels on springs, end wheels on the chassis.
+//
+// No wheel rotates; the motion of the track is a surface velocity of the wheels (locomotion/track_belts.h). Without
+// springs, a few wheels would carry the whole load, and the robot would turn like a four-wheeled cart.
 
 bool is_track(const urdf::Link& link);
 
-/// What each road wheel carries on level ground, N; 0 for a robot without tracks.
+/// Returns the load of each road wheel on level ground, N; 0 for a robot without tracks.
 double road_wheel_load_n(const urdf::ModelInterface& robot);
 
-/// Adds the wheels of `track` to its body: geoms named as the collision shapes, joints `<wheel>_spring`. Their mass is taken off
-/// the body. `load_n` is what each road wheel carries where it stands in the URDF. Throws InputError for anything but cylinders.
+/// Adds the wheels of `track` to its body, with geoms named as the collision shapes and joints `<wheel>_spring`. Their
+/// mass is subtracted from the body. `load_n` is the load of each road wheel at its position in the URDF. Throws
+/// InputError for shapes other than cylinders.
 void add_wheels(const urdf::Link& track, double load_n, mjsBody& body);
 
-/// Reflected inertia of a sprocket's motor and belt, kg m2.
+/// Returns the reflected inertia of a sprocket's motor and belt, kg m2.
 double sprocket_armature();
 
-/// Pyramidal cones. Tracks slide whenever the robot turns, and a step with many sliding contacts costs half as much under
-/// pyramidal cones as under elliptic ones (tests/bench/physics_bench.cc); a turn comes out within 3 % of isotropic friction's closed
-/// form instead of 1 % (tests/scenario/tracks_test.cc).
+/// Selects pyramidal friction cones.
+///
+/// Tracks slide whenever the robot turns. A step with many sliding contacts costs half as much with pyramidal as with
+/// elliptic cones (tests/bench/physics_bench.cc). A turn is within 3 % of the closed form of isotropic friction instead
+/// of 1 % (tests/scenario/tracks_test.cc).
 void use_track_friction(mjOption& option);
 
-/// A centimetre above the highest ground under any wheel: the robot settles from there in the first ticks, and does not turn on its springs.
+/// Returns the stance 1 cm above the highest ground below any wheel. The robot settles from there in the first ticks
+/// without oscillating on its springs.
 Stance stance_on_tracks(const urdf::ModelInterface& robot);
 
 }  // namespace patrol::sim

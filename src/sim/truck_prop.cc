@@ -8,7 +8,7 @@ constexpr Color kCab = {0.86f, 0.62f, 0.06f, 1.0f}, kTub = {0.36f, 0.37f, 0.38f,
                 kRubber = {0.05f, 0.05f, 0.05f, 1.0f}, kPane = {0.10f, 0.13f, 0.16f, 1.0f}, kSteel = {0.46f, 0.47f, 0.48f, 1.0f},
                 kGravel = {0.35f, 0.33f, 0.30f, 1.0f}, kLamp = {1.0f, 0.96f, 0.84f, 1.0f}, kRed = {0.80f, 0.10f, 0.06f, 1.0f};
 
-/// From one corner to the other.
+/// Returns a box between two corners.
 TruckPart box(std::array<double, 2> x, std::array<double, 2> y, std::array<double, 2> z, const Color& rgba) {
   return {.shape = TruckPart::Shape::kBox,
           .centre = {(x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0, (z[0] + z[1]) / 2.0},
@@ -27,10 +27,10 @@ std::vector<TruckPart> truck_parts() {
       box({2.05, 3.50}, {-1.12, 1.12}, {2.30, 2.86}, kCab),
       box({3.50, 3.56}, {-1.00, 1.00}, {2.32, 2.78}, kPane),     // windscreen
       box({3.70, 3.72}, {-0.75, 0.75}, {1.10, 1.62}, kIron),     // grille
-      box({-3.75, 1.75}, {-1.22, 1.22}, {1.00, 1.14}, kTub),     // tub: floor, front, rear
+      box({-3.75, 1.75}, {-1.22, 1.22}, {1.00, 1.14}, kTub),     // dump body: floor, front, rear
       box({1.65, 1.80}, {-1.24, 1.24}, {1.0, 2.75}, kTub),
       box({-3.80, -3.68}, {-1.20, 1.20}, {1.0, 2.05}, kTub),
-      box({1.70, 2.75}, {-1.20, 1.20}, {2.92, 3.00}, kTub),      // its visor over the cab
+      box({1.70, 2.75}, {-1.20, 1.20}, {2.92, 3.00}, kTub),      // canopy of the dump body over the cab
       box({-3.4, 1.4}, {-1.10, 1.10}, {1.14, 2.10}, kGravel),
       box({-2.4, 0.4}, {-0.70, 0.70}, {2.10, 2.45}, kGravel),
   };

@@ -17,7 +17,7 @@
 namespace patrol::sim {
 namespace {
 
-/// A touch that is lost for less than this is still the same touch.
+/// Contacts interrupted for less than this are one contact.
 constexpr Time kSameTouch = std::chrono::milliseconds(500);
 
 bool begins_with_one_of(std::string_view name, std::initializer_list<std::string_view> prefixes) {
@@ -29,20 +29,22 @@ std::string_view name_of(const mjModel& model, int geom) {
   return name == nullptr ? std::string_view() : name;
 }
 
-/// Height of the highest point of a geom's box in world, m.
+/// Returns the height of the highest point of a geom's bounding box in world, m.
 double top_m(const mjModel& model, const mjData& data, int geom) {
-  const mjtNum* box = model.geom_aabb + 6 * geom;  // center and half sizes, in the geom
+  const mjtNum* box = model.geom_aabb + 6 * geom;  // center and half sizes, in the geom's frame
   const mjtNum* up = data.geom_xmat + 9 * geom + 6;
   double top = data.geom_xpos[3 * geom + 2];
   for (int axis = 0; axis < 3; ++axis) top += up[axis] * box[axis] + std::abs(up[axis]) * box[3 + axis];
   return top;
 }
 
-/// Whether a contact is walking or driving, not a collision. `lowest_m`: height of the robot's lowest contact at this instant.
-/// Worlds name the ground ("ground", "pavement", "carriageway", "dropped_kerb"), on which every contact is walking. Curb stones
-/// ("kerb") count as ground where the contact is from above (its normal within 45 degrees of the vertical), and on their sides
-/// where the stone rises by at most 15 cm over the robot's lowest contact, as curbs of streets do. The side of a higher stone is
-/// an obstacle.
+/// Returns whether a contact is normal walking or driving instead of a collision. `lowest_m`: height of the robot's
+/// lowest contact at this instant.
+///
+/// Worlds name the ground ("ground", "pavement", "carriageway", "dropped_kerb"); contacts with it are never collisions.
+/// Contacts with curb stones ("kerb") from above (normal within 45 degrees of the vertical) are not collisions either.
+/// Contacts with the side of a stone are accepted if it rises at most 15 cm above the robot's lowest contact, as street
+/// curbs do.
 bool is_footing(const mjModel& model, const mjData& data, const mjContact& contact, int geom, double lowest_m) {
   constexpr double kMaxCurb_m = 0.15;
   const std::string_view name = name_of(model, geom);
@@ -94,8 +96,8 @@ Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uin
   sensors_.step(*model_.physics, *data_, now_);
 }
 
-// Between steps the whole state - kinematics, forces, readings - is that of `now_`; a step integrates it and evaluates the
-// next one. The firmware's torques come from the readings of one tick ago, as on a real robot.
+// Between steps, kinematics, forces and readings are those of `now_`; a step integrates the state and evaluates the
+// next one. The firmware's torques use readings that are one tick old, as on a real robot.
 void Twin::step() {
   const mjModel* model = model_.physics.get();
   {
@@ -138,8 +140,9 @@ void Twin::command(const InstrumentCommand& command) {
   sensors_.command(command);
 }
 
-// MuJoCo's friction is soft: a robot that stands creeps by micrometres and by thousandths of a degree a second, up to 0.07 degrees
-// over a scan in the tunnel. A parked one does not; so while an instrument needs it still, the solver takes out what slip is left.
+// MuJoCo's friction is soft: a standing robot creeps by micrometers and millidegrees per second, up to 0.07 degrees
+// during a scan in the tunnel. A parked robot does not creep. So the solver removes the residual slip while an
+// instrument needs the robot to stand still.
 void Twin::hold_still() {
   constexpr int kNoSlipIterations = 3;
   const bool is_asked_to_stand = command_.vx_mps == 0.0 && command_.vy_mps == 0.0 && command_.yaw_rate_radps == 0.0;
@@ -220,7 +223,7 @@ std::vector<SensorMessage> Twin::take_messages() { return sensors_.take_due(now_
 GroundTruth Twin::truth() const {
   const mjtNum* position = data_->xpos + 3 * robot_body_;
   const mjtNum* rotation = data_->xquat + 4 * robot_body_;
-  mjtNum velocity[6];  // angular, linear; in the body's frame
+  mjtNum velocity[6];  // angular, then linear part, in the body's frame
   mj_objectVelocity(model_.physics.get(), data_.get(), mjOBJ_XBODY, robot_body_, velocity, 1);
   return {.stamp = now_,
           .T_world_body = {Eigen::Vector3d(position), Eigen::Quaterniond(rotation[0], rotation[1], rotation[2], rotation[3])},

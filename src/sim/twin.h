@@ -27,58 +27,58 @@
 
 namespace patrol::sim {
 
-/// The physical side of a scenario: which world, which robot, and what is in the air and on the road.
+/// Physical side of a scenario: world, robot, environment and traffic.
 struct TwinSettings {
   std::string world_xml;
   std::string robot_urdf;
-  Pose2 T_world_start;  ///< where the robot is put down
+  Pose2 T_world_start;  ///< start pose of the robot
   SensorSuiteSettings sensors;
-  LocomotionSettings locomotion;   ///< of a robot with legs
-  TrackDriveSettings track_drive;  ///< of a robot with tracks
+  LocomotionSettings locomotion;   ///< settings for a robot with legs
+  TrackDriveSettings track_drive;  ///< settings for a robot with tracks
   std::vector<PropSettings> props;
-  std::optional<TunnelLining> lining;            ///< of the world, in world
+  std::optional<TunnelLining> lining;            ///< lining of the world, in world
   std::vector<LiningMoveSettings> lining_moves;
   std::vector<ActorSettings> actors;
   std::vector<LeakSettings> leaks;
   WindSettings wind;
   Underground underground;
   std::vector<FaultSettings> faults;
-  RemoteDrive drive;                    ///< in world; driven by a person with a remote control, empty: nobody
+  RemoteDrive drive;                    ///< teleoperated route, in world; empty: no operator
   RemoteOperatorSettings driver;
-  std::vector<RemoteCommand> recorded;  ///< or: what a remote control said on another day
+  std::vector<RemoteCommand> recorded;  ///< recorded teleoperation commands, replayed instead of `drive`
 };
 
-/// The digital twin: robot, world, sensors and actors, advanced tick by tick. It takes velocity commands and gives what
-/// the sensors say; the truth is for the log and the judge.
+/// Simulator of robot, world, sensors and actors, advanced tick by tick. Takes velocity commands and returns sensor
+/// messages. The ground truth is only for logging and scoring.
 class Twin {
  public:
-  /// A depth camera needs `make_depth_imager` (render/depth_renderer.h).
+  /// A depth camera requires `make_depth_imager` (render/depth_renderer.h).
   Twin(const TwinSettings& settings, const RobotDescription& robot, std::uint64_t seed,
        const DepthImagerFactory& make_depth_imager = {});
 
-  /// One physics tick (2 ms).
+  /// Advances the simulation by one physics tick (2 ms).
   void step();
 
-  /// Time since the start; of the state that `truth` describes.
+  /// Returns the time since the start, of the state that `truth` describes.
   Time now() const { return now_; }
   void set_command(const VelocityCommand& command) { command_ = command; }
-  /// What is asked of the inspection's instruments; now.
+  /// Passes a command to the inspection instruments; effective at once.
   void command(const InstrumentCommand& command);
-  /// An instrument is at work, or the antenna is out: the robot must stand still.
+  /// Returns whether the robot must stand still because an instrument is measuring or the antenna is not stowed.
   bool is_busy() const { return sensors_.is_busy() || (antenna_ && antenna_->is_out(*data_)); }
 
-  /// Sensor messages whose delivery is due, in order of delivery.
+  /// Removes and returns the sensor messages that are due, in order of delivery.
   std::vector<SensorMessage> take_messages();
 
   GroundTruth truth() const;
   SimState state() const;
-  /// New touches since the last call; one entry per touch, not per tick.
+  /// Removes and returns the collisions that began since the last call; one entry per collision, not per tick.
   std::vector<Collision> take_collisions();
-  /// By the firmware's own sensing.
+  /// Returns whether the robot has fallen, according to the firmware's own sensors.
   bool has_fallen() const { return locomotion_->has_fallen(); }
 
-  /// Lifts the robot to another place and puts it down there, upright on the ground, at rest, its firmware switched on anew. It
-  /// sees the ground from a metre above where it is now. Throws InputError where there is no ground.
+  /// Moves the robot to another pose, upright on the ground and at rest, and restarts its firmware. The ground is
+  /// searched from a meter above the robot's present height. Throws InputError where there is no ground.
   void put_at(const Pose2& T_world_body);
 
   const SensorSuite& sensors() const { return sensors_; }
@@ -108,7 +108,7 @@ class Twin {
   Time now_{};
   Time tick_;
   std::vector<Collision> collisions_;
-  std::vector<std::pair<std::string, Time>> touching_;  ///< pairs in contact, with the last time seen
+  std::vector<std::pair<std::string, Time>> touching_;  ///< pairs in contact, with the last time of contact
   PartClock clock_;
 };
 

@@ -6,13 +6,13 @@
 
 namespace patrol::sim {
 
-/// A cave or a karst pipe full of water or mud, as a sphere; in world.
+/// Cave or karst conduit filled with water or mud, as a sphere, in world.
 struct WaterBodySettings {
   double x_m = 0.0;
   double y_m = 0.0;
   double z_m = 0.0;
   double radius_m = 6.0;
-  double conductivity_spm = 0.6;  ///< fresh karst water has 0.05, mud and mineralised water 0.3 to 1
+  double conductivity_spm = 0.6;  ///< fresh karst water: 0.05; mud and mineralized water: 0.3 to 1
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -33,7 +33,7 @@ struct RockSettings {
   }
 };
 
-/// What the face hides.
+/// Subsurface ahead of the tunnel face.
 struct Underground {
   RockSettings rock;
   std::vector<WaterBodySettings> water;

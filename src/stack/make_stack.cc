@@ -52,7 +52,7 @@ std::unique_ptr<Mission> make_mission(const StackSettings& settings, const Robot
   return make_gas_mission(settings, robot, site_in_map, start.seed);
 }
 
-/// Every instrument that the robot carries, and whose design data the survey has.
+/// Makes every instrument that the robot carries and whose design data the survey contains.
 InstrumentSet make_instruments(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
                                StackStart& start) {
   validate(settings.inspection, "inspection");

@@ -13,21 +13,21 @@
 
 namespace patrol::stack {
 
-/// Data that a stack starts from, beside the survey; all in map.
+/// Initial data of a stack besides the survey; all in map.
 struct StackStart {
-  std::optional<OccupancyGrid> map = {};  ///< none: the robot makes its own
+  std::optional<OccupancyGrid> map = {};  ///< none: the robot makes its own map
   std::vector<MarkedGoal> goals =
-      {};  ///< none: marked on a drive by remote control, or the mission visits the route's stations
-  LiningReferences references = {};  ///< scans of an earlier round
-  BoostedStumps neighbor_model = {};      ///< classifier of pairs of submaps, for SLAM methods that need it
-  bool has_remote = false;           ///< a person may drive by remote control
+      {};  ///< none: saved during teleoperation, or the mission visits the route's stations
+  LiningReferences references = {};  ///< scans of an earlier inspection run
+  BoostedStumps neighbor_model = {};  ///< classifier of submap pairs, for SLAM methods that need it
+  bool has_remote = false;           ///< true: an operator can drive the robot by teleoperation
   double map_period_s = 5.0;
   std::uint64_t seed = 0;
 };
 
-/// Composes a stack: the settings select odometry source, localizer and mission; the robot description and the survey
+/// Composes a stack. The settings select odometry source, localizer and mission; the robot description and the survey
 /// select the instruments. `site_in_map`: the survey in map, whose origin is the level body pose at the start. Throws
-/// InputError when settings, robot, survey and start do not go together.
+/// InputError when settings, robot, survey and start are inconsistent.
 Stack make_stack(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
                  StackStart start);
 

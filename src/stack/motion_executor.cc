@@ -7,7 +7,7 @@ namespace patrol::stack {
 namespace {
 
 constexpr Time kRemoteHold =
-    std::chrono::milliseconds(500);  // time for which a command of the remote control is followed
+    std::chrono::milliseconds(500);  // validity of a teleoperation command
 
 DockingFeedback feedback_of(plan::DockingStatus status) {
   switch (status) {
@@ -80,7 +80,7 @@ VelocityCommand MotionExecutor::remote_command(Time now) const {
   return command;
 }
 
-/// Drives to the staging pose before the post, then in.
+/// Drives to the staging pose in front of the charging post, then docks.
 VelocityCommand MotionExecutor::go_to_dock(Time now, const Pose2& T_map_body, const Pose2& T_odom_body,
                                            StackOutput& output) {
   if (docking_.status() != plan::DockingStatus::kIdle) return move_at_dock(now, T_map_body, T_odom_body, output);

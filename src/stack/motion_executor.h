@@ -18,15 +18,15 @@
 
 namespace patrol::stack {
 
-/// Carries out the motion of a task: navigation to a goal, docking, undocking, or commands of the remote control.
+/// Executes the motion of a task: navigation to a goal, docking, undocking, or teleoperation.
 class MotionExecutor {
  public:
-  /// Throws InputError when settings and robot do not go together.
+  /// Throws InputError when settings and robot are inconsistent.
   MotionExecutor(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
                  std::uint64_t seed);
 
   void set_map(const OccupancyGrid& map) { navigator_.set_map(map); }
-  /// Obstacles, and the charging post while the robot docks.
+  /// Adds obstacles, and detects the charging post while the robot docks.
   void add(const LevelScan& scan, const ScanPose& pose);
   void add(const UltrasonicRange& range, const StandingPlace& place) {
     navigator_.add_range(range, place.T_level_body, place.T_map_body);
@@ -36,13 +36,13 @@ class MotionExecutor {
   }
   void add(const RemoteCommand& command) { last_remote_ = command; }
 
-  /// Velocity command for a control period; publishes paths and events.
+  /// Returns the velocity command for a control period; publishes paths and events.
   VelocityCommand step(Time now, const Task& task, const Pose2& T_map_body, const Pose2& T_odom_body,
                        StackOutput& output);
 
   NavigationFeedback navigation() const;
   DockingFeedback docking() const { return docking_feedback_; }
-  /// A person drives.
+  /// Returns whether the robot is teleoperated.
   bool follows_remote() const { return motion_ == Motion::kFollowRemote; }
 
  private:

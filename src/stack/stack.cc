@@ -14,7 +14,7 @@ constexpr Time kOdometryPeriod = std::chrono::milliseconds(20);
 }  // namespace
 
 Stack::Stack(StackParts parts) : parts_(std::move(parts)), map_period_(from_seconds(parts_.map_period_s)) {
-  parts_.motion.set_map(parts_.pose.map());  // perhaps empty yet, but its resolution must suit the costmap's
+  parts_.motion.set_map(parts_.pose.map());  // the map may still be empty, but its resolution must match the costmap
   if (parts_.mission->starts_at_survey()) parts_.pose.start_at_survey();
 }
 

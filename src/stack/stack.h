@@ -16,38 +16,38 @@
 
 namespace patrol::stack {
 
-/// Parts that a stack is composed of (make_stack.h selects them).
+/// Components of a stack (make_stack.h selects them).
 struct StackParts {
   PosePipeline pose;
   MotionExecutor motion;
   std::unique_ptr<Mission> mission;
   InstrumentSet instruments;
   SensorWatch sensor_watch;
-  std::optional<Dock> dock;   ///< of the site, in map
-  double map_period_s = 5.0;  ///< between two published maps while the map grows
+  std::optional<Dock> dock;   ///< charging post of the site, in map
+  double map_period_s = 5.0;  ///< interval between published maps while the map grows
 };
 
-/// The robot's software: processes sensor messages and gives velocity commands, estimates, a map and events. A recorded
-/// log can replace the simulator, since nothing but sensor messages comes in.
+/// Software of the robot: processes sensor messages and returns velocity commands, estimates, a map and events. Its
+/// only inputs are sensor messages and the firmware's fall report, so that a recorded log can replace the simulator.
 class Stack {
  public:
   explicit Stack(StackParts parts);
 
   void handle(const SensorMessage& message);
-  /// The robot's firmware reports a fall.
+  /// Processes the firmware's report of a fall.
   void handle_fall(Time now);
-  /// Odometry, map, mission and control, each at its own period. Call at every tick.
+  /// Runs odometry, map, mission and control, each at its own period. Call at every tick.
   void step(Time now);
 
   const VelocityCommand& command() const { return command_; }
   bool mission_is_over() const { return parts_.mission->is_over(); }
   MapUpdate final_map(Time now) { return {now, parts_.pose.map()}; }
-  /// Messages published since the last call, in order.
+  /// Removes and returns the messages published since the last call, in order.
   std::vector<StackMessage> take_messages() { return output_.take_messages(); }
   const PartClock& clock() const { return output_.clock(); }
 
  private:
-  /// State in a control period.
+  /// State of the robot in a control period.
   struct Period {
     Time now{};
     OdometryEstimate odometry;

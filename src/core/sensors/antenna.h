@@ -6,26 +6,27 @@
 
 namespace patrol {
 
-/// What the servos of the antenna mount read back: the coil's axis is x of `tem`, turned by yaw (to the left) and then by pitch
-/// (downwards, as REP 103 counts it).
+/// Servo readings of the antenna mount. The coil's axis is x of `tem`, rotated by yaw (to the left) and then by pitch
+/// (downward, REP 103).
 struct AntennaState {
   Time stamp{};
   double yaw_rad = 0.0;
   double pitch_rad = 0.0;
 };
 
-/// Two digital servos after the data sheet of Robotis' MX-64R (emanual.robotis.com: RS-485, contactless encoder of 12 bits, backlash of 20
-/// arcmin, 6.0 N m; the torque's limit stands in the URDF). Alignment, gains and the slow approach are assumptions.
+/// Two digital servos with the data of Robotis' MX-64R (emanual.robotis.com): RS-485, 12-bit contactless encoder,
+/// backlash of 20 arcmin, 6.0 N m. The torque limit is in the URDF. Alignment, gains and low speed are assumptions.
 struct AntennaSettings {
-  double rate_hz = 10.0;                  ///< of the read-back
-  double max_speed_radps = 1.0;           ///< that the servos are told to keep to: a loop on a post swings
+  double rate_hz = 10.0;                  ///< rate of the servo readings
+  double max_speed_radps = 1.0;           ///< commanded speed limit; low because a loop on a post oscillates
   double max_acceleration_radps2 = 2.0;
-  double stiffness_nm_per_rad = 60.0;     ///< of the position loop
+  double stiffness_nm_per_rad = 60.0;     ///< stiffness of the position loop
   double damping_nms_per_rad = 6.0;
-  double dead_band_deg = 0.1;             ///< a servo that is so near lets go
+  double dead_band_deg = 0.1;             ///< dead band: a servo at rest exerts no position torque below this error
   double resolution_deg = 0.088;
-  double backlash_deg = 0.33;             ///< between the encoder and the coil, whole
-  double alignment_std_deg = 0.3;         ///< of a servo on its bracket, for the run
+  double backlash_deg = 0.33;             ///< total backlash between encoder and coil
+  double alignment_std_deg = 0.3;         ///< standard deviation of the alignment of a servo on its bracket, constant
+                                          ///< over a run
   double latency_s = 0.02;
 
   template <typename Self, typename Visitor>

@@ -8,28 +8,29 @@
 
 namespace patrol {
 
-/// Static pressure of the air at `imu`, in whose housing the barometer sits.
+/// Static air pressure at `imu`; the barometer is in the IMU housing.
 struct FluidPressure {
   Time stamp{};
   double pressure_pa = 0.0;
   double std_pa = 0.0;  ///< standard deviation of the noise, Pa
 };
 
-/// Barometer with the data of Bosch's BMP390 (data sheet BST-BMP390-DS002): absolute accuracy of 50 Pa and relative
-/// accuracy of 3 Pa, each read as two standard deviations, of a constant offset and of a slow drift; temperature
-/// coefficient of the offset of 0.6 Pa/K, likewise; noise of 0.02 Pa rms and resolution of 0.016 Pa at the highest
+/// Barometer with the data of Bosch's BMP390 (data sheet BST-BMP390-DS002). Absolute accuracy of 50 Pa, relative
+/// accuracy of 3 Pa and offset temperature coefficient of 0.6 Pa/K are read as two standard deviations each: of a
+/// constant offset, of a slow drift and of the coefficient. Noise is 0.02 Pa rms and resolution 0.016 Pa at the highest
 /// oversampling with its filter. The drift's correlation time and the warming of the housing are assumptions.
 struct BarometerSettings {
   bool enabled = false;
   double rate_hz = 5.0;
   double sea_level_pa = 101325.0;        ///< pressure at sea level
-  double sea_level_temperature_c = 15.0; ///< temperature of the air at sea level
+  double sea_level_temperature_c = 15.0; ///< air temperature at sea level
   double origin_altitude_m = 0.0;        ///< altitude of the world's origin above sea level
   double noise_pa = 0.02;                ///< standard deviation of the noise, Pa
-  double offset_pa = 25.0;               ///< standard deviation of the constant offset, of a sensor, Pa
+  double offset_pa = 25.0;               ///< standard deviation, over sensors, of the constant offset, Pa
   double drift_pa = 1.5;                 ///< standard deviation of the drift, a Gauss-Markov process, Pa
   double drift_time_s = 600.0;           ///< correlation time of the drift
-  double temperature_coefficient_pa_per_k = 0.3;  ///< standard deviation of the offset's change per kelvin, of a sensor
+  double temperature_coefficient_pa_per_k = 0.3;  ///< standard deviation, over sensors, of the change of the offset per
+                                                  ///< kelvin
   double warming_k = 8.0;                ///< final rise of the sensor's temperature above that at power-up
   double warming_time_s = 300.0;         ///< time constant of the warming
   double resolution_pa = 0.016;          ///< quantization step, Pa

@@ -11,7 +11,7 @@
 
 namespace patrol {
 
-/// One frame of the infrared depth camera. A pixel (column u, row v, from the top left) of depth d shows the point
+/// Frame of the infrared depth camera. Pixels are (column u, row v) from the top left. A pixel of depth d is the point
 /// (d, -(u - cx) d / fx, -(v - cy) d / fy) in `depth_camera`, whose x axis is the optical axis.
 struct DepthImage {
   Time stamp{};
@@ -19,28 +19,30 @@ struct DepthImage {
   int height = 0;
   double fx_px = 0.0, fy_px = 0.0;
   double cx_px = 0.0, cy_px = 0.0;
-  std::vector<std::uint16_t> depth_mm;  ///< [row][column], along the optical axis; 0 invalid
+  std::vector<std::uint16_t> depth_mm;  ///< [row][column], depth along the optical axis; 0 invalid
 };
 
-/// An infrared stereo camera that brings its own pattern of light: a dark tunnel is as good as a lit one. Defaults after
-/// Intel's RealSense D435 (data sheet 337029: baseline 50 mm, 848 pixels wide); error by depth after Keselman et al.,
-/// "Intel RealSense stereoscopic depth cameras", CVPR workshops 2017: sigma = z^2 subpixel / (focal length x baseline), here
-/// 0.08 px / (606 px x 0.05 m). The picture given out is every tenth pixel or so of that. The shares of loss are assumptions.
+/// Infrared stereo camera with its own pattern projector, independent of ambient light. Defaults after Intel's
+/// RealSense D435 (data sheet 337029: baseline 50 mm, 848 pixels wide). Depth error after [Keselman17]: sigma = z^2
+/// subpixel / (focal length x baseline), here 0.08 px / (606 px x 0.05 m). The image has about every tenth pixel of
+/// that camera in each direction. The dropout probabilities are assumptions.
 struct DepthCameraSettings {
   bool enabled = false;
   double rate_hz = 5.0;
   int width_px = 80;
   int height_px = 60;
-  double fov_deg = 70.0;           ///< across; pixels are square
-  double range_min_m = 0.3;        ///< along the optical axis, as every depth
+  double fov_deg = 70.0;           ///< horizontal field of view; pixels are square
+  double range_min_m = 0.3;        ///< minimum depth along the optical axis
   double range_max_m = 8.0;
-  double depth_noise_per_m = 0.0026;  ///< standard deviation over the depth's square
-  double baseline_m = 0.05;        ///< from the imager to its fellow on the right: what that one cannot see has no depth
-  double edge_step = 0.15;         ///< an edge: the inverse depth bends by this share of itself from pixel to pixel
-  double edge_loss = 0.5;          ///< share of pixels lost along edges
-  double dropout = 0.01;           ///< share of pixels lost for no reason
-  double grazing_deg = 85.0;       ///< surfaces met flatter than this from their normal are lost
-  double dark_range_m = 6.0;       ///< reach on a surface that throws back 10 % of the light, met squarely
+  double depth_noise_per_m = 0.0026;  ///< standard deviation of the depth, divided by the squared depth
+  double baseline_m = 0.05;        ///< distance between the left and the right imager; pixels occluded in the right
+                                   ///< imager have no depth
+  double edge_step = 0.15;         ///< edge threshold: second difference of the inverse depth between pixels, relative
+                                   ///< to the inverse depth
+  double edge_loss = 0.5;          ///< dropout probability of pixels at edges
+  double dropout = 0.01;           ///< dropout probability of any pixel
+  double grazing_deg = 85.0;       ///< maximum angle of incidence; pixels beyond it are lost
+  double dark_range_m = 6.0;       ///< maximum range on a surface of 10 % reflectivity at normal incidence
   double latency_s = 0.05;
 
   template <typename Self, typename Visitor>

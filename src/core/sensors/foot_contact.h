@@ -8,18 +8,18 @@
 
 namespace patrol {
 
-/// Force on each foot's sensor, in the order of RobotDescription::legs.
+/// Forces on the foot sensors, in the order of RobotDescription::legs.
 struct FootContacts {
   Time stamp{};
   std::vector<double> force_n;
 };
 
-/// Force sensors in the feet: strain gauges with an offset that each foot keeps for the run.
+/// Force sensors in the feet: strain gauges with an offset per foot that is constant over a run.
 struct FootContactSettings {
   bool enabled = true;
-  double rate_hz = 250.0;      ///< of the messages; the firmware reads at every tick
-  double noise_n = 1.0;        ///< standard deviation
-  double offset_n = 1.0;       ///< standard deviation
+  double rate_hz = 250.0;      ///< message rate; the firmware reads the sensor at every tick
+  double noise_n = 1.0;        ///< standard deviation of the noise
+  double offset_n = 1.0;       ///< standard deviation of the offset
   double resolution_n = 0.5;
   double range_n = 500.0;
   double latency_s = 0.0;
@@ -51,7 +51,7 @@ struct SensorTraits<FootContacts> {
                                       .is_read_by_firmware = true,
                                       .fault = {.unit = "N", .drift_per_s = 10.0, .spike = 100.0}};
 
-  /// Main reading: the first foot.
+  /// Adds to the main reading, the force on the first foot.
   static void add_to_reading(FootContacts& contacts, double offset_n) {
     if (!contacts.force_n.empty()) contacts.force_n.front() += offset_n;
   }

@@ -19,20 +19,20 @@ struct GnssFix {
   double latitude_deg = 0.0;
   double longitude_deg = 0.0;
   double altitude_m = 0.0;
-  Eigen::Vector3d position_std_m = Eigen::Vector3d::Zero();  ///< east, north, up
+  Eigen::Vector3d position_std_m = Eigen::Vector3d::Zero();  ///< standard deviation of the position: east, north, up
 };
 
-/// An RTK receiver. Defaults after u-blox's ZED-F9P data sheet (1 cm + 1 ppm when fixed).
+/// RTK receiver. Defaults after u-blox's ZED-F9P data sheet (1 cm + 1 ppm with fixed ambiguities).
 struct GnssSettings {
   bool enabled = true;
   double rate_hz = 5.0;
-  double fix_noise_m = 0.01;       ///< horizontal standard deviation; vertical twice that
+  double fix_noise_m = 0.01;       ///< horizontal standard deviation; the vertical one is twice as large
   double float_noise_m = 0.4;
-  double error_time_s = 20.0;      ///< correlation time of the error
-  double fix_sky = 0.75;           ///< share of the sky that must be open for a fixed solution
-  double float_sky = 0.45;         ///< and for a float one
-  double fix_delay_s = 5.0;        ///< a fix comes back only after so long under an open sky
-  double datum_latitude_deg = 29.21;    ///< WGS 84 of the world's origin
+  double error_time_s = 20.0;      ///< correlation time of the position error
+  double fix_sky = 0.75;           ///< minimum fraction of visible sky for a fixed solution
+  double float_sky = 0.45;         ///< minimum fraction of visible sky for a float solution
+  double fix_delay_s = 5.0;        ///< time under open sky before a fixed solution returns
+  double datum_latitude_deg = 29.21;    ///< WGS 84 latitude of the world's origin
   double datum_longitude_deg = 119.46;
   double latency_s = 0.1;
 
@@ -65,7 +65,7 @@ struct SensorTraits<GnssFix> {
                                       .timeout = SensorTimeout::kInstrument,
                                       .fault = {.unit = "m", .drift_per_s = 0.2, .spike = 5.0}};
 
-  /// Main reading: the altitude.
+  /// Adds to the main reading, the altitude.
   static void add_to_reading(GnssFix& fix, double offset_m) { fix.altitude_m += offset_m; }
 };
 

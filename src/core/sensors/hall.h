@@ -10,25 +10,25 @@
 
 namespace patrol {
 
-/// Counts of the Hall sensors on the drive motors since power-up; forwards is positive.
+/// Counts of the Hall sensors on the drive motors since power-up; positive is forward.
 struct TrackTicks {
   Time stamp{};
   std::int64_t left = 0;
   std::int64_t right = 0;
 };
 
-/// Hall sensors in the drive motors: they count the edges that the rotor's magnets make as they pass. Three sensors on a rotor of
-/// four pole pairs, every edge counted, make 24 a revolution; the gear multiplies them. (Data sheets of flat brushless motors of
-/// this class, e.g. maxon's EC flat family: 7 to 11 pole pairs and 3 sensors; ours is the coarser end.)
+/// Hall sensors in the drive motors, counting the edges of the rotor's magnets. Three sensors on a rotor of four pole
+/// pairs, with every edge counted, give 24 counts per revolution; the gear multiplies them. Data sheets of flat
+/// brushless motors of this class (e.g. maxon EC flat) list 7 to 11 pole pairs and 3 sensors; the default is coarser.
 struct HallSettings {
   bool enabled = true;
-  double rate_hz = 50.0;                ///< of the messages; the firmware reads at every tick
+  double rate_hz = 50.0;                ///< message rate; the firmware reads the sensor at every tick
   int ticks_per_motor_turn = 24;
-  double gear_ratio = 30.0;             ///< motor turns per turn of the sprocket
-  double missed_tick_probability = 0.0; ///< of each edge, not to be counted
+  double gear_ratio = 30.0;             ///< motor revolutions per sprocket revolution
+  double missed_tick_probability = 0.0; ///< probability that an edge is not counted
   double latency_s = 0.0;
 
-  /// Counts per radian of the sprocket.
+  /// Returns the counts per radian of the sprocket.
   double ticks_per_rad() const { return ticks_per_motor_turn * gear_ratio / (2.0 * std::numbers::pi); }
 
   template <typename Self, typename Visitor>
@@ -58,7 +58,7 @@ struct SensorTraits<TrackTicks> {
                                       .is_read_by_firmware = true,
                                       .fault = {.unit = "counts", .drift_per_s = 50.0, .spike = 500.0}};
 
-  /// Main reading: the left track.
+  /// Adds to the main reading, the count of the left track.
   static void add_to_reading(TrackTicks& ticks, double offset_counts) { ticks.left += std::llround(offset_counts); }
   static bool repeats(const TrackTicks& now, const TrackTicks& before) {
     return now.left == before.left && now.right == before.right;

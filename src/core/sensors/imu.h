@@ -8,25 +8,25 @@
 
 namespace patrol {
 
-/// Specific force and rate, in `imu` (REP 145): at rest, level, the acceleration reads +g on z.
+/// Specific force and angular rate, in `imu` (REP 145). At rest and level, the acceleration is +g on z.
 struct Imu {
   Time stamp{};
   Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
   Eigen::Vector3d linear_acceleration_mps2 = Eigen::Vector3d::Zero();
 };
 
-/// An inertial measuring unit (IEEE Std 952 error model). Defaults: Analog Devices ADIS16448 data sheet, rounded.
+/// Inertial measurement unit (error model of IEEE Std 952). Defaults: Analog Devices ADIS16448 data sheet, rounded.
 struct ImuSettings {
   bool enabled = true;
-  double rate_hz = 250.0;                         ///< of the messages; the firmware reads at every tick
-  double gyro_noise_radps_rthz = 2.3e-4;          ///< angle random walk, 0.66 deg/sqrt(h) and vibration
-  double gyro_bias_radps = 0.002;                 ///< standard deviation of the constant part
+  double rate_hz = 250.0;                         ///< message rate; the firmware reads the sensor at every tick
+  double gyro_noise_radps_rthz = 2.3e-4;          ///< angle random walk, 0.66 deg/sqrt(h) plus vibration
+  double gyro_bias_radps = 0.002;                 ///< standard deviation of the constant bias
   double gyro_bias_walk_radps2_rthz = 1.0e-5;     ///< rate random walk
   double accel_noise_mps2_rthz = 0.002;
   double accel_bias_mps2 = 0.03;
   double accel_bias_walk_mps3_rthz = 1.0e-4;
-  double scale_error = 0.001;                     ///< standard deviation, of each axis
-  double misalignment_deg = 0.05;                 ///< standard deviation, of each axis
+  double scale_error = 0.001;                     ///< standard deviation of the scale factor of each axis
+  double misalignment_deg = 0.05;                 ///< standard deviation of the misalignment of each axis
   double gyro_range_radps = 17.4;
   double accel_range_mps2 = 176.0;
   double gyro_resolution_radps = 7.0e-4;
@@ -68,7 +68,7 @@ struct SensorTraits<Imu> {
                                       .is_read_by_firmware = true,
                                       .fault = {.unit = "rad/s", .drift_per_s = 0.005, .spike = 1.0}};
 
-  /// Main reading: the yaw rate.
+  /// Adds to the main reading, the yaw rate.
   static void add_to_reading(Imu& imu, double offset_radps) { imu.angular_velocity_radps.z() += offset_radps; }
   static bool repeats(const Imu& now, const Imu& before) {
     return now.angular_velocity_radps == before.angular_velocity_radps && now.linear_acceleration_mps2 == before.linear_acceleration_mps2;

@@ -8,7 +8,7 @@
 
 namespace patrol {
 
-/// Joint encoders in the order of RobotDescription::joint_names.
+/// Joint positions, velocities and efforts in the order of RobotDescription::joint_names.
 struct JointState {
   Time stamp{};
   std::vector<double> position_rad;
@@ -16,12 +16,12 @@ struct JointState {
   std::vector<double> effort_nm;
 };
 
-/// Absolute magnetic encoders on the joints, 14 bit, with the drive's own filtered speed.
+/// Absolute magnetic encoders on the joints, 14 bit. The motor drive filters the velocity.
 struct JointEncoderSettings {
   bool enabled = true;
-  double rate_hz = 250.0;          ///< of the messages; the firmware reads at every tick
+  double rate_hz = 250.0;          ///< message rate; the firmware reads the sensor at every tick
   int counts_per_turn = 16384;
-  double speed_filter_s = 0.003;   ///< time constant of the speed, made from differences of counts
+  double speed_filter_s = 0.003;   ///< time constant of the velocity filter on count differences
   double latency_s = 0.0;
 
   template <typename Self, typename Visitor>
@@ -50,7 +50,7 @@ struct SensorTraits<JointState> {
                                       .is_read_by_firmware = true,
                                       .fault = {.unit = "rad", .drift_per_s = 0.01, .spike = 0.3}};
 
-  /// Main reading: the first joint.
+  /// Adds to the main reading, the position of the first joint.
   static void add_to_reading(JointState& joints, double offset_rad) {
     if (!joints.position_rad.empty()) joints.position_rad.front() += offset_rad;
   }

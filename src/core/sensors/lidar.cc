@@ -29,7 +29,7 @@ bool SensorTraits<LaserScan>::repeats(const LaserScan& now, const LaserScan& bef
     has_return = true;
     if (now.ranges_m[i] != before.ranges_m[i]) return false;
   }
-  return has_return;  // without a return, all scans are alike: an empty field is no fault
+  return has_return;  // scans without returns are all alike: an empty field is no fault
 }
 
 std::vector<ErrorSource> SensorTraits<LaserScan>::error_sources() {

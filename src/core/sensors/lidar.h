@@ -9,51 +9,51 @@
 
 namespace patrol {
 
-/// One revolution of a 2D lidar. Ranges follow REP 117: -Inf too close, +Inf no return, NaN invalid.
+/// Revolution of a 2D lidar. Ranges follow REP 117: -Inf too close, +Inf no return, NaN invalid.
 struct LaserScan {
   Time stamp{};  ///< instant of beam 0
-  double angle_min_rad = 0.0;        ///< of beam 0, in `lidar`, about z
-  double angle_increment_rad = 0.0;  ///< from beam to beam
-  double time_increment_s = 0.0;     ///< from beam to beam
-  double scan_time_s = 0.0;          ///< from scan to scan
+  double angle_min_rad = 0.0;        ///< angle of beam 0, in `lidar`, about z
+  double angle_increment_rad = 0.0;  ///< angle between consecutive beams
+  double time_increment_s = 0.0;     ///< time between consecutive beams
+  double scan_time_s = 0.0;          ///< time between consecutive scans
   double range_min_m = 0.0;
   double range_max_m = 0.0;
-  std::vector<float> ranges_m;     ///< [beam]
-  std::vector<float> intensities;  ///< [beam], 0 ... 255, or empty
+  std::vector<float> ranges_m;     ///< ranges, [beam]
+  std::vector<float> intensities;  ///< intensities, [beam], 0 ... 255, or empty
 };
 
-/// A spinning lidar, of one ring or several. Defaults are those of the preset.
+/// Spinning lidar with one or more rings. Defaults are those of the preset.
 struct LidarSettings {
   std::string preset = "rplidar_s2";
   bool enabled = true;
-  double rate_hz = 10.0;  ///< revolutions
-  int beams = 3200;       ///< firings per revolution (over the field of view)
+  double rate_hz = 10.0;  ///< revolutions per second
+  int beams = 3200;       ///< firings per revolution, within the field of view
   int rings = 1;
-  double fov_deg = 360.0;          ///< horizontal, symmetric about the front
-  double elevation_min_deg = 0.0;  ///< of the lowest ring
-  double elevation_max_deg = 0.0;  ///< of the highest ring
+  double fov_deg = 360.0;          ///< horizontal field of view, symmetric about the front
+  double elevation_min_deg = 0.0;  ///< elevation of the lowest ring
+  double elevation_max_deg = 0.0;  ///< elevation of the highest ring
   double range_min_m = 0.05;
   double range_max_m = 30.0;
-  double range_noise_m = 0.015;       ///< standard deviation
-  double range_resolution_m = 0.013;  ///< quantisation
-  double angle_noise_deg = 0.01;      ///< standard deviation of a beam's direction
+  double range_noise_m = 0.015;       ///< standard deviation of the range
+  double range_resolution_m = 0.013;  ///< quantization step of the range
+  double angle_noise_deg = 0.01;      ///< standard deviation of the beam azimuth
   double beam_width_deg =
-      0.12;                    ///< over it a beam's light is spread (across the ring): mixed pixels at edges
-  double dropout = 0.002;      ///< share of beams that are lost for no reason
-  double grazing_deg = 85.0;   ///< beams that meet a surface flatter than this are lost
-  double dark_range_m = 10.0;  ///< range on a surface of 10 % reflectivity
-  double rain_rate = 0.0;      ///< chance per metre that a drop or a grain of dust reflects the beam
-  double latency_s = 0.005;    ///< from the last beam to the message
-  bool motion_distortion = true;  ///< false: the whole revolution is seen from where it ends
-  bool stabilized = false;        ///< true: held level whatever the body does, by an ideal gimbal; the stack must know (leveling.stabilized)
+      0.12;                    ///< azimuthal width of the beam; causes mixed pixels at edges
+  double dropout = 0.002;      ///< dropout probability of a beam
+  double grazing_deg = 85.0;   ///< maximum angle of incidence; beams beyond it are lost
+  double dark_range_m = 10.0;  ///< maximum range on a surface of 10 % reflectivity
+  double rain_rate = 0.0;      ///< rate of returns from raindrops or dust grains, per meter of beam
+  double latency_s = 0.005;    ///< delay from the last beam to the message
+  bool motion_distortion = true;  ///< false: all beams are fired from the pose at the end of the revolution
+  bool stabilized = false;        ///< true: ideal gimbal that keeps the lidar level; requires stack.leveling.stabilized
 
-  /// From public data sheets: "rplidar_s2" (Slamtec RPLIDAR S2: 10 Hz, 32,000 samples/s, 0.05-30 m, 10 m on
-  /// 10 %,
-  /// +-30 mm, 13 mm steps), "utm30lx" (Hokuyo UTM-30LX: 40 Hz, 0.25 deg over 270 deg, 0.1-30 m, +-30 mm, 1 mm
-  /// steps), "tim571" (SICK TiM571: 15 Hz, 0.33 deg over 270 deg, 0.05-25 m, 8 m on 10 %, 20 mm), "vlp16"
-  /// (Velodyne VLP-16: 10 Hz, 16 rings over +-15 deg, 1,800 firings, 100 m, +-30 mm, 2 mm steps, 3 mrad
-  /// wide). A stated "+-" is read as two standard deviations. The widths of the others' beams are not in
-  /// their sheets: about the angle from beam to beam is assumed.
+  /// Returns the settings of a preset, from public data sheets. "rplidar_s2": Slamtec RPLIDAR S2 (10 Hz, 32,000
+  /// samples/s, 0.05-30 m, 10 m on 10 %, +-30 mm, 13 mm steps). "utm30lx": Hokuyo UTM-30LX (40 Hz, 0.25 deg over 270
+  /// deg, 0.1-30 m, +-30 mm, 1 mm steps). "tim571": SICK TiM571 (15 Hz, 0.33 deg over 270 deg, 0.05-25 m, 8 m on 10 %,
+  /// 20 mm). "vlp16": Velodyne VLP-16 (10 Hz, 16 rings over +-15 deg, 1,800 firings, 100 m, +-30 mm, 2 mm steps, 3 mrad
+  /// wide).
+  /// A stated "+-" is read as two standard deviations. The data sheets of the first three state no beam width; about
+  /// the angle between beams is assumed.
   static LidarSettings of_preset(const std::string& name, bool enabled = true);
 
   template <typename Self, typename Visitor>

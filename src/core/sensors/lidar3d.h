@@ -10,13 +10,13 @@
 namespace patrol {
 
 struct CloudPoint {
-  float x, y, z;     ///< m, in `lidar3d`
-  float intensity;   ///< 0 ... 255
-  float time_s;      ///< after the cloud's stamp
+  float x, y, z;     ///< position, m, in `lidar3d`
+  float intensity;   ///< intensity, 0 ... 255
+  float time_s;      ///< time after the cloud's stamp
   std::uint16_t ring;
 };
 
-/// One revolution of a 3D lidar; only returns are kept.
+/// Revolution of a 3D lidar. Contains returns only.
 struct PointCloud {
   Time stamp{};  ///< instant of the first firing
   std::vector<CloudPoint> points;

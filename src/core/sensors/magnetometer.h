@@ -11,29 +11,29 @@
 
 namespace patrol {
 
-/// Magnetic flux density in `imu`, in whose housing the magnetometer sits.
+/// Magnetic flux density in `imu`; the magnetometer is in the IMU housing.
 struct MagneticField {
   Time stamp{};
   Eigen::Vector3d field_t = Eigen::Vector3d::Zero();
   double std_t = 0.0;  ///< standard deviation of the noise of each axis, T
 };
 
-/// Three-axis magnetometer with the data of ST's LIS3MDL (data sheet DocID024204: full scale of 4 gauss at 6842
-/// LSB/gauss, noise of at most 4.1 mgauss rms). The geomagnetic field is about that of the World Magnetic Model at
-/// the datum of the GNSS settings. Hard iron, soft iron and the polarizability of steel are assumptions.
+/// Three-axis magnetometer with the data of ST's LIS3MDL (data sheet DocID024204): full scale of 4 gauss at 6842
+/// LSB/gauss, noise of at most 4.1 mgauss rms. The geomagnetic field approximates the World Magnetic Model at the datum
+/// of the GNSS settings. Hard iron, soft iron and the polarizability of steel are assumptions.
 struct MagnetometerSettings {
   bool enabled = false;
   double rate_hz = 50.0;
-  double intensity_t = 4.87e-5;     ///< geomagnetic field: magnitude, T
-  double inclination_deg = 45.0;    ///< geomagnetic field: angle below the horizon
-  double declination_deg = -5.6;    ///< geomagnetic field: angle from north (+y of world) towards east (+x)
-  double hard_iron_t = 1.0e-5;      ///< standard deviation of the constant offset of each axis, of a robot, T
-  double soft_iron = 0.03;          ///< standard deviation of each entry of distortion matrix - identity, of a robot
+  double intensity_t = 4.87e-5;     ///< magnitude of the geomagnetic field, T
+  double inclination_deg = 45.0;    ///< angle of the geomagnetic field below the horizon
+  double declination_deg = -5.6;    ///< angle of the geomagnetic field from north (+y of world) toward east (+x)
+  double hard_iron_t = 1.0e-5;      ///< standard deviation, over robots, of the constant offset of each axis, T
+  double soft_iron = 0.03;          ///< standard deviation, over robots, of each entry of distortion matrix - identity
   double noise_t = 4.1e-7;          ///< standard deviation of the noise of each axis, T
   double resolution_t = 1.4616e-8;  ///< quantization step, T
   double range_t = 4.0e-4;          ///< full scale of each axis, T
-  double steel_fill = 0.1;          ///< polarizable ratio of a steel geom's bounding box; 0: no disturbance
-  /// Words in the names of steel geoms or of their materials.
+  double steel_fill = 0.1;          ///< polarizable fraction of a steel geom's bounding box; 0: no disturbance
+  /// Substrings of the names of steel geoms or of their materials.
   std::vector<std::string> steel_names = {"steel", "iron", "metal", "car_", "rail", "reinforcement"};
   double latency_s = 0.01;
 
@@ -68,7 +68,7 @@ struct SensorTraits<MagneticField> {
                                       .timeout = SensorTimeout::kInstrument,
                                       .fault = {.unit = "T", .drift_per_s = 1.0e-6, .spike = 3.0e-5}};
 
-  /// Main reading: the field along x.
+  /// Adds to the main reading, the field along x.
   static void add_to_reading(MagneticField& reading, double offset_t) { reading.field_t.x() += offset_t; }
   static std::vector<ErrorSource> error_sources() {
     return {{"magnetometer: noise", {"sensors.magnetometer.noise_t=0", "sensors.magnetometer.resolution_t=0"}},

@@ -27,7 +27,7 @@
 
 namespace patrol {
 
-/// Messages of sensors, as a type.
+/// Type list of sensor messages.
 template <typename... Messages>
 struct SensorList {
   using Variant = std::variant<Messages...>;
@@ -37,12 +37,12 @@ struct SensorList {
   static void for_each(Visit&& visit) {
     (visit(std::type_identity<Messages>{}), ...);
   }
-  /// Registry entries in the order of the list.
+  /// Returns the registry entries in the order of the list.
   static constexpr std::array<SensorInfo, sizeof...(Messages)> infos() { return {SensorTraits<Messages>::kInfo...}; }
 };
 
-/// All sensors: the registry. A new sensor is added at the end. Within a tick, sensors are stepped and deliver in
-/// this order, those that the firmware reads first.
+/// Registry of all sensors. A new sensor is added at the end. Within a tick, sensors are stepped and deliver in this
+/// order, sensors that the firmware reads first.
 using Sensors = SensorList<  //
     LaserScan,               //
     PointCloud,              //
@@ -66,10 +66,10 @@ using Sensors = SensorList<  //
 /// Message of any sensor.
 using SensorMessage = Sensors::Variant;
 
-/// Registry entry by SensorMessage::index().
+/// Registry entries, indexed by SensorMessage::index().
 inline constexpr auto kSensorInfos = Sensors::infos();
 
-/// Names of all sensors.
+/// Returns the names of all sensors.
 inline std::vector<std::string> sensor_names() {
   std::vector<std::string> names;
   for (const SensorInfo& info : kSensorInfos) names.emplace_back(info.name);

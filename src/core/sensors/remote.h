@@ -5,13 +5,13 @@
 
 namespace patrol {
 
-/// What the person at the remote control does: the velocity asked for, and two buttons.
+/// Command of the teleoperator: velocity and two buttons.
 struct RemoteCommand {
   Time stamp{};
   double vx_mps = 0.0;
   double yaw_rate_radps = 0.0;
-  bool mark = false;       ///< pressed now: this place is a goal
-  bool hand_over = false;  ///< pressed now: the robot goes on by itself
+  bool mark = false;       ///< button to save the current pose as a goal, pressed in this message
+  bool hand_over = false;  ///< button to switch to autonomous mode, pressed in this message
 };
 
 template <>

@@ -11,40 +11,44 @@
 namespace patrol {
 
 struct ScannerPoint {
-  float x, y, z;    ///< m, in `scanner_level`
-  float intensity;  ///< 0 ... 255
+  float x, y, z;    ///< position, m, in `scanner_level`
+  float intensity;  ///< intensity, 0 ... 255
 };
 
-/// A still panoramic scan of the 3D scanner; only returns are kept, in the order of its columns. `scanner_level` has the origin and
-/// the heading of `scanner`, and is level: the instrument's own compensator has taken out the tilt that it reads.
+/// Stationary panoramic scan of the 3D scanner, returns only, in the order of its columns. `scanner_level` has the
+/// origin and heading of `scanner` and is gravity-aligned: the instrument's compensator corrects the tilt that it
+/// measures.
 struct PanoramicScan {
   Time stamp{};  ///< instant of the last point
   std::vector<ScannerPoint> points;
 };
 
-/// A terrestrial laser scanner. Defaults are those of FARO's Focus S 70, by its technical sheet: 0.6 to 70 m (black, 2 %: to 50 m);
-/// ranging noise on 90, 10 and 2 % of 0.3, 0.4 and 1.3 mm at 10 m and of 0.3, 0.5 and 2.0 mm at 25 m; ranging error +-1 mm (systematic);
-/// angular accuracy 19"; compensator 19"; beam 2.12 mm wide at the exit, spread by 0.3 mrad; all round and 300 degrees up and down, in
-/// steps of 0.009 degrees (here: every 40th). A stated "+-" is read as two standard deviations, a plain figure as one.
+/// Terrestrial laser scanner. Defaults are those of FARO's Focus S 70 technical sheet. Range: 0.6 to 70 m (black, 2 %:
+/// to 50 m). Ranging noise on 90, 10 and 2 %: 0.3, 0.4 and 1.3 mm at 10 m; 0.3, 0.5 and 2.0 mm at 25 m. Systematic
+/// ranging error +-1 mm, angular accuracy 19", compensator 19". Beam: 2.12 mm wide at the exit, divergence 0.3 mrad.
+/// Field of view: 360 degrees horizontal, 300 degrees vertical, in steps of 0.009 degrees (here: every 40th). A stated
+/// "+-" is read as two standard deviations, a plain value as one.
 struct PanoramicScannerSettings {
   bool enabled = false;
   std::string epoch = "inspection";  ///< measurement epoch of a scan: "reference" or "inspection"; independent noise in each
-  double step_deg = 0.36;            ///< from direction to direction, about and up: 1000 columns of 417
-  double elevation_min_deg = -60.0;  ///< of the lowest direction; below it the instrument sees its own foot
-  double duration_s = 30.0;          ///< of a scan
+  double step_deg = 0.36;            ///< angle between beams, horizontal and vertical; default: 1000 columns of 417
+  double elevation_min_deg = -60.0;  ///< lowest elevation; below it the instrument's own tripod blocks the beams
+  double duration_s = 30.0;          ///< duration of a scan
   double range_min_m = 0.6;
   double range_max_m = 70.0;
-  double black_range_m = 50.0;     ///< range on a surface of 2 % reflectivity
-  double range_noise_m = 0.0003;   ///< standard deviation on a bright surface
-  double grey_noise_m = 0.000255;  ///< and what 10 % at 10 m adds to it, in squares: with the root of the range, and one over the light
-  double range_offset_std_m = 0.0005;  ///< of an error that is the same for all of a scan
-  double angle_noise_deg = 0.0053;     ///< standard deviation of each beam's azimuth, and of its elevation
-  double tilt_error_deg = 0.0053;      ///< standard deviation of the tilt that the compensator leaves, about each of two axes
-  double beam_exit_m = 0.00212;        ///< width
-  double beam_spread_rad = 0.0003;     ///< half angle; 0, and a beam has no width: no mixed pixels
-  double grazing_deg = 85.0;  ///< beams that meet a surface flatter than this are lost
-  double dropout = 0.001;     ///< share of beams that are lost for no reason
-  double latency_s = 0.5;     ///< from the last point to the message
+  double black_range_m = 50.0;     ///< maximum range on a surface of 2 % reflectivity
+  double range_noise_m = 0.0003;   ///< standard deviation of the range on a bright surface
+  double grey_noise_m = 0.000255;  ///< additional standard deviation on 10 % reflectivity at 10 m, added in squares;
+                                   ///< scales with sqrt(range) / light
+  double range_offset_std_m = 0.0005;  ///< standard deviation of a range error that is constant within a scan
+  double angle_noise_deg = 0.0053;     ///< standard deviation of each beam's azimuth and elevation
+  double tilt_error_deg = 0.0053;      ///< standard deviation of the tilt residual of the compensator, about each of
+                                       ///< two axes
+  double beam_exit_m = 0.00212;        ///< beam diameter at the exit
+  double beam_spread_rad = 0.0003;     ///< beam divergence, half angle; 0 disables the beam width and mixed pixels
+  double grazing_deg = 85.0;  ///< maximum angle of incidence; beams beyond it are lost
+  double dropout = 0.001;     ///< dropout probability of a beam
+  double latency_s = 0.5;     ///< delay from the last point to the message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -82,7 +86,7 @@ struct SensorTraits<PanoramicScan> {
                                       .trigger = SensorTrigger::kScanStation,
                                       .fault = {.unit = "m", .drift_per_s = 0.001, .spike = 0.05}};
 
-  /// Main reading: the ranges.
+  /// Adds to the main reading, the ranges of all points.
   static void add_to_reading(PanoramicScan& scan, double offset_m) {
     for (ScannerPoint& point : scan.points) {
       const float range = std::hypot(point.x, point.y, point.z), scale = 1.0F + static_cast<float>(offset_m) / range;

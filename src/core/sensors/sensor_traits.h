@@ -5,23 +5,24 @@
 
 #include "core/robot_description.h"
 
-/// Description of a sensor type. Each header core/sensors/<name>.h holds the message of one sensor, the settings of
-/// its simulation and its registry entry, a specialization of SensorTraits; core/sensors/registry.h lists the
-/// messages. Twin, faults, sensor monitor, log, fault matrix, error budget, settings and `patrol list` derive from
-/// that list.
+/// Description of a sensor type.
+///
+/// Each header core/sensors/<name>.h contains the message of one sensor, the settings of its simulation and its
+/// registry entry, a specialization of SensorTraits. core/sensors/registry.h lists the messages. Simulator, faults,
+/// sensor monitor, log, fault matrix, error budget, settings and `patrol list` derive from that list.
 namespace patrol {
 
 /// Age limit that the sensor monitor applies to a sensor's messages.
 enum class SensorTimeout { kNone, kLidar, kMotion, kInstrument };
 
-/// Motion by which the sensor monitor recognizes a frozen sensor: readings that repeat while odometry, or the
-/// velocity command, says that the robot moves.
+/// Reference motion for detecting a frozen sensor: its readings repeat while odometry, or the velocity command,
+/// indicates motion.
 enum class FreezeCheck { kNone, kOdometry, kCommand };
 
-/// Occasion on which a sensor publishes.
+/// Condition under which a sensor publishes.
 enum class SensorTrigger { kPeriodic, kScanStation, kTeleoperation };
 
-/// Magnitudes of the faults of a sensor's main reading in the fault matrix: well beyond its noise, as of a damaged
+/// Fault magnitudes of a sensor's main reading in the fault matrix. They are well beyond the noise, as of a damaged
 /// sensor.
 struct FaultMagnitudes {
   const char* unit = "";  ///< unit of the main reading
@@ -31,23 +32,25 @@ struct FaultMagnitudes {
 
 /// Registry entry of a sensor type.
 struct SensorInfo {
-  const char* name;      ///< key of its settings below `sensors`, and its name in faults and events
-  const char* topic;     ///< in the log
-  const char* ros_type;  ///< e.g. "sensor_msgs/msg/Imu"
+  const char* name;      ///< settings key below `sensors`, and sensor name in faults and events
+  const char* topic;     ///< topic in the log
+  const char* ros_type;  ///< ROS message type, e.g. "sensor_msgs/msg/Imu"
   const char* summary;   ///< line of documentation in `patrol list`
   SensorTimeout timeout = SensorTimeout::kNone;
   FreezeCheck freeze_check = FreezeCheck::kNone;
-  bool is_needed_to_drive = false;     ///< the robot halts while the sensor monitor reports a fault of it
-  bool is_read_by_firmware = false;    ///< the locomotion firmware reads it at every tick; stepped before the others
+  bool is_needed_to_drive = false;     ///< true: the robot stops while the sensor monitor reports a fault of this
+                                       ///< sensor
+  bool is_read_by_firmware = false;    ///< true: the locomotion firmware reads the sensor at every tick; stepped before
+                                       ///< the others
   SensorTrigger trigger = SensorTrigger::kPeriodic;
   FaultMagnitudes fault = {};
-  const char* not_in_fault_matrix = "";  ///< reason for its absence from the fault matrix; empty: it is in the matrix
+  const char* not_in_fault_matrix = "";  ///< reason for exclusion from the fault matrix; empty: included
 };
 
-/// Error source of a sensor that the error budget removes by settings that leave everything else as it is.
+/// Error source of a sensor. The error budget removes it with settings that change nothing else.
 struct ErrorSource {
   std::string name;
-  std::vector<std::string> overrides;  ///< "path=value"
+  std::vector<std::string> overrides;  ///< settings as "path=value"
 };
 
 /// Registry entry of the sensor that publishes `Message`:
@@ -85,8 +88,7 @@ bool is_fitted(const RobotDescription& robot) {
   }
 }
 
-/// Returns whether `now` repeats the reading of `before` to the last bit; always false for sensors without a
-/// FreezeCheck.
+/// Returns whether `now` repeats the reading of `before` bit by bit; always false for sensors without a FreezeCheck.
 template <IsSensorMessage Message>
 bool repeats(const Message& now, const Message& before) {
   if constexpr (requires { SensorTraits<Message>::repeats(now, before); }) {

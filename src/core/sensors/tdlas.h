@@ -6,21 +6,22 @@
 
 namespace patrol {
 
-/// Open-path laser methane meter (TDLAS). The instrument measures the column along its beam.
+/// Reading of the open-path laser methane meter (TDLAS), which measures the gas column along its beam.
 struct GasReading {
   Time stamp{};
   double column_ppm_m = 0.0;     ///< concentration integrated along the beam
-  double path_length_m = 0.0;    ///< to the surface that scattered the beam back; +Inf if none did
-  double mean_mg_m3 = 0.0;       ///< column over path length, as mass of methane at 20 degC and 1 atm
+  double path_length_m = 0.0;    ///< path length to the backscattering surface; +Inf if there is none
+  double mean_mg_m3 = 0.0;       ///< mean concentration: column divided by path length, as mass of methane at 20 degC
+                                 ///< and 1 atm
 };
 
-/// An open-path laser methane meter that looks along its x axis. Defaults after the data sheet of Tokyo Gas Engineering's
+/// Open-path laser methane meter with its beam along x. Defaults after the data sheet of Tokyo Gas Engineering's
 /// LaserMethane mini: 1-50,000 ppm m, +-10 %, 10 Hz, 30 m.
 struct TdlasSettings {
   bool enabled = true;
   double rate_hz = 10.0;
-  double noise_ppm_m = 10.0;        ///< standard deviation, of any reading
-  double relative_noise = 0.05;     ///< standard deviation, of the column
+  double noise_ppm_m = 10.0;        ///< standard deviation of the additive noise
+  double relative_noise = 0.05;     ///< standard deviation of the noise, relative to the column
   double background_ppm = 1.9;      ///< methane in clean air
   double resolution_ppm_m = 1.0;
   double max_column_ppm_m = 50000.0;

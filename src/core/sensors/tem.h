@@ -8,37 +8,38 @@
 
 namespace patrol {
 
-/// A transient-electromagnetic sounding, stacked: after the current in the coil is switched off, the rate of change of the magnetic
-/// field along the coil's axis.
+/// Stacked transient-electromagnetic sounding: rate of change of the magnetic field along the coil's axis after the
+/// current in the coil is switched off.
 struct TemSounding {
-  Time stamp{};                    ///< of its end
-  double moment_am2 = 0.0;         ///< of the transmitter
-  std::vector<double> gate_s;      ///< [gate]: middle, after the end of the current's ramp
-  std::vector<double> rate_tps;    ///< [gate]: -dB/dt, T/s
-  std::vector<double> std_tps;     ///< [gate]: of the mean over the stack, as the instrument estimates it
+  Time stamp{};                    ///< end of the sounding
+  double moment_am2 = 0.0;         ///< magnetic moment of the transmitter
+  std::vector<double> gate_s;      ///< [gate], center of the gate after the end of the current ramp
+  std::vector<double> rate_tps;    ///< [gate], -dB/dt, T/s
+  std::vector<double> std_tps;     ///< [gate], standard deviation of the stack mean, as estimated by the instrument
 };
 
-/// A transient-electromagnetic instrument on a coil of the robot's size: six turns of 0.3 m in radius, 20 A. Ramp, gates and noise after tTEM
-/// (Auken et al., "tTEM - A towed transient electromagnetic system for detailed 3D imaging of the top 70 m of the subsurface", Geophysics 84(1),
-/// 2019): 22 A m2 switched off in 2.6 us, first gate 1.4 us after that, noise in the gates falling as t^(-1/2) from nV/m2 at 1 ms, a uniform
-/// standard deviation of 3 % besides, which is split here into what stays the same (gain, time shift) and what changes. The rest are assumptions.
+/// Transient-electromagnetic instrument with a coil that fits the robot: six turns of 0.3 m radius, 20 A. Ramp, gates
+/// and noise after tTEM [Auken19]: 22 A m2 switched off in 2.6 us, first gate 1.4 us later. Gate noise decays as
+/// t^(-1/2) from nV/m2 at 1 ms, plus a uniform standard deviation of 3 %. The 3 % are split here into a constant part
+/// (gain, time shift) and a varying part. All other values are assumptions.
 struct TemSettings {
   bool enabled = false;
-  double moment_am2 = 34.0;            ///< turns x area x current
-  double ramp_s = 2.6e-6;              ///< the current's, straight down to nothing
-  double first_gate_s = 2.0e-6;        ///< its middle, after the end of the ramp
-  double last_gate_s = 3.0e-4;         ///< no gate lies later
+  double moment_am2 = 34.0;            ///< magnetic moment: turns x area x current
+  double ramp_s = 2.6e-6;              ///< duration of the linear turn-off ramp of the current
+  double first_gate_s = 2.0e-6;        ///< center of the first gate after the end of the ramp
+  double last_gate_s = 3.0e-4;         ///< upper limit of the gate centers
   double gates_per_decade = 10.0;
-  double gate_width = 0.15;            ///< of a gate, over its middle
-  double stacking_s = 1.0;             ///< of one sounding
-  double noise_tps = 3e-9;             ///< standard deviation at 1 ms, of the mean over a second's stack
-  double relative_noise = 0.01;        ///< standard deviation of a gate of a sounding
-  double gain_std = 0.02;              ///< of the instrument, the same in all soundings
-  double current_std = 0.003;          ///< of the moment that is reported, from sounding to sounding
-  double time_shift_std_s = 3e-8;      ///< of the gates, the same in all soundings
-  double steel_rate = 5e-9;            ///< median at 10 us of what steel arches, reinforcement and the robot add, T/s per A m2
-  double steel_spread = 0.5;           ///< standard deviation of its logarithm, from run to run
-  double steel_anisotropy = 0.2;       ///< of its share that changes with the coil's direction
+  double gate_width = 0.15;            ///< width of a gate relative to its center time
+  double stacking_s = 1.0;             ///< stacking time of one sounding
+  double noise_tps = 3e-9;             ///< standard deviation at 1 ms of the mean over one second of stacking
+  double relative_noise = 0.01;        ///< relative standard deviation of each gate of a sounding
+  double gain_std = 0.02;              ///< standard deviation of the instrument gain, constant over all soundings
+  double current_std = 0.003;          ///< standard deviation of the moment, relative to the reported one, per sounding
+  double time_shift_std_s = 3e-8;      ///< standard deviation of the gate time shift, constant over all soundings
+  double steel_rate = 5e-9;            ///< median response at 10 us of steel arches, reinforcement and robot, T/s per A
+                                       ///< m2
+  double steel_spread = 0.5;           ///< standard deviation of the logarithm of `steel_rate`, over runs
+  double steel_anisotropy = 0.2;       ///< standard deviation of the direction-dependent fraction of the steel response
   double latency_s = 0.05;
 
   template <typename Self, typename Visitor>

@@ -9,39 +9,42 @@
 
 namespace patrol {
 
-/// One ping of one transducer of the ultrasonic ring: distance to the nearest echo within its cone, along x of its frame.
+/// Reading of one transducer of the ultrasonic ring: distance to the nearest echo within its cone, along x of its
+/// frame.
 struct UltrasonicRange {
   Time stamp{};
-  int transducer = 0;  ///< its frame is `ultrasonic_<transducer>`
-  double field_of_view_rad = 0.0;  ///< full angle of the cone
+  int transducer = 0;  ///< number of the transducer; its frame is `ultrasonic_<transducer>`
+  double field_of_view_rad = 0.0;  ///< full opening angle of the cone
   double range_min_m = 0.0;
   double range_max_m = 0.0;
-  float range_m = 0.0F;  ///< REP 117: -Inf too close, +Inf no echo
+  float range_m = 0.0F;  ///< range, REP 117: -Inf too close, +Inf no echo
 };
 
-/// A ring of ultrasonic transducers, each of the class of MaxBotix's XL-MaxSonar-EZ (data sheet PD11840: 42 kHz, from 0.2 m,
-/// steps of 1 cm, nearer things reported as too near, accuracy by the temperature of the air). Where sound comes back from
-/// follows Leonard, Durrant-Whyte, "Directed sonar sensing for mobile robot navigation", 1992: at a wavelength of 8 mm walls
-/// are mirrors. The two figures of the echo's strength are assumptions.
+/// Ring of ultrasonic transducers of the class of MaxBotix's XL-MaxSonar-EZ (data sheet PD11840): 42 kHz, minimum range
+/// 0.2 m, steps of 1 cm, closer objects reported as too near, accuracy limited by air temperature. Reflection follows
+/// [Leonard92]: at a wavelength of 8 mm walls are mirrors. The two values of the echo strength are assumptions.
 struct UltrasonicSettings {
   bool enabled = false;
-  double ping_rate_hz = 40.0;      ///< slots of the ring; in each, one transducer or one group of them fires
-  int fire_together = 1;           ///< transducers of a group, spread round the ring: a faster round, and cross-talk
-  double fov_deg = 35.0;           ///< full angle of the cone
+  double ping_rate_hz = 40.0;      ///< rate of ring slots; one transducer or one group fires in each slot
+  int fire_together = 1;           ///< transducers per group, spread over the ring; a group shortens the cycle and
+                                   ///< causes crosstalk
+  double fov_deg = 35.0;           ///< full opening angle of the cone
   double range_min_m = 0.2;
   double range_max_m = 4.0;
-  double range_noise_m = 0.005;    ///< standard deviation
+  double range_noise_m = 0.005;    ///< standard deviation of the range
   double range_resolution_m = 0.01;
-  double smooth_deg = 25.0;        ///< a smooth surface met flatter than this from its normal throws the sound elsewhere
-  double rough_echo = 0.37;        ///< echo of a rough surface, of that of a smooth one, both met squarely
-  double least_echo = 0.02;        ///< least echo that is heard, of that of a smooth wall before the whole cone
-  double dropout = 0.02;           ///< share of pings that hear nothing for no reason
-  double crosstalk = 0.5;          ///< chance that another's echo is taken for one's own, where it can be heard
+  double smooth_deg = 25.0;        ///< maximum angle of incidence for a specular echo of a smooth surface
+  double rough_echo = 0.37;        ///< echo strength of a rough surface relative to a smooth one, both at normal
+                                   ///< incidence
+  double least_echo = 0.02;        ///< detection threshold, relative to the echo of a smooth wall that fills the cone
+  double dropout = 0.02;           ///< dropout probability of a ping
+  double crosstalk = 0.5;          ///< probability that a receivable echo of another transducer is taken for the own
+                                   ///< echo
   double air_temperature_c = 15.0;
-  double assumed_temperature_c = 20.0;  ///< for which the speed of sound is set
-  /// Words in the names of rough geoms or of their materials; height fields are rough.
+  double assumed_temperature_c = 20.0;  ///< temperature for which the sensor's speed of sound is set
+  /// Substrings of the names of rough geoms or of their materials. Height fields are always rough.
   std::vector<std::string> rough_names = {"rock", "rubble", "gravel", "soil", "shotcrete", "muck"};
-  double latency_s = 0.03;         ///< until the farthest echo could have come
+  double latency_s = 0.03;         ///< delay that covers the echo from maximum range
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -6,28 +6,25 @@
 
 namespace patrol {
 
-/// A two-way ultra-wideband range from the robot's antenna (frame `uwb`) to one anchor. A range that was lost is not sent.
+/// Two-way ultra-wideband range from the robot's antenna (frame `uwb`) to one anchor. Lost ranges are not sent.
 struct UwbRange {
   Time stamp{};
-  int anchor = 0;  ///< number of the anchor in the site's survey
+  int anchor = 0;  ///< number of the anchor in the site survey
   double range_m = 0.0;
 };
 
-/// Ultra-wideband two-way ranging, after Decawave's DW1000: data sheet (ranges to about 10 cm) and application note APS011
-/// "Sources of error in DW1000 based two-way ranging schemes" (bias). A range whose path is blocked is too long by an
-/// exponential excess: Alsindi, Alavi, Pahlavan, "Measurement and modeling of ultrawideband TOA-based ranging in indoor
-/// multipath environments", IEEE Trans. Vehicular Technology 58(3), 2009, and Bellusci et al., "Modeling distance and
-/// bandwidth dependency of TOA-based UWB ranging error for positioning", 2009: Gaussian in sight, Gaussian and exponential
-/// out of sight. Rates of loss are assumptions.
+/// Ultra-wideband two-way ranging after Decawave's DW1000: data sheet (ranges to about 10 cm) and application note
+/// APS011 "Sources of error in DW1000 based two-way ranging schemes" (bias). Errors are Gaussian in line of sight
+/// (LOS); an exponential NLOS bias is added off it [Alsindi09], [Bellusci09]. Loss probabilities are assumptions.
 struct UwbSettings {
   bool enabled = false;
-  double rate_hz = 30.0;            ///< polls in all; the anchors within reach take turns
-  double range_max_m = 60.0;        ///< anchors farther away do not answer and are not asked
-  double range_noise_m = 0.07;      ///< standard deviation, in sight
-  double bias_scale = 1.0;          ///< of the bias by distance; 0: the firmware corrects it
-  double loss = 0.02;               ///< share of polls close by that get no answer
-  double blocked_loss = 0.3;        ///< share lost of those whose path is blocked, besides
-  double blocked_excess_m = 0.4;    ///< mean of the exponential excess of a blocked path
+  double rate_hz = 30.0;            ///< total rate of polls; the anchors in range take turns
+  double range_max_m = 60.0;        ///< maximum range; anchors farther away are neither polled nor answer
+  double range_noise_m = 0.07;      ///< standard deviation of the range in line of sight
+  double bias_scale = 1.0;          ///< factor on the distance-dependent bias; 0: corrected by the firmware
+  double loss = 0.02;               ///< loss probability of a poll at short distance
+  double blocked_loss = 0.3;        ///< additional loss probability off the line of sight
+  double blocked_excess_m = 0.4;    ///< mean of the exponential NLOS bias
   double latency_s = 0.01;
 
   template <typename Self, typename Visitor>

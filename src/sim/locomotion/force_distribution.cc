@@ -26,8 +26,8 @@ Eigen::Vector3d inside_pyramid(Eigen::Vector3d force, const FrictionLimits& limi
 
 }  // namespace
 
-// f = G^T (G G^T + ridge)^-1 w: the smallest forces for the wrench w. Two feet cannot give a moment about the line between
-// them; the ridge lets that part go.
+// f = G^T (G G^T + ridge)^-1 w: the minimum-norm forces for the wrench w. Two feet cannot exert a moment about the line
+// between them; the ridge suppresses that component.
 FootVectors distribute_wrench(const Eigen::Vector3d& force, const Eigen::Vector3d& moment, const FootVectors& feet,
                               const FootFlags& is_stance, const FrictionLimits& limits) {
   using Matrix6 = Eigen::Matrix<double, 6, 6>;

@@ -8,8 +8,8 @@
 
 namespace patrol::sim {
 
-using FootVectors = std::array<Eigen::Vector3d, kNumLegs>;  ///< [leg]
-using FootFlags = std::array<bool, kNumLegs>;              ///< [leg]
+using FootVectors = std::array<Eigen::Vector3d, kNumLegs>;  ///< vectors, [leg]
+using FootFlags = std::array<bool, kNumLegs>;              ///< flags, [leg]
 
 struct FrictionLimits {
   double coefficient = 0.6;
@@ -17,8 +17,9 @@ struct FrictionLimits {
   double max_normal_n = 220.0;
 };
 
-/// Ground forces of the stance feet that together give the wrench (force, moment about the origin of `feet`), as small as
-/// possible; then kept inside each foot's friction pyramid. All in one frame with z up; N and N m. Feet in the air get zero.
+/// Returns the minimum-norm ground forces of the stance feet for a wrench: force, and moment about the origin of
+/// `feet`. Each force is then clipped to the friction pyramid of its foot. All in one frame with z up; N and N m. Swing
+/// feet get zero.
 FootVectors distribute_wrench(const Eigen::Vector3d& force, const Eigen::Vector3d& moment, const FootVectors& feet,
                               const FootFlags& is_stance, const FrictionLimits& limits);
 

@@ -5,9 +5,9 @@
 
 namespace patrol::sim {
 
-inline constexpr int kNumLegs = 4;  ///< FL, FR, RL, RR
+inline constexpr int kNumLegs = 4;  ///< order: FL, FR, RL, RR
 
-/// A trot: diagonal pairs in turn, each foot down for `duty` of the period.
+/// Trot: diagonal pairs alternate, each foot in stance for `duty` of the period.
 struct Gait {
   double period_s = 0.44;
   double duty = 0.58;
@@ -16,13 +16,14 @@ struct Gait {
   double swing_s() const { return (1.0 - duty) * period_s; }
 };
 
-/// Where a leg is in the gait: `fraction` runs from 0 to 1 through its stance or its swing.
+/// Phase of a leg in the gait. `fraction` increases from 0 to 1 during its stance or its swing.
 struct LegPhase {
   bool is_stance = true;
   double fraction = 0.0;
 };
 
-/// `cycle` counts periods; FL and RR begin their stance at whole numbers, FR and RL half a period later.
+/// Returns the phase of a leg. `cycle` counts periods; FL and RR begin their stance at whole numbers, FR and RL half a
+/// period later.
 inline LegPhase leg_phase(const Gait& gait, double cycle, int leg) {
   const double offset = (leg == 0 || leg == 3) ? 0.0 : 0.5;
   const double phase = cycle + offset - std::floor(cycle + offset);

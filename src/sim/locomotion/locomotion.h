@@ -7,7 +7,7 @@
 
 namespace patrol::sim {
 
-/// What a robot's firmware reads at a tick: the newest of each. What the robot has not got stays empty.
+/// Newest sensor readings of the firmware at a tick. Readings of sensors that the robot does not have are empty.
 struct FirmwareReadings {
   const Imu& imu;
   const JointState& joints;
@@ -15,18 +15,18 @@ struct FirmwareReadings {
   const TrackTicks& ticks;
 };
 
-/// How a robot moves: its firmware and its drives.
+/// Interface of a robot's locomotion: firmware and drives.
 class Locomotion {
  public:
   virtual ~Locomotion() = default;
 
-  /// One tick, with the physics evaluated and not yet stepped: what the motors do until the next one.
+  /// Sets the motors for the next tick. Called after the physics is evaluated and before it is stepped.
   virtual void step(const FirmwareReadings& readings, const VelocityCommand& command, mjModel& physics, mjData& data) = 0;
 
-  /// The firmware is switched off and on again.
+  /// Restarts the firmware.
   virtual void restart() = 0;
 
-  /// By the firmware's own sensing.
+  /// Returns whether the robot has fallen, according to the firmware's own sensors.
   virtual bool has_fallen() const = 0;
 };
 

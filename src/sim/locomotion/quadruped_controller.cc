@@ -14,20 +14,22 @@ namespace {
 
 constexpr double kGravity = 9.81;  // m/s2
 
-// Virtual model of the trunk: stiffness and damping per kg of robot for translation, per kg m2 of trunk inertia for rotation.
+// Virtual model of the trunk. Translation: stiffness and damping per kg of robot mass. Rotation: per kg m2 of trunk
+// inertia.
 constexpr double kHeightStiffness = 120.0, kHeightDamping = 14.0;   // 1/s2, 1/s
 constexpr double kVelocityGain = 5.0, kVelocityIntegral = 3.0;      // 1/s, 1/s2
 constexpr double kTiltStiffness = 400.0, kTiltDamping = 40.0;       // 1/s2, 1/s
 constexpr double kYawStiffness = 80.0, kYawDamping = 14.0;          // 1/s2, 1/s
-const Eigen::Vector3d kInertiaPerKg(0.008, 0.024, 0.028);           // m2: roll, pitch, yaw of the whole robot over its mass
+const Eigen::Vector3d kInertiaPerKg(0.008, 0.024, 0.028);           // inertia of the whole robot about roll, pitch and
+                                                                    // yaw, divided by its mass, m2
 
-// A swinging foot follows its way like a spring.
+// Impedance of a swing foot about its trajectory.
 constexpr double kSwingStiffness = 700.0, kSwingDamping = 16.0;  // N/m, N s/m
-constexpr double kCaptureTime_s = 0.06;  // how far a foot is put ahead per m/s too fast (Raibert)
+constexpr double kCaptureTime_s = 0.06;  // lead of the foot placement per m/s of velocity error [Raibert86]
 constexpr double kSearchSpeed_mps = 0.35, kMaxSearch_m = 0.10;
-constexpr double kWakeUp_s = 0.5;        // stands first, so that its own estimate settles
-constexpr double kGroundTime_s = 0.15;   // smoothing of the ground under the feet
-constexpr double kEarlyTouch = 0.55;     // from this part of a swing on, contact means ground
+constexpr double kWakeUp_s = 0.5;        // initial standing time, for the estimator to settle
+constexpr double kGroundTime_s = 0.15;   // time constant of the ground estimate below the feet
+constexpr double kEarlyTouch = 0.55;     // swing fraction from which a contact counts as touch-down
 constexpr double kStandSpeed_mps = 0.02, kStandRate_radps = 0.03;
 
 double approach(double value, double target, double max_change) {
@@ -81,18 +83,18 @@ void QuadrupedController::follow_command(const VelocityCommand& command) {
   velocity_mps_.y() = approach(velocity_mps_.y(), vy, change);
   yaw_rate_radps_ = approach(yaw_rate_radps_, rate, settings_.max_yaw_acceleration_radps2 * tick_s_);
   yaw_rad_ += tick_s_ * yaw_rate_radps_;
-  // The heading asked for never runs far ahead of the heading reached.
+  // The requested heading leads the reached heading by at most 0.3 rad.
   const double lead = std::clamp(wrap_angle(yaw_rad_ - estimator_.state().yaw_rad), -0.3, 0.3);
   yaw_rad_ = estimator_.state().yaw_rad + lead;
 }
 
-// Walks while it is asked to move, and one more period after; then stands where it is.
+// Walks while a velocity is requested and for one more period; then stands.
 void QuadrupedController::choose_mode(const TrunkState& trunk) {
   const bool is_asked = velocity_mps_.norm() > kStandSpeed_mps || std::abs(yaw_rate_radps_) > kStandRate_radps;
   idle_s_ = is_asked ? 0.0 : idle_s_ + tick_s_;
   if (is_asked && !is_walking_) {
     is_walking_ = true;
-    cycle_ = 0.02;  // FL and RR stand, FR and RL have half a stance to go
+    cycle_ = 0.02;  // FL and RR are in stance, FR and RL have half a stance left
     velocity_integral_.setZero();
   }
   const bool all_stand = is_stance_[0] && is_stance_[1] && is_stance_[2] && is_stance_[3] && !is_searching_[0] &&
@@ -118,7 +120,7 @@ void QuadrupedController::schedule_feet(const TrunkState& trunk) {
       lift_off_m_[leg] = trunk.foot_m[leg];
       is_stance_[leg] = false;
       is_searching_[leg] = false;
-    } else if (!phase_[leg].is_stance && phase.is_stance) {  // the swing is over
+    } else if (!phase_[leg].is_stance && phase.is_stance) {  // end of the swing
       is_searching_[leg] = !is_stance_[leg] && !trunk.is_touching[leg];
       is_stance_[leg] = true;
       search_s_[leg] = 0.0;
@@ -133,7 +135,7 @@ void QuadrupedController::schedule_feet(const TrunkState& trunk) {
   }
 }
 
-// A plane through the last four footholds; those of swinging feet are carried along against the trunk's motion.
+// Fits a plane to the four last footholds. The footholds of swing feet are moved against the trunk's motion.
 void QuadrupedController::update_ground(const TrunkState& trunk) {
   const Eigen::Vector3d yaw_rate(0.0, 0.0, trunk.rate_radps.z());
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -157,20 +159,20 @@ void QuadrupedController::update_ground(const TrunkState& trunk) {
   ground_offset_m_ = plane.z();
 }
 
-/// Where a swinging foot shall land, in level.
+/// Returns the touch-down point of a swing foot, in level.
 Eigen::Vector3d QuadrupedController::touch_down(const TrunkState& trunk, int leg) const {
   const LegGeometry& geometry = robot_.legs[static_cast<std::size_t>(leg)];
   const Eigen::Vector2d hip = geometry.hip_in_body.head<2>() + Eigen::Vector2d(0.0, geometry.abduction_offset_m);
   const Eigen::Vector2d turning = trunk.rate_radps.z() * Eigen::Vector2d(-hip.y(), hip.x());
   const Eigen::Vector2d velocity = trunk.velocity_mps.head<2>();
   const Eigen::Vector2d step = (velocity + turning) * gait_.stance_s() / 2.0 + kCaptureTime_s * (velocity - velocity_mps_);
-  // On a turn the ground pushes sideways at the feet; standing this far outside keeps that from rolling the trunk over.
+  // In a turn the ground pushes the feet sideways; this outward offset prevents the trunk from rolling over.
   const Eigen::Vector2d outwards = -settings_.trunk_height_m / kGravity * yaw_rate_radps_ * Eigen::Vector2d(-velocity.y(), velocity.x());
   const Eigen::Vector2d foot = hip + outwards + step.cwiseMax(-0.2).cwiseMin(0.2);
   return {foot.x(), foot.y(), ground_offset_m_ + slope_.dot(foot)};
 }
 
-/// Force that pulls a swinging (or searching) foot to its way, in level.
+/// Returns the force that pulls a swing (or searching) foot to its trajectory, in level.
 Eigen::Vector3d QuadrupedController::swing_force(const TrunkState& trunk, int leg) const {
   FootMotion wanted = swing_foot(lift_off_m_[leg], touch_down(trunk, leg), settings_.swing_clearance_m,
                                  phase_[leg].is_stance ? 1.0 : phase_[leg].fraction, gait_.swing_s());
@@ -188,7 +190,7 @@ FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
     velocity_integral_ += tick_s_ * error;
     velocity_integral_ = velocity_integral_.cwiseMax(-0.3).cwiseMin(0.3);
   } else {
-    anchor_m_ -= tick_s_ * velocity;  // back to where it came to stand
+    anchor_m_ -= tick_s_ * velocity;  // returns to the point where the robot came to a stand
     anchor_m_ = anchor_m_.cwiseMax(-0.02).cwiseMin(0.02);
     velocity_integral_ = 4.0 * anchor_m_;
   }

@@ -12,12 +12,12 @@
 
 namespace patrol::sim {
 
-/// The walking firmware's settings.
+/// Settings of the walking firmware.
 struct LocomotionSettings {
   double gait_period_s = 0.36;
   double gait_duty = 0.6;
-  double trunk_height_m = 0.30;       ///< above the feet
-  double swing_clearance_m = 0.09;    ///< of a swinging foot over the higher of its two ends
+  double trunk_height_m = 0.30;       ///< height of the trunk above the feet
+  double swing_clearance_m = 0.09;    ///< clearance of a swing foot above the higher end of its trajectory
   double max_forward_mps = 1.0;
   double max_backward_mps = 0.3;
   double max_sideways_mps = 0.3;
@@ -42,7 +42,7 @@ struct LocomotionSettings {
   }
 };
 
-/// What the firmware reads at a tick: the newest of each.
+/// Newest sensor readings at a tick.
 struct LegSensors {
   const Imu& imu;
   const JointState& joints;
@@ -51,19 +51,19 @@ struct LegSensors {
 
 using JointTorques = Eigen::Matrix<double, 3 * kNumLegs, 1>;
 
-/// Walks: turns a velocity command into joint torques, from joint encoders, IMU and foot contact alone.
+/// Trotting controller: converts a velocity command to joint torques from joint encoders, IMU and foot contacts.
 ///
-/// A trot. Feet that stand share a wrench on the trunk (height, roll, pitch, yaw, velocity: virtual model control, Pratt et
-/// al. 2001); feet that swing go to where the trunk will need them (Raibert 1986). Without a command, and once slow, it
+/// Stance feet jointly exert a wrench on the trunk (height, roll, pitch, yaw, velocity) by virtual model control
+/// [Pratt01]. Swing feet move to the touch-down points of [Raibert86]. Without a command, and once slow, the robot
 /// stands on four feet.
 class QuadrupedController {
  public:
   QuadrupedController(const RobotDescription& robot, const LocomotionSettings& settings, double tick_s = 0.002);
 
-  /// One tick; N m, in the order of RobotDescription::joint_names.
+  /// Returns the torques for one tick, N m, in the order of RobotDescription::joint_names.
   JointTorques step(const LegSensors& sensors, const VelocityCommand& command);
 
-  /// True once the trunk has been tilted beyond 60 degrees, or lain on the ground, for 0.3 s.
+  /// Returns true once the trunk has been tilted beyond 60 degrees, or on the ground, for 0.3 s.
   bool has_fallen() const { return fallen_s_ > 0.3; }
   const TrunkState& trunk() const { return estimator_.state(); }
 
@@ -83,25 +83,25 @@ class QuadrupedController {
   double tick_s_;
   TrunkEstimator estimator_;
 
-  // Command, rate-limited; in level.
+  // Rate-limited command, in level.
   Eigen::Vector2d velocity_mps_ = Eigen::Vector2d::Zero();
   double yaw_rate_radps_ = 0.0;
   double yaw_rad_ = 0.0;
-  Eigen::Vector2d velocity_integral_ = Eigen::Vector2d::Zero();  ///< m
-  Eigen::Vector2d anchor_m_ = Eigen::Vector2d::Zero();  ///< while standing: way from where it came to stand
+  Eigen::Vector2d velocity_integral_ = Eigen::Vector2d::Zero();  ///< integral of the velocity error, m
+  Eigen::Vector2d anchor_m_ = Eigen::Vector2d::Zero();  ///< displacement since the robot came to a stand
 
-  // Gait.
+  // Gait state.
   bool is_walking_ = false;
   double idle_s_ = 0.0;
   double cycle_ = 0.0;
   std::array<LegPhase, kNumLegs> phase_;
   FootFlags is_stance_;
-  FootFlags is_searching_{};                 ///< its stance has begun but it has not found the ground
+  FootFlags is_searching_{};                 ///< true: the stance has begun but the foot has no ground contact
   std::array<double, kNumLegs> search_s_{};
-  double awake_s_ = 0.0;                     ///< since switched on
-  FootVectors lift_off_m_;                   ///< in level, at lift-off
+  double awake_s_ = 0.0;                     ///< time since switch-on
+  FootVectors lift_off_m_;                   ///< foot position at lift-off, in level
 
-  // Ground under the four last footholds: z = offset + slope . (x, y), in level.
+  // Ground plane of the four last footholds: z = offset + slope . (x, y), in level.
   FootVectors foothold_m_;
   Eigen::Vector2d slope_ = Eigen::Vector2d::Zero();
   double ground_offset_m_;

@@ -7,7 +7,7 @@
 
 namespace patrol::sim {
 
-/// Four legs: the controller's torques are the motors'.
+/// Locomotion on four legs; the controller's torques are the motor torques.
 class QuadrupedDrive : public Locomotion {
  public:
   QuadrupedDrive(const RobotDescription& robot, const LocomotionSettings& settings)

@@ -9,7 +9,8 @@ SprocketRegulator::SprocketRegulator(const TrackDriveSettings& settings, const T
     : settings_(settings), motor_(motor), ticks_per_rad_(ticks_per_rad), tick_s_(tick_s) {}
 
 double SprocketRegulator::step(double wanted_radps, std::int64_t count) {
-  const double angle_rad = (static_cast<double>(count) + 0.5) / ticks_per_rad_;  // a count stands for the middle of its tick
+  const double angle_rad = (static_cast<double>(count) + 0.5) / ticks_per_rad_;  // a count represents the center of its
+                                                                                 // interval
   observe(angle_rad);
   behind_rad_ += tick_s_ * wanted_radps - (angle_rad - last_angle_rad_);
   const double wanted_radps2 = (wanted_radps - last_wanted_radps_) / tick_s_;
@@ -20,7 +21,7 @@ double SprocketRegulator::step(double wanted_radps, std::int64_t count) {
                          settings_.derivative_nms2 * (wanted_radps2 - acceleration_radps2_);
   const double wanted_nm = rest_nm + settings_.integral_nm * behind_rad_;
   const double torque_nm = motor_.possible_nm(wanted_nm, speed_radps_);
-  // Anti-windup: the integral never asks for more than the motor can give.
+  // Anti-windup: the integral never requests more than the motor's torque.
   const bool grows = (wanted_nm - torque_nm) * behind_rad_ > 0.0;
   if (grows && settings_.integral_nm > 0.0) {
     const double useful_rad = (torque_nm - rest_nm) / settings_.integral_nm;

@@ -7,17 +7,17 @@
 
 namespace patrol::sim {
 
-/// Holds one sprocket to a speed, from Hall ticks alone: a PID regulator on the speed. The integral of the speed's error is the
-/// angle that the sprocket is behind, and that the counter knows to a tick. Speed and acceleration come from a tracking loop on
-/// the counter (a second-order observer, critically damped).
+/// PID speed controller of one sprocket, with Hall counts as its only measurement. The integral of the speed error is
+/// the lag angle, known to one count. A tracking loop on the counter (second-order observer, critically damped)
+/// estimates speed and acceleration.
 class SprocketRegulator {
  public:
   SprocketRegulator(const TrackDriveSettings& settings, const TrackMotor& motor, double ticks_per_rad, double tick_s);
 
-  /// One tick; N m at the sprocket, within what the motor can give.
+  /// Returns the torque for one tick, N m at the sprocket, within the limits of the motor.
   double step(double wanted_radps, std::int64_t count);
 
-  /// Forgets how far behind it is.
+  /// Resets the lag angle.
   void let_go();
 
   double speed_radps() const { return speed_radps_; }
@@ -29,10 +29,10 @@ class SprocketRegulator {
   TrackMotor motor_;
   double ticks_per_rad_, tick_s_;
   bool has_started_ = false;
-  double angle_rad_ = 0.0, speed_radps_ = 0.0, acceleration_radps2_ = 0.0;  ///< observed
+  double angle_rad_ = 0.0, speed_radps_ = 0.0, acceleration_radps2_ = 0.0;  ///< estimates of the observer
   double last_wanted_radps_ = 0.0;
   double behind_rad_ = 0.0;
-  double last_angle_rad_ = 0.0;  ///< counted
+  double last_angle_rad_ = 0.0;  ///< angle of the last count
 };
 
 }  // namespace patrol::sim

@@ -58,7 +58,7 @@ std::array<double, 2> TrackBelts::drag_nm(const mjModel& physics, const mjData& 
       const int index = wheel_of_geom_[static_cast<std::size_t>(contact.geom[which])];
       if (index < 0) continue;
       const Wheel& wheel = wheels_[static_cast<std::size_t>(index)];
-      mjtNum force[6];  // normal, two tangents; on the second geom
+      mjtNum force[6];  // normal force, two tangential forces; on the second geom
       mj_contactForce(&physics, &data, i, force);
       const Eigen::Vector3d rate = RotationOfGeom(data.geom_xmat + 9 * wheel.geom) * wheel.rate_per_radps;
       const Eigen::Vector3d arm = Eigen::Vector3d(contact.pos) - Eigen::Vector3d(data.geom_xpos + 3 * wheel.geom);

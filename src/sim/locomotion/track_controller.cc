@@ -8,11 +8,11 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kRestSpeed_mps = 0.005, kRestRate_radps = 0.005;   // asked less than this is asked nothing
-constexpr double kRestSprocket_radps = 0.5;  // a tick that comes and goes looks like 0.3
-constexpr double kBiasTime_s = 5.0;          // to learn the gyroscope's bias at rest
-constexpr double kLevelling_per_s = 0.5;   // of the gyroscope's attitude by the accelerometer
-constexpr double kLevelSettling_s = 0.5;        // after switch-on the accelerometer alone
+constexpr double kRestSpeed_mps = 0.005, kRestRate_radps = 0.005;   // smaller commands are treated as zero
+constexpr double kRestSprocket_radps = 0.5;  // a single count back and forth appears as 0.3
+constexpr double kBiasTime_s = 5.0;          // averaging time of the gyroscope bias at rest
+constexpr double kLevelling_per_s = 0.5;   // rate of the accelerometer correction of the attitude
+constexpr double kLevelSettling_s = 0.5;        // time after switch-on with the accelerometer only
 const double kFallenCosine = std::cos(to_rad(60.0));
 
 double approach_speed(double value, double target, double max_change) {
@@ -58,7 +58,7 @@ void TrackController::follow_command(const VelocityCommand& command) {
   yaw_rate_radps_ = approach_speed(yaw_rate_radps_, rate, settings_.max_yaw_acceleration_radps2 * tick_s_);
 }
 
-/// The yaw rate to ask of the kinematics so that the gyroscope reads the one that is wanted.
+/// Returns the yaw rate command for the kinematics such that the gyroscope measures the requested yaw rate.
 double TrackController::corrected_yaw_rate(const Imu& imu) {
   if (!settings_.use_gyro) return yaw_rate_radps_;
   if (is_asked_to_rest()) {
@@ -72,7 +72,7 @@ double TrackController::corrected_yaw_rate(const Imu& imu) {
   return yaw_rate_radps_ + std::clamp(settings_.gyro_gain * missing + gain * yaw_behind_rad_, -limit, limit);
 }
 
-/// The mean over the first seconds at rest, and a running one after.
+/// Updates the gyroscope bias: mean over the first seconds at rest, running mean afterward.
 void TrackController::learn_bias(const Imu& imu) {
   learning_s_ = std::min(learning_s_ + tick_s_, kBiasTime_s);
   gyro_bias_radps_ += tick_s_ / learning_s_ * (measured_yaw_rate(imu) - gyro_bias_radps_);
@@ -82,7 +82,8 @@ double TrackController::measured_yaw_rate(const Imu& imu) const {
   return up_in_body_.dot(R_body_imu_ * imu.angular_velocity_radps);
 }
 
-/// Left and right, rad/s. When one belt would be too fast, both are slowed alike, and the robot keeps to its curve.
+/// Returns the sprocket speeds, left and right, rad/s. If one track exceeds its limit, both are scaled to keep the
+/// curvature.
 std::array<double, 2> TrackController::sprocket_speeds(double speed_mps, double yaw_rate_radps) const {
   const double half_gauge_m = settings_.gauge_factor * tracks_.gauge_m / 2.0;
   const double left = speed_mps - yaw_rate_radps * half_gauge_m, right = speed_mps + yaw_rate_radps * half_gauge_m;
@@ -90,7 +91,7 @@ std::array<double, 2> TrackController::sprocket_speeds(double speed_mps, double 
   return {left / excess / tracks_.sprocket_radius_m, right / excess / tracks_.sprocket_radius_m};
 }
 
-/// Closes once both sprockets have been at rest without command for a while, and opens on command only.
+/// Closes the brake after both sprockets have been at rest without command; opens it on command only.
 void TrackController::update_brake() {
   const bool is_still = std::abs(regulators_[0].speed_radps()) < kRestSprocket_radps &&
                         std::abs(regulators_[1].speed_radps()) < kRestSprocket_radps;
@@ -102,7 +103,7 @@ bool TrackController::is_asked_to_rest() const {
   return std::abs(speed_mps_) < kRestSpeed_mps && std::abs(yaw_rate_radps_) < kRestRate_radps;
 }
 
-/// Where up is, by the gyroscope, drawn slowly to where the accelerometer has it.
+/// Integrates the "up" direction with the gyroscope and corrects it slowly by the accelerometer.
 void TrackController::watch_for_fall(const Imu& imu) {
   age_s_ += tick_s_;
   const Eigen::Vector3d rate = R_body_imu_ * imu.angular_velocity_radps;

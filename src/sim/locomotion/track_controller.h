@@ -12,17 +12,17 @@
 
 namespace patrol::sim {
 
-/// What the firmware asks of the drives for a tick.
+/// Command of the firmware to the drives for one tick.
 struct TrackOrders {
-  std::array<double, 2> torque_nm{};  ///< left, right; at the sprocket
+  std::array<double, 2> torque_nm{};  ///< torque at the sprocket: left, right
   bool is_brake_closed = false;
 };
 
-/// The firmware of a tracked robot: turns a velocity command into sprocket torques, from Hall ticks and IMU alone.
+/// Firmware of a tracked robot: converts a velocity command to sprocket torques from Hall counts and IMU.
 ///
-/// Kinematics: a track that runs at u_left, u_right moves the robot at v = (u_right + u_left) / 2 and turns it at
-/// w = (u_right - u_left) / B. Since tracks scrub as they turn, B is wider than their gauge: the centres of rotation of the two
-/// tracks lie that far apart (Martinez et al., "Approximating Kinematics for Tracked Mobile Robots", IJRR 2005).
+/// Kinematics: tracks at speeds u_left, u_right give v = (u_right + u_left) / 2 and w = (u_right - u_left) / B. Since
+/// tracks scrub during a turn, B exceeds their gauge: it is the distance between the instantaneous centers of rotation
+/// of the two tracks [Martinez05].
 class TrackController {
  public:
   TrackController(const RobotDescription& robot, const TrackDriveSettings& settings, double ticks_per_rad,
@@ -30,7 +30,7 @@ class TrackController {
 
   TrackOrders step(const Imu& imu, const TrackTicks& ticks, const VelocityCommand& command);
 
-  /// True once the robot has been tilted beyond 60 degrees for 0.3 s.
+  /// Returns true once the robot has been tilted beyond 60 degrees for 0.3 s.
   bool has_fallen() const { return fallen_s_ > 0.3; }
 
  private:
@@ -48,13 +48,13 @@ class TrackController {
   double tick_s_;
   Eigen::Matrix3d R_body_imu_;
   std::array<SprocketRegulator, 2> regulators_;  ///< left, right
-  double speed_mps_ = 0.0, yaw_rate_radps_ = 0.0;  ///< asked, within the limits of acceleration
+  double speed_mps_ = 0.0, yaw_rate_radps_ = 0.0;  ///< rate-limited command
   double yaw_behind_rad_ = 0.0;
-  double gyro_bias_radps_ = 0.0, learning_s_ = 0.0;  ///< learnt at rest
+  double gyro_bias_radps_ = 0.0, learning_s_ = 0.0;  ///< estimated at rest
   double idle_s_ = 0.0;
   bool is_brake_closed_ = false;
   Eigen::Vector3d up_in_body_ = Eigen::Vector3d::UnitZ();
-  double age_s_ = 0.0;  ///< since switch-on
+  double age_s_ = 0.0;  ///< time since switch-on
   double fallen_s_ = 0.0;
 };
 

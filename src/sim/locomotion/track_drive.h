@@ -8,7 +8,7 @@
 
 namespace patrol::sim {
 
-/// Two tracks: firmware, motors and brakes on the sprockets, belts on the ground.
+/// Locomotion on two tracks: firmware, motors and brakes on the sprockets, track contact.
 class TrackDrive : public Locomotion {
  public:
   /// `ticks_per_rad`: Hall counts per radian of a sprocket.

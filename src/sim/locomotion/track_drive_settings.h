@@ -4,25 +4,28 @@
 
 namespace patrol::sim {
 
-/// The tracks, their motors and their firmware.
+/// Settings of the tracks, their motors and their firmware.
 struct TrackDriveSettings {
-  double friction = 0.8;                        ///< of the rubber, on whatever the ground is (where the ground does not say otherwise)
-  double max_speed_mps = 1.0;                   ///< of either belt, and of the robot
+  double friction = 0.8;                        ///< friction coefficient of the rubber on ground that does not define
+                                                ///< its own
+  double max_speed_mps = 1.0;                   ///< speed limit of each track and of the robot
   double max_yaw_rate_radps = 0.8;
   double max_acceleration_mps2 = 0.8;
   double max_yaw_acceleration_radps2 = 1.5;
-  double gauge_factor = 1.41;                   ///< gauge that the firmware counts with over the tracks' own: a track that turns slips
-  bool use_gyro = true;                         ///< corrects the yaw rate by the gyroscope
-  double gyro_gain = 0.3;                       ///< rad/s asked more per rad/s missing
-  double gyro_integral_per_s = 2.0;             ///< the same per rad missing
+  double gauge_factor = 1.41;                   ///< gauge in the firmware's kinematics relative to the geometric one;
+                                                ///< above 1 because of track slip in turns
+  bool use_gyro = true;                         ///< true: the gyroscope corrects the yaw rate
+  double gyro_gain = 0.3;                       ///< yaw rate correction per rad/s of yaw rate error
+  double gyro_integral_per_s = 2.0;             ///< yaw rate correction per rad of heading error
   double max_gyro_correction_radps = 0.4;
-  double proportional_nms = 8.0;                ///< torque per rad/s that a sprocket is too slow
-  double integral_nm = 40.0;                    ///< torque per rad that it is behind
-  double derivative_nms2 = 0.02;                ///< torque per rad/s2 that it lacks
-  double observer_radps = 100.0;                ///< bandwidth of the speed from the Hall ticks
-  double stall_torque_nm = 120.0;               ///< of the motor at the sprocket, without its current limit
-  double brake_torque_nm = 60.0;                ///< of the parking brake on each sprocket
-  double brake_delay_s = 0.5;                   ///< at rest without command until it closes
+  double proportional_nms = 8.0;                ///< torque per rad/s of speed error
+  double integral_nm = 40.0;                    ///< torque per rad of lag angle
+  double derivative_nms2 = 0.02;                ///< torque per rad/s2 of acceleration error
+  double observer_radps = 100.0;                ///< bandwidth of the speed observer on the Hall counts
+  double stall_torque_nm = 120.0;               ///< stall torque of the motor at the sprocket, without its current
+                                                ///< limit
+  double brake_torque_nm = 60.0;                ///< torque of the parking brake on each sprocket
+  double brake_delay_s = 0.5;                   ///< time at rest without command before the brake closes
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

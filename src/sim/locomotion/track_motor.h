@@ -5,14 +5,15 @@
 
 namespace patrol::sim {
 
-/// A geared brushless motor as its drive sees it, at the sprocket: the current limits the torque, and the battery's voltage lets
-/// less and less of it through as the motor turns faster (the straight speed-torque line of a direct-current motor).
+/// Geared brushless motor at the sprocket. The current limits the torque; with rising speed the battery voltage reduces
+/// it along the straight speed-torque line of a direct-current motor.
 struct TrackMotor {
-  double max_torque_nm = 0.0;     ///< at the current limit
-  double stall_torque_nm = 0.0;   ///< where the line meets zero speed, were there no current limit
-  double no_load_radps = 0.0;     ///< where it meets zero torque
+  double max_torque_nm = 0.0;     ///< torque at the current limit
+  double stall_torque_nm = 0.0;   ///< torque of the line at zero speed, without current limit
+  double no_load_radps = 0.0;     ///< speed of the line at zero torque
 
-  /// The torque nearest to the wanted one that the motor can give. Against its motion it brakes with all the current it may.
+  /// Returns the feasible torque nearest to the requested one. Against its motion the motor brakes with up to the full
+  /// current.
   double possible_nm(double wanted_nm, double speed_radps) const {
     const bool is_driving = wanted_nm * speed_radps > 0.0;
     const double line_nm = stall_torque_nm * (1.0 - std::abs(speed_radps) / no_load_radps);

@@ -9,12 +9,13 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kTrunkGravity_mps2 = 9.81;          // m/s2
-constexpr double kAttitudeTime_s = 2.0;    // the accelerometer's say in roll and pitch
-constexpr double kSettlingTime_s = 0.1;    // the same for the first second, when nothing is known yet
+constexpr double kTrunkGravity_mps2 = 9.81;
+constexpr double kAttitudeTime_s = 2.0;    // time constant of the accelerometer in roll and pitch
+constexpr double kSettlingTime_s = 0.1;    // time constant of the accelerometer in the first second, before the
+                                           // estimate has converged
 constexpr double kSettling_s = 1.0;
-constexpr double kVelocityTime_s = 0.02;   // the stance feet's say in the velocity
-constexpr double kTouch_n = 12.0;          // force that counts as touching
+constexpr double kVelocityTime_s = 0.02;   // time constant of the stance feet in the velocity
+constexpr double kTouch_n = 12.0;          // force threshold of a contact
 
 }  // namespace
 
@@ -32,8 +33,8 @@ const TrunkState& TrunkEstimator::update(const Imu& imu, const JointState& joint
   return state_;
 }
 
-// The direction of "up" in the body turns against the gyro and is pulled towards the accelerometer (less what a turn
-// adds to it) while that reads about one g.
+// Propagates the "up" direction in the body with the gyro. Corrects it by the accelerometer, without the centripetal
+// part, while that measures about one g.
 void TrunkEstimator::update_attitude(const Imu& imu) {
   const Eigen::Vector3d& omega = imu.angular_velocity_radps;
   const Eigen::Vector3d centripetal = state_.rate_radps.z() * Eigen::Vector3d::UnitZ().cross(state_.velocity_mps);
@@ -64,7 +65,7 @@ void TrunkEstimator::update_feet(const Imu& imu, const JointState& joints, const
     state_.jacobian[leg] = state_.R_level_body * foot_jacobian(geometry, angle);
     state_.foot_velocity_mps[leg] = state_.jacobian[leg] * speed + state_.rate_radps.cross(state_.foot_m[leg]);
     state_.is_touching[leg] = contacts.force_n[static_cast<std::size_t>(leg)] > kTouch_n;
-    // The shank turns with the trunk, the abduction and the two pitch joints; its round foot rolls on the ground.
+    // The shank rotates with the trunk, the abduction and the two pitch joints; its round foot rolls on the ground.
     const Eigen::Vector3d shank_rate =
         state_.R_level_body * (imu.angular_velocity_radps + Eigen::Vector3d(speed[0], 0.0, 0.0) +
                                (speed[1] + speed[2]) * Eigen::Vector3d(0.0, std::cos(angle[0]), std::sin(angle[0])));

@@ -8,23 +8,25 @@
 
 namespace patrol::sim {
 
-/// What the firmware knows of the trunk and the feet at one tick. `level` is the trunk with roll and pitch removed.
+/// Firmware's estimate of the trunk and the feet at one tick. `level` is the trunk frame without roll and pitch.
 struct TrunkState {
   Eigen::Matrix3d R_level_body = Eigen::Matrix3d::Identity();
   double roll_rad = 0.0;
   double pitch_rad = 0.0;
-  double yaw_rad = 0.0;                                       ///< since switch-on, drifting with the gyro
-  Eigen::Vector3d rate_radps = Eigen::Vector3d::Zero();       ///< in level
-  Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();     ///< in level
-  FootVectors foot_m;                                         ///< centre of each foot from the trunk's origin, in level
-  FootVectors foot_velocity_mps;                              ///< relative to the trunk, in level
-  std::array<Eigen::Matrix3d, kNumLegs> jacobian;             ///< of foot_m by the joints, in level
+  double yaw_rad = 0.0;                                       ///< yaw since switch-on, drifting with the gyro
+  Eigen::Vector3d rate_radps = Eigen::Vector3d::Zero();       ///< angular rate, in level
+  Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();     ///< velocity, in level
+  FootVectors foot_m;                                         ///< center of each foot relative to the trunk's origin,
+                                                              ///< in level
+  FootVectors foot_velocity_mps;                              ///< velocity relative to the trunk, in level
+  std::array<Eigen::Matrix3d, kNumLegs> jacobian;             ///< derivative of foot_m with respect to the joints, in
+                                                              ///< level
   FootFlags is_touching{};
 };
 
-/// The firmware's own estimator, from joint encoders, IMU and foot sensors only: a complementary filter for roll and pitch,
-/// and for the velocity the accelerometer corrected by the feet that stand. (The stack's odometry, localize/, is another
-/// and better one: the firmware needs its answer within a tick.)
+/// State estimator of the firmware, from joint encoders, IMU and foot sensors: a complementary filter for roll and
+/// pitch, and a velocity from the accelerometer corrected by the stance feet. The stack's odometry (localize/) is
+/// separate and more accurate; the firmware needs its estimate within a tick.
 class TrunkEstimator {
  public:
   TrunkEstimator(const RobotDescription& robot, double tick_s);
@@ -39,9 +41,9 @@ class TrunkEstimator {
 
   RobotDescription robot_;
   double tick_s_;
-  double age_s_ = 0.0;  ///< since switch-on
+  double age_s_ = 0.0;  ///< time since switch-on
   Eigen::Vector3d up_in_body_ = Eigen::Vector3d::UnitZ();
-  FootVectors foot_roll_mps_;  ///< velocity of a foot's centre as it rolls over its contact, in level
+  FootVectors foot_roll_mps_;  ///< velocity of a foot's center as it rolls over its contact, in level
   TrunkState state_;
 };
 

@@ -6,8 +6,8 @@
 
 namespace patrol::sim {
 
-/// Messages on their way from the sensors to the stack, in order of delivery; messages due at the same instant keep
-/// the order in which they were put in.
+/// Messages in transit from the sensors to the stack, in order of delivery. Messages due at the same instant keep their
+/// order of insertion.
 class DeliveryQueue {
  public:
   void push(Time due, SensorMessage message);

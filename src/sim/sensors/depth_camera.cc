@@ -11,9 +11,9 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kDarkest = 0.02;  // nothing throws back less
+constexpr double kDarkest = 0.02;  // minimum reflectivity of any surface
 
-/// The slope that the smaller of both differences has: that of the surface which the pixel is on, also beside an edge.
+/// Returns the smaller of both differences, which is the slope of the pixel's own surface also next to an edge.
 double gentler(double before, double here, double after) {
   const double left = here - before, right = after - here;
   return std::abs(left) < std::abs(right) ? left : right;
@@ -39,15 +39,15 @@ DepthCamera::DepthCamera(const DepthCameraSettings& settings, const DustSettings
   validate(settings, "sensors.depth_camera");
 }
 
-// A plane's inverse depth is linear over the picture: slopes and edges are told from it.
+// The inverse depth of a plane is linear over the image, so slopes and edges are computed from it.
 void DepthCamera::measure_disparity() {
   inverse_depth_.resize(seen_.depth_m.size());
   std::transform(seen_.depth_m.begin(), seen_.depth_m.end(), inverse_depth_.begin(),
                  [](float depth_m) { return std::isfinite(depth_m) ? 1.0 / static_cast<double>(depth_m) : 0.0; });
 }
 
-/// True when something farther to the right of the picture stands in the other imager's line of sight to the same point: there,
-/// a pixel lies further left by its disparity, focal length x baseline / depth.
+/// Returns whether a pixel further right occludes the point in the right imager. A pixel is shifted left in that imager
+/// by its disparity, focal length x baseline / depth.
 bool DepthCamera::is_hidden_from_fellow(int u, int v) const {
   const double pixel_metres = lens_.focal_px * settings_.baseline_m;
   const auto most = static_cast<int>(pixel_metres / settings_.range_min_m);
@@ -66,8 +66,9 @@ bool DepthCamera::is_at_edge(int u, int v) const {
          (v > 0 && v + 1 < lens_.height_px && bends(inverse_depth(u, v - 1), inverse_depth(u, v + 1)));
 }
 
-/// Cosine of the angle between the line of sight and the surface's normal. On the plane n . X = 1 with X = z (a, b, 1) the
-/// inverse depth is n . (a, b, 1): its slopes over the picture give n.
+/// Returns the cosine of the angle between the line of sight and the surface normal.
+///
+/// On the plane n . X = 1 with X = z (a, b, 1) the inverse depth is n . (a, b, 1); its slopes over the image give n.
 double DepthCamera::incidence_cosine(int u, int v) const {
   const double here = inverse_depth(u, v);
   const int left = std::max(u - 1, 0), right = std::min(u + 1, lens_.width_px - 1);
@@ -82,13 +83,14 @@ double DepthCamera::incidence_cosine(int u, int v) const {
   return here / (n.norm() * sight.norm());
 }
 
-/// Enough of the pattern comes back, and both imagers see it.
+/// Returns whether enough of the pattern returns and both imagers observe it.
 bool DepthCamera::is_visible(int u, int v) const {
   if (is_hidden_from_fellow(u, v)) return false;
   const double cosine = incidence_cosine(u, v);
   if (cosine < std::cos(settings_.grazing_deg * kDegree)) return false;
   const double reflectivity = std::max(kDarkest, static_cast<double>(seen_.reflectivity[index_of(u, v)]));
-  const double reach_m = settings_.dark_range_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1);  // as of the lidar
+  // as in lidar.cc
+  const double reach_m = settings_.dark_range_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1);
   return dust_.clear_distance_m(static_cast<double>(seen_.depth_m[index_of(u, v)])) <= reach_m;
 }
 
@@ -147,7 +149,7 @@ std::unique_ptr<Sensor> make_sensor<DepthImage>(const SensorContext& context) {
   validate(settings, "sensors.depth_camera");
   context.robot.T_body("depth_camera");  // throws if the robot has no such frame
   if (!context.make_depth_imager) throw InputError("sensors.depth_camera is enabled, but there is no renderer for it here");
-  constexpr double kNear_m = 0.05;  // anything nearer belongs to the housing
+  constexpr double kNear_m = 0.05;  // minimum distance; closer surfaces belong to the housing
   return std::make_unique<DepthCameraOnBody>(
       context, context.make_depth_imager(context.view, lens_of(settings), kNear_m, 1.1 * settings.range_max_m));
 }

@@ -14,7 +14,8 @@
 
 namespace patrol::sim {
 
-/// A pinhole; what a stereo camera gives out is free of distortion. Pixel (0, 0) has its middle at (0, 0), top left.
+/// Pinhole camera without distortion; stereo cameras publish rectified images. The center of pixel (0, 0), top left, is
+/// (0, 0).
 struct PinholeLens {
   int width_px = 0, height_px = 0;
   double focal_px = 0.0;
@@ -24,35 +25,37 @@ struct PinholeLens {
 
 PinholeLens lens_of(const DepthCameraSettings& settings);
 
-/// What a perfect camera would see; [row][column] from the top left.
+/// Image of an ideal camera; [row][column] from the top left.
 struct SurfaceImage {
-  std::vector<float> depth_m;       ///< along the optical axis; +Inf where there is nothing within range
-  std::vector<float> reflectivity;  ///< 0 ... 1; 0 where there is nothing
+  std::vector<float> depth_m;       ///< depth along the optical axis; +Inf if nothing is in range
+  std::vector<float> reflectivity;  ///< reflectivity, 0 ... 1; 0 if nothing is in range
 };
 
-/// Draws the world for the camera. The twin holds no renderer: the program brings one (render/depth_renderer.h).
+/// Renderer of the world for the camera. The simulator has no renderer; the program provides one
+/// (render/depth_renderer.h).
 class DepthImager {
  public:
   virtual ~DepthImager() = default;
-  /// `data` is of the view model or of the physics model, whose bodies are the same. `T_world_camera` has x along the optical
-  /// axis and z up in the picture.
+  /// Renders an ideal image. `data` is of the view model or of the physics model, which have identical bodies.
+  /// `T_world_camera` has x along the optical axis and z up in the image.
   virtual void draw(const mjData& data, const Pose3& T_world_camera, SurfaceImage& image) = 0;
 };
 
-/// Makes the imager of a view model, which must outlive it, for things from `near_m` to `far_m`.
+/// Factory of the imager of a view model, which must outlive it, for depths from `near_m` to `far_m`.
 using DepthImagerFactory =
     std::function<std::unique_ptr<DepthImager>(const mjModel& view, const PinholeLens& lens, double near_m, double far_m)>;
 
-/// Turns perfect pictures into those of the camera. Every imperfection has its own random stream, addressed by frame and pixel.
+/// Depth camera model: adds sensor errors to ideal images. Each error source has its own random stream, indexed by
+/// frame and pixel.
 ///
-/// Dust weakens the pattern there and back: less reach, and noise that grows as the contrast falls. Not modelled: errors
-/// that neighbouring pixels share, a wrong calibration, sunlight (it would drown the pattern), other cameras, and motion
+/// Dust attenuates the pattern both ways, which reduces the range and increases the noise. Not modeled: errors
+/// correlated between pixels, calibration errors, sunlight (it would drown the pattern), other cameras, and motion
 /// within a frame.
 class DepthCamera {
  public:
   DepthCamera(const DepthCameraSettings& settings, const DustSettings& dust, std::unique_ptr<DepthImager> imager, std::uint64_t seed);
 
-  /// Frame number `tick`.
+  /// Takes frame number `tick`.
   DepthImage take(const mjData& data, const Pose3& T_world_camera, Time now, std::uint64_t tick);
 
  private:
@@ -70,7 +73,7 @@ class DepthCamera {
   std::unique_ptr<DepthImager> imager_;
   RandomStream noise_, edge_, dropout_;
   SurfaceImage seen_;
-  std::vector<double> inverse_depth_;  ///< [pixel], 1/m; 0 for nothing
+  std::vector<double> inverse_depth_;  ///< [pixel], 1/m; 0 if nothing is in range
 };
 
 }  // namespace patrol::sim

@@ -10,14 +10,14 @@
 
 namespace patrol::sim {
 
-/// Something that goes wrong with a sensor for a time.
+/// Temporary fault of a sensor.
 struct FaultSettings {
   std::string sensor = "lidar";
   std::string kind = "silence";
   double start_s = 0.0;
   double duration_s = 1.0;
-  /// delay: s; jitter: standard deviation of a delay that changes from message to message, s; clock_offset: s added to the
-  /// stamps; drift: units of the sensor per s; spikes: units of the sensor; else unused.
+  /// Magnitude of the fault. delay: s; jitter: standard deviation of a random delay per message, s; clock_offset: s
+  /// added to the stamps; drift: units of the sensor per s; spikes: units of the sensor; otherwise unused.
   double magnitude = 1.0;
 
   template <typename Self, typename Visitor>

@@ -5,7 +5,7 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kSpikeProbability = 0.1;  // of a message, while the fault lasts
+constexpr double kSpikeProbability = 0.1;  // probability per message while the fault lasts
 
 void add_to_reading(SensorMessage& message, double offset) {
   const auto add = [&]<typename Message>(Message& content) { SensorTraits<Message>::add_to_reading(content, offset); };
@@ -38,7 +38,7 @@ bool FaultInjector::apply(Time ready, Time& due, SensorMessage& message) {
   return true;
 }
 
-/// Applies one fault that is active. Returns false when the message is lost.
+/// Applies one active fault. Returns false when the message is lost.
 bool FaultInjector::change(FaultReport& report, Time ready, Time& due, SensorMessage& message) {
   const FaultSettings& fault = report.fault;
   const std::optional<SensorMessage>& last_good = last_good_[message.index()];

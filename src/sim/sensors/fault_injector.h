@@ -12,10 +12,10 @@
 
 namespace patrol::sim {
 
-/// Outcome of a fault that a scenario declares.
+/// Status of a fault declared by a scenario.
 struct FaultReport {
   FaultSettings fault;
-  bool is_executed = false;  ///< at least one message was changed
+  bool is_executed = false;  ///< true: at least one message was changed
 };
 
 /// Applies the faults of a scenario to sensor messages.
@@ -32,7 +32,8 @@ class FaultInjector {
   bool change(FaultReport& report, Time ready, Time& due, SensorMessage& message);
 
   std::vector<FaultReport> reports_;
-  std::array<std::optional<SensorMessage>, std::variant_size_v<SensorMessage>> last_good_;  ///< [sensor], for a freeze
+  /// [sensor], last message before a freeze
+  std::array<std::optional<SensorMessage>, std::variant_size_v<SensorMessage>> last_good_;
   RandomStream spikes_, jitter_;
   std::uint64_t spike_count_ = 0, jitter_count_ = 0;
 };

@@ -28,7 +28,7 @@ FootContacts FootContactSensor::read(const mjModel& model, const mjData& data, T
     for (std::size_t leg = 0; leg < foot_geoms_.size(); ++leg) {
       const mjContact& contact = data.contact[i];
       if (contact.geom[0] != foot_geoms_[leg] && contact.geom[1] != foot_geoms_[leg]) continue;
-      mjtNum force[6];  // normal first
+      mjtNum force[6];  // force[0] is the normal force
       mj_contactForce(&model, &data, i, force);
       contacts.force_n[leg] += force[0];
     }

@@ -23,8 +23,8 @@ class FootContactSensor {
 
  private:
   FootContactSettings settings_;
-  std::vector<int> foot_geoms_;   ///< [leg]
-  std::vector<double> offset_n_;  ///< [leg]
+  std::vector<int> foot_geoms_;   ///< foot geom ids, [leg]
+  std::vector<double> offset_n_;  ///< offsets, [leg]
   RandomStream noise_;
 };
 

@@ -9,7 +9,7 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kEarthRadius_m = 6378137.0;             // WGS 84 equatorial
+constexpr double kEarthRadius_m = 6378137.0;             // equatorial radius of WGS 84
 constexpr double kEccentricitySquared = 6.69437999014e-3;
 
 }  // namespace
@@ -18,7 +18,7 @@ Gnss::Gnss(const GnssSettings& settings, std::uint64_t seed) : settings_(setting
   validate(settings, "sensors.gnss");
 }
 
-/// Rays to 24 places where satellites stand, 15 to 75 degrees above the horizon.
+/// Returns the visible fraction of the sky: free rays to 24 directions, 15 to 75 degrees above the horizon.
 double Gnss::open_sky(const LidarScene& scene, const Eigen::Vector3d& antenna) const {
   constexpr int kAzimuths = 8;
   int open = 0, all = 0;
@@ -40,7 +40,7 @@ GnssFix Gnss::read(const LidarScene& scene, const Eigen::Vector3d& p_world_anten
 
   GnssFix fix{.stamp = now};
   fix.status = is_open && now >= open_since_ ? GnssStatus::kFix : sky >= settings_.float_sky ? GnssStatus::kFloat : GnssStatus::kNone;
-  // A Gauss-Markov error, so that averaging does not help more than it would.
+  // Use a Gauss-Markov error, so that averaging helps no more than with a real receiver.
   const double keep = std::exp(-1.0 / (settings_.rate_hz * settings_.error_time_s));
   for (int axis = 0; axis < 3; ++axis) {
     error_[axis] = tick == 0 ? noise_.normal(0, static_cast<std::uint64_t>(axis))
@@ -50,7 +50,7 @@ GnssFix Gnss::read(const LidarScene& scene, const Eigen::Vector3d& p_world_anten
   const double std_m = fix.status == GnssStatus::kFix ? settings_.fix_noise_m : settings_.float_noise_m;
   fix.position_std_m = Eigen::Vector3d(std_m, std_m, 2.0 * std_m);
   const Eigen::Vector3d enu = p_world_antenna + fix.position_std_m.cwiseProduct(error_);
-  // East and north to angles by the ellipsoid's radii at the datum: exact to a millimetre over a block.
+  // Convert east and north to angles with the ellipsoid's radii at the datum: exact to a millimeter over a city block.
   const double sine = std::sin(settings_.datum_latitude_deg * kDegree);
   const double w = std::sqrt(1.0 - kEccentricitySquared * sine * sine);
   const double meridian_m = kEarthRadius_m * (1.0 - kEccentricitySquared) / (w * w * w);

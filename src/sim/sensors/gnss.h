@@ -9,7 +9,7 @@
 
 namespace patrol::sim {
 
-/// Fixed, float or lost by how much of the sky the antenna sees past walls and trees.
+/// RTK GNSS receiver. Its status (fixed, float or none) depends on the fraction of sky visible past walls and trees.
 class Gnss {
  public:
   Gnss(const GnssSettings& settings, std::uint64_t seed);
@@ -21,7 +21,7 @@ class Gnss {
 
   GnssSettings settings_;
   RandomStream noise_;
-  Eigen::Vector3d error_ = Eigen::Vector3d::Zero();  ///< correlated, of unit variance
+  Eigen::Vector3d error_ = Eigen::Vector3d::Zero();  ///< correlated error of unit variance
   Time open_since_{};
   bool was_open_ = true;
 };

@@ -13,22 +13,22 @@
 
 namespace patrol::sim {
 
-/// Counts both sprockets' turns. An edge that is missed is missed for good: counter and firmware are one.
+/// Hall counters of both sprockets. A missed edge is never recovered, because the firmware has no other counter.
 class HallSensors {
  public:
   /// `sprocket_joints`: left, right. Throws InputError when the model has no such joint.
   HallSensors(const HallSettings& settings, const mjModel& model, const std::vector<std::string>& sprocket_joints,
               std::uint64_t seed);
 
-  /// One reading a tick.
+  /// Takes the reading of one tick. Call at every tick.
   TrackTicks read(const mjData& data, Time now);
 
  private:
   struct Counter {
     int qpos;
-    std::int64_t edge = 0;    ///< the last that passed
-    std::int64_t count = 0;   ///< as counted
-    std::uint64_t passed = 0; ///< edges, both ways: the address of the next draw
+    std::int64_t edge = 0;    ///< last edge that passed
+    std::int64_t count = 0;   ///< counter value
+    std::uint64_t passed = 0; ///< passed edges in both directions; index of the next random number
   };
   std::int64_t advance(Counter& counter, std::uint64_t side, double angle_rad);
 

@@ -67,9 +67,9 @@ Imu ImuSensor::corrupt(const Eigen::Vector3d& rate_radps, const Eigen::Vector3d&
 }
 
 Imu ImuSensor::read(const mjModel& model, mjData& data, Time now, std::uint64_t tick) {
-  // With mj_rnePostConstraint, MuJoCo's accelerations hold gravity as an upward one: the specific force.
+  // After mj_rnePostConstraint, MuJoCo's accelerations include gravity as an upward acceleration: the specific force.
   mj_rnePostConstraint(&model, &data);
-  mjtNum velocity[6], acceleration[6];  // angular, linear; in the site's frame
+  mjtNum velocity[6], acceleration[6];  // angular, then linear part, in the site's frame
   mj_objectVelocity(&model, &data, mjOBJ_SITE, site_, velocity, 1);
   mj_objectAcceleration(&model, &data, mjOBJ_SITE, site_, acceleration, 1);
   return corrupt(Eigen::Vector3d(velocity), Eigen::Vector3d(acceleration + 3), now, tick);

@@ -10,19 +10,20 @@
 
 namespace patrol::sim {
 
-/// Reads specific force and rate at the site `imu` at every tick. The scale and the biases are drawn once per run.
+/// IMU model: specific force and angular rate at the site `imu`, read at every tick. Scale factors and initial biases
+/// are sampled once per run.
 class ImuSensor {
  public:
   ImuSensor(const ImuSettings& settings, const mjModel& model, std::uint64_t seed);
 
-  /// `tick` counts readings; the bias walks with it.
+  /// Takes reading number `tick`; the bias random walk advances with it.
   Imu read(const mjModel& model, mjData& data, Time now, std::uint64_t tick);
 
-  /// The same from given truth, in `imu`.
+  /// Returns the reading of a given ground truth, in `imu`.
   Imu corrupt(const Eigen::Vector3d& rate_radps, const Eigen::Vector3d& force_mps2, Time now, std::uint64_t tick);
 
  private:
-  /// One triad, gyroscope or accelerometer.
+  /// Triad of axes: gyroscope or accelerometer.
   struct Triad {
     RandomStream noise, walk;
     Eigen::Matrix3d distortion;  ///< scale and misalignment

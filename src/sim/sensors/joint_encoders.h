@@ -15,14 +15,14 @@ class JointEncoders {
  public:
   JointEncoders(const JointEncoderSettings& settings, const mjModel& model, const std::vector<std::string>& joint_names);
 
-  /// One reading a tick.
+  /// Takes the reading of one tick. Call at every tick.
   JointState read(const mjData& data, Time now);
 
  private:
   double step_rad_;
   double tick_s_;
   double blend_;
-  std::vector<int> qpos_, dof_;  ///< [joint]
+  std::vector<int> qpos_, dof_;  ///< indices in MuJoCo's state, [joint]
   JointState last_;
 };
 

@@ -14,13 +14,12 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Two echoes further apart than a pulse of 10 ns is long are told apart; nearer than this they are one
-// surface.
+// Returns separated by more than the length of a 10 ns pulse are distinct; below kLeastJump_m they are one surface.
 constexpr double kPulse_m = 1.5;
 constexpr double kLeastJump_m = 0.1;
 
-/// As `interpolate`; between poses as near as those of two ticks, by the chord instead of the arc (less than
-/// 1e-7 rad beside).
+/// Interpolates like `interpolate`. For poses as close as those of two ticks it uses the chord instead of the arc
+/// (error below 1e-7 rad).
 Pose3 move_between(const Pose3& a, const Pose3& b, double fraction) {
   const double cosine = a.rotation.dot(b.rotation);
   if (cosine < 0.9999) return interpolate(a, b, fraction);
@@ -59,8 +58,7 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3
   begin_revolution();
 }
 
-/// The beams of a revolution are spread over the part of it that the field of view takes; the last one ends
-/// it.
+/// The beams are distributed over the fraction of the revolution that the field of view covers; the last one ends it.
 Time Lidar::instant_of(std::int64_t beam) const {
   const std::int64_t revolution = beam / settings_.beams, index = beam % settings_.beams;
   const double revolution_ns = 1e9 / settings_.rate_hz;
@@ -139,7 +137,7 @@ void Lidar::fire(std::int64_t beam, const Pose3& T_world_lidar) {
   }
 }
 
-/// The whole life of one beam.
+/// Returns the reading of one beam with all error sources.
 Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose3& T_world_lidar,
                              const Eigen::Vector3d& direction, double& last_range_m) const {
   Eigen::Vector3d aimed = direction;
@@ -171,15 +169,14 @@ Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose
   return got;
 }
 
-/// A ray without width, and its echo.
+/// Returns the reading of an ideal ray without width.
 Lidar::Return Lidar::look(const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const {
   const Eigen::Vector3d ray = T_world_lidar.rotation * direction;
   const std::optional<RayHit> hit = scene_.cast(T_world_lidar.position, ray, settings_.range_max_m, mask_);
   return hit ? echo(*hit, ray, hit->distance_m) : Return{kInfinity, 0.0};
 }
 
-/// The mean over the beam's width, weighted by the light that comes back; of the surfaces within a pulse's
-/// length only.
+/// Returns the mean over the beam width, weighted by the returned light, of surfaces within one pulse length only.
 Lidar::Return Lidar::mix_over_width(const Pose3& T_world_lidar, const Eigen::Vector3d& direction,
                                     const Return& middle) const {
   constexpr int kRays = 4;
@@ -198,14 +195,13 @@ Lidar::Return Lidar::mix_over_width(const Pose3& T_world_lidar, const Eigen::Vec
   return light > 0.0 ? Return{light_range / light, light_intensity / light} : middle;
 }
 
-/// What comes back from a surface: nothing from glass met squarely off, from grazing or from dark and far
-/// ones.
+/// Returns the reading of a surface. Glass off its normal, grazing incidence, and dark distant surfaces return nothing.
 Lidar::Return Lidar::echo(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const {
   const double cosine = std::abs(hit.normal.dot(direction));
   const SurfaceOptics& surface = surfaces_[static_cast<std::size_t>(hit.geom)];
   if (surface.lets_through(cosine)) return {kInfinity, 0.0};
   if (cosine < std::cos(settings_.grazing_deg * kDegree)) return {kInfinity, 0.0};
-  // The echo falls with the square of the range; range_max is reached on white, dark_range on 10 %.
+  // The returned light falls with the square of the range. range_max_m is reached on white, dark_range_m on 10 %.
   const double reflectivity = std::max(0.02, static_cast<double>(surface.reflectivity));
   const double reach_m = std::min(settings_.range_max_m,
                                   settings_.dark_range_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1));

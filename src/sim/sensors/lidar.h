@@ -14,31 +14,29 @@
 
 namespace patrol::sim {
 
-/// Fires each beam at its own instant, from where the robot is then. Every imperfection draws from its own
-/// random stream, addressed by revolution and beam, so that one can be made ideal without changing the
-/// others.
+/// Lidar model. Fires each beam at its own instant from the robot's pose at that instant. Each error source has its own
+/// random stream, indexed by revolution and beam, so that one can be removed without changing the others.
 ///
-/// Where the range jumps by 0.1 to 1.5 m from one beam to the next, the light of the second is spread over
-/// both surfaces and returns a range in between (a mixed pixel); over a larger jump the receiver tells the
-/// two echoes apart and keeps that of the beam's axis. Not modelled: the beam's width anywhere else, multiple
-/// echoes, sunlight.
+/// Mixed pixels: if the range changes by 0.1 to 1.5 m between consecutive beams, the second beam is spread over both
+/// surfaces and returns an intermediate range. Over a larger change the receiver separates the two returns and keeps
+/// that of the beam axis. Not modeled: the beam width elsewhere, multiple returns, sunlight.
 class Lidar {
  public:
-  /// One ring gives scans, several give clouds. `name` names the random streams; `own_housing` is what the
-  /// beams start in. Dust takes from the reach and gives echoes of its own.
+  /// One ring yields scans, several yield clouds. `name` is the prefix of the random streams; `own_housing` is the
+  /// housing that contains the beam origin and is ignored. Dust reduces the range and causes false returns.
   Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3& T_body_lidar,
         RayMask own_housing, std::uint64_t seed, const std::string& name, const DustSettings& dust = {});
 
-  /// Fires the beams whose instants lie in (from, to]; the body moves evenly in between.
+  /// Fires the beams whose instants are in (from, to]; the body pose is interpolated in between.
   void advance(Time from, Time to, const Pose3& T_world_body_from, const Pose3& T_world_body_to);
 
-  /// Revolutions completed since the last call.
+  /// Removes and returns the revolutions completed since the last call.
   std::vector<LaserScan> take_scans() { return std::exchange(scans_, {}); }
   std::vector<PointCloud> take_clouds() { return std::exchange(clouds_, {}); }
 
  private:
   struct Return {
-    double range_m;  ///< REP 117
+    double range_m;  ///< range, REP 117
     double intensity;
   };
 
@@ -58,12 +56,12 @@ class Lidar {
   std::uint32_t mask_;
   DustSettings dust_;
   std::vector<SurfaceOptics> surfaces_;  ///< [geom] of the view model
-  double false_echoes_per_m_;  ///< of rain and dust
+  double false_echoes_per_m_;  ///< rate of false returns from rain and dust
   RandomStream range_noise_, angle_noise_, dropout_, rain_, rain_range_;
-  std::int64_t next_beam_ = 0;              ///< since the start
-  std::vector<Eigen::Vector2d> azimuth_;    ///< [beam]: cosine and sine
-  std::vector<Eigen::Vector2d> elevation_;  ///< [ring]: cosine and sine
-  std::vector<double> last_range_m_;        ///< [ring]: without noise
+  std::int64_t next_beam_ = 0;              ///< number of the next beam since the start
+  std::vector<Eigen::Vector2d> azimuth_;    ///< [beam], cosine and sine of the azimuth
+  std::vector<Eigen::Vector2d> elevation_;  ///< [ring], cosine and sine of the elevation
+  std::vector<double> last_range_m_;        ///< [ring], range of the last beam without noise
   LaserScan scan_;
   PointCloud cloud_;
   std::vector<LaserScan> scans_;

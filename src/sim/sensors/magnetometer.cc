@@ -68,9 +68,9 @@ Eigen::Vector3d Magnetometer::field_t(const mjData& data, const Eigen::Vector3d&
     const Eigen::Quaterniond rotation = rotation_of(data.xquat + 4 * sphere.body);
     const Eigen::Vector3d center = Eigen::Vector3d(data.xpos + 3 * sphere.body) + rotation * sphere.p_body;
     const Eigen::Vector3d offset = p_world - center;
-    const double distance_m = std::max(offset.norm(), sphere.radius_m);  // on the surface at most
+    const double distance_m = std::max(offset.norm(), sphere.radius_m);  // clamped to the surface of the sphere
     const Eigen::Vector3d direction = offset.normalized();
-    // With high permeability, mu0 / (4 pi) times the dipole moment is radius^3 times the field.
+    // At high permeability, mu0 / (4 pi) times the dipole moment is radius^3 times the field.
     const double ratio = std::pow(sphere.radius_m / distance_m, 3);
     field_t += ratio * (3.0 * direction.dot(geomagnetic_t_) * direction - geomagnetic_t_);
   }

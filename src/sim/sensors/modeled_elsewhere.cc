@@ -1,15 +1,15 @@
 #include "sim/sensors/sensor.h"
 
-/// Sensors that other parts of the simulation model, and that reach the stack by SensorSuite::add.
+/// Sensors that are modeled by other components and reach the stack through SensorSuite::add.
 namespace patrol::sim {
 
-/// Modeled by RemoteOperator.
+/// RemoteOperator models the teleoperation commands.
 template <>
 std::unique_ptr<Sensor> make_sensor<RemoteCommand>(const SensorContext&) {
   return nullptr;
 }
 
-/// Modeled by AntennaMount.
+/// AntennaMount models the antenna's servos.
 template <>
 std::unique_ptr<Sensor> make_sensor<AntennaState>(const SensorContext&) {
   return nullptr;

@@ -18,16 +18,17 @@ namespace {
 constexpr double kNoReturn = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kMask = kRayEverything & ~static_cast<std::uint32_t>(kRayScanner);
 
-/// A surface without an edge bends the ranges of neighbouring beams by less than this.
+/// Returns the range curvature above which neighboring beams are at an edge.
 double least_bend_m(double range_m) { return std::max(0.01, 0.003 * range_m); }
 
-/// By how much the middle of three ranges lies off the line of the others; 0 where one is none.
+/// Returns the deviation of the middle of three ranges from the mean of the others; 0 if one of them has no return.
 double bend_m(double before_m, double range_m, double after_m) {
   const double bend = std::abs(range_m - 0.5 * (before_m + after_m));
   return std::isfinite(bend) ? bend : 0.0;
 }
 
-/// Stream of one imperfection in one epoch: "scanner/range" for inspections, "scanner/reference/range" for references.
+/// Returns the random stream of one error source in one epoch: "scanner/range" for inspections,
+/// "scanner/reference/range" for references.
 RandomStream stream_of(const PanoramicScannerSettings& settings, std::uint64_t seed, std::string_view imperfection) {
   const std::string_view epoch = settings.epoch == "reference" ? "reference/" : "";
   return {seed, fmt::format("scanner/{}{}", epoch, imperfection)};
@@ -96,7 +97,7 @@ void PanoramicScanner::advance(Time from, Time to, const Pose3& T_world_body_fro
   }
 }
 
-/// In `scanner`. The errors are small.
+/// Returns the direction of a beam, in `scanner`; first order in the errors.
 Eigen::Vector3d PanoramicScanner::direction(int column, std::size_t row, double azimuth_error_rad, double elevation_error_rad) const {
   const auto pair = static_cast<std::size_t>(column) % azimuth_.size();
   const Eigen::Vector2d ahead = static_cast<std::size_t>(column) == pair ? azimuth_[pair] : Eigen::Vector2d(-azimuth_[pair]);
@@ -106,7 +107,8 @@ Eigen::Vector3d PanoramicScanner::direction(int column, std::size_t row, double 
   return (exact + azimuth_error_rad * aside + elevation_error_rad * up).normalized();
 }
 
-/// First every beam of the column by its axis alone, then those at edges over their width, then the instrument's own errors.
+/// Fires every beam of the column along its axis, averages beams at edges over their width, and adds the instrument
+/// errors.
 void PanoramicScanner::fire_column(int column, const Pose3& T_world_scanner) {
   const std::size_t rows = elevation_.size();
   const auto beam = [&](std::size_t row) { return static_cast<std::uint64_t>(column) * rows + row; };
@@ -134,7 +136,8 @@ void PanoramicScanner::fire_column(int column, const Pose3& T_world_scanner) {
   }
 }
 
-/// A ray without width: nothing comes back through glass, from grazing, and from dark and far surfaces.
+/// Returns the reading of an ideal ray without width. Glass, grazing incidence, and dark distant surfaces return
+/// nothing.
 PanoramicScanner::Echo PanoramicScanner::look(const Pose3& T_world_scanner, const Eigen::Vector3d& direction) const {
   const Eigen::Vector3d ray = T_world_scanner.rotation * direction;
   const std::optional<RayHit> hit = scene_.cast(T_world_scanner.position, ray, settings_.range_max_m, kMask);
@@ -149,7 +152,7 @@ PanoramicScanner::Echo PanoramicScanner::look(const Pose3& T_world_scanner, cons
   return {hit->distance_m, light};
 }
 
-/// The mean over the beam's width, as wide as it is at this range, weighted by the light that comes back.
+/// Returns the mean over the beam width at this range, weighted by the returned light.
 PanoramicScanner::Echo PanoramicScanner::mix_over_width(const Pose3& T_world_scanner, const Eigen::Vector3d& direction, double range_m) const {
   const double quarter_rad = (0.5 * settings_.beam_exit_m + settings_.beam_spread_rad * range_m) / (2.0 * range_m);
   const Eigen::Vector3d aside = direction.unitOrthogonal(), across = direction.cross(aside);

@@ -16,47 +16,53 @@
 
 namespace patrol::sim {
 
-/// Takes panoramic scans, one when asked. The head makes half a turn, and its mirror a column ahead and one behind at each step; each
-/// pair of columns is fired at its own instant, from where the robot is then. The instrument takes itself to stand still: it knows one
-/// tilt, that which its compensator read at the start, and if the robot moves, walls bend.
+/// Panoramic scanner, measuring on request.
 ///
-/// A surface's light is its reflectivity times the cosine of the incidence. Range noise follows the sheet: its six figures are met to
-/// its last digit by the variance noise^2 + grey_noise^2 (range / 10 m) (0.1 / light)^2. Every imperfection draws from its own random
-/// stream, addressed by epoch, scan and beam: a reference scan has independent noise even under an inspection's seed. Where the range jumps, a beam is spread over its width and returns the mean of what it meets,
-/// however far apart: the instrument measures the phase of its light. Not modelled: dust's own echoes, the compensator's limit of 2
-/// degrees, colour.
+/// The head makes half a revolution; at each step the mirror scans one column ahead and one behind. Each pair of
+/// columns is fired at its own instant from the robot's pose at that instant. The instrument assumes that it is
+/// stationary: it applies the tilt that its compensator measures at the start, so motion of the robot distorts the
+/// scan.
+///
+/// The light of a surface is its reflectivity times the cosine of incidence. The variance of the range noise is noise^2
+/// + grey_noise^2 (range / 10 m) (0.1 / light)^2; it reproduces all six values of the data sheet. Each error source has
+/// its own random stream, indexed by epoch, scan and beam. So a reference scan has independent noise even with the seed
+/// of an inspection.
+///
+/// At range discontinuities a beam is spread over its width and returns the mean range. The distance between the
+/// surfaces does not matter, because the instrument measures phase. Not modeled: false returns of dust, the
+/// compensator's limit of 2 degrees, color.
 class PanoramicScanner {
  public:
-  /// Dust takes from the light.
+  /// Dust reduces the light.
   PanoramicScanner(const PanoramicScannerSettings& settings, const LidarScene& scene, const Pose3& T_body_scanner, std::uint64_t seed,
                    const DustSettings& dust = {});
 
-  /// Starts a scan, the body being there; while one is under way nothing is started.
+  /// Starts a scan at the given body pose; does nothing during a scan.
   void begin(Time now, const Pose3& T_world_body);
   bool is_busy() const { return scan_.has_value(); }
 
-  /// Fires the columns whose instants lie in (from, to]; the body moves evenly in between.
+  /// Fires the columns whose instants are in (from, to]; the body pose is interpolated in between.
   void advance(Time from, Time to, const Pose3& T_world_body_from, const Pose3& T_world_body_to);
 
-  /// Scans completed since the last call.
+  /// Removes and returns the scans completed since the last call.
   std::vector<PanoramicScan> take_scans() { return std::exchange(scans_, {}); }
 
   int columns() const { return 2 * static_cast<int>(azimuth_.size()); }
   int rows() const { return static_cast<int>(elevation_.size()); }
 
  private:
-  /// What one beam sees.
+  /// Return of one beam.
   struct Echo {
-    double range_m;  ///< +Inf: nothing
+    double range_m;  ///< +Inf: no return
     double light;    ///< reflectivity times cosine
   };
   struct Scan {
     Time start;
-    std::uint64_t number;               ///< from 0
-    Eigen::Quaterniond R_level_scanner;  ///< as the compensator has it
+    std::uint64_t number;               ///< number of the scan, from 0
+    Eigen::Quaterniond R_level_scanner;  ///< attitude measured by the compensator
     double range_offset_m;
     int next_pair = 0;
-    std::array<std::array<std::vector<double>, 2>, 2> before_m;  ///< [ahead, behind][one, two columns ago][row]: ranges
+    std::array<std::array<std::vector<double>, 2>, 2> before_m;  ///< ranges, [ahead, behind][one, two columns ago][row]
     std::vector<ScannerPoint> points;
   };
 
@@ -73,8 +79,9 @@ class PanoramicScanner {
   DustSettings dust_;
   std::vector<SurfaceOptics> surfaces_;  ///< [geom] of the view model
   RandomStream range_noise_, range_offset_, angle_noise_, tilt_error_, dropout_;
-  std::vector<Eigen::Vector2d> azimuth_;    ///< [column ahead]: cosine and sine; that behind looks the other way
-  std::vector<Eigen::Vector2d> elevation_;  ///< [row]: cosine and sine, from below
+  std::vector<Eigen::Vector2d> azimuth_;    ///< [column ahead], cosine and sine; the column behind has the opposite
+                                            ///< direction
+  std::vector<Eigen::Vector2d> elevation_;  ///< [row], cosine and sine, from the lowest row
   std::uint64_t num_begun_ = 0;
   std::optional<Scan> scan_;
   std::vector<PanoramicScan> scans_;

@@ -18,7 +18,7 @@
 
 namespace patrol::sim {
 
-/// Everything from which a sensor is built. Only `scene` and `view` may be kept, by reference.
+/// Arguments for making a sensor. Sensors may keep references to `scene` and `view` only.
 struct SensorContext {
   const SensorSuiteSettings& settings;
   const RobotDescription& robot;
@@ -31,7 +31,7 @@ struct SensorContext {
   std::uint64_t seed;
 };
 
-/// Newest reading of each sensor that the firmware reads directly; empty where the robot has no such sensor.
+/// Newest reading of each sensor that the firmware reads directly; empty if the robot has no such sensor.
 struct NewestReadings {
   Imu imu;
   JointState joints;
@@ -39,48 +39,48 @@ struct NewestReadings {
   TrackTicks ticks;
 };
 
-/// State of the simulation at a tick, with kinematics, accelerations and the lidar scene of `now`.
+/// State of the simulation at a tick. Kinematics, accelerations and the lidar scene are those of `now`.
 struct SensorTick {
   const mjModel& physics;
   mjData& data;
   std::uint64_t count;  ///< ticks before this one
   Time now;
   Pose3 T_world_body;
-  Time last;                 ///< instant of the tick before; `now` at the first one
-  Pose3 T_world_body_last;  ///< at `last`
+  Time last;                 ///< instant of the previous tick; `now` at the first one
+  Pose3 T_world_body_last;  ///< body pose at `last`
   NewestReadings& newest;
-  PartClock& clock;  ///< for sensors whose computing time is reported by itself
+  PartClock& clock;  ///< timer of sensors that report their computing time separately
 
   bool is_first() const { return count == 0; }
 };
 
-/// One sensor of the robot.
+/// Interface of one sensor of the robot.
 class Sensor {
  public:
   virtual ~Sensor() = default;
 
-  /// Called once a tick; appends the readings that are complete to `readings`.
+  /// Appends the readings that are complete to `readings`. Called once per tick.
   virtual void step(const SensorTick& tick, std::vector<SensorMessage>& readings) = 0;
 
-  /// Passes on a command of the stack; `now` and the pose are of the newest tick.
+  /// Passes a command of the stack; `now` and the pose are of the newest tick.
   virtual void command(const InstrumentCommand&, Time /*now*/, const Pose3& /*T_world_body*/) {}
 
   /// Returns whether the sensor is taking a measurement for which the robot must stand still.
   virtual bool is_busy() const { return false; }
 };
 
-/// Instants of a constant rate, from time 0 on.
+/// Schedule of a constant rate, starting at time 0.
 class SensorSchedule {
  public:
   explicit SensorSchedule(double rate_hz) : rate_hz_(rate_hz) {}
 
-  /// Returns whether the next reading is due, and counts it.
+  /// Returns whether the next reading is due, and advances to the following one if so.
   bool is_due(Time now) {
     if (now < from_seconds(static_cast<double>(count_) / rate_hz_)) return false;
     ++count_;
     return true;
   }
-  /// Number of the reading that was due last, from 0.
+  /// Returns the number of the last reading that was due, from 0.
   std::uint64_t index() const { return count_ - 1; }
 
  private:
@@ -105,9 +105,9 @@ class PeriodicSensor : public Sensor {
   SensorSchedule schedule_;
 };
 
-/// Makes the sensor that publishes `Message`: null if the settings switch it off or the robot cannot carry it. The
-/// file of each sensor specializes it. Throws InputError when an enabled sensor has no frame on the robot, or lacks
-/// something in the world.
+/// Makes the sensor that publishes `Message`; null if the settings disable it or the robot cannot carry it. The source
+/// file of each sensor specializes it. Throws InputError when an enabled sensor has no frame on the robot or requires
+/// something that the world lacks.
 template <typename Message>
 std::unique_ptr<Sensor> make_sensor(const SensorContext& context);
 

@@ -21,28 +21,28 @@
 
 namespace patrol::sim {
 
-/// All sensors of the robot, made from the registry. A message is delivered its sensor's latency after the reading is
-/// complete, changed by the faults of the scenario.
+/// All sensors of the robot, made from the registry. A message is delivered after its sensor's latency; faults of the
+/// scenario change message and delivery.
 class SensorSuite {
  public:
   /// `view` must outlive the suite; `plume` is in world. Throws InputError when an enabled sensor has no frame on the
-  /// robot, or lacks something in the world; and when the depth camera is enabled and there is no
+  /// robot or requires something that the world lacks. Throws InputError also when the depth camera is enabled without
   /// `make_depth_imager`.
   SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
               const mjModel& view, const GasPlume& plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
               const DepthImagerFactory& make_depth_imager = {}, const Underground& underground = {});
 
-  /// Called once a tick, with kinematics and accelerations of `now` in `data`.
+  /// Steps all sensors. Called once per tick, with kinematics and accelerations of `now` in `data`.
   void step(const mjModel& physics, mjData& data, Time now);
 
-  /// Takes the reading of a sensor that another part of the simulation models: the remote control, the antenna's
-  /// servos.
+  /// Adds the reading of a sensor that another component models: teleoperation, servos of the antenna.
   template <IsSensorMessage Message>
   void add(const Message& reading) {
     deliver(reading.stamp, latency_s<Message>(settings_), reading);
   }
 
-  /// Passes a command of the stack to the instruments. The antenna itself is moved by the twin (sim/antenna_mount.h).
+  /// Passes a command of the stack to the instruments. The antenna itself is moved by AntennaMount
+  /// (sim/antenna_mount.h).
   void command(const InstrumentCommand& command);
   /// Returns whether an instrument is taking a measurement for which the robot must stand still.
   bool is_busy() const;
@@ -50,11 +50,11 @@ class SensorSuite {
   /// Removes and returns the messages due by `now`, in order of delivery.
   std::vector<SensorMessage> take_due(Time now) { return queue_.take_due(now); }
 
-  /// Readings of this tick for the firmware.
+  /// Returns the readings of this tick for the firmware.
   const NewestReadings& newest() const { return newest_; }
 
   const std::vector<FaultReport>& faults() const { return faults_.reports(); }
-  /// Computing time of the sensors that report it by themselves: "lidar", "depth_camera", "scanner".
+  /// Returns the computing time of the sensors that report it separately: "lidar", "depth_camera", "scanner".
   const PartClock& clock() const { return clock_; }
 
  private:
@@ -74,14 +74,14 @@ class SensorSuite {
   SensorSuiteSettings settings_;
   int body_;
   LidarScene scene_;
-  std::vector<Entry> sensors_;  ///< in the order of their steps
+  std::vector<Entry> sensors_;  ///< sensors in the order of their steps
   FaultInjector faults_;
   DeliveryQueue queue_;
   NewestReadings newest_;
   PartClock clock_;
   std::uint64_t tick_ = 0;
   std::optional<BodyState> last_body_;
-  std::vector<SensorMessage> readings_;  ///< of one step of one sensor
+  std::vector<SensorMessage> readings_;  ///< readings of one sensor in one step
 };
 
 }  // namespace patrol::sim

@@ -8,11 +8,11 @@ namespace patrol::sim {
 template <typename List>
 struct RegisteredSettings;
 
-/// Settings of all sensors of the registry, each as the member that its SensorTraits::Settings declares.
+/// Settings of all sensors of the registry, each as the member declared in its SensorTraits::Settings.
 template <typename... Messages>
 struct RegisteredSettings<SensorList<Messages...>> : SensorTraits<Messages>::Settings... {};
 
-/// Section `sensors` of a scenario.
+/// Settings of section `sensors` of a scenario.
 struct SensorSuiteSettings : RegisteredSettings<Sensors> {
   DustSettings dust;
 
@@ -27,7 +27,7 @@ struct SensorSuiteSettings : RegisteredSettings<Sensors> {
   }
 };
 
-/// Returns whether the settings switch the sensor on; true for sensors without such a switch.
+/// Returns whether the settings enable the sensor; true for sensors without such a setting.
 template <IsSensorMessage Message>
 bool is_enabled(const SensorSuiteSettings& settings) {
   if constexpr (HasSensorSettings<Message>) {

@@ -6,16 +6,17 @@
 
 namespace patrol::sim {
 
-/// What a geom does to a laser's light.
+/// Optical properties of a geom for laser light.
 struct SurfaceOptics {
-  float reflectivity;  ///< share that it throws back, 0 ... 1: the luminance of its colour (ITU-R BT.709)
-  bool is_glass;       ///< of a material whose name says so
+  float reflectivity;  ///< reflectivity, 0 ... 1: luminance of the color (ITU-R BT.709)
+  bool is_glass;       ///< true for geoms and materials with "glass" in the name
 
-  /// Glass returns the beam only within 5 degrees of its normal. `cosine` is that of the angle between the two.
+  /// Returns whether the beam passes through: glass returns it only within 5 degrees of its normal. `cosine` is that of
+  /// the angle of incidence.
   bool lets_through(double cosine) const { return is_glass && cosine < 0.996; }
 };
 
-/// [geom] of the view model.
+/// Returns the optical properties, [geom] of the view model.
 std::vector<SurfaceOptics> surface_optics(const mjModel& view);
 
 }  // namespace patrol::sim

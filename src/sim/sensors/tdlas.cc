@@ -18,7 +18,7 @@ GasReading Tdlas::read(const LidarScene& scene, const GasPlume& plume, const Pos
   const Eigen::Vector3d direction = T_world_tdlas.rotation * Eigen::Vector3d::UnitX();
   const std::optional<RayHit> hit = scene.cast(T_world_tdlas.position, direction, settings_.range_m, kRayScenery);
   GasReading reading{.stamp = now};
-  if (!hit) {  // no light comes back: no reading
+  if (!hit) {  // no backscattered light: no reading
     reading.path_length_m = std::numeric_limits<double>::infinity();
     return reading;
   }
@@ -29,7 +29,8 @@ GasReading Tdlas::read(const LidarScene& scene, const GasPlume& plume, const Pos
   if (settings_.resolution_ppm_m > 0.0) column = settings_.resolution_ppm_m * std::round(column / settings_.resolution_ppm_m);
   reading.column_ppm_m = std::clamp(column, 0.0, settings_.max_column_ppm_m);
   reading.path_length_m = length_m;
-  reading.mean_mg_m3 = reading.column_ppm_m / std::max(length_m, 0.1) * kMethaneDensity_kgpm3;  // ppm x kg/m3 = mg/m3
+  // ppm x kg/m3 = mg/m3
+  reading.mean_mg_m3 = reading.column_ppm_m / std::max(length_m, 0.1) * kMethaneDensity_kgpm3;
   return reading;
 }
 

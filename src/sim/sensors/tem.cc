@@ -27,7 +27,7 @@ TemWindow shifted(TemWindow window, double shift_s) {
   return window;
 }
 
-/// 1 at 10 us.
+/// Returns the decay of the steel response, normalized to 1 at 10 us.
 double steel_decay(double time_s) {
   struct Part {
     double share, tau_s;
@@ -132,7 +132,7 @@ class TemOnMount : public Sensor {
   bool is_busy() const override { return tem_.is_sounding(); }
 
  private:
-  int coil_;  ///< body of the link `tem`
+  int coil_;  ///< body id of the link `tem`
   Tem tem_;
 };
 

@@ -15,32 +15,35 @@
 
 namespace patrol::sim {
 
-/// The coil among rock and water. Bodies add up: that one screens another is left out. Steel is a sum of three exponential decays
-/// (15, 60, 250 us), near t^-1 in between, that changes with the coil's direction as a quadratic form of its axis; drawn for the run.
+/// TEM coil in conductive rock with water bodies.
 ///
-/// Not modelled: the tunnel's air, the receiver's low-pass (the instrument takes its delay out; what is left is the time shift), polarisation of
-/// the rock, mains and radio.
+/// The responses of the bodies are summed; mutual screening is neglected. The response of steel is a sum of three
+/// exponential decays (15, 60, 250 us), close to t^-1 in between. It depends on the coil direction as a quadratic form
+/// of its axis and is sampled once per run. Not modeled: the air of the tunnel, the receiver's low-pass filter (the
+/// instrument corrects its delay; the time shift is the residual), polarization of the rock, power lines and radio.
 class Tem {
  public:
-  /// Throws InputError for gates that are none.
+  /// Throws InputError for fewer than three gates.
   Tem(const TemSettings& settings, const RockSettings& rock, const std::vector<WaterBodySettings>& bodies, std::uint64_t seed);
 
-  /// Begins a sounding, unless one is under way.
+  /// Starts a sounding unless one is in progress.
   void start(Time now);
   bool is_sounding() const { return start_.has_value(); }
 
-  /// Once a tick, with the coil's true pose (its axis is x). Gives the sounding at its end.
+  /// Accumulates the ground-truth pose of the coil (its axis is x). Call once per tick. Returns the sounding when it is
+  /// complete.
   std::optional<TemSounding> step(const Pose3& T_world_tem, Time now);
 
-  /// Sounding number `count`, of a coil at `p_world` whose axis a has the mean outer product `axes` = <a a^T> over the stack.
+  /// Returns sounding number `count` of a coil at `p_world` whose axis a has the mean outer product `axes` = <a a^T>
+  /// over the stack.
   TemSounding sound(const Eigen::Vector3d& p_world, const Eigen::Matrix3d& axes, std::uint64_t count, Time end) const;
 
  private:
   TemSettings settings_;
   RockSettings rock_;
   std::vector<WaterBodySettings> bodies_;
-  TemWindow window_;  ///< as reported
-  TemGates gates_;    ///< as they really are, shifted
+  TemWindow window_;  ///< reported gates
+  TemGates gates_;    ///< actual gates, with the time shift
   double gain_ = 1.0, steel_rate_ = 0.0;
   Eigen::Matrix3d steel_form_ = Eigen::Matrix3d::Zero();
   RandomStream noise_, relative_noise_, current_;

@@ -18,10 +18,10 @@ namespace patrol::sim {
 namespace {
 
 constexpr double kNoEcho = std::numeric_limits<double>::infinity();
-constexpr double kBurst_m = 0.065;  // 16 waves of 8 mm, there and back
+constexpr double kBurst_m = 0.065;  // 16 waves of 8 mm, halved for the two-way path
 constexpr int kRays = 149;
 
-/// m/s, in dry air.
+/// Returns the speed of sound in dry air, m/s.
 double speed_of_sound(double temperature_c) { return 331.3 * std::sqrt(1.0 + temperature_c / 273.15); }
 
 std::vector<Pose3> transducers_of(const RobotDescription& robot) {
@@ -33,10 +33,11 @@ std::vector<Pose3> transducers_of(const RobotDescription& robot) {
   }
 }
 
-/// Evenly spread over a cone about x, on a spiral of golden angles: no two at the same height, however it is turned.
+/// Returns directions uniformly distributed over a cone about x, on a golden-angle spiral: no two have equal heights at
+/// any rotation.
 std::vector<Eigen::Vector3d> cone(double full_angle_rad) {
   const double golden_rad = std::numbers::pi * (3.0 - std::sqrt(5.0));
-  const double cap = 1.0 - std::cos(0.5 * full_angle_rad);  // of the unit sphere, along x
+  const double cap = 1.0 - std::cos(0.5 * full_angle_rad);  // height of the spherical cap along x
   std::vector<Eigen::Vector3d> rays;
   for (int i = 0; i < kRays; ++i) {
     const double x = 1.0 - cap * (i + 0.5) / kRays, aside = std::sqrt(1.0 - x * x), angle = i * golden_rad;
@@ -81,7 +82,7 @@ UltrasonicRing::UltrasonicRing(const UltrasonicSettings& settings, const LidarSc
   for (int geom = 0; geom < scene.model().ngeom; ++geom) is_rough_.push_back(is_rough(scene.model(), geom, settings.rough_names));
 }
 
-/// Of a ray that meets a surface of this geom at an angle to its normal of this cosine.
+/// Returns the echo strength of a ray with this cosine of incidence on a geom.
 double UltrasonicRing::strength(int geom, double cosine) const {
   if (is_rough_[static_cast<std::size_t>(geom)]) return settings_.rough_echo * cosine;
   return cosine >= std::cos(settings_.smooth_deg * kDegree) ? 1.0 : 0.0;
@@ -104,7 +105,7 @@ UltrasonicRing::Echo UltrasonicRing::listen(const Pose3& T_world_transducer, dou
   }
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.hit.distance_m < b.hit.distance_m; });
 
-  double sum = 0.0;  // of what comes back within the length of a pulse
+  double sum = 0.0;  // echo strength within one pulse length
   for (std::size_t first = 0, last = 0; last < parts.size(); ++last) {
     const RayHit& hit = parts[last].hit;
     sum += parts[last].strength;
@@ -118,8 +119,8 @@ UltrasonicRing::Echo UltrasonicRing::listen(const Pose3& T_world_transducer, dou
   return {.distance_m = kNoEcho};
 }
 
-/// What a transducer takes the echo of another's ping for: half its way. +Inf where it cannot hear it: from beyond twice its
-/// cone, or when the surface throws the sound elsewhere.
+/// Returns the range at which a transducer reports the echo of another's ping: half the path length. +Inf beyond twice
+/// the cone, or when the surface reflects the sound elsewhere.
 double UltrasonicRing::heard_of_other_m(const Echo& echo, const Pose3& T_world_other, const Pose3& T_world_transducer) const {
   if (!std::isfinite(echo.distance_m)) return kNoEcho;
   const Eigen::Vector3d way = T_world_transducer.position - echo.p_world;

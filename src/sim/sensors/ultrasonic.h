@@ -14,27 +14,30 @@
 
 namespace patrol::sim {
 
-/// The transducers `ultrasonic_0`, `ultrasonic_1` ... fire in turn. A ping is a bundle of rays over the cone, turned by chance
-/// about its axis. Each brings back a share of the sound: all from a smooth surface that it meets nearly squarely, nothing from
-/// one that it meets flatter, the cosine of the angle from a rough one. The reading is where as much as can be heard has come
-/// back within the length of a pulse: walls far off, a bar of 6 cm at a metre, not the ground that a level cone grazes.
+/// Ring of transducers `ultrasonic_0`, `ultrasonic_1` ... that fire in turn.
 ///
-/// Where several fire together, each may hear the nearest echo of another, half the way from that one to itself.
-/// Not modelled: the robot's own shapes (a ring is mounted to be free of them), echoes by way of two surfaces, dust (it is
-/// far smaller than the wave), the robot's way during a ping (2 cm at 1 m/s).
+/// A ping is a bundle of rays over the cone, rotated about its axis by a random angle. Echo strength per ray: 1 for a
+/// smooth surface up to `smooth_deg` of incidence, 0 beyond; `rough_echo` times the cosine of incidence for a rough
+/// surface. The reading is the distance at which the strength summed over one pulse length reaches `least_echo`. This
+/// detects distant walls and a bar of 6 cm at one meter, but not the ground that a level cone grazes.
+///
+/// Transducers that fire together may receive each other's nearest echo and report half the path length. Not modeled:
+/// the robot's own shapes (a ring is mounted clear of them), double reflections, dust (far smaller than the
+/// wavelength). Motion during a ping is neglected (2 cm at 1 m/s).
 class UltrasonicRing {
  public:
-  /// Throws InputError when the robot has no frame `ultrasonic_0`, or when slots are too short for the farthest echo.
+  /// Throws InputError when the robot has no frame `ultrasonic_0`, or when slots are too short for the echo from
+  /// maximum range.
   UltrasonicRing(const UltrasonicSettings& settings, const LidarScene& scene, const RobotDescription& robot, std::uint64_t seed);
 
-  /// Slot number `tick`: the readings of the transducers that fire in it.
+  /// Returns the readings of the transducers that fire in slot number `tick`.
   std::vector<UltrasonicRange> ping(const Pose3& T_world_body, Time now, std::uint64_t tick) const;
 
   std::size_t num_transducers() const { return T_body_transducer_.size(); }
 
  private:
   struct Echo {
-    double distance_m;  ///< +Inf if none is heard
+    double distance_m;  ///< distance of the echo; +Inf if none is detected
     Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     int geom = -1;
@@ -48,9 +51,9 @@ class UltrasonicRing {
   UltrasonicSettings settings_;
   const LidarScene& scene_;
   std::vector<Pose3> T_body_transducer_;
-  std::vector<Eigen::Vector3d> rays_;  ///< unit, in the transducer's frame
-  std::vector<bool> is_rough_;         ///< [geom]
-  double scale_;                       ///< of readings, by the air's temperature
+  std::vector<Eigen::Vector3d> rays_;  ///< unit vectors, in the transducer's frame
+  std::vector<bool> is_rough_;         ///< roughness, [geom]
+  double scale_;                       ///< scale factor of the readings due to air temperature
   RandomStream noise_, turn_, dropout_, crosstalk_;
 };
 

@@ -14,7 +14,7 @@
 namespace patrol::sim {
 namespace {
 
-/// The number in "uwb_anchor_<number>"; none for any other name.
+/// Returns the number in "uwb_anchor_<number>"; none for any other name.
 std::optional<int> anchor_number(const char* site) {
   constexpr std::string_view kPrefix = "uwb_anchor_";
   const std::string_view name = site == nullptr ? "" : site;
@@ -60,9 +60,9 @@ double uwb_range_bias_m(double distance_m) {
 
 bool is_uwb_path_blocked(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna,
                          const Eigen::Vector3d& p_world_anchor) {
-  constexpr double kHousing_m = 0.1;     // about antenna and anchor: what is nearer belongs to them
-  constexpr double kPathRadius_m = 0.1;  // halfway; thinner things are passed by diffraction
-  constexpr int kLines = 6;              // about the straight one
+  constexpr double kHousing_m = 0.1;     // radius of the housings of antenna and anchor; objects inside are ignored
+  constexpr double kPathRadius_m = 0.1;  // radius of the bundle halfway; thinner objects are passed by diffraction
+  constexpr int kLines = 6;              // lines around the direct one
   const Eigen::Vector3d way = p_world_anchor - p_world_antenna;
   if (way.norm() <= 2.0 * kHousing_m) return false;
   const Eigen::Vector3d along = way.normalized();
@@ -104,7 +104,7 @@ std::optional<UwbRange> Uwb::read(const LidarScene& scene, const Eigen::Vector3d
   if (anchor == nullptr) return std::nullopt;
   const auto index = static_cast<std::uint64_t>(anchor->number);
   const double distance_m = (anchor->p_world - p_world_antenna).norm();
-  // Answers thin out towards the end of the reach: assumed, with the fourth power of the distance.
+  // Assumption: the loss probability rises with the fourth power of the distance.
   const double loss = settings_.loss + (1.0 - settings_.loss) * std::pow(distance_m / settings_.range_max_m, 4.0);
   if (loss_.uniform(tick, index) < loss) return std::nullopt;
 

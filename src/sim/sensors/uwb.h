@@ -15,30 +15,30 @@
 
 namespace patrol::sim {
 
-/// A site `uwb_anchor_<number>` of the world.
+/// UWB anchor: a site `uwb_anchor_<number>` of the world.
 struct UwbAnchor {
   int number = 0;
-  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< position, m
 };
 
-/// In order of number; empty where the world has none.
+/// Returns the anchors sorted by number; empty if the world has none.
 std::vector<UwbAnchor> uwb_anchors(const mjModel& view);
 
-/// What an uncorrected DW1000 reads too much at a true distance, m: APS011 table 2 (500 MHz, 64 MHz pulse repetition) over
-/// the signal level that free space leaves of -41.3 dBm/MHz in channel 2.
+/// Returns the range bias of an uncorrected DW1000 at a distance, m. APS011 table 2 (500 MHz, 64 MHz pulse repetition)
+/// at the signal level after free-space loss, for -41.3 dBm/MHz in channel 2.
 double uwb_range_bias_m(double distance_m);
 
-/// The robot's antenna. Each poll asks one anchor and gives its range, unless that is lost.
+/// UWB antenna of the robot. Each poll addresses one anchor and returns its range unless it is lost.
 ///
-/// A path is blocked when most of seven lines through the middle of the first Fresnel zone are: a cable does not, a man, a
-/// pillar or the robot's own mast does. Not modelled: the signal's strength by the antennas' direction, interference by other
-/// tags, ranges through thin walls, and that excess and loss grow with what is in the way.
+/// A path is non-line-of-sight when most of seven lines through the center of the first Fresnel zone are blocked. A
+/// cable does not block it; a person, a pillar or the robot's own mast does. Not modeled: antenna patterns,
+/// interference by other tags, ranges through thin walls, and growth of NLOS bias and loss with the obstruction.
 class Uwb {
  public:
   /// Throws InputError when the world has no anchors.
   Uwb(const UwbSettings& settings, const mjModel& view, std::uint64_t seed);
 
-  /// Poll number `tick`; the next anchor within reach is asked.
+  /// Returns the range of poll number `tick`, which addresses the next anchor in range; none if it is lost.
   std::optional<UwbRange> read(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna, Time now,
                                std::uint64_t tick);
 
@@ -50,10 +50,10 @@ class Uwb {
   UwbSettings settings_;
   std::vector<UwbAnchor> anchors_;
   RandomStream noise_, loss_, blocked_loss_, excess_;
-  std::size_t turn_ = 0;  ///< index of the anchor to ask next
+  std::size_t turn_ = 0;  ///< index of the next anchor to poll
 };
 
-/// True when something stands between antenna and anchor.
+/// Returns whether the path between antenna and anchor is non-line-of-sight.
 bool is_uwb_path_blocked(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna,
                          const Eigen::Vector3d& p_world_anchor);
 

@@ -41,7 +41,8 @@ void GasInstrument::report(const InspectionContext& context) const {
                         column, p_map);
 }
 
-/// The beam does not tell where along it the gas is.
+/// Returns the point on the beam nearest to the target, because the reading does not constrain the gas position along
+/// the beam.
 Eigen::Vector2d GasInstrument::closest_point_on_beam(const Pose2& T_map_body) const {
   const auto to_map = [&](const Eigen::Vector3d& p_body) { return T_map_body * Eigen::Vector2d(p_body.head<2>()); };
   const Eigen::Vector2d from = to_map(T_body_gas_.position);

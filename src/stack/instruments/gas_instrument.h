@@ -6,7 +6,7 @@
 
 namespace patrol::stack {
 
-/// Rules of a methane measurement at a station (settings: gas_mission_settings.h).
+/// Parameters of a methane measurement at a station (settings: gas_mission_settings.h).
 struct GasRules {
   double settle_s = 0.5;
   double measure_s = 3.0;
@@ -15,14 +15,14 @@ struct GasRules {
   double alarm_column_ppm_m = 200.0;
 };
 
-/// Open-path methane meter: averages the columns that it reads while the robot stands, and raises the alarm where the
-/// mean exceeds the threshold by two standard errors.
+/// Open-path methane meter: averages the column readings while the robot stands, and raises the alarm if the mean
+/// exceeds the threshold by two standard errors.
 ///
 /// Events: gas_measured (value: column, ppm m), alarm (value: column; target: the point of the beam nearest to the
-/// inspected place).
+/// inspected object).
 class GasInstrument final : public Instrument {
  public:
-  /// `T_body_gas`: the methane meter, which looks along its x axis.
+  /// `T_body_gas`: pose of the methane meter, whose beam is along x.
   GasInstrument(const GasRules& rules, const Pose3& T_body_gas) : rules_(rules), T_body_gas_(T_body_gas) {}
 
   InstrumentKind kind() const override { return InstrumentKind::kGas; }

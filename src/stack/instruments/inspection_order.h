@@ -10,12 +10,13 @@ namespace patrol::stack {
 
 enum class InstrumentKind { kGas, kLining, kWater };
 
-/// Work that a mission asks of an instrument at the place where the robot stands.
+/// Inspection that a mission requests from an instrument at the present robot pose.
 struct InspectionOrder {
   InstrumentKind instrument = InstrumentKind::kGas;
-  std::string station;                                     ///< name under which the result is filed
+  std::string station;                                     ///< name under which the result is stored
   Time not_before{};                                       ///< readings with an earlier stamp are not used
-  Eigen::Vector2d p_map_target = Eigen::Vector2d::Zero();  ///< place that is inspected, m; used by the methane meter
+  Eigen::Vector2d p_map_target = Eigen::Vector2d::Zero();  ///< position of the inspected object, m; used by the methane
+                                                           ///< meter
 
   bool operator==(const InspectionOrder&) const = default;
 };
@@ -25,7 +26,7 @@ enum class InspectionFeedback { kUnderWay, kDone, kFailed };
 /// State of an order after a control period.
 struct InspectionProgress {
   InspectionFeedback feedback = InspectionFeedback::kUnderWay;
-  std::string failure = {};  ///< one sentence with kFailed, from instruments that know the reason; else empty
+  std::string failure = {};  ///< one sentence with kFailed if the instrument reports a reason; otherwise empty
 };
 
 }  // namespace patrol::stack

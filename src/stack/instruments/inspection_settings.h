@@ -6,11 +6,12 @@
 
 namespace patrol::stack {
 
-/// Settings of the tunnel's instruments: panoramic scanner, siren, and the evaluation of lining and water.
+/// Settings of the tunnel instruments: panoramic scanner, siren, and the evaluation of lining and water.
 struct InspectionSettings {
-  double scan_settle_s = 4.0;      ///< standing before a panoramic scan: a robot on springs rocks after it has stopped
-  double scan_patience_s = 600.0;  ///< a panoramic scan that has not come after this has failed
-  double siren_s = 10.0;           ///< how long it sounds at an alarm; the light stays on
+  double scan_settle_s = 4.0;      ///< settling time before a panoramic scan; a robot on springs oscillates after
+                                   ///< stopping
+  double scan_patience_s = 600.0;  ///< timeout of a panoramic scan
+  double siren_s = 10.0;           ///< duration of the siren at an alarm; the light stays on
   inspect::LiningSettings lining;
   inspect::WaterSettings water;
 

@@ -11,10 +11,10 @@
 
 namespace patrol::stack {
 
-/// Pose of the body at a recent instant; none outside of what odometry covers.
+/// Function that returns the body pose at a recent instant; none outside the time span of odometry.
 using PlaceLookup = std::function<std::optional<StandingPlace>(Time)>;
 
-/// State of the robot in a control period, and the outputs that an instrument may use.
+/// State of the robot in a control period, and the outputs available to an instrument.
 struct InspectionContext {
   Time now{};
   StandingPlace place;
@@ -34,19 +34,19 @@ struct InspectionContext {
   }
 };
 
-/// Interface of an inspection instrument with its evaluation: it carries out one order after another.
+/// Interface of an inspection instrument with its evaluation. It executes one order after another.
 class Instrument {
  public:
   virtual ~Instrument() = default;
 
   virtual InstrumentKind kind() const = 0;
-  /// Every sensor message; an instrument ignores the types that it does not use.
+  /// Processes a sensor message; called for all types, of which an instrument ignores those that it does not use.
   virtual void add(const SensorMessage& message, const PlaceLookup& place_at) = 0;
-  /// Starts an order and drops the one before.
+  /// Starts an order and discards the previous one.
   virtual void begin(const InspectionOrder& order, Time now) = 0;
-  /// Works on the order. Called once a control period while there is one.
+  /// Executes the order. Called once per control period while there is one.
   virtual InspectionProgress step(const InspectionContext& context) = 0;
-  /// Ends the order, done or not.
+  /// Ends the order, complete or not.
   virtual void end() {}
 };
 

@@ -8,13 +8,13 @@
 
 namespace patrol::stack {
 
-/// The robot's instruments; passes each order to the instrument of its kind.
+/// Instruments of the robot. Passes each order to the instrument of its kind.
 class InstrumentSet {
  public:
   InstrumentSet(std::vector<std::unique_ptr<Instrument>> instruments, double siren_s);
 
   void add(const SensorMessage& message, const PlaceLookup& place_at);
-  /// Works on `order` for a control period. A new order starts at once; none ends the one before. An order for an
+  /// Executes `order` for a control period. A new order starts at once; nullopt ends the previous one. An order for an
   /// instrument that the robot does not have fails.
   InspectionProgress step(Time now, const std::optional<InspectionOrder>& order, const StandingPlace& place,
                           StackOutput& output);

@@ -7,7 +7,7 @@
 namespace patrol::stack {
 namespace {
 
-/// "3:30" for 105 degrees, as on a clock face.
+/// Returns the clock position, e.g. "3:30" for 105 degrees.
 std::string clock_text(double clock_deg) {
   const int half_hours = static_cast<int>(std::lround(clock_deg / 15.0)) % 24;
   const int hour = half_hours / 2 == 0 ? 12 : half_hours / 2;

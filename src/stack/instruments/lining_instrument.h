@@ -15,10 +15,10 @@ namespace patrol::stack {
 /// Reference scans, by station.
 using LiningReferences = std::map<std::string, inspect::LiningReference>;
 
-/// 3D scanner: takes a panoramic scan of the tunnel's lining and compares it with the reference scan of the station.
+/// 3D scanner: takes a panoramic scan of the tunnel lining and compares it with the reference scan of the station.
 ///
-/// Events: scan_taken, reference_taken (there was no earlier scan of the station), lining_notice, lining_warning,
-/// lining_alarm (subject "ring_31", value m inwards), lining_unmoved.
+/// Events: scan_taken, reference_taken (no earlier scan of the station), lining_notice, lining_warning, lining_alarm
+/// (subject "ring_31", value m inward), lining_unmoved.
 class LiningInstrument final : public Instrument {
  public:
   LiningInstrument(const InspectionSettings& settings, const TunnelLining& lining_in_map, const Pose3& T_body_scanner,
@@ -41,7 +41,7 @@ class LiningInstrument final : public Instrument {
   std::string station_;
   Time began_{};
   bool is_active_ = false;
-  bool has_asked_ = false;  ///< for the scan
+  bool has_asked_ = false;  ///< true: the scan has been requested
   std::optional<std::pair<PanoramicScan, StandingPlace>> new_scan_;
 };
 

@@ -6,13 +6,13 @@
 
 namespace patrol::stack {
 
-/// Warning light and siren. The light stays on from the first warning; the siren sounds for a time at every alarm.
+/// Warning light and siren. The light stays on from the first warning; the siren sounds for `siren_s` at every alarm.
 class WarningLight {
  public:
   explicit WarningLight(double siren_s) : siren_s_(siren_s) {}
 
   void warn(Time now, WarningLevel level, StackOutput& output);
-  /// Switches the siren off when its time is over. Call once a control period.
+  /// Switches the siren off after its duration. Call once per control period.
   void step(Time now, StackOutput& output);
 
  private:

@@ -35,7 +35,7 @@ InspectionProgress WaterInstrument::step(const InspectionContext& context) {
 
 WaterResult WaterInstrument::estimate(const InspectionContext& context) const {
   const StandingPlace& place = context.place;
-  AntennaGeometry antenna = geometry_;  // as tilted as the robot stands
+  AntennaGeometry antenna = geometry_;  // antenna with the tilt of the standing robot
   antenna.T_body_mount = Pose3{Eigen::Vector3d::Zero(), place.T_level_body.rotation} * antenna.T_body_mount;
   WaterResult result =
       inversion_.invert(sounding_->soundings(), antenna, place.T_map_body, sounding_->antenna_error_deg(), seed_);

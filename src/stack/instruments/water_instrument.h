@@ -11,9 +11,10 @@
 
 namespace patrol::stack {
 
-/// Transient-electromagnetic water detector: sounds in a series of antenna poses and estimates a body of water ahead.
+/// Transient-electromagnetic water detector: takes soundings at a series of antenna poses and estimates a body of water
+/// ahead.
 ///
-/// Events: water_warning, water_alarm (value: m to it), no_water.
+/// Events: water_notice, water_warning, water_alarm (value: distance, m), no_water.
 class WaterInstrument final : public Instrument {
  public:
   WaterInstrument(const inspect::WaterSettings& settings, const AntennaGeometry& antenna, std::uint64_t seed);

@@ -8,10 +8,10 @@
 
 namespace patrol::stack {
 
-/// Monte Carlo localization on a map that does not change.
+/// Monte Carlo localization on a fixed map.
 class KnownMapLocalizer final : public Localizer {
  public:
-  /// `anchors_in_map` with heights above the body's origin.
+  /// `anchors_in_map`: heights are relative to the body's origin.
   KnownMapLocalizer(const localize::MonteCarloSettings& settings, OccupancyGrid map,
                     const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb, std::uint64_t seed);
 
@@ -29,7 +29,7 @@ class KnownMapLocalizer final : public Localizer {
  private:
   OccupancyGrid map_;
   localize::MonteCarloLocalizer localizer_;
-  LocalizationTrust trust_{.trust = 1.0};  ///< of the newest scan
+  LocalizationTrust trust_{.trust = 1.0};  ///< confidence at the newest scan
 };
 
 }  // namespace patrol::stack

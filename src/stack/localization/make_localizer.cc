@@ -18,7 +18,7 @@ std::optional<Pose3> antenna_of(const RobotDescription& robot) {
   return frame == robot.T_body_sensor.end() ? std::nullopt : std::optional(frame->second);
 }
 
-/// Monte Carlo localization counts heights from the body's origin.
+/// Returns the anchors with heights relative to the body's origin, as Monte Carlo localization expects them.
 std::vector<UwbAnchor> anchors_above_body(std::vector<UwbAnchor> anchors, double height_above_ground_m) {
   for (UwbAnchor& anchor : anchors) anchor.p_m.z() -= height_above_ground_m;
   return anchors;

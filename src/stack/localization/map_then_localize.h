@@ -7,12 +7,12 @@
 
 namespace patrol::stack {
 
-/// SLAM until the map is finished, Monte Carlo localization on that map from then on.
+/// SLAM until the map is complete, then Monte Carlo localization on that map.
 class MapThenLocalize final : public Localizer {
  public:
   using OnMap = std::function<std::unique_ptr<Localizer>(OccupancyGrid)>;
 
-  /// `on_map` makes the localizer for the finished map.
+  /// `on_map` makes the localizer for the complete map.
   MapThenLocalize(std::unique_ptr<Localizer> slam, OnMap on_map);
 
   void add(const RangeWithOdometry& range) override { current_->add(range); }

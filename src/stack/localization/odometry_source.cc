@@ -10,7 +10,7 @@
 namespace patrol::stack {
 namespace {
 
-/// Odometry by IMU, joint encoders and foot forces.
+/// Odometry from IMU, joint encoders and foot forces.
 class LeggedOdometry final : public OdometrySource {
  public:
   LeggedOdometry(const RobotDescription& robot, const StackSettings& settings) : estimator_(robot, settings.odometry) {}
@@ -23,7 +23,7 @@ class LeggedOdometry final : public OdometrySource {
   std::optional<OdometryEstimate> estimate() const override { return estimator_.estimate(); }
   std::optional<Pose3> T_odom_body_at(Time stamp) const override { return estimator_.T_odom_body_at(stamp); }
   double height_above_ground_m() const override { return estimator_.height_above_ground_m(); }
-  /// By the drift that the pose in map assumes between two corrections.
+  /// Uses the drift that the pose in map assumes between two corrections.
   Eigen::Vector3d twist_std() const override {
     const localize::OdometryDrift drift;
     const std::optional<OdometryEstimate> now = estimator_.estimate();
@@ -38,7 +38,7 @@ class LeggedOdometry final : public OdometrySource {
   localize::BodyEstimator estimator_;
 };
 
-/// Odometry by IMU and the counters of the tracks.
+/// Odometry from IMU and the Hall counters of the tracks.
 class TrackedOdometry final : public OdometrySource {
  public:
   TrackedOdometry(const RobotDescription& robot, const StackSettings& settings)

@@ -17,20 +17,19 @@ class OdometrySource {
  public:
   virtual ~OdometrySource() = default;
 
-  /// Every sensor message; a source ignores the types that it does not use.
+  /// Processes a sensor message; called for all types, of which a source ignores those that it does not use.
   virtual void add(const SensorMessage& message) = 0;
-  /// Newest estimate; none before the source has settled.
+  /// Returns the newest estimate; none before the source has settled.
   virtual std::optional<OdometryEstimate> estimate() const = 0;
-  /// Pose at an instant of the last seconds, or slightly after the newest reading; none outside of that.
+  /// Returns the pose at an instant of the last seconds, or slightly after the newest reading; none outside that span.
   virtual std::optional<Pose3> T_odom_body_at(Time stamp) const = 0;
-  /// Height of the body's origin above the ground, m.
+  /// Returns the height of the body's origin above the ground, m.
   virtual double height_above_ground_m() const = 0;
-  /// Standard deviation of the systematic errors of the velocity, in body: ahead m/s, to the left m/s, yaw rate rad/s.
+  /// Returns the standard deviation of the systematic velocity errors, in body: forward m/s, left m/s, yaw rate rad/s.
   virtual Eigen::Vector3d twist_std() const = 0;
 };
 
-/// Makes the source that `settings.odometry_source` names. Throws InputError if the robot does not have what the source
-/// needs.
+/// Makes the source named by `settings.odometry_source`. Throws InputError if the robot lacks what the source needs.
 std::unique_ptr<OdometrySource> make_odometry_source(const StackSettings& settings, const RobotDescription& robot);
 
 }  // namespace patrol::stack

@@ -5,7 +5,7 @@
 namespace patrol::stack {
 namespace {
 
-// Accuracy with which a robot stands at its post, or where it was put down.
+// Accuracy of the pose of a robot that stands at its charging post or has been placed by hand.
 constexpr double kSurveyedPosition_m = 0.03;
 constexpr double kSurveyedYaw_rad = 0.02;
 
@@ -62,8 +62,7 @@ ScanPose PosePipeline::localize(const LevelScan& scan, StackOutput& output) {
   return {.T_odom_body = T_odom_body, .T_map_body = tracker_.at(scan.stamp, T_odom_body).T_map_body};
 }
 
-/// Begins where the robot first knows its pose; the estimates are published from the first scan on, as the other poses
-/// are.
+/// Starts at the first known pose. Publishes from the first scan on, like the other poses.
 void PosePipeline::publish_range_pose(const OdometryEstimate& odometry, const PoseEstimate& pose, StackOutput& output) {
   if (!range_pose_ || !range_pose_->has_anchors()) return;
   if (!range_pose_->has_started()) {

@@ -23,30 +23,30 @@ struct ScanPose {
   Pose2 T_map_body;
 };
 
-/// Odometry source, scan leveling and localizer in series: sensor messages to the pose in `map`, and the map.
+/// Odometry source, scan leveling and localizer in series: converts sensor messages to the pose in `map` and the map.
 class PosePipeline {
  public:
-  /// Covariance of a surveyed pose, at which the robot has been placed.
+  /// Returns the covariance of a surveyed pose at which the robot has been placed.
   static Eigen::Matrix3d surveyed_covariance();
 
-  /// `start.height_above_ground_m` is taken from the odometry source. Throws InputError when settings, robot and map do
-  /// not go together.
+  /// `start.height_above_ground_m` is taken from the odometry source. Throws InputError when settings, robot and map
+  /// are inconsistent.
   PosePipeline(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
                LocalizerStart start, std::uint64_t seed);
 
-  /// Every sensor message but the scans, which `level` and `localize` process.
+  /// Processes a sensor message other than a scan; `level` and `localize` process scans.
   void add(const SensorMessage& message, StackOutput& output);
-  /// Newest odometry. Call once a tick: the first estimate starts the time that odometry gets to settle.
+  /// Returns the newest odometry. Call once per tick: the first estimate starts the settling time of odometry.
   std::optional<OdometryEstimate> update_odometry();
-  /// None before odometry has settled: the first scan makes the map's origin.
+  /// Returns the level scan; none before odometry has settled, because the first scan defines the map's origin.
   std::optional<LevelScan> level(const LaserScan& scan, StackOutput& output) const;
   /// Corrects the pose by a scan and publishes the estimates.
   ScanPose localize(const LevelScan& scan, StackOutput& output);
-  /// Publishes the pose by odometry and UWB ranges alone, if the robot and the site have what it needs.
+  /// Publishes the pose from odometry and UWB ranges alone, if robot and site have UWB.
   void publish_range_pose(const OdometryEstimate& odometry, const PoseEstimate& pose, StackOutput& output);
 
   PoseEstimate pose_at(Time stamp, const Pose2& T_odom_body) const { return tracker_.at(stamp, T_odom_body); }
-  /// None outside of the time that odometry covers.
+  /// Returns the body pose at an instant; none outside the time span of odometry.
   std::optional<StandingPlace> place_at(Time stamp) const;
   OccupancyGrid map() { return localizer_->map(); }
   bool is_mapping() const { return localizer_->is_mapping(); }
@@ -56,7 +56,7 @@ class PosePipeline {
   void start_anywhere() { localizer_->start_anywhere(); }
   /// Starts at the surveyed start, the origin of map, before the robot has moved.
   void start_at_survey() { localizer_->start_at(Pose2{}, surveyed_covariance()); }
-  /// Starts again at a surveyed pose; every part forgets the pose before.
+  /// Restarts at a surveyed pose; every component discards its previous pose.
   void restart_at(const Pose2& T_map_body, const OdometryEstimate& odometry);
 
  private:
@@ -67,7 +67,7 @@ class PosePipeline {
   std::unique_ptr<OdometrySource> odometry_;
   localize::ScanLeveler leveler_;
   std::unique_ptr<Localizer> localizer_;
-  std::optional<RangePoseTracker> range_pose_;  ///< with a robot that has an antenna
+  std::optional<RangePoseTracker> range_pose_;  ///< present for a robot with a UWB antenna
   localize::MapPoseTracker tracker_;
   std::optional<Time> first_odometry_;
 };

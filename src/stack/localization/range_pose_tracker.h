@@ -9,7 +9,8 @@
 
 namespace patrol::stack {
 
-/// Pose by odometry and UWB ranges alone, from the first known pose on: a second estimate that decides nothing.
+/// Pose from odometry and UWB ranges alone, from the first known pose on. Independent estimate that does not influence
+/// the robot.
 class RangePoseTracker {
  public:
   RangePoseTracker(const localize::RangeFilterSettings& settings, const std::vector<UwbAnchor>& anchors_in_map,

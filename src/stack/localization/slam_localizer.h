@@ -11,10 +11,10 @@
 
 namespace patrol::stack {
 
-/// Localization in the map that is being made.
+/// Localization in the map that SLAM is building.
 class SlamLocalizer final : public Localizer {
  public:
-  /// `T_body_uwb`: the antenna; none for a robot without one, which ignores ranges.
+  /// `T_body_uwb`: pose of the UWB antenna; none for a robot without one, which ignores ranges.
   SlamLocalizer(std::unique_ptr<slam::Mapper> mapper, std::vector<UwbAnchor> anchors_in_map,
                 const std::optional<Pose3>& T_body_uwb);
 

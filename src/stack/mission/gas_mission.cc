@@ -42,7 +42,7 @@ MissionOutput GasMission::step(Time now, const MissionInput& input) {
   return output;
 }
 
-/// While measuring, the goal stays: the robot holds its place.
+/// Keeps the goal while measuring, so that the robot holds its pose.
 Task GasMission::task() const {
   Task task;
   if (phase_ == Phase::kDriving || phase_ == Phase::kMeasuring) {
@@ -75,7 +75,7 @@ void GasMission::wait(MissionOutput& output) {
 }
 
 void GasMission::drive(NavigationFeedback feedback, MissionOutput& output) {
-  if (now_ == phase_start_) return;  // the feedback is about the goal before
+  if (now_ == phase_start_) return;  // the feedback is for the previous goal
   if (feedback == NavigationFeedback::kFailed) {
     ++num_failed_;
     output.events.push_back(event(EventKind::kStationFailed, station().name, fmt::format("No way to {}.", station().name)));

@@ -16,15 +16,17 @@
 namespace patrol::stack {
 
 struct GasMissionSettings {
-  std::string order = "given";        ///< of the stations; or "best": the soonest done, by priorities and windows
-  double expected_speed_mps = 0.7;    ///< on the way, for that
-  double start_wait_s = 4.0;          ///< standing still at first: sensors settle, their biases are learnt
-  double settle_s = 0.5;              ///< after arriving, before the instrument is believed
-  double measure_s = 3.0;             ///< of readings at each station
-  double max_measure_s = 8.0;         ///< then a station without enough readings is "not measured"
+  std::string order = "given";        ///< station order; "given" or "best": earliest completion subject to priorities
+                                      ///< and time windows
+  double expected_speed_mps = 0.7;    ///< travel speed assumed for the order
+  double start_wait_s = 4.0;          ///< initial standing time, for sensors to settle and biases to be estimated
+  double settle_s = 0.5;              ///< settling time after arrival, before readings are used
+  double measure_s = 3.0;             ///< duration of the readings at each station
+  double max_measure_s = 8.0;         ///< timeout; a station without enough readings by then is "not measured"
   int min_readings = 10;
-  double alarm_column_ppm_m = 200.0;  ///< methane beyond it is a leak: a hundred metres of clean air
-  double position_tol_m = 0.08;       ///< at a station; never more than the route's own accuracy asks
+  double alarm_column_ppm_m = 200.0;  ///< alarm threshold, equal to the column over approximately a hundred meters of
+                                      ///< clean air
+  double position_tol_m = 0.08;       ///< tolerance at a station; the route's own accuracy applies if tighter
   double yaw_tol_rad = 0.06;
 
   template <typename Self, typename Visitor>
@@ -42,19 +44,20 @@ struct GasMissionSettings {
   }
 };
 
-/// Rules of the measurement at a station.
+/// Returns the parameters of the measurement at a station.
 GasRules gas_rules(const GasMissionSettings& settings);
 
-/// Visits the stations of a route one after another. At a station of type "inspect" the robot stands and measures methane
-/// (gas_instrument.h). A station that cannot be reached or measured is reported and left out. Work at a station with a window waits until
-/// the window opens.
+/// Mission that visits the stations of a route in order.
 ///
-/// Events: mission_started (names the stations in their order), station_reached, station_late (value: seconds), station_failed,
-/// mission_completed (every station was done), mission_failed.
+/// At a station of type "inspect" the robot stands and measures methane (gas_instrument.h). A station that cannot be
+/// reached or measured is reported and skipped. Work at a station with a time window waits until the window opens.
+///
+/// Events: mission_started (names the stations in order), station_reached, station_late (value: seconds),
+/// station_failed, mission_completed (every station was done), mission_failed.
 class GasMission final : public Mission {
  public:
-  /// `route_in_map`: its stations in their order. `about_order`: a sentence for mission_started. Throws InputError if a setting breaks its
-  /// rule or the route has no station.
+  /// `route_in_map`: route with its stations in order. `about_order`: a sentence for mission_started. Throws InputError
+  /// if a setting is out of range or the route has no station.
   GasMission(const GasMissionSettings& settings, Route route_in_map, std::string about_order = "");
 
   MissionOutput step(Time now, const MissionInput& input) override;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kFarthestGoal_m = 1000.0;
 
-/// Whether p lies on the map; in numbers, as a cell of a place far off is none.
+/// Returns whether p is inside the map. Computed in real numbers, because the cell index of a distant position
+/// overflows.
 bool holds(const GridGeometry& map, const Eigen::Vector2d& p_map) {
   const Eigen::Array2d along = p_map - map.origin_m;
   const Eigen::Array2d size = map.resolution_m * Eigen::Array2d(map.width, map.height);

@@ -10,16 +10,16 @@
 namespace patrol::stack {
 namespace {
 
-constexpr double kMargin_m = 10.0;  ///< of what is looked at around the stations
+constexpr double kMargin_m = 10.0;  ///< margin of the map around the stations
 
-/// The robot's start, then the stations.
+/// Returns the robot's start, then the stations.
 std::vector<Eigen::Vector2d> places_of(const std::vector<Station>& stations) {
   std::vector<Eigen::Vector2d> places{Eigen::Vector2d::Zero()};
   for (const Station& station : stations) places.push_back(station.T_route_body.position());
   return places;
 }
 
-/// [from][to], m; infinite where there is no way.
+/// Returns the path lengths, [from][to], m; infinite if there is no path.
 std::vector<std::vector<double>> lengths_between(const std::vector<Eigen::Vector2d>& places, const plan::Costmap& costmap, plan::GlobalPlanner& planner) {
   std::vector<std::vector<double>> lengths(places.size(), std::vector<double>(places.size(), 0.0));
   for (std::size_t i = 0; i < places.size(); ++i) {

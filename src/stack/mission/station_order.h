@@ -13,12 +13,15 @@ namespace patrol::stack {
 
 struct StationOrder {
   std::vector<Station> stations;
-  std::string text;  ///< one sentence: what is expected of it, and how far it may be from the best
+  std::string text;  ///< one sentence: expected result, and bound on its distance from the optimum
 };
 
-/// The order in which a robot at map's origin is soonest done with a route's stations (plan/routes/tour_order.h): those of a lower priority before all others,
-/// windows kept if they can be, home at the end. Ways are planned as the navigator plans them, in a world of which only the survey's keep-out lines are
-/// known; the robot does what it can at the mission's expected speed. The given order if one station cannot be reached.
+/// Returns the order in which a robot at map's origin completes the stations of a route earliest
+/// (plan/routes/tour_order.h).
+///
+/// Stations of a lower priority value precede all others, time windows are respected if possible, and the route ends at
+/// home. Paths are planned like the navigator's, on a map with the survey's keep-out lines only, at the mission's
+/// expected speed. Returns the given order if a station cannot be reached.
 StationOrder order_stations(const Route& route_in_map, const RobotDescription& robot, const plan::NavigatorSettings& navigation, const GasMissionSettings& mission,
                             std::uint64_t seed);
 

@@ -7,13 +7,13 @@
 
 namespace patrol::stack {
 
-/// Motions that a mission can ask for. kNavigate without a goal is kStand.
+/// Motion that a mission can request. kNavigate without a goal is kStand.
 enum class Motion { kStand, kFollowRemote, kNavigate, kUndock, kDock };
 
-/// What a mission asks of the robot in a control period: a motion, and work of an instrument meanwhile.
+/// Request of a mission in a control period: a motion, and optionally an inspection at the same time.
 struct Task {
   Motion motion = Motion::kStand;
-  std::optional<NavigationGoal> goal;  ///< with kNavigate
+  std::optional<NavigationGoal> goal;  ///< goal of kNavigate
   std::optional<InspectionOrder> inspection;
 };
 

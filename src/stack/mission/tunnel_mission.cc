@@ -79,7 +79,7 @@ Task TunnelMission::task() const {
   return task;
 }
 
-/// True while the robot stands because it does not know where it is.
+/// Returns whether the robot stands still because localization is lost.
 bool TunnelMission::watch_localization(const MissionInput& input, MissionOutput& output) {
   const bool needs_place = phase_ == Phase::kDriving || phase_ == Phase::kStanding || phase_ == Phase::kDocking;
   if (!input.is_lost || !needs_place) {
@@ -128,7 +128,7 @@ void TunnelMission::undock(const MissionInput& input) {
 }
 
 void TunnelMission::drive(const MissionInput& input, MissionOutput& output) {
-  if (now_ == phase_start_) return;  // the feedback is about the goal before
+  if (now_ == phase_start_) return;  // the feedback is for the previous goal
   if (input.navigation == NavigationFeedback::kFailed) {
     ++num_failed_;
     output.events.push_back(event(EventKind::kGoalFailed, goal_name(), fmt::format("No way to {}.", goal_name()), navigation_));

@@ -14,19 +14,23 @@
 namespace patrol::stack {
 
 struct TunnelMissionSettings {
-  int navigations = 10;           ///< times that the goals are driven to, each from a restart of the localisation
-  bool starts_docked = true;      ///< otherwise the robot does not know where it is, and localises from scratch
-  bool starts_at_survey = false;  ///< a robot without a post, at the surveyed start: localizes from there, and goes on between navigations
-  bool docks = true;              ///< after the mapping drive and each navigation
-  double start_wait_s = 4.0;      ///< standing still at first: sensors settle, their biases are learnt
-  double start_look_s = 1.5;      ///< of that, at least so long from the first step on: the map's first scan is taken standing
-  double stand_s = 1.0;           ///< at a goal, before it is reported
-  double position_tol_m = 0.03;   ///< at a goal; never more than its own accuracy asks
+  int navigations = 10;           ///< number of runs to all goals, each after a restart of the localization
+  bool starts_docked = true;      ///< false: the initial pose is unknown, and the robot localizes globally
+  bool starts_at_survey = false;  ///< true: a robot without a post starts at the surveyed start, localizes from there,
+                                  ///< and continues between runs without a restart
+  bool docks = true;              ///< true: dock after the mapping drive and after each run
+  double start_wait_s = 4.0;      ///< initial standing time, for sensors to settle and biases to be estimated
+  double start_look_s = 1.5;      ///< minimum of the initial standing time after the first step; the map's first scan
+                                  ///< is taken at rest
+  double stand_s = 1.0;           ///< standing time at a goal before it is reported
+  double position_tol_m = 0.03;   ///< tolerance at a goal; the goal's own accuracy applies if tighter
   double yaw_tol_rad = 0.017;
-  double remote_silence_s = 2.0;  ///< without a command the remote control counts as switched off
-  double lost_patience_s = 30.0;  ///< standing still, not knowing where it is, before it says that it cannot tell
-  std::string mark_types = "";    ///< of the goals marked on the mapping drive, in their order (core/route.h); N for the rest
-  double driver_patience_s = 120.0;  ///< at a goal of type R: without a command so long, it goes on by itself
+  double remote_silence_s = 2.0;  ///< timeout after which the teleoperation counts as switched off
+  double lost_patience_s = 30.0;  ///< relocalization timeout; the robot stands still meanwhile
+  std::string mark_types = "";    ///< types of the goals saved on the mapping drive, in order (core/route.h); N for the
+                                  ///< rest
+  double driver_patience_s = 120.0;  ///< timeout for teleoperation commands at a goal of type R; the robot then
+                                     ///< continues autonomously
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -45,24 +49,29 @@ struct TunnelMissionSettings {
     visit("driver_patience_s", self.driver_patience_s, between(1.0, 3600.0));
   }
 
-  /// Type of the goal of that index, from 0. Throws InputError when `mark_types` holds another letter than those of `kGoalTypes`.
+  /// Returns the type of the goal with this index, from 0. Throws InputError when `mark_types` contains a letter that
+  /// is not in `kGoalTypes`.
   GoalType type_of_mark(std::size_t index) const;
 };
 
-/// Paper 004's experiment (section 4.2): a drive by remote control makes the map and marks the goals; then, again and again, the robot
-/// restarts at its post, drives to every goal, stands there, and comes back. Without a remote control the map and the goals are given.
+/// Mission after the experiment of [Liu21, section 4.2].
 ///
-/// At goals of type D it scans the lining. At one of type R it waits for a person, who drives it on (over the trestle bridge, say),
-/// marks where it shall sound for water, drives it back and hands over again: it goes on by itself from there. (On a tour that makes its own
-/// map the person has been at the mapping drive, and R is as good as N.)
+/// A teleoperated drive makes the map and saves the goals. Then the robot repeatedly restarts at its post, drives to
+/// every goal, stands there, and returns. Without teleoperation, the map and the goals are given.
 ///
-/// Events: goal_marked, mapping_done, navigation_started, goal_reached, goal_failed, inspection_failed, remote_requested, remote_ended,
-/// docked, dock_failed, lost, relocalized, cannot_localize, mission_completed (every goal of every navigation reached, every inspection and
-/// docking done), mission_failed. Subjects are "goal_2", "navigation_7", "sounding_1"; a goal's value is the number of its navigation.
+/// At goals of type D it scans the lining. At a goal of type R it waits for an operator, who drives it on (e.g. over
+/// the trestle bridge), requests soundings, drives it back and hands over control. If the mission makes its own map,
+/// the operator was present at the mapping drive, and R is treated as N.
+///
+/// Events: goal_marked, mapping_done, navigation_started, goal_reached, goal_failed, inspection_failed,
+/// remote_requested, remote_ended, docked, dock_failed, lost, relocalized, cannot_localize. At the end
+/// mission_completed (every goal of every run reached, every inspection and docking done) or mission_failed. Subjects
+/// are "goal_2", "navigation_7", "sounding_1"; the value of a goal event is the number of its run.
 class TunnelMission final : public Mission {
  public:
-  /// `goals` in map; empty: they are marked on the way. Without a map the remote control comes first, to make one; with a map, only at
-  /// goals of type R. Throws InputError when there is neither a goal nor a remote control.
+  /// `goals`: in map; empty: they are saved during teleoperation. Without a map, teleoperation comes first, to make
+  /// one; with a map, it is only used at goals of type R. Throws InputError when there are neither goals nor
+  /// teleoperation.
   TunnelMission(const TunnelMissionSettings& settings, std::vector<MarkedGoal> goals, bool has_remote, bool has_map = false);
 
   MissionOutput step(Time now, const MissionInput& input) override;
@@ -105,7 +114,7 @@ class TunnelMission final : public Mission {
   std::optional<Time> first_step_;
   Time phase_start_{};
   Time last_remote_{};
-  int navigation_ = 0;        ///< 1 is the first
+  int navigation_ = 0;        ///< number of the present run, from 1
   std::size_t goal_ = 0;
   int num_soundings_ = 0;
   int num_failed_ = 0;

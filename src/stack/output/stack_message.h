@@ -6,7 +6,7 @@
 
 namespace patrol::stack {
 
-/// Everything that the robot's software publishes: estimates, map, commands, events and results.
+/// Message published by the robot's software: estimates, map, commands, events and results.
 using StackMessage = std::variant<OdometryEstimate, PoseEstimate, RangePoseEstimate, LocalizationTrust, ParticleSet,
                                   MapUpdate, Path, VelocityCommand, Event, ScanCommand, AntennaCommand, SoundingCommand,
                                   WarningCommand, LiningResult, WaterResult>;

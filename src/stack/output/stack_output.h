@@ -9,14 +9,14 @@
 
 namespace patrol::stack {
 
-/// Messages that the parts of the stack publish, in order, and the processor's time by part.
+/// Collector of the messages published by the components of the stack, in order, and of their computing time.
 class StackOutput {
  public:
   template <typename Message>
   void publish(Message&& message) {
     messages_.emplace_back(std::forward<Message>(message));
   }
-  /// Publishes an event at the robot's own place.
+  /// Publishes an event at the robot's own position.
   void publish_event(Time now, const Pose2& T_map_body, EventKind kind, const std::string& text,
                      const std::string& subject = "") {
     publish(Event{.stamp = now,
@@ -27,7 +27,7 @@ class StackOutput {
                   .T_map_body = T_map_body,
                   .p_map_target = T_map_body.position()});
   }
-  /// Returns the messages since the last call.
+  /// Removes and returns the messages published since the last call.
   std::vector<StackMessage> take_messages() { return std::exchange(messages_, {}); }
 
   [[nodiscard]] PartClock::Lap lap(const std::string& part) { return clock_.lap(part); }

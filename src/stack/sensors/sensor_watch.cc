@@ -23,7 +23,8 @@ bool SensorWatch::hear(const SensorMessage& message, Time now) {
   sensor.stamp = stamp_of(message);
   sensor.is_ahead = sensor.stamp > now + from_seconds(settings_.future_s);
   if (kSensorInfos[kind].freeze_check == FreezeCheck::kNone || sensor.is_ahead) return !sensor.is_ahead;
-  const bool has_reading = sensor.reading.index() == kind;  // initially a laser scan without returns, which no scan repeats
+  const bool has_reading = sensor.reading.index() == kind;  // initially a laser scan without returns, which no scan
+                                                            // repeats
   if (has_reading && repeats_reading(message, sensor.reading)) {
     ++sensor.num_repeats;
     return true;
@@ -75,7 +76,7 @@ SensorWatch::State SensorWatch::state_of(std::size_t kind, const Sensor& sensor,
 
 bool SensorWatch::is_frozen(std::size_t kind, const Sensor& sensor, const Pose2& T_odom_body) const {
   if (sensor.num_repeats < settings_.frozen_repeats) return false;
-  if (sensor.state == State::kFrozen) return true;  // a robot that was halted for it does not move
+  if (sensor.state == State::kFrozen) return true;  // a robot that has stopped for this fault does not move
   const Pose2 moved = sensor.T_odom_changed.inverse() * T_odom_body;
   const bool is_by_command = kSensorInfos[kind].freeze_check == FreezeCheck::kCommand;
   const double path_m = is_by_command ? sensor.commanded_m : moved.position().norm();

@@ -12,16 +12,16 @@
 
 namespace patrol::stack {
 
-/// When a sensor is no longer believed. Ages are counted from a message's stamp to now: a reading that comes late is as bad as none.
+/// Settings of the sensor monitor. The age of a reading is counted from its stamp, so late readings count as missing.
 struct SensorWatchSettings {
   double lidar_age_s = 0.6;       ///< age limit of sensors with SensorTimeout::kLidar (core/sensors/registry.h)
   double motion_age_s = 0.15;     ///< age limit of sensors with SensorTimeout::kMotion
   double instrument_age_s = 5.0;  ///< age limit of sensors with SensorTimeout::kInstrument
-  double future_s = 0.05;         ///< a stamp that far ahead of now: the sensor's clock is wrong
-  double frozen_path_m = 0.1;     ///< readings that stay alike to the last bit while the robot moves so far, or turns so far
+  double future_s = 0.05;         ///< a stamp further ahead of now indicates a wrong clock
+  double frozen_path_m = 0.1;     ///< travel or rotation of the robot during which the readings are bitwise identical
   double frozen_turn_rad = 0.1;
-  int frozen_repeats = 3;      ///< and at least so often
-  double give_up_s = 60.0;        ///< unable to drive for so long: the mission is over
+  int frozen_repeats = 3;      ///< minimum number of repeated readings
+  double give_up_s = 60.0;        ///< time unable to drive after which the mission is aborted
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -36,45 +36,48 @@ struct SensorWatchSettings {
   }
 };
 
-/// A sensor began to be wrong, or came back.
+/// Change of the state of a sensor: fault or recovery.
 struct SensorChange {
   std::string sensor;
   bool is_back = false;
   std::string text;  ///< one sentence for a person
 };
 
-/// Watches whether each sensor that was ever heard of goes on, in time, with stamps of now, and with readings that change as the robot
-/// moves. What a sensor says wrongly but plausibly (a drift, a spike) it does not see.
+/// Sensor monitor.
 ///
-/// The robot shall not drive without its lidar, which alone shows what it might run into, nor without its encoders, since an IMU alone loses
-/// its place within seconds. It may without all others, IMU and foot sensors included: odometry goes on without them.
+/// Checks for each sensor that has ever published: messages arrive in time, stamps agree with the clock, readings
+/// change as the robot moves. Plausible errors (a drift, a spike) are not detected.
+///
+/// The robot must not drive without its lidar, the only sensor of obstacles ahead. It must not drive without its
+/// encoders either, since the IMU alone loses the pose within seconds. It can drive without all others, including IMU
+/// and foot sensors, because odometry continues without them.
 class SensorWatch {
  public:
   explicit SensorWatch(const SensorWatchSettings& settings) : settings_(settings) {}
 
-  /// False: the message is not to be used, since its stamp lies in the future.
+  /// Processes a message. Returns false if it must not be used, because its stamp is in the future.
   bool hear(const SensorMessage& message, Time now);
 
-  /// Once a control period. That the robot moves is known from `T_odom_body`; of the encoders, from which that comes, from the `command`
-  /// since the last step.
+  /// Returns the changes since the last step. Call once per control period. The reference motion is `T_odom_body`; for
+  /// the encoders, from which odometry is computed, it is the `command` since the last step.
   std::vector<SensorChange> step(Time now, const Pose2& T_odom_body, const VelocityCommand& command);
 
   bool can_drive() const { return !halted_since_; }
-  /// Unable to drive for longer than a mission can wait.
+  /// Returns whether the robot has been unable to drive for longer than `give_up_s`.
   bool has_given_up(Time now) const { return halted_since_ && now - *halted_since_ > from_seconds(settings_.give_up_s); }
 
  private:
   enum class State { kFine, kSilent, kWrongClock, kFrozen };
 
-  /// One kind of sensor message.
+  /// State of one type of sensor message.
   struct Sensor {
-    Time stamp{};  ///< of the newest message; zero: never heard of
+    Time stamp{};  ///< stamp of the newest message; zero: none received yet
     SensorMessage reading;
-    bool is_ahead = false;     ///< the newest message came from the future
-    int num_repeats = 0;       ///< of the newest reading
-    bool has_changed = true;   ///< since what follows was taken
-    Pose2 T_odom_changed;      ///< the body when the reading last changed
-    double commanded_m = 0.0;  ///< and what was commanded from then on
+    bool is_ahead = false;     ///< true: the newest message has a stamp in the future
+    int num_repeats = 0;       ///< repetitions of the newest reading
+    bool has_changed = true;   ///< true: the reading has changed since the reference below was taken
+    Pose2 T_odom_changed;      ///< body pose when the reading last changed
+    double commanded_m = 0.0;  ///< commanded distance since then
     double commanded_rad = 0.0;
     State state = State::kFine;
   };

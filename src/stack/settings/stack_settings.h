@@ -21,33 +21,38 @@
 
 namespace patrol::stack {
 
-/// Of a robot that is known: its odometry as the particle filter takes it to be, and a lidar that is levelled.
+/// Returns the default graph SLAM settings for the project's robots: odometry with the error model of the particle
+/// filter, and a leveled lidar.
 slam::GraphSlamSettings graph_of_a_known_robot();
-/// Eight particles on the robot's odometry as given: its errors are known, and matching from scan to scan would only add its own.
+/// Returns the default RBPF settings for the project's robots: eight particles propagated by odometry. Its errors are
+/// modeled, and scan-to-scan matching would add its own.
 slam::TrackedRbpfSettings rbpf_of_a_known_robot();
 
-/// Settings of the stack: three selectors, and the settings of every part; a stack uses those of the parts that it is composed of.
+/// Settings of the stack: three selectors and the settings of all components. A stack uses those of the components that
+/// it is composed of.
 struct StackSettings {
-  std::string odometry_source = "legged";  ///< legged or tracked
-  std::string localizer = "automatic";     ///< or slam, monte_carlo, slam_then_monte_carlo (stack/localization/make_localizer.h)
-  std::string mission_type = "gas";        ///< gas: stations of a route; tunnel: marked goals, docking, instruments
-  double settle_s = 1.0;  ///< after odometry's start, before the first scan makes the map's origin
-  localize::BodyEstimatorSettings odometry;        ///< of a robot with legs
-  localize::TrackOdometrySettings track_odometry;  ///< of a robot with tracks
+  std::string odometry_source = "legged";  ///< odometry source: legged or tracked
+  std::string localizer = "automatic";     ///< automatic, slam, monte_carlo or slam_then_monte_carlo
+                                           ///< (stack/localization/make_localizer.h)
+  std::string mission_type = "gas";        ///< gas: stations of a route; tunnel: saved goals, docking, instruments
+  double settle_s = 1.0;  ///< time from the start of odometry to the first scan, which defines the map's origin
+  localize::BodyEstimatorSettings odometry;        ///< settings for a robot with legs
+  localize::TrackOdometrySettings track_odometry;  ///< settings for a robot with tracks
   localize::ScanLevelerSettings leveling;
-  std::string mapping = "graph";  ///< SLAM method (`slam::mapping_methods`), with the settings of one of the next three sections
+  std::string mapping = "graph";  ///< SLAM method (`slam::mapping_methods`); its settings are in one of the next three
+                                  ///< sections
   slam::GraphSlamSettings graph = graph_of_a_known_robot();
-  slam::TrackedRbpfSettings slam = rbpf_of_a_known_robot();  ///< method `rbpf`
+  slam::TrackedRbpfSettings slam = rbpf_of_a_known_robot();  ///< settings of method `rbpf`
   slam::SubmapRbpfSettings submap_rbpf;
-  localize::MonteCarloSettings localization;  ///< on a map that is known
-  localize::RangeFilterSettings range_filter;  ///< of a robot with tracks and UWB: a second opinion
+  localize::MonteCarloSettings localization;  ///< settings of the localization on a given map
+  localize::RangeFilterSettings range_filter;  ///< settings of the UWB pose of a robot with tracks and UWB
   plan::NavigatorSettings plan;
   SensorWatchSettings sensor_watch;
   localize::DockDetectorSettings dock_detector;
   plan::DockingSettings docking;
   GasMissionSettings mission;
   TunnelMissionSettings tour;
-  InspectionSettings inspection;  ///< of a robot with its instruments
+  InspectionSettings inspection;  ///< settings for a robot with inspection instruments
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -74,8 +79,8 @@ struct StackSettings {
   }
 };
 
-/// Builds the SLAM method that the settings name, from the table that `patrol slam` uses too. `neighbours` classifies pairs of submaps, for methods
-/// that need it. Throws InputError when a setting breaks its rule.
+/// Makes the SLAM method named by the settings, from the table that `patrol slam` also uses. `neighbours` classifies
+/// submap pairs, for methods that need it. Throws InputError when a setting is out of range.
 std::unique_ptr<slam::Mapper> make_mapper(const StackSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed);
 
 }  // namespace patrol::stack
