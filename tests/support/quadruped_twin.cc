@@ -11,7 +11,7 @@
 namespace patrol::sim {
 namespace {
 
-AssembledModel assemble(const std::string& world, const Pose2& T_world_start) {
+AssembledModel assemble_quadruped(const std::string& world, const Pose2& T_world_start) {
   const test::TemporaryFile file("world.xml", world);
   return assemble_model(file.path(), kRobotUrdf, T_world_start);
 }
@@ -30,7 +30,7 @@ std::string make_flat_world(const std::string& geoms) {
 
 WalkingRobot::WalkingRobot(const std::string& world, const Pose2& T_world_start, std::uint64_t seed,
                            const LocomotionSettings& settings)
-    : WalkingRobot(assemble(world, T_world_start), seed, settings) {}
+    : WalkingRobot(assemble_quadruped(world, T_world_start), seed, settings) {}
 
 WalkingRobot::WalkingRobot(AssembledModel model, std::uint64_t seed, const LocomotionSettings& settings)
     : robot_(io::load_robot_description(kRobotUrdf)),

@@ -9,7 +9,7 @@
 namespace patrol::sim {
 namespace {
 
-AssembledModel assemble(const std::string& world, const Pose2& T_world_start) {
+AssembledModel assemble_tracked(const std::string& world, const Pose2& T_world_start) {
   const test::TemporaryFile file("world.xml", world);
   return assemble_model(file.path(), kTrackedUrdf, T_world_start);
 }
@@ -23,7 +23,7 @@ RobotDescription tracked_description() { return io::load_robot_description(kTrac
 TrackedRobot::TrackedRobot(const std::string& world, const Pose2& T_world_start, const TrackDriveSettings& settings,
                            const RobotDescription& robot, std::uint64_t seed, bool uses_nearby_scenery)
     : robot_(robot),
-      model_(assemble(world, T_world_start)),
+      model_(assemble_tracked(world, T_world_start)),
       data_(make_data(*model_.physics)),
       imu_sensor_({}, *model_.physics, seed),
       hall_(hall_settings_, *model_.physics, robot_.joint_names, seed),
