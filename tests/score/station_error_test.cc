@@ -68,7 +68,7 @@ TEST(MapDisplacement, OfAMapUpToTwoMetersOffIsThatAlongEitherAxisAndDiagonally) 
 
 TEST(MapDisplacement, OfAMapThatIsFarOffAndTurnedIsThatOfTheTarget) {
   for (const double yaw_deg : {-3.0, 3.0}) {
-    const Pose2 T_world_map{1.2, -0.9, yaw_deg * kDeg};
+    const Pose2 T_world_map{1.2, -0.9, yaw_deg * kDegree};
     const auto displacement = map_displacement_m(make_walls(), T_world_map, all_seeable(make_walls()), kTarget);
     const double expected_m = (T_world_map * kTarget - kTarget).norm();
     ASSERT_TRUE(displacement);

@@ -44,7 +44,9 @@ inline LaserScan scan_of(const test::RoomWorld& room, Time stamp, const Pose2& T
                  .angle_increment_rad = 2.0 * std::numbers::pi / kBeams,
                  .scan_time_s = 0.1,
                  .range_min_m = 0.1,
-                 .range_max_m = 30.0};
+                 .range_max_m = 30.0,
+                 .ranges_m = {},
+                 .intensities = {}};
   for (const double range_m : room.ranges_m(T_map_lidar, kBeams, scan.range_max_m))
     scan.ranges_m.push_back(static_cast<float>(range_m));
   return scan;
