@@ -59,10 +59,10 @@ struct ImprovedColonySettings {
 ///   eq. 10   eta = 1 / d_ij: with d of eq. 6, between neighbors, ants would have no information on the goal. Here, as
 ///            is usual on grids, d is the distance from the next cell to the goal.
 ///   eqs. 7-9 q(i), the pheromone of a cell, is the minimum over the steps out of it: the pheromone besides trails. It
-///            spreads to the neighbors in a cone about the force, 0.53 to edge neighbors and 0.33 to diagonal neighbors,
+///            spreads to the neighbors in a cone about the force, 0.53 to edge neighbors and 0.33 to diagonal ones,
 ///            times delta and the force's magnitude (at most 1), and adds to the step's own: tau = tau' + tau''. So the
-///            force guides the first ants and fades as the trails grow. With the sum or the mean of the steps for q, each
-///            trail spreads along the force without end: on grids of rooms these routes are longer than those of the plain one.
+///            force guides the first ants and fades as the trails grow. With the sum or the mean over the steps for q,
+///            each trail spreads along the force without end: on grids of rooms the plain colony is better.
 ///   eq. 13   L_k, "the longest path of ant k", is the length of the ant's route.
 /// Extensions in both colonies: an ant in a dead end backtracks, and does not enter a cell twice, so that every ant
 /// arrives if a route exists; loops are removed from its route; `elite` ants deposit pheromone on the best route so

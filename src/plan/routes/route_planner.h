@@ -24,13 +24,13 @@ enum class PlanStatus {
 /// comparable.
 struct Route {
   PlanStatus status = PlanStatus::kNoRoute;
-  std::vector<Eigen::Vector2d> points;       ///< start ... goal, cells from the grid's lower-left corner; cell centers at .5
+  std::vector<Eigen::Vector2d> points;       ///< start ... goal, cells from the lower-left corner; cell centers at .5
   double length = 0.0;                       ///< cells; straight and diagonal steps are counted exactly
   double cost = 0.0;                         ///< cells, weighted by the costs of the cells crossed
   int num_iterations = 0;                    ///< iterations of ants, particles or episodes; 1 for a search
   std::vector<double> history;               ///< [iteration], cost of the best route so far; infinite before the first
   std::int64_t num_expanded = 0;             ///< expanded cells; for a swarm, steps taken
-  double clearance = 0.0;                    ///< distance to the nearest lethal cell's square, cells; at most kMaxClearance
+  double clearance = 0.0;                    ///< distance to the nearest lethal cell, cells; at most kMaxClearance
 };
 
 inline constexpr double kMaxClearance = 16.0;  ///< cells
