@@ -40,7 +40,7 @@ double waiting_s(const TourPlan& tour) {
   return waiting_s;
 }
 
-/// A table of the stops, names in a column as wide as the longest, up to 32 letters.
+/// Table of the stops; the column of names is as wide as the longest one, at most 32 characters.
 std::string visits_text(const TourReport& report) {
   std::size_t width = 5;
   for (const TourStop& stop : report.stops) width = std::clamp(stop.station.name.size(), width, std::size_t{32});
