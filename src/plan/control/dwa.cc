@@ -7,7 +7,7 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kMinReach_mps = 0.2;  // minimum speed for which progress is measured
+constexpr double kMinReach_mps = 0.2;  // minimum of the speed that determines the reachable distance
 
 /// Uniform samples from `low` to `high`, both included; contains zero if it lies between them.
 std::vector<double> samples(double low, double high, int count) {
