@@ -21,7 +21,7 @@ struct PlanSettings {
   std::uint64_t seed = 1;              ///< seed of stochastic planners and station orders
   std::string unknown = "lethal";      ///< or "free": unknown cells are passable
   bool smooth = false;
-  double kept_clearance_m = 0.3;       ///< smoothing keeps this clearance, or the route's if it is smaller; on MovingAI maps cells
+  double kept_clearance_m = 0.3;       ///< smoothing keeps this clearance or the route's, the smaller one
   int any_angle_most_cells = 150'000;  ///< passable cells up to which the any-angle optimum is computed (8 s)
   double speed_mps = 1.0;              ///< speed on a tour; on MovingAI maps cells/s
   plan::CostmapSettings costmap;

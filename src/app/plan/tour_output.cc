@@ -67,7 +67,7 @@ std::string tour_title(const TourReport& report) {
   const TourPlan& tour = report.tour;
   if (!tour.order.is_found) return fmt::format("{}: no tour of {} stations", report.setup.settings.planner, report.stops.size());
   return fmt::format("{}: {} of {} stations in {:.2f} {}, {:.1f} s", report.setup.settings.planner, report.stops.size() - tour.unreachable.size(),
-                     report.stops.size(), length_m(tour), report.map.unit(), tour.order.completion);  // the end is reached, or there is no order
+                     report.stops.size(), length_m(tour), report.map.unit(), tour.order.completion);
 }
 
 std::string to_text(const TourReport& report) {

@@ -22,8 +22,8 @@ bool is_decided(const VariantFigure& figure, double margin) {
   return is_equal || !figure.difference->contains(0.0);
 }
 
-/// Collects the counted and the missing runs of an interim analysis. `num_seeds`: [variant], lower for variants that were
-/// decided earlier.
+/// Collects the counted and the missing runs of an interim analysis. `num_seeds`: [variant], lower for variants that
+/// were decided earlier.
 void add_needed(const SweepManifest& manifest, const SweepRows& rows, const std::vector<std::size_t>& num_seeds, SweepProgress& progress) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (seed_index(manifest, i) >= num_seeds[manifest.runs[i].variant]) continue;

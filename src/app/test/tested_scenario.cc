@@ -20,7 +20,7 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& scenari
   if (std::filesystem::is_regular_file(scenarios, ignored)) return {scenarios};
   if (!std::filesystem::is_directory(scenarios, ignored)) throw InputError(fmt::format("{}: there is no such file or folder", scenarios.string()));
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(scenarios)) {  // does not follow links to folders
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(scenarios)) {  // follows no folder links
     if (entry.is_regular_file(ignored) && is_scenario(entry.path())) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());

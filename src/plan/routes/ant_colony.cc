@@ -13,7 +13,7 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kReach = 1.5 * std::numbers::sqrt2;                                                      // eq. 8: L tan(gamma / 2), cells
+constexpr double kReach = 1.5 * std::numbers::sqrt2;  // eq. 8: L tan(gamma / 2), cells
 constexpr double kToEdge = (kReach - 1.0) / kReach, kToDiagonal = (kReach - std::numbers::sqrt2) / kReach;  // 0.53, 0.33 (eqs. 8, 9)
 constexpr double kLeastWeight = 1e-200;  ///< positive, because the only open step must remain possible
 
