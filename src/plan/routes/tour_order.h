@@ -52,7 +52,7 @@ struct TourOrder {
 };
 
 /// Finds the order in which to visit all stations: minimum lateness first, minimum completion second. For few stations
-/// whose windows can be met, exact by dynamic programming over sets [HeldKarp62], [Bellman62]. Otherwise by local search
+/// whose windows can be met, exact by dynamic programming on sets [HeldKarp62], [Bellman62]. Otherwise by local search
 /// (Or-opt and 2-opt from nearest-neighbor and random orders) with the 1-tree bound [HeldKarp70]. Equal problems and
 /// seeds give equal orders. Throws InputError if the problem is invalid.
 TourOrder order_tour(const TourProblem& problem, const TourOrderSettings& settings, std::uint64_t seed);

@@ -34,7 +34,7 @@ struct TwoSwarmsSettings {
   }
 };
 
-/// Particle swarm optimization [Kennedy95], [Shi98] with two swarms, the method class of the mine rescue robot's planner
+/// Particle swarm optimization [Kennedy95], [Shi98] with two swarms: the class of the mine rescue robot's planner
 /// [Feng20] that [Li22] compares with. Only the two sentences of [Li22] on it are known; from them comes the number of
 /// populations.
 ///
