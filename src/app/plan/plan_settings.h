@@ -21,8 +21,10 @@ struct PlanSettings {
   std::uint64_t seed = 1;              ///< seed of stochastic planners and station orders
   std::string unknown = "lethal";      ///< or "free": unknown cells are passable
   bool smooth = false;
-  double kept_clearance_m = 0.3;       ///< smoothing keeps this clearance or the route's, the smaller one
-  int any_angle_most_cells = 150'000;  ///< passable cells up to which the any-angle optimum is computed (8 s)
+  double kept_clearance_m = 0.3;       ///< smoothing keeps this or the route's clearance; MovingAI: cells
+  /// Maximum number of passable cells for the any-angle optimum, which took up to 8 s. The limit for all cells is 8 times
+  /// as high.
+  int any_angle_most_cells = 150'000;
   double speed_mps = 1.0;              ///< speed on a tour; on MovingAI maps cells/s
   plan::CostmapSettings costmap;
   plan::RoutePlannerSettings routes;

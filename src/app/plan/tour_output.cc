@@ -66,6 +66,7 @@ std::string place_name(const TourReport& report, std::size_t place) {
 std::string tour_title(const TourReport& report) {
   const TourPlan& tour = report.tour;
   if (!tour.order.is_found) return fmt::format("{}: no tour of {} stations", report.setup.settings.planner, report.stops.size());
+  // All unreachable places are stations: without a path to the end there is no order.
   return fmt::format("{}: {} of {} stations in {:.2f} {}, {:.1f} s", report.setup.settings.planner, report.stops.size() - tour.unreachable.size(),
                      report.stops.size(), length_m(tour), report.map.unit(), tour.order.completion);
 }
