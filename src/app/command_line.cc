@@ -26,7 +26,7 @@
 namespace patrol::app {
 namespace {
 
-/// What every command was given, and which of them was called.
+/// Options of all commands, and the command to call.
 struct Call {
   RunOptions run;
   ScoreOptions score;
@@ -120,7 +120,7 @@ void add_batch(CLI::App& command, BatchOptions& batch) {
   command.add_option("--keep", batch.keep, "Run directories that stay: none, failed, all")->capture_default_str();
 }
 
-/// What sweep, budget and faults have in common. `metrics`, `out`: what the two options are for.
+/// Adds the options that sweep, budget and faults share. `metrics` and `out` are the help texts of two of them.
 template <typename Options>
 void add_variants(CLI::App& command, Options& options, const char* metrics, const char* out) {
   command.add_option("scenario", options.scenario, "Scenario file (YAML)")->required();
@@ -278,7 +278,7 @@ void add_list(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [] { return list_command(); }; });
 }
 
-/// CLI11 would only say that a command is required.
+/// Throws InputError for an unknown command; the message of CLI11 would only be that a command is required.
 void refuse_unknown_command(const CLI::App& app, int argc, const char* const* argv) {
   const std::string word = argc > 1 ? argv[1] : "-";
   std::vector<std::string> known;
@@ -287,13 +287,13 @@ void refuse_unknown_command(const CLI::App& app, int argc, const char* const* ar
   throw InputError(fmt::format("there is no command '{}' (known: {})", word, fmt::join(known, ", ")));
 }
 
-/// Does not throw when standard error cannot be written.
+/// Prints an error; does not throw if standard error is not writable.
 int report(const std::string& what, ExitCode code) {
   std::fputs(fmt::format("patrol: {}\n", io::on_one_line(what)).c_str(), stderr);  // fmt::print would throw on failure
   return static_cast<int>(code);
 }
 
-/// Seeds: decimal digits only. CLI11 takes -1 for 2^64 - 1, and 010 for 8.
+/// Accepts decimal digits only. CLI11 converts -1 to 2^64 - 1, and 010 to 8.
 std::string refuse_bad_seed(const std::string& text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -302,7 +302,7 @@ std::string refuse_bad_seed(const std::string& text) {
   return fmt::format("{} is no seed: must be a whole number in 0 ... {}", text, std::numeric_limits<std::uint64_t>::max());
 }
 
-/// Numbers of options are times, lengths, speeds and the like. CLI11 takes 1e400 for infinity.
+/// Refuses numbers beyond all times, lengths and speeds in use. CLI11 converts 1e400 to infinity.
 std::string refuse_bad_number(const std::string& text) {
   constexpr double kMaxNumber = 1e9;
   char* end = nullptr;
@@ -311,7 +311,7 @@ std::string refuse_bad_number(const std::string& text) {
   return fmt::format("{} is out of range: must be a number in -1e9 ... 1e9", text);
 }
 
-/// Checks that CLI11 leaves out, for every option of every command by the type of its value.
+/// Adds checks that CLI11 lacks to every option of every command, by the type of its value.
 void add_number_checks(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({})) {
     for (CLI::Option* option : command->get_options()) {
@@ -322,7 +322,7 @@ void add_number_checks(CLI::App& app) {
   }
 }
 
-/// Parses the call and runs its command. Exceptions become one line on standard error.
+/// Parses the command line and runs its command. Exceptions become one line on standard error.
 int run_parsed(CLI::App& app, Call& call, int argc, const char* const* argv) {
   try {
     refuse_unknown_command(app, argc, argv);
@@ -341,7 +341,7 @@ int run_parsed(CLI::App& app, Call& call, int argc, const char* const* argv) {
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
-  mju_user_warning = [](const char* text) { fmt::print(stderr, "mujoco: {}\n", text); };  // else a file in the working directory
+  mju_user_warning = [](const char* text) { fmt::print(stderr, "mujoco: {}\n", text); };  // default: a file
   CLI::App app("Patrol: a digital twin for inspection robots");
   app.set_version_flag("--version", PATROL_VERSION);
   app.require_subcommand(1);

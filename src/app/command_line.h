@@ -2,8 +2,8 @@
 
 namespace patrol::app {
 
-/// The program: parses the call, runs one command, and gives the process's exit code (app/exit_code.h). Every exception
-/// ends here as one line on standard error.
+/// Parses the command line, runs one command, and returns the exit code of the process (app/exit_code.h). Every
+/// exception is reported as one line on standard error.
 int run_command_line(int argc, const char* const* argv);
 
 }  // namespace patrol::app

@@ -13,22 +13,22 @@
 #include "app/test/test_options.h"
 #include "score/relation_error.h"
 
-/// One function per command of the program. They print results to standard output and talk to standard error.
+/// Functions of the program's commands, one each. Results are printed to standard output, messages to standard error.
 namespace patrol::app {
 
 struct RunOptions {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;  ///< "path=value"
   std::optional<std::uint64_t> seed;
-  bool watch = false;  ///< show it on the terminal while it goes
+  bool watch = false;  ///< show live status in the terminal
   std::optional<std::filesystem::path> out;
-  std::optional<std::string> report_to;  ///< address of a monitoring platform
+  std::optional<std::string> report_to;  ///< URL of a monitoring server
   std::optional<std::filesystem::path> report_token_file;
-  std::optional<std::string> robot_name;  ///< for the platform; otherwise robot and seed
+  std::optional<std::string> robot_name;  ///< name shown by the monitoring server; default: robot and seed
 };
 ExitCode run_command(const RunOptions& options);
 
-/// What `patrol score` was given: a run directory, or two trajectories, or a trajectory and relations, or two maps.
+/// Input of `patrol score`: a run directory, two trajectories, a trajectory and relations, or two maps.
 struct ScoreOptions {
   std::filesystem::path run;
   std::filesystem::path estimate;
@@ -46,7 +46,7 @@ struct LocalizabilityOptions {
   double step_m = 0.5;
   std::filesystem::path out = "out/localizability";
 };
-/// What one scan can tell, everywhere in a scenario's world.
+/// Maps the accuracy bound of a single scan over a scenario's world.
 ExitCode localizability_command(const LocalizabilityOptions& options);
 
 struct ReplayOptions {
@@ -63,24 +63,24 @@ struct ReplayOptions {
 ExitCode replay_command(const ReplayOptions& options);
 
 struct ReportOptions {
-  std::filesystem::path directory;  ///< of a run, a sweep, a budget or a fault matrix
+  std::filesystem::path directory;  ///< directory of a run, a sweep, an error budget or a fault matrix
   std::optional<std::filesystem::path> out;
 };
 ExitCode report_command(const ReportOptions& options);
 
-/// Runs `run` again beside it and compares the logs.
+/// Reruns `run` in a temporary directory and compares the logs.
 ExitCode verify_command(const std::filesystem::path& run);
 
-/// Runs every variant with every seed, or a shard of them, and compares the variants.
+/// Runs every variant with every seed, or one shard of these runs, and compares the variants.
 ExitCode sweep_command(const SweepOptions& options);
 
-/// Puts the results of `parts`, of the same sweep, into `root`, and writes the tables when all are there.
+/// Copies the results of `parts`, shards of one sweep, to `root`, and writes the tables if all runs are complete.
 ExitCode collect_command(const std::filesystem::path& root, const std::vector<std::filesystem::path>& parts);
 
-/// Takes one imperfection away at a time, and says how much of the errors each owns.
+/// Computes an error budget: reruns the scenario with one error source removed at a time.
 ExitCode budget_command(const BudgetOptions& options);
 
-/// Runs a scenario with every fault that its robot's sensors can have, and says what each led to.
+/// Runs a scenario with every fault of every sensor and classifies the outcomes.
 ExitCode faults_command(const FaultsOptions& options);
 
 struct SlamOptions {
@@ -92,7 +92,7 @@ struct SlamOptions {
   bool skip_bad_lines = false;
   std::filesystem::path out = "out/slam";
 };
-/// Maps a recorded log.
+/// Builds a map from a recorded log.
 ExitCode slam_command(const SlamOptions& options);
 
 struct CalibrateOptions {
@@ -101,52 +101,52 @@ struct CalibrateOptions {
   bool skip_bad_lines = false;
   std::filesystem::path out = "out/calibration";
 };
-/// The lidar's place and odometry's scales, from a recorded log alone.
+/// Calibrates the lidar pose and the odometry scales from a recorded log.
 ExitCode calibrate_command(const CalibrateOptions& options);
 
 struct TrainOptions {
-  std::vector<std::filesystem::path> runs;      ///< run directories, of which is learnt
-  std::vector<std::filesystem::path> held_out;  ///< others, on which what was learnt is tried
+  std::vector<std::filesystem::path> runs;      ///< run directories for training
+  std::vector<std::filesystem::path> held_out;  ///< run directories for validation
   std::vector<std::string> overrides;
   std::filesystem::path out = "submap_neighbours.json";
 };
-/// Learns to recognise neighbouring submaps (`--method submap_rbpf`).
+/// Trains the classifier of neighboring submaps (`--method submap_rbpf`).
 ExitCode train_command(const TrainOptions& options);
 
 struct SolveOptions {
   std::filesystem::path graph;  ///< g2o
-  bool doubts_loops = false;    ///< a robust loss on edges that are not odometry
+  bool doubts_loops = false;    ///< robust loss on edges that are not odometry
   std::filesystem::path out = "out/solved.g2o";
 };
-/// Solves anyone's pose graph.
+/// Optimizes a pose graph.
 ExitCode solve_command(const SolveOptions& options);
 
-/// A route, a tour, or every problem of a file, on anybody's map.
+/// Plans a path, a station order, or every problem of a benchmark file.
 ExitCode plan_command(const PlanOptions& options);
 
 struct StudyOptions {
   std::string name;
-  std::optional<std::string> seeds;  ///< "N": 1001 ... 1000 + N, on which nothing was tuned; or "A..B"
-  int jobs = 0;                      ///< seeds at a time; 0: one for each core
-  double seed_limit_s = 3600.0;      ///< wall time of a seed
+  std::optional<std::string> seeds;  ///< "N": 1001 ... 1000 + N, which were not used for tuning; or "A..B"
+  int jobs = 0;                      ///< parallel seeds; 0: one per core
+  double seed_limit_s = 3600.0;      ///< wall-clock limit per seed
   std::filesystem::path out = "out/study";
 };
-/// A paper's experiment, its published figures beside ours.
+/// Reproduces a published experiment and compares the results.
 ExitCode study_command(const StudyOptions& options);
 
-/// Runs every scenario of a folder against what it expects.
+/// Runs every scenario of a folder and checks its expectations.
 ExitCode test_command(const TestOptions& options);
 
-/// The monitoring platform, until it is interrupted.
+/// Runs the monitoring server until it is interrupted.
 ExitCode monitor_command(const MonitorOptions& options);
 
 struct SendOptions {
   std::filesystem::path run;
   std::string to;
   std::optional<std::filesystem::path> token_file;
-  double limit_s = 30.0;  ///< without any progress
+  double limit_s = 30.0;  ///< timeout without progress
 };
-/// Sends what of a run's results still waits for the platform.
+/// Uploads the pending results of a run to the monitoring server.
 ExitCode send_command(const SendOptions& options);
 
 ExitCode list_command();

@@ -2,17 +2,17 @@
 
 namespace patrol::app {
 
-/// The program's exit codes; scripts build on them.
+/// Exit codes of the program, an interface for scripts.
 enum class ExitCode : int {
-  kDone = 0,               ///< done, and every expectation met
-  kExpectationMissed = 1,  ///< the run ended and an expectation was missed
-  kWrongInput = 2,         ///< the input or the call was wrong
+  kDone = 0,               ///< completed, every expectation met
+  kExpectationMissed = 1,  ///< the run completed and an expectation was missed
+  kWrongInput = 2,         ///< invalid input or command line
   kProgramFailed = 3,      ///< the simulation or the program failed
   kTimeLimit = 4,
   kNothingExecuted = 5,
 };
 
-/// Of two runs' verdicts the one that matters more: the program's failure, a wrong input, a time limit, a missed expectation, in this order.
+/// More severe of two exit codes, in this order: program failure, invalid input, time limit, missed expectation.
 inline ExitCode worse(ExitCode a, ExitCode b) {
   const auto severity = [](ExitCode code) {
     switch (code) {

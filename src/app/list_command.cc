@@ -24,7 +24,7 @@ template <typename Keep>
 std::vector<std::string> files_below(const std::filesystem::path& root, const std::string& folder, const Keep& keep) {
   std::vector<std::string> found;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
-    std::error_code ignored;  // of a link that leads to itself
+    std::error_code ignored;  // a link to itself
     if (entry.is_regular_file(ignored) && keep(entry.path())) found.push_back(std::filesystem::relative(entry.path(), root).string());
   }
   std::sort(found.begin(), found.end());
@@ -36,7 +36,7 @@ void print(const char* title, const std::vector<std::string>& lines) {
   for (const std::string& line : lines) fmt::print("  {}\n", line);
 }
 
-/// Names of a table's rows with their documentation lines.
+/// Prints the names of a table's rows with their documentation.
 template <NamedTable Table>
 void print_table(const char* title, const Table& table) {
   std::size_t width = 0;
@@ -45,7 +45,7 @@ void print_table(const char* title, const Table& table) {
   for (const auto& row : table) fmt::print("  {:<{}}  {}\n", row.name, width, row.summary);
 }
 
-/// Collects what the settings allow for one field.
+/// Visitor that collects the allowed values of one settings field.
 struct AllowedValues {
   std::string wanted;
   std::vector<std::string> values;
@@ -63,7 +63,7 @@ std::vector<std::string> allowed(const std::string& field) {
   return visitor.values;
 }
 
-/// Name, topic, type and documentation of each sensor of the registry.
+/// Name, topic, type and documentation of each registered sensor.
 std::vector<std::string> sensor_lines() {
   std::vector<std::string> lines;
   for (const SensorInfo& info : kSensorInfos) {
@@ -72,7 +72,7 @@ std::vector<std::string> sensor_lines() {
   return lines;
 }
 
-/// Scenarios, worlds and robots. A program without its data lists everything else.
+/// Prints scenarios, worlds and robots; a hint if the data folder is missing.
 void print_data() {
   std::filesystem::path root;
   try {

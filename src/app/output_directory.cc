@@ -18,7 +18,7 @@
 namespace patrol::app {
 namespace {
 
-/// What an earlier command left: files, and the folders around them, outer ones first.
+/// Output of an earlier command: files, and the folders around them, outer ones first.
 struct Earlier {
   std::vector<std::filesystem::path> files;
   std::vector<std::filesystem::path> folders;
@@ -28,7 +28,7 @@ bool is_among(const std::string& name, const std::vector<std::string>& patterns)
   return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) { return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0; });
 }
 
-/// Whether files below the folder can be among `patterns`.
+/// Whether files below the folder can match one of `patterns`.
 bool is_folder_of(const std::string& name, const std::vector<std::string>& patterns) {
   const std::string top = name.substr(0, name.find('/')) + "/";
   return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) { return pattern.starts_with(top); });
@@ -38,7 +38,7 @@ InputError cannot_be_written(const std::filesystem::path& root, int error) {
   return InputError(fmt::format("{}: cannot be written to: {}", root.string(), std::strerror(error)));
 }
 
-/// Lists what may be removed. Throws when there is anything else.
+/// Lists the entries that may be removed. Throws InputError if there are any others.
 Earlier earlier_output(const std::filesystem::path& root, const OutputKind& kind) {
   Earlier earlier;
   std::error_code error;
@@ -46,14 +46,14 @@ Earlier earlier_output(const std::filesystem::path& root, const OutputKind& kind
   for (; !error && entry != std::filesystem::recursive_directory_iterator(); entry.increment(error)) {
     const std::string name = entry->path().lexically_relative(root).generic_string();
     const std::filesystem::file_type type = entry->symlink_status().type();
-    if (type == std::filesystem::file_type::not_found) continue;  // another process has removed it
+    if (type == std::filesystem::file_type::not_found) continue;  // removed by another process
     if (entry.depth() == 0 && is_among(name, kind.kept)) {
       entry.disable_recursion_pending();
     } else if (type == std::filesystem::file_type::directory && is_folder_of(name, kind.made)) {
       earlier.folders.push_back(entry->path());
     } else if (type == std::filesystem::file_type::regular && is_among(name, kind.made)) {
       earlier.files.push_back(entry->path());
-    } else if (entry->path() != incomplete_marker(root)) {  // opening that one checks it
+    } else if (entry->path() != incomplete_marker(root)) {  // checked when it is opened
       throw InputError(fmt::format("{}: holds {}, which is not part of a {}; name an empty or new directory", root.string(), name, kind.name));
     }
   }
@@ -66,7 +66,7 @@ Earlier earlier_output(const std::filesystem::path& root, const OutputKind& kind
   return earlier;
 }
 
-/// Opens the mark for writing. Throws when its name is a link, or another file's.
+/// Opens the marker for writing. Throws InputError if it is a link or not a plain file of one name.
 OutputLock open_marker(const std::filesystem::path& root, int& descriptor) {
   const std::filesystem::path marker = incomplete_marker(root);
   descriptor = ::open(marker.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
@@ -78,14 +78,14 @@ OutputLock open_marker(const std::filesystem::path& root, int& descriptor) {
   return lock;
 }
 
-/// Whether the mark still has its name: the process that held it may have removed it.
+/// Whether the open marker still has its name; the process that held it may have removed it.
 bool is_in_place(const std::filesystem::path& root, int descriptor) {
   struct stat opened {}, named {};
   return ::fstat(descriptor, &opened) == 0 && ::lstat(incomplete_marker(root).c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
          opened.st_ino == named.st_ino;
 }
 
-/// Opens the mark, and locks it if it is not shared. A process that was killed holds no lock.
+/// Opens the marker, and locks it unless it is shared. The lock of a killed process is released by the system.
 OutputLock take_marker(const std::filesystem::path& root, const OutputKind& kind, int& descriptor) {
   constexpr int kMaxTries = 100;
   for (int i = 0; i < kMaxTries; ++i) {
@@ -126,11 +126,11 @@ OutputLock begin_output(const std::filesystem::path& root, const OutputKind& kin
   std::error_code error;
   std::filesystem::create_directories(root, error);
   if (error) throw InputError(fmt::format("{}: cannot be made a directory: {}", root.string(), error.message()));
-  earlier_output(root, kind);  // refuses before anything is written
+  earlier_output(root, kind);  // throws before anything is written
   int descriptor = -1;
   OutputLock lock = take_marker(root, kind, descriptor);
   write_marker(root, kind, descriptor);
-  const Earlier earlier = earlier_output(root, kind);  // again: until it was locked another process may have written there
+  const Earlier earlier = earlier_output(root, kind);  // again, now under the lock
   for (const std::filesystem::path& file : earlier.files) std::filesystem::remove(file, error);
   for (auto folder = earlier.folders.rbegin(); folder != earlier.folders.rend(); ++folder) std::filesystem::remove(*folder, error);
   return lock;

@@ -6,27 +6,27 @@
 #include <chrono>
 #include <ctime>
 
-/// What the program costs, for `performance` in metrics.json and for a person's eyes: no decision may depend on it.
+/// Time and memory of the process, for `performance` in metrics.json and for display. No decision may depend on them.
 namespace patrol::app {
 
-/// Of a steady clock: only differences say anything.
+/// Time of a steady clock; only differences have a meaning.
 inline double wall_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// Time that all threads of this process have computed.
+/// CPU time of all threads of this process.
 inline double process_seconds() {
   timespec now{};
   ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// The most that this process has held so far, in units of 2^20 bytes.
+/// Maximum resident memory of this process, in units of 2^20 bytes.
 inline double peak_memory_mb() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-/// What the heap holds now, in units of 10^6 bytes.
+/// Current heap memory, in units of 10^6 bytes.
 inline double heap_mb() {
   const struct mallinfo2 info = ::mallinfo2();
   return 1e-6 * static_cast<double>(info.uordblks + info.hblkhd);

@@ -8,7 +8,7 @@
 namespace patrol::app {
 namespace {
 
-// A signal handler can reach nothing but a global.
+// Global, because a signal handler has no other access.
 volatile std::sig_atomic_t interrupts = 0;
 
 constexpr int kCounted[] = {SIGINT, SIGTERM, SIGHUP};
@@ -23,7 +23,7 @@ void count_interrupt(int signal) {
 
 const std::string kClear = "\r\033[K";
 
-/// Writes to standard error. Does not throw when its terminal is gone: the work goes on.
+/// Writes to standard error. Does not throw if its terminal is closed: the command continues.
 void write(const std::string& text) { std::fputs(text.c_str(), stderr); }
 
 }  // namespace
@@ -49,7 +49,7 @@ void ProgressBar::say(const std::string& line) {
 InterruptGuard::InterruptGuard() {
   interrupts = 0;
   for (const int signal : kCounted) {
-    // nohup's way to keep a program alive when its terminal is closed
+    // nohup ignores SIGHUP so that a program outlives its terminal.
     if (std::signal(signal, count_interrupt) == SIG_IGN && signal == SIGHUP) std::signal(signal, SIG_IGN);
   }
 }

@@ -6,7 +6,7 @@
 
 namespace patrol::app {
 
-/// One line on standard error that is redrawn in place; silent when standard error is no terminal.
+/// Line on standard error that is redrawn in place; silent if standard error is not a terminal.
 class ProgressBar {
  public:
   ProgressBar();
@@ -15,7 +15,7 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(const std::string& line);
-  /// A line that stays, above it; said without a terminal too.
+  /// Prints a permanent line above the progress line, also without a terminal.
   void say(const std::string& line);
 
  private:
@@ -23,8 +23,8 @@ class ProgressBar {
   bool has_drawn_ = false;
 };
 
-/// Counts SIGINT (Ctrl-C), SIGTERM and SIGHUP (closed terminal) instead of ending the process at the first one, while it lives. A SIGHUP
-/// that the caller ignores (nohup) stays ignored.
+/// Counts SIGINT (Ctrl-C), SIGTERM and SIGHUP (closed terminal) during its lifetime, instead of ending the process at
+/// the first one. A SIGHUP that the caller ignores (nohup) stays ignored.
 class InterruptGuard {
  public:
   InterruptGuard();

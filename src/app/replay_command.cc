@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kMinSize = 64, kMaxSize = 3840;
 
-/// "1280x720". The encoder takes even sizes only.
+/// Parses "1280x720". The encoder takes even sizes only.
 std::pair<int, int> parse_size(const std::string& text) {
   int width = 0, height = 0;
   const char* end = text.data() + text.size();
@@ -46,7 +46,7 @@ render::ReplaySettings replay_settings(const ReplayOptions& options) {
   return settings;
 }
 
-/// Faults are the twin's doing: the log does not tell when they begin.
+/// Highlights at the start of faults. They come from the scenario because the log does not contain them.
 std::vector<render::Moment> fault_moments(const std::vector<sim::FaultSettings>& faults) {
   std::vector<render::Moment> moments;
   for (const sim::FaultSettings& fault : faults) {

@@ -28,8 +28,8 @@ bool holds_data(const std::filesystem::path& root) {
   return std::filesystem::is_directory(root / "worlds", ignored) && std::filesystem::is_directory(root / "models", ignored);
 }
 
-/// Data of the program's own installation (bin/patrol and share/patrol) or of the tree that its build folder lies in; empty if there are
-/// none.
+/// Data folder of the program's own installation (bin/patrol and share/patrol) or of the source tree of its build
+/// folder; empty if there is none.
 std::filesystem::path data_root_of_program() {
   std::error_code error;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -51,7 +51,7 @@ std::string folders_in(const std::filesystem::path& parent) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// <root>/<kind>/<name>/<name><extension>, which must exist.
+/// Path <root>/<kind>/<name>/<name><extension>. Throws InputError if it does not exist.
 std::filesystem::path find_definition(const std::filesystem::path& root, const std::string& kind, const std::string& key,
                                       const std::string& name, const std::string& extension) {
   const std::filesystem::path file = root / kind / name / (name + extension);
@@ -61,7 +61,7 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
   return file;
 }
 
-/// A file below the world's folder that a key names.
+/// Path of a file below the world's folder that a key names. Throws InputError if it does not exist.
 std::filesystem::path find_named_file(const std::filesystem::path& world, const char* key, const std::string& name) {
   const std::filesystem::path file = world / name;
   if (!std::filesystem::exists(file)) throw InputError(fmt::format("{} = {}: there is no {}", key, name, file.string()));
@@ -69,7 +69,7 @@ std::filesystem::path find_named_file(const std::filesystem::path& world, const 
   return file;
 }
 
-/// Adds the frames of the scenario's mounts to the robot's.
+/// Adds the frames of the scenario's mounts to the robot's frames.
 void add_mounts(RobotDescription& robot, const std::vector<MountSettings>& mounts) {
   for (std::size_t i = 0; i < mounts.size(); ++i) {
     const MountSettings& mount = mounts[i];

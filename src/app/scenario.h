@@ -18,7 +18,7 @@
 
 namespace patrol::app {
 
-/// How far off the surveyed start the robot is really put down: an operator's carelessness. The stack does not know.
+/// Offset of the actual start from the surveyed start: placement error of the operator. It is not known to the stack.
 struct StartOffsetSettings {
   double ahead_m = 0.0;
   double left_m = 0.0;
@@ -32,10 +32,10 @@ struct StartOffsetSettings {
   }
 };
 
-/// Who drives while the map is made, and the goals are marked. At most one of the two.
+/// Source of teleoperation commands while the map is built and goals are saved. At most one of `drive` and `recorded`.
 struct RemoteSettings {
-  std::string drive;     ///< where a person at the remote control drives, below the world's folder
-  std::string recorded;  ///< or a table of commands that were recorded, likewise
+  std::string drive;     ///< route of the simulated operator, below the world's folder
+  std::string recorded;  ///< table of recorded commands, below the world's folder
   sim::RemoteOperatorSettings driver;
 
   template <typename Self, typename Visitor>
@@ -46,7 +46,7 @@ struct RemoteSettings {
   }
 };
 
-/// The robot is lifted to another place, and nobody tells it.
+/// Kidnapping of the robot: it is moved to another pose without notice to the stack.
 struct KidnapSettings {
   double at_s = 0.0;
   double x_m = 0.0;  ///< in world
@@ -62,7 +62,7 @@ struct KidnapSettings {
   }
 };
 
-/// An instrument mounted for this scenario: a frame beside those of the robot's URDF, with neither mass nor shape.
+/// Sensor mounted for this scenario: an additional frame of the robot, with neither mass nor shape.
 struct MountSettings {
   std::string frame;  ///< name of the sensor frame, e.g. "tdlas"
   double x_m = 0.0, y_m = 0.0, z_m = 0.0;                    ///< in body
@@ -80,10 +80,10 @@ struct MountSettings {
   }
 };
 
-/// What is written besides the messages.
+/// Contents of the log besides the messages.
 struct LogSettings {
   double truth_rate_hz = 100.0;
-  double state_rate_hz = 50.0;  ///< for the replay
+  double state_rate_hz = 50.0;  ///< rate of simulator states for the replay
   double map_period_s = 5.0;
 
   template <typename Self, typename Visitor>
@@ -94,33 +94,34 @@ struct LogSettings {
   }
 };
 
-/// One run: a YAML file says what is special, the defaults stand here and in the settings that this struct gathers.
+/// Scenario of one run. A YAML file sets what differs from the defaults, which are defined here and in the settings
+/// that this struct contains.
 struct Scenario {
   int version = 1;
   std::string world = "street";
   std::string robot = "quadruped";
   std::uint64_t seed = 1;
-  double time_limit_s = 900.0;  ///< simulated
+  double time_limit_s = 900.0;  ///< limit of the simulated time
   std::string mission = "routes/boxes_and_well.json";  ///< below the world's folder
-  std::string map;    ///< map_server YAML below the world's folder, in map; empty: the robot makes its own
-  std::string goals;  ///< nav.json likewise; empty: marked on the drive by remote control
-  std::string references;  ///< a folder likewise, with the scans of an earlier round (io/station_scans.h)
+  std::string map;    ///< map_server YAML below the world's folder, in map; empty: the robot builds a map
+  std::string goals;  ///< nav.json below the world's folder; empty: goals are saved during teleoperation
+  std::string references;  ///< folder below the world's folder with scans of an earlier run (io/station_scans.h)
   RemoteSettings remote;
   StartOffsetSettings start;
-  std::vector<MountSettings> mounts;       ///< instruments beside those of the robot's URDF
+  std::vector<MountSettings> mounts;       ///< sensors in addition to those of the robot's URDF
   sim::SensorSuiteSettings sensors;
-  sim::LocomotionSettings locomotion;      ///< of a robot with legs
-  sim::TrackDriveSettings track_drive;     ///< of a robot with tracks
+  sim::LocomotionSettings locomotion;      ///< locomotion of a legged robot
+  sim::TrackDriveSettings track_drive;     ///< drive of a tracked robot
   stack::StackSettings stack;
   std::vector<sim::PropSettings> props;
-  sim::LowObstacleSettings low_obstacles;  ///< scattered by the seed, beside the props
-  std::vector<sim::LiningMoveSettings> lining;  ///< how its rings have moved
+  sim::LowObstacleSettings low_obstacles;  ///< random obstacles by the seed, in addition to the props
+  std::vector<sim::LiningMoveSettings> lining;  ///< displacements of the lining's rings
   std::vector<sim::ActorSettings> actors;
   std::vector<sim::LeakSettings> leaks;
   sim::WindSettings wind;
   sim::RockSettings rock;
-  std::vector<sim::WaterBodySettings> water;  ///< ahead of the face
-  render::LightSettings light;  ///< of the replay; for dust see sensors.dust
+  std::vector<sim::WaterBodySettings> water;  ///< water bodies ahead of the tunnel face
+  render::LightSettings light;  ///< light of the replay; for dust see sensors.dust
   std::vector<sim::FaultSettings> faults;
   std::vector<KidnapSettings> kidnaps;
   LogSettings log;
@@ -160,7 +161,7 @@ struct Scenario {
   }
 };
 
-/// What a robot's own file, models/<robot>/<robot>.yaml, may say: where it differs from the defaults.
+/// Robot profile, models/<robot>/<robot>.yaml: settings that differ from the defaults.
 struct RobotProfile {
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;
@@ -176,32 +177,32 @@ struct RobotProfile {
   }
 };
 
-/// What a scenario of this robot says where it says nothing: the defaults, under the robot's own file if it has one.
+/// Default scenario of a robot: the robot's profile, if it has one, over the defaults.
 Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root);
 
-/// A scenario file with "path=value" overrides, over its robot's profile, over the defaults. Throws InputError with file,
-/// line and key.
+/// Loads a scenario file with "path=value" overrides, over its robot's profile, over the defaults. Throws InputError
+/// with file, line and key.
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// Every setting written out, under a line of comment.
+/// Writes every setting, below a line of comment.
 void save_scenario(const std::filesystem::path& file, const Scenario& scenario, const std::string& comment);
 
-/// Folder that holds `worlds/` and `models/`: the environment variable PATROL_DATA; else the nearest such folder above `scenario`; else the
-/// working directory; else ../share/patrol or .. seen from the program's folder; else the source tree that the program was built from.
-/// Throws InputError when there is none, or PATROL_DATA names another folder.
+/// Finds the folder that contains `worlds/` and `models/`. Candidates in order: the environment variable PATROL_DATA;
+/// the nearest such folder above `scenario`; the working directory; ../share/patrol or .. relative to the program's
+/// folder; the source tree of the build. Throws InputError if there is none, or if PATROL_DATA names another folder.
 std::filesystem::path find_data_root(const std::filesystem::path& scenario);
 
-/// Where the files lie that a scenario names: mission, map and its image, goals, remote control. Throws InputError, naming file and key,
-/// when one is missing.
+/// Paths of the files that a scenario names: mission, map and its image, goals, teleoperation. Throws InputError with
+/// file and key if one is missing.
 std::vector<std::filesystem::path> named_files(const Scenario& scenario, const std::filesystem::path& data_root);
 
-/// The files that a scenario names, found and read.
+/// Files that a scenario names, loaded.
 struct ScenarioFiles {
   std::filesystem::path world_xml;
   std::filesystem::path robot_urdf;
   RobotDescription robot;
   Route route;          ///< in site
-  Pose2 T_site_start;   ///< surveyed
+  Pose2 T_site_start;   ///< surveyed start
   RemoteDrive drive;                    ///< in site
   std::vector<RemoteCommand> recorded;
   std::vector<MarkedGoal> goals;        ///< in map
@@ -212,7 +213,7 @@ struct ScenarioFiles {
   bool has_remote() const { return !drive.empty() || !recorded.empty(); }
 };
 
-/// Throws InputError, naming file and key, when one is missing or wrong.
+/// Loads the files of a scenario. Throws InputError with file and key if one is missing or invalid.
 ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root);
 
 }  // namespace patrol::app

@@ -10,10 +10,10 @@
 
 namespace patrol::app {
 
-/// A folder of this process that goes when it is done with.
+/// Folder of this process that is removed on destruction.
 class TemporaryFolder {
  public:
-  /// `purpose` tells it from this process's others.
+  /// `purpose` distinguishes the folders of one process.
   explicit TemporaryFolder(const std::string& purpose) : path_(std::filesystem::temp_directory_path() / fmt::format("patrol-{}-{}", purpose, ::getpid())) {
     std::filesystem::create_directories(path_);
   }

@@ -6,14 +6,14 @@
 
 namespace patrol::app {
 
-/// How the commands that make many runs are told to make them.
+/// Options of the commands that make several runs.
 struct BatchOptions {
-  int jobs = 0;                 ///< runs at a time; 0: one for each core
-  double run_limit_s = 3600.0;  ///< wall time of a run
-  std::string keep = "none";    ///< run directories that stay: none, failed, all
+  int jobs = 0;                 ///< parallel runs; 0: one per core
+  double run_limit_s = 3600.0;  ///< wall-clock limit of a run
+  std::string keep = "none";    ///< run directories to keep: none, failed, all
 };
 
-/// Throws InputError, naming the option.
+/// Converts the options. Throws InputError with the option's name.
 BatchSettings batch_settings(const BatchOptions& options);
 
 }  // namespace patrol::app

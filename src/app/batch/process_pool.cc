@@ -31,12 +31,12 @@ class Child {
   Child(std::size_t number, double limit_s, const std::function<int(std::size_t)>& task)
       : task_(number), words_(std::tmpfile(), std::fclose), deadline_(Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit_s))) {
     if (!words_) throw std::runtime_error(fmt::format("no temporary file: {}", std::strerror(errno)));
-    std::fflush(nullptr);  // or both would write what is still held
+    std::fflush(nullptr);  // otherwise both processes would write the buffer
     const pid_t parent = ::getpid();
     pid_ = ::fork();
     if (pid_ < 0) throw std::runtime_error(fmt::format("no process: {}", std::strerror(errno)));
     if (pid_ == 0) live(parent, task);
-    pidfd_ = static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0));  // glibc 2.36 declares its own for C alone
+    pidfd_ = static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0));  // not pidfd_open: glibc 2.36 declares it for C only
   }
   ~Child() {
     if (pid_ > 0) {
@@ -56,7 +56,7 @@ class Child {
     kill();
   }
 
-  /// Whether it has ended, and then how.
+  /// Whether the child has ended; then fills `end`.
   bool collect(TaskEnd& end) {
     int status = 0;
     if (::waitpid(pid_, &status, WNOHANG) != pid_) return false;
@@ -70,12 +70,12 @@ class Child {
   }
 
  private:
-  /// The child's whole life.
+  /// Code of the child process.
   [[noreturn]] void live(pid_t parent, const std::function<int(std::size_t)>& task) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) std::_Exit(EXIT_FAILURE);  // it died before we said so
-    std::signal(SIGINT, SIG_IGN);  // a Ctrl-C goes to all; the parent decides
-    std::signal(SIGHUP, SIG_IGN);  // so does a closed terminal
+    if (::getppid() != parent) std::_Exit(EXIT_FAILURE);  // the parent died before prctl
+    std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches all processes; the parent decides
+    std::signal(SIGHUP, SIG_IGN);  // a closed terminal too
     std::signal(SIGTERM, SIG_DFL);
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
@@ -104,7 +104,7 @@ class Child {
   bool is_over_time_ = false;
 };
 
-/// Sleeps until a child ends, at most 0.2 s.
+/// Waits until a child ends, at most 0.2 s.
 void wait_for_any(const std::vector<std::unique_ptr<Child>>& children) {
   constexpr int kLongest_ms = 200;
   std::vector<pollfd> ends;
@@ -118,7 +118,7 @@ bool run_in_processes(std::size_t num_tasks, const ProcessPoolSettings& settings
                       const std::function<void(const TaskEnd&)>& on_end, const std::function<bool()>& keep_going) {
   std::vector<std::unique_ptr<Child>> children;
   for (std::size_t next = 0; next < num_tasks || !children.empty();) {
-    if (!keep_going()) return false;  // and the children die with their owners
+    if (!keep_going()) return false;  // destructors kill the children
     while (next < num_tasks && static_cast<int>(children.size()) < settings.num_processes) {
       children.push_back(std::make_unique<Child>(next++, settings.limit_s, task));
     }

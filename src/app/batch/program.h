@@ -10,11 +10,11 @@ struct ProgramResult {
   std::string output;  ///< standard output
 };
 
-/// Runs another program, found on the PATH, and waits for it. Its standard error is ours. Throws std::runtime_error when it cannot be
-/// started.
+/// Runs another program, found on the PATH, and waits for it. It inherits standard error. Throws std::runtime_error if
+/// it cannot be started.
 ProgramResult run_program(const std::vector<std::string>& words);
 
-/// A word as the shell reads it back.
+/// Quotes a word for the shell.
 std::string shell_quoted(const std::string& word);
 
 }  // namespace patrol::app

@@ -8,20 +8,20 @@
 
 namespace patrol::app {
 
-/// `root/runs`: results, and the run directories that stay.
+/// Folder `root/runs` of the results and the kept run directories.
 inline std::filesystem::path runs_folder(const std::filesystem::path& root) { return root / "runs"; }
 
-/// Results by the address of what was asked: one file each, `ADDRESS.json`, there whole or not at all.
+/// Store of results by content hash of the request, one file `ADDRESS.json` each, written atomically.
 class ResultStore {
  public:
   explicit ResultStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   const std::filesystem::path& folder() const { return folder_; }
   bool has(const std::string& address) const { return std::filesystem::exists(file(address)); }
-  /// Throws InputError when it is damaged.
+  /// Result of an address; none if missing. Throws InputError if the file is damaged.
   std::optional<RunVerdict> load(const std::string& address) const;
   void save(const std::string& address, const RunVerdict& verdict) const;
-  /// Takes over a result from another store; that both have it is fine.
+  /// Copies a result from another store; it may exist in both.
   void copy(const std::string& address, const ResultStore& from) const;
 
  private:

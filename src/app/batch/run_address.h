@@ -8,16 +8,17 @@
 
 namespace patrol::app {
 
-/// SHA-256 of this program's file.
+/// SHA-256 of the program's executable file.
 std::string build_id();
 
-/// Names a run's result by everything that it depends on: the resolved scenario, the files of its world, its robot and those that
-/// it names, this program and its MuJoCo. Two runs of one address give the same bytes; a new build asks for new addresses.
+/// Computes the content hash of a run from everything that determines its result. Inputs are the resolved scenario, the
+/// files of its world, its robot and those that it names, the program and its MuJoCo. Runs of equal hash give equal
+/// bytes; a new build changes all hashes.
 class RunAddresses {
  public:
   explicit RunAddresses(std::filesystem::path data_root);
 
-  /// 20 hexadecimal digits of a SHA-256.
+  /// Content hash of a run, 20 hexadecimal digits of a SHA-256.
   std::string of(const Scenario& scenario);
 
  private:
@@ -26,7 +27,7 @@ class RunAddresses {
 
   std::filesystem::path data_root_;
   std::string program_;
-  std::map<std::filesystem::path, std::string> digests_;  ///< of folders and files that were read before
+  std::map<std::filesystem::path, std::string> digests_;  ///< digests of folders and files read before
 };
 
 }  // namespace patrol::app

@@ -29,7 +29,7 @@ RunVerdict verdict_of_run(const BatchRun& run, const std::filesystem::path& work
   }
 }
 
-/// Of a run whose process did not live to say it.
+/// Verdict on a run whose process died without one.
 RunVerdict verdict_of_death(const TaskEnd& end, double limit_s) {
   if (end.is_over_time) {
     return {.end = RunStatus::kWallTimeLimit, .message = fmt::format("after {:g} s", limit_s), .metrics = {}, .checks = {}, .events = {}};
@@ -66,11 +66,11 @@ class Batch {
   }
 
  private:
-  /// In the child.
+  /// Executes a run in the child process.
   int live(const BatchRun& run) const {
     const std::filesystem::path work = work_.of(run.address);
     RunVerdict verdict = verdict_of_run(run, work);
-    std::string& message = verdict.message;  // says the same wherever the run was done
+    std::string& message = verdict.message;  // must not depend on the work folder
     for (std::size_t at; (at = message.find(work.string())) != std::string::npos;) message.replace(at, work.string().size(), "RUN");
     keep_or_remove(run.address, verdict.code());
     store_.save(run.address, verdict);

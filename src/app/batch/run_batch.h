@@ -11,15 +11,15 @@
 
 namespace patrol::app {
 
-/// One run that a sweep or a test wants done.
+/// Run that a sweep or a test requests.
 struct BatchRun {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;
-  std::string address;  ///< where its result goes
-  std::string label;    ///< for people
+  std::string address;  ///< content hash or name under which the result is stored
+  std::string label;    ///< for display
 };
 
-/// Whose run directories stay, as `runs/ADDRESS/`, once they are scored.
+/// Runs whose directories are kept as `runs/ADDRESS/` after scoring.
 enum class KeepRuns { kNone, kFailed, kAll };
 
 inline constexpr std::array kKeepRuns = std::to_array<NamedValue<KeepRuns>>({
@@ -34,8 +34,8 @@ struct BatchSettings {
   KeepRuns keep = KeepRuns::kNone;
 };
 
-/// Runs them, stores a verdict on each whatever becomes of it, and tells how far it is. A run that is killed from outside is tried once
-/// more. False when interrupted: what has ended is stored.
+/// Executes the runs, stores a verdict for each in every case, and shows the progress. A run that is killed from
+/// outside is repeated once. Returns false if interrupted; completed runs are stored.
 bool run_batch(const std::vector<BatchRun>& runs, const BatchSettings& settings, const std::filesystem::path& root);
 
 }  // namespace patrol::app

@@ -21,7 +21,7 @@ std::string host_name() {
   return name.data();
 }
 
-/// Removes what is named HOST-PID-... and whose process is `wanted`, or any that is gone.
+/// Removes the folders HOST-PID-... of this host that belong to the process `wanted` or to ended processes.
 void remove_left(const std::filesystem::path& folder, const std::string& host, pid_t wanted) {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
@@ -47,7 +47,7 @@ WorkFolder::WorkFolder(const std::filesystem::path& root)
 WorkFolder::~WorkFolder() {
   remove_left(folder_, host_name(), ::getpid());
   std::error_code ignored;
-  std::filesystem::remove(folder_, ignored);  // if nobody else works in it
+  std::filesystem::remove(folder_, ignored);  // fails if another process works in it
 }
 
 }  // namespace patrol::app

@@ -5,8 +5,8 @@
 
 namespace patrol::app {
 
-/// Where runs lie while they run: `root/work/HOST-PID-ADDRESS`. Several processes, on several hosts, may work below one root; what
-/// processes of this host left that are gone is removed first, what this one leaves at the end.
+/// Folder of the active runs, `root/work/HOST-PID-ADDRESS`. Several processes on several hosts may work below one root.
+/// The constructor removes what dead processes of this host left, the destructor what this process left.
 class WorkFolder {
  public:
   explicit WorkFolder(const std::filesystem::path& root);

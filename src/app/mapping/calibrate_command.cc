@@ -24,9 +24,9 @@ const OutputKind kCalibrating = {.name = "calibration of a log",
                                  .proof = "settings.yaml",
                                  .kept = {"*.part"}};
 
-/// Everything that `--set` reaches.
+/// Settings of `patrol calibrate --set`.
 struct LogCalibrationSettings {
-  int passes = 2;  ///< over the log; from the second on scans are matched with odometry put right by the one before
+  int passes = 2;  ///< passes over the log; each uses the calibration of the one before
   io::ScanLogOptions log;
   slam::PlanarScanSettings scan;
   slam::MotionPairSettings stretches;
@@ -42,15 +42,15 @@ struct LogCalibrationSettings {
   }
 };
 
-/// What is known after a pass over the log.
+/// Result of a pass over the log.
 struct CalibratedLog {
   io::ScanLogSummary summary;
-  Pose2 T_body_lidar;  ///< as the log's first scan has it
+  Pose2 T_body_lidar;  ///< lidar pose of the log's first scan
   std::vector<slam::MotionPair> pairs;
   slam::CalibrationResult result;
 };
 
-/// None when interrupted.
+/// Calibrates in one pass over the log; none if interrupted.
 std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, const LogCalibrationSettings& settings, const slam::Calibration& known, const std::string& name) {
   const InterruptGuard guard;
   ProgressBar bar;
@@ -71,7 +71,7 @@ std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, c
   return calibrated;
 }
 
-/// Where odometry and the lidar disagree: to see what was rejected, and when.
+/// Table of the motion of each segment by odometry and by scan matching, with its error, which shows rejected segments.
 io::Table stretch_table(const CalibratedLog& log) {
   io::Table table{.name = "stretches",
                   .columns = {"begin_s", "end_s", "odometry_x_m", "odometry_y_m", "odometry_yaw_rad", "lidar_x_m", "lidar_y_m", "lidar_yaw_rad", "error_std"},
@@ -134,7 +134,7 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     log = calibrate_once(options.log, settings, known, fmt::format("{}, {} of {}", options.log.filename().string(), pass, settings.passes));
     if (!log) break;
   }
-  const OutputLock lock = begin_output(options.out, kCalibrating);  // not before: a log that is damaged half way leaves nothing
+  const OutputLock lock = begin_output(options.out, kCalibrating);  // not earlier: a damaged log must leave no output
   if (!log) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", options.out.string());
     return ExitCode::kProgramFailed;

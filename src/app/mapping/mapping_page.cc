@@ -22,7 +22,7 @@ render::MapBlock map_block(const MappingContents& contents) {
   return {.picture = render::map_picture(layers, shown), .paths = {{"estimated path", render::Ink::kEstimate, {std::move(way)}}}, .marks = {}};
 }
 
-/// One column of the cost over the scans; columns by name.
+/// Plot of one cost column, by its name, over the scans.
 render::LinePlot plot_of(const MappingContents& contents, const std::string& column, const std::string& title, const std::string& unit) {
   const auto index_of = [&](const std::string& name) {
     return static_cast<std::size_t>(std::ranges::find(contents.cost.columns, name) - contents.cost.columns.begin());

@@ -10,7 +10,7 @@
 
 namespace patrol::app {
 
-/// A log that was mapped.
+/// Results of mapping a log.
 struct MappingContents {
   std::string log, method;
   OccupancyGrid map;
@@ -19,7 +19,8 @@ struct MappingContents {
   io::Metrics metrics;
 };
 
-/// The page of `patrol slam`: figures, the map with the way, and what scans cost as the map grew.
+/// Report page of `patrol slam`: metrics, the map with the trajectory, and the computation time of scans as the map
+/// grows.
 render::Page mapping_page(const MappingContents& contents);
 
 }  // namespace patrol::app

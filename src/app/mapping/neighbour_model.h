@@ -7,13 +7,15 @@
 
 namespace patrol::app {
 
-/// Where `patrol train-neighbours` leaves, and mapping looks for, what recognises neighbouring submaps: below the data root.
+/// Path of the classifier of neighboring submaps below the data root; written by `patrol train-neighbours`, read by
+/// mapping.
 inline constexpr const char* kNeighbourModel = "models/submap_neighbours.json";
 
 /// Whether the SLAM method of that name classifies pairs of submaps.
 bool needs_neighbor_model(const std::string& method);
 
-/// Model for the SLAM method of that name; empty for methods that need none. Throws InputError with the file's place.
+/// Loads the model for the SLAM method of that name; empty for methods that need none. Throws InputError with the
+/// file's path.
 BoostedStumps neighbours_for(const std::string& method, const std::filesystem::path& data_root);
 
 }  // namespace patrol::app

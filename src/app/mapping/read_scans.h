@@ -12,7 +12,8 @@
 
 namespace patrol::app {
 
-/// Gives every scan of a log to `use`, one after the other, with a line on a terminal that begins with `name`. False when `guard` was interrupted.
+/// Calls `use` for every scan of a log in order, and shows the progress in a terminal, labeled `name`. Returns false if
+/// `guard` was interrupted.
 template <typename Use>
 bool read_scans(io::ScanLog& log, const std::string& name, const InterruptGuard& guard, ProgressBar& bar, Use&& use) {
   const double start_s = wall_seconds();

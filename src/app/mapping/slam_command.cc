@@ -35,7 +35,7 @@ const OutputKind kMapping = {.name = "mapping of a log",
                              .proof = "settings.yaml",
                              .kept = {"*.part"}};
 
-/// Everything that `--set` reaches.
+/// Settings of `patrol slam --set`.
 struct LogMappingSettings {
   std::uint64_t seed = 1;
   io::ScanLogOptions log;
@@ -53,10 +53,10 @@ struct LogMappingSettings {
   }
 };
 
-/// What each stretch of scans cost, to see whether it grows with the map.
+/// Computation time by segment of scans, which shows whether it grows with the map.
 class CostTable {
  public:
-  static constexpr std::size_t kScans = 200;  ///< in a row of the table
+  static constexpr std::size_t kScans = 200;  ///< scans per row of the table
 
   void add(std::size_t num_scans, double way_m) {
     if (num_scans % kScans != 0) return;
@@ -71,17 +71,17 @@ class CostTable {
   double last_s_ = thread_seconds();
 };
 
-/// What was read of the log, besides what the mapper keeps.
+/// Data of the log in addition to the mapper's.
 struct MappedLog {
   std::vector<Time> stamps;
-  std::vector<Pose2> T_odom_body;  ///< [scan], from the first
-  double way_m = 0.0;              ///< by odometry
+  std::vector<Pose2> T_odom_body;  ///< [scan], relative to the first
+  double way_m = 0.0;              ///< distance traveled, by odometry
   CostTable cost;
 
   double duration_s() const { return stamps.empty() ? 0.0 : to_seconds(stamps.back() - stamps.front()); }
 };
 
-/// False when interrupted.
+/// Maps a log; false if interrupted.
 bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::string& name, slam::Mapper& mapper, MappedLog& mapped) {
   InterruptGuard guard;
   ProgressBar bar;
@@ -103,7 +103,7 @@ bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::st
   return !guard.is_interrupted();
 }
 
-/// One pose for each scan, in the log's order; where the log gives several the same stamp, so does the trajectory.
+/// Trajectory with one pose per scan, in the log's order; duplicate stamps are kept.
 Trajectory trajectory_of(const std::vector<Time>& stamps, const std::vector<Pose2>& poses) {
   Trajectory trajectory;
   for (std::size_t i = 0; i < stamps.size(); ++i) trajectory.push_back({stamps[i], to_spatial(poses[i])});
@@ -111,7 +111,7 @@ Trajectory trajectory_of(const std::vector<Time>& stamps, const std::vector<Pose
 }
 
 io::Metrics metrics_of(const io::ScanLogSummary& summary, const MappedLog& mapped, const Trajectory& estimate, const PoseGraph& graph) {
-  std::size_t num_cross_submap = 0;  // loops, and at the end every keyframe's matches with the submaps around it
+  std::size_t num_cross_submap = 0;  // loop closures, and after finish() every keyframe's matches with nearby submaps
   for (const PoseGraphEdge& edge : graph.edges) num_cross_submap += edge.kind == PoseGraphEdge::Kind::kLoop ? 1 : 0;
   std::uint64_t num_skipped = 0;
   for (const auto& [reason, count] : summary.skipped) num_skipped += count;
@@ -136,7 +136,7 @@ ExitCode slam_command(const SlamOptions& options) {
   const double wall_s = wall_seconds(), thread_s = thread_seconds();
   MappedLog mapped;
   const bool is_whole = map_log(*log, settings, options.log.filename().string(), *mapper, mapped);
-  const OutputLock lock = begin_output(options.out, kMapping);  // not before: a log that is damaged half way leaves nothing
+  const OutputLock lock = begin_output(options.out, kMapping);  // not earlier: a damaged log must leave no output
   if (!is_whole) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", options.out.string());
     return ExitCode::kProgramFailed;

@@ -12,14 +12,15 @@
 
 namespace patrol::app {
 
-/// A run's log mapped by submaps, and where they truly lie.
+/// Submaps of a run's log with their ground-truth poses.
 struct SubmapTrack {
   slam::SubmapRbpf slam;
   std::vector<Time> stamps = {};            ///< [scan]
   std::vector<Pose2> T_world_submap = {};   ///< [submap]
 };
 
-/// Of a run directory. None when interrupted. Throws InputError when there is no log, or the truth does not reach from its first scan to its last.
+/// Builds the submaps of a run directory. None if interrupted. Throws InputError if there is no log, or the ground
+/// truth does not cover all scans.
 std::optional<SubmapTrack> build_submaps(const std::filesystem::path& run, const slam::PlanarScanSettings& scan, const slam::SubmapRbpfSettings& settings,
                                          const BoostedStumps& neighbours, std::uint64_t seed, ProgressBar& bar, const InterruptGuard& guard);
 

@@ -16,7 +16,7 @@
 namespace patrol::app {
 namespace {
 
-/// Everything that `--set` reaches.
+/// Settings of `patrol train-neighbours --set`.
 struct TrainingSettings {
   std::uint64_t seed = 1;
   slam::PlanarScanSettings scan;
@@ -34,10 +34,10 @@ struct TrainingSettings {
   }
 };
 
-/// None when interrupted.
+/// Labeled pairs of submaps from the runs; none if interrupted.
 std::optional<slam::LabelledFeatures> examples_of(const std::vector<std::filesystem::path>& runs, const TrainingSettings& settings, const InterruptGuard& guard) {
   slam::SubmapRbpfSettings apart = settings.submap_rbpf;
-  apart.max_candidates = 0;  // submaps only: nobody can be recognised yet
+  apart.max_candidates = 0;  // no submap constraints: the classifier does not exist yet
   slam::LabelledFeatures examples{.names = slam::pair_feature_names(), .examples = {}, .labels = {}};
   ProgressBar bar;
   for (const std::filesystem::path& run : runs) {

@@ -17,7 +17,7 @@ namespace {
 
 std::chrono::milliseconds milliseconds(double seconds) { return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds)); }
 
-/// What the platform says about a refusal: a line.
+/// Error message of a response, one line.
 std::string error_of(const monitor::HttpAnswer& answer) {
   const auto json = nlohmann::json::parse(answer.body, nullptr, false);
   const bool says_why = json.is_object() && json.contains("error") && json["error"].is_string();
@@ -69,7 +69,7 @@ Sender::Outcome Sender::send_next() {
 
 void Sender::set_aside_conflicts(const Outbox::Batch& batch, const std::string& answer) {
   const auto json = nlohmann::json::parse(answer);
-  const auto& results = json.at("results");  // in the batch's order
+  const auto& results = json.at("results");  // in the order of the batch
   for (std::size_t i = 0; i < batch.results.size(); ++i) {
     if (results.at(i).at("status") == "conflict") outbox_.set_aside(batch.results[i]);
   }
@@ -117,7 +117,7 @@ void Delivery::run() {
     try {
       outcome = sender_.send_next();
       why = sender_.why();
-    } catch (const std::exception& error) {  // the disk is full, or the answer is not the platform's
+    } catch (const std::exception& error) {  // the disk is full, or the response is not one of a monitoring server
       why = error.what();
     }
     lock.lock();

@@ -12,34 +12,35 @@
 
 namespace patrol::app {
 
-/// Where results go, and who sends them.
+/// Address and credentials of a monitoring server.
 struct Platform {
   monitor::Url url;
   std::string token;
 };
 
-/// From the address, and the token's file or, without one, PATROL_TOKEN. Throws InputError when either is missing or wrong.
+/// Creates the address from a URL and the token from its file, or without one from PATROL_TOKEN. Throws InputError if
+/// either is missing or invalid.
 Platform platform_from(const std::string& address, const std::optional<std::filesystem::path>& token_file);
 
 struct DeliverySettings {
-  std::size_t batch_results = 200;   ///< in one request, at most
+  std::size_t batch_results = 200;   ///< maximum number of results in one request
   std::size_t batch_bytes = 4'000'000;
-  double gather_s = 0.1;             ///< from the first result that waits to its request: others come with it
+  double gather_s = 0.1;             ///< delay from the first waiting result to its request, to collect others
   double request_limit_s = 10.0;
-  double first_pause_s = 0.25;       ///< after a request that failed; each further one doubles it
+  double first_pause_s = 0.25;       ///< pause after a failed request; doubled for each further one
   double longest_pause_s = 5.0;
 };
 
-/// Empties an outbox into a platform, one batch at a time.
+/// Uploads the results of an outbox to a monitoring server, one batch at a time.
 class Sender {
  public:
   enum class Outcome { kEmpty, kSent, kRefusedToken, kUnreachable };
 
   Sender(Outbox& outbox, Platform platform, const DeliverySettings& settings = {});
 
-  /// Sends the next batch. One that the platform refuses for good is halved until the result is alone, which is set aside.
+  /// Sends the next batch. A batch that the server rejects is halved until a single result remains, which is set aside.
   Outcome send_next();
-  /// Why the last batch was not taken.
+  /// Reason why the last batch was not accepted.
   const std::string& why() const { return why_; }
 
  private:
@@ -48,22 +49,24 @@ class Sender {
   Outbox& outbox_;
   Platform platform_;
   DeliverySettings settings_;
-  std::size_t limit_;  ///< results in the next batch
+  std::size_t limit_;  ///< maximum number of results in the next batch
   std::string why_;
 };
 
-/// Sends in the background while results are added, and again and again while the platform is away.
+/// Uploads in the background while results are added; retries while the server is unreachable. Thread-safe: the public
+/// functions may be called while the background thread runs.
 class Delivery {
  public:
+  /// The outbox must outlive the object.
   Delivery(Outbox& outbox, Platform platform, const DeliverySettings& settings = {});
-  /// Stops; what is left stays in the outbox.
+  /// Stops the upload; pending results stay in the outbox.
   ~Delivery();
   Delivery(const Delivery&) = delete;
   Delivery& operator=(const Delivery&) = delete;
 
-  /// There is something new.
+  /// Notifies the background thread of new results.
   void wake();
-  /// Waits until the outbox is empty. False: it was not within the limit.
+  /// Waits until the outbox is empty; false after the time limit.
   bool wait_until_empty(double limit_s);
   std::string why_not() const;
 

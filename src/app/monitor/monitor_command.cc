@@ -24,7 +24,7 @@ std::string token_for(const MonitorOptions& options) {
   return monitor::token_of_folder(options.data);
 }
 
-/// Names of the options; the name to listen at is one of them.
+/// Accepted host names from the options, including the host to listen on.
 monitor::HostNames hosts_of(const MonitorOptions& options) {
   std::vector<std::string> names = options.allowed_hosts;
   if (!options.host.empty()) names.push_back(options.host);

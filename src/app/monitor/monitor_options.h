@@ -7,11 +7,11 @@
 
 namespace patrol::app {
 
-/// What `patrol monitor` was told.
+/// Options of `patrol monitor`.
 struct MonitorOptions {
   std::string host = "127.0.0.1";
   int port = 8080;
-  std::vector<std::string> allowed_hosts;  ///< names under which it is reached, besides its address and `localhost`
+  std::vector<std::string> allowed_hosts;  ///< host names of the server besides its address and `localhost`
   std::filesystem::path data = "out/monitor";
   std::optional<std::filesystem::path> token_file;
 };

@@ -29,7 +29,7 @@ std::uint64_t sent_bytes(const std::filesystem::path& root) {
   return sent;
 }
 
-/// Lines that have their end, from a place in the file on.
+/// Number of complete lines in a file, from the byte `from` on.
 std::size_t num_lines(const std::filesystem::path& file, std::uint64_t from) {
   std::ifstream in(file, std::ios::binary);
   in.seekg(static_cast<std::streamoff>(from));
@@ -69,7 +69,7 @@ Outbox::Batch Outbox::next(std::size_t max_results, std::size_t max_bytes) {
     if (newline == std::string::npos) {
       std::string more(std::min<std::uint64_t>(kReadAhead, end - read_to), '\0');
       const ssize_t count = more.empty() ? 0 : ::pread(file_, more.data(), more.size(), static_cast<off_t>(read_to));
-      if (count <= 0) break;  // what is left has no end: its writer died in the middle of it
+      if (count <= 0) break;  // the remainder is incomplete: its writer died while writing
       text.append(more, 0, static_cast<std::size_t>(count));
       read_to += static_cast<std::uint64_t>(count);
       continue;

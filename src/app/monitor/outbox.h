@@ -10,26 +10,29 @@
 
 namespace patrol::app {
 
-/// What a run has to tell the platform, on disk before anything is sent: `outbox.jsonl`, one result a line, only ever longer, and
-/// `outbox.sent`, how many bytes of it the platform has. Results that the platform refuses for good go to `outbox.refused.jsonl`.
+/// Queue of results for the monitoring server on disk. `outbox.jsonl` has one result per line and is only appended to;
+/// `outbox.sent` has the number of its bytes that the server has acknowledged. Results that the server rejects go to
+/// `outbox.refused.jsonl`.
 ///
-/// One thread adds, one sends. A result whose sending was not acknowledged is sent again: the platform knows it by its id.
+/// One thread adds, another one sends. A result without acknowledgment is sent again; the server identifies it by its
+/// id.
 class Outbox {
  public:
-  /// Goes on with what is there. Throws InputError when the directory cannot be written to.
+  /// Continues an existing outbox. Throws InputError if the directory is not writable.
   explicit Outbox(std::filesystem::path root);
   ~Outbox();
   Outbox(const Outbox&) = delete;
   Outbox& operator=(const Outbox&) = delete;
 
-  /// In the file when it returns: it outlives the process. Throws std::runtime_error when the disk is full.
+  /// Appends a result to the file; it survives the end of the process. Throws std::runtime_error if the disk is full.
   void add(const monitor::Result& result);
 
   struct Batch {
-    std::vector<std::string> results;  ///< JSON each
-    std::uint64_t end = 0;             ///< in the file
+    std::vector<std::string> results;  ///< one JSON text each
+    std::uint64_t end = 0;             ///< end of the batch in the file, bytes
   };
-  /// The oldest that were not sent, at most so many and so large (but one at least), and safe from a power cut. Empty: all were sent.
+  /// Oldest results that were not sent, at most `max_results` and `max_bytes` (but at least one), synchronized to disk.
+  /// Empty if all were sent.
   Batch next(std::size_t max_results, std::size_t max_bytes);
   void mark_sent(const Batch& batch);
   void set_aside(const std::string& result);
@@ -45,7 +48,7 @@ class Outbox {
   std::uint64_t sent_ = 0;
 };
 
-/// Results in a directory that wait to be sent; 0 when it has no outbox.
+/// Number of results in a directory that wait for upload; 0 without an outbox.
 std::size_t num_waiting_results(const std::filesystem::path& root);
 
 }  // namespace patrol::app

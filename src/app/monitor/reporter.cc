@@ -45,7 +45,7 @@ bool is_same(const OccupancyGrid& a, const OccupancyGrid& b) {
   return one.width == other.width && one.height == other.height && one.origin_m == other.origin_m && a.values() == b.values();
 }
 
-/// Where the robot is to go, as its survey and its goals say.
+/// Stations and goals of the mission as JSON.
 Json stations_of(const ScenarioFiles& files) {
   Json list = Json::array();
   const auto add = [&](const std::string& name, std::string_view type, const Pose2& T_map_body) {
@@ -96,7 +96,7 @@ void Reporter::see(const stack::StackMessage& message) {
 }
 
 void Reporter::finish(const std::string& state, const std::string& message) {
-  if (!outbox_) return;  // it never began
+  if (!outbox_) return;  // never begun
   if (untold_map_) tell_map(*std::exchange(untold_map_, std::nullopt));
   tell_status(state.c_str(), io::on_one_line(message), "[]");
   delivery_->wait_until_empty(settings_.drain_limit_s);

@@ -12,28 +12,28 @@
 
 namespace patrol::app {
 
-/// Who reports, and from where.
+/// Identification of a run on the monitoring server.
 struct ReportedRun {
   std::string robot;
-  std::string run;       ///< of this run alone
+  std::string run;       ///< unique name of the run
   std::string world;
   std::string scenario;
 };
 
-/// "short-seed1-20261122T104533Z-9f3c": two runs never have the same.
+/// Unique name of a run: "short-seed1-20261122T104533Z-9f3c".
 std::string new_run_name(const std::string& scenario, std::uint64_t seed);
 
 struct ReporterSettings {
   double pose_period_s = 1.0;   ///< simulated
-  double map_period_s = 10.0;   ///< simulated; a map that has not changed is not sent again
-  double drain_limit_s = 10.0;  ///< at the end of the run, for what has not been delivered
+  double map_period_s = 10.0;   ///< simulated; an unchanged map is not sent again
+  double drain_limit_s = 10.0;  ///< time limit at the end of the run for pending results
 };
 
-/// Tells the monitoring platform what the robot's own software says, and nothing else: the ground truth passes by. Nothing of it comes
-/// back into the run.
+/// Observer that reports messages of the robot's stack to the monitoring server. Ground truth is ignored. Does not
+/// influence the run.
 class Reporter final : public RunObserver {
  public:
-  /// Writes into `root` from `begin` on.
+  /// `root`: folder of the outbox, written from `begin` on.
   Reporter(std::filesystem::path root, ReportedRun run, Platform platform, const ReporterSettings& settings = {});
 
   void begin(const ScenarioFiles& files) override;
@@ -41,13 +41,14 @@ class Reporter final : public RunObserver {
   void see(const GroundTruth&) override {}
   bool go_on(Time, double) override { return true; }
 
-  /// The run has ended: "finished", "failed" or "interrupted", and what became of it. Waits for the delivery, within the limit.
+  /// Reports the end of the run: "finished", "failed" or "interrupted", with a message. Waits for the upload, within
+  /// the limit.
   void finish(const std::string& state, const std::string& message);
 
   std::size_t num_results() const { return static_cast<std::size_t>(sequence_); }
   std::size_t num_waiting() const { return outbox_ ? outbox_->num_waiting() : 0; }
   std::size_t num_refused() const { return outbox_ ? outbox_->num_refused() : 0; }
-  /// Why what waits could not be delivered.
+  /// Reason why pending results were not delivered.
   std::string why_not() const { return delivery_ ? delivery_->why_not() : ""; }
 
  private:

@@ -55,7 +55,7 @@ ExitCode plan_problems(const PlanOptions& options) {
   return num_failed(report) == 0 ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }
 
-/// A map, what is planned on it, and from where.
+/// Map, costs and ends of a planning problem.
 struct Ground {
   PlanMap map;
   std::string map_name;
@@ -66,7 +66,7 @@ struct Ground {
 
   bool is_blocked(const Eigen::Vector2d& p_m) const { return costs.at(costs.geometry().cell_at(p_m)) == plan::kLethalCost; }
 
-  /// "--to: 3, 4 is occupied; the nearest free cell is 2.5, 4, 0.50 m away".
+  /// Message for a blocked point: "--to: 3, 4 is occupied; the nearest free cell is 2.5, 4, 0.50 m away".
   std::string why_blocked(const std::string& key, const Eigen::Vector2d& p_m) const {
     const std::string place = fmt::format("{}: {} {}", key, map.text_of(p_m), blocked_reason(occupancy, setup.settings.costmap, p_m));
     const std::optional<Cell> free = nearest_free(costs, p_m);

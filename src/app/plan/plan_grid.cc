@@ -23,7 +23,8 @@ Grid<plan::Cost> make_costs(const OccupancyGrid& occupancy, const PlanBody& body
   if (!body.footprint) return costs_of_point(occupancy, settings);
   plan::CostmapSettings drives_with = settings;
   drives_with.resolution_m = std::max(settings.resolution_m, occupancy.geometry().resolution_m);
-  // The costmap holds its frame's origin, however far that lies from the map: the map is moved there, by whole cells.
+  // The costmap always contains its frame's origin, however far the map is from it. So the map is moved there, by
+  // whole cells.
   const double cell_m = drives_with.resolution_m;
   const Eigen::Vector2d corner_m = cell_m * (occupancy.geometry().origin_m.array() / cell_m).floor();
   GridGeometry moved = occupancy.geometry();

@@ -11,17 +11,18 @@
 
 namespace patrol::app {
 
-/// What the planners get. For a point the map's own cells: lethal what is occupied, or unknown and not to be crossed. For an outline the costmap
-/// that a robot drives by (plan/perception/costmap.h), without live obstacles and keep-out lines, cut to the map; its cells are no finer than the map's.
-/// Throws InputError when the outline is too large for the costmap's reach.
+/// Cost grid for the planners. For a point: the cells of the map, lethal if occupied, or if unknown cells may not be
+/// crossed. For an outline: the costmap of a robot (plan/perception/costmap.h), without scan obstacles and keep-out
+/// lines, cut to the map. Its cells are at least as large as the map's. Throws InputError if the outline is too large
+/// for the costmap.
 Grid<plan::Cost> make_costs(const OccupancyGrid& occupancy, const PlanBody& body, const plan::CostmapSettings& settings);
 
 std::int64_t num_passable(const Grid<plan::Cost>& costs);
 
-/// The passable cell nearest to a place, however far; none if there is none at all.
+/// Passable cell nearest to a position, at any distance; none if all cells are lethal.
 std::optional<Cell> nearest_free(const Grid<plan::Cost>& costs, const Eigen::Vector2d& p_m);
 
-/// Why nothing can stand there, as a person would say it: "is occupied".
+/// Reason why a position is blocked, for messages: "is occupied".
 const char* blocked_reason(const OccupancyGrid& occupancy, const plan::CostmapSettings& settings, const Eigen::Vector2d& p_m);
 
 }  // namespace patrol::app

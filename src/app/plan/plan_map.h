@@ -11,23 +11,25 @@
 
 namespace patrol::app {
 
-/// Anybody's map, and what its places are called: metres in its frame on a map_server map; on a MovingAI map cells from the upper left, y down, as .scen
-/// files have them. In the program both are metres in the grid's frame, y up, a MovingAI cell being 1 m.
+/// Map of `patrol plan` with the coordinates of its users: meters in its frame on a map_server map; cells from the
+/// upper left, y down, on a MovingAI map, as in .scen files. Internally both are meters in the grid's frame, y up, with
+/// MovingAI cells of 1 m.
 class PlanMap {
  public:
-  /// Throws InputError with the file and the line.
+  /// Loads a map. Throws InputError with the file and the line.
   explicit PlanMap(const std::filesystem::path& file);
 
   bool is_moving_ai() const { return moving_ai_.has_value(); }
   const char* unit() const { return is_moving_ai() ? "cells" : "m"; }
   const GridGeometry& geometry() const { return is_moving_ai() ? moving_ai_->terrain.geometry() : occupancy_.geometry(); }
-  /// For one who stands there: on a MovingAI map in water or on land.
+  /// Occupancy for a robot at a position; on a MovingAI map it depends on whether the position is in water or on land.
   OccupancyGrid occupancy_from(const Eigen::Vector2d& p_m) const;
 
-  /// `key` names the point in messages. Throw InputError when it is none, or lies outside the map.
+  /// Converts a point from the user's coordinates. `key` names the point in messages. Throws InputError if the point is
+  /// invalid or outside the map.
   Eigen::Vector2d place(const std::string& key, const std::string& text) const;
   Eigen::Vector2d place(const std::string& key, double x, double y) const;
-  /// As a person names the place.
+  /// Converts a position to the user's coordinates.
   Eigen::Vector2d named(const Eigen::Vector2d& p_m) const;
   std::string text_of(const Eigen::Vector2d& p_m) const;
 

@@ -8,11 +8,12 @@
 
 namespace patrol::app {
 
-/// What `patrol plan` was told. Points are "X,Y": metres in a map_server map's frame, cells from the upper left, y down, on a MovingAI map.
+/// Options of `patrol plan`. Points are "X,Y": meters in a map_server map's frame, or cells from the upper left, y
+/// down, on a MovingAI map.
 struct PlanOptions {
   std::filesystem::path map = {};  ///< map_server YAML, MovingAI .map, or a .scen file of problems
   std::optional<std::string> from = {}, to = {};
-  std::optional<std::filesystem::path> stations = {};  ///< of a tour (io/tour_stations.h)
+  std::optional<std::filesystem::path> stations = {};  ///< stations to order (io/tour_stations.h)
   std::optional<std::string> planner = {};
   std::optional<std::string> robot = {};
   std::optional<double> radius_m = {};

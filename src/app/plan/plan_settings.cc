@@ -17,7 +17,7 @@
 namespace patrol::app {
 namespace {
 
-/// A regular polygon about a disc: its inscribed circle is the disc.
+/// Regular polygon around a disc, which is its inscribed circle.
 plan::Footprint outline_of_disc(double radius_m) {
   constexpr int kCorners = 32;
   const double corner_m = radius_m / std::cos(std::numbers::pi / kCorners);
@@ -78,7 +78,7 @@ PlanSetup load_plan_setup(const PlanOptions& options) {
   if (options.speed_mps) overrides.push_back(fmt::format("speed_mps={}", *options.speed_mps));
   io::SettingsReader::read_section("--set", io::document_of(overrides), "", settings);
   settings.costmap.crosses_unknown = settings.unknown == "free";
-  plan::make_route_planner(settings.planner, settings.routes, settings.seed);  // refuses what is no planner
+  plan::make_route_planner(settings.planner, settings.routes, settings.seed);  // throws for an unknown planner
   if (settings.smooth && settings.planner == "any_angle_optimum") {
     throw InputError("--smooth: the any-angle optimum has nothing to smooth, and touches what is lethal");
   }

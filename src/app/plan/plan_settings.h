@@ -13,16 +13,19 @@
 
 namespace patrol::app {
 
-/// Everything that `patrol plan --set` reaches. Defaults are a point's; for a disc routes.cost_weight is the robots' (plan/routes/global_planner.h); for a robot
-/// costmap, unknown, routes and speed_mps are those that it drives with (models/<robot>/<robot>.yaml: stack.plan).
+/// Settings of `patrol plan --set`. The defaults are those of a point. For a disc, routes.cost_weight is that of the
+/// robots (plan/routes/global_planner.h). For a robot, costmap, unknown, routes and speed_mps come from its profile
+/// (models/<robot>/<robot>.yaml: stack.plan).
 struct PlanSettings {
   std::string planner = "theta_star";  ///< plan/routes/planners.h
-  std::uint64_t seed = 1;              ///< of planners and tour orders that draw
-  std::string unknown = "lethal";      ///< or "free": what the map does not know may be crossed, by a disc or a robot at costmap.unknown_cost
+  std::uint64_t seed = 1;              ///< seed of stochastic planners and station orders
+  std::string unknown = "lethal";      ///< or "free": unknown cells are passable
   bool smooth = false;
-  double kept_clearance_m = 0.3;       ///< as far as this, smoothing brings a route no nearer to what is lethal; on MovingAI maps cells
-  int any_angle_most_cells = 150'000;  ///< with more passable ones, or 8 times as many in all, the any-angle optimum is not looked for: it took up to 8 s
-  double speed_mps = 1.0;              ///< on a tour; on MovingAI maps cells a second
+  double kept_clearance_m = 0.3;       ///< smoothing keeps this or the route's clearance; MovingAI: cells
+  /// Maximum number of passable cells for the any-angle optimum, which took up to 8 s. The limit for all cells is 8 times
+  /// as high.
+  int any_angle_most_cells = 150'000;
+  double speed_mps = 1.0;              ///< speed on a tour; on MovingAI maps cells/s
   plan::CostmapSettings costmap;
   plan::RoutePlannerSettings routes;
   plan::TourOrderSettings tour;
@@ -42,10 +45,10 @@ struct PlanSettings {
   }
 };
 
-/// What is to find its way.
+/// Body whose path is planned.
 struct PlanBody {
   std::string name = "a point";
-  std::optional<plan::Footprint> footprint = {};  ///< none: a point
+  std::optional<plan::Footprint> footprint = {};  ///< none for a point
 };
 
 struct PlanSetup {
@@ -53,7 +56,7 @@ struct PlanSetup {
   PlanBody body;
 };
 
-/// Throws InputError that names the option or the key, for an unknown planner too.
+/// Loads the settings. Throws InputError with the option or the key, also for an unknown planner.
 PlanSetup load_plan_setup(const PlanOptions& options);
 
 }  // namespace patrol::app

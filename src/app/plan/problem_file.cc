@@ -18,7 +18,7 @@ namespace {
 
 bool is_any_angle(const std::string& planner) { return planner == "theta_star" || planner == "any_angle_optimum"; }
 
-/// The maps that a file's problems name, as the planners get them: for one on land, for one in water.
+/// Cost grids of the maps that a file's problems name, for starts on land and in water.
 class Grids {
  public:
   explicit Grids(const std::filesystem::path& file) : file_(file) {}
@@ -63,7 +63,7 @@ bool must_agree(const std::string& planner) { return planner == "astar" || plann
 std::filesystem::path find_map(const std::filesystem::path& file, const io::MovingAiProblem& problem) {
   const std::filesystem::path as_written = file.parent_path() / problem.map, beside = file.parent_path() / std::filesystem::path(problem.map).filename();
   for (const std::filesystem::path& map : {as_written, beside}) {
-    std::error_code ignored;  // of a name that is none
+    std::error_code ignored;  // an invalid file name
     if (std::filesystem::is_regular_file(map, ignored)) return map;
   }
   throw input_error(file.string(), problem.line, fmt::format("{}: there is neither {} nor {}", problem.map, as_written.string(), beside.string()));

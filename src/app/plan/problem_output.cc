@@ -15,7 +15,7 @@ constexpr std::size_t kMostFailuresPrinted = 20;
 
 struct Summary {
   std::size_t num_found = 0, num_agree = 0;
-  double worst_difference = 0.0;  ///< cells, of the length from the published one
+  double worst_difference = 0.0;  ///< difference from the published length, cells
   std::vector<double> ratios;
   double processor_s = 0.0;
 };

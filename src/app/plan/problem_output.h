@@ -19,11 +19,11 @@ struct ProblemReport {
 
 std::size_t num_failed(const ProblemReport& report);
 
-/// The block for standard output, failures by line.
+/// Report for standard output, failures by line.
 std::string to_text(const ProblemReport& report);
-/// The same figures, those of the clock under `performance`.
+/// Report as JSON, with times under `performance`.
 io::Metrics to_json(const ProblemReport& report);
-/// A row for each problem, cells as the file names them.
+/// Table with one row per problem, cells in the coordinates of the file.
 io::Table problem_table(const ProblemReport& report);
 
 }  // namespace patrol::app

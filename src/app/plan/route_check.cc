@@ -9,7 +9,7 @@
 namespace patrol::app {
 namespace {
 
-/// Half cells from the grid's lower-left corner: centres are odd, corners even.
+/// Point in half cells from the grid's lower-left corner: centers have odd coordinates, corners even ones.
 struct Point {
   long x = 0, y = 0;
   friend bool operator==(const Point&, const Point&) = default;
@@ -17,7 +17,7 @@ struct Point {
 
 Point center_of(Cell cell) { return {.x = 2L * cell.col + 1, .y = 2L * cell.row + 1}; }
 
-/// None if it is neither a centre nor a corner.
+/// Converts a point; none if it is neither a center nor a corner.
 std::optional<Point> whole_point(const Eigen::Vector2d& p) {
   const Eigen::Vector2d twice = 2.0 * p;
   if (!twice.allFinite() || twice.cwiseAbs().maxCoeff() > 1e9) return std::nullopt;
@@ -34,14 +34,14 @@ class Leg {
  public:
   Leg(const Grid<plan::Cost>& costs, Point from, Point to) : costs_(costs), low_(from.y <= to.y ? from : to), high_(from.y <= to.y ? to : from) {}
 
-  /// A lethal cell whose closed square the leg meets; with `is_open`, whose inside.
+  /// Lethal cell whose closed square the leg meets; with `is_open`, whose inside.
   std::optional<Cell> lethal_cell(bool is_open) const {
     for (long row = floor_div(low_.y, 2) - 1; 2 * row <= high_.y; ++row) {
       const long bottom = std::max(low_.y, 2 * row), top = std::min(high_.y, 2 * row + 2);
       if (bottom > top) continue;
       const bool is_level_inside = low_.y == high_.y && low_.y > 2 * row && low_.y < 2 * row + 2;
       if (is_open && bottom == top && !is_level_inside) continue;
-      // Where the leg lies between the two heights: from `left` to `right` of a half cell's `unit`-th parts.
+      // Part of the leg between the two heights: from `left` to `right`, in `unit`-ths of a half cell.
       const long unit = std::max(1L, high_.y - low_.y), dx = high_.x - low_.x;
       long left = low_.x * unit + dx * (bottom - low_.y), right = low_.x * unit + dx * (top - low_.y);
       if (low_.y == high_.y) left = low_.x, right = high_.x;
@@ -57,10 +57,10 @@ class Leg {
     return std::nullopt;
   }
 
-  /// A corner on the leg at which two lethal cells meet, or a side between two along which it runs.
+  /// Whether the leg passes a corner at which two lethal cells meet, or runs along a side between two.
   bool squeezes() const {
     if (low_.y == high_.y) {
-      if (low_.y % 2 != 0) return false;  // through the cells' middles
+      if (low_.y % 2 != 0) return false;  // through the middles of cells
       const auto [left, right] = std::minmax(low_.x, high_.x);
       for (long x = left + left % 2; x <= right; x += 2) {
         if (is_pinched(x / 2, low_.y / 2)) return true;
@@ -93,7 +93,7 @@ class Leg {
   }
 
   const Grid<plan::Cost>& costs_;
-  Point low_, high_;  ///< by y
+  Point low_, high_;  ///< ordered by y
 };
 
 }  // namespace

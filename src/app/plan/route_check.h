@@ -8,11 +8,12 @@
 
 namespace patrol::app {
 
-/// What is wrong with a route from cell to cell; none if nothing is. It must begin and end at the cells' centres, turn only at centres or corners of
-/// cells, and meet no lethal cell: each leg is cut, row by row, with the lethal cells' closed squares, exact in whole numbers. Nothing of the planners'
-/// own code is used.
+/// Validates a route from cell to cell; returns a description of the first fault, or none. The route must begin and end
+/// at the cells' centers, turn only at centers or corners of cells, and meet no lethal cell. Each leg is intersected,
+/// row by row, with the closed squares of lethal cells, exactly in integers. The check uses none of the planners' code.
 ///
-/// `may_touch`, for the any-angle optimum: squares may be touched, but not passed between where two meet; outside the grid all is lethal.
+/// `may_touch`, for the any-angle optimum: the route may touch squares, but not pass between two that meet; outside of
+/// the grid everything is lethal.
 std::optional<std::string> find_fault(const Grid<plan::Cost>& costs, const plan::Route& route, Cell start, Cell goal, bool may_touch);
 
 }  // namespace patrol::app

@@ -33,7 +33,7 @@ bool is_too_large(const Grid<plan::Cost>& costs, std::int64_t most_passable) {
 int count_turns(const std::vector<Eigen::Vector2d>& points) {
   int num_turns = 0;
   for (std::size_t i = 2; i < points.size(); ++i) {
-    const Eigen::Vector2d before = points[i - 1] - points[i - 2], after = points[i] - points[i - 1];  // whole half cells: exact
+    const Eigen::Vector2d before = points[i - 1] - points[i - 2], after = points[i] - points[i - 1];  // exact
     num_turns += before.x() * after.y() != before.y() * after.x() || before.dot(after) < 0.0;
   }
   return num_turns;

@@ -16,7 +16,7 @@ const OutputKind kPlanOutput = {.name = "plan",
 
 namespace {
 
-constexpr double kSettled = 0.01;  // of the final value
+constexpr double kSettled = 0.01;  // fraction of the final value
 
 std::string turns_text(int num_turns) { return fmt::format("{} turn{}", num_turns, num_turns == 1 ? "" : "s"); }
 
@@ -26,7 +26,7 @@ std::string compared(double value, double best) {
   return fmt::format("the route's is {:.2f} % {}", std::abs(percent), percent > 0.0 ? "more" : "less");
 }
 
-/// Lines on what is the best on this grid.
+/// Lines on the optimal routes of this grid.
 std::string references_text(const RouteReport& report) {
   const RouteFigures& figures = report.figures;
   const double cell = report.costs.geometry().resolution_m;

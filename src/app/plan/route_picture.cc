@@ -63,7 +63,7 @@ class Sheet {
     }
   }
 
-  /// At least a pixel of each, however small the picture.
+  /// Draws at least one pixel per obstacle, for any picture size.
   void draw_obstacles() {
     const GridGeometry& map = picture_.occupancy.geometry();
     const Eigen::Vector2d half_m = Eigen::Vector2d::Constant(0.5 * map.resolution_m);

@@ -11,7 +11,7 @@
 
 namespace patrol::app {
 
-/// A route on its map.
+/// Picture of a route on its map.
 struct RoutePicture {
   struct Mark {
     Eigen::Vector2d p_m;
@@ -19,16 +19,16 @@ struct RoutePicture {
     render::Color color;
   };
   const OccupancyGrid& occupancy;
-  const Grid<plan::Cost>& costs;  ///< in the same frame
-  std::vector<Eigen::Vector2d> line_m;  ///< none: no route
+  const Grid<plan::Cost>& costs;  ///< in the frame of `occupancy`
+  std::vector<Eigen::Vector2d> line_m;  ///< empty without a route
   std::vector<Mark> marks;
   std::string title, note;
 };
 
 inline constexpr render::Color kStartColor{0, 128, 96}, kGoalColor{196, 40, 32}, kStopColor{92, 48, 150};
 
-/// What is known of the map, y up, at most 1600 x 1000 pixels: obstacles dark, what inflation makes lethal and what it makes dearer shaded. Throws
-/// InputError when there is no font.
+/// Renders the known part of the map, y up, at most 1600 x 1000 pixels: obstacles dark, inflated lethal and costly
+/// cells shaded. Throws InputError if no font is found.
 render::Frame draw_route(const RoutePicture& picture);
 
 }  // namespace patrol::app

@@ -40,7 +40,7 @@ double waiting_s(const TourPlan& tour) {
   return waiting_s;
 }
 
-/// A table of the stops, names in a column as wide as the longest, up to 32 letters.
+/// Table of the stops; the column of names is as wide as the longest one, at most 32 characters.
 std::string visits_text(const TourReport& report) {
   std::size_t width = 5;
   for (const TourStop& stop : report.stops) width = std::clamp(stop.station.name.size(), width, std::size_t{32});
@@ -66,8 +66,9 @@ std::string place_name(const TourReport& report, std::size_t place) {
 std::string tour_title(const TourReport& report) {
   const TourPlan& tour = report.tour;
   if (!tour.order.is_found) return fmt::format("{}: no tour of {} stations", report.setup.settings.planner, report.stops.size());
+  // All unreachable places are stations: without a path to the end there is no order.
   return fmt::format("{}: {} of {} stations in {:.2f} {}, {:.1f} s", report.setup.settings.planner, report.stops.size() - tour.unreachable.size(),
-                     report.stops.size(), length_m(tour), report.map.unit(), tour.order.completion);  // the end is reached, or there is no order
+                     report.stops.size(), length_m(tour), report.map.unit(), tour.order.completion);
 }
 
 std::string to_text(const TourReport& report) {

@@ -14,7 +14,7 @@
 
 namespace patrol::app {
 
-/// Everything about a tour that is printed and written.
+/// Contents of the report on a tour.
 struct TourReport {
   const PlanMap& map;
   std::string map_name;
@@ -26,16 +26,16 @@ struct TourReport {
   const TourPlan& tour;
 };
 
-/// "start", a station's name, "end"; places as in TourVisit.
+/// "start", a station's name, or "end"; `place` as in TourVisit.
 std::string place_name(const TourReport& report, std::size_t place);
 
 std::string tour_title(const TourReport& report);
-/// The block for standard output: the order with its times.
+/// Report for standard output: the order with its times.
 std::string to_text(const TourReport& report);
-/// The same figures, those of the clock under `performance`.
+/// Report as JSON, with times under `performance`.
 io::Metrics to_json(const TourReport& report);
 io::Table tour_table(const TourReport& report);
-/// Stations by number in the order of the tour; those that it leaves out by name alone.
+/// Marks of the stations: numbered in the order of the tour, those without a visit by name alone.
 std::vector<RoutePicture::Mark> marks_of(const TourReport& report);
 
 }  // namespace patrol::app

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// The ways between all pairs of places.
+/// Paths between all pairs of places.
 class Ways {
  public:
   Ways(const Grid<plan::Cost>& costs, std::vector<Cell> places, const PlanSettings& settings)
@@ -26,7 +26,7 @@ class Ways {
 
   std::size_t size() const { return places_.size(); }
 
-  /// Of either direction; planned from the place that comes first.
+  /// Plans the path of a pair for both directions, from the place with the lower index.
   void plan(std::size_t from, std::size_t to) {
     const auto key = std::minmax(from, to);
     ways_[key] = plan_route(*planner_, costs_, places_[key.first], places_[key.second], settings_);
@@ -36,7 +36,7 @@ class Ways {
     const plan::Route& way = ways_.at(std::minmax(from, to));
     return way.status == plan::PlanStatus::kFound ? costs_.geometry().resolution_m * way.length : kInfinite;
   }
-  /// That there is a way, or none.
+  /// Whether the existence or absence of a path is proven.
   bool is_proved(std::size_t from, std::size_t to) const { return ways_.at(std::minmax(from, to)).status != plan::PlanStatus::kNoneFound; }
   std::vector<Eigen::Vector2d> points_m(std::size_t from, std::size_t to) const {
     std::vector<Eigen::Vector2d> points_m = plan::to_metres(costs_.geometry(), ways_.at(std::minmax(from, to)).points);
@@ -52,7 +52,7 @@ class Ways {
   std::map<std::pair<std::size_t, std::size_t>, plan::Route> ways_;
 };
 
-/// All pairs of `places`; false when interrupted.
+/// Plans all `pairs`; false if interrupted.
 bool plan_ways(Ways& ways, const std::vector<std::pair<std::size_t, std::size_t>>& pairs, const InterruptGuard& guard, ProgressBar& bar) {
   double shown_s = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -66,7 +66,7 @@ bool plan_ways(Ways& ways, const std::vector<std::pair<std::size_t, std::size_t>
   return true;
 }
 
-/// `places[i]` is the problem's station i.
+/// Tour problem of the reachable places; `places[i]` is its station i.
 plan::TourProblem problem_of(const Ways& ways, const std::vector<std::size_t>& places, const std::vector<TourStop>& stops, bool has_end, double speed_mps) {
   plan::TourProblem problem{.start = 0, .end = has_end ? places.size() - 1 : 0};
   for (const std::size_t from : places) {

@@ -12,7 +12,8 @@
 
 namespace patrol::app {
 
-/// Values of one metric in the unit that people read it in, their quartiles, the median in words; without values only its label.
+/// Box of a box plot: values of one metric in its display unit, quartiles, and the median as text; only the label
+/// without values.
 inline render::Box box_of(const std::string& label, std::vector<double> values, const Unit& unit) {
   render::Box box{.label = label, .values = std::move(values), .text = ""};
   if (box.values.empty()) return box;

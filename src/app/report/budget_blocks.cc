@@ -9,16 +9,16 @@ namespace {
 
 using render::Tone;
 
-/// Steps of a waterfall, in the metric's unit for people.
+/// Steps of a waterfall chart, in the metric's display unit.
 class Waterfall {
  public:
   explicit Waterfall(const Budget& budget) : unit_(unit_of(budget.metric)), level_(budget.as_it_is->center) {}
 
-  /// From zero.
+  /// Adds a bar from zero.
   void total(const std::string& label, const score::Interval& value) {
     add(label, 0.0, value.center, value, Tone::kPlain, fmt::format("{:.3g} {}", unit_.factor * value.center, unit_.name));
   }
-  /// Down from where the last step ended.
+  /// Adds a bar down from the end of the previous step.
   void step(const std::string& label, const score::Interval& share) {
     const double next = level_ - share.center;
     const Tone tone = share.contains(0.0) ? Tone::kFaint : share.center > 0.0 ? Tone::kBad : Tone::kGood;

@@ -5,10 +5,10 @@
 
 namespace patrol::app {
 
-/// A waterfall from the figure as it is to the ideal one, share by share, and in figures.
+/// Waterfall chart from the baseline to the ideal value by contributions, and a table of the values.
 std::vector<render::Block> budget_blocks(const Budget& budget);
 
-/// What owns most, in a sentence.
+/// Sentence on the largest contributions.
 std::string budget_finding(const Budget& budget);
 
 }  // namespace patrol::app

@@ -27,7 +27,7 @@ std::string interval_text(const std::optional<score::Interval>& interval, const 
 }  // namespace
 
 std::vector<std::string> short_names(const SweepManifest& manifest) {
-  std::map<std::string, std::string> short_paths;  // by path
+  std::map<std::string, std::string> short_paths;  // [path]
   std::set<std::string> taken;
   for (const std::string& path : manifest.paths) taken.insert(short_paths[path] = path.substr(path.rfind('.') + 1));
   const bool are_unique = taken.size() == manifest.paths.size();

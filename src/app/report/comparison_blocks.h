@@ -5,13 +5,14 @@
 
 namespace patrol::app {
 
-/// [variant] as a page names it: of each key the last part only ("range_noise_m=0.03"), where those differ.
+/// Short variant names for a page, [variant]: only the last part of each key ("range_noise_m=0.03"), if these are
+/// unique.
 std::vector<std::string> short_names(const SweepManifest& manifest);
 
-/// Every value of one metric by variant, the differences from the first variant, and both in figures.
+/// Box plot of one metric by variant, differences from the first variant, and a table of both.
 std::vector<render::Block> comparison_blocks(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, const std::string& metric);
 
-/// How each run ended, those that did not come to their end first.
+/// Table of how each run ended, incomplete runs first.
 render::FoldedTables run_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress);
 
 }  // namespace patrol::app

@@ -25,8 +25,8 @@ Curve heading_curve(const std::string& name, Ink ink, const std::vector<score::M
   return curve;
 }
 
-/// Twice the standard deviation that the estimate gives itself: of the position, the root of the sum of both variances (2 DRMS), which
-/// hold 95 to 98 of 100 errors if they are Gaussian.
+/// Curve of twice the estimate's own standard deviation. For the position it is the root of the sum of both variances
+/// (2 DRMS), which contains 95 to 98 % of Gaussian errors.
 template <typename Deviation>
 Curve bound_curve(const std::string& name, const RunRecord& record, const Deviation& deviation) {
   Curve curve{.name = name, .ink = Ink::kBound, .is_dashed = true, .points = {}};
@@ -36,7 +36,7 @@ Curve bound_curve(const std::string& name, const RunRecord& record, const Deviat
   return curve;
 }
 
-/// The plots' common part.
+/// Plots on a common time axis.
 class Plots {
  public:
   explicit Plots(const RunContents& run) : axis_{.label = "time, s", .max = run.end_s()}, marks_(marks_of(run)), spans_(spans_of(run)) {}

@@ -7,8 +7,8 @@
 
 namespace patrol::app {
 
-/// Events, position and heading error of the estimate with the bounds that it gives itself, what odometry and UWB ranges alone would
-/// have believed, and the localisation's trust: all over time. Empty when the run ended before there was an estimate.
+/// Plots over time: events, position and heading error of the estimate with its own bounds, the errors of odometry and
+/// UWB ranges alone, and the localization confidence. Empty if the run ended before the first estimate.
 std::vector<render::Block> error_blocks(const RunContents& run);
 
 }  // namespace patrol::app

@@ -20,7 +20,7 @@ class Figures {
   }
   std::vector<KeyFigure> take() { return std::move(figures_); }
 
-  /// How many of a list's entries hold.
+  /// Adds the number of a list's entries for which `holds` is true.
   template <typename Holds>
   void add_share(const std::string& label, const std::string& list, const Holds& holds, const std::string& note) {
     if (!metrics_.contains(list) || metrics_[list].empty()) return;

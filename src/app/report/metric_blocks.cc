@@ -16,7 +16,7 @@ namespace {
 
 using render::Tone;
 
-/// A figure of an entry in fixed decimals, so that a column's points stand below each other.
+/// Cell with a metric of an entry in fixed decimals, which aligns the decimal points of a column.
 render::TableCell figure_cell(const io::Metrics& entry, const std::string& path, int decimals, double factor = 1.0) {
   const std::optional<double> value = io::metric_at(entry, path);
   return value ? render::TableCell{fmt::format("{:.{}f}", factor * *value, decimals)} : render::TableCell{"–", Tone::kFaint};
@@ -28,7 +28,7 @@ render::TableCell checked_cell(const std::string& path, const std::vector<Checke
   return {check->wanted + (check->is_met ? " met" : " MISSED"), check->is_met ? Tone::kGood : Tone::kBad};
 }
 
-/// One value each arrival; none when the place was never reached.
+/// Values of a metric by arrival; empty if the goal was never reached.
 std::vector<double> each_of(const io::Metrics& goal, const std::string& metric) {
   std::vector<double> values;
   if (!goal.contains(metric) || !goal[metric].contains("each")) return values;
@@ -36,7 +36,7 @@ std::vector<double> each_of(const io::Metrics& goal, const std::string& metric) 
   return values;
 }
 
-/// Every arrival of a tour as a dot; nothing when no place was reached more than once.
+/// Box plot with a dot for every arrival; empty if no goal was reached more than once.
 render::BoxPlot box_plot(const io::Metrics& metrics, const std::string& metric, const std::string& caption) {
   const Unit unit = unit_of(metric);
   render::BoxPlot plot{.caption = caption, .unit = unit.name, .boxes = {}};

@@ -7,13 +7,13 @@
 /// Blocks of a page from metrics.json alone.
 namespace patrol::app {
 
-/// The few figures that most readers come for; those that the run did not measure are left out.
+/// Main metrics; those that the run did not measure are omitted.
 render::KeyFigures key_figures(const io::Metrics& metrics);
 
-/// Every figure, one table for each group.
+/// Every metric, one table per group.
 render::FoldedTables all_metrics(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks);
 
-/// Empty when there is nothing to tell.
+/// Blocks of stations, goals, inspection and performance; each is empty without metrics.
 std::vector<render::Block> station_blocks(const io::Metrics& metrics);
 std::vector<render::Block> goal_blocks(const io::Metrics& metrics);
 std::vector<render::Block> inspection_blocks(const io::Metrics& metrics);

@@ -15,7 +15,7 @@ using render::PlotMark;
 
 const std::string kLostText = "The robot says that it is lost.";
 
-/// Whether error curves are read against the marks of this lane.
+/// Whether the marks of this lane are also shown in error curves.
 bool is_for_curves(const render::LanePlot::Lane& lane) {
   return lane.marks.front().ink == Ink::kAlarm || lane.name == name_of(EventKind::kRecovery) || lane.name == name_of(EventKind::kRelocalized);
 }

@@ -5,19 +5,19 @@
 #include "app/report/run_contents.h"
 #include "render/report/blocks.h"
 
-/// What happened on a run, for plots and tables.
+/// Events of a run for plots and tables.
 namespace patrol::app {
 
-/// One lane for each kind of event, in the order of their first; then collisions and kidnaps.
+/// One lane per kind of event, in the order of first occurrence; then collisions and kidnaps.
 std::vector<render::LanePlot::Lane> lanes_of(const RunContents& run);
 
-/// Of the lanes, what error curves should be read against: troubles, recoveries, and where the robot found itself again.
+/// Marks for error curves, from some of the lanes: failures, recoveries and relocalizations.
 std::vector<render::PlotMark> marks_of(const RunContents& run);
 
-/// Faults, and how long the robot said that it was lost.
+/// Spans of faults, and of reported delocalization.
 std::vector<render::PlotSpan> spans_of(const RunContents& run);
 
-/// All events, folded.
+/// Table of all events, folded.
 render::FoldedTables event_table(const RunContents& run);
 
 }  // namespace patrol::app

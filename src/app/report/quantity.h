@@ -7,7 +7,7 @@
 
 namespace patrol::app {
 
-/// A figure for people, in the unit that suits its size.
+/// Value with a unit that suits its magnitude, for display.
 struct Quantity {
   std::string value;
   std::string unit;
@@ -22,7 +22,7 @@ inline Quantity length(double length_m) {
   return {fmt::format("{:.{}f}", length_m, size_m < 100.0 ? 1 : 0), "m"};
 }
 
-/// What people read a metric in, by the unit in its name.
+/// Display unit of a metric, by the unit in its name.
 struct Unit {
   double factor = 1.0;
   std::string name;

@@ -11,7 +11,7 @@
 namespace patrol::app {
 namespace {
 
-/// The page of a study, or of a log that was mapped, is made with it, from what it has in hand.
+/// Loads the page of a study or of a mapped log, which is generated with its results.
 std::string page_made_before(const std::filesystem::path& root) {
   const std::filesystem::path page = root / "report.html";
   if (!std::filesystem::exists(page)) throw InputError(fmt::format("{}: has not come to its end: there is nothing to report", root.string()));

@@ -10,7 +10,7 @@
 namespace patrol::app {
 namespace {
 
-/// The first line of the resolved scenario, without its '#'.
+/// First line of the resolved scenario, without its '#'.
 std::string comment_of(const std::filesystem::path& scenario) {
   const std::string text = io::load_text(scenario);
   return text.starts_with("# ") ? text.substr(2, text.find('\n') - 2) : "";
@@ -28,7 +28,8 @@ void read_junit(RunContents& run) {
   }
 }
 
-/// As the score has it; a run that has none yet, or is older than this figure: joined where both first agree.
+/// Pose of map in world as scored. Without a score, or with an older one, the trajectories are aligned at their first
+/// common pose.
 Pose2 map_in_world(const RunContents& run) {
   const auto figure = [&](const char* name) { return io::metric_at(run.metrics, fmt::format("map.origin_in_world.{}", name)); };
   const auto x_m = figure("x_m"), y_m = figure("y_m"), yaw_rad = figure("yaw_rad");

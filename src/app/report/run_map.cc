@@ -12,9 +12,9 @@ namespace {
 using render::Ink;
 using render::MapMark;
 
-/// Polylines that end where the robot, or what it believes, jumps.
+/// Divides a trajectory into polylines at jumps of the robot or of its estimate.
 std::vector<std::vector<Eigen::Vector2d>> pieces_of(const Trajectory& T_frame_body, const Pose2& T_world_frame) {
-  constexpr double kJump_m = 0.5;  // between neighbours of a tenth of a second at most
+  constexpr double kJump_m = 0.5;  // between poses at most 0.1 s apart
   std::vector<std::vector<Eigen::Vector2d>> pieces;
   for (const StampedPose& entry : T_frame_body) {
     const Eigen::Vector2d p_world = T_world_frame * to_planar(entry.pose).position();
@@ -34,12 +34,12 @@ Eigen::AlignedBox2d extent_of(const std::vector<render::MapPath>& paths) {
   return extent;
 }
 
-/// Marks, of which those that would lie on each other share a label.
+/// Marks on the map; marks that would overlap share a label.
 class Marks {
  public:
   void add(const std::string& label, Ink ink, const Eigen::Vector2d& p_world) {
     constexpr double kShared_m = 1.5;
-    if (!num_by_label_.emplace(label, 0).second && ink != Ink::kAlarm) return;  // goals are reached again and again
+    if (!num_by_label_.emplace(label, 0).second && ink != Ink::kAlarm) return;  // goals are reached repeatedly
     const auto near = std::find_if(marks_.begin(), marks_.end(), [&](const MapMark& mark) { return mark.ink == ink && (mark.p_m - p_world).norm() < kShared_m; });
     if (near == marks_.end()) marks_.push_back({.label = label, .ink = ink, .p_m = p_world});
     else if (near->label.find(label) == std::string::npos) near->label += ", " + label;

@@ -7,8 +7,8 @@
 
 namespace patrol::app {
 
-/// The built map over the true one in the colours of its errors, with both paths, and what the events tell of places. Empty when there
-/// is no map.
+/// Map built by the run over the reference map, colored by its errors, with both paths and the positions of events.
+/// Empty without a map.
 std::vector<render::Block> map_blocks(const RunContents& run);
 
 }  // namespace patrol::app

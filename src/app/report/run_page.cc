@@ -15,7 +15,7 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::uintmax_t kLargestEmbedded = 6u << 20;  // bytes: a page that still goes through a mail gateway
+constexpr std::uintmax_t kLargestEmbedded = 6u << 20;  // bytes: limit of common mail gateways
 
 using Blocks = std::vector<render::Block>;
 

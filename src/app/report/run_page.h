@@ -7,7 +7,7 @@
 
 namespace patrol::app {
 
-/// The report of one run. `page_file`: where it will lie, which decides whether a large video can be linked.
+/// Report page of one run. `page_file`: path of the page, which determines whether a large video can be linked.
 render::Page run_page(const RunContents& run, const std::filesystem::path& page_file);
 
 }  // namespace patrol::app

@@ -17,7 +17,7 @@ concept List = !Scalar<Value> && requires(const Value& value) { value.begin(); }
 template <typename Value>
 std::string text_of(const Value& value);
 
-/// Where a struct's fields lie.
+/// Addresses of a struct's fields by name.
 struct FieldPointers {
   std::map<std::string, const void*> by_name;
   template <typename Value>
@@ -33,7 +33,7 @@ FieldPointers fields_of(const Settings& settings) {
   return fields;
 }
 
-/// Visits the fields of one struct beside those of another of the same type.
+/// Visits the fields of two structs of one type in pairs.
 template <typename Use>
 struct PairVisitor {
   FieldPointers standard;
@@ -50,7 +50,7 @@ void for_each_pair(const Settings& standard, const Settings& value, const Use& u
   Settings::fields(value, visitor);
 }
 
-/// "{name: pedestrian_1, speed_mps: 1.2}", without defaults.
+/// Text of a list entry without defaults: "{name: pedestrian_1, speed_mps: 1.2}".
 template <typename Settings>
 std::string entry_text(const Settings& entry) {
   std::vector<std::string> parts;

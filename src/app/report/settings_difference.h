@@ -7,15 +7,16 @@
 
 namespace patrol::app {
 
-/// A setting that a scenario has otherwise than the standard.
+/// Setting of a scenario that differs from the default.
 struct SettingDifference {
   std::string path;      ///< "sensors.lidar.range_noise_m"
-  std::string standard;  ///< empty: an entry of a list that the standard does not have
+  std::string standard;  ///< empty: an entry of a list that the default does not have
   std::string value;
 };
 
-/// In the order of the settings. A sensor of another preset is compared with that preset; entries of lists (leaks, actors, faults) are
-/// told in a line each, without what is default in them. `expect` is left out: it is no setting of the run.
+/// Differences in the order of the settings. A sensor of another preset is compared with that preset. Entries of lists
+/// (leaks, actors, faults) take one line each, without their defaults. `expect` is omitted, because it does not
+/// influence the run.
 std::vector<SettingDifference> settings_differences(const Scenario& standard, const Scenario& scenario);
 
 }  // namespace patrol::app

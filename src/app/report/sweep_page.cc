@@ -64,7 +64,7 @@ Tone tone_of(FaultOutcome outcome) {
   }
 }
 
-/// The table as it stands in faults.csv, by fault.
+/// Table of faults.csv, ordered by fault.
 render::TableBlock fault_table(const SweepManifest& manifest, const std::vector<FaultRow>& rows) {
   render::TableBlock table{.caption = "", .columns = {{"fault"}, {"seed", true}, {"executed"}, {"outcome"}, {"noticed", true}, {"end"}}, .rows = {}};
   for (const std::string& metric : manifest.metrics) table.columns.push_back({metric, true});

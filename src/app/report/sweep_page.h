@@ -5,7 +5,7 @@
 
 namespace patrol::app {
 
-/// The page of a sweep, an error budget or a fault matrix whose runs are all there.
+/// Report page of a complete sweep, error budget or fault matrix.
 render::Page sweep_page(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress);
 
 }  // namespace patrol::app

@@ -22,7 +22,7 @@ render::TableBlock scenario_table(const std::vector<TestedScenario>& tested, boo
   return table;
 }
 
-/// Of the scenarios that expect something.
+/// Tables of the scenarios with expectations.
 render::FoldedTables expectation_tables(const std::vector<TestedScenario>& tested) {
   render::FoldedTables folded{.summary = "What was expected, and what was measured", .tables = {}};
   for (const TestedScenario& one : tested) {

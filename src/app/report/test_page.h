@@ -7,7 +7,7 @@
 
 namespace patrol::app {
 
-/// The page of a `patrol test`: the verdict, what failed and why, then all.
+/// Report page of `patrol test`: the verdict, failures with their reasons, then all scenarios.
 render::Page test_page(const std::vector<TestedScenario>& tested);
 
 }  // namespace patrol::app

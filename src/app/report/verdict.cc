@@ -17,7 +17,7 @@ const io::JunitCase* case_named(const RunContents& run, const std::string& name)
   return found == run.cases.end() ? nullptr : &*found;
 }
 
-/// Why the run ended before the mission was over; empty if it did not.
+/// Reason why the run ended before the mission was completed; empty if it did not.
 std::string early_end(const RunContents& run) {
   const io::JunitCase* end = case_named(run, "run");
   return end == nullptr || end->result == io::JunitResult::kPassed ? "" : end->message;
@@ -53,7 +53,7 @@ std::string missed_text(const std::vector<CheckedExpectation>& checks) {
   return fmt::format("{} of {} expectations missed: {}.", texts.size(), checks.size(), fmt::join(texts, "; "));
 }
 
-/// Word, tone and reason of a run that is complete.
+/// Fills in verdict, tone and reason of a complete run.
 void judge(const RunContents& run, const std::vector<CheckedExpectation>& checks, render::VerdictBlock& verdict) {
   const std::string end = early_end(run), misses = missed_text(checks);
   const bool is_passed = end.empty() && status_of(RunEnd::kMissionOver, checks) == RunStatus::kDone;
@@ -76,8 +76,8 @@ void add_unexecuted(render::VerdictBlock& verdict) {
 }  // namespace
 
 bool is_executed(const KidnapSettings& kidnap, const Trajectory& T_world_body) {
-  constexpr double kNear_m = 0.5;             // it may fall or roll a little
-  constexpr Time kAfter = std::chrono::milliseconds(50);  // a few truths
+  constexpr double kNear_m = 0.5;             // the robot may fall or roll a little
+  constexpr Time kAfter = std::chrono::milliseconds(50);  // a few samples of the ground truth
   const std::optional<Pose3> truth = pose_at(T_world_body, from_seconds(kidnap.at_s) + kAfter);
   return truth && (truth->position.head<2>() - Eigen::Vector2d(kidnap.x_m, kidnap.y_m)).norm() < kNear_m;
 }

@@ -5,11 +5,11 @@
 
 namespace patrol::app {
 
-/// Passed, missed or incomplete, why, and everything that the scenario declares: each expectation with what was wanted and what
-/// came, each fault and kidnap with whether it was executed.
+/// Verdict of a run (passed, missed or incomplete) with its reason and everything that the scenario declares. Each
+/// expectation has the wanted and the measured value, each fault and kidnap whether it was executed.
 render::VerdictBlock verdict_of(const RunContents& run);
 
-/// Whether the truth in the log shows the robot where it was to be put.
+/// Whether the ground truth in the log has the robot at the kidnap's position.
 bool is_executed(const KidnapSettings& kidnap, const Trajectory& T_world_body);
 
 }  // namespace patrol::app

@@ -26,7 +26,7 @@ Scenario scenario_of(const RunOptions& options) {
   return load_scenario(options.scenario, overrides);
 }
 
-/// One line that tells how far the run is.
+/// Observer that shows the progress of a run in one line.
 class ProgressLine final : public RunObserver {
  public:
   explicit ProgressLine(const std::string& name) : name_(name) {}
@@ -42,7 +42,7 @@ class ProgressLine final : public RunObserver {
   InterruptGuard interrupt_;
 };
 
-/// Several look on; each may stop the run.
+/// Group of observers; each may stop the run.
 class Together final : public RunObserver {
  public:
   explicit Together(std::vector<RunObserver*> observers) : observers_(std::move(observers)) {}
@@ -112,7 +112,7 @@ ExitCode run_command(const RunOptions& options) {
   const std::unique_ptr<Reporter> reporter = reporter_of(options, scenario, name, root);
   std::unique_ptr<RunObserver> observer = observer_of(options, name);
   const std::optional<RunVerdict> verdict = run_reported(options, scenario, name, root, reporter.get(), *observer);
-  observer.reset();  // gives the screen back
+  observer.reset();  // restores the screen
   if (reporter) say_what_was_sent(*reporter, *options.report_to, root);
   if (!verdict) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", root.string());

@@ -8,10 +8,10 @@
 
 namespace patrol::app {
 
-/// The files of a run directory (README, "The run directory").
+/// Files of a run directory (README, "The run directory").
 struct RunDirectory {
   std::filesystem::path root;
-  std::shared_ptr<const OutputLock> lock = nullptr;  ///< of a run that is being written
+  std::shared_ptr<const OutputLock> lock = nullptr;  ///< lock while the run is being written
 
   std::filesystem::path scenario() const { return root / "scenario.yaml"; }
   std::filesystem::path log() const { return root / "log.mcap"; }
@@ -31,11 +31,11 @@ struct RunDirectory {
   bool is_complete() const;
 };
 
-/// Makes the directory and marks it incomplete (output_directory.h). An earlier run's files in it are removed. Throws InputError when some
-/// of its results still wait for the platform.
+/// Creates the directory and marks it incomplete (output_directory.h). Removes the files of an earlier run. Throws
+/// InputError if results of that run have not been uploaded.
 RunDirectory begin_run_directory(const std::filesystem::path& root);
 
-/// An existing run's directory. Throws InputError when there is no log in it.
+/// Opens the directory of an existing run. Throws InputError if it contains no log.
 RunDirectory open_run_directory(const std::filesystem::path& root);
 
 }  // namespace patrol::app

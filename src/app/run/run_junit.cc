@@ -8,7 +8,7 @@ namespace {
 io::JunitCase end_case(const std::string& name, const RunVerdict& verdict, double time_s) {
   io::JunitCase test{.class_name = name, .name = "run", .time_s = time_s, .result = io::JunitResult::kPassed,
                      .message = "", .details = ""};
-  if (verdict.end == RunStatus::kDone || verdict.end == RunStatus::kExpectationMissed) return test;  // expectations are cases of their own
+  if (verdict.end == RunStatus::kDone || verdict.end == RunStatus::kExpectationMissed) return test;  // own cases
   const bool came_to_a_score = !verdict.metrics.empty();
   test.result = came_to_a_score ? io::JunitResult::kFailure : io::JunitResult::kError;
   test.message = came_to_a_score ? verdict.message : fmt::format("{}: {}", name_of(verdict.end), verdict.message);

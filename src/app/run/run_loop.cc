@@ -15,7 +15,7 @@
 namespace patrol::app {
 namespace {
 
-/// True once every `period`, starting at once.
+/// Clock divider: `is_due` is true once per period, beginning with the first call.
 class Schedule {
  public:
   explicit Schedule(double rate_hz) : period_(from_seconds(1.0 / rate_hz)) {}
@@ -30,7 +30,7 @@ class Schedule {
   Time next_{};
 };
 
-/// What goes on to the twin's instruments.
+/// Message that is a command to the simulator's instruments.
 template <typename Message>
 concept InstrumentOrder = std::is_constructible_v<InstrumentCommand, Message>;
 
@@ -176,7 +176,7 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
   for (const PartClock* part : {&twin.clock(), &stack.clock(), &std::as_const(clock)}) {
     for (const auto& [name, seconds] : part->seconds()) outcome.seconds_by_part[name] += seconds;
   }
-  // Expensive sensors are parts of their own.
+  // Expensive sensors are stages of their own.
   for (const auto& [name, seconds] : twin.sensors().clock().seconds()) {
     outcome.seconds_by_part[name] += seconds;
     outcome.seconds_by_part["sensors"] -= seconds;

@@ -14,18 +14,18 @@ namespace patrol::app {
 
 enum class RunEnd { kMissionOver, kFall, kTimeLimit, kInterrupted };
 
-/// How a run went, beyond what its log holds.
+/// Outcome of a run beyond its log.
 struct RunOutcome {
   RunEnd end = RunEnd::kMissionOver;
-  Time duration{};                                   ///< simulated
+  Time duration{};                                   ///< simulated time
   double wall_s = 0.0;
   double cpu_s = 0.0;
-  std::map<std::string, double> seconds_by_part;     ///< wall
+  std::map<std::string, double> seconds_by_part;     ///< wall time by stage
   std::vector<sim::FaultReport> faults;
-  std::size_t num_kidnaps = 0;                       ///< of those declared, in order, that were executed
+  std::size_t num_kidnaps = 0;                       ///< number of declared kidnaps, in order, that were executed
 };
 
-/// Looks on while a run goes; nothing of it comes back into the run.
+/// Observer of a running simulation. Must not influence the run; may stop it by returning false from `go_on`.
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
@@ -33,27 +33,28 @@ class RunObserver {
   virtual void begin(const ScenarioFiles&) {}
   virtual void see(const stack::StackMessage&) {}
   virtual void see(const GroundTruth&) {}
-  /// Twice a simulated second; false stops the run.
+  /// Called every 0.5 s of simulated time; false stops the run.
   virtual bool go_on(Time now, double distance_m) = 0;
 };
 
-/// Nobody looks on.
+/// Observer that ignores everything.
 class Unobserved final : public RunObserver {
  public:
   bool go_on(Time, double) override { return true; }
 };
 
-/// Where the robot is put down, in world.
+/// Actual start pose of the robot, in world.
 Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files);
 
-/// What lies about: the props named and those scattered.
+/// Static obstacles of the scenario: the listed ones and the randomly scattered ones.
 std::vector<sim::PropSettings> props_of(const Scenario& scenario);
 
-/// Throw InputError when what the scenario names does not go together.
+/// Creates the simulator. Throws InputError if the settings of the scenario are inconsistent.
 sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files);
+/// Creates the stack. Throws InputError if the settings of the scenario are inconsistent.
 stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files);
 
-/// Runs twin and stack against each other until the mission is over, and writes everything to `log_mcap`.
+/// Runs simulator and stack in a closed loop until the mission ends, and writes everything to `log_mcap`.
 RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin, stack::Stack& stack,
                     const std::filesystem::path& log_mcap, RunObserver& observer);
 

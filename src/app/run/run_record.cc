@@ -8,7 +8,7 @@
 namespace patrol::app {
 namespace {
 
-/// Stamps must grow: a message that came twice, or late, is left out.
+/// Appends a pose; stamps must increase, so a repeated or late message is ignored.
 void append(Trajectory& trajectory, Time stamp, const Pose3& pose) {
   if (trajectory.empty() || stamp > trajectory.back().stamp) trajectory.push_back({stamp, pose});
 }

@@ -14,13 +14,13 @@
 
 namespace patrol::app {
 
-/// Something that a scenario declares to happen: a fault, a kidnap.
+/// Event declared by a scenario: a fault or a kidnap.
 struct DeclaredEvent {
   std::string what;          ///< "fault imu freeze at 12 s"
   bool is_executed = false;
 };
 
-/// Status of a run that is over.
+/// Status of a completed run.
 enum class RunStatus : std::uint8_t { kDone, kExpectationMissed, kFall, kTimeLimit, kWrongInput, kFailed, kCrashed, kWallTimeLimit };
 
 /// Row of the table of run statuses.
@@ -49,30 +49,31 @@ constexpr ExitCode exit_code_of(RunStatus status) { return row_of(kRunStatuses, 
 /// Result of a run.
 struct RunVerdict {
   RunStatus end = RunStatus::kDone;
-  std::string message;  ///< why it is not done: one line
-  io::Metrics metrics;  ///< metrics.json; empty for a run that came to no score
+  std::string message;  ///< reason for a status other than kDone, one line
+  io::Metrics metrics;  ///< metrics.json; empty for a run without a score
   std::vector<CheckedExpectation> checks;
   std::vector<DeclaredEvent> events;
 
   ExitCode code() const { return exit_code_of(end); }
 };
 
-/// How junit.xml names what was declared: "fault imu freeze at 12 s".
+/// Name of a fault in junit.xml: "fault imu freeze at 12 s".
 std::string name_of(const sim::FaultSettings& fault);
+/// Name of a kidnap in junit.xml.
 std::string name_of(const KidnapSettings& kidnap);
 
-/// Status of a run that came to a score: a fall and a time limit come before the expectations that they made it miss.
+/// Status of a run with a score. A fall and a time limit precede the expectations that are missed because of them.
 RunStatus status_of(RunEnd end, const std::vector<CheckedExpectation>& checks);
 
-/// Of a run that came to its end. `kidnaps` are those declared.
+/// Verdict of a completed run. `kidnaps` are those declared.
 RunVerdict verdict_of(const RunOutcome& outcome, const std::vector<KidnapSettings>& kidnaps, io::Metrics metrics,
                       std::vector<CheckedExpectation> checks);
 
-/// How a missed expectation is said: "pose.ate_rmse_m is 0.2, expected <= 0.1".
+/// Description of a missed expectation: "pose.ate_rmse_m is 0.2, expected <= 0.1".
 std::string missed(const CheckedExpectation& check);
 
 io::Metrics to_json(const RunVerdict& verdict);
-/// Throws std::exception when it is not one.
+/// Throws std::exception if `json` is not a verdict.
 RunVerdict verdict_from_json(const io::Metrics& json);
 
 }  // namespace patrol::app

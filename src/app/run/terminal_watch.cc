@@ -28,7 +28,7 @@ winsize terminal_size() {
 TerminalWatch::TerminalWatch(const std::string& name) {
   if (::isatty(STDOUT_FILENO) != 1) throw InputError("--watch: needs a terminal to draw on");
   run_.name = name;
-  fmt::print("\033[?1049h\033[?25l\033[2J");  // another screen, no cursor
+  fmt::print("\033[?1049h\033[?25l\033[2J");  // alternate screen, hidden cursor
 }
 
 TerminalWatch::~TerminalWatch() {

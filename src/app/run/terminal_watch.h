@@ -8,10 +8,11 @@
 
 namespace patrol::app {
 
-/// Shows a run on the terminal while it goes (`patrol run --watch`), at most ten times a second; the screen comes back as it was.
+/// Shows a running simulation in the terminal (`patrol run --watch`), at most ten times a second. Restores the screen
+/// on destruction.
 class TerminalWatch final : public RunObserver {
  public:
-  /// Throws InputError when standard output is no terminal.
+  /// Throws InputError if standard output is not a terminal.
   explicit TerminalWatch(const std::string& name);
   ~TerminalWatch() override;
   TerminalWatch(const TerminalWatch&) = delete;

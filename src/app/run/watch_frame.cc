@@ -13,7 +13,7 @@ namespace patrol::app {
 namespace {
 
 constexpr double kDot_m = 0.15;
-constexpr int kDotsAcross = 2, kDotsDown = 4;  // of a braille character
+constexpr int kDotsAcross = 2, kDotsDown = 4;  // dots of a braille character
 constexpr int kNumEvents = 4;
 constexpr const char* kLineEnd = "\033[K\r\n";
 
@@ -33,7 +33,7 @@ std::string utf8(int code) {
   return {static_cast<char>(0xe0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 0x3f)), static_cast<char>(0x80 | (code & 0x3f))};
 }
 
-/// Characters with dots in them; each has the colour of the highest layer that put one there.
+/// Grid of braille characters. Each has the color of the highest layer that set a dot in it.
 class DotMap {
  public:
   DotMap(int columns, int rows, const Eigen::Vector2d& center_m)
@@ -46,7 +46,7 @@ class DotMap {
     const auto [x, y] = dot_of(p_m);
     Cell* cell = cell_at(x, y);
     if (cell == nullptr) return;
-    // Dots 1, 2, 3, 7 down the left, 4, 5, 6, 8 down the right.
+    // Braille dots 1, 2, 3, 7 are in the left column, 4, 5, 6, 8 in the right one.
     static constexpr std::array<std::array<int, kDotsDown>, kDotsAcross> kBits = {{{0x01, 0x02, 0x04, 0x40}, {0x08, 0x10, 0x20, 0x80}}};
     cell->dots |= kBits[static_cast<std::size_t>(x % kDotsAcross)][static_cast<std::size_t>(y % kDotsDown)];
     cell->layer = std::max(cell->layer, layer);
@@ -88,7 +88,7 @@ class DotMap {
   }
 
   int columns_, rows_;
-  Eigen::Vector2d corner_m_;  ///< upper left
+  Eigen::Vector2d corner_m_;  ///< upper left corner
   std::vector<Cell> cells_;
 };
 

@@ -10,7 +10,7 @@
 
 namespace patrol::app {
 
-/// What there is to see of a run that goes on; poses in map.
+/// State of a running simulation for display; poses in map.
 struct WatchedRun {
   std::string name;
   Time now{};
@@ -19,15 +19,16 @@ struct WatchedRun {
   OccupancyGrid map;
   std::optional<PoseEstimate> estimate;
   std::optional<Pose2> truth;
-  std::vector<Pose2> path;              ///< that the robot means to drive
-  std::vector<Eigen::Vector2d> driven_m;  ///< by its own estimate
+  std::vector<Pose2> path;              ///< planned path
+  std::vector<Eigen::Vector2d> driven_m;  ///< trajectory, by the robot's own estimate
   std::optional<LocalizationTrust> trust;
   VelocityCommand command;
-  std::deque<Event> events;             ///< the newest last
+  std::deque<Event> events;             ///< newest last
 };
 
-/// The run as a page of a terminal, `columns` x `rows` characters, with ANSI colours: figures, the map about the robot (north of map up, two
-/// by four dots in a character), the newest events. Lines end in "\033[K\r\n", so that a frame covers the one before.
+/// Renders the state for a terminal, `columns` x `rows` characters, with ANSI colors: values, the map around the robot,
+/// the newest events. The map has north up and 2 x 4 dots per character. Lines end in "\033[K\r\n", so that a frame
+/// overwrites the previous one.
 std::string watch_frame(const WatchedRun& run, int columns, int rows);
 
 }  // namespace patrol::app

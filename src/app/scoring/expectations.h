@@ -8,7 +8,7 @@
 
 namespace patrol::app {
 
-/// One line of a scenario's `expect:` held against metrics.json.
+/// Result of one line of a scenario's `expect:` on metrics.json.
 struct CheckedExpectation {
   std::string metric;
   std::string wanted;  ///< "<= 0.15", "true"
@@ -17,7 +17,7 @@ struct CheckedExpectation {
   bool is_met = false;
 };
 
-/// A metric that the run did not measure is not met.
+/// Checks all expectations. An expectation of a metric that the run did not measure is not met.
 std::vector<CheckedExpectation> check_expectations(const io::Expectations& expectations, const io::Metrics& metrics);
 
 bool all_met(const std::vector<CheckedExpectation>& checks);

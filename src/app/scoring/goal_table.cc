@@ -7,7 +7,7 @@
 namespace patrol::app {
 namespace {
 
-/// Mean and standard deviation of ten navigations, as printed.
+/// Published mean and standard deviation over ten navigations.
 struct PublishedGoal {
   double position_cm, position_std_cm;
   double heading_deg, heading_std_deg;

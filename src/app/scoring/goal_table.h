@@ -6,7 +6,8 @@
 
 namespace patrol::app {
 
-/// A tour's goals beside paper 004's table 2, and how often each was not reached; empty when the metrics hold no goal that was driven to.
+/// Table of the mission's goal errors compared with [Liu21, table 2], with the number of goals not reached; empty
+/// without navigation goals.
 std::string goal_table(const io::Metrics& metrics);
 
 }  // namespace patrol::app

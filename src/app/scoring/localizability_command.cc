@@ -21,7 +21,7 @@ const OutputKind kLocalizability = {.name = "map of localisability",
                                     .proof = "localizability.csv",
                                     .kept = {}};
 
-/// A logarithmic scale from a tenth of a millimetre to a metre.
+/// Maps a standard deviation to a logarithmic scale from 0.1 mm to 1 m.
 double share_of(double std_m) { return std::log10(std::clamp(std_m, 1e-4, 1.0)) / 4.0 + 1.0; }
 
 io::Table table_of(const LocalizabilityMap& map) {

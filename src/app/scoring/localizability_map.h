@@ -8,7 +8,7 @@
 
 namespace patrol::app {
 
-/// The oracle at one place that the robot could stand at.
+/// Localizability at one position that the robot could reach.
 struct LocalizablePlace {
   Eigen::Vector2d p_world_m = Eigen::Vector2d::Zero();
   score::Localizability truth;
@@ -16,12 +16,13 @@ struct LocalizablePlace {
 
 struct LocalizabilityMap {
   OccupancyGrid surfaces;  ///< in world, at the lidar's height
-  double step_m = 0.5;     ///< from place to place
+  double step_m = 0.5;     ///< grid spacing of the positions
   std::vector<LocalizablePlace> places;
 };
 
-/// Every place on a grid of `step_m` from the surveyed start on that can be reached between the world's outermost surfaces without coming
-/// nearer than 0.4 m to one. Throws InputError when that is none.
+/// Computes localizability at every reachable position on a grid of `step_m` that contains the surveyed start.
+/// Reachable positions are connected to the start and at least 0.4 m from the surfaces. Throws InputError if there are
+/// none.
 LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFiles& files, double step_m);
 
 }  // namespace patrol::app

@@ -8,7 +8,7 @@
 namespace patrol::app {
 namespace {
 
-/// One of n rays stands for the information of as many beams as the lidar has for it.
+/// Noise of one of `num_rays` rays, which carries the information of all of the lidar's beams that it represents.
 score::BeamNoise noise_of(const LidarSettings& lidar, int num_rays) {
   constexpr double kLeast_m = 0.001;
   const double quantum_m = lidar.range_resolution_m;

@@ -8,11 +8,12 @@
 
 namespace patrol::app {
 
-/// What one scan of a lidar can tell, anywhere in a world as it stands, without props, people and vehicles. The lidar is taken to be level, to
-/// see all around, and to get light back from every surface within its range; its noise is the real one's, but at least a millimetre.
+/// Localizability of a single lidar scan, anywhere in a static world without props, pedestrians and vehicles. The lidar
+/// is assumed level, with a full field of view and a return from every surface within its range. Its noise is that of
+/// the sensor model, but at least 1 mm.
 class LocalizabilityOracle {
  public:
-  /// `world` must outlive it. `height_m`: of the lidar, in world.
+  /// `world` must outlive the object. `height_m`: height of the lidar, in world.
   LocalizabilityOracle(const mjModel& world, const LidarSettings& lidar, double height_m);
 
   score::Localizability at(const Eigen::Vector2d& p_world_m) const;

@@ -7,13 +7,14 @@
 
 namespace patrol::app {
 
-/// One figure of metrics.json as it is read by people.
+/// Metric of metrics.json as text.
 struct MetricLine {
   std::string path;  ///< "pose.ate_rmse_m", "stations.home.map_error_m"
-  std::string text;  ///< "0.0712", "yes", "-" for one that could not be computed
+  std::string text;  ///< "0.0712", "yes", "-" for null
 };
 
-/// Every figure, in the order of the file; lists of plain numbers are left out: their mean, deviation and maximum stand beside them.
+/// All metrics in the order of the file, without lists of plain numbers: their mean, deviation and maximum are separate
+/// metrics.
 std::vector<MetricLine> metric_lines(const io::Metrics& metrics);
 
 }  // namespace patrol::app

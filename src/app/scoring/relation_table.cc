@@ -5,7 +5,7 @@
 namespace patrol::app {
 namespace {
 
-/// "  translation squared, m2       0.0011     0.0042"
+/// Formats a line "  translation squared, m2       0.0011     0.0042".
 std::string spread_text(const char* name, const score::ErrorSpread& spread, int digits) {
   return fmt::format("  {:<24} {:>10.{}f} {:>10.{}f}", name, spread.mean, digits, spread.std, digits);
 }

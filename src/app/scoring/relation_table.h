@@ -6,7 +6,7 @@
 
 namespace patrol::app {
 
-/// The benchmark's figures for a terminal, in the digits in which they are published.
+/// Table of the benchmark's metrics for a terminal, with the digits in which they are published.
 std::string relation_table(const score::RelationError& error);
 
 }  // namespace patrol::app

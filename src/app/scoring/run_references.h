@@ -6,7 +6,7 @@
 
 namespace patrol::app {
 
-/// What a run of this scenario is evaluated against. `truth` must outlive the result.
+/// References for the evaluation of a run of this scenario. `truth` must outlive the result.
 score::RunReferences run_references(const Scenario& scenario, const ScenarioFiles& files, const TrueMap& truth);
 
 }  // namespace patrol::app

@@ -11,7 +11,7 @@
 namespace patrol::app {
 namespace {
 
-/// What the robot said that it was a scan of: the first such word after it.
+/// Station of a panoramic scan: subject of the first scan-taken event from its stamp on; none without such an event.
 std::optional<std::string> station_of(const PanoramicScan& scan, const RunRecord& record) {
   const auto taken = std::find_if(record.events.begin(), record.events.end(),
                                   [&](const Event& event) { return event.kind == EventKind::kScanTaken && event.stamp >= scan.stamp; });

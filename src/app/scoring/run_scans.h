@@ -9,8 +9,8 @@
 
 namespace patrol::app {
 
-/// The first panoramic scan of each station in a run's log, thinned and in map: what a later round can take as references. Each lies where
-/// its registration has put it, and a first one where the stack believed that it stood.
+/// First panoramic scan of each station in a run's log, thinned and in map, as references for a later run. A registered
+/// scan has its registered pose, the first one of a station the pose that the stack estimated.
 std::vector<io::StationScan> station_scans(const std::filesystem::path& log_mcap, const RunRecord& record, const Scenario& scenario, const ScenarioFiles& files);
 
 }  // namespace patrol::app

@@ -18,7 +18,7 @@ void save_trajectories(const RunDirectory& directory, const RunRecord& record) {
   io::save_tum(directory.odometry(), record.T_odom_body, "base_link in odom, by legs or tracks and IMU alone");
 }
 
-/// Commands of a teleoperated drive, to be driven again, and the goals that were marked.
+/// Saves the commands of a teleoperated drive, for repetition, and the goals that were saved.
 void save_drive(const RunDirectory& directory, const Scenario& scenario, const RunRecord& record) {
   if (record.remote.empty()) return;
   io::save_remote(directory.remote(), record.remote);
@@ -32,7 +32,7 @@ void save_drive(const RunDirectory& directory, const Scenario& scenario, const R
   if (!goals.empty()) io::save_nav(directory.nav(), goals);
 }
 
-/// One row for each sample: s, m, degrees in world.
+/// Saves one row per sample: s, m, degrees in world.
 void save_localizability(const std::filesystem::path& file_csv, const std::vector<score::TrackedLocalizability>& track) {
   io::Table table{.name = "localizability",
                   .columns = {"time_s", "x_m", "y_m", "weak_std_m", "weak_direction_deg", "strong_std_m", "claimed_std_m", "claimed_direction_deg", "trust"},

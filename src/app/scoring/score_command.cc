@@ -32,7 +32,7 @@ ExitCode score_directory(const std::filesystem::path& root) {
   io::save_metrics(directory.metrics(), metrics);
   const std::vector<CheckedExpectation> checks = check_expectations(scenario.expect, metrics);
   fmt::print("{}", score_table(metrics, checks));
-  // How the run ended is not in its log: only the expectations decide.
+  // The log does not contain how the run ended: only the expectations count.
   return exit_code_of(status_of(RunEnd::kMissionOver, checks));
 }
 

@@ -211,7 +211,7 @@ io::Metrics navigation_json(const score::NavigationScore& navigation) {
           {"clearance", to_json(navigation.clearance)}};
 }
 
-/// In world; the report draws by it.
+/// Pose of map in world, which the report uses to draw.
 io::Metrics pose_json(const Pose2& T_world_map) {
   return {{"x_m", T_world_map.x}, {"y_m", T_world_map.y}, {"yaw_rad", T_world_map.yaw}};
 }

@@ -17,7 +17,7 @@
 
 namespace patrol::app {
 
-/// Scores as they stand in metrics.json: every figure by its name, null where there is none.
+/// Scores in the form of metrics.json: every metric by its name, null without a value.
 io::Metrics to_json(const score::TrajectoryError& error);
 io::Metrics to_json(const score::AlignedError& error);
 io::Metrics to_json(const score::MapError& error);

@@ -16,25 +16,27 @@
 
 namespace patrol::app {
 
-/// Score of a run, with what the files of its directory hold beside it.
+/// Score of a run, with the contents of the other files of its directory.
 struct ScoredRun {
   RunRecord record;
   score::RunScore score;
-  std::optional<TrueMap> truth;        ///< with `score.estimate`
+  std::optional<TrueMap> truth;        ///< present with `score.estimate`
   std::vector<io::StationScan> scans;  ///< first panoramic scan of each station
 };
 
-/// Scores a run from its log alone, and writes nothing. A run that ended before the stack had an estimate has the mission's score only.
+/// Scores a run from its log alone, and writes nothing. A run that ended before the first estimate has only the
+/// mission's score.
 ScoredRun score_run(const std::filesystem::path& log_mcap, const Scenario& scenario, const ScenarioFiles& files);
 
-/// Writes trajectories, maps, localizability, station scans, and the commands and goals of a teleoperated drive into the run's directory. Writes nothing
-/// for a run without an estimate. metrics.json is written by the caller, who knows `performance`.
+/// Writes trajectories, maps, localizability, station scans, and the commands and goals of a teleoperated drive to the
+/// run's directory. Writes nothing for a run without an estimate. The caller writes metrics.json, because `performance`
+/// is not known here.
 void save_scored_run(const RunDirectory& directory, const ScoredRun& run, const Scenario& scenario);
 
-/// Scores any two trajectories: `pose.*` and `pose.aligned.*`.
+/// Scores any two trajectories: metrics `pose.*` and `pose.aligned.*`.
 io::Metrics score_trajectories(const Trajectory& estimate, const Trajectory& reference);
 
-/// Scores any two maps, which share a frame: `map.*`.
+/// Scores any two maps in one frame: metrics `map.*`.
 io::Metrics score_maps(const OccupancyGrid& built, const OccupancyGrid& reference);
 
 }  // namespace patrol::app

@@ -10,7 +10,7 @@
 namespace patrol::app {
 namespace {
 
-/// One line a figure: "  pose.ate_rmse_m            0.0712  <= 0.15  met".
+/// Table with one line per metric: "  pose.ate_rmse_m            0.0712  <= 0.15  met".
 class Table {
  public:
   explicit Table(const std::vector<CheckedExpectation>& checks) : checks_(checks) {}
@@ -22,7 +22,7 @@ class Table {
     shown_.insert(figure.path);
   }
 
-  /// What was expected of figures that have no line yet: not measured, or named by their place in a list.
+  /// Adds the expectations of metrics without a line: not measured, or indexed in a list.
   void add_rest() {
     for (const CheckedExpectation& check : checks_) {
       if (!shown_.contains(check.metric)) text_ += line(check.metric, check.got, &check);
@@ -43,7 +43,7 @@ class Table {
   const std::vector<CheckedExpectation>& checks_;
   std::string text_;
   std::string group_;
-  std::set<std::string> shown_;  ///< paths
+  std::set<std::string> shown_;  ///< paths of the metrics shown
 };
 
 }  // namespace

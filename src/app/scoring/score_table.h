@@ -8,7 +8,7 @@
 
 namespace patrol::app {
 
-/// The metrics as a table for a terminal, beside what the scenario expects of them: one line each, groups apart.
+/// Table of the metrics for a terminal, with the scenario's expectations: one line per metric, groups separated.
 std::string score_table(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks);
 
 }  // namespace patrol::app

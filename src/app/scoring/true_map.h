@@ -7,11 +7,11 @@
 
 namespace patrol::app {
 
-/// What a run's map is judged by: the world's surfaces at the height that its lidar had, and which of them it could see.
+/// Ground truth of a run's map: the world's surfaces at the height of its lidar, and which of them were observable.
 struct TrueMap {
   sim::ModelPtr world;
-  double lidar_height_m = 0.0;   ///< the mean of the run
-  double reference_agreement = 0.0;  ///< of the reference's render with rays, a share
+  double lidar_height_m = 0.0;   ///< mean over the run
+  double reference_agreement = 0.0;  ///< agreement of the rendered reference with ray casts, a fraction
   score::ReferenceMap reference;  ///< in world
 };
 

@@ -6,7 +6,7 @@
 
 namespace patrol::app {
 
-/// What a scenario's world shows to the lidar of its robot, which stands at the start: known before any run.
+/// Surfaces of a scenario's world at the height of its robot's lidar at the start; available before a run.
 struct WorldSurfaces {
   sim::ModelPtr world;
   double lidar_height_m = 0.0;

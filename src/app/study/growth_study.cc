@@ -22,10 +22,10 @@ using slam::GrowthModel;
 
 constexpr double kNoGrowthFigure = std::numeric_limits<double>::quiet_NaN();
 
-/// A filter as the study compares it.
+/// Filter in the study.
 struct GrowthMethod {
   std::string name;
-  int particles = 0;  ///< 0: the exact one
+  int particles = 0;  ///< 0: the exact filter
   std::vector<std::optional<double>> published{};
   std::function<std::unique_ptr<slam::UnivariateFilter>(const GrowthModel& model, std::uint64_t seed)> make;
 };
@@ -36,7 +36,8 @@ GrowthMethod particle_filter(const std::string& name, int particles, const slam:
           }};
 }
 
-/// As IFA, but resampled without bias: at every step, gamma = 1; one generation a step costs about what the paper's table of times says.
+/// Settings of the publication with unbiased resampling at every step (gamma = 1). One generation per step has about
+/// the computation time that the publication states.
 slam::ParticleFilterSettings of_the_paper(const std::string& optimizer) {
   slam::ParticleFilterSettings settings = slam::ifa_settings_of_paper();
   settings.optimizer = optimizer;
@@ -55,7 +56,7 @@ std::vector<GrowthMethod> methods_of(int particles, const std::array<double, 4>&
            }}};
 }
 
-/// A sign of eq. 9 and the filters that are tried with it; the others are compared with the first if it is the exact one.
+/// Sign of eq. 9 with the filters of its trial; they are compared with the first one if it is the exact filter.
 struct GrowthTrial {
   std::string world;
   GrowthModel model;
@@ -130,7 +131,7 @@ render::Curve curve_of(const std::string& name, Ink ink, const std::vector<doubl
   return curve;
 }
 
-/// Figures 1 to 4: states and errors over time, and where the particles are at step 25; N = 100.
+/// Figures 1 to 4: states and errors over time, and the particles at step 25; N = 100.
 std::vector<render::Section> illustrate_growth(const GrowthTrial& trial, std::uint64_t seed) {
   constexpr int kParticles = 100, kShownStep = 25;
   constexpr std::array kInks = {Ink::kOdometry, Ink::kRanges, Ink::kTrust, Ink::kAlarm, Ink::kEvent, Ink::kEstimate};

@@ -4,7 +4,8 @@
 
 namespace patrol::app {
 
-/// Paper 001, table 1: particle filters of the univariate growth model, beside the exact Bayes filter that bounds them all.
+/// Study of [Cui21, table 1]: particle filters of the univariate growth model, compared with the exact Bayes filter as
+/// a bound.
 Study growth_study();
 
 }  // namespace patrol::app

@@ -11,27 +11,29 @@
 
 namespace patrol::app {
 
-/// A method of SLAM on landmarks as the studies compare it.
+/// Landmark SLAM method in the studies.
 struct LandmarkMethod {
   std::string name;
-  int particles = 0;  ///< 0: it has none
-  /// What the robot is told of the world: the motion's and the sensor's stated noise, and no bias.
+  int particles = 0;  ///< 0 for methods without particles
+  /// Creates the method with the stated noise of motion and sensor, without the bias.
   std::function<std::unique_ptr<slam::LandmarkSlam>(const LandmarkWorld& world, std::uint64_t seed)> make;
 };
 
-/// FastSLAM 1.0 with odometry's stated noise multiplied.
+/// FastSLAM 1.0 with the stated noise of the odometry scaled.
 LandmarkMethod fast_slam_1(int particles, double noise_scale = 1.0);
 LandmarkMethod fast_slam_2(int particles);
 
-/// FastSLAM 1.0 whose increments an optimiser moves, with the resampler that its paper gives it: ISCSO low-weight optimisation, IFA stepwise.
+/// FastSLAM 1.0 in which an optimizer moves the increments, with the resampler of its publication: low-weight
+/// optimization for ISCSO, stepwise for IFA.
 LandmarkMethod swarm_slam(const std::string& optimizer, int particles);
 
-/// ISCSO+, our best with sampled poses: the improved sand cats, held to odometry by a prior with a learnt bias, and resampled without bias.
+/// ISCSO+, the best method with sampled poses: improved sand cats with an odometry prior of estimated bias, and
+/// unbiased resampling.
 LandmarkMethod learning_sand_cats(int particles);
 
 LandmarkMethod ekf_slam();
 
-/// Our best, and the default: an invariant filter that estimates odometry's bias.
+/// Invariant EKF that estimates the odometry's bias: the best method, and the default.
 LandmarkMethod invariant_slam();
 
 }  // namespace patrol::app

@@ -8,8 +8,8 @@
 
 namespace patrol::app {
 
-/// One seed in pictures: position error over time, and of the first four methods and the last one path and landmarks beside the true ones. Of methods with
-/// particles those with as many as the first.
+/// Figures of one seed: position error over time; path and landmarks compared with the ground truth for the first four
+/// methods and the last one. Of methods with particles, those with the particle number of the first method.
 std::vector<render::Section> landmark_sections(const LandmarkWorld& world, const std::vector<LandmarkMethod>& methods, std::uint64_t seed);
 
 }  // namespace patrol::app

@@ -47,12 +47,12 @@ double position_rmse_m(const std::vector<Pose2>& poses, const std::vector<Pose2>
   return root_mean_square(sum, truth.size());
 }
 
-/// What a method made of a run, and what it cost.
+/// Metrics of a method on a run.
 std::vector<double> figures_of(const LandmarkTrack& track, bool has_particles, const LandmarkWorld& world, const LandmarkRun& run) {
   double nees = 0.0, num_effective = 0.0;
   for (std::size_t k = 0; k < run.truth.size(); ++k) {
     const Eigen::Vector2d error = track.estimates[k].T_map_body.position() - run.truth[k].position();
-    // A millimetre more than it says: particles that all stand on one point claim to know it for certain.
+    // 1 mm is added to the standard deviation: coinciding particles have a covariance of zero.
     const Eigen::Matrix2d P = track.estimates[k].covariance.topLeftCorner<2, 2>() + 1e-6 * Eigen::Matrix2d::Identity();
     nees += error.dot(P.inverse() * error);
     num_effective += track.estimates[k].effective_sample_size;
@@ -69,17 +69,17 @@ std::vector<double> batch_figures(const LandmarkWorld& world, const LandmarkRun&
   return {position_rmse_m(batch.T_map_body, run.truth), landmark_rmse_m(batch.landmarks, world), kNoLandmarkFigure, kNoLandmarkFigure, thread_seconds() - start_s};
 }
 
-/// [method's name, particles] -> position, landmarks.
+/// [method's name, particles], published position and landmark errors.
 using PublishedLandmarks = std::map<std::pair<std::string, int>, std::vector<std::optional<double>>>;
 
-/// A world, and the methods that are tried in it. Batch least squares comes last, from the last method's result.
+/// World with the methods of its trial. Batch least squares comes last, based on the last method's result.
 struct LandmarkTrial {
   LandmarkWorld world;
   std::vector<LandmarkMethod> methods;
   PublishedLandmarks published{};
 };
 
-/// Each method is compared with the first one of as many particles, or else with the first of all.
+/// Variants; each method is compared with the first one of equal particle number, or else with the first of all.
 std::vector<StudyVariant> variants_of(const std::vector<LandmarkTrial>& trials) {
   std::vector<StudyVariant> variants;
   for (const LandmarkTrial& trial : trials) {
@@ -113,7 +113,7 @@ StudySample run_trials(const std::vector<LandmarkTrial>& trials, std::uint64_t s
   return sample;
 }
 
-/// The first trial is the one that pictures are made of.
+/// Completes a study; the figures show the first trial.
 Study landmark_study(Study study, std::vector<LandmarkTrial> trials) {
   study.figures = kLandmarkFigures;
   study.variants = variants_of(trials);
@@ -122,12 +122,12 @@ Study landmark_study(Study study, std::vector<LandmarkTrial> trials) {
   return study;
 }
 
-/// The methods of paper 000, FastSLAM first.
+/// Methods of [Wu25], FastSLAM first.
 std::vector<LandmarkMethod> garden_methods(int particles) {
   return {fast_slam_1(particles), swarm_slam("woa", particles), swarm_slam("scso", particles), swarm_slam("iscso", particles)};
 }
 
-/// Those that paper 000 does not have.
+/// Adds methods that [Wu25] does not contain.
 void add_references(int particles, std::vector<LandmarkMethod>& methods) {
   for (const LandmarkMethod& method : {fast_slam_1(particles, 2.0), fast_slam_1(particles, 4.0), fast_slam_2(particles), learning_sand_cats(particles),
                                        ekf_slam(), invariant_slam()}) {

@@ -4,11 +4,11 @@
 
 namespace patrol::app {
 
-/// Paper 000, table 1: FastSLAM against its swarm variants on a round course, and on one that is not round.
+/// Studies of [Wu25, table 1]: FastSLAM compared with its swarm variants, on a circular and on a noncircular course.
 Study circle_study();
 Study noncircular_study();
 
-/// Paper 001, table 3: a car on a course of 15 waypoints among 31 landmarks.
+/// Study of [Cui21, table 3]: a car on a course of 15 waypoints among 31 landmarks.
 Study campus_study();
 
 }  // namespace patrol::app

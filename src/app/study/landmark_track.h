@@ -7,11 +7,11 @@
 
 namespace patrol::app {
 
-/// What a method believed along a run.
+/// Estimates of a method along a run.
 struct LandmarkTrack {
   std::vector<slam::LandmarkSlamEstimate> estimates;       ///< [step]
-  std::vector<std::optional<Eigen::Vector2d>> landmarks;   ///< [landmark] at the end, in map
-  double seconds = 0.0;                                    ///< of processor time
+  std::vector<std::optional<Eigen::Vector2d>> landmarks;   ///< [landmark], at the end, in map
+  double seconds = 0.0;                                    ///< processor time
 
   std::vector<Pose2> poses() const;  ///< [step], body in map
 };

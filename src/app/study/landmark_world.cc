@@ -11,7 +11,7 @@
 namespace patrol::app {
 namespace {
 
-/// The way of paper 000's second world.
+/// Radius of the second trajectory of [Wu25].
 double radius_m(double angle_rad, bool is_circle) {
   if (is_circle) return 7.0;
   return 7.0 * (0.886 + 0.257 * std::cos(3.0 * angle_rad) + 0.086 * std::sin(2.0 * angle_rad));
@@ -21,7 +21,7 @@ Eigen::Vector2d point_at(double angle_rad, double offset_m, bool is_circle) {
   return (radius_m(angle_rad, is_circle) + offset_m) * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad));
 }
 
-/// Poses at a constant speed along the way, one a step, until it is closed.
+/// Poses at constant speed along the closed trajectory, one per step.
 std::vector<Pose2> lap(double step_m, bool is_circle) {
   constexpr double kFine_rad = 1e-5;
   std::vector<Eigen::Vector2d> points = {point_at(0.0, 0.0, is_circle)};
@@ -42,17 +42,19 @@ std::vector<Pose2> lap(double step_m, bool is_circle) {
   return poses;
 }
 
-/// The way through 100 m x 80 m, clockwise from the middle, m. Its size is such that FastSLAM in the biased world errs as much as the paper's (seeds 1 to 60).
+/// Trajectory of [Cui21] in 100 m x 80 m, clockwise from the middle, m. Its size makes FastSLAM's errors in the biased
+/// world equal to the published ones (seeds 1 to 60).
 const std::array<Eigen::Vector2d, 15> kCampusWaypoints_m = {{{0, 0}, {-38, 9}, {-32, 23}, {-18, 32}, {2, 33}, {18, 26}, {31, 18}, {44, 8},
                                                              {46, -8}, {35, -19}, {18, -26}, {2, -30}, {-17, -31}, {-35, -24}, {-41, -10}}};
 
-/// At the first waypoint, facing the second.
+/// Pose at the first waypoint, toward the second.
 Pose2 campus_start() {
   const Eigen::Vector2d forward = kCampusWaypoints_m[1] - kCampusWaypoints_m[0];
   return {kCampusWaypoints_m[0].x(), kCampusWaypoints_m[0].y(), std::atan2(forward.y(), forward.x())};
 }
 
-/// Of each stretch between waypoints one 7 m to the left of its middle and one 9 m to the right of its first quarter; and one more.
+/// For each segment between waypoints, one landmark 7 m to the left of its middle and one 9 m to the right of its first
+/// quarter; and one more.
 std::vector<Eigen::Vector2d> campus_landmarks() {
   std::vector<Eigen::Vector2d> landmarks_m = {{5.0, 8.0}};
   for (std::size_t i = 0; i < kCampusWaypoints_m.size(); ++i) {
@@ -64,8 +66,9 @@ std::vector<Eigen::Vector2d> campus_landmarks() {
   return landmarks_m;
 }
 
-/// Controls of a car that steers for one waypoint after the other, round and round, at most 30 degrees and 20 deg/s; a waypoint is passed within 1 m,
-/// or where the car can turn no sharper to meet it. The start is the origin; [step].
+/// Controls of a car that steers toward one waypoint after the other, in laps, with limits of 30 degrees and 20 deg/s.
+/// A waypoint is passed within 1 m, or where the car cannot turn sharply enough to reach it. The start is the origin;
+/// [step].
 std::vector<slam::Control> drive_round(const std::vector<Eigen::Vector2d>& waypoints_m, double speed_mps, const slam::ControlMotion& motion, int num_steps) {
   constexpr double kMaxSteering_rad = 30.0 * kDegree, kMaxRate_radps = 20.0 * kDegree;
   std::vector<slam::Control> controls;
@@ -100,7 +103,7 @@ LandmarkWorld garden_world(const std::string& odometry, bool is_circle) {
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
     world.controls.emplace_back(0.5, wrap_angle(poses[i + 1].yaw - poses[i].yaw) / world.motion.step_s);
   }
-  // The controls bend where the poses turn: half a turn of a step ahead of the first chord.
+  // The first pose has the heading of the first chord; the arc of the first control begins half its rotation earlier.
   const Pose2 T_map_garden = Pose2{poses[0].x, poses[0].y, poses[0].yaw - 0.5 * world.controls.front().y() * world.motion.step_s}.inverse();
   for (int i = 0; i < 24; ++i) {
     const double angle = 2.0 * std::numbers::pi * (i + 0.5) / 24.0;
@@ -114,7 +117,7 @@ LandmarkWorld campus_world(bool is_biased, double speed_mps, int num_steps) {
   LandmarkWorld world;
   world.name = is_biased ? "biased odometry" : "matched odometry";
   constexpr int kParts = 8;
-  const Eigen::Vector2d fine_std(0.5, 5.0 * kDegree);  // of the mean over the parts of a step
+  const Eigen::Vector2d fine_std(0.5, 5.0 * kDegree);  // standard deviation of the mean over the parts of a step
   world.motion = {.steering = slam::Steering::kAckermann, .wheelbase_m = kWheelbase_m, .step_s = kFine_s * kParts, .parts = kParts,
                   .std = fine_std / std::sqrt(static_cast<double>(kParts))};
   if (is_biased) world.odometry_bias = {0.3, 2.0 * kDegree};

@@ -9,13 +9,13 @@
 
 namespace patrol::app {
 
-/// Map and poses that the stack's pose pipeline makes of a recorded log, with other settings than those of the run.
-/// Nothing steers by it.
+/// Map and poses that the stack's pose pipeline computes from a recorded log, with other settings than those of the
+/// run. They have no influence on the robot.
 class LogMapper {
  public:
   LogMapper(const stack::StackSettings& settings, const RobotDescription& robot, std::uint64_t seed);
 
-  /// Throws InputError when the log is damaged, or made no map.
+  /// Processes a log. Throws InputError if it is damaged or yields no map.
   void map(const std::filesystem::path& log_mcap);
 
   const Trajectory& T_map_body() const { return T_map_body_; }  ///< at every scan

@@ -9,13 +9,13 @@
 
 namespace patrol::app {
 
-/// A run's log, mapped by one of slam's methods with its default settings.
+/// Map of a run's log, built by one of the SLAM methods with its default settings.
 struct MappedRun {
   Trajectory T_map_body;
   OccupancyGrid map;
   LoopTruth loops;
-  double seconds = 0.0;    ///< of processor time, without the reading
-  double memory_mb = 0.0;  ///< the most that the heap grew by, looked at after every 20th scan and at the end
+  double seconds = 0.0;    ///< processor time without reading the log
+  double memory_mb = 0.0;  ///< maximum growth of the heap, sampled after every 20th scan and at the end
 };
 
 MappedRun map_log_of(const StudyRun& run, const std::string& method);

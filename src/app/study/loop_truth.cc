@@ -16,7 +16,7 @@ bool is_right(const PoseGraphEdge& edge, const std::vector<Pose2>& T_world_node)
   return off.position().norm() < kRight_m && std::abs(off.yaw) < kRight_rad;
 }
 
-/// [node]: so far the robot had come.
+/// Distance traveled at each node, m.
 std::vector<double> ways_to(const std::vector<Pose2>& T_world_node) {
   std::vector<double> way_m;
   for (std::size_t i = 0; i < T_world_node.size(); ++i) {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kProblemCell_m = 0.05;
 constexpr double kPlanningCell_m = 0.2;
-constexpr double kFarShare = 1.0 / 3.0;  ///< of the diagonal
+constexpr double kFarShare = 1.0 / 3.0;  ///< fraction of the diagonal
 constexpr std::uint64_t kMaxDraws = 1000;
 
 constexpr std::array<std::pair<const char*, const char*>, 3> kScenarios = {

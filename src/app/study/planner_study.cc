@@ -18,7 +18,7 @@ namespace {
 using render::Ink;
 
 constexpr double kNoPlannerFigure = std::numeric_limits<double>::quiet_NaN();
-constexpr int kMaxStepsMillions = 50;  // of ants, particles and episodes, in one planning
+constexpr int kMaxStepsMillions = 50;  // of ants, particles and episodes, per planning
 
 struct PlannerWorld {
   std::string name;
@@ -40,13 +40,14 @@ std::vector<PlannerWorld> planner_worlds() {
 
 struct PlannerMethod {
   const char* title;
-  const char* name;  ///< of the family
+  const char* name;  ///< name of the planner
   bool iterates;
   Ink ink;
-  bool tightens = true;  ///< of the improved colony: ours
+  bool tightens = true;  ///< improved colony only: extension
 };
 
-/// The first is what the others are compared with; the last two are what no route over eight neighbours, and none at all, undercuts.
+/// Methods; all others are compared with the first. The last two are lower bounds, over eight neighbors and over all
+/// paths.
 constexpr std::array<PlannerMethod, 9> kPlannerMethods = {{{"improved ants (ours)", "ant_colony", true, Ink::kEstimate},
                                                     {"paper 003's ants", "ant_colony", true, Ink::kEvent, false},
                                                     {"plain ants", "plain_ant_colony", true, Ink::kOdometry},
@@ -69,13 +70,13 @@ const std::vector<StudyFigure> kPlannerFigures = {{.name = "longer than A*", .un
 
 struct Planned {
   plan::Route route;
-  double seconds = 0.0;  ///< of processor time
+  double seconds = 0.0;  ///< processor time
 };
 
 Planned plan_by(const PlannerMethod& method, const PlannerProblem& problem, std::uint64_t seed) {
   plan::RoutePlannerSettings settings{.max_steps_millions = kMaxStepsMillions};
   settings.improved_colony.tightens = method.tightens;
-  settings.ant_colony.threads = 1;  // seeds run beside each other
+  settings.ant_colony.threads = 1;  // seeds run in parallel
   const auto planner = plan::make_route_planner(method.name, settings, seed);
   const double start_s = thread_seconds();
   Planned planned{.route = planner->plan(problem.costs, problem.start, problem.goal)};
@@ -83,7 +84,7 @@ Planned plan_by(const PlannerMethod& method, const PlannerProblem& problem, std:
   return planned;
 }
 
-/// From 1; none if it never comes so near.
+/// Iteration, from 1, at which the length is reached; NaN if never.
 double iterations_to_length(const std::vector<double>& history, double length) {
   for (std::size_t i = 0; i < history.size(); ++i) {
     if (history[i] <= length) return static_cast<double>(i + 1);
@@ -123,7 +124,7 @@ StudySample run_planners(const std::vector<PlannerWorld>& worlds, std::uint64_t 
   return sample;
 }
 
-/// Figure 1: by how much the best route so far is longer than A*'s, over the first two hundred iterations.
+/// Figure 1: excess of the best route so far over A*'s length, in the first two hundred iterations.
 render::LinePlot convergence(const std::array<Planned, kPlannerMethods.size()>& all, const std::string& world) {
   constexpr std::size_t kShown = 200;
   constexpr double kMost = 25.0;

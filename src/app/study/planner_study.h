@@ -4,8 +4,8 @@
 
 namespace patrol::app {
 
-/// Paper 003, figures 1 to 4: its ants against a plain colony, two swarms and Q-learning, on generated grids and on the worlds' reference maps, with A* and the
-/// any-angle optimum as references.
+/// Study of [Li22, figures 1 to 4]: its ant colony compared with the ant system, two swarms and Q-learning, on
+/// generated grids and on the worlds' reference maps. References are A* and the any-angle optimum.
 Study planner_study();
 
 }  // namespace patrol::app

@@ -19,13 +19,13 @@ constexpr double kNoStreetFigure = std::numeric_limits<double>::quiet_NaN();
 constexpr int kSwarmParticles = 30;
 constexpr const char* kScenario = "worlds/street/scenarios/patrol.yaml";
 
-/// A way to move the particles at a keyframe, or to do without.
+/// Method with its proposal for the particles at a keyframe.
 struct GridMethod {
   std::string name;
   int particles = 0;
   std::string proposal, optimizer;
   std::string mapping = "rbpf";
-  std::vector<std::optional<double>> published{};  ///< box 1, box 2, well 3; m
+  std::vector<std::optional<double>> published{};  ///< published errors of box 1, box 2 and well 3; m
 };
 
 const std::vector<GridMethod> kStreetMethods = {{.name = "FastSLAM", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "none", .published = {1.05, 1.31, 1.58}},
@@ -84,7 +84,7 @@ StudySample run_street(std::uint64_t seed) {
   return sample;
 }
 
-/// The maps of all methods, each in the colours of its errors.
+/// Maps of all methods, colored by their errors.
 std::vector<render::Section> illustrate_street(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun patrol = run_for_study(kScenario, {}, seed, folder.path());

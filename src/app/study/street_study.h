@@ -4,7 +4,8 @@
 
 namespace patrol::app {
 
-/// Paper 000, table 2: the street mapped from the logs of the same patrols by grid SLAM with one proposal or another.
+/// Study of [Wu25, table 2]: the street mapped from the logs of identical patrols by grid SLAM with different
+/// proposals.
 Study street_study();
 
 }  // namespace patrol::app

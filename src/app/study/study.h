@@ -10,41 +10,41 @@
 
 namespace patrol::app {
 
-/// Something measured of every variant with every seed.
+/// Metric that a study computes for every variant and seed.
 struct StudyFigure {
   std::string name;
-  std::string unit;               ///< empty: a plain number
-  bool is_compared = false;       ///< with what was published, and with the variant's reference
-  bool is_of_the_clock = false;   ///< processor time: another one each time
+  std::string unit;               ///< empty: dimensionless
+  bool is_compared = false;       ///< compared with the published value, and with the variant's reference
+  bool is_of_the_clock = false;   ///< processor time: not reproducible
 };
 
-/// A method in a world.
+/// Method in a world.
 struct StudyVariant {
   std::string world;
   std::string method;
-  int particles = 0;                                ///< 0: it has none
-  std::size_t reference = 0;                        ///< variant that it is compared with, pair by pair
-  std::vector<std::optional<double>> published{};   ///< [figure]; shorter, or nothing: the paper says nothing
+  int particles = 0;                                ///< 0 for methods without particles
+  std::size_t reference = 0;                        ///< variant for the paired comparison
+  std::vector<std::optional<double>> published{};   ///< [figure], published values; may be shorter
 };
 
-/// [variant][figure] of one seed; not a number: it has no such figure.
+/// Metrics of one seed, [variant][figure]; NaN where a variant has no such metric.
 using StudySample = std::vector<std::vector<double>>;
 
-/// An experiment of a paper: what is run, what is measured, and what was published.
+/// Reproduction of a published experiment: runs, metrics and published values.
 struct Study {
   std::string name;
   std::string title;
-  std::string source;      ///< which paper, which table
-  std::string conditions;  ///< what the paper leaves open, and what is taken here
+  std::string source;      ///< publication and table
+  std::string conditions;  ///< conditions that the publication leaves open, with the values used here
   int default_seeds = 20;
-  std::string compared_with = "the first";  ///< each variant's reference, for people
+  std::string compared_with = "the first";  ///< reference of each variant, for display
   std::vector<StudyFigure> figures{};
   std::vector<StudyVariant> variants{};
   std::function<StudySample(std::uint64_t seed)> run{};
-  std::function<std::vector<render::Section>(std::uint64_t seed)> illustrate{};  ///< of one seed: tracks, maps, errors over time
+  std::function<std::vector<render::Section>(std::uint64_t seed)> illustrate{};  ///< figures of one seed
 };
 
-/// By name. Throws InputError that names the known ones.
+/// Creates a study by name. Throws InputError with the known names.
 Study make_study(const std::string& name);
 std::vector<std::string> study_names();
 

@@ -29,7 +29,7 @@ const OutputKind kStudy = {.name = "study",
                            .proof = "study.json",
                            .kept = {"study.json", "seeds", "*.part"}};
 
-/// "N": the first N after those that methods were tuned on; or "A..B".
+/// Parses seeds. "N": the first N after those used for tuning; or "A..B".
 std::vector<std::uint64_t> held_out_seeds(const std::string& text) {
   constexpr std::uint64_t kTuned = 1000;
   std::vector<std::uint64_t> seeds = parse_seeds(text);
@@ -39,7 +39,7 @@ std::vector<std::uint64_t> held_out_seeds(const std::string& text) {
   return seeds;
 }
 
-/// Samples by seed, one file each, whole or not at all; those of another study or another build are not taken.
+/// Samples by seed, one file each, written atomically; those of another study or build are ignored.
 class SampleStore {
  public:
   SampleStore(std::filesystem::path folder, const Study& study) : folder_(std::move(folder)), study_(study), build_(build_id()) {
@@ -70,7 +70,7 @@ class SampleStore {
   std::string build_;
 };
 
-/// Runs what is missing. False when interrupted.
+/// Runs the missing seeds; false if interrupted.
 bool run_seeds(const Study& study, const std::vector<std::uint64_t>& seeds, const SampleStore& store, const ProcessPoolSettings& pool) {
   std::vector<std::uint64_t> missing;
   for (const std::uint64_t seed : seeds) {

@@ -17,7 +17,7 @@ std::optional<double> published(const StudyVariant& variant, std::size_t figure)
   return figure < variant.published.size() ? variant.published[figure] : std::nullopt;
 }
 
-/// With the mean's own digits for people: four.
+/// Mean with its interval as text, three significant digits.
 std::string with_interval(const std::optional<score::Interval>& interval, double mean, const char* sign) {
   const auto text = [&](double value) { return fmt::format(fmt::runtime(fmt::format("{{:{}.3g}}", sign)), value); };
   return interval ? fmt::format("{} [{}, {}]", text(mean), text(interval->low), text(interval->high)) : text(mean);
@@ -25,9 +25,9 @@ std::string with_interval(const std::optional<score::Interval>& interval, double
 
 std::string title_of(const StudyFigure& figure) { return figure.unit.empty() ? figure.name : fmt::format("{}, {}", figure.name, figure.unit); }
 
-/// Of one world: a table for each figure that is compared, the first with all that are not.
+/// Tables of one world: one per compared metric; the first one also has all metrics without comparison.
 std::vector<render::TableBlock> tables_of(const Study& study, const StudyResults& results, const std::string& world) {
-  // Columns that are empty throughout are left out.
+  // Columns without any value are omitted.
   const bool has_particles = std::any_of(study.variants.begin(), study.variants.end(), [](const StudyVariant& variant) { return variant.particles > 0; });
   const bool has_published = std::any_of(study.variants.begin(), study.variants.end(), [](const StudyVariant& variant) { return !variant.published.empty(); });
   std::vector<render::TableBlock> tables;
@@ -75,12 +75,12 @@ std::string label_of(const StudyVariant& variant) {
   return variant.particles > 0 ? fmt::format("{} ({})", variant.method, variant.particles) : variant.method;
 }
 
-/// How wide a text is on a screen; the few characters beyond ASCII that are used here take one column each.
+/// Display width of a text; the few non-ASCII characters in use take one column each.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-/// Columns below each other, numbers flush right.
+/// Formats a table in aligned columns, numbers right-aligned.
 std::string aligned(const render::TableBlock& table) {
   std::vector<std::size_t> widths;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {

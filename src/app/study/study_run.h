@@ -13,7 +13,7 @@
 
 namespace patrol::app {
 
-/// A scenario that was run, and its truth.
+/// Completed run of a scenario with its ground truth.
 struct StudyRun {
   Scenario scenario;
   ScenarioFiles files;
@@ -22,10 +22,10 @@ struct StudyRun {
   TrueMap truth;
 };
 
-/// `scenario` below the data root; its files are left in `folder`. Throws InputError like run_once.
+/// Runs `scenario`, a path below the data root; its files are written to `folder`. Throws InputError like run_once.
 StudyRun run_for_study(const std::string& scenario, const std::vector<std::string>& overrides, std::uint64_t seed, const std::filesystem::path& folder);
 
-/// A map that was built of its log, in the colours of its errors, and both paths.
+/// Map built from a run's log, colored by its errors, with estimated and true path.
 render::MapBlock mapped_block(const OccupancyGrid& map, const Trajectory& T_map_body, const StudyRun& run);
 
 }  // namespace patrol::app

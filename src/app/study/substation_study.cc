@@ -15,7 +15,7 @@
 namespace patrol::app {
 namespace {
 
-/// The lidar is heard, the robot's own opinion is not: it is driven by remote control, and its own mapping costs only time.
+/// The mapping on the robot is unused during teleoperation; one particle saves computation time.
 const std::vector<std::string> kWithoutOwnMapping = {"stack.slam.particles=1"};
 
 struct LogMethod {
@@ -71,7 +71,7 @@ StudySample map_patrol(std::uint64_t seed) {
   return sample;
 }
 
-/// Every point's distance to the nearest surface of the true map, in ascending order.
+/// Distances of all map points to the nearest surface of the reference map, ascending.
 std::vector<double> sorted_errors_m(const MappedRun& mapped, const StudyRun& run) {
   const Pose2 T_world_map = score::join_at_start(mapped.T_map_body, run.record.T_world_body);
   const Grid<float> cells = score::map_error(mapped.map, T_world_map, run.truth.reference).cells_m;
@@ -83,7 +83,7 @@ std::vector<double> sorted_errors_m(const MappedRun& mapped, const StudyRun& run
   return errors;
 }
 
-/// So many of them, evenly taken: a page need not hold every point.
+/// Evenly spaced quantiles of the values, `count` of them, because a page need not contain every point.
 std::vector<double> quantiles(const std::vector<double>& sorted, std::size_t count) {
   std::vector<double> chosen;
   for (std::size_t i = 0; i < count && !sorted.empty(); ++i) chosen.push_back(sorted[i * (sorted.size() - 1) / (count - 1)]);

@@ -4,11 +4,11 @@
 
 namespace patrol::app {
 
-/// Paper 002, tables 1 and 2 and figure 6: the substation mapped from the same logs by submaps of a particle filter, by graph mapping and by a plain particle
-/// filter.
+/// Study of [Yu23, tables 1 and 2, figure 6]: the substation mapped from identical logs by submaps of a particle
+/// filter, by graph mapping and by a plain particle filter.
 Study substation_study();
 
-/// Past the substation's six identical bays, where whoever says that he has been here before is wrong.
+/// Study of a drive past the substation's six identical bays, where every loop closure is wrong.
 Study row_study();
 
 }  // namespace patrol::app

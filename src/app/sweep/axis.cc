@@ -16,7 +16,7 @@ namespace {
   throw InputError(fmt::format("--vary {}: {}", text, what));
 }
 
-/// At separators outside brackets and quotes.
+/// Splits a list at separators outside of brackets and quotes.
 std::vector<std::string> split_values(const std::string& text) {
   std::vector<std::string> values(1);
   int depth = 0;
@@ -32,7 +32,7 @@ std::vector<std::string> split_values(const std::string& text) {
   return values;
 }
 
-/// "range:0:1:5" -> the numbers behind the word; none when `values` does not begin with that word.
+/// Parses "range:0:1:5" to its numbers; none if `values` begins with another word.
 std::optional<std::vector<double>> arguments(const std::string& text, const std::string& values, const std::string& word,
                                              std::size_t count, const std::string& shape) {
   if (!values.starts_with(word + ":")) return std::nullopt;

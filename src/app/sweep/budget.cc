@@ -8,7 +8,7 @@
 namespace patrol::app {
 namespace {
 
-/// [seed][variant]
+/// Values of a metric, [seed][variant].
 using SeedFigures = std::vector<std::vector<std::optional<double>>>;
 
 std::vector<double> column(const SeedFigures& figures, std::size_t variant) {
@@ -27,7 +27,7 @@ BudgetShare share_of(const SeedFigures& figures, std::size_t variant, const std:
   return {.name = name, .num_pairs = differences.size(), .share = score::mean_interval(differences)};
 }
 
-/// Of the seeds that gave every figure.
+/// Adds sum and interaction, from the seeds with all values.
 void add_sums(const SeedFigures& figures, Budget& budget) {
   std::vector<double> sums, interactions;
   for (const auto& of_seed : figures) {
@@ -45,7 +45,7 @@ std::string numbers(const std::optional<score::Interval>& interval) {
   return interval ? fmt::format("{:+10.5f}  [{:+.5f}, {:+.5f}]", interval->center, interval->low, interval->high) : "  too few runs";
 }
 
-/// Blocks from `from` to `to` on a scale of `full`.
+/// Text bar from `from` to `to` on a scale of `full`.
 std::string bar(double from, double to, double full) {
   constexpr double kWidth = 30.0;
   const auto place = [&](double value) { return static_cast<std::size_t>(std::lround(kWidth * std::clamp(value / full, 0.0, 1.0))); };

@@ -10,32 +10,32 @@
 
 namespace patrol::app {
 
-/// How much of a figure goes away with one imperfection.
+/// Contribution of one error source to a metric.
 struct BudgetShare {
   std::string name;
-  std::size_t num_pairs = 0;               ///< seeds that gave the figure with it and without
-  std::optional<score::Interval> share;    ///< figure with all imperfections less the figure without this one, 95 %, paired by seed
+  std::size_t num_pairs = 0;               ///< seeds for which the metric exists with and without the error source
+  std::optional<score::Interval> share;    ///< baseline minus metric without this error source; 95 %, paired by seed
 };
 
-/// Who owns how much of one figure. The manifest's first variant is the scenario as it is, its last has every imperfection taken away, those
-/// between have one taken away each.
+/// Error budget of one metric. The manifest's first variant is the scenario as it is (baseline), the last one has every
+/// error source removed, the others one each.
 struct Budget {
   std::string metric;
   std::optional<score::Interval> as_it_is;
-  std::optional<score::Interval> ideal;        ///< with every imperfection taken away
+  std::optional<score::Interval> ideal;        ///< with every error source removed
   std::vector<BudgetShare> shares;             ///< largest first
-  std::optional<score::Interval> sum;          ///< of the shares
-  std::optional<score::Interval> interaction;  ///< what all take away together beyond the sum: imperfections that hide or feed each other
+  std::optional<score::Interval> sum;          ///< sum of the contributions
+  std::optional<score::Interval> interaction;  ///< effect of removing all together minus the sum of the contributions
 };
 
-/// Of each of the manifest's metrics.
+/// Error budgets of all metrics of the manifest.
 std::vector<Budget> make_budgets(const SweepManifest& manifest, const SweepRows& rows);
 Budget make_budget(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric);
 
-/// A waterfall for a screen: from the figure as it is, share by share, to the ideal one.
+/// Waterfall chart as text: from the baseline, contribution by contribution, to the ideal value.
 std::string budget_text(const Budget& budget);
 
-/// All budgets, one row a share, and rows "as it is", "sum", "interaction", "all ideal".
+/// Table of all budgets: one row per contribution, and rows "as it is", "sum", "interaction", "all ideal".
 io::Table budget_table(const std::vector<Budget>& budgets);
 
 }  // namespace patrol::app

@@ -6,7 +6,7 @@
 namespace patrol::app {
 namespace {
 
-constexpr double kError = 0.05;  ///< chance of finding a difference where there is none
+constexpr double kError = 0.05;  ///< probability of a false difference
 
 std::size_t seed_index(const SweepManifest& manifest, std::size_t run) { return run / manifest.variants.size(); }
 
@@ -22,7 +22,8 @@ bool is_decided(const VariantFigure& figure, double margin) {
   return is_equal || !figure.difference->contains(0.0);
 }
 
-/// The seeds of every variant that a look at `num_seeds` is made of; those decided earlier keep fewer.
+/// Collects the counted and the missing runs of an interim analysis. `num_seeds`: [variant], lower for variants that
+/// were decided earlier.
 void add_needed(const SweepManifest& manifest, const SweepRows& rows, const std::vector<std::size_t>& num_seeds, SweepProgress& progress) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (seed_index(manifest, i) >= num_seeds[manifest.runs[i].variant]) continue;

@@ -14,7 +14,7 @@ constexpr double kDelay_s = 0.3;
 constexpr double kJitter_s = 0.1;
 constexpr double kClockOffset_s = 0.2;
 
-/// Returns whether the scenario gives occasion for the readings of a sensor.
+/// Whether the scenario triggers readings of a sensor.
 bool is_triggered(SensorTrigger trigger, const ScenarioFiles& files) {
   const auto is_scanned = [](const MarkedGoal& goal) { return goal.type == GoalType::kScan; };
   switch (trigger) {

@@ -8,7 +8,7 @@
 namespace patrol::app {
 namespace {
 
-/// Of a run with one declared fault.
+/// Whether the single declared fault of a run was executed; none without a fault.
 std::optional<bool> is_executed(const RunVerdict& verdict) {
   if (verdict.events.empty()) return std::nullopt;
   return verdict.events.front().is_executed;

@@ -11,13 +11,13 @@
 
 namespace patrol::app {
 
-/// What a run with a fault came to.
+/// Outcome of a run with a fault.
 enum class FaultOutcome {
-  kSurvived,     ///< the mission was completed, and everything expected of it met
-  kDegraded,     ///< it was completed, and something expected was missed
-  kStopped,      ///< it was not completed, and the robot neither fell nor hit anything
-  kUnsafe,       ///< a fall or a collision
-  kNoResult,     ///< crashed, hung, or came to no score
+  kSurvived,     ///< mission completed, every expectation met
+  kDegraded,     ///< mission completed, an expectation missed
+  kStopped,      ///< mission not completed, no fall or collision
+  kUnsafe,       ///< fall or collision
+  kNoResult,     ///< crashed, hung, or without a score
 };
 
 inline constexpr std::array kFaultOutcomes = std::to_array<NamedValue<FaultOutcome>>({
@@ -33,29 +33,29 @@ FaultOutcome outcome_of(const RunVerdict& verdict);
 
 std::string_view text_of(FaultOutcome outcome);
 
-/// A run with a fault, or the one without.
+/// Row of a fault matrix: a run with a fault, or the one without.
 struct FaultRow {
-  std::string name;     ///< of its variant
+  std::string name;     ///< name of the variant
   FaultVariant fault;
   std::uint64_t seed = 1;
-  std::optional<bool> is_executed;  ///< nothing for the run without
+  std::optional<bool> is_executed;  ///< empty for the run without a fault
   FaultOutcome outcome = FaultOutcome::kNoResult;
-  std::optional<double> num_noticed;  ///< times that the robot said of a sensor that it is wrong
+  std::optional<double> num_noticed;  ///< number of events in which the robot reported a faulty sensor
   std::string end, message;
-  std::vector<std::optional<double>> figures, without;  ///< [metric] of this run, and of the run without a fault of the same seed
+  std::vector<std::optional<double>> figures, without;  ///< [metric], this run and the run without fault of this seed
 
   bool is_not_executed() const { return is_executed.has_value() && !*is_executed; }
 };
 
 std::vector<FaultRow> fault_rows(const SweepManifest& manifest, const SweepRows& rows);
 
-/// "executed" or "NOT EXECUTED"; empty for the run without.
+/// "executed" or "NOT EXECUTED"; empty for the run without a fault.
 std::string executed_text(const FaultRow& row);
 
-/// How many survived, stopped and were unsafe, in a sentence.
+/// Sentence with the number of runs by outcome.
 std::string faults_summary(const std::vector<FaultRow>& rows);
 
-/// What the words mean.
+/// Explanation of the outcomes.
 std::string fault_legend();
 
 }  // namespace patrol::app

@@ -11,12 +11,12 @@
 namespace patrol::app {
 namespace {
 
-/// A fault in all its seeds.
+/// Outcomes of one fault over its seeds.
 struct FaultCell {
   FaultOutcome worst = FaultOutcome::kSurvived;
   bool is_not_executed = false;  ///< in one seed or more
-  bool is_noticed = true;        ///< in all
-  std::vector<double> figures;   ///< of the first metric
+  bool is_noticed = true;        ///< in all seeds
+  std::vector<double> figures;   ///< values of the first metric
 
   void add(const FaultRow& row) {
     worst = std::max(worst, row.outcome);
@@ -38,7 +38,7 @@ void add_once(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-/// Cells by sensor and kind; both in the order of their first run.
+/// Cells by sensor and kind of fault, both in the order of their first run.
 struct FaultGrid {
   std::vector<std::string> sensors, kinds;
   std::map<std::pair<std::string, std::string>, FaultCell> cells;

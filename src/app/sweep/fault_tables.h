@@ -7,14 +7,14 @@
 
 namespace patrol::app {
 
-/// For a file.
+/// Fault matrix as a table for a file.
 io::Table faults_table(const SweepManifest& manifest, const SweepRows& rows);
 
-/// For a screen.
+/// Fault matrix as text for a terminal.
 std::string faults_text(const SweepManifest& manifest, const SweepRows& rows);
 
-/// For documents, in Markdown: sensors down, kinds of fault across; in each the worst outcome of the seeds, the first metric (the mean of the
-/// seeds that gave it), and whether the robot noticed.
+/// Fault matrix in Markdown: rows by sensor, columns by kind of fault. A cell has the worst outcome over the seeds, the
+/// mean of the first metric, and whether the robot reported the fault.
 std::string faults_markdown(const SweepManifest& manifest, const SweepRows& rows);
 
 }  // namespace patrol::app

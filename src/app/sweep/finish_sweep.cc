@@ -11,11 +11,11 @@
 namespace patrol::app {
 namespace {
 
-/// What the runs come to: for files, and for the screen.
+/// Results of a sweep, for files and for the terminal.
 struct Findings {
   std::vector<io::Table> tables;
   std::string text;
-  std::string markdown;  ///< for documents, if there is such a form
+  std::string markdown;  ///< for documents; empty if there is no such form
 };
 
 Findings findings_of(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
@@ -39,7 +39,7 @@ Findings findings_of(const SweepManifest& manifest, const SweepRows& rows, const
   return findings;
 }
 
-/// Of the runs that count; 5 when there are none.
+/// Exit code of the worst counted run; kNothingExecuted without runs.
 ExitCode worst_of(const SweepRows& rows, const SweepProgress& progress) {
   if (progress.counted.empty()) return ExitCode::kNothingExecuted;
   ExitCode worst = ExitCode::kDone;

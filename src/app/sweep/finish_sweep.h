@@ -5,8 +5,8 @@
 
 namespace patrol::app {
 
-/// Once all its results are there: writes the tables, prints the comparison, and gives the worst run's code. Before: says how many runs
-/// are missing.
+/// Completes a sweep with all results: writes the tables, prints the comparison, and returns the exit code of the worst
+/// run. Otherwise prints the number of missing runs.
 ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& manifest);
 
 }  // namespace patrol::app

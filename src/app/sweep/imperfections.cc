@@ -24,7 +24,7 @@ std::vector<Imperfection> imperfections_of_sensors() {
   return all;
 }
 
-/// Settings without latency, of all sensors of the registry that have one.
+/// Overrides that remove the latency of every registered sensor that has one.
 std::vector<std::string> latency_overrides() {
   std::vector<std::string> overrides;
   Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {

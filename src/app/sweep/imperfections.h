@@ -7,21 +7,21 @@
 
 namespace patrol::app {
 
-/// Something that keeps a run from being perfect, and the settings that take it away and leave all else as it is:
-/// every random number is addressed, so that no other draw moves (core/random.h).
+/// Error source of a run, with the overrides that remove it and change nothing else. Random numbers are counter-based,
+/// so that no other sample changes (core/random.h).
 struct Imperfection {
   std::string name;
   std::vector<std::string> overrides;  ///< "path=value"
-  /// Whether the scenario has it at all: a sensor that is switched off has no noise.
+  /// Whether the scenario has this error source: a sensor that is switched off has no noise.
   bool (*is_there)(const Scenario&, const ScenarioFiles&) = [](const Scenario&, const ScenarioFiles&) { return true; };
 };
 
-/// Error sources of the registry's sensors (core/sensors/<name>.h), other error sources of the twin, and two of the
-/// stack. A scenario in which one of them is away already is not changed by its overrides.
+/// Error sources of the registered sensors (core/sensors/<name>.h), other error sources of the simulator, and two of
+/// the stack. The overrides do not change a scenario in which the error source is already absent.
 ///
-/// "Ideal" means: noise, bias, quantisation and loss are zero; a scan is taken in an instant; the lidar is held
-/// level; radio passes walls as if there were none. Two cannot be made ideal and are made small instead, which their
-/// names say: belts that slip, and the map's cells.
+/// "Ideal" means: noise, bias, quantization and loss are zero; a scan is instantaneous; the lidar is level; radio
+/// passes through walls. Two error sources can only be reduced, as their names indicate: slipping tracks, and the map's
+/// resolution.
 const std::vector<Imperfection>& imperfections();
 
 }  // namespace patrol::app

@@ -14,18 +14,18 @@ namespace patrol::app {
 struct PlannedRun {
   std::size_t variant = 0;
   std::uint64_t seed = 1;
-  std::vector<std::string> overrides;  ///< the variant's, then what was drawn for the seed: "path=value"
-  std::string address;                 ///< of its result (run_address.h)
+  std::vector<std::string> overrides;  ///< overrides of the variant, then those sampled for the seed: "path=value"
+  std::string address;                 ///< content hash of the result (run_address.h)
 };
 
-/// When to leave off before all seeds are run.
+/// Condition for stopping before all seeds are run.
 struct EarlyStop {
   bool when_decided = false;
-  double margin = 0.0;  ///< of the first metric: two variants closer than this are as good as equal
+  double margin = 0.0;  ///< in units of the first metric: smaller differences are treated as equal
 };
 
-/// Which command made it, and what its variants are: of a budget the first is the scenario as it is, the last has every imperfection taken
-/// away; of a fault matrix the first has no fault.
+/// Command of a sweep, which determines its variants. Budget: the first is the scenario as it is, the last has every
+/// error source removed. Fault matrix: the first has no fault.
 enum class SweepKind { kSweep, kBudget, kFaults };
 
 inline constexpr std::array kSweepKinds = std::to_array<NamedValue<SweepKind>>({
@@ -35,25 +35,25 @@ inline constexpr std::array kSweepKinds = std::to_array<NamedValue<SweepKind>>({
 });
 static_assert(is_in_order(kSweepKinds));
 
-/// What a sweep was asked for: sweep.json. A run is independent of all others, so that any number of processes can share them out.
+/// Request of a sweep (sweep.json). Runs are independent of each other, so that several processes can divide them.
 struct SweepManifest {
   SweepKind kind = SweepKind::kSweep;
-  std::string scenario;                ///< its file's name, for people
-  std::vector<std::string> overrides;  ///< common to all
-  std::vector<std::string> paths;      ///< that are varied or drawn
-  std::vector<Variant> variants;       ///< the others are compared with the first
+  std::string scenario;                ///< file name of the scenario, for display
+  std::vector<std::string> overrides;  ///< overrides of all runs
+  std::vector<std::string> paths;      ///< keys that are varied or sampled
+  std::vector<Variant> variants;       ///< all others are compared with the first
   std::vector<std::uint64_t> seeds;
-  std::vector<std::string> metrics;    ///< that are compared
+  std::vector<std::string> metrics;    ///< metrics to compare
   EarlyStop stop;
-  std::vector<PlannedRun> runs;        ///< seed by seed, in each all variants
+  std::vector<PlannedRun> runs;        ///< ordered by seed, then by variant
 };
 
-/// All of a run's: the common ones, its own, and the seed.
+/// All overrides of a run: the common ones, its own, and the seed.
 std::vector<std::string> overrides_of(const SweepManifest& manifest, const PlannedRun& run);
 
 void save_manifest(const std::filesystem::path& file, const SweepManifest& manifest);
 
-/// Throws InputError when there is none, or it is not one.
+/// Loads sweep.json. Throws InputError if it is missing or invalid.
 SweepManifest load_manifest(const std::filesystem::path& file);
 
 }  // namespace patrol::app

@@ -10,7 +10,7 @@
 namespace patrol::app {
 namespace {
 
-/// What all kinds of call have in common; variants and runs follow.
+/// Manifest with the parts common to all kinds; variants and runs follow.
 template <typename Options>
 SweepManifest begin_manifest(SweepKind kind, const Options& options) {
   return {.kind = kind,
@@ -24,7 +24,7 @@ SweepManifest begin_manifest(SweepKind kind, const Options& options) {
           .runs = {}};
 }
 
-/// Seed by seed, in each all variants.
+/// Adds the runs, ordered by seed, then by variant.
 void plan_runs(const std::filesystem::path& scenario, const std::vector<Axis>& axes, SweepManifest& manifest) {
   RunAddresses addresses(find_data_root(scenario));
   for (const std::uint64_t seed : manifest.seeds) {

@@ -5,14 +5,14 @@
 
 namespace patrol::app {
 
-/// What is asked for, with every run's address. Every variant's scenario is read: a wrong key or value is found before anything runs.
-/// These throw InputError.
+/// Plans a sweep, with the content hash of every run. Loads the scenario of every variant: an invalid key or value is
+/// reported before anything runs. These functions throw InputError.
 SweepManifest plan_sweep(const SweepOptions& options);
 
-/// The scenario as it is, without each imperfection that it has (imperfections.h), and without all.
+/// Plans an error budget: the scenario as it is, without each of its error sources (imperfections.h), and without all.
 SweepManifest plan_budget(const BudgetOptions& options);
 
-/// The scenario as it is, and with each fault that its sensors can have (fault_matrix.h).
+/// Plans a fault matrix: the scenario as it is, and with each fault of its sensors (fault_matrix.h).
 SweepManifest plan_faults(const FaultsOptions& options);
 
 }  // namespace patrol::app

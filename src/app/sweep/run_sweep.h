@@ -8,7 +8,8 @@
 
 namespace patrol::app {
 
-/// Does what of a sweep is in the shard and has no result yet, on this machine; with early stopping, look by look. Throws std::runtime_error when interrupted.
+/// Runs the missing runs of a shard on this machine; with early stopping, in stages of interim analyses. Throws
+/// std::runtime_error if interrupted.
 void run_sweep(const std::filesystem::path& scenario, const SweepManifest& manifest, const SweepDirectory& directory, const Shard& shard,
                const BatchSettings& settings);
 

@@ -26,10 +26,10 @@ class SlurmJob {
     if (std::filesystem::exists(id_file())) id_ = io::load_text(id_file());
   }
 
-  /// Tasks of it wait, run, or end just now.
+  /// Whether tasks of the job are waiting, running or just ending.
   bool is_in_queue() const {
     if (id_.empty()) return false;
-    // A job that ended long ago is unknown to squeue, which then fails.
+    // squeue fails for a job that ended long ago.
     const ProgramResult queue = run_program({"squeue", "--noheader", "--jobs=" + id_, "--format=%T"});
     return queue.exit_code == 0 && !queue.output.empty();
   }

@@ -10,7 +10,7 @@
 namespace patrol::app {
 namespace {
 
-/// What stands in the way of a sweep that its parts do not say themselves.
+/// Checks options that have no check of their own. Throws InputError.
 void check(const SweepOptions& options) {
   if (options.engine != "local" && options.engine != "slurm") throw InputError(fmt::format("--engine {}: must be local or slurm", options.engine));
   if (options.stop_when_decided && (!options.shard.empty() || options.engine == "slurm")) {

@@ -10,7 +10,7 @@
 namespace patrol::app {
 namespace {
 
-// Several processes may share one: what another is writing (*.part) stays.
+// Several processes may share one directory: files being written by another one (*.part) stay.
 const OutputKind kSweep = {.name = "sweep",
                            .unfinished = "Not every run of this sweep has ended: tables come at the end. The same command goes on.",
                            .made = {"runs.csv", "comparison.csv", "budget.csv", "faults.csv", "faults.md", "sweep.sqlite", "report.html"},

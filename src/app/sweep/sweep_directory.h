@@ -10,8 +10,8 @@
 
 namespace patrol::app {
 
-/// The files of a sweep, an error budget or a fault matrix: sweep.json (what was asked), runs/ (results by address), and once all are there
-/// a CSV file of each table and sweep.sqlite with all of them; until then INCOMPLETE.
+/// Files of a sweep, an error budget or a fault matrix: sweep.json (request) and runs/ (results by content hash). A
+/// complete directory also has a CSV file per table and sweep.sqlite with all tables; an incomplete one has INCOMPLETE.
 struct SweepDirectory {
   std::filesystem::path root;
 
@@ -21,14 +21,14 @@ struct SweepDirectory {
   ResultStore store() const { return ResultStore(runs_folder(root)); }
 };
 
-/// Makes the directory, marks it incomplete (output_directory.h), and writes down what is asked; results that lie there stay, so that to go
-/// on is to skip them.
+/// Creates the directory, marks it incomplete (output_directory.h), and writes the manifest. Existing results stay, so
+/// that an interrupted sweep can be continued.
 SweepDirectory begin_sweep_directory(const std::filesystem::path& root, const SweepManifest& manifest);
 
-/// Throws InputError when there is none.
+/// Opens an existing directory. Throws InputError if it is not one.
 SweepDirectory open_sweep_directory(const std::filesystem::path& root);
 
-/// Writes the tables: the same tables give the same bytes. Takes the mark away.
+/// Writes the tables, reproducibly to the byte, and removes the marker.
 void complete_sweep_directory(const SweepDirectory& directory, const std::vector<io::Table>& tables);
 
 }  // namespace patrol::app

@@ -12,7 +12,7 @@
 namespace patrol::app {
 namespace {
 
-/// The whole text as a number, or nothing.
+/// Converts the whole text to a number; none if it is not one.
 template <typename Number>
 std::optional<Number> whole_number(std::string_view text) {
   Number number = 0;

@@ -12,7 +12,7 @@ namespace {
 io::TableValue number(double value) { return value; }
 io::TableValue whole(std::size_t value) { return static_cast<std::int64_t>(value); }
 
-/// What the run's overrides say of a path; nothing if they do not.
+/// Value of a path in the run's overrides; empty if they do not set it.
 io::TableValue value_of(const std::vector<std::string>& overrides, const std::string& path) {
   for (const std::string& override : overrides) {
     if (override.starts_with(path + "=")) return override.substr(path.size() + 1);
@@ -22,7 +22,7 @@ io::TableValue value_of(const std::vector<std::string>& overrides, const std::st
 
 bool is_of_the_clock(const std::string& path) { return path.starts_with("performance."); }
 
-/// Every figure's path, in the order of the first run that has it.
+/// Path of every metric, in the order of the first run that has it.
 std::vector<std::string> paths_of(const SweepRows& rows, const std::vector<std::size_t>& counted) {
   std::vector<std::string> paths;
   std::set<std::string> seen;
@@ -34,7 +34,7 @@ std::vector<std::string> paths_of(const SweepRows& rows, const std::vector<std::
   return paths;
 }
 
-/// [metric][variant]; each variant over the seeds that were run for it.
+/// Comparison [metric][variant], each variant over the seeds that were run for it.
 std::vector<std::vector<VariantFigure>> comparisons(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
   std::vector<std::vector<VariantFigure>> all;
   for (const std::string& metric : manifest.metrics) {

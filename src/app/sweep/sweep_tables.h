@@ -8,13 +8,15 @@
 
 namespace patrol::app {
 
-/// One row a counted run: variant, what was varied, seed, address, how it ended, and every figure but `performance`, which is another each time.
+/// Table with one row per counted run: variant, varied keys, seed, content hash, status, and all metrics except
+/// `performance`, which is not reproducible.
 io::Table runs_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress);
 
-/// One row for each compared metric and variant: mean, 95 % interval, paired difference to the first variant, verdict.
+/// Table with one row per compared metric and variant: mean, 95 % interval, paired difference from the first variant,
+/// verdict.
 io::Table comparison_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress);
 
-/// The comparison for a screen.
+/// Comparison as text for a terminal.
 std::string comparison_text(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress);
 
 }  // namespace patrol::app

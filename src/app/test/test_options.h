@@ -8,10 +8,10 @@
 
 namespace patrol::app {
 
-/// The call of `patrol test`.
+/// Options of `patrol test`.
 struct TestOptions {
-  std::filesystem::path scenarios;     ///< a folder, or one scenario
-  std::vector<std::string> overrides;  ///< "path=value", in every scenario
+  std::filesystem::path scenarios;     ///< a folder, or one scenario file
+  std::vector<std::string> overrides;  ///< "path=value", for every scenario
   BatchOptions batch{.keep = "failed"};
   std::filesystem::path out = "out/test";
 };

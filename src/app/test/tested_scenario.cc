@@ -20,7 +20,7 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& scenari
   if (std::filesystem::is_regular_file(scenarios, ignored)) return {scenarios};
   if (!std::filesystem::is_directory(scenarios, ignored)) throw InputError(fmt::format("{}: there is no such file or folder", scenarios.string()));
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(scenarios)) {  // does not follow links to folders
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(scenarios)) {  // follows no folder links
     if (entry.is_regular_file(ignored) && is_scenario(entry.path())) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
@@ -33,14 +33,14 @@ std::vector<std::pair<std::string, std::string>> properties_of(const std::filesy
   try {
     properties = junit_properties(load_scenario(file, overrides));
   } catch (const InputError&) {
-    // The run will say what is wrong with it.
+    // The run will report the error.
   }
   properties.emplace_back("build", build);
   properties.emplace_back("scenario", file.string());
   return properties;
 }
 
-/// The name in characters that every file system takes.
+/// Result name in characters that are valid in every file system.
 std::string address_of(std::size_t index, std::string name) {
   std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-'; }, '_');
   return fmt::format("{:04}_{}", index + 1, name);

@@ -11,27 +11,28 @@
 
 namespace patrol::app {
 
-/// One scenario that `patrol test` runs.
+/// Scenario that `patrol test` runs.
 struct TestedScenario {
   std::string name;            ///< path below the folder, without ".yaml"
   std::filesystem::path file;
-  std::string address;         ///< of its result: "0007_street_patrol"
-  std::vector<std::pair<std::string, std::string>> properties;  ///< for JUnit: world, robot, seed, build; of a file that cannot be read, the build
-  std::optional<RunVerdict> verdict;  ///< none before it has run
+  std::string address;         ///< name of its result: "0007_street_patrol"
+  std::vector<std::pair<std::string, std::string>> properties;  ///< for JUnit: world, robot, seed, build
+  std::optional<RunVerdict> verdict;  ///< none before the run
 };
 
 bool is_passed(const TestedScenario& tested);
 
-/// Every *.yaml file in the folder and those below it, by name, or the one file. Throws InputError when there is nothing of that name.
+/// Every *.yaml file in the folder and its subfolders, sorted by name, or the one file. Throws InputError if nothing is
+/// found.
 std::vector<TestedScenario> find_scenarios(const std::filesystem::path& scenarios, const std::vector<std::string>& overrides);
 
-/// junit.xml, one suite a scenario; those without a verdict are errors.
+/// Writes junit.xml, one suite per scenario; scenarios without a verdict are errors.
 void save_test_junit(const std::filesystem::path& file, const std::vector<TestedScenario>& tested);
 
-/// One row a scenario: how it ended, and what was measured of what was expected.
+/// Table with one row per scenario: its status, and measured values of its expectations.
 io::Table tests_table(const std::vector<TestedScenario>& tested);
 
-/// A page for people, in Markdown as code hosts show it beside a run: the verdict first, what failed and why, then all.
+/// Summary in Markdown as displayed by code hosts: the verdict, failures with their reasons, then all scenarios.
 std::string tests_summary(const std::vector<TestedScenario>& tested);
 
 }  // namespace patrol::app

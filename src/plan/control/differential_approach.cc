@@ -7,12 +7,12 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kApproachFacing_rad = 0.1;     // near enough to set off
-constexpr double kLost_rad = 0.6;       // so far off on the way: turn again
-constexpr double kBlindBearing_m = 0.15;  // nearer than this the bearing of the place says little
-constexpr int kMaxChanges = 6;          // of phase within one step
+constexpr double kApproachFacing_rad = 0.1;     // heading error within which driving begins
+constexpr double kLost_rad = 0.6;       // heading error on the way that calls for another turn in place
+constexpr double kBlindBearing_m = 0.15;  // distance below which the bearing of the goal is too noisy
+constexpr int kMaxChanges = 6;          // phase changes within one step
 
-/// Where the goal's place lies from the robot: bearing in body, for the nose or, backwards, for the tail.
+/// Bearing of the goal position in body, from the bow; from the stern when driving backward.
 double bearing_rad(const Pose2& T_goal_body, double forward) {
   const Eigen::Vector2d p_body = T_goal_body.inverse().position();
   return std::atan2(forward * p_body.y(), forward * p_body.x());
@@ -34,7 +34,7 @@ void DifferentialApproach::block() {
 
 VelocityCommand DifferentialApproach::step(const Pose2& T_map_body, const NavigationGoal& goal) {
   const Pose2 T_goal_body = goal.T_map_body.inverse() * T_map_body;
-  // A phase that is over says so by another phase, which begins at once.
+  // A completed phase enters another one, which begins in the same step.
   for (int changes = 0; changes < kMaxChanges; ++changes) {
     const Phase before = phase_;
     VelocityCommand command;
@@ -119,7 +119,7 @@ VelocityCommand DifferentialApproach::turn_to_heading(const Pose2& T_goal_body, 
 }
 
 VelocityCommand DifferentialApproach::back_off(const Pose2& T_goal_body, const NavigationGoal& goal) {
-  const double out_m = back_off_side_ * T_goal_body.x;  // from the goal's place towards that side
+  const double out_m = back_off_side_ * T_goal_body.x;  // distance from the goal toward that side
   const double side_left_m = side_after_m(settings_.line, T_goal_body.y, out_m);
   const bool is_enough = out_m > 0.0 && side_left_m <= settings_.aim_share * goal.position_tol_m / 2.0;
   if (is_enough || out_m >= settings_.max_back_off_m) {

@@ -7,14 +7,14 @@
 namespace patrol::plan {
 
 struct DifferentialApproachSettings {
-  double speed_gain_per_s = 1.0;    ///< speed per metre left
+  double speed_gain_per_s = 1.0;    ///< speed per meter of remaining distance
   double max_speed_mps = 0.3;
-  double min_speed_mps = 0.04;      ///< what the tracks still do evenly
-  double min_yaw_rate_radps = 0.08; ///< likewise
-  double aim_share = 0.5;           ///< of the goal's tolerances is aimed at; within the whole it ends a pass
-  double reverse_m = 1.0;           ///< a goal nearer than this and behind is driven to backwards
-  double shuffle_m = 0.25;          ///< nearer than this side errors are taken off by driving back and forth
-  double max_back_off_m = 0.8;      ///< at most so far back
+  double min_speed_mps = 0.04;      ///< minimum speed that the tracks follow smoothly
+  double min_yaw_rate_radps = 0.08; ///< minimum yaw rate that the tracks follow smoothly
+  double aim_share = 0.5;           ///< fraction of the goal's tolerances that a pass aims at
+  double reverse_m = 1.0;           ///< maximum distance of a goal behind the robot that is approached in reverse
+  double shuffle_m = 0.25;          ///< distance below which lateral errors are corrected by backing up
+  double max_back_off_m = 0.8;      ///< maximum distance of one backing-up maneuver
   LineFollowingSettings line;
 
   template <typename Self, typename Visitor>
@@ -31,20 +31,20 @@ struct DifferentialApproachSettings {
   }
 };
 
-/// The last metre of a robot on tracks or two wheels: turn to the place, drive there, turn to the heading. What a skidding
-/// turn has then moved it aside is taken off by backing up along the goal's axis and driving in again, since turning on
-/// the spot for each centimetre aside would skid as much again.
+/// Controller for the last meter of a robot on tracks or two wheels: turns toward the goal position, drives there, and
+/// turns to the goal heading. The final turn skids and displaces the robot sideways. This error is removed by backing
+/// up along the goal's axis and driving in again; further turns in place would skid as much again.
 class DifferentialApproach {
  public:
   explicit DifferentialApproach(const DifferentialApproachSettings& settings) : settings_(settings) {}
 
-  /// For another goal, or after something else has driven.
+  /// Resets the controller for another goal, or after another controller has driven.
   void reset();
-  /// Once a control period. At the goal the command is to stand.
+  /// Command of one control period; zero at the goal.
   VelocityCommand step(const Pose2& T_map_body, const NavigationGoal& goal);
-  /// Within the share of the tolerances that is aimed at; or within the tolerances at the end of a pass.
+  /// Whether the pose is within `aim_share` of the tolerances, or within the tolerances at the end of a pass.
   bool is_done() const { return phase_ == Phase::kDone; }
-  /// There is no room for the last command: the next way back and forth begins at the other end.
+  /// Reports that the last command is blocked; the next backing-up maneuver begins at the other end.
   void block();
 
  private:
@@ -61,8 +61,8 @@ class DifferentialApproach {
 
   DifferentialApproachSettings settings_;
   Phase phase_ = Phase::kChoose;
-  double forward_ = 1.0;         ///< -1: this leg is driven backwards
-  double back_off_side_ = -1.0;  ///< along the goal's x axis
+  double forward_ = 1.0;         ///< -1 if this leg is driven in reverse
+  double back_off_side_ = -1.0;  ///< direction of backing up along the goal's x axis: -1 or 1
 };
 
 }  // namespace patrol::plan

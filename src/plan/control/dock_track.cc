@@ -8,9 +8,9 @@
 namespace patrol::plan {
 namespace {
 
-constexpr int kMaxOutliers = 5;  // in a row: then the track is wrong, not they
+constexpr int kMaxOutliers = 5;  // consecutive outliers after which the estimate is reset
 
-/// How a small displacement (x, y, yaw) of the body, in its own frame, moves a place that it sees: in odom.
+/// Jacobian of an observed pose in odom by a small displacement (x, y, yaw) of the body in its own frame.
 Eigen::Matrix3d moves_with_body(const Pose2& T_odom_body, const Pose2& T_odom_seen) {
   const double c = std::cos(T_odom_body.yaw), s = std::sin(T_odom_body.yaw);
   const Eigen::Vector2d arm = T_odom_seen.position() - T_odom_body.position();

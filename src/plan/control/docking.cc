@@ -7,7 +7,7 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kDockFacing_rad = 0.05;  // to the line: near enough to set off
+constexpr double kDockFacing_rad = 0.05;  // heading error to the line within which driving begins
 
 }  // namespace
 
@@ -110,7 +110,7 @@ VelocityCommand Docking::drive_in(Time now, const Pose2& T_docked_body) {
   return follow_line(line, T_docked_body, speed);
 }
 
-/// Stands; then says that it is docked, puts right what a little motion can put right, or tries again.
+/// Waits for `settle_s`, then reports the docked pose, corrects a small error, or retries.
 void Docking::settle(Time now, const Pose2& T_docked_body) {
   if (now - standing_since_ < from_seconds(settings_.settle_s)) return;
   if (std::abs(T_docked_body.y) > settings_.position_tol_m) return try_again();
@@ -120,7 +120,7 @@ void Docking::settle(Time now, const Pose2& T_docked_body) {
   enter(Phase::kCorrect, "");
 }
 
-/// Half the tolerances are aimed at, so that the motion ends well within them; then it stands again.
+/// Aims at half of the tolerances, so that the motion ends well within them, and returns to kSettle.
 VelocityCommand Docking::correct(Time now, const Pose2& T_docked_body) {
   if (std::abs(T_docked_body.yaw) > settings_.yaw_tol_rad / 2.0) {
     return {.yaw_rate_radps = yaw_rate_radps(-T_docked_body.yaw)};

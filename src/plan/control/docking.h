@@ -13,25 +13,25 @@
 namespace patrol::plan {
 
 struct DockingSettings {
-  double staging_m = 1.35;         ///< from there, straight before the docked pose, the robot drives in
-  double staging_tol_m = 0.1;      ///< as exact as the navigator shall be there
+  double staging_m = 1.35;         ///< distance of the staging pose, straight before the docked pose
+  double staging_tol_m = 0.1;      ///< tolerances of the navigator at the staging pose
   double staging_tol_rad = 0.1;
   double max_speed_mps = 0.2;
   double min_speed_mps = 0.03;
-  double speed_gain_per_s = 0.5;   ///< speed per metre left
+  double speed_gain_per_s = 0.5;   ///< speed per meter of remaining distance
   double min_yaw_rate_radps = 0.06;
-  double funnel_m = 0.02;          ///< the robot may be so far off the axis at the docked pose, and
-  double funnel_m_per_m = 0.3;     ///< so much farther per metre before it; else it backs up and tries again
-  double square_up_m = 0.15;       ///< over the last stretch the heading goes over to the dock's own
-  double position_tol_m = 0.012;   ///< docked, by its own estimate
+  double funnel_m = 0.02;          ///< half-width of the approach corridor at the docked pose
+  double funnel_m_per_m = 0.3;     ///< widening per meter before it; outside, the robot backs up and retries
+  double square_up_m = 0.15;       ///< final distance over which the heading blends into the dock's heading
+  double position_tol_m = 0.012;   ///< position tolerance of the docked pose, by the robot's own estimate
   double yaw_tol_rad = 0.008;
-  double settle_s = 1.0;           ///< stands and looks for so long before it says so
-  int min_sightings = 5;           ///< before it sets off
-  double max_blind_s = 1.0;        ///< without a look it stands still
-  double give_up_blind_s = 10.0;   ///< and gives up
+  double settle_s = 1.0;           ///< stationary time before the docked pose is checked
+  int min_sightings = 5;           ///< minimum number of detections before the robot moves
+  double max_blind_s = 1.0;        ///< maximum age of the last detection; the robot stops beyond
+  double give_up_blind_s = 10.0;   ///< time without a detection after which docking fails
   int max_tries = 4;
   double time_limit_s = 120.0;
-  double undock_m = 1.2;           ///< straight back
+  double undock_m = 1.2;           ///< distance driven straight back
   LineFollowingSettings line;
   DockTrackSettings track;
 
@@ -66,33 +66,34 @@ enum class DockingStatus { kIdle, kDocking, kDocked, kUndocking, kFree, kFailed 
 struct DockingStep {
   VelocityCommand command;
   DockingStatus status = DockingStatus::kIdle;
-  std::string text;  ///< one sentence, in the step in which something has changed; else empty
+  std::string text;  ///< one sentence in the step in which the state changes; else empty
 };
 
-/// Drives a robot on tracks from the staging pose to the charging post, and away from it. It steers by sightings of the post
-/// alone, fused in `odom`: what the map says of the place is not exact enough.
+/// Drives a tracked robot from the staging pose to the charging post, and away from it. It uses only detections of the
+/// post, fused in `odom`: the pose in the map is not accurate enough.
 ///
-/// Look, turn to the line, drive in along it with a side error that falls with the way, square up, stand and look again. Off the
+/// Sequence: detect the post, turn to the line, drive in with a lateral error that falls with the distance, align with
+/// the dock, stop and measure again. Outside of the corridor the robot backs up and retries, at most `max_tries` times.
 /// line near the post it backs up and tries again; it says when it cannot.
 class Docking {
  public:
   /// Throws InputError if a setting breaks its rule.
   explicit Docking(const DockingSettings& settings);
 
-  /// Where the navigator shall bring the robot before `dock`.
+  /// Goal of the navigator before `dock`.
   NavigationGoal staging_goal(const Pose2& T_map_docked) const;
 
   void dock(Time now);
-  /// From the pose in which the robot stands; the post need not be seen.
+  /// Leaves the dock from the current pose; no detection of the post is needed.
   void undock(Time now, const Pose2& T_odom_body);
   void stop();
 
-  /// `T_odom_body` at the sighting's stamp. Only while docking is it heeded.
+  /// Fuses a detection. `T_odom_body` is the pose at its stamp. Ignored unless docking.
   void add(const DockSighting& sighting, const Pose2& T_odom_body);
-  /// Where the docked body is from the body, once the post was seen: where the next scan should show it.
+  /// Docked pose in the body's gravity-aligned frame, for the detector's next scan; none before the first detection.
   std::optional<Pose2> T_level_docked(const Pose2& T_odom_body) const;
 
-  /// Once a control period.
+  /// Command and status of one control period.
   DockingStep step(Time now, const Pose2& T_odom_body);
 
   DockingStatus status() const;
@@ -116,7 +117,7 @@ class Docking {
   std::string text_;
   Time start_{};
   Time standing_since_{};
-  Pose2 T_odom_left_;    ///< where undocking began
+  Pose2 T_odom_left_;    ///< body pose at the start of undocking
   int tries_ = 0;
 };
 

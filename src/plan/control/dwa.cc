@@ -7,9 +7,9 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kMinReach_mps = 0.2;  // the least that counts as being able to get on
+constexpr double kMinReach_mps = 0.2;  // minimum of the speed that determines the reachable distance
 
-/// Evenly from `low` to `high`, both included; zero among them when it lies between.
+/// Uniform samples from `low` to `high`, both included; contains zero if it lies between them.
 std::vector<double> samples(double low, double high, int count) {
   std::vector<double> values;
   for (int i = 0; i < count; ++i) values.push_back(low + (high - low) * i / (count - 1));
@@ -36,12 +36,12 @@ std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, con
   const double yaw_rate = std::clamp(twist.angular.z(), -settings_.max_yaw_rate_radps, settings_.max_yaw_rate_radps);
   const double speed_window = settings_.max_accel_mps2 * settings_.window_s;
   const double yaw_window = settings_.max_yaw_accel_radps2 * settings_.window_s;
-  // Braking is always a choice, also from above a limit that has just fallen.
+  // Braking is always admissible, also from above a limit that has just fallen.
   const double fastest = std::max(std::min(top_speed, speed + speed_window), std::max(0.0, speed - speed_window));
   const double slowest = std::min(std::max(0.0, speed - speed_window), fastest);
 
-  // Progress is measured by what is in reach now: to a robot at rest before a narrow place, creeping must not look as useless as
-  // standing.
+  // Progress is relative to the distance reachable now: to a robot at rest before a narrow passage, slow motion must
+  // not look as useless as standing.
   const RolloutScene scene{.path = path,
                            .along_m = along_m,
                            .reach_m = std::max(fastest, kMinReach_mps) * settings_.horizon_s,

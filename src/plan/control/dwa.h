@@ -16,19 +16,19 @@
 namespace patrol::plan {
 
 struct DwaSettings {
-  // What the robot can do.
+  // Limits of the robot.
   double max_speed_mps = 0.8;
   double max_reverse_mps = 0.2;
   double max_yaw_rate_radps = 0.9;
   double max_accel_mps2 = 0.8;
   double max_yaw_accel_radps2 = 2.5;
-  // What is tried.
-  double window_s = 0.3;    ///< commands are those reachable within this time
-  double horizon_s = 2.0;   ///< how far ahead they are followed
+  // Sampled commands.
+  double window_s = 0.3;    ///< time in which a sampled command is reachable
+  double horizon_s = 2.0;   ///< prediction horizon
   int steps = 8;            ///< poses along the horizon
   int speed_samples = 6;
   int yaw_rate_samples = 15;
-  // What is preferred.
+  // Weights of the cost terms.
   double path_weight = 1.0;
   double progress_weight = 1.2;
   double heading_weight = 0.8;
@@ -57,9 +57,9 @@ struct DwaSettings {
   }
 };
 
-/// The dynamic window approach (Fox, Burgard, Thrun 1997): of the commands that the robot can reach within a moment, the one
-/// whose constant-velocity arc costs least. An arc that comes nearer to an obstacle than the robot's outline allows
-/// is no choice, unless the robot already stands so near and the arc leads away from it.
+/// Local planner by the dynamic window approach [Fox97]. Of the commands reachable within `window_s` it chooses the one
+/// whose constant-velocity arc has the minimum cost. An arc with negative clearance is rejected, unless the robot is
+/// already in such a pose and the arc leads away from the obstacle.
 class DynamicWindow final : public LocalPlanner {
  public:
   explicit DynamicWindow(const DwaSettings& settings);

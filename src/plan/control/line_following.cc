@@ -21,7 +21,7 @@ VelocityCommand follow_line(const LineFollowingSettings& settings, const Pose2& 
 
 double side_after_m(const LineFollowingSettings& settings, double side_m, double way_m) {
   const double slope = std::tan(settings.max_angle_rad);
-  const double knee_m = slope / settings.side_gain_per_m;  // nearer than this the angle is below its limit
+  const double knee_m = slope / settings.side_gain_per_m;  // lateral error below which the angle is not limited
   const double straight_m = std::max(0.0, (std::abs(side_m) - knee_m) / slope);
   if (way_m <= straight_m) return std::abs(side_m) - slope * way_m;
   const double from_m = std::min(std::abs(side_m), knee_m);

@@ -7,8 +7,8 @@
 namespace patrol::plan {
 
 struct LineFollowingSettings {
-  double side_gain_per_m = 3.0;   ///< the robot is 1/e as far beside the line after the inverse of this
-  double max_angle_rad = 0.5;     ///< steepest way towards the line
+  double side_gain_per_m = 3.0;   ///< inverse of the distance over which the lateral error falls to 1/e
+  double max_angle_rad = 0.5;     ///< maximum angle toward the line
   double yaw_gain_per_s = 2.0;
   double max_yaw_rate_radps = 0.5;
 
@@ -21,15 +21,15 @@ struct LineFollowingSettings {
   }
 };
 
-/// Drives a robot that cannot step sideways along the x axis of `line`, forwards or backwards (negative speed). The heading
-/// aimed at leads towards the line, tan(angle) = -gain y, so that dy/dx = -gain y: the side error falls by the way driven,
-/// however slow that is, y(x) = y(0) exp(-gain |x|). Backwards the angle is mirrored.
+/// Drives a robot that cannot move sideways along the x axis of `line`, forward or backward (negative speed). The
+/// heading setpoint is tan(angle) = -gain y, so that dy/dx = -gain y. The lateral error falls with the distance driven,
+/// independent of the speed: y(x) = y(0) exp(-gain |x|). Backward, the angle is mirrored.
 VelocityCommand follow_line(const LineFollowingSettings& settings, const Pose2& T_line_body, double speed_mps);
 
-/// The angle to the line that `follow_line` aims at.
+/// Heading setpoint of `follow_line` relative to the line.
 double line_heading_rad(const LineFollowingSettings& settings, double side_m, double speed_mps);
 
-/// How far beside the line the robot will be after driving `way_m` along it: the law above with the limit on its angle.
+/// Lateral error after driving `way_m` along the line: the law of `follow_line` with the limit on its angle.
 double side_after_m(const LineFollowingSettings& settings, double side_m, double way_m);
 
 }  // namespace patrol::plan

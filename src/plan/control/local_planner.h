@@ -9,13 +9,13 @@
 
 namespace patrol::plan {
 
-/// Says how to move now along a path, around what stands there.
+/// Interface of a local planner: velocity commands along a path, around obstacles of the costmap.
 class LocalPlanner {
  public:
   virtual ~LocalPlanner() = default;
 
-  /// The command to give now, along the path from `along_m` on, no faster than `speed_limit_mps`. None if every arc is
-  /// blocked: then the robot must stand.
+  /// Command along the path from `along_m` on, at most `speed_limit_mps` fast. None if every arc is blocked: then the
+  /// robot must stop.
   virtual std::optional<VelocityCommand> choose(const Costmap& costmap, const PlannedPath& path, double along_m,
                                                 const Pose2& T_map_body, const Twist3& twist,
                                                 double speed_limit_mps) const = 0;

@@ -51,7 +51,7 @@ void normalize(std::vector<double>& values) {
 
 PaperDwa::PaperDwa(const PaperDwaSettings& settings) : settings_(settings) { validate(settings_, "paper_dwa"); }
 
-/// The pairs of V_s, each with its trajectory.
+/// Velocity pairs of V_s, each with its trajectory.
 std::vector<Rollout> PaperDwa::admissible(const Costmap& costmap, const Pose2& T_map_body, const VelocityWindow& window) const {
   const auto sample = [](double low, double high, int i, int count) { return low + (high - low) * i / (count - 1); };
   std::vector<Rollout> rollouts;

@@ -18,14 +18,14 @@ struct PaperDwaSettings {
   double max_yaw_decel_radps2 = 1.5;     ///< a_omegamin
   double max_yaw_accel_radps2 = 1.5;     ///< a_omegamax
   double window_s = 0.3;                 ///< Delta t
-  double horizon_s = 2.0;                ///< of the simulated trajectory
+  double horizon_s = 2.0;                ///< horizon of the simulated trajectory
   int steps = 8;
   int speed_samples = 7;
   int yaw_rate_samples = 15;
   double heading_weight = 0.8;           ///< alpha
   double distance_weight = 0.2;          ///< beta
   double velocity_weight = 0.2;          ///< gamma
-  double target_ahead_m = 1.5;           ///< the target point: so far on along the path
+  double target_ahead_m = 1.5;           ///< distance of the target point ahead along the path
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -48,42 +48,44 @@ struct PaperDwaSettings {
   }
 };
 
-/// A rectangle of velocity pairs (v, omega).
+/// Rectangle of velocity pairs (v, omega).
 struct VelocityWindow {
   double min_speed_mps, max_speed_mps;
   double min_yaw_rate_radps, max_yaw_rate_radps;
 };
 
-/// Eq. 2: what the robot can do at all.
+/// Velocity limits of the robot V_m [Liu21, eq. 2].
 VelocityWindow speed_window(const PaperDwaSettings& settings);
-/// Eq. 3: what it can reach within the window from (v_c, omega_c).
+/// Velocities V_d reachable within `window_s` from (v_c, omega_c) [Liu21, eq. 3].
 VelocityWindow reachable_window(const PaperDwaSettings& settings, double speed_mps, double yaw_rate_radps);
-/// The part common to both; the first one's nearest edge where there is none.
+/// Intersection of two windows; the nearest edge of the first one if it is empty.
 VelocityWindow intersect(const VelocityWindow& limits, const VelocityWindow& window);
-/// Eq. 4: whether it can stop before what is `distance_m` away.
+/// Whether the robot can stop within `distance_m` [Liu21, eq. 4].
 bool can_stop(const PaperDwaSettings& settings, double speed_mps, double yaw_rate_radps, double distance_m);
-/// Eq. 6, of the angle between the heading at the trajectory's end and the target point.
+/// Heading term [Liu21, eq. 6]; `angle_rad` is between the heading at the trajectory's end and the target point.
 double heading_term(double angle_rad);
-/// Eq. 7.
+/// Velocity term [Liu21, eq. 7].
 double velocity_term(const PaperDwaSettings& settings, double speed_mps);
-/// Divides by the sum, so that the values sum to 1; leaves zeros.
+/// Divides by the sum, so that the values sum to 1; leaves all zeros unchanged.
 void normalize(std::vector<double>& values);
 
-/// The dynamic window approach as paper 004 prints it (Liu, Zhu, "Research on autonomous navigation method of tunnel safety early
-/// warning robot", 2021, section 3.2, eqs. 2-7): of the velocity pairs of V_s = V_m and V_d and V_a the one of the largest
+/// Dynamic window approach as printed in [Liu21, section 3.2, eqs. 2-7]: of the velocity pairs of V_s = V_m and V_d and
+/// V_a the one with the maximum of
 ///
 ///   G = alpha heading + beta dist + gamma velocity,
 ///
-/// each term normalised over the pairs. It stands beside plan/control/dwa.h, which is the default, for comparison. How we read it:
+/// each term normalized over the pairs. It serves for comparison with the default, plan/control/dwa.h.
 ///
-///   eq. 3   the upper bounds are printed "v_c - a_vmax dt", "omega_c - a_omegamax dt": they must be plus.
-///   eq. 4   omega <= sqrt(2 dis a_omegamin) takes a distance in metres for an angle, as Fox, Burgard, Thrun (1997) do; taken
-///           as it stands, for |omega| and |v|.
-///   eq. 5   sigma is not explained; in Fox et al. it smooths over neighbours. Here it is the identity, and the normalisation that the text
-///           asks for divides each term by its sum. "dist" of eq. 5 is "dis" of the text: the least distance of the
-///           trajectory to obstacles, here from the robot's outline.
-///   eq. 7   (v, omega) / (v_max, omega_max) is no number; taken is v / v_max, as in Fox et al.
-///   target  the paper does not say which point: one on the global path some way ahead.
+/// Deviations from [Liu21] and interpretations:
+///
+///   eq. 3   the upper bounds are printed "v_c - a_vmax dt", "omega_c - a_omegamax dt"; here with plus.
+///   eq. 4   omega <= sqrt(2 dis a_omegamin) takes a distance in meters for an angle, as in [Fox97]; used as printed,
+///           for |omega| and |v|.
+///   eq. 5   sigma is not explained; in [Fox97] it smooths over neighbors. Here it is the identity, and each term is
+///           divided by its sum, the normalization that the text requires. "dist" of eq. 5 is "dis" of the text: the
+///           minimum distance of the trajectory to obstacles, here from the robot's outline.
+///   eq. 7   (v, omega) / (v_max, omega_max) is not a scalar; here v / v_max, as in [Fox97].
+///   target  the target point is not specified; here a point on the global path, `target_ahead_m` ahead.
 class PaperDwa final : public LocalPlanner {
  public:
   /// Throws InputError if a setting breaks its rule.

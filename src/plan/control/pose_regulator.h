@@ -23,10 +23,11 @@ struct PoseRegulatorSettings {
   }
 };
 
-/// The last half metre: walks the body, sideways too, straight to its goal and turns it there.
+/// Controls the last half meter of a robot that can move sideways: straight to the goal position, turning to the goal
+/// heading meanwhile.
 VelocityCommand regulate_pose(const PoseRegulatorSettings& settings, const Pose2& T_map_body, const NavigationGoal& goal);
 
-/// Whether the pose is as exact as the goal asks.
+/// Whether the pose is within the tolerances of the goal.
 bool is_reached(const Pose2& T_map_body, const NavigationGoal& goal);
 
 }  // namespace patrol::plan

@@ -4,10 +4,10 @@
 
 namespace patrol::plan {
 
-/// Clears the obstacles around the robot that the next messages mark again.
+/// Clears the obstacles around the robot; later messages mark those that are still observed.
 void clear_around(Costmap& costmap, const Pose2& T_map_body);
 
-/// Recovery that clears the costmap around the robot and does nothing else.
+/// Recovery that only clears the costmap around the robot.
 class ClearCostmap : public RecoveryBehavior {
  public:
   const char* sentence() const override { return "Recovery: the robot forgets what it saw about it."; }

@@ -5,7 +5,7 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kMinPassable_m = 0.02;  // clearance of a turn in place
+constexpr double kMinPassable_m = 0.02;  // clearance of a safe motion; below, the motion must not reduce it
 
 }  // namespace
 

@@ -5,7 +5,8 @@
 
 namespace patrol::plan {
 
-/// Whether the robot can move at a velocity for a time without touching an obstacle of the costmap, or at least without coming nearer to one.
+/// Whether the robot can move at a velocity for a time without collision in the costmap, or at least without reducing
+/// the clearance.
 bool is_motion_safe(const Costmap& costmap, const Pose2& T_map_body, const VelocityCommand& command, double time_s);
 
 }  // namespace patrol::plan

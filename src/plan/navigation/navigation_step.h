@@ -9,16 +9,17 @@
 
 namespace patrol::plan {
 
-/// kBlocked: no path to follow, or no room to follow it; kDriving also while the first route to a goal is being searched.
+/// Status of a navigation. kBlocked: no path, or no room to follow it. kDriving includes the time of the first route
+/// search.
 enum class NavigationStatus { kIdle, kDriving, kArrived, kBlocked, kRecovering, kFailed };
 
 /// Reason for which the robot makes no progress.
 enum class NavigationTrouble { kNone, kStartBlocked, kGoalBlocked, kNoRoute, kNoneFound, kPathBlocked, kStuck };
 
-/// Trouble as one sentence; empty for none.
+/// Description of a trouble as one sentence; empty for kNone.
 const char* sentence_of(NavigationTrouble trouble);
 
-/// Trouble of a route search; none if it has found a route.
+/// Trouble that corresponds to the status of a route search; kNone if it has found a route.
 NavigationTrouble trouble_of(PlanStatus status);
 
 /// Output of the navigator in one control period.
@@ -26,11 +27,11 @@ struct NavigationStep {
   VelocityCommand command;
   NavigationStatus status = NavigationStatus::kIdle;
   NavigationTrouble trouble = NavigationTrouble::kNone;
-  std::string text;         ///< one sentence, in the step in which the trouble begins or the goal is given up; else empty
-  std::string recovery;     ///< one sentence, in the step in which a recovery begins; else empty
+  std::string text;         ///< one sentence in the step in which the trouble begins or the goal is aborted; else empty
+  std::string recovery;     ///< one sentence in the step in which a recovery begins; else empty
   bool replanned = false;
   bool is_detour = false;   ///< replanned because of an obstacle on the path
-  std::vector<Pose2> path;  ///< in map; filled when replanned
+  std::vector<Pose2> path;  ///< path in map; filled if replanned
 };
 
 }  // namespace patrol::plan

@@ -6,10 +6,10 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kPathStep_m = 0.25;    // between poses of the published path
-constexpr double kLookAhead_s = 0.5;    // for which a command of the approach must be safe
+constexpr double kPathStep_m = 0.25;    // spacing of the poses of the published path
+constexpr double kLookAhead_s = 0.5;    // time for which a command of the approach must be safe
 
-/// Height of the body's origin above the ground. Robots on legs have no sensors that need it.
+/// Height of the body's origin above the ground; 0 for legged robots, which have no sensors that need it.
 double body_height_m(const RobotDescription& robot) { return robot.tracks ? robot.tracks->body_height_m : 0.0; }
 
 bool stands_still(const VelocityCommand& command) {
@@ -96,7 +96,7 @@ NavigationStatus Navigator::act(Time now, const Pose2& T_map_body, NavigationSte
   return navigate(now, T_map_body, step);
 }
 
-/// Ends in kArrived at the goal, or in kFailed when the goal is given up.
+/// Enters kArrived at the goal, or kFailed when the goal is aborted.
 void Navigator::check_end(Time now, const Pose2& T_map_body) {
   if (state_ == State::kArrived) return;
   if (is_at_goal(T_map_body)) {
@@ -108,7 +108,7 @@ void Navigator::check_end(Time now, const Pose2& T_map_body) {
   }
 }
 
-/// A differential approach, once begun, decides itself when it is completed: it aims at less than the tolerances.
+/// An active differential approach determines its own completion: it aims at less than the tolerances.
 bool Navigator::is_at_goal(const Pose2& T_map_body) const {
   return state_ == State::kApproaching ? approach_.is_done() : is_reached(T_map_body, *goal_);
 }
@@ -134,7 +134,7 @@ NavigationStatus Navigator::navigate(Time now, const Pose2& T_map_body, Navigati
   return stand_blocked(now, T_map_body, step.command);
 }
 
-/// Begins to search a route when there is none, or none that will do for long.
+/// Begins a route search if there is no path, or the path is outdated, blocked, or too far from the robot.
 void Navigator::search_if_needed(Time now, const Pose2& T_map_body) {
   bool is_blocked = false;
   if (follower_.has_path()) {
@@ -182,7 +182,7 @@ NavigationStatus Navigator::drive(Time now, const Pose2& T_map_body, VelocityCom
   return NavigationStatus::kDriving;
 }
 
-/// A differential robot approaches the goal from the end of its path on, and may back off from it meanwhile.
+/// Activates the differential approach at the end of the path; it stays active when the robot backs off from the goal.
 void Navigator::choose_approach(double goal_distance_m) {
   const bool was_approaching = state_ == State::kApproaching;
   if (!was_approaching) approach_.reset();
@@ -192,7 +192,7 @@ void Navigator::choose_approach(double goal_distance_m) {
   state_ = is_approaching ? State::kApproaching : State::kFollowing;
 }
 
-/// The last meter of a differential robot. Where there is no room for it, it tries another way in, then recovers.
+/// Drives the last meter of a differential robot. Without room, it tries the other way in, then begins a recovery.
 NavigationStatus Navigator::approach(Time now, const Pose2& T_map_body, VelocityCommand& command) {
   note_progress(T_map_body);
   command = approach_.step(T_map_body, *goal_);
@@ -204,14 +204,14 @@ NavigationStatus Navigator::approach(Time now, const Pose2& T_map_body, Velocity
   return NavigationStatus::kDriving;
 }
 
-/// Stands until there is a first route.
+/// Stops until there is a first route.
 NavigationStatus Navigator::wait_for_route(Time now) {
   blocked_since_.reset();
   progress_.restart_time(now);
   return NavigationStatus::kDriving;
 }
 
-/// Stands; begins a recovery when that has lasted.
+/// Stops; begins a recovery after `patience_s`.
 NavigationStatus Navigator::stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command) {
   command = {};
   if (!blocked_since_) blocked_since_ = now;
@@ -230,7 +230,7 @@ NavigationStatus Navigator::begin_recovery(Time now, const Pose2& T_map_body, Ve
   return NavigationStatus::kRecovering;
 }
 
-/// After a recovery a new path is searched.
+/// Runs the recovery; searches a new path when it is completed.
 NavigationStatus Navigator::continue_recovery(Time now, const Pose2& T_map_body, VelocityCommand& command) {
   if (const std::optional<VelocityCommand> recovery = recoveries_.step(now, T_map_body, costmap_)) {
     command = *recovery;

@@ -22,32 +22,34 @@
 
 namespace patrol::plan {
 
-/// Navigates the robot to a goal pose: layered costmap, global planner, local planner, and a controller of its own for the last meter.
-/// When blocked it waits, runs recovery behaviors and replans; reports failure when no route exists.
+/// Navigates the robot to a goal pose: layered costmap, global planner, local planner, and a separate controller for
+/// the last meter. When blocked it waits, runs recovery behaviors and replans; reports failure when no route exists.
 class Navigator {
  public:
-  /// `seed`: of the global planners that draw. Throws InputError if a setting breaks its rule or the robot has no footprint.
+  /// `seed`: random seed of the stochastic global planners. Throws InputError if a setting breaks its rule or the robot
+  /// has no footprint.
   Navigator(const NavigatorSettings& settings, const RobotDescription& robot, std::vector<Polyline> keep_out_lines_in_map, std::uint64_t seed = 0);
 
   void set_map(const OccupancyGrid& map);
   void add_scan(const LevelScan& scan, const Pose2& T_map_body) { costmap_.add_scan(scan, T_map_body); }
-  /// `T_level_body`: the body's tilt. Throw InputError if the robot has no such camera or transducer.
+  /// Adds a depth image; `T_level_body` is the body's tilt. Throws InputError if the robot has no such camera.
   void add_depth(const DepthImage& image, const Pose3& T_level_body, const Pose2& T_map_body);
+  /// Adds an ultrasonic range. Throws InputError if the robot has no such transducer.
   void add_range(const UltrasonicRange& ping, const Pose3& T_level_body, const Pose2& T_map_body);
-  /// The same goal again changes nothing; none stops the robot.
+  /// Sets the goal; an unchanged goal has no effect. None stops the robot.
   void set_goal(const std::optional<NavigationGoal>& goal);
 
-  /// Once a control period.
+  /// Command and status of one control period.
   NavigationStep step(Time now, const Pose2& T_map_body);
 
-  /// Whether the robot can move at a velocity for half a second without touching an obstacle of the costmap.
+  /// Whether the robot can move at a velocity for half a second without collision in the costmap.
   bool is_free(const Pose2& T_map_body, const VelocityCommand& command) const { return is_motion_safe(costmap_, T_map_body, command, 0.5); }
 
   const Costmap& costmap() const { return costmap_; }
   const PlannedPath& path() const { return follower_.path(); }
 
  private:
-  /// kFollowing: toward the goal along a path, or waiting for one; kApproaching: the differential approach drives.
+  /// kFollowing: driving along a path, or waiting for one. kApproaching: the differential approach is active.
   enum class State { kIdle, kFollowing, kApproaching, kRecovering, kArrived, kFailed };
 
   bool is_at_goal(const Pose2& T_map_body) const;
@@ -55,7 +57,7 @@ class Navigator {
   void check_end(Time now, const Pose2& T_map_body);
   NavigationStatus act(Time now, const Pose2& T_map_body, NavigationStep& step);
 
-  // kFollowing and kApproaching.
+  // Actions in kFollowing and kApproaching.
   NavigationStatus navigate(Time now, const Pose2& T_map_body, NavigationStep& step);
   void search_if_needed(Time now, const Pose2& T_map_body);
   void take_route(Time now, const Pose2& T_map_body, NavigationStep& step);
@@ -66,7 +68,7 @@ class Navigator {
   NavigationStatus stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command);
   void note_progress(const Pose2& T_map_body);
 
-  // kRecovering.
+  // Actions in kRecovering.
   NavigationStatus begin_recovery(Time now, const Pose2& T_map_body, VelocityCommand& command);
   NavigationStatus continue_recovery(Time now, const Pose2& T_map_body, VelocityCommand& command);
 
@@ -83,11 +85,11 @@ class Navigator {
 
   State state_ = State::kIdle;
   std::optional<NavigationGoal> goal_;
-  VelocityCommand last_;               ///< the command before
+  VelocityCommand last_;               ///< command of the previous control period
   std::optional<Time> blocked_since_;
   std::optional<Time> no_route_since_;
   NavigationTrouble trouble_ = NavigationTrouble::kNone;
-  std::string text_, recovery_text_;   ///< of the next step
+  std::string text_, recovery_text_;   ///< sentences for the next step
 };
 
 }  // namespace patrol::plan

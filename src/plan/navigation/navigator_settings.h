@@ -21,40 +21,40 @@ namespace patrol::plan {
 
 struct NavigatorSettings;
 
-/// The local planners; `make` takes the settings of its own section.
+/// Table of local planners; `make` takes the settings of its own section.
 std::span<const NamedFactory<std::unique_ptr<LocalPlanner>(const NavigatorSettings&)>> local_planners();
 
 struct NavigatorSettings {
-  std::string drive = "omnidirectional";  ///< or "differential": a robot that cannot step sideways
-  std::string global = "theta_star";      ///< planner of the way to the goal (plan/routes/planners.h)
-  std::string local_planner = "dwa";      ///< or "paper_dwa": paper 004's, as printed
-  int footprint_rows = 1;             ///< of discs that stand for the outline (plan/perception/footprint.h)
-  double steps_per_s = 1e7;               ///< cells that the robot's computer looks at in a second: a route comes so much later
-  double replan_period_s = 4.0;       ///< a new path after this time, for what the map has learnt
-  double check_ahead_m = 6.0;         ///< an obstacle on the path nearer than this calls for a new one at once
-  double stray_m = 0.8;               ///< so does being farther than this from it
-  double approach_m = 0.4;            ///< from here on the goal is approached by itself, whatever the path
-  double approach_decel_mps2 = 0.3;   ///< speed on the way falls so that the robot can stop at the goal
-  double turn_first_rad = 1.0;        ///< the path leads off by more than this: turn in place first
+  std::string drive = "omnidirectional";  ///< or "differential": a robot that cannot move sideways
+  std::string global = "theta_star";      ///< global planner (plan/routes/planners.h)
+  std::string local_planner = "dwa";      ///< or "paper_dwa": as printed in [Liu21]
+  int footprint_rows = 1;             ///< rows of discs that cover the outline (plan/perception/footprint.h)
+  double steps_per_s = 1e7;               ///< cells expanded per second by the robot's computer; delays each route
+  double replan_period_s = 4.0;       ///< period of replanning after map changes
+  double check_ahead_m = 6.0;         ///< range of path checks; an obstacle on the path within it triggers replanning
+  double stray_m = 0.8;               ///< distance from the path that triggers replanning
+  double approach_m = 0.4;            ///< distance from the goal at which the goal controller takes over
+  double approach_decel_mps2 = 0.3;   ///< deceleration by which the speed falls toward the goal
+  double turn_first_rad = 1.0;        ///< path direction relative to the heading from which the robot turns in place
   double turn_rate_radps = 0.7;
-  double patience_s = 6.0;            ///< standing blocked for so long calls for a recovery
-  double stuck_s = 15.0;              ///< so does moving for so long without getting half a metre away
-  double detour_after_s = 0.0;        ///< what has newly come into the way is waited for so long: people walk on
-  double newcomer_distance_m = 0.0;   ///< something the map does not know, nearer ahead than this, calls for caution; 0: never
-  double newcomer_speed_mps = 0.4;    ///< no faster then: it may be somebody who walks
-  double no_route_s = 600.0;          ///< after so long without any route the goal is given up
-  std::vector<std::string> recoveries = {"back_up"};  ///< in turn: wait, clear, back_up, look_around; then a new path
-  double back_up_s = 2.0;             ///< backwards, if there is room
+  double patience_s = 6.0;            ///< time blocked before a recovery begins
+  double stuck_s = 15.0;              ///< time within half a meter before a recovery begins
+  double detour_after_s = 0.0;        ///< wait before replanning around a new obstacle, which may be a pedestrian
+  double newcomer_distance_m = 0.0;   ///< distance ahead within which an unmapped obstacle limits the speed; 0: never
+  double newcomer_speed_mps = 0.4;    ///< speed limit before an unmapped obstacle, which may be a pedestrian
+  double no_route_s = 600.0;          ///< time without any route after which the goal is aborted
+  std::vector<std::string> recoveries = {"back_up"};  ///< in order: wait, clear, back_up, look_around
+  double back_up_s = 2.0;             ///< duration of backing up, if there is room
   double back_up_speed_mps = 0.15;
-  int max_recoveries = 8;             ///< without getting nearer; then the goal is given up
+  int max_recoveries = 8;             ///< recoveries without progress after which the goal is aborted
   CostmapSettings costmap;
   DepthPointsSettings depth;
   SonarConeSettings sonar;
   GlobalPlannerSettings routes;
   DwaSettings local;
   PaperDwaSettings paper_local;
-  PoseRegulatorSettings approach;                      ///< of an omnidirectional robot
-  DifferentialApproachSettings differential_approach;  ///< of a differential one
+  PoseRegulatorSettings approach;                      ///< goal controller of an omnidirectional robot
+  DifferentialApproachSettings differential_approach;  ///< goal controller of a differential robot
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -10,7 +10,7 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kMinSpeed_mps = 0.15;  // toward the end of the path
+constexpr double kMinSpeed_mps = 0.15;  // minimum speed toward the end of the path
 
 Twist3 twist_of(const VelocityCommand& command) {
   return {.linear = {command.vx_mps, command.vy_mps, 0.0}, .angular = {0.0, 0.0, command.yaw_rate_radps}};
@@ -81,7 +81,7 @@ bool PathFollower::is_newcomer_ahead(const Costmap& costmap, const Pose2& T_map_
   return costmap.live_since(T_map_body * Eigen::Vector2d(reach_m, 0.0), reach_m).has_value();
 }
 
-/// A turn in place if the path leads off so far to the side that the robot should turn before it drives, and has room for it.
+/// Command to turn in place if the path leads off by more than `turn_first_rad` and there is room for it.
 std::optional<VelocityCommand> PathFollower::turn_in_place(const Costmap& costmap, const Pose2& T_map_body,
                                                            const VelocityCommand& last) const {
   const Eigen::Vector2d ahead = path_.point_at(along_m_ + 0.5) - T_map_body.position();

@@ -10,8 +10,8 @@
 
 namespace patrol::plan {
 
-/// Follows a path with the local planner: turns in place where the path leads off to the side, slows down toward its end and before
-/// obstacles that the map does not have.
+/// Follows a path with the local planner: turns in place where the path leads off to the side, slows down toward its
+/// end and before unmapped obstacles.
 class PathFollower {
  public:
   explicit PathFollower(const NavigatorSettings& settings);
@@ -23,14 +23,14 @@ class PathFollower {
   double along_m() const { return along_m_; }
   double left_m() const { return path_.length_m() - along_m_; }
 
-  /// Moves on along the path to the point next to the body, and returns the distance from it.
+  /// Advances along the path to the point nearest to the body; returns the distance from it.
   double advance(const Pose2& T_map_body);
   /// Whether an obstacle lies on the path within `check_ahead_m`.
   bool is_blocked(const Costmap& costmap) const;
-  /// Whether all obstacles there have been observed for less than `detour_after_s`.
+  /// Whether all obstacles on that part of the path have been observed for less than `detour_after_s`.
   bool is_blocked_by_newcomers_only(const Costmap& costmap, Time now) const;
 
-  /// Command of a control period; `last` is the command before, in place of the noisy measured twist.
+  /// Command of a control period. `last` is the previous command; it replaces the noisy measured twist.
   VelocityCommand command(const Costmap& costmap, const Pose2& T_map_body, const VelocityCommand& last) const;
 
  private:

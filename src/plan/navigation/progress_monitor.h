@@ -8,20 +8,20 @@
 
 namespace patrol::plan {
 
-/// Observes whether the robot makes progress: leaves the place where it is, and comes nearer to the goal.
+/// Monitors the progress of the robot: whether it leaves its position and approaches the goal.
 class ProgressMonitor {
  public:
   explicit ProgressMonitor(double stuck_s) : stuck_s_(stuck_s) {}
 
-  /// For another goal.
+  /// Resets the monitor for another goal.
   void reset();
-  /// Restarts the time at the present place: after a recovery, or while the robot waits for a route.
+  /// Restarts the stuck timer at the current position: after a recovery, or while the robot waits for a route.
   void forget_place() { place_.reset(); }
   void restart_time(Time now);
 
-  /// Whether the robot has been about the same place for `stuck_s`.
+  /// Whether the robot has stayed near one position for `stuck_s`.
   bool is_stuck(Time now, const Pose2& T_map_body);
-  /// Whether the way left is shorter than ever to this goal, by enough to count as progress.
+  /// Whether the remaining path is shorter than the previous minimum for this goal, by enough to count as progress.
   bool has_come_nearer(double left_m);
 
  private:

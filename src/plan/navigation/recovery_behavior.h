@@ -7,12 +7,13 @@
 
 namespace patrol::plan {
 
-/// Behavior of a robot that makes no progress, as in Nav2. One object serves all recoveries of its kind.
+/// Interface of a recovery behavior, as in Nav2, for a robot without progress. An object is reused for all recoveries
+/// of its kind.
 class RecoveryBehavior {
  public:
   virtual ~RecoveryBehavior() = default;
 
-  /// One sentence for the event log.
+  /// Sentence for the event log.
   virtual const char* sentence() const = 0;
   virtual void begin(Time now, const Pose2& T_map_body, Costmap& costmap) = 0;
   /// Command of a control period; none when the behavior is completed.

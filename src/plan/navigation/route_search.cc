@@ -5,8 +5,8 @@
 namespace patrol::plan {
 namespace {
 
-constexpr Time kAtOnce = std::chrono::milliseconds(50);     // a search this short delays nothing
-constexpr Time kMinPeriod = std::chrono::milliseconds(500);  // searches without a route are the most expensive: not in every step
+constexpr Time kAtOnce = std::chrono::milliseconds(50);     // a search at most this long causes no delay
+constexpr Time kMinPeriod = std::chrono::milliseconds(500);  // searches without a route are the most expensive
 constexpr double kMargin_m = 5.0;                            // of the costmap around start and goal
 
 }  // namespace

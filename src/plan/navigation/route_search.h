@@ -10,7 +10,7 @@
 
 namespace patrol::plan {
 
-/// Searches of the global planner, each with the time that the robot's computer takes for it.
+/// Searches of the global planner, with a model of their computation time on the robot.
 class RouteSearch {
  public:
   struct Result {
@@ -20,19 +20,19 @@ class RouteSearch {
 
   RouteSearch(const NavigatorSettings& settings, std::uint64_t seed);
 
-  /// For another goal: the next search may begin at once.
+  /// Resets the search for another goal: the next search may begin at once.
   void reset();
-  /// Drops the search that is running.
+  /// Cancels the running search.
   void cancel() { running_.reset(); }
   bool is_running() const { return running_.has_value(); }
   void note_new_map() { map_is_new_ = true; }
-  /// Whether the map has changed since the last search, and that was `replan_period_s` ago.
+  /// Whether the map has changed and the last search began `replan_period_s` ago.
   bool is_outdated(Time now) const;
-  /// Whether no search is running, and the last one began long enough ago.
+  /// Whether no search is running and the minimum period since the last one has passed.
   bool may_begin(Time now) const;
-  /// Begins a search; the costmap grows to hold start and goal.
+  /// Begins a search; the costmap grows to contain start and goal.
   void begin(Time now, Costmap& costmap, const Eigen::Vector2d& p_map_start, const Eigen::Vector2d& p_map_goal, bool is_detour);
-  /// Result of the running search, once the robot's computer has it.
+  /// Result of the running search when its computation time has passed; else none.
   std::optional<Result> take(Time now);
 
  private:

@@ -8,7 +8,7 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kTimeoutFactor = 2.0;  // tracks that slip turn more slowly than commanded
+constexpr double kTimeoutFactor = 2.0;  // slipping tracks turn more slowly than commanded
 
 }  // namespace
 

@@ -4,7 +4,8 @@
 
 namespace patrol::plan {
 
-/// Recovery that clears the costmap around the robot and turns once in place, so that all sensors look around.
+/// Recovery that clears the costmap around the robot and turns once in place, so that all sensors observe the
+/// surroundings.
 class Spin : public RecoveryBehavior {
  public:
   explicit Spin(double rate_radps) : rate_radps_(rate_radps) {}

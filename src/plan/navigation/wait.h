@@ -4,7 +4,7 @@
 
 namespace patrol::plan {
 
-/// Recovery that stands still for a time: people walk on.
+/// Recovery that stops for a time: pedestrians move on.
 class Wait : public RecoveryBehavior {
  public:
   explicit Wait(double duration_s) : duration_s_(duration_s) {}

@@ -7,7 +7,8 @@
 
 namespace patrol::plan {
 
-/// Bilinear interpolation between cell centers; `value_at` takes a cell inside the grid. Outside, the border's values continue.
+/// Interpolates bilinearly between cell centers; `value_at` takes a cell inside the grid. Outside the grid, the values
+/// of the border continue.
 template <typename ValueAt>
 double interpolate_bilinear(const GridGeometry& grid, const Eigen::Vector2d& p, const ValueAt& value_at) {
   const double col = (p.x() - grid.origin_m.x()) / grid.resolution_m - 0.5;

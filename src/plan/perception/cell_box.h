@@ -29,7 +29,7 @@ struct CellBox {
     extend(box.max);
   }
 
-  /// The box with `cells` more on each side, clipped to a grid.
+  /// Box with `cells` more on each side, clipped to a grid.
   CellBox grown(int cells, const GridGeometry& within) const {
     return {.min = {std::max(0, min.col - cells), std::max(0, min.row - cells)},
             .max = {std::min(within.width - 1, max.col + cells), std::min(within.height - 1, max.row + cells)}};

@@ -4,8 +4,8 @@
 
 namespace patrol::plan {
 
-/// Grid of a costmap, whose cells lie on multiples of the resolution. Lattice cells are counted from the map's origin and stay the same
-/// when the grid grows; grid cells are counted from the grid's corner.
+/// Grid of a costmap, whose cells lie on multiples of the resolution. Lattice cells are counted from the map's origin
+/// and are unchanged when the grid grows; grid cells are counted from the grid's corner.
 struct CellLattice {
   GridGeometry geometry{.width = 0, .height = 0};
   Cell origin;  ///< lattice cell of the grid cell (0, 0)

@@ -19,7 +19,7 @@
 
 namespace patrol::plan {
 
-/// Layered costmap in `map`, as in Nav2: each layer has its own file, this class combines them.
+/// Layered costmap in `map`, as in Nav2. Each layer has its own file, this class combines them.
 ///
 ///   StaticMapLayer    occupancy grid of SLAM or of a file;
 ///   ScanLayer         lidar hits that the map does not have (yet);
@@ -27,8 +27,8 @@ namespace patrol::plan {
 ///   InflationLayer    distances to the obstacles of these three, and their costs;
 ///   KeepOutLayer      surveyed lines that the lidar cannot see.
 ///
-/// A cell's cost is the largest of its layers. A change updates only its own surroundings. Cells lie on multiples of the
-/// resolution, so that the costmap can grow without moving.
+/// The cost of a cell is the maximum over its layers. A change updates only its neighborhood. Cells lie on multiples of
+/// the resolution, so that the costmap can grow without moving.
 class Costmap {
  public:
   Costmap(const CostmapSettings& settings, const Footprint& footprint, std::vector<Polyline> keep_out_lines_in_map);
@@ -36,22 +36,23 @@ class Costmap {
   /// Throws InputError if the map's cells are larger than the costmap's.
   void set_map(const OccupancyGrid& map);
   void add_scan(const LevelScan& scan, const Pose2& T_map_body);
-  /// Add the points of a depth image and of a ping, in level at their stamp.
+  /// Adds the points of a depth image, in level at its stamp.
   void add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body);
+  /// Adds the cone of a ping, in level at its stamp.
   void add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body);
-  /// Clears the obstacles of the scan layer within a radius, and the evidence of sonar; the next messages mark again what is there.
+  /// Clears the obstacles of the scan layer within a radius, and the evidence of sonar; later messages mark them again.
   void forget_live(const Eigen::Vector2d& p_map, double radius_m);
-  /// Grows, if needed, so that `margin_m` around the point lies inside.
+  /// Grows the grid, if needed, so that the square of half-width `margin_m` around the point lies inside.
   void include(const Eigen::Vector2d& p_map, double margin_m);
 
   const CostmapSettings& settings() const { return settings_; }
   const Footprint& footprint() const { return footprint_; }
   const GridGeometry& geometry() const { return cost_.geometry(); }
   const Grid<Cost>& cost() const { return cost_; }
-  /// Cost at a point; outside the grid, that of unknown cells.
+  /// Cost at a point; outside the grid, the cost of unknown cells.
   Cost cost_at(const Eigen::Vector2d& p_map) const;
   bool is_live_obstacle(Cell cell) const { return scan_.contains_obstacle(cell); }
-  /// Time since which the oldest obstacle of the scan layer within a radius has been known; none without obstacles.
+  /// Time of the first observation of the oldest scan obstacle within a radius; none without obstacles.
   std::optional<Time> live_since(const Eigen::Vector2d& p_map, double radius_m) const { return scan_.first_seen(p_map, radius_m); }
   std::size_t num_live_obstacles() const { return scan_.num_obstacles(); }
   bool is_low_obstacle(Cell cell) const { return low_.contains_obstacle(cell); }
@@ -61,12 +62,12 @@ class Costmap {
   double obstacle_distance_m(const Eigen::Vector2d& p_map) const { return inflation_.distance_m(p_map); }
   /// Distance to the nearest keep-out line, interpolated between cells; at most margin + `max_distance_m`.
   double keep_out_distance_m(const Eigen::Vector2d& p_map) const { return keep_out_.distance_m(p_map); }
-  /// Free room around the robot's outline; negative if an obstacle or a keep-out line lies too near.
+  /// Clearance around the robot's outline, from obstacles and keep-out lines; negative in collision.
   double clearance_m(const Pose2& T_map_body) const;
   double max_distance_m() const { return inflation_.max_distance_m(); }
 
  private:
-  /// Takes all layers to a new lattice, from the lattice cell `min` up to, but without, `end`.
+  /// Moves all layers to a new lattice, from the lattice cell `min` up to, but without, `end`.
   void resize(Cell min, Cell end);
   void refresh(const CellBox& changed);
 

@@ -7,18 +7,18 @@ namespace patrol::plan {
 
 struct CostmapSettings {
   double resolution_m = 0.1;
-  double inflation_radius_m = 1.0;      ///< obstacles nearer than this to the body's centre cost something
-  double inflation_decay_m = 0.25;      ///< over this distance the cost falls to 1/e
-  double safety_margin_m = 0.05;        ///< kept from the robot's outline
-  double route_margin_m = 0.0;          ///< kept by routes beyond that: the discs stick out, and a robot must be steered
-  double unknown_cost = 0.15;           ///< of a cell nobody has seen, as a fraction of the highest passable cost
-  bool crosses_unknown = true;          ///< false: what the map does not know is no way; for a robot whose map is complete
-  int occupied_percent = 65;            ///< map cells from here on are obstacles
-  double obstacle_range_m = 8.0;        ///< live hits nearer than this are obstacles before the map knows them
-  double obstacle_memory_s = 8.0;       ///< how long a live obstacle is believed without being seen again
-  int map_slack_cells = 0;              ///< a hit this near to an obstacle of the map is that: noise makes no wall thicker
-  double keep_out_margin_m = 0.2;       ///< between a keep-out line and the axis of the body
-  double keep_out_inflation_m = 0.25;   ///< beyond the margin, where nearness to a line costs something
+  double inflation_radius_m = 1.0;      ///< cells nearer to an obstacle than this have a cost; from the body's center
+  double inflation_decay_m = 0.25;      ///< decay length of the inflation cost (to 1/e)
+  double safety_margin_m = 0.05;        ///< minimum distance between obstacles and the robot's outline
+  double route_margin_m = 0.0;          ///< additional margin of global paths: for disc overhang and control error
+  double unknown_cost = 0.15;           ///< cost of an unobserved cell, as a fraction of the highest passable cost
+  bool crosses_unknown = true;          ///< false: unknown cells are impassable, for a robot with a complete map
+  int occupied_percent = 65;            ///< minimum occupancy of an obstacle cell of the map, percent
+  double obstacle_range_m = 8.0;        ///< maximum range of lidar hits that become obstacles of the scan layer
+  double obstacle_memory_s = 8.0;       ///< persistence of an obstacle of the scan layer that is not observed again
+  int map_slack_cells = 0;              ///< hits at most this far from a map obstacle belong to it (noise)
+  double keep_out_margin_m = 0.2;       ///< minimum distance between a keep-out line and the body's origin
+  double keep_out_inflation_m = 0.25;   ///< range beyond the margin within which a keep-out line has a cost
   LowObstaclesSettings low = {};
 
   template <typename Self, typename Visitor>

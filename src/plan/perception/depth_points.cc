@@ -10,14 +10,15 @@ namespace {
 
 constexpr float kNoDepth = std::numeric_limits<float>::quiet_NaN();
 
-/// A pixel's point: height in level, and place in the plane.
+/// Point of a pixel, in level.
 struct Point {
   float x = 0.0F, y = 0.0F;
-  float z = kNoDepth;  ///< NaN where nothing was measured
+  float z = kNoDepth;  ///< NaN without a measurement
   bool is_valid() const { return !std::isnan(z); }
 };
 
-/// Median of the values that are numbers, NaN if fewer than two are. Of an even number the lower one: nearer, or lower.
+/// Median of the values that are not NaN; NaN if fewer than two. Of an even number of values the lower middle one,
+/// which is the nearer or lower point.
 template <std::size_t N>
 float median(std::array<float, N> values) {
   const auto end = std::partition(values.begin(), values.end(), [](float value) { return !std::isnan(value); });
@@ -28,7 +29,7 @@ float median(std::array<float, N> values) {
   return *middle;
 }
 
-/// [row][column], median filtered along the row.
+/// Points of a depth image, [row][column], median filtered along the row.
 class PointImage {
  public:
   PointImage(const DepthImage& image, const Pose3& T_level_camera, double max_range_m) : width_(image.width) {
@@ -54,7 +55,7 @@ class PointImage {
 
   const Point& at(int row, int col) const { return points_[index(row, col)]; }
 
-  /// The median of five columns of a row.
+  /// Median over five columns of a row.
   Point around(int row, int col) const {
     std::array<float, 5> x{}, y{}, z{};
     for (int i = 0; i < 5; ++i) {
@@ -101,7 +102,7 @@ DepthPoints find_depth_points(const DepthPointsSettings& settings, const DepthIm
       bool rises = false;
       for (int below = row + 1; below <= last && !rises; ++below) {
         const Point& q = ground[index(below, col)];
-        rises = p.z - q.z > min_rise + max_slope * std::hypot(p.x - q.x, p.y - q.y);  // false if q is none
+        rises = p.z - q.z > min_rise + max_slope * std::hypot(p.x - q.x, p.y - q.y);  // false if q is NaN
       }
       const Eigen::Vector2d place(p.x, p.y);
       const double range_m = (place - p_level_camera).norm();

@@ -11,12 +11,12 @@
 namespace patrol::plan {
 
 struct DepthPointsSettings {
-  double max_range_m = 1.6;       ///< beyond, a row of pixels covers too much ground to judge by
-  double clear_range_m = 1.3;     ///< as far ground that is seen says that nothing stands there
-  double min_rise_m = 0.04;       ///< a step up that is no rubble
-  double max_slope = 0.32;        ///< rise over run of what can be driven on: 17.7 degrees
-  double max_height_m = 0.8;      ///< above the plane under the robot: higher things are left to the lidar
-  int rows_below = 8;             ///< of the image, in which the ground before a thing is looked for
+  double max_range_m = 1.6;       ///< maximum range of obstacles: beyond, an image row covers too much ground
+  double clear_range_m = 1.3;     ///< maximum range at which observed ground clears a cell
+  double min_rise_m = 0.04;       ///< minimum height step of an obstacle; rubble is lower
+  double max_slope = 0.32;        ///< maximum drivable slope, rise over run (0.32: 17.7 degrees)
+  double max_height_m = 0.8;      ///< maximum height above the ground plane; the lidar sees higher objects
+  int rows_below = 8;             ///< rows below a pixel in which its reference ground is searched
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -29,23 +29,25 @@ struct DepthPointsSettings {
   }
 };
 
-/// What a depth image says of the ground, in level.
+/// Obstacles and ground in a depth image, in level.
 struct DepthPoints {
-  std::vector<Eigen::Vector2d> obstacles_m;  ///< stand on the ground
-  std::vector<Eigen::Vector2d> ground_m;     ///< near enough that something there would have been seen
+  std::vector<Eigen::Vector2d> obstacles_m;  ///< points on obstacles
+  std::vector<Eigen::Vector2d> ground_m;     ///< ground points within `clear_range_m`: no obstacle there
 };
 
-/// Tells obstacles from ground by their slope (Vosselman, "Slope based filtering of laser altimetry data", 2000): a point
-/// belongs to an obstacle if it rises above some ground nearby by more than
+/// Segments obstacles from ground by slope [Vosselman00]: a point belongs to an obstacle if it rises above some nearby
+/// ground point by more than
 ///
 ///   min_rise + max_slope * (distance between the two in the plane).
 ///
-/// The ground compared with is what the image shows in the rows below, nearer to the robot. A rule of neighbours needs no
-/// plane: a ramp and its foot stay below the slope, rubble below the rise, on whatever ground the robot stands; only the top of
-/// something long is not told from ground, its front edge always is. Depths are median filtered along their row (three columns), the
-/// ground once more (over five), which takes off two thirds of the noise and everything narrower than two pixels.
+/// The reference ground points are those of the image rows below, nearer to the robot. This neighborhood rule needs no
+/// ground plane: a ramp and its foot stay below the slope, rubble below the rise, on any ground under the robot. The
+/// top of a long object is classified as ground, its front edge as obstacle. Depths are median filtered along their row
+/// over three columns, ground points once more over five. The filters remove two thirds of the noise and everything
+/// narrower than two pixels.
 ///
-/// `T_level_camera`: x is the optical axis; tilt included. `body_height_m`: of level's origin above the ground.
+/// `T_level_camera`: camera pose with x along the optical axis, tilt included. `body_height_m`: height of level's
+/// origin above the ground.
 DepthPoints find_depth_points(const DepthPointsSettings& settings, const DepthImage& image, const Pose3& T_level_camera,
                               double body_height_m);
 

@@ -13,14 +13,14 @@
 namespace patrol::plan {
 namespace {
 
-/// Distance of the origin from the edge's line; negative when it lies outside a counter-clockwise polygon.
+/// Distance of the origin from the line of an edge; negative outside of a counter-clockwise polygon.
 double distance_inside(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   const Eigen::Vector2d edge = to - from;
   return (from.x() * edge.y() - from.y() * edge.x()) / edge.norm();
 }
 
-/// The bounding box cut along its longer side into rows and across it into equal pieces, a disc around each; as few as keep
-/// the excess small.
+/// Divides the bounding box along its longer side into rows and across it into equal pieces, with a disc around each
+/// piece. The number of pieces is the minimum for which the excess is at most `max_excess_m`.
 std::vector<Disc> cover(const Eigen::AlignedBox2d& box, int rows, double max_excess_m) {
   const bool is_long = box.sizes().x() >= box.sizes().y();
   const double length = box.sizes().maxCoeff(), width = box.sizes().minCoeff() / rows;

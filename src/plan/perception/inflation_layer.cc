@@ -11,13 +11,13 @@
 namespace patrol::plan {
 namespace {
 
-/// Cap of the distance transform, cells: all distances that cost something, and all that the robot's outline may ask for.
+/// Cap of the distance transform, cells: covers all distances with a cost, and all clearances of the robot's outline.
 int cap_of(const CostmapSettings& settings, const Footprint& footprint) {
   const double reach_m = std::max(settings.inflation_radius_m, footprint.circumscribed_radius_m() + 0.3);
   return std::clamp(static_cast<int>(std::ceil(reach_m / settings.resolution_m)) + 1, 2, DistanceTransform::kMaxCap_cells);
 }
 
-/// Obstacles within the lethal distance must lie within the cap, or their cells would be free.
+/// Checks that the lethal distance is within the cap; otherwise cells at a lethal distance would be free.
 void check_reach(const CostmapSettings& settings, const Footprint& footprint, double lethal_m) {
   const double reach_m = settings.resolution_m * (cap_of(settings, footprint) - 1);
   if (lethal_m <= reach_m) return;
@@ -31,7 +31,7 @@ InflationLayer::InflationLayer(const CostmapSettings& settings, const Footprint&
   const double lethal_m = footprint.inscribed_radius_m() + settings.safety_margin_m + settings.route_margin_m;
   check_reach(settings, footprint, lethal_m);
   for (int squared = 0; squared <= transform_.beyond(); ++squared) {
-    // Somewhere in its cell an obstacle has its surface; half a cell is the middle guess.
+    // The surface of an obstacle lies somewhere in its cell; half a cell is the mean.
     const double distance = std::max(0.0, settings.resolution_m * (std::sqrt(squared) - 0.5));
     distance_of_.push_back(distance);
     const bool is_felt = squared < transform_.beyond() && distance <= settings.inflation_radius_m;

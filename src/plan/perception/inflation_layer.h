@@ -12,19 +12,20 @@
 
 namespace patrol::plan {
 
-/// Costmap layer that inflates obstacles by their exact distance: lethal where the robot's inscribed circle would touch, then falling
-/// exponentially.
+/// Costmap layer that inflates obstacles by their exact distance: lethal where the robot's inscribed circle would be in
+/// collision, then falling exponentially.
 class InflationLayer {
  public:
   /// Throws InputError if the lethal distance lies beyond the cap of the distance transform.
   InflationLayer(const CostmapSettings& settings, const Footprint& footprint);
 
-  /// Starts without obstacles.
+  /// Resets the layer to a lattice without obstacles.
   void resize(const CellLattice& lattice);
-  /// Updates the distances around cells that have changed; returns the cells whose distance may change. `is_obstacle` takes a cell of the grid.
+  /// Updates the distances around cells that have changed; returns the cells whose distance may change. `is_obstacle`
+  /// takes a cell of the grid.
   template <typename Predicate>
   CellBox update(const CellBox& changed, const Predicate& is_obstacle) {
-    // Distances change up to the cap around what changed, and depend on obstacles up to the cap around those.
+    // Distances change up to the cap around the changed cells, and depend on obstacles up to the cap around those.
     const CellBox window = changed.grown(2 * transform_.cap_cells(), squared_.geometry());
     is_obstacle_.resize(static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height()));
     std::uint8_t* obstacle = is_obstacle_.data();
@@ -43,15 +44,15 @@ class InflationLayer {
   void set_costs(Cell first, int count, Cost* cost) const;
 
  private:
-  /// Distances of the cells of `target`, from the obstacles in `window`.
+  /// Computes the distances of the cells of `target` from the obstacles in `window`.
   void update_distances(const CellBox& window, const CellBox& target);
 
   DistanceTransform transform_;
-  std::vector<double> distance_of_;  ///< [squared cells], m, to the obstacle's surface
+  std::vector<double> distance_of_;  ///< [squared cells], distance to the obstacle's surface, m
   std::vector<Cost> cost_of_;        ///< [squared cells]
   Grid<std::int16_t> squared_;       ///< squared distance to the nearest obstacle, cells
 
-  std::vector<std::uint8_t> is_obstacle_;  ///< in the window of an update
+  std::vector<std::uint8_t> is_obstacle_;  ///< obstacle cells in the window of an update, row by row
   DistanceTransform::SquaredDistances window_squared_;
 };
 

@@ -10,10 +10,11 @@ namespace patrol::plan {
 
 using Polyline = std::vector<Eigen::Vector2d>;
 
-/// Costmap layer of surveyed lines that the lidar cannot see (full-height kerbs): lethal within a margin, then falling exponentially.
+/// Costmap layer of surveyed lines that the lidar cannot see (full-height curbs): lethal within a margin, then falling
+/// exponentially.
 class KeepOutLayer {
  public:
-  /// Distances are exact up to the margin plus `max_distance_m`, at least as far as a line costs something.
+  /// Distances are exact up to the margin plus `max_distance_m`, at least as far as a line has a cost.
   KeepOutLayer(const CostmapSettings& settings, std::vector<Polyline> lines_in_map, double max_distance_m);
 
   void resize(const CellLattice& lattice);

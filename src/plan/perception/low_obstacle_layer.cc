@@ -7,8 +7,8 @@
 namespace patrol::plan {
 namespace {
 
-constexpr int kMoving_cells = 3;     ///< a low obstacle this near to one of the scan may be a person's foot
-constexpr int kExplained_cells = 2;  ///< an echo this near to an obstacle of the scan or the map is an echo of that
+constexpr int kMoving_cells = 3;     ///< a low obstacle this near to one of the scan may be a pedestrian's foot
+constexpr int kExplained_cells = 2;  ///< an echo this near to an obstacle of the scan or the map comes from it
 
 }  // namespace
 
@@ -20,7 +20,7 @@ void LowObstacleLayer::resize(const CellLattice& lattice) {
 
 std::vector<Cell> LowObstacleLayer::lattice_cells(const std::vector<Eigen::Vector2d>& p_level, const Pose2& T_map_body,
                                                   int min_count) const {
-  std::map<std::pair<int, int>, int> counts;  // in an order that does not depend on the points'
+  std::map<std::pair<int, int>, int> counts;  // map: its order does not depend on the order of the points
   for (const Eigen::Vector2d& p : p_level) {
     const Cell cell = lattice_.geometry.cell_at(T_map_body * p);
     if (!lattice_.geometry.contains(cell)) continue;

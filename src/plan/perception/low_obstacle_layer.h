@@ -19,14 +19,16 @@ class LowObstacleLayer {
   explicit LowObstacleLayer(const LowObstaclesSettings& settings) : settings_(settings), low_(settings) {}
 
   void resize(const CellLattice& lattice);
-  /// Adds the points of a depth image, in level at its stamp; returns the cells that change. Obstacles near those of the scan layer may move.
+  /// Adds the points of a depth image, in level at its stamp; returns the cells that change. Obstacles near those of
+  /// the scan layer have the shorter persistence of moving obstacles.
   CellBox add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body, const ScanLayer& scan);
-  /// Adds a ping, in level at its stamp; returns the cells that change. Echoes near obstacles of the other layers are left out.
+  /// Adds a ping, in level at its stamp; returns the cells that change. Echoes near obstacles of the other layers are
+  /// ignored.
   CellBox add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body, const ScanLayer& scan, const StaticMapLayer& map);
   /// Discards the evidence of sonar within a radius; returns the cells that change.
   CellBox clear_sonar(const Eigen::Vector2d& p_map, double radius_m);
 
-  /// Of a cell inside the grid.
+  /// Whether a cell inside the grid is an obstacle.
   bool is_obstacle(Cell cell) const { return is_low_.at(cell) != 0; }
   bool contains_obstacle(Cell cell) const { return is_low_.contains(cell) && is_obstacle(cell); }
   std::size_t num_obstacles() const { return low_.num_obstacles(); }
@@ -38,8 +40,8 @@ class LowObstacleLayer {
 
   LowObstaclesSettings settings_;
   CellLattice lattice_;
-  LowObstacles low_;           ///< on the lattice
-  Grid<std::uint8_t> is_low_;  ///< the obstacles of low_, for quick look-up
+  LowObstacles low_;           ///< evidence on the lattice
+  Grid<std::uint8_t> is_low_;  ///< obstacles of `low_`, for fast look-up
 };
 
 }  // namespace patrol::plan

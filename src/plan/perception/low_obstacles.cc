@@ -5,7 +5,7 @@
 namespace patrol::plan {
 namespace {
 
-/// A count goes up to twice what makes an obstacle, so that one image or ping more or less does not flip it.
+/// Increments a count up to twice the threshold, so that a single image or ping does not toggle the obstacle.
 int raised(int count, int confirmations) { return std::min(count + 1, 2 * confirmations); }
 int lowered(int count) { return std::max(count - 1, 0); }
 
@@ -64,7 +64,7 @@ bool LowObstacles::is_vetoed(const Evidence& evidence, Time now) const {
 
 void LowObstacles::judge(const Key& key, Evidence& evidence) {
   const int sure = settings_.confirmations;
-  // Once believed, the camera's obstacle stays until its count is gone.
+  // Hysteresis: an obstacle of the camera stays until its count is zero.
   const bool by_camera = evidence.camera >= sure || (evidence.is_obstacle && evidence.camera > 0);
   const bool is_obstacle = by_camera || evidence.sonar >= sure;
   if (is_obstacle == evidence.is_obstacle) return;

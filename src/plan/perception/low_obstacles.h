@@ -11,12 +11,12 @@
 namespace patrol::plan {
 
 struct LowObstaclesSettings {
-  double memory_s = 60.0;        ///< how long it is believed out of sight: under the nose, beside a track
-  double moving_memory_s = 3.0;  ///< likewise where the lidar sees something too, a person's legs: that may walk on
-  double sonar_memory_s = 15.0;  ///< of what only sonar has heard
-  double camera_veto_s = 2.0;    ///< ground that the camera saw so lately is believed against sonar
-  int min_camera_points = 2;     ///< of one image in one cell
-  int confirmations = 2;         ///< images, or pings, until an obstacle is believed
+  double memory_s = 60.0;        ///< persistence of an obstacle out of view: under the bow, next to a track
+  double moving_memory_s = 3.0;  ///< persistence next to a lidar obstacle, which may be a pedestrian's legs
+  double sonar_memory_s = 15.0;  ///< persistence of an obstacle detected by sonar only
+  double camera_veto_s = 2.0;    ///< age up to which ground in an image overrules sonar echoes
+  int min_camera_points = 2;     ///< points of one image in one cell
+  int confirmations = 2;         ///< images or pings that make an obstacle
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -29,21 +29,22 @@ struct LowObstaclesSettings {
   }
 };
 
-/// What stands below the lidar's plane, by cells of a lattice, from evidence that is weak one by one: images and pings. Each
-/// source adds to its own count where it finds something and takes off where it finds nothing; a count that has reached
-/// `confirmations` makes an obstacle, which stays until it is taken off or its memory is over. Sonar does not undo what the camera
-/// saw: it hears a thin bar only now and then. The camera does undo what sonar heard: an arc is wider than the thing.
+/// Obstacles below the lidar's plane, by cells of a lattice, accumulated from images and pings. Each source increments
+/// its own count of a cell for an obstacle and decrements it for free ground. A count of `confirmations` makes an
+/// obstacle, which stays until its count is used up or its persistence ends. Sonar does not clear obstacles of the
+/// camera, because it detects a thin bar only occasionally. The camera clears obstacles of sonar, because an arc is
+/// wider than its object.
 class LowObstacles {
  public:
   explicit LowObstacles(const LowObstaclesSettings& settings) : settings_(settings) {}
 
-  /// Cells in which an image shows an obstacle, and those in which it shows ground; without repetition. `may_move`: the lidar
-  /// sees something there as well.
+  /// Adds the cells of an image that show an obstacle and those that show ground, without repetition. `may_move`
+  /// [obstacle]: the lidar also has an obstacle there.
   void add_image(const std::vector<Cell>& obstacles, const std::vector<Cell>& ground, const std::vector<bool>& may_move,
                  Time now);
-  /// Cells of a ping's arc and of the free ground before it; without repetition.
+  /// Adds the cells of a ping's arc and of the free ground before it, without repetition.
   void add_ping(const std::vector<Cell>& arc, const std::vector<Cell>& free, Time now);
-  /// Forgets what only sonar has heard, where the predicate holds.
+  /// Clears the sonar evidence of the cells for which the predicate is true.
   template <typename Predicate>
   void forget_sonar(const Predicate& is_there) {
     for (auto& [key, evidence] : cells_) {
@@ -52,12 +53,12 @@ class LowObstacles {
       judge(key, evidence);
     }
   }
-  /// Drops what has outlived its memory.
+  /// Clears evidence whose persistence has ended.
   void forget_old(Time now);
 
   bool is_obstacle(Cell cell) const;
   std::size_t num_obstacles() const { return num_obstacles_; }
-  /// Cells that have become obstacles, or ceased to be, since the last call; maybe with repetition.
+  /// Returns the cells that have become obstacles, or are no longer obstacles, since the last call; possibly repeated.
   std::vector<Cell> take_changed() { return std::exchange(changed_, {}); }
   /// All obstacles, row by row.
   std::vector<Cell> obstacles() const;
@@ -67,7 +68,7 @@ class LowObstacles {
   struct Evidence {
     int camera = 0;
     int sonar = 0;
-    Time camera_until{};  ///< end of its memory
+    Time camera_until{};  ///< end of the persistence of the camera's evidence
     Time sonar_until{};
     Time ground_seen = Time::min();
     bool is_obstacle = false;

@@ -8,7 +8,7 @@
 namespace patrol::plan {
 namespace {
 
-/// Range that a scan is known to see in each direction around the lidar: that of the shortest beam of each sector.
+/// Observed range of a scan by direction around the lidar: the minimum range of the beams in each sector.
 class SeenRange {
  public:
   explicit SeenRange(const LevelScan& scan)
@@ -21,7 +21,7 @@ class SeenRange {
       range = range > 0.0f ? std::min(range, length) : length;
     }
   }
-  /// 0 in sectors without a beam.
+  /// Observed range in a direction; 0 in sectors without a beam.
   double along(const Eigen::Vector2d& direction) const { return sectors_[sector(direction)]; }
 
  private:

@@ -12,8 +12,8 @@
 
 namespace patrol::plan {
 
-/// Costmap layer of lidar hits that the static map does not have (yet). A hit is cleared when a later beam passes beyond it, when
-/// the map has it, or when it has not been observed for `obstacle_memory_s`.
+/// Costmap layer of lidar hits that the static map does not have (yet). A hit is cleared when a later beam passes
+/// beyond it, when the map has it, or when it has not been observed for `obstacle_memory_s`.
 class ScanLayer {
  public:
   explicit ScanLayer(const CostmapSettings& settings) : settings_(settings) {}
@@ -24,10 +24,10 @@ class ScanLayer {
   /// Clears all obstacles within a radius; returns their cells.
   CellBox clear(const Eigen::Vector2d& p_map, double radius_m);
 
-  /// Of a cell inside the grid.
+  /// Whether a cell inside the grid is an obstacle.
   bool is_obstacle(Cell cell) const { return index_.at(cell) != 0; }
   bool contains_obstacle(Cell cell) const { return index_.contains(cell) && is_obstacle(cell); }
-  /// Whether an obstacle lies at most `reach` columns and rows from a cell, which may lie outside the grid.
+  /// Whether an obstacle lies at most `reach` columns and rows from a cell, which may be outside the grid.
   bool has_obstacle_near(Cell cell, int reach) const;
   /// Time of the first observation of the oldest obstacle within a radius; none without obstacles.
   std::optional<Time> first_seen(const Eigen::Vector2d& p_map, double radius_m) const;

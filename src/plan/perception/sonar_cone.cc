@@ -7,13 +7,13 @@
 namespace patrol::plan {
 namespace {
 
-/// From the transducer to where the lower edge of its cone meets level ground; infinite if it does not.
+/// Range from the transducer to the intersection of the cone's lower edge with level ground; infinite without one.
 double ground_range_m(double height_m, double elevation_rad, double half_fov_rad) {
   const double down = half_fov_rad - elevation_rad;
   return down > 0.0 ? height_m / std::sin(down) : std::numeric_limits<double>::infinity();
 }
 
-/// Places at a range over a sector.
+/// Appends points at a range over a sector.
 void add_arc(const Eigen::Vector2d& center, double azimuth_rad, double half_rad, double range_m, double spacing_m,
              std::vector<Eigen::Vector2d>& places) {
   const int steps = std::max(1, static_cast<int>(std::ceil(2.0 * half_rad * range_m / (spacing_m / 2.0))));

@@ -11,9 +11,9 @@
 namespace patrol::plan {
 
 struct SonarConeSettings {
-  double max_range_m = 1.2;     ///< echoes from farther away are left out: the arc is too wide to mean anything
-  double fov_share = 0.7;       ///< of the cone in which the echo is believed to lie
-  double ground_share = 0.85;   ///< an echo from beyond this share of the way to where the cone meets the ground may be it
+  double max_range_m = 1.2;     ///< maximum range of an echo: beyond, the arc is too wide to be useful
+  double fov_share = 0.7;       ///< fraction of the cone's width in which the echo is assumed to lie
+  double ground_share = 0.85;   ///< fraction of the range to level ground from which an echo may be ground
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -23,16 +23,17 @@ struct SonarConeSettings {
   }
 };
 
-/// What a ping says, as places in level: an arc on which something may lie, and ground nearer on which nothing does. Points lie
-/// no more than half of `spacing_m` apart.
+/// Arc on which the echo of a ping may lie, and free ground before it, in level. Points are at most half of `spacing_m`
+/// apart.
 struct SonarCone {
   std::vector<Eigen::Vector2d> arc_m;
   std::vector<Eigen::Vector2d> free_m;
 };
 
-/// The inverse sensor model of a sonar (Moravec and Elfes, "High resolution maps from wide angle sonar", 1985), reduced to
-/// yes and no: the echo lies somewhere on the arc; nothing lies nearer. A reading without echo frees the cone as far as
-/// `max_range_m`; one that was too near puts the arc at the least range. `body_height_m`: of level's origin above the ground.
+/// Computes the inverse sensor model of a sonar [Moravec85], reduced to binary evidence: the echo lies somewhere on the
+/// arc, nothing lies nearer. A reading without echo clears the cone up to `max_range_m`. A reading below the minimum
+/// range puts the arc at the minimum range; NaN yields no points. `body_height_m`: height of level's origin above the
+/// ground.
 SonarCone find_sonar_cone(const SonarConeSettings& settings, const UltrasonicRange& ping, const Pose3& T_level_transducer,
                           double body_height_m, double spacing_m);
 

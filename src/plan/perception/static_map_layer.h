@@ -12,15 +12,16 @@ class StaticMapLayer {
  public:
   explicit StaticMapLayer(const CostmapSettings& settings);
 
-  /// Keeps the map on the new lattice, which must hold the old one.
+  /// Copies the map to the new lattice, which must contain the old one.
   void resize(const CellLattice& lattice);
-  /// Replaces the map, which must lie inside the lattice and have cells at most as large; returns the cells that change.
+  /// Replaces the map; returns the cells that change. The map must lie inside the lattice and have cells at most as
+  /// large.
   CellBox set_map(const OccupancyGrid& map);
 
   bool is_obstacle(Cell cell) const { return map_.at(cell) >= occupied_percent_; }
-  /// Whether an obstacle lies at most `reach` columns and rows from a cell, which may lie outside the grid.
+  /// Whether an obstacle lies at most `reach` columns and rows from a cell, which may be outside the grid.
   bool has_obstacle_near(Cell cell, int reach) const;
-  /// Cost of a cell that the map does not know.
+  /// Cost of a cell that is unknown in the map.
   Cost unknown_cost() const { return unknown_cost_; }
   /// Raises the costs of `count` cells of a row to those of unknown cells.
   void raise_costs(Cell first, int count, Cost* cost) const;

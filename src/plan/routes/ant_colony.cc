@@ -13,9 +13,9 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kReach = 1.5 * std::numbers::sqrt2;                                                      // eq. 8: L tan(gamma / 2), cells
+constexpr double kReach = 1.5 * std::numbers::sqrt2;  // eq. 8: L tan(gamma / 2), cells
 constexpr double kToEdge = (kReach - 1.0) / kReach, kToDiagonal = (kReach - std::numbers::sqrt2) / kReach;  // 0.53, 0.33 (eqs. 8, 9)
-constexpr double kLeastWeight = 1e-200;  ///< no open step is ever impossible: it may be the only one
+constexpr double kLeastWeight = 1e-200;  ///< positive, because the only open step must remain possible
 
 double octile(Cell a, Cell b) {
   const int dx = std::abs(a.col - b.col), dy = std::abs(a.row - b.row);
@@ -24,7 +24,8 @@ double octile(Cell a, Cell b) {
 
 double power(double base, double exponent) { return exponent == 1.0 ? base : std::pow(base, exponent); }
 
-/// tau'' of each step as a share of the pheromone of its cell (eqs. 7-9): [cell * 8 + direction]. Empty without diffusion.
+/// tau'' of each step as a fraction of the pheromone of its cell (eqs. 7-9), [cell * 8 + direction]. Empty without
+/// diffusion.
 std::vector<double> diffusion_shares(const std::optional<ImprovedColonySettings>& settings, const Grid<Cost>& costs, Cell goal) {
   std::vector<double> shares;
   if (!settings) return shares;
@@ -41,7 +42,7 @@ std::vector<double> diffusion_shares(const std::optional<ImprovedColonySettings>
   return shares;
 }
 
-/// What does not change from iteration to iteration, and the pheromone that does.
+/// Pheromone and the constant factors of the step weights.
 class Trails {
  public:
   Trails(const AntColonySettings& settings, const std::optional<ImprovedColonySettings>& improved, const Grid<Cost>& costs, const StepGraph& graph, Cell goal)
@@ -53,7 +54,7 @@ class Trails {
     }
   }
 
-  /// Eq. 10 without its denominator: [cell * 8 + direction].
+  /// Updates the weights of eq. 10, without its denominator, [cell * 8 + direction].
   const std::vector<double>& weigh() {
     for (std::uint32_t cell = 0; cell < eta_.size(); ++cell) {
       const std::size_t first = 8 * std::size_t{cell};
@@ -75,7 +76,7 @@ class Trails {
     for (double& tau : pheromone_) tau *= 1.0 - settings_.evaporation;  // eq. 11
   }
 
-  /// Eqs. 12, 13.
+  /// Deposits pheromone on the steps of a walk (eqs. 12, 13).
   void lay(const Walk& walk, double amount) {
     for (std::size_t i = 0; i < walk.cells.size(); ++i) pheromone_[8 * std::size_t{walk.cells[i]} + walk.directions[i]] += amount;
   }
@@ -84,10 +85,10 @@ class Trails {
   const AntColonySettings& settings_;
   const StepGraph& graph_;
   std::vector<double> shares_, pheromone_, weights_;  ///< [cell * 8 + direction]
-  std::vector<double> eta_;                           ///< [cell] to the power of beta
+  std::vector<double> eta_;                           ///< [cell], to the power of beta
 };
 
-/// Eq. 10: one of the open steps, with probability proportional to its weight.
+/// Samples one of the open steps with probability proportional to its weight (eq. 10).
 std::size_t draw_step(const std::vector<double>& weights, std::uint32_t cell, unsigned open, RandomSequence& random) {
   const double* const of_cell = weights.data() + 8 * std::size_t{cell};
   double total = 0.0;
@@ -100,7 +101,7 @@ std::size_t draw_step(const std::vector<double>& weights, std::uint32_t cell, un
   return drawn;
 }
 
-/// Calls `work(begin, end, worker)` for `num_workers` parts of 0 ... count - 1 at once.
+/// Calls `work(begin, end, worker)` in parallel for `num_workers` parts of 0 ... count - 1.
 template <typename Work>
 void in_parallel(int count, int num_workers, const Work& work) {
   std::vector<std::jthread> threads;
@@ -148,7 +149,7 @@ void AntColony::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
     trails.evaporate();
     for (const Walk& walk : walks) {
       route.num_expanded += walk.num_steps;
-      if (walk.cells.empty()) return;  // it has been everywhere: there is no way
+      if (walk.cells.empty()) return;  // exhaustive: no route exists
       trails.lay(walk, Q / walk.cost);
       if (walk.cost < best.cost) best = walk;
     }

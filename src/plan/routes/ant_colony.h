@@ -14,13 +14,13 @@ namespace patrol::plan {
 struct AntColonySettings {
   int ants = 80;
   int iterations = 200;
-  double alpha = 1.0;         ///< exponent of the pheromone (eq. 10)
+  double alpha = 1.0;         ///< exponent of the pheromone [Li22, eq. 10]
   double beta = 7.0;          ///< exponent of 1 / distance to the goal
-  double evaporation = 0.1;   ///< share of the pheromone lost in an iteration, rho of eq. 11
-  double deposit = 1.0;       ///< Q of eq. 13, in straight-line costs from start to goal; every edge begins with 1
-  double elite = 20.0;        ///< ants' worth of pheromone laid on the best route so far; ours
-  bool splices = true;        ///< steps between cells of an ant's route that are neighbours replace what lies between; ours
-  int threads = 0;            ///< 0: one for each core; changes the time and nothing else
+  double evaporation = 0.1;   ///< fraction of the pheromone lost in an iteration, rho of eq. 11
+  double deposit = 1.0;       ///< Q of eq. 13, relative to the straight-line cost; pheromone starts at 1
+  double elite = 20.0;        ///< pheromone of the best route so far, in ants per iteration; extension
+  bool splices = true;        ///< whether steps between neighboring cells of a route replace detours; extension
+  int threads = 0;            ///< 0: one per core; has no influence on the result
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -36,12 +36,12 @@ struct AntColonySettings {
   }
 };
 
-/// What the improved colony has beside the plain one: paper 003's diffusion of pheromone along the force, and ours.
+/// Settings of the improved colony beyond the ant system: diffusion of pheromone along the force [Li22] and extensions.
 struct ImprovedColonySettings {
-  double coefficient = 4.0;      ///< delta of eqs. 7-9
-  double half_angle_deg = 70.0;  ///< neighbours this near to the force's direction get some
+  double coefficient = 4.0;      ///< delta of [Li22, eqs. 7-9]
+  double half_angle_deg = 70.0;  ///< half-angle about the force's direction in which neighbors receive pheromone
   PotentialFieldSettings field = {};
-  bool tightens = true;          ///< every ant's route is pulled tight (grid_walk.h) before it counts; ours
+  bool tightens = true;          ///< whether every ant's route is shortened (grid_walk.h) before evaluation; extension
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -52,23 +52,25 @@ struct ImprovedColonySettings {
   }
 };
 
-/// Ant system (Dorigo, Maniezzo, Colorni 1996) on the grid, plain or as in paper 003, whose ants also smell pheromone that has spread along the force of
-/// an artificial potential field (eqs. 6-13). Pheromone lies on steps from cell to cell.
+/// Ant system [Dorigo96] on the grid, plain or improved as in [Li22]. In the improved colony, pheromone also spreads
+/// along the force of an artificial potential field (eqs. 6-13). Pheromone belongs to steps from cell to cell.
 ///
-/// Where the paper leaves it open:
-///   eq. 10   eta = 1 / d_ij: with d of eq. 6, between neighbours, ants would not know where the goal is. Here, as is usual on grids, d is from the cell
-///            stepped into to the goal.
-///   eqs. 7-9 q(i), a cell's pheromone, is the least on a step out of it: what is there besides trails. It spreads onto the neighbours in a cone about
-///            the force, 0.53 of it to edge neighbours and 0.33 to diagonal ones, times delta and the force's size (at most 1), and adds to
-///            the step's own: tau = tau' + tau''. So the force leads the first ants and fades as the trails stand out. (With the sum or the mean of
-///            the steps for q, every trail leaks along the force for ever: on grids of rooms such a colony ends longer than the plain one.)
-///   eq. 13   L_k, "the longest path of ant k", is the ant's length.
-/// Ours, in both colonies: an ant in a dead end goes back step by step, and does not enter a cell twice, so every ant arrives if there is a way; loops
-/// are spliced out of its route; the best route so far is laid again by `elite` ants. Ours, in the improved one: every ant's route is pulled tight before
-/// it counts, without which ants on large open grids wander about the straight line for hundreds of iterations (`patrol study planners` has both).
+/// Interpretations of [Li22]:
+///   eq. 10   eta = 1 / d_ij: with d of eq. 6, between neighbors, ants would have no information on the goal. Here, as
+///            is usual on grids, d is the distance from the next cell to the goal.
+///   eqs. 7-9 q(i), the pheromone of a cell, is the minimum over the steps out of it: the pheromone besides trails. It
+///            spreads to the neighbors in a cone about the force, 0.53 to edge neighbors and 0.33 to diagonal ones,
+///            times delta and the force's magnitude (at most 1), and adds to the step's own: tau = tau' + tau''. So the
+///            force guides the first ants and fades as the trails grow. With the sum or the mean over the steps for q,
+///            each trail spreads along the force without end: on grids of rooms the plain colony is better.
+///   eq. 13   L_k, "the longest path of ant k", is the length of the ant's route.
+/// Extensions in both colonies: an ant in a dead end backtracks, and does not enter a cell twice, so that every ant
+/// arrives if a route exists; loops are removed from its route; `elite` ants deposit pheromone on the best route so
+/// far. Extension of the improved colony: every ant's route is shortened before evaluation. Without it, ants on large
+/// open grids meander about the straight line for hundreds of iterations (`patrol study planners` compares both).
 class AntColony : public RoutePlanner {
  public:
-  /// Plain without `improved`.
+  /// Constructs the plain colony without `improved`.
   AntColony(const AntColonySettings& settings, const std::optional<ImprovedColonySettings>& improved, double cost_weight, std::uint64_t seed);
 
   bool is_complete() const override { return true; }

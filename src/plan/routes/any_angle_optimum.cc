@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNotReached = std::numeric_limits<double>::infinity();
 
-/// Cells around a point as seen in one of the four quadrants: there, lines go up and to the right.
+/// Cells around a point, mirrored into one of the four quadrants: there, lines go up and to the right.
 class Quadrant {
  public:
   Quadrant(const Grid<Cost>& costs, HalfCellPoint origin, int sign_x, int sign_y)
@@ -20,12 +20,12 @@ class Quadrant {
   HalfCellPoint origin() const { return origin_; }
   HalfCellPoint to_quadrant(HalfCellPoint p) const { return {.x = sign_x_ * p.x, .y = sign_y_ * p.y}; }
   HalfCellPoint to_grid(HalfCellPoint p) const { return to_quadrant(p); }
-  /// The cell whose lower-left corner, in the quadrant, has these coordinates in cells.
+  /// Whether the cell with this lower-left corner in the quadrant, in cells, is free.
   bool is_free(int col, int row) const {
     const Cell cell{sign_x_ > 0 ? col : -col - 1, sign_y_ > 0 ? row : -row - 1};
     return costs_.contains(cell) && costs_.at(cell) != kLethalCost;
   }
-  /// Column of the cell that a line from here enters first.
+  /// Column of the first cell that a line from the origin enters.
   int first_col() const { return floor_half(origin_.x); }
   int first_row() const { return floor_half(origin_.y); }
 
@@ -37,14 +37,15 @@ class Quadrant {
   HalfCellPoint origin_;
 };
 
-/// Along a column or a row, from `begin` to `end`, half cells; `is_free(along, side)` of the cells to both sides of the line, or on it.
+/// Visibility along a column or a row, from `first` to `end`, half cells. `is_free(along, side)` tests the cells on
+/// both sides of the line, or on it.
 template <typename IsFree>
 bool sees_straight(int first, int end, IsFree is_free) {
   for (int along = first; 2 * along < end; ++along) {
     const bool here[2] = {is_free(along, 0), is_free(along, -1)};
     if (!here[0] && !here[1]) return false;
     if (2 * (along + 1) >= end) break;
-    // From one side to the other between two cells that meet at a corner.
+    // The line would change sides between two cells that meet at a corner.
     if (here[0] != here[1] && is_free(along + 1, 0) == here[1] && is_free(along + 1, -1) == here[0]) return false;
   }
   return true;
@@ -56,7 +57,8 @@ bool sees_up_right(const Quadrant& quadrant, HalfCellPoint to) {
   int col = quadrant.first_col(), row = quadrant.first_row();
   for (;;) {
     if (!quadrant.is_free(col, row)) return false;
-    // The line leaves the cell by its right side at (x - from.x) / dx of the way, by its upper one at (y - from.y) / dy.
+    // The line leaves the cell through its right side at (x - from.x) / dx, through its upper side at (y - from.y) /
+    // dy.
     const long x = 2L * (col + 1) - from.x, y = 2L * (row + 1) - from.y;
     if (x >= dx && y >= dy) return true;
     const bool by_right = x * dy <= y * dx, by_top = y * dx <= x * dy;
@@ -66,7 +68,7 @@ bool sees_up_right(const Quadrant& quadrant, HalfCellPoint to) {
   }
 }
 
-/// The visibility graph of one grid, with the search's state.
+/// Visibility graph of one grid, with the state of the search.
 class VisibilitySearch {
  public:
   VisibilitySearch(const Grid<Cost>& costs, Cell start, Cell goal)
@@ -96,7 +98,7 @@ class VisibilitySearch {
   struct Node {
     double length = kNotReached;  ///< from the start, half cells
     HalfCellPoint parent{};
-    HalfCellPoint seen_from{.x = -1, .y = -1};  ///< the last corner from which it was checked
+    HalfCellPoint seen_from{.x = -1, .y = -1};  ///< last corner from which visibility was checked
     bool is_closed = false;
   };
   struct Open {
@@ -104,16 +106,16 @@ class VisibilitySearch {
     HalfCellPoint point;
     bool operator<(const Open& other) const { return estimate > other.estimate; }
   };
-  /// Directions that light may take, y / (x + y): 0 to the right, 1 upwards.
+  /// Cone of visible directions, y / (x + y): 0 to the right, 1 up.
   struct Cone {
     double low = 1.0, high = 0.0;
     bool is_empty() const { return low > high; }
     void join(const Cone& other) {
       if (!other.is_empty()) low = std::min(low, other.low), high = std::max(high, other.high);
     }
-    /// What of it goes through a side between two points; x and y are from the light's origin.
+    /// Part of the cone through a side between two points; x and y are relative to the cone's origin.
     Cone through(double x0, double y0, double x1, double y1) const {
-      constexpr double kSlack = 1e-9;  // what reaches a corner is checked exactly: too much light does no harm, too little would
+      constexpr double kSlack = 1e-9;  // conservative: corners in the cone are checked exactly afterward
       return {.low = std::max(low, y0 / (x0 + y0) - kSlack), .high = std::min(high, y1 / (x1 + y1) + kSlack)};
     }
   };
@@ -125,7 +127,7 @@ class VisibilitySearch {
   }
   bool is_lethal(int col, int row) const { return !costs_.contains({col, row}) || costs_.at({col, row}) == kLethalCost; }
 
-  /// Where the only lethal cell at a corner lies; none if there is not just one, and nothing to go round.
+  /// Direction of the single lethal cell at a corner; none unless there is exactly one, because paths turn only there.
   std::optional<HalfCellPoint> lethal_side(HalfCellPoint corner) const {
     std::optional<HalfCellPoint> side;
     for (const int dx : {-1, 1}) {
@@ -153,14 +155,15 @@ class VisibilitySearch {
     const double length = node(from).length + distance(from, to);
     if (length >= target.length) return;
     if (to != goal_) {
-      // A way that arrives straight at the corner's lethal cell gains nothing by it: it would turn away from the cell, not round it.
+      // A path straight toward the corner's lethal cell is not optimal: it would turn away from the cell, not around
+      // it.
       const std::optional<HalfCellPoint> side = lethal_side(to);
       if (!side || ((to.x - from.x) * side->x > 0 && (to.y - from.y) * side->y > 0)) return;
     }
     if (can_see(costs_, from, to)) reach(to, length, from);
   }
 
-  /// Row by row, the cells that light from the quadrant's origin may reach, each with the cone that it gets from below and from the left.
+  /// Spreads the cones row by row over the cells of a quadrant; each cell receives cones from below and from the left.
   void spread(HalfCellPoint from, const Quadrant& quadrant) {
     const int first_col = quadrant.first_col(), first_row = quadrant.first_row();
     std::vector<Cone>& below = below_;
@@ -217,7 +220,7 @@ class VisibilitySearch {
   int width_;
   std::vector<Node> nodes_;  ///< [y * width + x], half cells
   std::priority_queue<Open> open_;
-  std::vector<Cone> below_;  ///< [column from the first], of the row below
+  std::vector<Cone> below_;  ///< [column from the first], cones of the row below
 };
 
 }  // namespace
@@ -229,7 +232,7 @@ bool can_see(const Grid<Cost>& costs, HalfCellPoint from, HalfCellPoint to) {
   const HalfCellPoint origin = quadrant.origin(), end = quadrant.to_quadrant(to);
   const int col = quadrant.first_col(), row = quadrant.first_row();
   if (dy == 0) {
-    const int between = origin.y % 2 == 0;  // else the line runs through the cells, and both sides are the same
+    const int between = origin.y % 2 == 0;  // else the line runs through cells, which are on both sides
     return sees_straight(col, end.x, [&](int along, int side) { return quadrant.is_free(along, row + between * side); });
   }
   if (dx == 0) {

@@ -30,7 +30,7 @@ void draw_random(const GeneratedGridSettings& settings, RandomSequence random, G
   grid.costs.at(grid.start) = grid.costs.at(grid.goal) = kFreeCost;
 }
 
-/// Walls one cell thick every room_cells; a door at a random place of each wall between two rooms, three in four open.
+/// Walls one cell thick every `room_cells`. Three in four walls between two rooms have a door, at a random position.
 void draw_rooms(const GeneratedGridSettings& settings, RandomSequence random, GeneratedGrid& grid) {
   constexpr double kOpenShare = 0.75;
   const int size = settings.size_cells, room = settings.room_cells;
@@ -52,7 +52,7 @@ void draw_rooms(const GeneratedGridSettings& settings, RandomSequence random, Ge
   }
 }
 
-/// Depth-first carving: from the last corridor cell that has an uncarved neighbour, to one of these by chance.
+/// Depth-first carving: from the last corridor cell with an uncarved neighbor, to a random one of these.
 void draw_maze(const GeneratedGridSettings& settings, RandomSequence random, GeneratedGrid& grid) {
   const int corridor = settings.corridor_cells, pitch = corridor + 1, count = std::max(1, (settings.size_cells + 1) / pitch);
   fill(grid.costs, {0, 0}, settings.size_cells, settings.size_cells, kLethalCost);
@@ -88,7 +88,7 @@ GeneratedGrid generate_grid(const GeneratedGridSettings& settings, std::uint64_t
   const int size = settings.size_cells;
   const RandomStream stream(seed, "plan/routes/grid/" + settings.kind);
   const GridGeometry geometry{.resolution_m = 1.0, .width = size, .height = size};
-  // Rooms end in a wall where the size is a multiple of the rooms'.
+  // The last row and column are walls if the size is a multiple of the room size.
   const int far = settings.kind == "rooms" && size % settings.room_cells == 0 ? size - 2 : size - 1;
   for (std::uint64_t draw = 0; draw < kMaxDraws; ++draw) {
     GeneratedGrid grid{.costs = Grid<Cost>(geometry, kFreeCost), .start = {0, 0}, .goal = {far, far}};

@@ -9,12 +9,12 @@
 namespace patrol::plan {
 
 struct GeneratedGridSettings {
-  std::string kind = "random";  ///< random: lethal cells by chance; rooms: walls with doors; maze: corridors, one way between any two of them
-  int size_cells = 50;          ///< square
-  double lethal_share = 0.25;   ///< of random's cells
-  int room_cells = 10;          ///< of rooms, wall to wall
-  int door_cells = 2;           ///< width of the rooms' doors
-  int corridor_cells = 1;       ///< width of the maze's
+  std::string kind = "random";  ///< random: independent lethal cells; rooms: walls with doors; maze: corridor tree
+  int size_cells = 50;          ///< side of the square grid
+  double lethal_share = 0.25;   ///< probability of a lethal cell, kind random
+  int room_cells = 10;          ///< size of a room, from wall to wall
+  int door_cells = 2;           ///< width of the doors of rooms
+  int corridor_cells = 1;       ///< width of the corridors of a maze
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -27,14 +27,15 @@ struct GeneratedGridSettings {
   }
 };
 
-/// A grid of free and lethal cells, and two ends far apart between which there is a way.
+/// Grid of free and lethal cells with two distant ends that are connected.
 struct GeneratedGrid {
   Grid<Cost> costs;
-  Cell start;  ///< near the lower-left corner, as in paper 003
-  Cell goal;   ///< near the upper-right
+  Cell start;  ///< near the lower-left corner, as in [Li22]
+  Cell goal;   ///< near the upper-right corner
 };
 
-/// The same settings and seed give the same grid. Throws InputError if a hundred draws leave no way between the corners.
+/// Generates a grid; equal settings and seeds give equal grids. Throws InputError if the corners are not connected in
+/// any of 100 samples.
 GeneratedGrid generate_grid(const GeneratedGridSettings& settings, std::uint64_t seed);
 
 }  // namespace patrol::plan

@@ -17,9 +17,9 @@ namespace patrol::plan {
 
 struct GlobalPlannerSettings {
   RoutePlannerSettings family = {.max_steps_millions = 100, .cost_weight = 4.0};
-  double goal_tolerance_m = 0.3;   ///< a blocked goal may be replaced by a free place this near
-  double start_tolerance_m = 0.6;  ///< likewise the start: the robot stands there, so it must get out
-  double kept_clearance_m = 0.3;   ///< as far as this, smoothing brings a route no nearer to what is lethal
+  double goal_tolerance_m = 0.3;   ///< search radius for a free cell if the goal is blocked
+  double start_tolerance_m = 0.6;  ///< search radius for a free cell if the start is blocked
+  double kept_clearance_m = 0.3;   ///< smoothing keeps this clearance, or the route's if it is smaller
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -32,18 +32,18 @@ struct GlobalPlannerSettings {
 
 struct PlanResult {
   PlanStatus status = PlanStatus::kNoRoute;
-  std::vector<Eigen::Vector2d> points_m;  ///< in map, from start to goal
-  double length_m = 0.0;                  ///< of the points
-  double cost_m = 0.0;                    ///< from cell to cell: length, each metre weighted by its cells' costs
-  bool is_goal_moved = false;             ///< the goal was blocked; the route ends at the nearest free place
+  std::vector<Eigen::Vector2d> points_m;  ///< path in map, from start to goal
+  double length_m = 0.0;                  ///< length of the path
+  double cost_m = 0.0;                    ///< length from cell to cell, each meter weighted by its cells' costs
+  bool is_goal_moved = false;             ///< the goal was blocked; the path ends at the nearest free position
   std::int64_t num_expanded = 0;
 };
 
-/// From a place to a place on the costmap, by any planner of the family (routes/planners.h), smoothed. Routes leave and reach the exact places by
-/// the centres of their cells.
+/// Plans a path between two positions on the costmap by one of the planners (routes/planners.h), and smooths it. The
+/// path connects the exact positions through the centers of their cells.
 class GlobalPlanner {
  public:
-  /// Throws InputError like make_route_planner, and for the any-angle optimum: it touches what is lethal.
+  /// Throws InputError like make_route_planner, and for the any-angle optimum, whose paths touch lethal cells.
   GlobalPlanner(const std::string& planner, const GlobalPlannerSettings& settings, std::uint64_t seed);
 
   PlanResult plan(const Grid<Cost>& costs, const Eigen::Vector2d& p_map_start, const Eigen::Vector2d& p_map_goal);
@@ -53,8 +53,8 @@ class GlobalPlanner {
   std::unique_ptr<RoutePlanner> planner_;
 };
 
-/// The cell nearest to `p` that is not lethal, within `radius_m`; none if all are lethal. A point in a passable cell
-/// is its own nearest.
+/// Cell nearest to `p` within `radius_m` that is not lethal; none if all are lethal. For a point in a passable cell it
+/// is that cell.
 std::optional<Cell> nearest_passable(const Grid<Cost>& costs, const Eigen::Vector2d& p, double radius_m);
 
 }  // namespace patrol::plan

@@ -8,7 +8,7 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kCell = 0x1.0p32;  ///< price of a cell's length
+constexpr double kCell = 0x1.0p32;  ///< cost of a cell's length
 constexpr int kRemainingShift = 24;
 
 }  // namespace
@@ -33,7 +33,7 @@ void GridSearch::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& r
     std::pop_heap(open_.begin(), open_.end());
     const std::uint32_t index = open_.back().index;
     open_.pop_back();
-    if (nodes_[index].is_closed) continue;  // reached cheaper before
+    if (nodes_[index].is_closed) continue;  // reached at a lower cost before
     nodes_[index].is_closed = true;
     ++route.num_expanded;
     if (index == index_of(goal)) {
@@ -50,7 +50,7 @@ void GridSearch::expand(const Grid<Cost>& costs, std::uint32_t index, Cell goal)
   const Cell cell{static_cast<int>(index) % width, static_cast<int>(index) / width};
   const Cost* const here = costs.values().data() + index;
   const Price price_here = nodes_[index].price, half_straight = half_straight_[*here], half_diagonal = half_diagonal_[*here];
-  std::array<bool, 4> is_free{};  // the straight neighbours, for the diagonals between them
+  std::array<bool, 4> is_free{};  // straight neighbors, for the diagonals between them
   for (std::size_t direction = 0; direction < kGridSteps.size(); ++direction) {
     const GridStep step = kGridSteps[direction];
     const bool is_diagonal = direction >= kFirstDiagonal;

@@ -7,11 +7,11 @@
 
 namespace patrol::plan {
 
-/// A* (Hart, Nilsson, Raphael 1968) with the octile distance, or without it Dijkstra's algorithm (1959): the cheapest of all routes over eight
-/// neighbours. Prices are integers of 2^-32 cells: a route of 10^4 diagonal steps is priced to 10^-6 cells, and routes of equal price tie
-/// exactly; of these the cell nearer to the goal is looked at first.
+/// A* [Hart68] with the octile distance, or Dijkstra's algorithm [Dijkstra59]: the route of minimum cost over eight
+/// neighbors. Costs are integers in units of 2^-32 cells: a route of 10^4 diagonal steps is accurate to 10^-6 cells,
+/// and routes of equal cost tie exactly. Ties are broken in favor of the cell nearer to the goal.
 ///
-/// Holds its work space between calls: 16 bytes for each cell of the largest grid so far.
+/// Keeps its work space between calls: 16 bytes per cell of the largest grid so far.
 class GridSearch : public RoutePlanner {
  public:
   enum class Method { kAstar, kDijkstra };
@@ -22,16 +22,16 @@ class GridSearch : public RoutePlanner {
  private:
   using Price = std::uint64_t;
   struct Node {
-    Price price;              ///< from the start
-    std::uint32_t search;     ///< by which this node was last touched
-    std::uint8_t came_by;     ///< index of the step that led here
+    Price price;              ///< cost from the start
+    std::uint32_t search;     ///< number of the search that last updated this node
+    std::uint8_t came_by;     ///< index of the step to this node from its parent
     bool is_closed;
   };
   struct Open {
-    Price estimate;           ///< of the whole route
-    std::uint32_t remaining;  ///< of it still to go, in 2^-8 cells; breaks ties
+    Price estimate;           ///< estimated cost of the whole route
+    std::uint32_t remaining;  ///< estimated cost to the goal, in 2^-8 cells; breaks ties
     std::uint32_t index;
-    /// For a heap with the best on top.
+    /// Order for a heap with the best node on top.
     bool operator<(const Open& other) const {
       return estimate != other.estimate ? estimate > other.estimate : remaining > other.remaining;
     }
@@ -43,7 +43,7 @@ class GridSearch : public RoutePlanner {
   std::vector<Eigen::Vector2d> trace_back(std::uint32_t width, Cell start, Cell goal) const;
 
   Method method_;
-  std::array<Price, 256> half_straight_;  ///< [cost] price of half a step through such a cell
+  std::array<Price, 256> half_straight_;  ///< [cost] cost of half a step through such a cell
   std::array<Price, 256> half_diagonal_;
   std::vector<Node> nodes_;
   std::uint32_t num_searches_ = 0;

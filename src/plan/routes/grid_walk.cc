@@ -18,7 +18,7 @@ std::size_t direction_of(int col, int row) {
   return static_cast<std::size_t>(found - kGridSteps.begin());
 }
 
-/// From a cell to another as over open ground; its price, or none where something is in the way. The steps are added to `walk`.
+/// Appends an unobstructed shortest path from a cell to another to `walk`; returns its cost, or none if it is blocked.
 std::optional<double> open_way(const StepGraph& graph, std::uint32_t from, std::uint32_t to, Mix mix, Walk& walk) {
   const Cell a = graph.cell_of(from), b = graph.cell_of(to);
   const int dx = b.col - a.col, dy = b.row - a.row, longer = std::max(std::abs(dx), std::abs(dy)), shorter = std::min(std::abs(dx), std::abs(dy));
@@ -77,7 +77,7 @@ void Walker::splice(Walk& walk, std::uint32_t goal) {
   Walk spliced{.cells = {}, .directions = {}, .cost = 0.0, .num_steps = walk.num_steps};
   for (std::uint32_t i = 0; i < size;) {
     const std::uint32_t cell = walk.cells[i];
-    i = position_[cell];  // past the loops that come back here
+    i = position_[cell];  // skips loops back to this cell
     std::uint32_t farthest = i + 1;
     std::uint8_t by = walk.directions[i];
     for (std::uint8_t direction = 0; direction < 8; ++direction) {
@@ -94,8 +94,8 @@ void Walker::splice(Walk& walk, std::uint32_t goal) {
 
 void Walker::tighten(Walk& walk, std::uint32_t goal) {
   constexpr double kLess = 1e-9;
-  const std::size_t count = walk.cells.size() + 1;  // with the goal
-  std::vector<double> cost_to{0.0};                 // [cell of the walk]
+  const std::size_t count = walk.cells.size() + 1;  // including the goal
+  std::vector<double> cost_to{0.0};                 // [cell of the walk], cost from the start
   for (std::size_t i = 0; i + 1 < count; ++i) cost_to.push_back(cost_to.back() + graph_.price(walk.cells[i], walk.directions[i]));
   const auto cell = [&](std::size_t i) { return i + 1 < count ? walk.cells[i] : goal; };
   Walk way;

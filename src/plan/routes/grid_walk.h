@@ -8,7 +8,7 @@
 
 namespace patrol::plan {
 
-/// A grid's cells in a row, and which steps lead out of each.
+/// Cells of a grid in row-major order, with the valid steps out of each.
 struct StepGraph {
   StepGraph(const Grid<Cost>& costs, const std::array<double, 256>& factors);
 
@@ -18,33 +18,34 @@ struct StepGraph {
     return static_cast<std::uint32_t>(static_cast<int>(cell) + offsets[direction]);
   }
   bool has_step(std::uint32_t cell, std::size_t direction) const { return (steps[cell] >> direction & 1u) != 0; }
-  /// Of a step, cells.
+  /// Cost of a step, cells.
   double price(std::uint32_t cell, std::size_t direction) const;
 
   int width;
-  std::array<int, 8> offsets;        ///< [direction] of kGridSteps, in the row of cells
-  std::vector<std::uint8_t> steps;   ///< [cell] bit by direction
-  std::vector<double> cell_factors;  ///< [cell]
+  std::array<int, 8> offsets;        ///< [direction] of kGridSteps, index offset
+  std::vector<std::uint8_t> steps;   ///< [cell], one bit per direction
+  std::vector<double> cell_factors;  ///< [cell], cost factor
 };
 
-/// A way through the graph: [i] leaves `cells[i]` by `directions[i]`; the goal is not among the cells.
+/// Path through the graph. Step i leaves `cells[i]` in `directions[i]`; the goal is not among the cells.
 struct Walk {
   std::vector<std::uint32_t> cells;
   std::vector<std::uint8_t> directions;
   double cost = 0.0;           ///< cells
-  std::int64_t num_steps = 0;  ///< taken, with those back
+  std::int64_t num_steps = 0;  ///< number of steps taken, including backtracking
 };
 
-/// Centres of its cells.
+/// Converts a walk to the centers of its cells, in cells, goal included.
 std::vector<Eigen::Vector2d> points_of(const StepGraph& graph, const Walk& walk, Cell goal);
 
-/// Walks from cell to cell without entering one twice, back out of dead ends; holds its work space.
+/// Builds walks that enter no cell twice and backtrack out of dead ends; keeps its work space.
 class Walker {
  public:
   explicit Walker(const StepGraph& graph);
 
-  /// `choose(cell, open)` picks one of the directions whose bits are set in `open`: those into cells not yet visited. Where there is none, the walk goes back.
-  /// Returns no cells if it comes back to the start so: it has been everywhere, and there is no way. The cost is left at 0.
+  /// Walks from `start` to `goal`. `choose(cell, open)` picks one of the directions whose bits are set in `open`: those
+  /// into cells not yet visited. Without one, the walk backtracks. Returns no cells if it backtracks from the start: no
+  /// route exists. The cost is left at 0.
   template <typename Choose>
   Walk walk(std::uint32_t start, std::uint32_t goal, Choose choose) {
     ++num_walks_;
@@ -71,21 +72,23 @@ class Walker {
     return walk;
   }
 
-  /// From each cell on, the step to the latest of the walk's cells beside it replaces what lies between. The walk may cross itself before, not after.
+  /// Removes loops: from each cell on, the step to the latest neighboring cell of the walk replaces the cells between.
+  /// The walk may cross itself before, not after.
   void splice(Walk& walk, std::uint32_t goal);
 
-  /// Pulls a walk that enters no cell twice tight: stretches that cost more than a shortest way over open ground between their ends (diagonal steps and straight
-  /// ones, evenly mixed, or the ones before the others) are replaced by that. What is left depends on which way round obstacles the walk went.
+  /// Shortens a walk that enters no cell twice. Segments that cost at least as much as an unobstructed shortest path
+  /// between their ends are replaced by that path. Its diagonal and straight steps are evenly mixed, or one kind
+  /// precedes the other. The result depends on the side on which the walk passes obstacles.
   void tighten(Walk& walk, std::uint32_t goal);
 
  private:
   const StepGraph& graph_;
-  std::vector<std::uint32_t> visit_;     ///< [cell] the walk that was here last
-  std::vector<std::uint32_t> position_;  ///< [cell] in the walk, its last place
+  std::vector<std::uint32_t> visit_;     ///< [cell], number of the last walk that visited it
+  std::vector<std::uint32_t> position_;  ///< [cell], last index in the walk
   std::uint32_t num_walks_ = 0;
 };
 
-/// Sum of its steps' prices.
+/// Sum of the costs of the steps.
 double cost_of(const StepGraph& graph, const Walk& walk);
 
 }  // namespace patrol::plan

@@ -9,17 +9,18 @@
 
 namespace patrol::plan {
 
-/// Walks the straight line between two cells' centres and calls `visit(cell, share)` for every cell whose closed square it meets, in
-/// order, `share` being the part of the line inside; 0 for cells that it only touches at a corner. Exact in integers. Stops, and returns
-/// false, as soon as `visit` does.
+/// Walks the straight line between two cell centers and calls `visit(cell, share)` for every cell whose closed square
+/// it meets, in order. `share` is the fraction of the line inside; 0 for cells that it only touches at a corner. Exact
+/// in integers. Stops, and returns false, as soon as `visit` does.
 template <typename Visit>
 bool walk_line(Cell from, Cell to, Visit&& visit) {
   const int step_col = to.col > from.col ? 1 : -1, step_row = to.row > from.row ? 1 : -1;
   const long dx = std::abs(to.col - from.col), dy = std::abs(to.row - from.row);
   Cell cell = from;
-  double done = 0.0;  // share of the line up to where it enters the cell
+  double done = 0.0;  // fraction of the line before it enters the cell
   for (long i = 0, j = 0; i < dx || j < dy;) {
-    // The next side crossed is (2 i + 1) / (2 dx) of the way on in columns, (2 j + 1) / (2 dy) in rows.
+    // The next side crossed is at the fraction (2 i + 1) / (2 dx) of the line for columns, (2 j + 1) / (2 dy) for
+    // rows.
     const long along_col = (2 * i + 1) * dy, along_row = (2 * j + 1) * dx;
     const bool crosses_col = dx > 0 && (dy == 0 || along_col <= along_row), crosses_row = dy > 0 && (dx == 0 || along_row <= along_col);
     const double next = crosses_col ? (2.0 * static_cast<double>(i) + 1.0) / (2.0 * static_cast<double>(dx))
@@ -35,11 +36,11 @@ bool walk_line(Cell from, Cell to, Visit&& visit) {
   return visit(cell, 1.0 - done);
 }
 
-/// Whether the straight line between two cells' centres meets no lethal cell, not even a corner of one: on neighbours this is may_step's rule.
-/// Both cells lie in the grid.
+/// Whether the straight line between two cell centers meets no lethal cell, not even a corner of one; for neighbors
+/// this is may_step's rule. Both cells are in the grid.
 bool has_line_of_sight(const Grid<Cost>& costs, Cell from, Cell to);
 
-/// What the line costs, cells: its length, each part weighted by its cell's factor. None without line of sight.
+/// Cost of the straight line, cells: its length, each part weighted by its cell's factor. None without line of sight.
 std::optional<double> line_price(const Grid<Cost>& costs, const std::array<double, 256>& factors, Cell from, Cell to);
 
 }  // namespace patrol::plan

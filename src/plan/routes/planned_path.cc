@@ -16,7 +16,7 @@ PlannedPath::PlannedPath(std::vector<Eigen::Vector2d> points_m) {
   }
 }
 
-/// The segment whose start is the last point at or before `along_m`.
+/// Index of the segment that contains `along_m`; at a point, the segment that starts there.
 std::size_t PlannedPath::segment_at(double along_m) const {
   const auto after = std::upper_bound(along_m_.begin(), along_m_.end(), along_m);
   const auto index = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - along_m_.begin() - 1));
@@ -67,7 +67,7 @@ std::vector<Pose2> PlannedPath::sample(double step_m) const {
 std::vector<std::size_t> join_points(std::size_t count, const std::function<bool(std::size_t from, std::size_t to)>& may_join) {
   std::vector<std::size_t> kept{0};
   for (std::size_t from = 0; from + 1 < count;) {
-    // The farthest point in a straight line: stride doubles while it works, then halves.
+    // Search for the farthest point that can be joined: the stride doubles on success, then halves.
     std::size_t to = from + 1;
     for (std::size_t stride = 2; to + stride < count && may_join(from, to + stride); stride *= 2) to += stride;
     for (std::size_t stride = std::bit_ceil(count); stride > 0; stride /= 2) {

@@ -10,13 +10,13 @@
 
 namespace patrol::plan {
 
-/// Where a point lies beside a path.
+/// Projection of a point onto a path.
 struct PathProjection {
-  double along_m = 0.0;     ///< of the nearest point of the path, from its start
-  double distance_m = 0.0;  ///< from it
+  double along_m = 0.0;     ///< arc length of the nearest point of the path
+  double distance_m = 0.0;  ///< distance from the nearest point
 };
 
-/// A polyline in map, measured by the way from its start.
+/// Polyline in map, parameterized by the arc length from its start.
 class PlannedPath {
  public:
   PlannedPath() = default;
@@ -28,21 +28,22 @@ class PlannedPath {
   Eigen::Vector2d point_at(double along_m) const;
   double heading_at(double along_m) const;
 
-  /// The nearest point of the part from `from_m` to `to_m`, so that a path that returns to a place is followed in order.
+  /// Nearest point of the part from `from_m` to `to_m`. The limits keep the order on a path that returns to a position.
   PathProjection project(const Eigen::Vector2d& p_map, double from_m, double to_m) const;
 
-  /// Poses at most `step_m` apart, each looking along the path.
+  /// Poses at most `step_m` apart, with the heading along the path.
   std::vector<Pose2> sample(double step_m) const;
 
  private:
   std::size_t segment_at(double along_m) const;
 
   std::vector<Eigen::Vector2d> points_m_;  ///< in map
-  std::vector<double> along_m_;            ///< [point]
+  std::vector<double> along_m_;            ///< [point], arc length
 };
 
-/// The points that stay, of `count` along a route, where straight lines replace the stretches from one to a later one that `may_join` allows: from each
-/// the farthest that doubling and halving strides find. The first and the last always stay.
+/// Indices of the points of a route of `count` points that remain after shortening. Straight lines replace segments for
+/// which `may_join` is true. From each point, doubling and halving strides search for the farthest one. The first and
+/// the last point always remain.
 std::vector<std::size_t> join_points(std::size_t count, const std::function<bool(std::size_t from, std::size_t to)>& may_join);
 
 }  // namespace patrol::plan

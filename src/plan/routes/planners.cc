@@ -21,7 +21,7 @@ Planner make_any_angle_optimum(const Settings& settings, std::uint64_t) {
   return std::make_unique<AnyAngleOptimum>();
 }
 
-/// Those that a robot can drive by come first.
+/// Drivable planners come first.
 constexpr std::array kPlanners = std::to_array<RoutePlannerRow>({
     {"astar", "A* on the grid, eight neighbors",
      [](const Settings& s, std::uint64_t) -> Planner { return std::make_unique<GridSearch>(GridSearch::Method::kAstar, s.cost_weight); }},

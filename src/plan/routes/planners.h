@@ -14,12 +14,12 @@
 
 namespace patrol::plan {
 
-/// What the planners of the family need; each takes what is its own.
+/// Settings of all global planners; each planner uses its own section.
 struct RoutePlannerSettings {
-  int max_steps_millions = 0;            ///< from cell to cell, of ants, particles and episodes; then the best so far is taken. 0: as many as it needs
-  double cost_weight = 0.0;              ///< a cell at the highest passable cost counts as 1 + this many cells
-  AntColonySettings ant_colony = {};     ///< of both colonies
-  ImprovedColonySettings improved_colony = {};  ///< of the improved one: paper 003's
+  int max_steps_millions = 0;            ///< limit of RoutePlanner::limit_steps, 10^6 steps; 0: none
+  double cost_weight = 0.0;              ///< a cell at the highest passable cost counts as 1 + this number of cells
+  AntColonySettings ant_colony = {};     ///< ant system, plain and improved
+  ImprovedColonySettings improved_colony = {};  ///< improved colony only [Li22]
   TwoSwarmsSettings two_swarms = {};
   QLearningSettings q_learning = {};
 
@@ -39,16 +39,16 @@ struct RoutePlannerRow {
   std::string_view name;     ///< text in settings and on the command line
   std::string_view summary;  ///< one line of documentation
   std::unique_ptr<RoutePlanner> (*make)(const RoutePlannerSettings& settings, std::uint64_t seed);
-  bool is_drivable = true;  ///< whether its paths keep off lethal cells and follow costs, so that a robot can drive along them
+  bool is_drivable = true;  ///< whether its paths keep off lethal cells and follow costs
 };
 
-/// Every global planner.
+/// Table of all global planners.
 std::span<const RoutePlannerRow> route_planners();
-/// The global planners that a robot can drive by.
+/// Rows of the planners with `is_drivable`.
 std::span<const RoutePlannerRow> drivable_route_planners();
 
-/// Builds the planner of that name. Throws InputError for an unknown name or a wrong setting, and for the any-angle optimum with a cost weight: it
-/// supports none.
+/// Creates a planner by name. Throws InputError for an unknown name or an invalid setting. Also throws for the
+/// any-angle optimum with a cost weight, which it does not support.
 std::unique_ptr<RoutePlanner> make_route_planner(const std::string& name, const RoutePlannerSettings& settings, std::uint64_t seed);
 
 }  // namespace patrol::plan

@@ -6,7 +6,7 @@
 namespace patrol::plan {
 namespace {
 
-/// From the nearest lethal cell to this one; none within the range.
+/// Vector from the nearest lethal cell to this one; none within the range.
 std::optional<Eigen::Vector2d> from_nearest_obstacle(const Grid<Cost>& costs, Cell cell, double range) {
   const int reach = static_cast<int>(range);
   std::optional<Eigen::Vector2d> nearest;

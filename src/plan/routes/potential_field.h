@@ -9,9 +9,9 @@
 namespace patrol::plan {
 
 struct PotentialFieldSettings {
-  double attraction = 1.0;            ///< force per cell of distance to the goal
-  double repulsion = 0.5;             ///< against it
-  double obstacle_range_cells = 2.5;  ///< a lethal cell's force ends at this distance, centre to centre
+  double attraction = 1.0;            ///< attractive force per cell of distance to the goal
+  double repulsion = 0.5;             ///< weight of the repulsive force
+  double obstacle_range_cells = 2.5;  ///< range of a lethal cell's force, center to center
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -21,10 +21,11 @@ struct PotentialFieldSettings {
   }
 };
 
-/// Resultant force on a robot at each cell's centre, as a share of the goal's attraction there: zero in lethal cells and at the goal.
+/// Resultant force on a robot at each cell's center, relative to the goal's attraction there; zero in lethal cells and
+/// at the goal.
 ///
-/// Attraction grows with the distance to the goal. The nearest lethal cell repels with the two forces of Ge and Cui ("New potential functions for mobile
-/// robot path planning", 2000, eqs. 8-11 with n = 1): one away from it, one towards the goal. Paper 003 names f_1, f_2 and f_a and gives no formula.
+/// Attraction grows with the distance to the goal. The nearest lethal cell repels with the two forces of [Ge00, eqs.
+/// 8-11 with n = 1]: one away from it, one toward the goal. [Li22] names f_1, f_2 and f_a without a formula.
 Grid<Eigen::Vector2d> potential_forces(const PotentialFieldSettings& settings, const Grid<Cost>& costs, Cell goal);
 
 }  // namespace patrol::plan

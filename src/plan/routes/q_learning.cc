@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
-/// Values of steps, [cell * 8 + direction]: what is to be expected, in cells, all negative.
+/// Values of steps, [cell * 8 + direction]: expected return, in cells, all negative.
 class QTable {
  public:
   QTable(const StepGraph& graph, std::uint32_t goal) : graph_(graph), goal_(goal), values_(8 * graph.steps.size(), 0.0) {
@@ -33,10 +33,10 @@ class QTable {
     return best;
   }
 
-  /// Of the cell: nothing is to come at the goal.
+  /// Value of a cell; zero at the goal.
   double value(std::uint32_t cell) const { return cell == goal_ ? 0.0 : values_[8 * std::size_t{cell} + best_step(cell)]; }
 
-  /// Along the best steps; none if they turn in a circle.
+  /// Walk along the best steps; none if they form a loop.
   std::optional<Walk> follow(std::uint32_t start) const {
     std::vector<std::uint8_t> is_visited(graph_.steps.size(), 0);
     Walk walk;
@@ -58,7 +58,7 @@ class QTable {
   std::vector<double> values_;
 };
 
-/// One of a cell's open steps by chance.
+/// Samples one of a cell's open steps uniformly.
 std::size_t any_step(const StepGraph& graph, std::uint32_t cell, RandomSequence& random) {
   for (;;) {
     const std::size_t direction = random.index(8);
@@ -76,7 +76,7 @@ QLearning::QLearning(const QLearningSettings& settings, double cost_weight, std:
 void QLearning::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) {
   const StepGraph graph(costs, factors());
   const std::uint32_t from = graph.index_of(start), to = graph.index_of(goal);
-  if (graph.steps[from] == 0) return;  // walled in
+  if (graph.steps[from] == 0) return;  // no step out of the start
   QTable table(graph, to);
   const auto max_steps = static_cast<std::int64_t>(settings_.max_steps_share * static_cast<double>(graph.steps.size()));
   Walk best;

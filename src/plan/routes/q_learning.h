@@ -12,8 +12,8 @@ struct QLearningSettings {
   int episodes = 5000;
   double learning_rate = 1.0;     ///< alpha
   double discount = 1.0;          ///< gamma
-  double exploration = 0.1;       ///< epsilon, the share of steps taken by chance, in the first episode; falls to 0 in the last
-  double max_steps_share = 4.0;   ///< of an episode, as a share of the grid's cells; it ends there if not at the goal
+  double exploration = 0.1;       ///< epsilon, probability of a random step; falls from this value to 0
+  double max_steps_share = 4.0;   ///< steps after which an episode ends, as a multiple of the number of cells
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -25,9 +25,10 @@ struct QLearningSettings {
   }
 };
 
-/// Q-learning (Watkins 1989) on the grid, one table, epsilon-greedy; the class of the orchard robot's planner that paper 003 compares with (Mao et al. 2020),
-/// of which we know that much. A step's reward is minus its price, so that a table of zeros is hopeful and what was not tried is tried. An iteration is an
-/// episode from the start; its route, if there is one, is what the table's best steps then lead along. Not complete: episodes end.
+/// Tabular Q-learning [Watkins89] on the grid, epsilon-greedy. This is the method class of the orchard robot's planner
+/// [Mao20] that [Li22] compares with; its details are not known. The reward of a step is its negative cost, so that a
+/// table of zeros is optimistic and favors untried steps. An iteration is an episode from the start; its route, if any,
+/// follows the best steps of the table. Not complete, because episodes end.
 class QLearning : public RoutePlanner {
  public:
   QLearning(const QLearningSettings& settings, double cost_weight, std::uint64_t seed);

@@ -19,7 +19,7 @@ namespace {
 constexpr double kMaxCostWeight = 50.0;
 
 double length_of(const std::vector<Eigen::Vector2d>& points) {
-  double straight = 0.0, diagonal = 0.0, other = 0.0;  // apart: the first two are whole numbers, and have no rounding
+  double straight = 0.0, diagonal = 0.0, other = 0.0;  // separate sums: the first two are integers without rounding
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Eigen::Vector2d d = (points[i] - points[i - 1]).cwiseAbs();
     if (d.x() == 0.0 || d.y() == 0.0) straight += d.sum();
@@ -29,7 +29,8 @@ double length_of(const std::vector<Eigen::Vector2d>& points) {
   return straight + std::numbers::sqrt2 * diagonal + other;
 }
 
-/// From a segment to a square that it does not cross: the least lies at an end of the one or at a corner of the other.
+/// Distance from a segment to a square that it does not cross; the minimum is at an end of the segment or a corner of
+/// the square.
 double distance_to_box(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Eigen::AlignedBox2d& box) {
   double least = std::min(box.exteriorDistance(from), box.exteriorDistance(to));
   for (int corner = 0; corner < 4; ++corner) {
@@ -38,7 +39,7 @@ double distance_to_box(const Eigen::Vector2d& from, const Eigen::Vector2d& to, c
   return least;
 }
 
-/// From the box about a segment to a cell's square: never more than from the segment, and quick.
+/// Distance from the bounding box of a segment to a cell's square: a fast lower bound of the segment's distance.
 double gap(const Eigen::Vector2d& from, const Eigen::Vector2d& to, int col, int row) {
   const double dx = std::max({0.0, col - std::max(from.x(), to.x()), std::min(from.x(), to.x()) - col - 1.0});
   const double dy = std::max({0.0, row - std::max(from.y(), to.y()), std::min(from.y(), to.y()) - row - 1.0});
@@ -65,7 +66,7 @@ double clearance_of(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>&
   double least = at_most;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector2d from = points[i], to = points[std::min(i + 1, points.size() - 1)];
-    // Pieces of at most a cell, and for each the cells that could be nearer than what is known.
+    // Pieces of at most one cell, and for each the cells that could be nearer than the minimum so far.
     const int pieces = std::max(1, static_cast<int>(std::ceil((to - from).cwiseAbs().maxCoeff())));
     for (int k = 0; k < pieces; ++k) {
       const Eigen::Vector2d a = from + (to - from) * k / pieces, b = from + (to - from) * (k + 1) / pieces;

@@ -16,76 +16,82 @@ enum class PlanStatus {
   kFound,
   kStartBlocked,
   kGoalBlocked,
-  kNoRoute,    ///< there is none
-  kNoneFound,  ///< which proves nothing: the planner is not complete, or had to stop
+  kNoRoute,    ///< no route exists
+  kNoneFound,  ///< no route found; one may exist, because the planner is incomplete or was stopped
 };
 
-/// A way over a grid, and how it was found. Lengths are in cells, so that grids of any resolution compare.
+/// Route over a grid with statistics of its search. Lengths are in cells, so that grids of any resolution are
+/// comparable.
 struct Route {
   PlanStatus status = PlanStatus::kNoRoute;
-  std::vector<Eigen::Vector2d> points;       ///< start ... goal, cells from the grid's lower-left corner: (col + 0.5, row + 0.5) is a cell's centre
-  double length = 0.0;                       ///< cells; exact but for rounding at its end: straight and diagonal steps are counted
-  double cost = 0.0;                         ///< cells, each weighted by the costs of the cells it crosses; the length if the weight is 0
-  int num_iterations = 0;                    ///< of ants, particles, episodes; 1 of a search
-  std::vector<double> history;               ///< [iteration] cost of the best route so far; infinite until there is one
-  std::int64_t num_expanded = 0;             ///< cells looked around from; of a swarm the cells its lines crossed
-  double clearance = 0.0;                    ///< cells, from the route to the nearest lethal cell's square; at most kMaxClearance
+  std::vector<Eigen::Vector2d> points;       ///< start ... goal, cells from the lower-left corner; cell centers at .5
+  double length = 0.0;                       ///< cells; straight and diagonal steps are counted exactly
+  double cost = 0.0;                         ///< cells, weighted by the costs of the cells crossed
+  int num_iterations = 0;                    ///< iterations of ants, particles or episodes; 1 for a search
+  std::vector<double> history;               ///< [iteration], cost of the best route so far; infinite before the first
+  std::int64_t num_expanded = 0;             ///< expanded cells; for a swarm, steps taken
+  double clearance = 0.0;                    ///< distance to the nearest lethal cell, cells; at most kMaxClearance
 };
 
 inline constexpr double kMaxClearance = 16.0;  ///< cells
 
-/// The iteration, from 1, from which the best cost stays within `share` of its final value; 0 if no route was found.
+/// Iteration, counted from 1, from which the best cost is within the fraction `share` of its final value; 0 without a
+/// route.
 int iterations_to_within(const std::vector<double>& history, double share);
 
-/// The cell that holds a route's point; of a corner the one above and to the right.
+/// Cell that contains a point of a route; for a corner, the cell above and to the right.
 Cell cell_of(const Eigen::Vector2d& point);
 
-/// In the grid's frame, m.
+/// Converts points from cells to the grid's frame, m.
 std::vector<Eigen::Vector2d> to_metres(const GridGeometry& geometry, const std::vector<Eigen::Vector2d>& points);
 
-/// Cells from the polyline to the nearest lethal cell's square, at most `at_most`. The grid's border is no obstacle.
+/// Distance from the polyline to the nearest lethal cell's square, cells, at most `at_most`. The grid's border is no
+/// obstacle.
 double clearance_of(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>& points, double at_most = kMaxClearance);
 
-/// By how much a cell of each cost lengthens the way through it: 1 + cost weight * cost / kMaxPassableCost. Throws InputError unless the weight lies in 0 ... 50.
+/// Cost factors by cell cost: 1 + cost weight * cost / kMaxPassableCost. Throws InputError unless the weight is in [0,
+/// 50].
 std::array<double, 256> cost_factors(double cost_weight);
 
-/// A step to one of the eight neighbours.
+/// Step to one of the eight neighbors.
 struct GridStep {
   int col, row;
 };
 inline constexpr std::array<GridStep, 8> kGridSteps = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
 inline constexpr std::size_t kFirstDiagonal = 4;
 
-/// Whether a step stays on the grid and out of lethal cells; a diagonal one needs both cells beside it free (MovingAI's rule).
+/// Whether a step stays on the grid and outside of lethal cells. A diagonal step needs both adjacent cells free, as in
+/// the MovingAI benchmarks [Sturtevant12].
 bool may_step(const Grid<Cost>& costs, Cell from, GridStep step);
 
-/// Every cell that steps lead to from a passable one, itself first; by breadth-first search.
+/// Cells reachable from a passable one by breadth-first search, `start` first.
 std::vector<Cell> reachable_cells(const Grid<Cost>& costs, Cell start);
 
-/// A global planner from cell to cell: lethal cells are blocked, others may lengthen the way through them. The price of a route is the integral of
-/// 1 + cost weight * cost / kMaxPassableCost along it.
+/// Interface of a global planner from cell to cell. Lethal cells are blocked; other costs may increase the cost of a
+/// route, which is the integral of 1 + cost weight * cost / kMaxPassableCost along it.
 ///
-/// The same planner with the same settings and seed gives the same route, on any number of threads and whatever it planned before.
+/// Equal planners with equal settings and seeds give equal routes, for any number of threads and any earlier calls.
 class RoutePlanner {
  public:
-  /// `cost_weight`: a cell at the highest passable cost counts as 1 + this many cells; 0 to 50.
+  /// `cost_weight`: a cell at the highest passable cost counts as 1 + this number of cells; in [0, 50].
   explicit RoutePlanner(double cost_weight) : factors_(cost_factors(cost_weight)) {}
   virtual ~RoutePlanner() = default;
 
-  /// Whether it finds a route wherever there is one.
+  /// Whether it finds a route whenever one exists.
   virtual bool is_complete() const = 0;
 
-  /// A planner that goes on improving its route (of ants, particles, episodes) ends with the iteration in which it has taken so many steps from cell to
-  /// cell, and gives what it has.
+  /// Limits the steps from cell to cell of an iterative planner (ants, particles, episodes). It ends with the iteration
+  /// that exceeds the limit, and returns its best route so far.
   void limit_steps(std::int64_t max_steps) { max_steps_ = max_steps; }
 
   Route plan(const Grid<Cost>& costs, Cell start, Cell goal);
 
  protected:
-  /// Fills points, history, num_iterations and num_expanded; no points if it finds no route. Both ends are passable, and differ.
+  /// Fills points, history, num_iterations and num_expanded; no points if it finds no route. Both ends are passable and
+  /// different.
   virtual void search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) = 0;
 
-  /// By how much a cell of this cost lengthens the way through it.
+  /// Cost factors by cell cost (`cost_factors`).
   const std::array<double, 256>& factors() const { return factors_; }
   bool is_spent(const Route& route) const { return route.num_expanded >= max_steps_; }
   bool is_weighted() const { return factors_[kMaxPassableCost] > 1.0; }

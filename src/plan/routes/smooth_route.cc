@@ -14,7 +14,7 @@ std::vector<Eigen::Vector2d> smooth_route(const Grid<Cost>& costs, double cost_w
   constexpr double kRounding = 1e-9;
   if (points.size() < 3) return points;
   const std::array<double, 256> factors = cost_factors(cost_weight);
-  std::vector<double> cost_to{0.0}, clearance;  // [point] along the route; [leg]
+  std::vector<double> cost_to{0.0}, clearance;  // [point], cost along the route; [leg]
   for (std::size_t i = 1; i < points.size(); ++i) {
     cost_to.push_back(cost_to.back() + line_price(costs, factors, cell_of(points[i - 1]), cell_of(points[i])).value());
     clearance.push_back(clearance_of(costs, {points[i - 1], points[i]}, kept_clearance));

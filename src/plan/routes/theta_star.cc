@@ -27,7 +27,7 @@ void ThetaStar::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
     std::pop_heap(open_.begin(), open_.end());
     const Cell cell = open_.back().cell;
     open_.pop_back();
-    if (nodes_.at(cell).is_closed) continue;  // reached cheaper before
+    if (nodes_.at(cell).is_closed) continue;  // reached at a lower cost before
     nodes_.at(cell).is_closed = true;
     ++route.num_expanded;
     if (cell == goal) {
@@ -53,7 +53,7 @@ void ThetaStar::expand(const Grid<Cost>& costs, Cell cell, Cell goal) {
     if (!is_new && node.is_closed) continue;
 
     Node reached{.price = here.price + *line_price(costs, factors(), cell, next), .parent = cell, .search = num_searches_, .is_closed = false};
-    // With weights the line may be dearer than the neighbours' way round what costs; without, never.
+    // With cost weights the line may cost more than the path through the neighbors; without weights it never does.
     const double at_least = nodes_.at(here.parent).price + distance(here.parent, next);
     if (here.parent != cell && (is_new || at_least < node.price)) {
       const std::optional<double> line = line_price(costs, factors(), here.parent, next);

@@ -7,11 +7,12 @@
 
 namespace patrol::plan {
 
-/// Theta* (Nash, Daniel, Koenig, Felner, "Theta*: any-angle path planning on grids", AAAI 2007): A* whose cells may take any cell in sight as their parent, the
-/// straight line to it costing no more than the way through the neighbour. Turns only at cells' centres; a line of sight meets no lethal cell, not
-/// even at a corner. Never dearer than A*'s route, since no cell is reached dearer than by its neighbours; not always the cheapest there is.
+/// Theta* [Nash07]: A* in which a cell may take any visible cell as its parent, if the straight line to it costs no
+/// more than the path through the neighbor. Paths turn only at cell centers. A line of sight touches no lethal cell,
+/// not even at a corner. A path never costs more than that of A*, because no cell is reached at a higher cost than
+/// through its neighbors; it is not always optimal.
 ///
-/// Holds its work space between calls.
+/// Keeps its work space between calls.
 class ThetaStar : public RoutePlanner {
  public:
   explicit ThetaStar(double cost_weight = 0.0) : RoutePlanner(cost_weight) {}
@@ -20,15 +21,15 @@ class ThetaStar : public RoutePlanner {
 
  private:
   struct Node {
-    double price;          ///< from the start, cells
+    double price;          ///< cost from the start, cells
     Cell parent;
-    std::uint32_t search;  ///< by which this node was last touched
+    std::uint32_t search;  ///< number of the search that last updated this node
     bool is_closed;
   };
   struct Open {
-    double estimate, price;  ///< of the whole route; so far
+    double estimate, price;  ///< estimated cost of the whole route; cost so far
     Cell cell;
-    /// For a heap with the best on top; of equal estimates the one farther on.
+    /// Order for a heap with the best node on top; of equal estimates, the one with the higher cost so far.
     bool operator<(const Open& other) const { return estimate != other.estimate ? estimate > other.estimate : price < other.price; }
   };
 

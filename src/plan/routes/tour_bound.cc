@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
-/// A tree over all nodes but node 0, and node 0's two cheapest edges.
+/// 1-tree: a tree over all nodes but node 0, and the two cheapest edges of node 0.
 struct OneTree {
   double cost = 0.0;
   std::vector<int> degrees;  ///< [node]
@@ -16,7 +16,8 @@ struct OneTree {
 
 using Matrix = std::vector<std::vector<double>>;
 
-/// The closed tour whose length is the problem's travel. Node 0 is a round's start; else a node of no distance to where a tour may begin and end.
+/// Symmetric distances of a closed tour whose length is the problem's travel. Node 0 is the start of a closed tour;
+/// otherwise a virtual node with distance 0 to every possible first and last station.
 Matrix closed_tour(const TourProblem& problem) {
   const std::size_t count = problem.travel.size();
   const bool is_round = problem.start && problem.start == problem.end;
@@ -35,7 +36,7 @@ Matrix closed_tour(const TourProblem& problem) {
   return cost;
 }
 
-/// The least 1-tree (Prim), every edge lengthened by the weights of its nodes.
+/// Minimum 1-tree (Prim's algorithm); every edge is lengthened by the weights of its nodes.
 OneTree least_one_tree(const Matrix& cost, const std::vector<double>& weights) {
   const std::size_t count = cost.size();
   const auto edge = [&](std::size_t i, std::size_t j) { return cost[i][j] + weights[i] + weights[j]; };
@@ -71,7 +72,7 @@ OneTree least_one_tree(const Matrix& cost, const std::vector<double>& weights) {
 double travel_bound(const TourProblem& problem, double upper_bound, int iterations) {
   constexpr int kPatience = 10;
   const Matrix cost = closed_tour(problem);
-  if (cost.size() < 3) {  // no 1-tree: there and, of a round, back
+  if (cost.size() < 3) {  // no 1-tree: direct travel, for a closed tour both directions
     double travel = 0.0;
     const bool is_round = problem.start && problem.start == problem.end;
     if (is_round && problem.travel.size() == 2) travel = problem.travel[0][1] + problem.travel[1][0];

@@ -39,7 +39,7 @@ void check(const TourProblem& problem) {
   }
 }
 
-/// The problem with its open ends settled: nothing is missing.
+/// Problem with defaults filled in.
 class Tour {
  public:
   explicit Tour(const TourProblem& problem) : problem_(problem), stations_(problem.stations) { stations_.resize(problem.travel.size()); }
@@ -51,11 +51,11 @@ class Tour {
   bool is_fixed(std::size_t i) const { return is_start(i) || is_end(i); }
   double travel(std::size_t from, std::size_t to) const { return problem_.travel[from][to]; }
   int priority(std::size_t i) const { return stations_[i].priority; }
-  /// When the robot leaves a station that it reaches then.
+  /// Departure time from a station that is reached at `reached`.
   double leaves(std::size_t i, double reached) const { return std::max(reached, stations_[i].earliest) + stations_[i].service; }
   double lateness(std::size_t i, double reached) const { return std::max(0.0, reached - stations_[i].latest - kRounding); }
 
-  /// Impossible legs, inversions of priority, lateness, completion: the less the better, in this order.
+  /// Impossible legs, priority inversions, lateness, completion, compared in this order; lower is better.
   using Score = std::tuple<int, int, double, double>;
   Score score(const std::vector<std::size_t>& order) const {
     int impossible = 0, inverted = 0;
@@ -84,7 +84,8 @@ class Tour {
   std::vector<TourProblem::Station> stations_;
 };
 
-/// The order that ends soonest, every window kept; empty if there is none. `best[set * size + last]`: when `last` is left, all of the set done.
+/// Order with the minimum completion that meets every window; empty if there is none. `best[set * size + last]` is the
+/// departure time from `last` after all stations of the set.
 std::vector<std::size_t> exact_order(const Tour& tour) {
   const std::size_t size = tour.size(), all = (std::size_t{1} << size) - 1;
   std::vector<double> best((all + 1) * size, kNoOrder);
@@ -113,7 +114,7 @@ std::vector<std::size_t> exact_order(const Tour& tour) {
   std::size_t last = size;
   double soonest = kNoOrder;
   for (std::size_t i = 0; i < size; ++i) {
-    // A round begins at the only station that none may precede.
+    // A closed tour begins at the only station that no station may precede.
     double done = best[all * size + i];
     for (std::size_t start = 0; start < size && size > 1; ++start) {
       if (tour.is_round() && tour.is_start(start)) done += tour.travel(i, start);
@@ -131,7 +132,7 @@ std::vector<std::size_t> exact_order(const Tour& tour) {
   return order;
 }
 
-/// Or-opt and 2-opt until neither helps: stretches of one to three stations move elsewhere, or any stretch is turned round.
+/// Or-opt and 2-opt until neither improves: segments of one to three stations are moved, or any segment is reversed.
 class LocalSearch {
  public:
   LocalSearch(const Tour& tour, std::vector<std::size_t> order) : tour_(tour), order_(std::move(order)), score_(tour.score(order_)) {}
@@ -172,7 +173,7 @@ class LocalSearch {
     const Tour::Score score = tour_.score(candidate_);
     const auto& [impossible, inverted, late, completion] = score;
     const auto& [impossible_now, inverted_now, late_now, completion_now] = score_;
-    // By more than rounding, or it might go round in circles.
+    // The improvement must exceed rounding, otherwise the search might cycle.
     if (!(std::tuple(impossible, inverted, late + kRounding, 0.0) < std::tuple(impossible_now, inverted_now, late_now, 0.0)) &&
         !(std::tuple(impossible, inverted) == std::tuple(impossible_now, inverted_now) && late <= late_now && completion < completion_now * (1.0 - kRounding))) {
       return false;
@@ -187,7 +188,7 @@ class LocalSearch {
   Tour::Score score_;
 };
 
-/// By chance within each priority; the fixed ends in their places.
+/// Random order within each priority; the fixed ends keep their positions.
 std::vector<std::size_t> random_order(const Tour& tour, RandomSequence random) {
   std::vector<std::size_t> order(tour.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -197,7 +198,7 @@ std::vector<std::size_t> random_order(const Tour& tour, RandomSequence random) {
   return order;
 }
 
-/// From a random order's first station always on to the nearest of the lowest priority left.
+/// Nearest-neighbor order from the first station of `order`, within the lowest remaining priority.
 std::vector<std::size_t> nearest_order(const Tour& tour, std::vector<std::size_t> order) {
   const std::size_t end = order.size() - tour.is_end(order.back());
   for (std::size_t k = 1; k < end; ++k) {

@@ -11,9 +11,9 @@
 namespace patrol::plan {
 
 struct TourOrderSettings {
-  int exact_stations = 13;     ///< up to so many the best order is found, above a good one: exact search takes stations^2 * 2^stations steps
-  int restarts = 20;           ///< of the local search
-  int bound_iterations = 300;  ///< of the lower bound's ascent
+  int exact_stations = 13;     ///< maximum for exact search, which takes stations^2 * 2^stations steps
+  int restarts = 20;           ///< restarts of the local search
+  int bound_iterations = 300;  ///< iterations of the lower bound's ascent
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -23,36 +23,38 @@ struct TourOrderSettings {
   }
 };
 
-/// What is to be visited. All figures in one unit: metres if there are no windows, else seconds.
+/// Station-order problem: TSP with service times, time windows and priorities. All values have one unit: meters without
+/// windows, else seconds.
 struct TourProblem {
   struct Station {
-    double service = 0.0;   ///< spent there
-    double earliest = 0.0;  ///< service does not begin before this: the robot waits
-    double latest = std::numeric_limits<double>::infinity();  ///< nor, if it can be helped, after this
-    int priority = 0;       ///< all stations of a lower number come first; the fixed start and end are free of this
+    double service = 0.0;   ///< service time or equivalent length
+    double earliest = 0.0;  ///< earliest begin of the service; the robot waits for it
+    double latest = std::numeric_limits<double>::infinity();  ///< latest begin of the service; a soft limit
+    int priority = 0;       ///< stations of a lower number come first; does not apply to the fixed start and end
   };
 
-  std::vector<std::vector<double>> travel = {};     ///< [from][to]; infinite where there is no way; need not be symmetric
-  std::vector<Station> stations = {};               ///< as many, or none: then nothing is asked of any
-  std::optional<std::size_t> start = {}, end = {};   ///< free if not given; the same station twice: a round back to the start
+  std::vector<std::vector<double>> travel = {};     ///< [from][to]; infinite without a path; need not be symmetric
+  std::vector<Station> stations = {};               ///< same number as `travel`, or empty for no requirements
+  std::optional<std::size_t> start = {}, end = {};   ///< free if not given; if equal, a closed tour
 };
 
 struct TourOrder {
-  bool is_found = false;               ///< an order without impossible legs and against no priority
-  std::vector<std::size_t> stations;   ///< in order; a round's start is not repeated at its end
-  double completion = 0.0;             ///< when the last service ends, or a round is back, if it sets out at 0: travel, service and waiting
+  bool is_found = false;               ///< an order without impossible legs and priority inversions
+  std::vector<std::size_t> stations;   ///< in order; the start of a closed tour is not repeated at its end
+  double completion = 0.0;             ///< end of the last service or of the closed tour, from a start at 0
   double travel = 0.0;
-  double lateness = 0.0;               ///< summed over the stations: 0 if all windows are kept
-  double lower_bound = 0.0;            ///< of the completion, whatever the order
-  bool is_exact = false;               ///< the completion is the least possible
+  double lateness = 0.0;               ///< sum over the stations: 0 if all windows are met
+  double lower_bound = 0.0;            ///< lower bound of the completion over all orders
+  bool is_exact = false;               ///< whether the completion is proven optimal
 
-  /// By how much of the bound the completion may exceed the least possible.
+  /// Maximum relative excess of the completion over the optimum, from the lower bound.
   double gap() const { return is_exact || lower_bound <= 0.0 ? 0.0 : completion / lower_bound - 1.0; }
 };
 
-/// The order in which to visit all stations, least late first, done soonest second. Exact by dynamic programming over sets (Held, Karp 1962; Bellman 1962) for few
-/// stations whose windows can be kept; else local search, Or-opt and 2-opt from nearest-neighbour and random orders, beside the bound of Held and
-/// Karp's 1-trees (1970, 1971). The same problem and seed give the same order. Throws InputError if the problem is not one.
+/// Finds the order in which to visit all stations: minimum lateness first, minimum completion second. For few stations
+/// whose windows can be met, exact by dynamic programming on sets [HeldKarp62], [Bellman62]. Otherwise by local search
+/// (Or-opt and 2-opt from nearest-neighbor and random orders) with the 1-tree bound [HeldKarp70]. Equal problems and
+/// seeds give equal orders. Throws InputError if the problem is invalid.
 TourOrder order_tour(const TourProblem& problem, const TourOrderSettings& settings, std::uint64_t seed);
 
 }  // namespace patrol::plan

@@ -11,7 +11,7 @@ namespace patrol::plan {
 namespace {
 
 constexpr double kNoCost = std::numeric_limits<double>::infinity();
-/// x and y of each via point, cells.
+/// Coordinates x and y of each via point, cells.
 using Coordinates = std::vector<double>;
 
 struct Particle {
@@ -37,7 +37,7 @@ struct Swarm {
   }
 };
 
-/// For every cell the nearest, as a king walks over lethal cells too, of those that can be reached from the start.
+/// For every cell, the nearest cell reachable from the start, in the chessboard metric across lethal cells.
 std::vector<std::uint32_t> nearest_reachable(const StepGraph& graph, const GridGeometry& geometry, std::uint32_t start) {
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> nearest(graph.steps.size(), kNone), reached{start};
@@ -70,7 +70,7 @@ class Flight {
   const StepGraph& graph() const { return graph_; }
   bool has_way() const { return nearest_[graph_.index_of(goal_)] == graph_.index_of(goal_); }
 
-  /// The route of a particle there.
+  /// Route of a particle at these coordinates.
   Walk decode(const Coordinates& via) {
     Walk route;
     std::uint32_t here = graph_.index_of(start_);
@@ -88,7 +88,8 @@ class Flight {
     return route;
   }
 
-  /// Scattered about the straight line from start to goal, `spread` of the grid's longer side wide.
+  /// Creates a particle scattered about the straight line from start to goal; `spread` is relative to the grid's longer
+  /// side.
   Particle make_particle(RandomSequence& random, double spread) const {
     Particle particle;
     for (int i = 0; i < settings_.via_points; ++i) {

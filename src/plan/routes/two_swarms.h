@@ -10,15 +10,15 @@
 namespace patrol::plan {
 
 struct TwoSwarmsSettings {
-  int particles = 40;              ///< in each swarm
+  int particles = 40;              ///< particles per swarm
   int iterations = 200;
-  int via_points = 5;              ///< that a particle's route visits, in order
+  int via_points = 5;              ///< number of via points of a particle's route, in order
   double exploring_inertia = 0.9;
   double refining_inertia = 0.5;
-  double own_pull = 1.5;           ///< towards the particle's own best, c_1
-  double swarm_pull = 1.5;         ///< towards its swarm's best, c_2
-  double max_speed = 0.1;          ///< of a coordinate in an iteration, as a share of the grid's longer side
-  int exchange_iterations = 10;    ///< as often each swarm's best takes the place of the other's worst
+  double own_pull = 1.5;           ///< cognitive weight c_1: toward the particle's own best
+  double swarm_pull = 1.5;         ///< social weight c_2: toward the swarm's best
+  double max_speed = 0.1;          ///< maximum change of a coordinate, as a fraction of the grid's longer side
+  int exchange_iterations = 10;    ///< iterations between exchanges: each swarm's best replaces the other's worst
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -34,11 +34,15 @@ struct TwoSwarmsSettings {
   }
 };
 
-/// Particle swarms (Kennedy, Eberhart 1995; inertia of Shi and Eberhart 1998), two of them, as in the mine rescue robot's planner that paper 003 compares
-/// with (Feng et al. 2020). That paper is known to us by paper 003's two sentences only; from it comes that there are two populations. The rest is
-/// ours: one swarm explores, the other, of less inertia, refines; they exchange their best. A particle is a list of points; its route goes from
-/// each to the next by the neighbour that is nearest to it, back out of dead ends, and loops are spliced out, as the ants' are. So every particle
-/// has a route if there is one. (Straight legs instead, and a price on obstacles: on generated grids of 50 x 50 hardly one swarm in ten found any.)
+/// Particle swarm optimization [Kennedy95], [Shi98] with two swarms: the class of the mine rescue robot's planner
+/// [Feng20] that [Li22] compares with. Only the two sentences of [Li22] on it are known; from them comes the number of
+/// populations.
+///
+/// The remainder is an interpretation: one swarm explores, the other, with less inertia, refines; they exchange their
+/// best. A particle is a list of via points. Its route goes from each to the next by the neighbor nearest to it and
+/// backtracks out of dead ends; loops are removed as for ants. So every particle has a route if one exists. With
+/// straight legs and a penalty on obstacles instead, fewer than one swarm in ten found a route on generated grids of 50
+/// x 50.
 class TwoSwarms : public RoutePlanner {
  public:
   TwoSwarms(const TwoSwarmsSettings& settings, double cost_weight, std::uint64_t seed);

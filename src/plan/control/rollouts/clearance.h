@@ -6,7 +6,7 @@
 
 namespace patrol::plan {
 
-/// Nearness to obstacles: 0 from `comfortable_m` on, growing with the square to 1 at contact.
+/// Cost of nearness to obstacles: 0 from `comfortable_m` on, growing quadratically to 1 at contact.
 struct ClearanceCost {
   double comfortable_m = 0.4;
 

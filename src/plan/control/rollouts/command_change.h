@@ -6,7 +6,7 @@
 
 namespace patrol::plan {
 
-/// How much faster or slower, and how much more turning, than the robot moves now; each as a share of its limit.
+/// Cost of the change of speed and yaw rate from the current motion, each as a fraction of its limit.
 struct CommandChangeCost {
   double operator()(const Rollout& rollout, const RolloutScene& scene) const {
     return std::abs(rollout.vx_mps - scene.twist.linear.x()) / scene.max_speed_mps +

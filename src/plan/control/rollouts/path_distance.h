@@ -6,7 +6,7 @@
 
 namespace patrol::plan {
 
-/// How far the rollout strays from the path: at its middle and at its end, 1 at `full_m` or more.
+/// Cost of the distance from the path, averaged over the middle and the end of the rollout: 1 at `full_m` or more.
 struct PathDistanceCost {
   double full_m = 0.5;
 

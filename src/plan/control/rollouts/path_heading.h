@@ -8,7 +8,7 @@
 
 namespace patrol::plan {
 
-/// The angle between where the robot looks at the end and a point of the path further ahead: 0 along it, 1 backwards.
+/// Cost of the angle between the heading at the end and a point ahead on the path: 0 along the path, 1 backward.
 struct PathHeadingCost {
   double look_ahead_m = 0.6;
 

@@ -6,7 +6,8 @@
 
 namespace patrol::plan {
 
-/// How much of the way that it could make along the path the rollout does not make: 0 all, 1 none, 2 all of it backwards.
+/// Cost of missing progress along the path, as a fraction of the reachable progress: 0 full, 1 none, 2 full but
+/// backward.
 struct ProgressCost {
   double operator()(const Rollout& rollout, const RolloutScene& scene) const {
     const double left_m = std::min(scene.reach_m, scene.path.length_m() - scene.along_m);
