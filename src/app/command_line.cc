@@ -90,7 +90,7 @@ void add_localizability(CLI::App& app, Call& call) {
 void add_replay(CLI::App& app, Call& call) {
   CLI::App* command = app.add_subcommand("replay", "Render a run from its log");
   command->add_option("run", call.replay.run, "Run directory")->required();
-  command->add_option("--cut", call.replay.cut, "story (slow and near at the notable moments) or plain (even)")->capture_default_str();
+  command->add_option("--cut", call.replay.style, "story (slow and near at the notable moments) or plain (even)")->capture_default_str();
   command->add_option("--camera", call.replay.camera, "chase, top or onboard")->capture_default_str();
   command->add_option("--speed", call.replay.speed, "Simulated seconds per second of video")->capture_default_str();
   command->add_option("--slow", call.replay.slow, "Likewise, at the moments of a story")->capture_default_str();
@@ -209,7 +209,7 @@ void add_solve(CLI::App& app, Call& call) {
   SolveOptions& solve = call.solve;
   CLI::App* command = app.add_subcommand("solve", "Solve a pose graph in g2o's text");
   command->add_option("graph", solve.graph, "Pose graph (g2o)")->required();
-  command->add_flag("--doubt-loops", solve.doubts_loops, "A robust loss on the edges that are not odometry");
+  command->add_flag("--doubt-loops", solve.robust_loop_closures, "A robust loss on the edges that are not odometry");
   command->add_option("--out", solve.out, "Solved graph to write (g2o)")->capture_default_str();
   command->callback([&] { call.chosen = [&] { return solve_command(call.solve); }; });
 }

@@ -51,7 +51,7 @@ ExitCode localizability_command(const LocalizabilityOptions& options);
 
 struct ReplayOptions {
   std::filesystem::path run;
-  std::string cut = "story";
+  std::string style = "story";
   std::string camera = "chase";
   double speed = 8.0;
   double slow = 2.0;
@@ -115,7 +115,7 @@ ExitCode train_command(const TrainOptions& options);
 
 struct SolveOptions {
   std::filesystem::path graph;  ///< g2o
-  bool doubts_loops = false;    ///< robust loss on edges that are not odometry
+  bool robust_loop_closures = false;    ///< robust loss on edges that are not odometry
   std::filesystem::path out = "out/solved.g2o";
 };
 /// Optimizes a pose graph.

@@ -37,9 +37,9 @@ double checked_speed(const char* option, double speed) {
 
 render::ReplaySettings replay_settings(const ReplayOptions& options) {
   render::ReplaySettings settings;
-  settings.cut = render::cut_named(options.cut);
-  settings.camera = render::camera_kind(options.camera);
-  settings.renderer = render::renderer_named(options.renderer);
+  settings.style = render::parse_film_style(options.style);
+  settings.camera = render::parse_camera_kind(options.camera);
+  settings.renderer = render::parse_renderer(options.renderer);
   settings.speed.fast = checked_speed("--speed", options.speed);
   settings.speed.slow = checked_speed("--slow", options.slow);
   std::tie(settings.width, settings.height) = parse_size(options.size);
@@ -47,11 +47,11 @@ render::ReplaySettings replay_settings(const ReplayOptions& options) {
 }
 
 /// Highlights at the start of faults. They come from the scenario because the log does not contain them.
-std::vector<render::Moment> fault_moments(const std::vector<sim::FaultSettings>& faults) {
-  std::vector<render::Moment> moments;
+std::vector<render::Highlight> fault_moments(const std::vector<sim::FaultSettings>& faults) {
+  std::vector<render::Highlight> moments;
   for (const sim::FaultSettings& fault : faults) {
     moments.push_back({.at = from_seconds(fault.start_s),
-                       .kind = render::MomentKind::kFault,
+                       .kind = render::HighlightKind::kFault,
                        .title = fmt::format("Fault: {} of {} for {:g} s", fault.kind, fault.sensor, fault.duration_s)});
   }
   return moments;
@@ -73,7 +73,7 @@ ExitCode replay_command(const ReplayOptions& options) {
   const RunRecord record = read_run_record(directory.log());
   if (!record.has_estimate()) throw InputError(fmt::format("{}: ended before the robot had an estimate", directory.log().string()));
   const Pose2 T_world_map =
-      files.map ? files.T_site_start : score::join_at_start(record.T_map_body, record.T_world_body);
+      files.map ? files.T_site_start : score::align_at_start(record.T_map_body, record.T_world_body);
   sim::AssembledModel model =
       sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), start_in_world(scenario, files), props_of(scenario));
 

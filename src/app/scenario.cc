@@ -151,12 +151,12 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   if (!scenario.map.empty()) {
     const std::filesystem::path file = named_file("map", scenario.map);
     files.map = io::load_map(file);
-    stack::check_known_map(file.string(), *files.map);
+    stack::validate_map(file.string(), *files.map);
   }
   if (!scenario.goals.empty()) {
     const std::filesystem::path file = named_file("goals", scenario.goals);
     files.goals = io::load_nav(file);
-    stack::check_goals(file.string(), files.goals, files.map);
+    stack::validate_goals(file.string(), files.goals, files.map);
   }
   files.neighbor_model = neighbours_for(scenario.stack.mapping, data_root);
   if (!scenario.references.empty()) files.references = io::load_station_scans(files.world_xml.parent_path() / scenario.references);
@@ -164,10 +164,10 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   if (!remote.drive.empty() && !remote.recorded.empty()) {
     throw InputError("remote: has a drive and recorded commands: only one of them can be followed");
   }
-  if (!remote.drive.empty()) files.drive = io::load_drive(named_file("remote.drive", remote.drive));
-  if (!remote.recorded.empty()) files.recorded = io::load_remote(named_file("remote.recorded", remote.recorded));
-  const bool waits_for_remote = std::any_of(files.goals.begin(), files.goals.end(), [](const MarkedGoal& goal) { return goal.type == GoalType::kOperator; });
-  if (files.map && files.has_remote() && !waits_for_remote) {
+  if (!remote.drive.empty()) files.drive = io::load_teleop_route(named_file("remote.drive", remote.drive));
+  if (!remote.recorded.empty()) files.recorded = io::load_teleop(named_file("remote.recorded", remote.recorded));
+  const bool waits_for_remote = std::any_of(files.goals.begin(), files.goals.end(), [](const SavedGoal& goal) { return goal.type == GoalType::kOperator; });
+  if (files.map && files.has_teleop() && !waits_for_remote) {
     throw InputError(fmt::format("map = {}: a map is given, and by remote control another would be made: only one of them can be used, unless "
                                  "a goal of type R waits for the remote control",
                                  scenario.map));

@@ -36,7 +36,7 @@ struct StartOffsetSettings {
 struct RemoteSettings {
   std::string drive;     ///< route of the simulated operator, below the world's folder
   std::string recorded;  ///< table of recorded commands, below the world's folder
-  sim::RemoteOperatorSettings driver;
+  sim::TeleopOperatorSettings driver;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -113,9 +113,9 @@ struct Scenario {
   sim::LocomotionSettings locomotion;      ///< locomotion of a legged robot
   sim::TrackDriveSettings track_drive;     ///< drive of a tracked robot
   stack::StackSettings stack;
-  std::vector<sim::PropSettings> props;
+  std::vector<sim::StaticObstacleSettings> props;
   sim::LowObstacleSettings low_obstacles;  ///< random obstacles by the seed, in addition to the props
-  std::vector<sim::LiningMoveSettings> lining;  ///< displacements of the lining's rings
+  std::vector<sim::LiningDeformationSettings> lining;  ///< displacements of the lining's rings
   std::vector<sim::ActorSettings> actors;
   std::vector<sim::LeakSettings> leaks;
   sim::WindSettings wind;
@@ -203,14 +203,14 @@ struct ScenarioFiles {
   RobotDescription robot;
   Route route;          ///< in site
   Pose2 T_site_start;   ///< surveyed start
-  RemoteDrive drive;                    ///< in site
-  std::vector<RemoteCommand> recorded;
-  std::vector<MarkedGoal> goals;        ///< in map
+  TeleopRoute drive;                    ///< in site
+  std::vector<TeleopCommand> recorded;
+  std::vector<SavedGoal> goals;        ///< in map
   std::vector<io::StationScan> references;
   std::optional<OccupancyGrid> map;
   BoostedStumps neighbor_model;  ///< classifier of pairs of submaps; empty for SLAM methods that need none
 
-  bool has_remote() const { return !drive.empty() || !recorded.empty(); }
+  bool has_teleop() const { return !drive.empty() || !recorded.empty(); }
 };
 
 /// Loads the files of a scenario. Throws InputError with file and key if one is missing or invalid.

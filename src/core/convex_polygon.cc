@@ -23,7 +23,7 @@ ConvexPolygon half_hull(const std::vector<Eigen::Vector2d>& points) {
 }
 
 /// Part of the polygon left of the line from a to b.
-ConvexPolygon clipped(const ConvexPolygon& polygon, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+ConvexPolygon clip_left_of(const ConvexPolygon& polygon, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   ConvexPolygon kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Eigen::Vector2d &p = polygon[i], &next = polygon[(i + 1) % polygon.size()];
@@ -48,16 +48,16 @@ ConvexPolygon convex_hull(std::vector<Eigen::Vector2d> points) {
   return hull;
 }
 
-double area_of(const ConvexPolygon& polygon) {
+double polygon_area(const ConvexPolygon& polygon) {
   double doubled = 0.0;
   for (std::size_t i = 2; i < polygon.size(); ++i) doubled += turn(polygon[0], polygon[i - 1], polygon[i]);
   return 0.5 * doubled;
 }
 
-ConvexPolygon intersection_of(const ConvexPolygon& a, const ConvexPolygon& b) {
+ConvexPolygon intersect_polygons(const ConvexPolygon& a, const ConvexPolygon& b) {
   if (a.size() < 3 || b.size() < 3) return {};
   ConvexPolygon both = a;
-  for (std::size_t i = 0; i < b.size() && !both.empty(); ++i) both = clipped(both, b[i], b[(i + 1) % b.size()]);
+  for (std::size_t i = 0; i < b.size() && !both.empty(); ++i) both = clip_left_of(both, b[i], b[(i + 1) % b.size()]);
   return both;
 }
 

@@ -14,9 +14,9 @@ using ConvexPolygon = std::vector<Eigen::Vector2d>;
 ConvexPolygon convex_hull(std::vector<Eigen::Vector2d> points);
 
 /// Area in m^2.
-double area_of(const ConvexPolygon& polygon);
+double polygon_area(const ConvexPolygon& polygon);
 
 /// Intersection of two convex polygons [Sutherland74].
-ConvexPolygon intersection_of(const ConvexPolygon& a, const ConvexPolygon& b);
+ConvexPolygon intersect_polygons(const ConvexPolygon& a, const ConvexPolygon& b);
 
 }  // namespace patrol

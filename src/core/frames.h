@@ -82,7 +82,7 @@ struct Pose3 {
 };
 
 /// Returns the yaw angle of a rotation Rz(yaw) Ry(pitch) Rx(roll), rad.
-inline double yaw_of(const Eigen::Quaterniond& q) {
+inline double to_yaw(const Eigen::Quaterniond& q) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
 
@@ -98,16 +98,16 @@ inline Eigen::Quaterniond quaternion_from_rpy(double roll_rad, double pitch_rad,
 }
 
 /// Projects a pose onto the ground plane: keeps x, y and yaw.
-inline Pose2 to_planar(const Pose3& T_a_b) {
-  return {T_a_b.position.x(), T_a_b.position.y(), yaw_of(T_a_b.rotation)};
+inline Pose2 to_pose2(const Pose3& T_a_b) {
+  return {T_a_b.position.x(), T_a_b.position.y(), to_yaw(T_a_b.rotation)};
 }
 
-inline Pose3 to_spatial(const Pose2& T_a_b, double z_m = 0.0) {
+inline Pose3 to_pose3(const Pose2& T_a_b, double z_m = 0.0) {
   return {{T_a_b.x, T_a_b.y, z_m}, quaternion_from_yaw(T_a_b.yaw)};
 }
 
 /// Returns the pose with roll and pitch removed; position and yaw are unchanged.
-inline Pose3 held_level(const Pose3& T_a_b) { return {T_a_b.position, quaternion_from_yaw(yaw_of(T_a_b.rotation))}; }
+inline Pose3 remove_tilt(const Pose3& T_a_b) { return {T_a_b.position, quaternion_from_yaw(to_yaw(T_a_b.rotation))}; }
 
 /// Interpolates linearly in position and spherically in rotation. Fraction 0 gives a, fraction 1 gives b.
 inline Pose3 interpolate(const Pose3& a, const Pose3& b, double fraction) {

@@ -68,14 +68,14 @@ struct PoseEstimate {
 };
 
 /// Pose estimate from odometry and UWB ranges alone, without map or lidar. Independent check of the localization.
-struct RangePoseEstimate : PoseEstimate {};
+struct UwbPoseEstimate : PoseEstimate {};
 
 /// Self-assessment of the localization: its confidence and whether it is lost.
-struct LocalizationTrust {
+struct LocalizationConfidence {
   Time stamp{};
-  double trust = 0.0;          ///< confidence: 0 lost ... 1 certain
-  double weak_std_m = 0.0;     ///< largest principal standard deviation of the position
-  double weak_direction_rad = 0.0;  ///< direction of `weak_std_m`, in map, -pi/2 ... pi/2
+  double confidence = 0.0;          ///< confidence: 0 lost ... 1 certain
+  double max_std_m = 0.0;     ///< largest principal standard deviation of the position
+  double max_std_direction_rad = 0.0;  ///< direction of `max_std_m`, in map, -pi/2 ... pi/2
   bool is_lost = false;        ///< true when localization has reported failure
 };
 

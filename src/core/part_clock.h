@@ -8,24 +8,24 @@ namespace patrol {
 
 /// Profiler of wall-clock time by stage ("physics", "lidar", "slam", ...). The results go to `performance` in
 /// metrics.json only: no decision may depend on them.
-class PartClock {
+class StageProfiler {
  public:
   /// Scoped timer: adds its lifetime to the total of its stage.
-  class Lap {
+  class ScopedTimer {
    public:
-    explicit Lap(double& total_s) : total_s_(total_s), start_(std::chrono::steady_clock::now()) {}
-    ~Lap() {
+    explicit ScopedTimer(double& total_s) : total_s_(total_s), start_(std::chrono::steady_clock::now()) {}
+    ~ScopedTimer() {
       total_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     }
-    Lap(const Lap&) = delete;
-    Lap& operator=(const Lap&) = delete;
+    ScopedTimer(const ScopedTimer&) = delete;
+    ScopedTimer& operator=(const ScopedTimer&) = delete;
 
    private:
     double& total_s_;
     std::chrono::steady_clock::time_point start_;
   };
 
-  [[nodiscard]] Lap lap(const std::string& part) { return Lap(seconds_[part]); }
+  [[nodiscard]] ScopedTimer time_stage(const std::string& part) { return ScopedTimer(seconds_[part]); }
   const std::map<std::string, double>& seconds() const { return seconds_; }
 
  private:

@@ -21,11 +21,11 @@ double effective_sample_size(const std::vector<double>& weights) {
   return 1.0 / std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0);
 }
 
-std::vector<std::size_t> resample_systematic(const std::vector<double>& weights, double uniform) {
-  return resample_systematic(weights, uniform, weights.size());
+std::vector<std::size_t> systematic_parents(const std::vector<double>& weights, double uniform) {
+  return systematic_parents(weights, uniform, weights.size());
 }
 
-std::vector<std::size_t> resample_systematic(const std::vector<double>& weights, double uniform, std::size_t num_children) {
+std::vector<std::size_t> systematic_parents(const std::vector<double>& weights, double uniform, std::size_t num_children) {
   std::vector<std::size_t> parents(num_children);
   const double spacing = 1.0 / static_cast<double>(num_children);
   std::size_t parent = 0;

@@ -7,14 +7,14 @@
 namespace patrol {
 
 /// Waypoint of a teleoperated drive.
-struct DriveWaypoint {
+struct TeleopWaypoint {
   /// Position, m, in a frame named by the user of the struct (site or world).
   Eigen::Vector2d p_m = Eigen::Vector2d::Zero();
   bool is_reverse = false;    ///< approach in reverse
-  bool is_mark = false;       ///< stop here, turn to the heading, save the pose as a goal
+  bool is_goal = false;       ///< stop here, turn to the heading, save the pose as a goal
   double heading_rad = 0.0;   ///< heading of the saved goal
 };
 
-using RemoteDrive = std::vector<DriveWaypoint>;
+using TeleopRoute = std::vector<TeleopWaypoint>;
 
 }  // namespace patrol

@@ -74,7 +74,7 @@ struct Route {
 };
 
 /// Goal pose in `map`, saved while a person drove the robot there: an entry of nav.json [Liu21, table 1].
-struct MarkedGoal {
+struct SavedGoal {
   int number = 0;
   Pose2 T_map_body;
   GoalType type = GoalType::kStop;

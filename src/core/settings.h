@@ -55,7 +55,7 @@ Limits one_of(const Table& table) {
 }
 
 /// Returns the rule as text for error messages.
-inline std::string rule_of(const Limits& limits) {
+inline std::string describe_limits(const Limits& limits) {
   if (!limits.allowed.empty()) return fmt::format("must be one of {}", fmt::join(limits.allowed, ", "));
   const bool has_min = std::isfinite(limits.min), has_max = std::isfinite(limits.max);
   if (has_min && has_max) return fmt::format("must lie in {} ... {}", limits.min, limits.max);
@@ -102,7 +102,7 @@ class Validator {
 
  private:
   [[noreturn]] static void fail(const std::string& key, const std::string& value, const Limits& limits) {
-    throw InputError(fmt::format("{} = {}: {}", key, value, rule_of(limits)));
+    throw InputError(fmt::format("{} = {}: {}", key, value, describe_limits(limits)));
   }
 
   std::string prefix_;

@@ -8,7 +8,7 @@
 namespace patrol {
 
 /// Principal axes of a symmetric 2 x 2 matrix, for example of a covariance or an information matrix.
-struct SymmetricAxes {
+struct PrincipalAxes {
   double large = 0.0;            ///< larger eigenvalue
   double small = 0.0;
   double large_direction_rad = 0.0;  ///< direction of the eigenvector of `large`, in [-pi/2, pi/2]
@@ -17,7 +17,7 @@ struct SymmetricAxes {
   static Eigen::Vector2d along(double direction_rad) { return {std::cos(direction_rad), std::sin(direction_rad)}; }
 };
 
-inline SymmetricAxes symmetric_axes(const Eigen::Matrix2d& matrix) {
+inline PrincipalAxes principal_axes(const Eigen::Matrix2d& matrix) {
   const double middle = 0.5 * (matrix(0, 0) + matrix(1, 1)), half = 0.5 * (matrix(0, 0) - matrix(1, 1));
   const double reach = std::hypot(half, matrix(0, 1));
   const double large = middle + reach;

@@ -125,14 +125,14 @@ constexpr std::array<Quadrature, 5> kGauss5 = {{{0.04691007703066800, 0.11846344
 
 }  // namespace
 
-double rock_rate(double rock_spm, double time_s) {
+double whole_space_response(double rock_spm, double time_s) {
   return kMu0 * std::pow(kMu0 * rock_spm, 1.5) / (8.0 * std::pow(kPi, 1.5)) * std::pow(time_s, -2.5);
 }
 
-SphereRate sphere_rate(double rock_spm, const ConductiveSphere& sphere, double time_s) {
+SphereResponse sphere_response(double rock_spm, const ConductiveSphere& sphere, double time_s) {
   const std::array<ContourPoint, 6> contour = talbot_contour();
   const int order = order_for(sphere);
-  SphereRate rate;
+  SphereResponse rate;
   for (const ContourPoint& point : contour) {
     const Field field = sphere_field(rock_spm, sphere, order, point.st / time_s);
     rate.axial += kMu0 / time_s * (point.weight * field.axial).imag();
@@ -142,7 +142,7 @@ SphereRate sphere_rate(double rock_spm, const ConductiveSphere& sphere, double t
 }
 
 // The decay times t^(5/2) is smooth in log t: interpolate it by cubic Lagrange polynomials through four nodes.
-TemGates::TemGates(const TemWindow& window) {
+TemGates::TemGates(const TemGateLayout& window) {
   constexpr double kNodesPerDecade = 9.0;
   const auto [first, last] = std::minmax_element(window.gate_s.begin(), window.gate_s.end());
   const double begin_s = *first * (1.0 - window.gate_width), end_s = *last * (1.0 + window.gate_width) + window.ramp_s;
@@ -169,17 +169,17 @@ TemGates::TemGates(const TemWindow& window) {
   }
 }
 
-Eigen::VectorXd gated_rock(const TemGates& gates, double rock_spm) {
+Eigen::VectorXd gated_whole_space_response(const TemGates& gates, double rock_spm) {
   Eigen::VectorXd rate(static_cast<Eigen::Index>(gates.node_s().size()));
-  for (Eigen::Index node = 0; node < rate.size(); ++node) rate[node] = rock_rate(rock_spm, gates.node_s()[static_cast<std::size_t>(node)]);
+  for (Eigen::Index node = 0; node < rate.size(); ++node) rate[node] = whole_space_response(rock_spm, gates.node_s()[static_cast<std::size_t>(node)]);
   return gates.gated(rate);
 }
 
-GatedSphere gated_sphere(const TemGates& gates, double rock_spm, const ConductiveSphere& sphere) {
+GatedSphereResponse gated_sphere_response(const TemGates& gates, double rock_spm, const ConductiveSphere& sphere) {
   const auto nodes = static_cast<Eigen::Index>(gates.node_s().size());
   Eigen::VectorXd axial(nodes), transverse(nodes);
   for (Eigen::Index node = 0; node < nodes; ++node) {
-    const SphereRate rate = sphere_rate(rock_spm, sphere, gates.node_s()[static_cast<std::size_t>(node)]);
+    const SphereResponse rate = sphere_response(rock_spm, sphere, gates.node_s()[static_cast<std::size_t>(node)]);
     axial[node] = rate.axial;
     transverse[node] = rate.transverse;
   }

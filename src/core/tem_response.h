@@ -16,7 +16,7 @@ namespace patrol {
 /// Returns the rate of the rock alone, in closed form: mu0 (mu0 sigma)^(3/2) / (8 pi^(3/2)) t^(-5/2). It is the inverse
 /// transform of the s^(3/2) term in the field of the dipole at its own position [Ward88, eq. 2.56 at zero distance]. A
 /// coil of radius b acts as a dipole while t >> mu0 sigma b^2: 1 ns for 0.3 m in rock of 0.01 S/m.
-double rock_rate(double rock_spm, double time_s);
+double whole_space_response(double rock_spm, double time_s);
 
 /// Conductive sphere in the rock, relative to the coil.
 struct ConductiveSphere {
@@ -28,7 +28,7 @@ struct ConductiveSphere {
 /// Secondary rate of a sphere for a coil axis through its center (axial) and perpendicular to that direction
 /// (transverse). At an angle psi between axis and direction the rate is, by symmetry, cos^2(psi) axial + sin^2(psi)
 /// transverse.
-struct SphereRate {
+struct SphereResponse {
   double axial = 0.0;
   double transverse = 0.0;
 };
@@ -38,10 +38,10 @@ struct SphereRate {
 /// [Nabighian70], [Ward88]. The inverse Laplace transform is summed along Talbot's contour [Trefethen06]. The tests
 /// compare it with the Born integral in rock (1 %, the error of that integral) and with Wait's decay in a nonconductive
 /// host (0.3 %). Not valid for times so early that mu0 sigma a^2 / t exceeds 10^4.
-SphereRate sphere_rate(double rock_spm, const ConductiveSphere& sphere, double time_s);
+SphereResponse sphere_response(double rock_spm, const ConductiveSphere& sphere, double time_s);
 
 /// Waveform and gates of an instrument: the current decreases in a linear ramp, and each gate averages over its width.
-struct TemWindow {
+struct TemGateLayout {
   std::vector<double> gate_s;  ///< [gate]: geometric mean of the gate limits, after the end of the ramp
   double ramp_s = 2.6e-6;
   double gate_width = 0.15;    ///< ratio of gate width to gate center
@@ -51,7 +51,7 @@ struct TemWindow {
 /// the nodes.
 class TemGates {
  public:
-  explicit TemGates(const TemWindow& window);
+  explicit TemGates(const TemGateLayout& window);
 
   /// Times after a sudden switch-off at which the decay is evaluated, s.
   const std::vector<double>& node_s() const { return node_s_; }
@@ -64,10 +64,10 @@ class TemGates {
 };
 
 /// Returns the gated rate of the rock, [gate].
-Eigen::VectorXd gated_rock(const TemGates& gates, double rock_spm);
-struct GatedSphere {
+Eigen::VectorXd gated_whole_space_response(const TemGates& gates, double rock_spm);
+struct GatedSphereResponse {
   Eigen::VectorXd axial, transverse;  ///< gated rates of the sphere, [gate]
 };
-GatedSphere gated_sphere(const TemGates& gates, double rock_spm, const ConductiveSphere& sphere);
+GatedSphereResponse gated_sphere_response(const TemGates& gates, double rock_spm, const ConductiveSphere& sphere);
 
 }  // namespace patrol

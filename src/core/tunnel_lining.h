@@ -15,7 +15,7 @@ struct AxisElement {
 };
 
 /// Tunnel coordinates of a point.
-struct TunnelPlace {
+struct TunnelCoordinates {
   double chainage_m = 0.0;  ///< distance along the axis
   double left_m = 0.0;      ///< lateral offset from the axis, positive to the left
   double height_m = 0.0;
@@ -30,7 +30,7 @@ struct TunnelLining {
   Pose2 T_route_start;              ///< pose of the axis at chainage 0, x along the axis, in the frame of the route
   std::vector<AxisElement> axis;    ///< extrapolated beyond both ends with the curvature there
   double crown_radius_m = 0.0;
-  double crown_centre_m = 0.0;      ///< height of the center of the half circle
+  double crown_center_m = 0.0;      ///< height of the center of the half circle
   double side_radius_m = 0.0;       ///< radius of the side walls below the half circle
   double first_ring_m = 0.0;        ///< chainage at the start of ring 1
   double ring_length_m = 0.0;
@@ -38,7 +38,7 @@ struct TunnelLining {
 
   /// Returns the point at a chainage and an offset to the left, in the frame of the route.
   Eigen::Vector2d point_at(double chainage_m, double left_m) const;
-  TunnelPlace place_of(const Eigen::Vector3d& p_route) const;
+  TunnelCoordinates to_tunnel_coordinates(const Eigen::Vector3d& p_route) const;
   double heading_at(double chainage_m) const;  ///< heading of the axis in the frame of the route, rad
 
   /// Returns the ring number at a chainage; 0 outside the rings.
@@ -46,7 +46,7 @@ struct TunnelLining {
   double middle_of_ring_m(int ring) const { return first_ring_m + (ring - 0.5) * ring_length_m; }
 
   /// Returns the clock position around the center of the half circle, 0 to 360.
-  double clock_deg(const TunnelPlace& place) const;
+  double clock_deg(const TunnelCoordinates& coordinates) const;
   /// Returns the distance from the center of the half circle to the intrados in a direction, m.
   double radius_at(double clock_deg) const;
   /// Returns a point of the intrados in the frame of the route.

@@ -46,14 +46,14 @@ inline UwbBias uwb_bias_at(const UwbCalibration& calibration, double distance_m)
 /// Returns the antenna position in `level`, raised by the height of the body above the origin of map. Roll and pitch
 /// are from odometry; the pose hypothesis provides x, y and yaw.
 inline Eigen::Vector3d uwb_antenna_in_level(const Eigen::Quaterniond& R_odom_body, const Pose3& T_body_uwb, double z_m) {
-  const Eigen::Quaterniond tilt = quaternion_from_yaw(-yaw_of(R_odom_body)) * R_odom_body;
+  const Eigen::Quaterniond tilt = quaternion_from_yaw(-to_yaw(R_odom_body)) * R_odom_body;
   return tilt * T_body_uwb.position + Eigen::Vector3d(0.0, 0.0, z_m);
 }
 
 struct PredictedRange {
   double range_m = 0.0;                               ///< predicted reading, including the bias
-  Eigen::Vector3d by_pose = Eigen::Vector3d::Zero();  ///< gradient with respect to x, y (m/m) and yaw (m/rad)
-  double by_z = 0.0;                                  ///< derivative with respect to the height of the body
+  Eigen::Vector3d H_pose = Eigen::Vector3d::Zero();  ///< gradient with respect to x, y (m/m) and yaw (m/rad)
+  double H_z = 0.0;                                  ///< derivative with respect to the height of the body
 };
 
 /// Predicts the reading of the range to an anchor in `map` for a robot pose.
@@ -67,8 +67,8 @@ inline PredictedRange predict_uwb_range(const UwbAnchor& anchor_in_map, const Po
   PredictedRange predicted{.range_m = distance + bias.bias_m};
   if (distance < 1e-9) return predicted;
   const Eigen::Vector3d slope = (1.0 + bias.slope) / distance * anchor_to_antenna;
-  predicted.by_pose = {slope.x(), slope.y(), slope.y() * lever.x() - slope.x() * lever.y()};
-  predicted.by_z = slope.z();
+  predicted.H_pose = {slope.x(), slope.y(), slope.y() * lever.x() - slope.x() * lever.y()};
+  predicted.H_z = slope.z();
   return predicted;
 }
 

@@ -12,7 +12,7 @@ void GasMeasurement::add(const GasReading& reading) {
   mean_ppm_m_ += deviation / count_;
   sum_of_squares_ += deviation * (reading.column_ppm_m - mean_ppm_m_);
   if (!std::isfinite(reading.path_length_m)) return;
-  ++num_echoes_;
+  ++num_returns_;
   sum_of_lengths_m_ += reading.path_length_m;
 }
 
@@ -21,8 +21,8 @@ double GasMeasurement::standard_error_ppm_m() const {
 }
 
 std::optional<double> GasMeasurement::beam_m() const {
-  if (num_echoes_ == 0) return std::nullopt;
-  return sum_of_lengths_m_ / num_echoes_;
+  if (num_returns_ == 0) return std::nullopt;
+  return sum_of_lengths_m_ / num_returns_;
 }
 
 }  // namespace patrol::inspect

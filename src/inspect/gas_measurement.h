@@ -23,7 +23,7 @@ class GasMeasurement {
   int count_ = 0;
   double mean_ppm_m_ = 0.0;
   double sum_of_squares_ = 0.0;  ///< sum of squared deviations from the mean [Welford62]
-  int num_echoes_ = 0;
+  int num_returns_ = 0;
   double sum_of_lengths_m_ = 0.0;
 };
 

@@ -12,7 +12,7 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::size_t kMostStumps = 10000;
+constexpr std::size_t kMaxStumps = 10000;
 
 void check_features(const JsonObject& reader, const std::vector<std::string>& expected) {
   std::vector<std::string> names;
@@ -25,12 +25,12 @@ void check_features(const JsonObject& reader, const std::vector<std::string>& ex
 
 DecisionStump read_stump(const std::string& place, const Json& json, const std::vector<std::string>& features) {
   const JsonObject reader(place, json, {"feature", "threshold", "sign_above", "weight"});
-  const std::string name = reader.word("feature");
+  const std::string name = reader.string("feature");
   const auto feature = std::ranges::find(features, name);
   if (feature == features.end()) reader.fail(fmt::format("feature = {}: is not one of the features", name));
   const DecisionStump stump{.feature = static_cast<std::size_t>(feature - features.begin()),
                             .threshold = reader.number("threshold"),
-                            .sign_above = reader.whole("sign_above"),
+                            .sign_above = reader.integer("sign_above"),
                             .weight = reader.number("weight")};
   if (stump.sign_above != 1 && stump.sign_above != -1) reader.fail(fmt::format("sign_above = {}: must be 1 or -1", stump.sign_above));
   if (stump.weight <= 0.0) reader.fail("weight must be positive");
@@ -41,7 +41,7 @@ DecisionStump read_stump(const std::string& place, const Json& json, const std::
 
 BoostedStumps load_boosted_stumps(const std::filesystem::path& file, const std::vector<std::string>& expected_features) {
   const std::string name = file.string();
-  const Json json = load_json(file, kMostStumps);
+  const Json json = load_json(file, kMaxStumps);
   const JsonObject reader(name, json, {"features", "stumps"});
   check_features(reader, expected_features);
   BoostedStumps model{.features = expected_features, .stumps = {}};

@@ -15,10 +15,10 @@
 namespace patrol::io {
 namespace {
 
-constexpr double kMostMount_m = 2.0;     ///< maximum distance of the lidar from the robot origin
+constexpr double kMaxMount_m = 2.0;     ///< maximum distance of the lidar from the robot origin
 constexpr double kSameMount_m = 0.05, kSameMountRad = 0.05;
 constexpr double kEqualPoses = 1e-6;     ///< m, rad: last digit written by CARMEN
-constexpr double kLargestStepDeg = 5.0;
+constexpr double kMaxStepDeg = 5.0;
 constexpr int kLinesToChooseFrom = 1000;
 
 /// Lidar messages by decreasing information: own angles and pose, pose, angles; front before rear.
@@ -36,10 +36,10 @@ constexpr std::array<KnownStep, 7> kKnownSteps = {
 
 /// Returns whether a word is a message name, the first word of a log line: "FLASER", "NMEAGGA", "WIFI-SCAN".
 bool is_message_name(std::string_view word) {
-  constexpr std::size_t kLongest = 40;
+  constexpr std::size_t kMaxNameLength = 40;
   const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_'; };
   const auto belongs = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '-'; };
-  return word.size() <= kLongest && is_letter(word.front()) && std::all_of(word.begin(), word.end(), belongs);
+  return word.size() <= kMaxNameLength && is_letter(word.front()) && std::all_of(word.begin(), word.end(), belongs);
 }
 
 std::string choose_laser(const std::filesystem::path& file) {
@@ -72,7 +72,7 @@ std::string CarmenLog::place() const { return fmt::format("{}:{}: ", lines_.file
 std::optional<RecordedScan> CarmenLog::next() {
   while (true) {
     if (std::optional<RecordedScan> scan = sorter_.take(is_at_end_)) {
-      count_given_out(*scan);
+      count_returned(*scan);
       return scan;
     }
     if (is_at_end_) return std::nullopt;
@@ -87,44 +87,44 @@ bool CarmenLog::read_line() {
   ++summary_.num_read;
   try {
     read_message(*line);
-  } catch (const FieldError& error) {
-    refuse_or_skip(options_, "lines that cannot be read", place() + error.what());
+  } catch (const ParseError& error) {
+    reject_or_skip(options_, "lines that cannot be read", place() + error.what());
   }
   return true;
 }
 
 void CarmenLog::finish() {
   is_at_end_ = true;
-  if (lines_.damage()) refuse_or_skip(options_, "file ends too early", fmt::format("{}: {} after line {}", lines_.file().string(), *lines_.damage(), line_));
+  if (lines_.read_error()) reject_or_skip(options_, "file ends too early", fmt::format("{}: {} after line {}", lines_.file().string(), *lines_.read_error(), line_));
   if (summary_.num_scans == 0 && sorter_.is_empty()) {
     throw InputError(fmt::format("{}: holds no scan ({}): FLASER or ROBOTLASER1 are read", lines_.file().string(), counted(summary_)));
   }
 }
 
 void CarmenLog::read_message(const LineReader::Line& line) {
-  if (line.is_cut) throw FieldError(fmt::format("the line is longer than {} bytes", LineReader::kMaxLineBytes));
-  LineFields words(line.text);
+  if (line.is_cut) throw ParseError(fmt::format("the line is longer than {} bytes", LineReader::kMaxLineBytes));
+  LineTokenizer words(line.text);
   if (words.is_empty() || line.text.front() == '#') return;
   const std::string_view name = words.word("the message's name");
-  if (!is_message_name(name)) throw FieldError("does not begin with a message's name, as FLASER or ODOM");
+  if (!is_message_name(name)) throw ParseError("does not begin with a message's name, as FLASER or ODOM");
   const std::string_view contents = line.text.substr(static_cast<std::size_t>(name.data() - line.text.data()) + name.size());
   const std::optional<CarmenLaserFamily> family = carmen_laser_family(name);
   if (family && laser_.empty()) laser_ = name;
   try {
     if (family && name == laser_) return add(parse_carmen_scan(*family, contents));
-    if (name == "PARAM") return note_parameter(parse_carmen_parameter(contents));
+    if (name == "PARAM") return store_parameter(parse_carmen_parameter(contents));
     if (name == "ODOM") odometry_ = parse_carmen_odometry(contents);
     count_ignored(std::string(name));
-  } catch (const FieldError& error) {
-    throw FieldError(fmt::format("{}: {}", name, error.what()));
+  } catch (const ParseError& error) {
+    throw ParseError(fmt::format("{}: {}", name, error.what()));
   }
 }
 
-void CarmenLog::note_parameter(const CarmenParameter& parameter) {
+void CarmenLog::store_parameter(const CarmenParameter& parameter) {
   for (const std::string_view side : {"front", "rear"}) {
     for (const std::string& name : {fmt::format("robot_{}laser_offset", side), fmt::format("robot_{}laser_side_offset", side),
                                     fmt::format("robot_{}laser_angular_offset", side), fmt::format("laser_{}_laser_resolution", side)}) {
-      if (parameter.name == name) parameters_[name] = LineFields(parameter.value).number(name.c_str());
+      if (parameter.name == name) parameters_[name] = LineTokenizer(parameter.value).number(name.c_str());
     }
   }
 }
@@ -155,9 +155,9 @@ Pose2 CarmenLog::parameter_mount() const {
 Pose2 CarmenLog::mount_of(const CarmenScan& scan) {
   if (!scan.T_odom_lidar) return parameter_mount();
   const Pose2 T_body_lidar = scan.T_odom_body->inverse() * *scan.T_odom_lidar;
-  const bool says_nothing = are_equal(T_body_lidar, {}, kEqualPoses, kEqualPoses);
-  if (!T_body_lidar_) T_body_lidar_ = says_nothing || T_body_lidar.position().norm() > kMostMount_m ? parameter_mount() : T_body_lidar;
-  const bool is_elsewhere = !says_nothing && !are_equal(T_body_lidar, *T_body_lidar_, kSameMount_m, kSameMountRad);
+  const bool is_uninformative = are_equal(T_body_lidar, {}, kEqualPoses, kEqualPoses);
+  if (!T_body_lidar_) T_body_lidar_ = is_uninformative || T_body_lidar.position().norm() > kMaxMount_m ? parameter_mount() : T_body_lidar;
+  const bool is_elsewhere = !is_uninformative && !are_equal(T_body_lidar, *T_body_lidar_, kSameMount_m, kSameMountRad);
   if (is_elsewhere) ++summary_.assumed["scans: the lidar is where the first scan has it"];
   return *T_body_lidar_;
 }
@@ -165,9 +165,9 @@ Pose2 CarmenLog::mount_of(const CarmenScan& scan) {
 double CarmenLog::old_step_deg(std::size_t num_beams, std::size_t num_steps) const {
   const auto known = std::find_if(kKnownSteps.begin(), kKnownSteps.end(), [&](const KnownStep& step) { return step.num_beams == num_beams; });
   const double usual_deg = known == kKnownSteps.end() ? 180.0 / static_cast<double>(std::max<std::size_t>(1, num_steps)) : known->step_deg;
-  const double said_deg = parameter(is_rear_laser(laser_) ? "laser_rear_laser_resolution" : "laser_front_laser_resolution", usual_deg);
-  const bool is_possible = said_deg > 0.0 && said_deg <= kLargestStepDeg && said_deg * static_cast<double>(num_steps) <= 360.0;
-  return is_possible ? said_deg : usual_deg;
+  const double parameter_deg = parameter(is_rear_laser(laser_) ? "laser_rear_laser_resolution" : "laser_front_laser_resolution", usual_deg);
+  const bool is_possible = parameter_deg > 0.0 && parameter_deg <= kMaxStepDeg && parameter_deg * static_cast<double>(num_steps) <= 360.0;
+  return is_possible ? parameter_deg : usual_deg;
 }
 
 LaserScan CarmenLog::to_laser_scan(CarmenScan scan) const {

@@ -35,7 +35,7 @@ class CarmenLog : public ScanLog {
  private:
   bool read_line();
   void read_message(const LineReader::Line& line);
-  void note_parameter(const CarmenParameter& parameter);
+  void store_parameter(const CarmenParameter& parameter);
   void add(CarmenScan scan);
   Pose2 parameter_mount() const;
   Pose2 mount_of(const CarmenScan& scan);

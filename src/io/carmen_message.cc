@@ -16,27 +16,27 @@ constexpr std::size_t kDriveWords = 5;  ///< words of ROBOTLASERn: tv rv forward
 constexpr double kMaxAngleRad = 7.0;         ///< one turn plus rounding
 
 /// Checks the number of remaining words before any of them is interpreted.
-void expect_words(const LineFields& fields, std::size_t expected, const char* after) {
+void expect_word_count(const LineTokenizer& fields, std::size_t expected, const char* after) {
   const std::size_t words = fields.num_words();
-  if (words != expected) throw FieldError(fmt::format("holds {} words after its {}, must be {}: cut off, or wrongly counted", words, after, expected));
+  if (words != expected) throw ParseError(fmt::format("holds {} words after its {}, must be {}: cut off, or wrongly counted", words, after, expected));
 }
 
-std::size_t read_count(LineFields& fields, const char* what, std::int64_t min) {
-  return static_cast<std::size_t>(fields.integer(what, min, static_cast<std::int64_t>(kMostCarmenBeams)));
+std::size_t read_count(LineTokenizer& fields, const char* what, std::int64_t min) {
+  return static_cast<std::size_t>(fields.integer(what, min, static_cast<std::int64_t>(kMaxCarmenBeams)));
 }
 
 /// Reads a counted list. The count is checked against the number of words in the line before memory is allocated.
 template <typename Number>
-std::vector<Number> read_numbers(LineFields& fields, std::size_t count, const char* what) {
+std::vector<Number> read_numbers(LineTokenizer& fields, std::size_t count, const char* what) {
   const std::size_t words = fields.num_words();
-  if (count > words) throw FieldError(fmt::format("holds {} words after its {} {}s: cut off, or wrongly counted", words, count, what));
+  if (count > words) throw ParseError(fmt::format("holds {} words after its {} {}s: cut off, or wrongly counted", words, count, what));
   std::vector<Number> numbers;
   numbers.reserve(count);
   for (std::size_t i = 0; i < count; ++i) numbers.push_back(static_cast<Number>(fields.any_number(what)));
   return numbers;
 }
 
-void read_poses(LineFields& fields, CarmenScan& scan) {
+void read_poses(LineTokenizer& fields, CarmenScan& scan) {
   scan.T_odom_lidar = fields.pose("the laser's pose");
   scan.T_odom_body = fields.pose("the robot's pose");
 }
@@ -55,10 +55,10 @@ double exact_increment(double step_rad, double field_of_view_rad, std::size_t nu
 
 /// Reads a message of the new formats: laser_type start_angle field_of_view angular_resolution maximum_range accuracy
 /// remission_mode num_readings ranges num_remissions remissions.
-void read_new_scan(LineFields& fields, CarmenScan& scan) {
+void read_new_scan(LineTokenizer& fields, CarmenScan& scan) {
   const auto angle = [&](const char* what) {
     const double value = fields.number(what);
-    if (std::abs(value) > kMaxAngleRad) throw FieldError(fmt::format("{} of {} rad is more than a turn", what, value));
+    if (std::abs(value) > kMaxAngleRad) throw ParseError(fmt::format("{} of {} rad is more than a turn", what, value));
     return value;
   };
   fields.number("laser_type");
@@ -88,17 +88,17 @@ std::optional<CarmenLaserFamily> carmen_laser_family(std::string_view name) {
 bool is_rear_laser(std::string_view name) { return name == "RLASER" || name.ends_with('2'); }
 
 CarmenScan parse_carmen_scan(CarmenLaserFamily family, std::string_view contents) {
-  LineFields fields(contents);
+  LineTokenizer fields(contents);
   CarmenScan scan;
   if (family == CarmenLaserFamily::kOld) {
     const std::size_t num_beams = read_count(fields, "num_readings", 1);
-    expect_words(fields, num_beams + 2 * kPoseWords + kTailWords, "number of readings");
+    expect_word_count(fields, num_beams + 2 * kPoseWords + kTailWords, "number of readings");
     scan.ranges_m = read_numbers<double>(fields, num_beams, "range");
     read_poses(fields, scan);
   } else {
     read_new_scan(fields, scan);
     const bool has_poses = family == CarmenLaserFamily::kRobot;
-    expect_words(fields, (has_poses ? 2 * kPoseWords + kDriveWords : 0) + kTailWords, "remissions");
+    expect_word_count(fields, (has_poses ? 2 * kPoseWords + kDriveWords : 0) + kTailWords, "remissions");
     if (has_poses) {
       read_poses(fields, scan);
       for (std::size_t i = 0; i < kDriveWords; ++i) fields.any_number("a number of the drive");
@@ -109,8 +109,8 @@ CarmenScan parse_carmen_scan(CarmenLaserFamily family, std::string_view contents
 }
 
 CarmenOdometry parse_carmen_odometry(std::string_view contents) {
-  LineFields fields(contents);
-  expect_words(fields, kPoseWords + 3 + kTailWords, "name");
+  LineTokenizer fields(contents);
+  expect_word_count(fields, kPoseWords + 3 + kTailWords, "name");
   CarmenOdometry odometry;
   odometry.T_odom_body = fields.pose("the robot's pose");
   for (const char* const what : {"tv", "rv", "accel"}) fields.any_number(what);
@@ -119,7 +119,7 @@ CarmenOdometry parse_carmen_odometry(std::string_view contents) {
 }
 
 CarmenParameter parse_carmen_parameter(std::string_view contents) {
-  LineFields fields(contents);
+  LineTokenizer fields(contents);
   const std::string_view name = fields.word("the parameter's name");
   return {.name = name, .value = fields.is_empty() ? std::string_view{} : fields.word("the parameter's value")};
 }

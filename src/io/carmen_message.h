@@ -37,7 +37,7 @@ struct CarmenParameter {
 };
 
 /// Maximum number of beams per message.
-inline constexpr std::size_t kMostCarmenBeams = 10'000;
+inline constexpr std::size_t kMaxCarmenBeams = 10'000;
 
 /// Format of a lidar message.
 enum class CarmenLaserFamily { kOld, kRaw, kRobot };
@@ -45,7 +45,7 @@ enum class CarmenLaserFamily { kOld, kRaw, kRobot };
 std::optional<CarmenLaserFamily> carmen_laser_family(std::string_view name);
 bool is_rear_laser(std::string_view name);
 
-/// Parse the text after the message name. Throw FieldError if the text is too short, too long or not numeric.
+/// Parse the text after the message name. Throw ParseError if the text is too short, too long or not numeric.
 CarmenScan parse_carmen_scan(CarmenLaserFamily family, std::string_view contents);
 CarmenOdometry parse_carmen_odometry(std::string_view contents);
 CarmenParameter parse_carmen_parameter(std::string_view contents);

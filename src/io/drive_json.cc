@@ -11,15 +11,15 @@
 namespace patrol::io {
 namespace {
 
-constexpr double kLongestLeg_m = 1000.0;
+constexpr double kMaxLeg_m = 1000.0;
 
-DriveWaypoint read_waypoint(const std::string& place, const Json& json) {
+TeleopWaypoint read_waypoint(const std::string& place, const Json& json) {
   const JsonObject reader(place, json, {"position", "reverse", "mark_heading_deg"});
   const std::vector<double> p = reader.numbers("position", 2);
-  DriveWaypoint waypoint{.p_m = {p[0], p[1]}};
-  if (reader.has("reverse")) waypoint.is_reverse = reader.flag("reverse");
+  TeleopWaypoint waypoint{.p_m = {p[0], p[1]}};
+  if (reader.has("reverse")) waypoint.is_reverse = reader.boolean("reverse");
   if (reader.has("mark_heading_deg")) {
-    waypoint.is_mark = true;
+    waypoint.is_goal = true;
     const double heading_deg = reader.number("mark_heading_deg");
     if (std::abs(heading_deg) > 360.0) reader.fail("mark_heading_deg must lie in -360 ... 360");
     waypoint.heading_rad = to_rad(heading_deg);
@@ -29,18 +29,18 @@ DriveWaypoint read_waypoint(const std::string& place, const Json& json) {
 
 }  // namespace
 
-RemoteDrive load_drive(const std::filesystem::path& file) {
+TeleopRoute load_teleop_route(const std::filesystem::path& file) {
   const Json json = load_json(file);
   const JsonObject root(file.string(), json, {"version", "frame", "waypoints"});
-  if (root.whole("version") != 1) root.fail("version must be 1");
-  if (root.word("frame") != "site") root.fail("frame must be site");
+  if (root.integer("version") != 1) root.fail("version must be 1");
+  if (root.string("frame") != "site") root.fail("frame must be site");
   const Json& waypoints = root.list("waypoints");
-  RemoteDrive drive;
+  TeleopRoute drive;
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     const std::string place = fmt::format("{}: waypoints[{}]", file.string(), i);
     drive.push_back(read_waypoint(place, waypoints[i]));
-    if (i > 0 && (drive[i].p_m - drive[i - 1].p_m).norm() > kLongestLeg_m) {
-      throw InputError(fmt::format("{}: position lies more than {} m from the one before", place, kLongestLeg_m));
+    if (i > 0 && (drive[i].p_m - drive[i - 1].p_m).norm() > kMaxLeg_m) {
+      throw InputError(fmt::format("{}: position lies more than {} m from the one before", place, kMaxLeg_m));
     }
   }
   if (drive.size() < 2) root.fail("waypoints must be at least two");

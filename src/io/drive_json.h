@@ -10,6 +10,6 @@ namespace patrol::io {
 /// "mark_heading_deg": number?}, ...]}, in meters. A waypoint with a heading is saved as a goal. At least two
 /// waypoints, at most 1 km apart.
 /// Throws InputError with file, waypoint and key.
-RemoteDrive load_drive(const std::filesystem::path& file);
+TeleopRoute load_teleop_route(const std::filesystem::path& file);
 
 }  // namespace patrol::io

@@ -5,7 +5,7 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::size_t kMostGenerations = 64;  ///< maximum depth of the tree; also ends cyclic chains
+constexpr std::size_t kMaxTreeDepth = 64;  ///< maximum depth of the tree; also ends cyclic chains
 
 /// Removes the leading slash of ROS 1 frame names; tf2 does not use it.
 std::string plain(const std::string& frame) { return frame.starts_with('/') ? frame.substr(1) : frame; }
@@ -21,36 +21,36 @@ std::optional<Pose3> pose_at_stamp(const std::deque<StampedPose>& poses, Time st
 
 }  // namespace
 
-FrameTree::Link* FrameTree::link_of(const FrameTransform& transform) {
+TransformBuffer::Link* TransformBuffer::find_or_add_link(const FrameTransform& transform) {
   const std::string child = plain(transform.child), parent = plain(transform.parent);
   const auto known = links_.find(child);
-  if (known == links_.end() && links_.size() >= kMostFrames) return nullptr;
+  if (known == links_.end() && links_.size() >= kMaxFrames) return nullptr;
   Link& link = links_[child];
   if (link.parent != parent) link = {.parent = parent, .T_parent_child = {}};
   return &link;
 }
 
-void FrameTree::add_static(const FrameTransform& transform) {
-  if (Link* const link = link_of(transform)) {
+void TransformBuffer::add_static(const FrameTransform& transform) {
+  if (Link* const link = find_or_add_link(transform)) {
     link->is_static = true;
     link->T_parent_child = {{transform.stamp, transform.T_parent_child}};
   }
 }
 
-void FrameTree::add(const FrameTransform& transform) {
-  Link* const link = link_of(transform);
+void TransformBuffer::add(const FrameTransform& transform) {
+  Link* const link = find_or_add_link(transform);
   if (!link) return;
   std::deque<StampedPose>& poses = link->T_parent_child;
   if (link->is_static) poses.clear();
   link->is_static = false;
   if (!poses.empty() && transform.stamp <= poses.back().stamp) return;
   poses.push_back({transform.stamp, transform.T_parent_child});
-  while (poses.size() > kMostPoses || transform.stamp - poses.front().stamp > kMemory) poses.pop_front();
+  while (poses.size() > kMaxPoses || transform.stamp - poses.front().stamp > kBufferLength) poses.pop_front();
 }
 
-std::vector<FrameTree::Ancestor> FrameTree::ancestors(const std::string& frame, Time stamp) const {
+std::vector<TransformBuffer::Ancestor> TransformBuffer::ancestors(const std::string& frame, Time stamp) const {
   std::vector<Ancestor> line = {{plain(frame), {}}};
-  while (line.size() < kMostGenerations) {
+  while (line.size() < kMaxTreeDepth) {
     const auto link = links_.find(line.back().frame);
     if (link == links_.end()) break;
     const auto& poses = link->second.T_parent_child;
@@ -61,7 +61,7 @@ std::vector<FrameTree::Ancestor> FrameTree::ancestors(const std::string& frame, 
   return line;
 }
 
-std::optional<Pose3> FrameTree::find(const std::string& parent, const std::string& child, Time stamp) const {
+std::optional<Pose3> TransformBuffer::find(const std::string& parent, const std::string& child, Time stamp) const {
   const std::vector<Ancestor> of_parent = ancestors(parent, stamp), of_child = ancestors(child, stamp);
   for (const Ancestor& above : of_child) {
     const auto common = std::find_if(of_parent.begin(), of_parent.end(), [&](const Ancestor& other) { return other.frame == above.frame; });

@@ -15,13 +15,13 @@
 namespace patrol::io {
 
 /// Transform buffer for /tf and /tf_static, as in tf2. Each frame has one parent; moving transforms are kept for
-/// `kMemory`.
-class FrameTree {
+/// `kBufferLength`.
+class TransformBuffer {
  public:
-  static constexpr Time kMemory = std::chrono::seconds(10);  ///< buffer length of moving transforms
-  static constexpr std::size_t kMostPoses = 2'000;           ///< maximum number of buffered transforms per frame
+  static constexpr Time kBufferLength = std::chrono::seconds(10);  ///< buffer length of moving transforms
+  static constexpr std::size_t kMaxPoses = 2'000;           ///< maximum number of buffered transforms per frame
   /// Maximum number of frames; more than any robot has, further frames are ignored.
-  static constexpr std::size_t kMostFrames = 1'000;
+  static constexpr std::size_t kMaxFrames = 1'000;
 
   void add_static(const FrameTransform& transform);
   /// Adds a moving transform. A transform that is not newer than the latest one of its frame is dropped. If the parent
@@ -44,7 +44,7 @@ class FrameTree {
   };
   /// Returns the frame itself and its ancestors, as far as known at the instant.
   std::vector<Ancestor> ancestors(const std::string& frame, Time stamp) const;
-  Link* link_of(const FrameTransform& transform);
+  Link* find_or_add_link(const FrameTransform& transform);
 
   std::map<std::string, Link> links_;  ///< by child frame
 };

@@ -19,14 +19,14 @@ namespace {
 
 using Id = std::int64_t;
 
-Id read_id(LineFields& fields) { return fields.integer("id", 0, std::numeric_limits<Id>::max()); }
+Id read_id(LineTokenizer& fields) { return fields.integer("id", 0, std::numeric_limits<Id>::max()); }
 
-Eigen::Matrix3d read_information(LineFields& fields) {
+Eigen::Matrix3d read_information(LineTokenizer& fields) {
   Eigen::Matrix3d information;
   for (int row = 0; row < 3; ++row) {
     for (int col = row; col < 3; ++col) information(row, col) = information(col, row) = fields.number("information");
   }
-  if (!is_positive_definite(information)) throw FieldError("information is not positive definite");
+  if (!is_positive_definite(information)) throw ParseError("information is not positive definite");
   return information;
 }
 
@@ -39,13 +39,13 @@ class G2oReader {
     while (const auto line = lines_.next()) {
       line_ = line->number;
       try {
-        if (line->is_cut) throw FieldError("is too long");
-        read_line(LineFields(line->text));
-      } catch (const FieldError& error) {
+        if (line->is_cut) throw ParseError("is too long");
+        read_line(LineTokenizer(line->text));
+      } catch (const ParseError& error) {
         fail(line_, error.what());
       }
     }
-    if (lines_.damage()) throw InputError(fmt::format("{}: {}", lines_.file().string(), *lines_.damage()));
+    if (lines_.read_error()) throw InputError(fmt::format("{}: {}", lines_.file().string(), *lines_.read_error()));
     if (graph_.T_map_node.empty()) throw InputError(lines_.file().string() + ": holds no VERTEX_SE2");
     resolve_ids();
     return std::move(graph_);
@@ -60,7 +60,7 @@ class G2oReader {
 
   [[noreturn]] void fail(int line, const std::string& what) const { throw input_error(lines_.file().string(), line, what); }
 
-  void read_line(LineFields fields) {
+  void read_line(LineTokenizer fields) {
     if (fields.is_empty()) return;
     const std::string_view tag = fields.word("a tag");
     if (tag.front() == '#') return;
@@ -68,23 +68,23 @@ class G2oReader {
       if (tag == "VERTEX_SE2") read_vertex(fields);
       else if (tag == "EDGE_SE2") read_edge(fields);
       else if (tag == "FIX") read_fixed(fields);
-      else throw FieldError("is not read: VERTEX_SE2, EDGE_SE2 and FIX are");
-      if (!fields.is_empty()) throw FieldError("holds too many words");
-    } catch (const FieldError& error) {
-      constexpr std::size_t kMostShown = 24;
-      throw FieldError(fmt::format("{}: {}", tag.substr(0, kMostShown), error.what()));
+      else throw ParseError("is not read: VERTEX_SE2, EDGE_SE2 and FIX are");
+      if (!fields.is_empty()) throw ParseError("holds too many words");
+    } catch (const ParseError& error) {
+      constexpr std::size_t kMaxShown = 24;
+      throw ParseError(fmt::format("{}: {}", tag.substr(0, kMaxShown), error.what()));
     }
   }
 
-  void read_vertex(LineFields& fields) {
+  void read_vertex(LineTokenizer& fields) {
     const Id id = read_id(fields);
-    if (!node_of_.emplace(id, static_cast<int>(graph_.T_map_node.size())).second) throw FieldError(fmt::format("id {} is there twice", id));
+    if (!node_of_.emplace(id, static_cast<int>(graph_.T_map_node.size())).second) throw ParseError(fmt::format("id {} is there twice", id));
     graph_.T_map_node.push_back(fields.pose("pose"));
   }
 
-  void read_edge(LineFields& fields) {
+  void read_edge(LineTokenizer& fields) {
     const Naming from{read_id(fields), line_}, to{read_id(fields), line_};
-    if (from.id == to.id) throw FieldError(fmt::format("goes from {} to itself", from.id));
+    if (from.id == to.id) throw ParseError(fmt::format("goes from {} to itself", from.id));
     PoseGraphEdge edge;
     edge.T_from_to = fields.pose("pose");
     edge.information = read_information(fields);
@@ -92,7 +92,7 @@ class G2oReader {
     graph_.edges.push_back(edge);
   }
 
-  void read_fixed(LineFields& fields) {
+  void read_fixed(LineTokenizer& fields) {
     do fixed_.push_back({read_id(fields), line_});
     while (!fields.is_empty());
   }

@@ -9,7 +9,7 @@
 namespace patrol::io {
 
 /// Result of the consistency test between gyro and odometry.
-enum class GyroVerdict {
+enum class GyroConsistency {
   kUnknown,      ///< no gyro, or not enough rotation for a decision
   kAgrees,       ///< odometry rotates as the gyro does: the gyro is already fused, or is not needed
   kContradicts,  ///< odometry has a rotation scale error, or slips
@@ -35,12 +35,12 @@ class GyroOdometry {
 
   /// Returns an odometry motion with its yaw increment replaced by that of the gyro, for example the motion during one
   /// scan.
-  Pose2 turned(const Pose2& motion, Time begin, Time end) const;
+  Pose2 replace_rotation(const Pose2& motion, Time begin, Time end) const;
 
-  GyroVerdict verdict() const;
+  GyroConsistency consistency() const;
   std::optional<double> bias_radps() const;
-  double standing_s() const { return standing_s_; }
-  double way_without_bias_s() const { return without_bias_s_; }  ///< duration of motion before a bias was available
+  double stationary_s() const { return stationary_s_; }
+  double motion_without_bias_s() const { return without_bias_s_; }  ///< duration of motion before a bias was available
   double uncovered_s() const { return uncovered_s_; }            ///< duration without gyro messages
 
  private:
@@ -49,7 +49,7 @@ class GyroOdometry {
     double yaw_rad = 0.0;  ///< integrated raw rate, not wrapped
   };
   std::optional<double> heading_at(Time stamp) const;
-  double turn_of_step(const Pose2& step, double dt_s, std::optional<double> gyro_rad);
+  double fused_yaw(const Pose2& step, double dt_s, std::optional<double> gyro_rad);
   void compare(double odometry_rad, double gyro_rad, double dt_s);
 
   std::optional<double> earlier_bias_radps_;
@@ -60,7 +60,7 @@ class GyroOdometry {
   Pose2 T_odom_last_, T_fused_last_;
   double standstill_s_ = 0.0;                     ///< duration of the current standstill
   double pending_s_ = 0.0, pending_rad_ = 0.0;    ///< part of the current standstill that is not yet in the bias
-  double standing_s_ = 0.0, standing_rad_ = 0.0;  ///< sums over all standstills, for the bias
+  double stationary_s_ = 0.0, stationary_rad_ = 0.0;  ///< sums over all standstills, for the bias
   double without_bias_s_ = 0.0, uncovered_s_ = 0.0;
   /// Sums for the least-squares fit odometry = slope * gyro + offset * time.
   double gg_ = 0.0, gt_ = 0.0, tt_ = 0.0, og_ = 0.0, ot_ = 0.0, oo_ = 0.0;

@@ -11,30 +11,30 @@
 namespace patrol::io {
 namespace {
 
-constexpr int kMostRings = 100'000;
+constexpr int kMaxRings = 100'000;
 
-Json figure(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-double figure_of(const JsonObject& object, const char* key) {
+double read_number(const JsonObject& object, const char* key) {
   return object.member(key).is_null() ? std::numeric_limits<double>::quiet_NaN() : object.number(key);
 }
 
 /// Reads a length, a standard deviation or a ratio; must not be negative.
-double size_of(const JsonObject& object, const char* key) {
-  const double value = figure_of(object, key);
+double read_non_negative(const JsonObject& object, const char* key) {
+  const double value = read_number(object, key);
   if (value < 0.0) object.fail(fmt::format("{} must not be negative", key));
   return value;
 }
 
 int count_of(const JsonObject& object, const char* key) {
-  const int count = object.whole(key);
+  const int count = object.integer(key);
   if (count < 0) object.fail(fmt::format("{} must not be negative", key));
   return count;
 }
 
 int ring_of(const JsonObject& object) {
-  const int ring = object.whole("ring");
-  if (ring < 1 || ring > kMostRings) object.fail(fmt::format("ring must lie in 1 ... {}", kMostRings));
+  const int ring = object.integer("ring");
+  if (ring < 1 || ring > kMaxRings) object.fail(fmt::format("ring must lie in 1 ... {}", kMaxRings));
   return ring;
 }
 
@@ -54,7 +54,7 @@ Time stamp_of(const JsonObject& object) {
   return Time{stamp.get<std::int64_t>()};
 }
 
-Json point(const Eigen::Vector3d& p) { return {figure(p.x()), figure(p.y()), figure(p.z())}; }
+Json point(const Eigen::Vector3d& p) { return {number_or_null(p.x()), number_or_null(p.y()), number_or_null(p.z())}; }
 
 Eigen::Vector3d point_of(const JsonObject& object, const char* key) {
   const std::vector<double> p = object.numbers(key, 3);
@@ -73,12 +73,12 @@ std::vector<Entry> entries(const JsonObject& object, const char* list, const std
 void add_body(Json& json, const WaterResult& result) {
   json["position_m"] = point(result.p_map);
   for (int row = 0; row < 3; ++row) json["covariance_m2"].push_back(point(result.covariance_m2.row(row)));
-  json["distance_m"] = figure(result.distance_m);
-  json["distance_interval_m"] = {figure(result.distance_low_m), figure(result.distance_high_m)};
-  json["azimuth_deg"] = figure(result.azimuth_deg);
-  json["elevation_deg"] = figure(result.elevation_deg);
-  json["radius_m"] = figure(result.radius_m);
-  json["radius_interval_m"] = {figure(result.radius_low_m), figure(result.radius_high_m)};
+  json["distance_m"] = number_or_null(result.distance_m);
+  json["distance_interval_m"] = {number_or_null(result.distance_low_m), number_or_null(result.distance_high_m)};
+  json["azimuth_deg"] = number_or_null(result.azimuth_deg);
+  json["elevation_deg"] = number_or_null(result.elevation_deg);
+  json["radius_m"] = number_or_null(result.radius_m);
+  json["radius_interval_m"] = {number_or_null(result.radius_low_m), number_or_null(result.radius_high_m)};
 }
 
 void read_body(const JsonObject& object, WaterResult& result) {
@@ -90,12 +90,12 @@ void read_body(const JsonObject& object, WaterResult& result) {
     result.covariance_m2.row(row) = point_of(JsonObject("covariance_m2", wrapped, {"covariance_m2"}), "covariance_m2");
   }
   const std::vector<double> distance_m = object.numbers("distance_interval_m", 2), radius_m = object.numbers("radius_interval_m", 2);
-  result.distance_m = size_of(object, "distance_m");
+  result.distance_m = read_non_negative(object, "distance_m");
   result.distance_low_m = distance_m[0];
   result.distance_high_m = distance_m[1];
   result.azimuth_deg = object.number("azimuth_deg");
   result.elevation_deg = object.number("elevation_deg");
-  result.radius_m = size_of(object, "radius_m");
+  result.radius_m = read_non_negative(object, "radius_m");
   result.radius_low_m = radius_m[0];
   result.radius_high_m = radius_m[1];
 }
@@ -114,20 +114,20 @@ Json to_json(const LiningResult& result) {
                {"station", result.station},
                {"pose", to_json(result.T_map_body)},
                {"registered", result.is_registered},
-               {"registration_rms_m", figure(result.registration_rms_m)},
-               {"registration_share", figure(result.registration_share)},
-               {"correction_m", figure(result.correction_m)},
+               {"registration_rms_m", number_or_null(result.registration_rms_m)},
+               {"registration_share", number_or_null(result.registration_share)},
+               {"correction_m", number_or_null(result.correction_m)},
                {"cells", Json::array()},
                {"lines", Json::array()},
                {"findings", Json::array()}};
   for (const LiningCell& cell : result.cells) {
-    json["cells"].push_back({{"ring", cell.ring}, {"clock_deg", cell.clock_deg}, {"inward_m", figure(cell.inward_m)}, {"std_m", figure(cell.std_m)}, {"points", cell.points}});
+    json["cells"].push_back({{"ring", cell.ring}, {"clock_deg", cell.clock_deg}, {"inward_m", number_or_null(cell.inward_m)}, {"std_m", number_or_null(cell.std_m)}, {"points", cell.points}});
   }
   for (const ConvergenceLine& line : result.lines) {
-    json["lines"].push_back({{"ring", line.ring}, {"name", line.name}, {"change_m", figure(line.change_m)}, {"std_m", figure(line.std_m)}});
+    json["lines"].push_back({{"ring", line.ring}, {"name", line.name}, {"change_m", number_or_null(line.change_m)}, {"std_m", number_or_null(line.std_m)}});
   }
   for (const RingFinding& finding : result.findings) {
-    json["findings"].push_back({{"ring", finding.ring}, {"clock_deg", finding.clock_deg}, {"inward_m", figure(finding.inward_m)}, {"std_m", figure(finding.std_m)},
+    json["findings"].push_back({{"ring", finding.ring}, {"clock_deg", finding.clock_deg}, {"inward_m", number_or_null(finding.inward_m)}, {"std_m", number_or_null(finding.std_m)},
                                 {"level", name_of(finding.level)}, {"position_m", point(finding.p_map)}});
   }
   return json;
@@ -137,20 +137,20 @@ LiningResult lining_from_json(const std::string& place, const Json& json) {
   const JsonObject object(place, json, {"stamp_ns", "station", "pose", "registered", "registration_rms_m", "registration_share", "correction_m", "cells", "lines", "findings"});
   LiningResult result;
   result.stamp = stamp_of(object);
-  result.station = object.word("station");
+  result.station = object.string("station");
   result.T_map_body = pose_from_json(place + ".pose", object.member("pose"));
-  result.is_registered = object.flag("registered");
-  result.registration_rms_m = size_of(object, "registration_rms_m");
-  result.registration_share = size_of(object, "registration_share");
-  result.correction_m = size_of(object, "correction_m");
+  result.is_registered = object.boolean("registered");
+  result.registration_rms_m = read_non_negative(object, "registration_rms_m");
+  result.registration_share = read_non_negative(object, "registration_share");
+  result.correction_m = read_non_negative(object, "correction_m");
   result.cells = entries<LiningCell>(object, "cells", place, {"ring", "clock_deg", "inward_m", "std_m", "points"}, [](const JsonObject& cell) {
-    return LiningCell{.ring = ring_of(cell), .clock_deg = clock_of(cell), .inward_m = figure_of(cell, "inward_m"), .std_m = size_of(cell, "std_m"), .points = count_of(cell, "points")};
+    return LiningCell{.ring = ring_of(cell), .clock_deg = clock_of(cell), .inward_m = read_number(cell, "inward_m"), .std_m = read_non_negative(cell, "std_m"), .points = count_of(cell, "points")};
   });
   result.lines = entries<ConvergenceLine>(object, "lines", place, {"ring", "name", "change_m", "std_m"}, [](const JsonObject& line) {
-    return ConvergenceLine{.ring = ring_of(line), .name = line.word("name"), .change_m = figure_of(line, "change_m"), .std_m = size_of(line, "std_m")};
+    return ConvergenceLine{.ring = ring_of(line), .name = line.string("name"), .change_m = read_number(line, "change_m"), .std_m = read_non_negative(line, "std_m")};
   });
   result.findings = entries<RingFinding>(object, "findings", place, {"ring", "clock_deg", "inward_m", "std_m", "level", "position_m"}, [](const JsonObject& finding) {
-    return RingFinding{.ring = ring_of(finding), .clock_deg = clock_of(finding), .inward_m = figure_of(finding, "inward_m"), .std_m = size_of(finding, "std_m"),
+    return RingFinding{.ring = ring_of(finding), .clock_deg = clock_of(finding), .inward_m = read_number(finding, "inward_m"), .std_m = read_non_negative(finding, "std_m"),
                        .level = level_of(finding), .p_map = point_of(finding, "position_m")};
   });
   return result;
@@ -161,9 +161,9 @@ Json to_json(const WaterResult& result) {
                {"station", result.station},
                {"pose", to_json(result.T_map_body)},
                {"soundings", result.soundings},
-               {"antenna_error_deg", figure(result.antenna_error_deg)},
-               {"rock_spm", figure(result.rock_spm)},
-               {"evidence", figure(result.evidence)},
+               {"antenna_error_deg", number_or_null(result.antenna_error_deg)},
+               {"rock_spm", number_or_null(result.rock_spm)},
+               {"evidence", number_or_null(result.evidence)},
                {"found", result.is_found},
                {"level", name_of(result.level)}};
   if (result.is_found) add_body(json, result);
@@ -179,13 +179,13 @@ WaterResult water_from_json(const std::string& place, const Json& json) {
   }
   const JsonObject object(place, json, keys);
   result.stamp = stamp_of(object);
-  result.station = object.word("station");
+  result.station = object.string("station");
   result.T_map_body = pose_from_json(place + ".pose", object.member("pose"));
   result.soundings = count_of(object, "soundings");
-  result.antenna_error_deg = size_of(object, "antenna_error_deg");
-  result.rock_spm = size_of(object, "rock_spm");
-  result.evidence = figure_of(object, "evidence");
-  result.is_found = object.flag("found");
+  result.antenna_error_deg = read_non_negative(object, "antenna_error_deg");
+  result.rock_spm = read_non_negative(object, "rock_spm");
+  result.evidence = read_number(object, "evidence");
+  result.is_found = object.boolean("found");
   result.level = level_of(object);
   if (result.is_found) read_body(object, result);
   return result;

@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kNumberOverflow = 406;  // exception id of the library
-constexpr std::size_t kMostDepth = 20;
+constexpr std::size_t kMaxJsonDepth = 20;
 
 /// SAX handler that checks each value while the library parses it.
 class Checker final : public nlohmann::json_sax<Json> {
@@ -69,7 +69,7 @@ class Checker final : public nlohmann::json_sax<Json> {
   }
   bool open(Level level) {
     count();
-    if (open_.size() >= kMostDepth) refuse(fmt::format("lies more than {} levels deep", kMostDepth));
+    if (open_.size() >= kMaxJsonDepth) refuse(fmt::format("lies more than {} levels deep", kMaxJsonDepth));
     open_.push_back(std::move(level));
     return true;
   }

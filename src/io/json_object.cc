@@ -15,7 +15,7 @@
 namespace patrol::io {
 namespace {
 
-constexpr double kLeastUpright = 0.707;  // cosine of the maximum tilt; also catches quaternions written as w, x, y, z
+constexpr double kMinUprightCosine = 0.707;  // cosine of the maximum tilt; also catches quaternions written as w, x, y, z
 
 }  // namespace
 
@@ -30,7 +30,7 @@ JsonObject::JsonObject(std::string place, const Json& json, const std::vector<st
   if (!json.is_object()) fail("must be an object");
   for (const auto& [key, value] : json.items()) {
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-    const std::string nearest = nearest_word(key, keys);
+    const std::string nearest = closest_match(key, keys);
     fail(fmt::format("unknown key {}{}", key, nearest.empty() ? "" : "; did you mean " + nearest + "?"));
   }
 }
@@ -45,7 +45,7 @@ const Json& JsonObject::list(const char* key) const {
   return member(key);
 }
 
-int JsonObject::whole(const char* key) const {
+int JsonObject::integer(const char* key) const {
   const Json& value = member(key);
   if (!value.is_number_integer()) fail(fmt::format("{} must be a whole number", key));
   const bool fits = value.is_number_unsigned() ? std::in_range<int>(value.get<std::uint64_t>())
@@ -59,13 +59,13 @@ double JsonObject::number(const char* key) const {
   return member(key).get<double>();
 }
 
-std::string JsonObject::word(const char* key) const {
+std::string JsonObject::string(const char* key) const {
   const Json& value = member(key);
   if (!value.is_string() || has_control_characters(value.get_ref<const std::string&>())) fail(fmt::format("{} must be a word", key));
   return value.get<std::string>();
 }
 
-bool JsonObject::flag(const char* key) const {
+bool JsonObject::boolean(const char* key) const {
   if (!member(key).is_boolean()) fail(fmt::format("{} must be true or false", key));
   return member(key).get<bool>();
 }
@@ -90,8 +90,8 @@ Pose2 JsonObject::pose() const {
   const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
   if (std::abs(rotation.norm() - 1.0) > 1e-3) fail("orientation must be a quaternion x, y, z, w of length 1");
   const double upright = (rotation * Eigen::Vector3d::UnitZ()).z();
-  if (upright < kLeastUpright) fail("orientation must stand upright, within 45 degrees: a quaternion x, y, z, w");
-  return {p[0], p[1], yaw_of(rotation)};
+  if (upright < kMinUprightCosine) fail("orientation must stand upright, within 45 degrees: a quaternion x, y, z, w");
+  return {p[0], p[1], to_yaw(rotation)};
 }
 
 std::vector<Eigen::Vector2d> JsonObject::polyline(const char* key) const {

@@ -27,17 +27,17 @@ class JsonObject {
   bool has(const char* key) const { return json_.contains(key); }
   const Json& member(const char* key) const;
   const Json& list(const char* key) const;
-  int whole(const char* key) const;
+  int integer(const char* key) const;
   double number(const char* key) const;  ///< finite
-  std::string word(const char* key) const;  ///< without control characters (C0, DEL, C1)
+  std::string string(const char* key) const;  ///< without control characters (C0, DEL, C1)
   /// Value of the table's row of that name.
   template <NamedTable Table>
   auto choice(const char* key, const Table& table) const {
-    const std::string name = word(key);
+    const std::string name = string(key);
     if (const auto* row = find_named(table, name)) return row->value;
     fail_choice(key, name, names_of(table));
   }
-  bool flag(const char* key) const;
+  bool boolean(const char* key) const;
   std::vector<double> numbers(const char* key, std::size_t count) const;
   /// Returns a pose from `position` (x, y, z) and `orientation` (unit quaternion x, y, z, w, upright).
   Pose2 pose() const;

@@ -11,7 +11,7 @@ namespace patrol::io {
 namespace {
 
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
-constexpr double kFurthest_m = 1e8;
+constexpr double kMaxDistance_m = 1e8;
 constexpr std::int64_t kMaxSeconds = 9'000'000'000;  ///< limit of int64 nanoseconds, with margin
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
@@ -19,8 +19,8 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Quotes a word for error messages, truncated.
 std::string quoted(std::string_view word) {
-  constexpr std::size_t kMost = 24;
-  return word.size() <= kMost ? fmt::format("'{}'", word) : fmt::format("'{}...'", word.substr(0, kMost));
+  constexpr std::size_t kMaxQuoted = 24;
+  return word.size() <= kMaxQuoted ? fmt::format("'{}'", word) : fmt::format("'{}...'", word.substr(0, kMaxQuoted));
 }
 
 template <typename Number>
@@ -64,13 +64,13 @@ std::string format_stamp(Time stamp) {
   return fmt::format("{}{}.{:09}", stamp < Time{} ? "-" : "", count / kNanosecondsPerSecond, count % kNanosecondsPerSecond);
 }
 
-void LineFields::skip_blanks() {
+void LineTokenizer::skip_blanks() {
   std::size_t count = 0;
   while (count < rest_.size() && is_blank(rest_[count])) ++count;
   rest_.remove_prefix(count);
 }
 
-std::size_t LineFields::num_words() const {
+std::size_t LineTokenizer::num_words() const {
   std::size_t count = 0;
   bool was_blank = true;
   for (const char c : rest_) {
@@ -81,8 +81,8 @@ std::size_t LineFields::num_words() const {
   return count;
 }
 
-std::string_view LineFields::word(const char* what) {
-  if (rest_.empty()) throw FieldError(fmt::format("ends before {}", what));
+std::string_view LineTokenizer::word(const char* what) {
+  if (rest_.empty()) throw ParseError(fmt::format("ends before {}", what));
   std::size_t size = 1;
   while (size < rest_.size() && !is_blank(rest_[size])) ++size;
   const std::string_view taken = rest_.substr(0, size);
@@ -91,39 +91,39 @@ std::string_view LineFields::word(const char* what) {
   return taken;
 }
 
-double LineFields::any_number(const char* what) {
+double LineTokenizer::any_number(const char* what) {
   const std::string_view text = word(what);
   double value = 0.0;
-  if (!parse_all(text, value)) throw FieldError(fmt::format("{} {} is not a number", what, quoted(text)));
+  if (!parse_all(text, value)) throw ParseError(fmt::format("{} {} is not a number", what, quoted(text)));
   return value;
 }
 
-double LineFields::number(const char* what) {
+double LineTokenizer::number(const char* what) {
   const std::string_view text = word(what);
   double value = 0.0;
-  if (!parse_all(text, value) || !std::isfinite(value)) throw FieldError(fmt::format("{} {} is not a finite number", what, quoted(text)));
+  if (!parse_all(text, value) || !std::isfinite(value)) throw ParseError(fmt::format("{} {} is not a finite number", what, quoted(text)));
   return value;
 }
 
-std::int64_t LineFields::integer(const char* what, std::int64_t min, std::int64_t max) {
+std::int64_t LineTokenizer::integer(const char* what, std::int64_t min, std::int64_t max) {
   const std::string_view text = word(what);
   std::int64_t value = 0;
   if (!parse_all(text, value) || value < min || value > max) {
-    throw FieldError(fmt::format("{} {} must be a whole number in {} ... {}", what, quoted(text), min, max));
+    throw ParseError(fmt::format("{} {} must be a whole number in {} ... {}", what, quoted(text), min, max));
   }
   return value;
 }
 
-Time LineFields::stamp(const char* what) {
+Time LineTokenizer::stamp(const char* what) {
   const std::string_view text = word(what);
   const std::optional<Time> stamp = parse_stamp(text);
-  if (!stamp) throw FieldError(fmt::format("{} {} is not a time in seconds", what, quoted(text)));
+  if (!stamp) throw ParseError(fmt::format("{} {} is not a time in seconds", what, quoted(text)));
   return *stamp;
 }
 
-Pose2 LineFields::pose(const char* what) {
+Pose2 LineTokenizer::pose(const char* what) {
   const double x = number(what), y = number(what), yaw = number(what);
-  if (std::abs(x) > kFurthest_m || std::abs(y) > kFurthest_m) throw FieldError(fmt::format("{} ({:.4g} m, {:.4g} m) is off the earth", what, x, y));
+  if (std::abs(x) > kMaxDistance_m || std::abs(y) > kMaxDistance_m) throw ParseError(fmt::format("{} ({:.4g} m, {:.4g} m) is off the earth", what, x, y));
   return {x, y, wrap_angle(yaw)};
 }
 

@@ -13,7 +13,7 @@
 namespace patrol::io {
 
 /// Invalid word in a line. The message has no file and line; the caller adds them.
-class FieldError : public std::runtime_error {
+class ParseError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
@@ -26,10 +26,10 @@ std::optional<Time> parse_stamp(std::string_view text);
 /// Formats a stamp in seconds with nine decimals, which parse_stamp reads back exactly.
 std::string format_stamp(Time stamp);
 
-/// Tokenizer of a line of words separated by blanks. `what` names the word in error messages. Throws FieldError.
-class LineFields {
+/// Tokenizer of a line of words separated by blanks. `what` names the word in error messages. Throws ParseError.
+class LineTokenizer {
  public:
-  explicit LineFields(std::string_view line) : rest_(line) { skip_blanks(); }
+  explicit LineTokenizer(std::string_view line) : rest_(line) { skip_blanks(); }
 
   bool is_empty() const { return rest_.empty(); }
   /// Returns the number of remaining words.

@@ -15,7 +15,7 @@ namespace {
 constexpr unsigned kGzipBufferBytes = 1U << 16;
 constexpr std::size_t kReadBytes = std::size_t{1} << 15;
 /// Maximum length of a skipped line; longer runs, such as zeros of a damaged disk, end the reading.
-constexpr std::size_t kMostDroppedBytes = std::size_t{1} << 26;
+constexpr std::size_t kMaxDroppedBytes = std::size_t{1} << 26;
 
 }  // namespace
 
@@ -55,8 +55,8 @@ bool LineReader::fill() {
   int error = Z_OK;
   gzerror(gzip_.get(), &error);
   if (error == Z_ERRNO) throw InputError(fmt::format("{}:{}: cannot be read any further", file_.string(), number_ + 1));
-  if (error == Z_BUF_ERROR) damage_ = "the gzip data are cut off";
-  else if (error != Z_OK) damage_ = "the gzip data are damaged";
+  if (error == Z_BUF_ERROR) read_error_ = "the gzip data are cut off";
+  else if (error != Z_OK) read_error_ = "the gzip data are damaged";
   return false;
 }
 
@@ -71,8 +71,8 @@ void LineReader::drop_rest_of_line() {
     }
     dropped += end_ - begin_;
     begin_ = end_ = 0;
-    if (dropped > kMostDroppedBytes) {
-      damage_ = fmt::format("more than {} bytes have no line's end, nothing is read", kMostDroppedBytes);
+    if (dropped > kMaxDroppedBytes) {
+      read_error_ = fmt::format("more than {} bytes have no line's end, nothing is read", kMaxDroppedBytes);
       is_at_end_ = true;
     }
   }

@@ -33,7 +33,7 @@ class LineReader {
 
   /// Reason why reading ended before the end of the file (truncated gzip data, endless line). Valid after the last
   /// line.
-  const std::optional<std::string>& damage() const { return damage_; }
+  const std::optional<std::string>& read_error() const { return read_error_; }
 
   /// Returns the fraction of the file read, in bytes on disk, 0 to 1.
   double progress() const;
@@ -56,7 +56,7 @@ class LineReader {
   int number_ = 0;
   bool is_inside_cut_line_ = false;
   bool is_at_end_ = false;
-  std::optional<std::string> damage_;
+  std::optional<std::string> read_error_;
 };
 
 }  // namespace patrol::io

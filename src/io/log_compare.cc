@@ -57,9 +57,9 @@ std::optional<LogDifference> message_difference(const McapMessage& was, const Mc
 
 }  // namespace
 
-std::optional<LogDifference> first_difference(const std::filesystem::path& log, const std::filesystem::path& again) {
-  if (same_bytes(log, again)) return std::nullopt;
-  McapReader before(log), after(again);
+std::optional<LogDifference> first_difference(const std::filesystem::path& log, const std::filesystem::path& rerun) {
+  if (same_bytes(log, rerun)) return std::nullopt;
+  McapReader before(log), after(rerun);
   while (true) {
     const std::optional<McapMessage> was = before.next(), is = after.next();
     if (!was && !is) break;

@@ -16,7 +16,7 @@ struct LogDifference {
 };
 
 /// Returns the first message of `again` that is not byte-identical to that of `log`; nullopt if the files are equal.
-std::optional<LogDifference> first_difference(const std::filesystem::path& log, const std::filesystem::path& again);
+std::optional<LogDifference> first_difference(const std::filesystem::path& log, const std::filesystem::path& rerun);
 
 /// Formats a difference: "/scan at 12.300000000 s: ranges[417] is 3.26, was 3.25".
 std::string describe(const LogDifference& difference);

@@ -9,7 +9,7 @@
 namespace patrol::io {
 namespace {
 
-std::uint8_t grey_of(std::int8_t occupancy) {
+std::uint8_t to_gray(std::int8_t occupancy) {
   if (occupancy == kUnknown) return 205;
   return occupancy >= 50 ? 0 : 254;
 }
@@ -21,7 +21,7 @@ std::string map_png(const OccupancyGrid& map) {
   std::vector<std::uint8_t> pixels;
   pixels.reserve(geometry.size());
   for (int row = geometry.height - 1; row >= 0; --row) {
-    for (int col = 0; col < geometry.width; ++col) pixels.push_back(grey_of(map.at({col, row})));
+    for (int col = 0; col < geometry.width; ++col) pixels.push_back(to_gray(map.at({col, row})));
   }
   png_image image{};
   image.version = PNG_IMAGE_VERSION;

@@ -18,10 +18,10 @@ namespace patrol::io {
 namespace {
 
 constexpr double kOccupiedThreshold = 0.65, kFreeThreshold = 0.196;
-constexpr int kMostPixelValue = 255;
-constexpr std::size_t kMostPixels = 100'000'000;
+constexpr int kMaxPixelValue = 255;
+constexpr std::size_t kMaxPixels = 100'000'000;
 constexpr unsigned char kOccupiedPixel = 0, kFreePixel = 254, kUnknownPixel = 205;
-constexpr unsigned char kLargestError = 254, kNoError = 255;  // mm
+constexpr unsigned char kMaxError = 254, kNoError = 255;  // mm
 
 unsigned char pixel_of(std::int8_t occupancy) {
   if (occupancy < 0) return kUnknownPixel;
@@ -30,7 +30,7 @@ unsigned char pixel_of(std::int8_t occupancy) {
 
 unsigned char error_pixel(float error_m) {
   if (std::isnan(error_m)) return kNoError;
-  return static_cast<unsigned char>(std::min<double>(kLargestError, std::round(1e3 * error_m)));
+  return static_cast<unsigned char>(std::min<double>(kMaxError, std::round(1e3 * error_m)));
 }
 
 /// Formats a grid as a binary PGM; the rows of the image start at the top.
@@ -66,13 +66,13 @@ Image load_pgm(const std::filesystem::path& file) {
   in >> magic;
   Image image{.width = pgm_number(in), .height = pgm_number(in), .pixels = {}};
   const int maximum = pgm_number(in);
-  if ((magic != "P5" && magic != "P2") || maximum != kMostPixelValue) refuse("is not an 8-bit PGM");
+  if ((magic != "P5" && magic != "P2") || maximum != kMaxPixelValue) refuse("is not an 8-bit PGM");
   if (image.width <= 0 || image.height <= 0) refuse(fmt::format("is {} x {} pixels: holds no map", image.width, image.height));
   // Each pixel takes at least one byte of the file: check the size before memory is allocated.
   const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   const std::string pixels = fmt::format("{} x {} pixels", image.width, image.height);
   if (count > size) refuse("ends too early for " + pixels);
-  if (count > kMostPixels) refuse(fmt::format("has {}: at most {} are read", pixels, kMostPixels));
+  if (count > kMaxPixels) refuse(fmt::format("has {}: at most {} are read", pixels, kMaxPixels));
   image.pixels.resize(count);
   in.get();
   if (magic == "P5") in.read(reinterpret_cast<char*>(image.pixels.data()), static_cast<std::streamsize>(count));
@@ -154,7 +154,7 @@ OccupancyGrid load_map(const std::filesystem::path& file) {
   OccupancyGrid map({.resolution_m = about.resolution, .width = image.width, .height = image.height, .origin_m = origin_m}, kUnknown);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const double value = image.pixels[i];
-    const double p = (negate ? value : kMostPixelValue - value) / kMostPixelValue;
+    const double p = (negate ? value : kMaxPixelValue - value) / kMaxPixelValue;
     const int col = static_cast<int>(i) % image.width, row = image.height - 1 - static_cast<int>(i) / image.width;
     if (p > about.occupied_thresh) map.at({col, row}) = kOccupied;
     else if (p < about.free_thresh) map.at({col, row}) = kFree;

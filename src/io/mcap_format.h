@@ -32,7 +32,7 @@ enum Opcode : std::uint8_t {
 };
 
 /// Serializer of records.
-class Bytes {
+class RecordWriter {
  public:
   template <typename Integer>
   void number(Integer value) {
@@ -49,7 +49,7 @@ class Bytes {
     number(static_cast<std::uint8_t>(opcode));
     number(content_size);
   }
-  void record(Opcode opcode, const Bytes& content) {
+  void record(Opcode opcode, const RecordWriter& content) {
     record_head(opcode, content.size());
     raw(content.view());
   }
@@ -64,15 +64,15 @@ class Bytes {
 };
 
 /// Bytes that violate the format. The message has no file and position; the caller adds them.
-class Damage : public std::runtime_error {
+class FormatError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 /// Parser of the content of a record. Throws Damage if the content is too short.
-class Fields {
+class RecordReader {
  public:
-  explicit Fields(std::string_view bytes) : bytes_(bytes) {}
+  explicit RecordReader(std::string_view bytes) : bytes_(bytes) {}
 
   template <typename Integer>
   Integer number() {
@@ -82,7 +82,7 @@ class Fields {
   }
   std::string text() { return std::string(take(number<std::uint32_t>())); }
   std::string_view take(std::uint64_t size) {
-    if (size > bytes_.size()) throw Damage("a record ends too early");
+    if (size > bytes_.size()) throw FormatError("a record ends too early");
     const std::string_view taken = bytes_.substr(0, size);
     bytes_.remove_prefix(size);
     return taken;

@@ -20,13 +20,13 @@ constexpr std::uint64_t kMaxRecordBytes = std::uint64_t{1} << 28;
 Time to_time(std::uint64_t nanoseconds) { return Time{static_cast<std::int64_t>(nanoseconds)}; }
 
 void expect_size(std::uint64_t size, const char* what) {
-  if (size > kMaxRecordBytes) throw mcap::Damage(fmt::format("{} of {} bytes is too large", what, size));
+  if (size > kMaxRecordBytes) throw mcap::FormatError(fmt::format("{} of {} bytes is too large", what, size));
 }
 
 std::string unpack_zstd(std::string_view packed, std::uint64_t size) {
   std::string unpacked(size, '\0');
   const std::size_t got = ZSTD_decompress(unpacked.data(), unpacked.size(), packed.data(), packed.size());
-  if (ZSTD_isError(got) != 0 || got != size) throw mcap::Damage("a chunk cannot be unpacked");
+  if (ZSTD_isError(got) != 0 || got != size) throw mcap::FormatError("a chunk cannot be unpacked");
   return unpacked;
 }
 
@@ -43,7 +43,7 @@ std::string unpack_lz4(std::string_view packed, std::uint64_t size) {
     written += room;
     done += taken;
   }
-  if (hint != 0 || written != size) throw mcap::Damage("a chunk cannot be unpacked");
+  if (hint != 0 || written != size) throw mcap::FormatError("a chunk cannot be unpacked");
   return unpacked;
 }
 
@@ -59,8 +59,8 @@ McapReader::McapReader(const std::filesystem::path& path, McapSelection selectio
   }
   try {
     find_footer();
-  } catch (const mcap::Damage& damage) {
-    fail(damage.what());
+  } catch (const mcap::FormatError& format_error) {
+    fail(format_error.what());
   }
   offset_ = mcap::kMagic.size();
 }
@@ -82,7 +82,7 @@ void McapReader::find_footer() {
   const std::size_t tail_size = mcap::kFooterSize + mcap::kMagic.size();
   if (size_ < mcap::kMagic.size() + tail_size) return;
   const std::string tail = read_bytes(size_ - tail_size, tail_size);
-  mcap::Fields footer(tail);
+  mcap::RecordReader footer(tail);
   const bool is_footer = footer.number<std::uint8_t>() == mcap::kFooter &&
                          footer.number<std::uint64_t>() == mcap::kFooterSize - mcap::kRecordHeadSize;
   if (!is_footer || !tail.ends_with(mcap::kMagic)) return;
@@ -93,16 +93,16 @@ void McapReader::find_footer() {
 
 void McapReader::read_summary(std::uint64_t start, std::uint64_t end) {
   record_start_ = start;
-  if (start > end) throw mcap::Damage("the summary lies outside the file");
+  if (start > end) throw mcap::FormatError("the summary lies outside the file");
   expect_size(end - start, "the summary");
   const std::string bytes = read_bytes(start, end - start);
-  mcap::Fields records(bytes);
+  mcap::RecordReader records(bytes);
   while (!records.is_empty()) {
     const auto opcode = records.number<std::uint8_t>();
-    mcap::Fields content(records.take(records.number<std::uint64_t>()));
-    if (opcode == mcap::kSchema) note_schema(content);
-    if (opcode == mcap::kChannel) note_channel(content);
-    if (opcode == mcap::kChunkIndex) note_chunk(content);
+    mcap::RecordReader content(records.take(records.number<std::uint64_t>()));
+    if (opcode == mcap::kSchema) add_schema(content);
+    if (opcode == mcap::kChannel) add_channel(content);
+    if (opcode == mcap::kChunkIndex) add_chunk(content);
     if (opcode == mcap::kStatistics) {
       content.take(8 + 2 + 4 + 4 + 4 + 4 + 8);  // counts and the time of the first message
       last_time_ = to_time(content.number<std::uint64_t>());
@@ -111,11 +111,11 @@ void McapReader::read_summary(std::uint64_t start, std::uint64_t end) {
   if (channels_.empty()) unwanted_chunks_.clear();  // the channels are in the chunks: skip none
 }
 
-void McapReader::note_chunk(mcap::Fields content) {
+void McapReader::add_chunk(mcap::RecordReader content) {
   const Time start = to_time(content.number<std::uint64_t>()), end = to_time(content.number<std::uint64_t>());
   const auto offset = content.number<std::uint64_t>();
   content.number<std::uint64_t>();  // length
-  mcap::Fields message_indexes(content.take(content.number<std::uint32_t>()));
+  mcap::RecordReader message_indexes(content.take(content.number<std::uint32_t>()));
   const bool is_indexed = !message_indexes.is_empty();
   bool has_wanted_topic = !is_indexed;
   while (!message_indexes.is_empty()) {
@@ -126,7 +126,7 @@ void McapReader::note_chunk(mcap::Fields content) {
   if (!has_wanted_topic || end < selection_.from || start > selection_.to) unwanted_chunks_.insert(offset);
 }
 
-void McapReader::note_schema(mcap::Fields content) {
+void McapReader::add_schema(mcap::RecordReader content) {
   const auto id = content.number<std::uint16_t>();
   Schema& schema = schemas_[id];
   schema.type = content.text();
@@ -134,10 +134,10 @@ void McapReader::note_schema(mcap::Fields content) {
   schema.definition = content.text();
 }
 
-void McapReader::note_channel(mcap::Fields content) {
+void McapReader::add_channel(mcap::RecordReader content) {
   const auto id = content.number<std::uint16_t>();
   const auto schema = schemas_.find(content.number<std::uint16_t>());
-  if (schema == schemas_.end()) throw mcap::Damage("a channel of an unknown schema");
+  if (schema == schemas_.end()) throw mcap::FormatError("a channel of an unknown schema");
   channels_[id] = {.topic = content.text(), .type = schema->second.type, .definition = schema->second.definition};
 }
 
@@ -150,20 +150,20 @@ std::optional<McapMessage> McapReader::next() {
   try {
     while (true) {
       while (!rest_of_chunk_.empty()) {
-        mcap::Fields records(rest_of_chunk_);
+        mcap::RecordReader records(rest_of_chunk_);
         const auto opcode = records.number<std::uint8_t>();
-        const mcap::Fields content(records.take(records.number<std::uint64_t>()));
+        const mcap::RecordReader content(records.take(records.number<std::uint64_t>()));
         rest_of_chunk_ = records.rest();
-        if (opcode == mcap::kSchema) note_schema(content);
-        if (opcode == mcap::kChannel) note_channel(content);
+        if (opcode == mcap::kSchema) add_schema(content);
+        if (opcode == mcap::kChannel) add_channel(content);
         if (opcode != mcap::kMessage) continue;
         if (const auto message = read_message(content)) return message;
       }
       if (!read_record()) return std::nullopt;
     }
-  } catch (const mcap::Damage& damage) {
+  } catch (const mcap::FormatError& format_error) {
     rest_of_chunk_ = {};
-    fail(damage.what());
+    fail(format_error.what());
   }
 }
 
@@ -173,13 +173,13 @@ bool McapReader::read_record() {
     record_start_ = offset_;
     if (offset_ + mcap::kRecordHeadSize > size_) break;
     const std::string head_bytes = read_bytes(offset_, mcap::kRecordHeadSize);
-    mcap::Fields head(head_bytes);
+    mcap::RecordReader head(head_bytes);
     const auto opcode = head.number<std::uint8_t>();
     const auto length = head.number<std::uint64_t>();
-    if (opcode == 0) throw mcap::Damage("is not a record");
+    if (opcode == 0) throw mcap::FormatError("is not a record");
     const std::uint64_t start = offset_ + mcap::kRecordHeadSize;
     if (length > size_ - start) {
-      if (is_complete()) throw mcap::Damage(fmt::format("a record of {} bytes does not fit in the file", length));
+      if (is_complete()) throw mcap::FormatError(fmt::format("a record of {} bytes does not fit in the file", length));
       break;  // truncation
     }
     offset_ = start + length;
@@ -187,7 +187,7 @@ bool McapReader::read_record() {
     if (opcode == mcap::kChunk && !unwanted_chunks_.contains(record_start_)) {
       expect_size(length, "a chunk");
       record_ = read_bytes(start, length);
-      chunk_ = unpack_chunk(mcap::Fields(record_));
+      chunk_ = unpack_chunk(mcap::RecordReader(record_));
       rest_of_chunk_ = chunk_;
       return true;
     }
@@ -202,9 +202,9 @@ bool McapReader::read_record() {
   return false;
 }
 
-std::optional<McapMessage> McapReader::read_message(mcap::Fields content) {
+std::optional<McapMessage> McapReader::read_message(mcap::RecordReader content) {
   const auto channel = channels_.find(content.number<std::uint16_t>());
-  if (channel == channels_.end()) throw mcap::Damage("a message of an unknown channel");
+  if (channel == channels_.end()) throw mcap::FormatError("a message of an unknown channel");
   content.number<std::uint32_t>();  // sequence
   const Time log_time = to_time(content.number<std::uint64_t>());
   content.number<std::uint64_t>();  // publish time
@@ -212,7 +212,7 @@ std::optional<McapMessage> McapReader::read_message(mcap::Fields content) {
   return McapMessage{.channel = channel->second, .log_time = log_time, .cdr = content.rest()};
 }
 
-std::string McapReader::unpack_chunk(mcap::Fields content) const {
+std::string McapReader::unpack_chunk(mcap::RecordReader content) const {
   content.take(8 + 8);  // the times of the first and last message
   const auto size = content.number<std::uint64_t>();
   const auto crc = content.number<std::uint32_t>();
@@ -224,10 +224,10 @@ std::string McapReader::unpack_chunk(mcap::Fields content) const {
   if (compression.empty()) unpacked = packed;
   else if (compression == "zstd") unpacked = unpack_zstd(packed, size);
   else if (compression == "lz4") unpacked = unpack_lz4(packed, size);
-  else throw mcap::Damage("compression " + compression + " is not known (zstd and lz4 are)");
+  else throw mcap::FormatError("compression " + compression + " is not known (zstd and lz4 are)");
 
   const auto actual = crc32(0, reinterpret_cast<const Bytef*>(unpacked.data()), static_cast<uInt>(unpacked.size()));
-  if (crc != 0 && crc != actual) throw mcap::Damage("a chunk's checksum is wrong");
+  if (crc != 0 && crc != actual) throw mcap::FormatError("a chunk's checksum is wrong");
   return unpacked;
 }
 

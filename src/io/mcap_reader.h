@@ -64,12 +64,12 @@ class McapReader {
   std::string read_bytes(std::uint64_t offset, std::uint64_t size);
   void find_footer();
   void read_summary(std::uint64_t start, std::uint64_t end);
-  void note_chunk(mcap::Fields content);
-  void note_schema(mcap::Fields content);
-  void note_channel(mcap::Fields content);
+  void add_chunk(mcap::RecordReader content);
+  void add_schema(mcap::RecordReader content);
+  void add_channel(mcap::RecordReader content);
   bool read_record();
-  std::optional<McapMessage> read_message(mcap::Fields content);
-  std::string unpack_chunk(mcap::Fields content) const;
+  std::optional<McapMessage> read_message(mcap::RecordReader content);
+  std::string unpack_chunk(mcap::RecordReader content) const;
   bool is_wanted(const std::string& topic) const;
   [[noreturn]] void fail(const std::string& what) const;
 

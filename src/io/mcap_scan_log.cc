@@ -12,16 +12,16 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::size_t kMostWaiting = 256;  ///< maximum number of waiting scans; later odometry is treated as missing
-constexpr std::size_t kMostBeams = 10'000;
+constexpr std::size_t kMaxWaiting = 256;  ///< maximum number of waiting scans; later odometry is treated as missing
+constexpr std::size_t kMaxBeams = 10'000;
 constexpr double kQuaternionTol = 1e-3;          ///< tolerance of the norm of a quaternion
-constexpr double kFurthestPose_m = 1e8;
+constexpr double kMaxPoseDistance_m = 1e8;
 constexpr double kMaxScanAngle_rad = 7.0;       ///< one turn plus rounding
-constexpr double kFastestRadps = 1e3;      ///< maximum plausible rate
+constexpr double kMaxRateRadps = 1e3;      ///< maximum plausible rate
 constexpr const char* kTfStaticSuffix = "/tf_static";
 
 void expect_pose(const Pose3& pose, const char* whose) {
-  const bool is_pose = pose.position.allFinite() && pose.position.cwiseAbs().maxCoeff() <= kFurthestPose_m && std::abs(pose.rotation.norm() - 1.0) <= kQuaternionTol;
+  const bool is_pose = pose.position.allFinite() && pose.position.cwiseAbs().maxCoeff() <= kMaxPoseDistance_m && std::abs(pose.rotation.norm() - 1.0) <= kQuaternionTol;
   if (!is_pose) throw DecodeError(fmt::format("{} is no pose: not finite, or its quaternion not of length 1", whose));
 }
 
@@ -29,7 +29,7 @@ Pose3 normalized(const Pose3& pose) { return {pose.position, pose.rotation.norma
 
 void expect_scan(const LaserScan& scan) {
   const std::size_t num_beams = scan.ranges_m.size();
-  if (num_beams == 0 || num_beams > kMostBeams) throw DecodeError(fmt::format("a scan of {} beams: must be 1 ... {}", num_beams, kMostBeams));
+  if (num_beams == 0 || num_beams > kMaxBeams) throw DecodeError(fmt::format("a scan of {} beams: must be 1 ... {}", num_beams, kMaxBeams));
   const double span_rad = std::abs(scan.angle_increment_rad) * static_cast<double>(num_beams);
   const bool has_angles = std::abs(scan.angle_min_rad) <= kMaxScanAngle_rad && span_rad <= kMaxScanAngle_rad;
   if (!has_angles) throw DecodeError("a scan of more than a turn");
@@ -38,9 +38,9 @@ void expect_scan(const LaserScan& scan) {
 
 /// Returns the time of the last beam, or of the first if the scan has no plausible beam times.
 Time last_beam(const LaserScan& scan) {
-  constexpr double kLongest_s = 1.0;
+  constexpr double kMaxDuration_s = 1.0;
   const double span_s = scan.time_increment_s * static_cast<double>(scan.ranges_m.size() - 1);
-  return span_s > 0.0 && span_s <= kLongest_s ? scan.stamp + from_seconds(span_s) : scan.stamp;
+  return span_s > 0.0 && span_s <= kMaxDuration_s ? scan.stamp + from_seconds(span_s) : scan.stamp;
 }
 
 /// Applies REP 117, which many drivers follow only in part.
@@ -74,16 +74,16 @@ std::string McapScanLog::place(const McapMessage& message) const {
 std::optional<RecordedScan> McapScanLog::next() {
   while (true) {
     if (std::optional<RecordedScan> scan = sorter_.take(is_at_end_)) {
-      count_given_out(*scan);
+      count_returned(*scan);
       const Pose2 T_fused_body = gyro_.fuse(scan->scan.stamp, scan->T_odom_body);
       if (options_.imu == "on" && !imu_topic_.empty()) {
         scan->T_odom_body = T_fused_body;
-        scan->T_first_last = gyro_.turned(scan->T_first_last, scan->scan.stamp, last_beam(scan->scan));
+        scan->T_begin_end = gyro_.replace_rotation(scan->T_begin_end, scan->scan.stamp, last_beam(scan->scan));
       }
       return scan;
     }
     if (is_at_end_) {
-      note_gyro();
+      report_gyro();
       return std::nullopt;
     }
     if (!read_message()) finish();
@@ -96,9 +96,9 @@ std::optional<McapMessage> McapScanLog::next_message() {
     try {
       return reader_.next();
     } catch (const InputError& error) {  // the message contains the byte offset
-      if (damage_at_ == reader_.progress()) return std::nullopt;
-      damage_at_ = reader_.progress();
-      refuse_or_skip(options_, "damaged parts of the file", error.what());
+      if (damaged_at_ == reader_.progress()) return std::nullopt;
+      damaged_at_ = reader_.progress();
+      reject_or_skip(options_, "damaged parts of the file", error.what());
     }
   }
 }
@@ -110,7 +110,7 @@ bool McapScanLog::read_message() {
   try {
     handle(*message);
   } catch (const DecodeError& error) {
-    refuse_or_skip(options_, "messages that cannot be read", place(*message) + error.what());
+    reject_or_skip(options_, "messages that cannot be read", place(*message) + error.what());
   }
   return true;
 }
@@ -136,7 +136,7 @@ void McapScanLog::add_scan(const McapMessage& message) {
   expect_scan(waiting.scan);
   tidy_ranges(waiting.scan, options_.no_return_m);
   waiting_.push_back(std::move(waiting));
-  if (waiting_.size() > kMostWaiting) {
+  if (waiting_.size() > kMaxWaiting) {
     waiting_.pop_front();
     count_skipped("scans without odometry", place(message) + "no odometry at the time of a scan long before it");
   }
@@ -157,8 +157,8 @@ void McapScanLog::add_odometry(const McapMessage& message) {
 
 void McapScanLog::add_imu(const McapMessage& message) {
   const Imu imu = decode<Imu>(message.cdr);
-  if (!(imu.angular_velocity_radps.norm() <= kFastestRadps)) throw DecodeError("an IMU whose rates are not finite, or no robot's");
-  const std::optional<Pose3> T_body_imu = place_in_body(frame_id_of(message.cdr), imu.stamp);
+  if (!(imu.angular_velocity_radps.norm() <= kMaxRateRadps)) throw DecodeError("an IMU whose rates are not finite, or no robot's");
+  const std::optional<Pose3> T_body_imu = sensor_pose_in_body(frame_id_of(message.cdr), imu.stamp);
   if (!T_body_imu && options_.imu == "on") ++summary_.assumed["IMU messages: the IMU is level (no transform says how it sits)"];
   gyro_.add(imu.stamp, T_body_imu ? (T_body_imu->rotation * imu.angular_velocity_radps).z() : imu.angular_velocity_radps.z());
 }
@@ -182,20 +182,20 @@ void McapScanLog::resolve_waiting() {
   std::deque<WaitingScan> still_waiting;
   for (WaitingScan& waiting : waiting_) {
     const std::optional<Pose3> T_odom_first = odometry_at(waiting.scan.stamp), T_odom_last = odometry_at(last_beam(waiting.scan));
-    if (T_odom_first && (T_odom_last || is_at_end_)) add_placed(std::move(waiting), to_planar(*T_odom_first), to_planar(T_odom_last.value_or(*T_odom_first)));
+    if (T_odom_first && (T_odom_last || is_at_end_)) add_with_pose(std::move(waiting), to_pose2(*T_odom_first), to_pose2(T_odom_last.value_or(*T_odom_first)));
     else still_waiting.push_back(std::move(waiting));
   }
   waiting_ = std::move(still_waiting);
 }
 
-void McapScanLog::add_placed(WaitingScan waiting, const Pose2& T_odom_body, const Pose2& T_odom_last) {
+void McapScanLog::add_with_pose(WaitingScan waiting, const Pose2& T_odom_body, const Pose2& T_odom_last) {
   if (odometry_topic_.empty()) uses_tf_ = true;  // from now on use tf only: two sources may differ
-  const Pose2 T_body_lidar = to_planar(mount_of(waiting));
-  sort_in(sorter_, {.scan = std::move(waiting.scan), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar, .T_first_last = T_odom_body.inverse() * T_odom_last}, options_,
+  const Pose2 T_body_lidar = to_pose2(mount_of(waiting));
+  sort_in(sorter_, {.scan = std::move(waiting.scan), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar, .T_begin_end = T_odom_body.inverse() * T_odom_last}, options_,
           fmt::format("{}: {}", file_.string(), scan_topic_));
 }
 
-std::optional<Pose3> McapScanLog::place_in_body(const std::string& frame, Time stamp) const {
+std::optional<Pose3> McapScanLog::sensor_pose_in_body(const std::string& frame, Time stamp) const {
   const std::optional<Pose3> place = frames_.find(body_frame_.empty() ? frame_id::kBody : body_frame_, frame, stamp);
   return place ? place : frames_.find(frame_id::kBody, frame, stamp);
 }
@@ -203,7 +203,7 @@ std::optional<Pose3> McapScanLog::place_in_body(const std::string& frame, Time s
 /// Returns the mount of the lidar. Reverses the beams of a lidar mounted upside down, so that the planar pose is
 /// sufficient.
 Pose3 McapScanLog::mount_of(WaitingScan& waiting) {
-  const std::optional<Pose3> T_body_lidar = place_in_body(waiting.frame, waiting.scan.stamp);
+  const std::optional<Pose3> T_body_lidar = sensor_pose_in_body(waiting.frame, waiting.scan.stamp);
   if (!T_body_lidar) {
     ++summary_.assumed["scans: the lidar is at the body's origin (no transform says where)"];
     return {};
@@ -216,12 +216,12 @@ Pose3 McapScanLog::mount_of(WaitingScan& waiting) {
   return *T_body_lidar;
 }
 
-void McapScanLog::note_gyro() {
-  if (options_.imu != "on" || imu_topic_.empty() || is_gyro_noted_) return;
-  is_gyro_noted_ = true;
+void McapScanLog::report_gyro() {
+  if (options_.imu != "on" || imu_topic_.empty() || is_gyro_reported_) return;
+  is_gyro_reported_ = true;
   const std::optional<double> bias_radps = gyro_.bias_radps();
-  std::string how = bias_radps ? fmt::format("bias {:.5f} rad/s from {:.0f} s of standing", *bias_radps, gyro_.standing_s()) : "the robot is not seen standing: its bias is taken as none";
-  if (bias_radps && gyro_.way_without_bias_s() > 0.0) how += fmt::format(", the first {:.0f} s of way without it", gyro_.way_without_bias_s());
+  std::string how = bias_radps ? fmt::format("bias {:.5f} rad/s from {:.0f} s of standing", *bias_radps, gyro_.stationary_s()) : "the robot is not seen standing: its bias is taken as none";
+  if (bias_radps && gyro_.motion_without_bias_s() > 0.0) how += fmt::format(", the first {:.0f} s of way without it", gyro_.motion_without_bias_s());
   if (gyro_.uncovered_s() > 0.0) how += fmt::format("; {:.1f} s that it does not cover turn by odometry", gyro_.uncovered_s());
   add_found(fmt::format("odometry turns by the gyro of {}: {} (log.imu)", imu_topic_, how));
 }

@@ -49,11 +49,11 @@ class McapScanLog : public ScanLog {
   void add_imu(const McapMessage& message);
   void add_transforms(const McapMessage& message, bool is_static);
   void resolve_waiting();
-  void add_placed(WaitingScan waiting, const Pose2& T_odom_body, const Pose2& T_odom_last);
+  void add_with_pose(WaitingScan waiting, const Pose2& T_odom_body, const Pose2& T_odom_last);
   std::optional<Pose3> odometry_at(Time stamp) const;
-  std::optional<Pose3> place_in_body(const std::string& frame, Time stamp) const;
+  std::optional<Pose3> sensor_pose_in_body(const std::string& frame, Time stamp) const;
   Pose3 mount_of(WaitingScan& waiting);
-  void note_gyro();
+  void report_gyro();
   void finish();
   std::string place(const McapMessage& message) const;
 
@@ -61,14 +61,14 @@ class McapScanLog : public ScanLog {
   ScanLogOptions options_;
   McapReader reader_;
   std::string scan_topic_, odometry_topic_, imu_topic_, body_frame_;
-  FrameTree odometry_;  ///< odometry topic only
-  FrameTree frames_;    ///< transforms of /tf and /tf_static
+  TransformBuffer odometry_;  ///< odometry topic only
+  TransformBuffer frames_;    ///< transforms of /tf and /tf_static
   GyroOdometry gyro_;
   bool uses_tf_ = false;
   std::deque<WaitingScan> waiting_;
   ScanSorter sorter_;
-  std::optional<double> damage_at_;  ///< progress at the damage
-  bool is_at_end_ = false, is_gyro_noted_ = false;
+  std::optional<double> damaged_at_;  ///< progress at the damage
+  bool is_at_end_ = false, is_gyro_reported_ = false;
 };
 
 }  // namespace patrol::io

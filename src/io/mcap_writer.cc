@@ -30,7 +30,7 @@ struct McapWriter::ChunkIndex {
 McapWriter::McapWriter(const std::filesystem::path& path)
     : path_(path), file_(path, std::ios::binary | std::ios::trunc), compressor_(ZSTD_createCCtx(), &ZSTD_freeCCtx) {
   if (!file_) throw InputError(path.string() + ": cannot be written");
-  mcap::Bytes header, record;
+  mcap::RecordWriter header, record;
   header.text("ros2");
   header.text("patrol");
   record.raw(mcap::kMagic);
@@ -55,7 +55,7 @@ void McapWriter::put(std::string_view bytes) {
 
 McapWriter::ChannelId McapWriter::add_channel(const std::string& topic, const std::string& type,
                                               const std::string& definition) {
-  mcap::Bytes schema, channel, records;
+  mcap::RecordWriter schema, channel, records;
   auto known = std::find(schema_types_.begin(), schema_types_.end(), type);
   if (known == schema_types_.end()) {
     known = schema_types_.insert(schema_types_.end(), type);
@@ -111,7 +111,7 @@ void McapWriter::flush_chunk() {
                                                     chunk_.view().data(), chunk_.size(), kZstdLevel);
   if (ZSTD_isError(packed_size) != 0) throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(packed_size));
 
-  mcap::Bytes fields, head;
+  mcap::RecordWriter fields, head;
   fields.number(chunk_start_);
   fields.number(chunk_end_);
   fields.number(std::uint64_t{chunk_.size()});
@@ -141,7 +141,7 @@ void McapWriter::write_message_indexes(ChunkIndex& chunk) {
   const std::uint64_t start = offset_;
   for (const auto& [channel, entries] : chunk_index_) {
     chunk.message_index_offsets.emplace_back(channel, offset_);
-    mcap::Bytes content, record;
+    mcap::RecordWriter content, record;
     content.number(channel);
     content.number(static_cast<std::uint32_t>(sizeof(IndexEntry) * entries.size()));
     for (const IndexEntry& entry : entries) {
@@ -158,7 +158,7 @@ void McapWriter::close() {
   if (is_closed_) return;
   flush_chunk();
   is_closed_ = true;
-  mcap::Bytes data_crc, record;
+  mcap::RecordWriter data_crc, record;
   data_crc.number(crc_);
   record.record(mcap::kDataEnd, data_crc);
   put(record.view());
@@ -168,8 +168,8 @@ void McapWriter::close() {
   if (!file_) throw std::runtime_error(path_.string() + ": closing failed (disk full?)");
 }
 
-mcap::Bytes McapWriter::statistics() const {
-  mcap::Bytes content, record;
+mcap::RecordWriter McapWriter::statistics() const {
+  mcap::RecordWriter content, record;
   content.number(total_count_);
   content.number(static_cast<std::uint16_t>(schema_types_.size()));
   content.number(static_cast<std::uint32_t>(message_count_.size()));
@@ -187,10 +187,10 @@ mcap::Bytes McapWriter::statistics() const {
   return record;
 }
 
-mcap::Bytes McapWriter::chunk_indexes() const {
-  mcap::Bytes records;
+mcap::RecordWriter McapWriter::chunk_indexes() const {
+  mcap::RecordWriter records;
   for (const ChunkIndex& chunk : chunks_) {
-    mcap::Bytes content;
+    mcap::RecordWriter content;
     content.number(chunk.start_time);
     content.number(chunk.end_time);
     content.number(chunk.offset);
@@ -212,14 +212,14 @@ mcap::Bytes McapWriter::chunk_indexes() const {
 
 void McapWriter::write_summary() {
   const std::uint64_t start = offset_;
-  const std::pair<mcap::Opcode, mcap::Bytes> groups[] = {{mcap::kSchema, schemas_},
+  const std::pair<mcap::Opcode, mcap::RecordWriter> groups[] = {{mcap::kSchema, schemas_},
                                                          {mcap::kChannel, channels_},
                                                          {mcap::kStatistics, statistics()},
                                                          {mcap::kChunkIndex, chunk_indexes()}};
-  mcap::Bytes summary, offsets;
+  mcap::RecordWriter summary, offsets;
   for (const auto& [opcode, group] : groups) {
     if (group.is_empty()) continue;
-    mcap::Bytes content;
+    mcap::RecordWriter content;
     content.number(static_cast<std::uint8_t>(opcode));
     content.number(start + summary.size());
     content.number(std::uint64_t{group.size()});

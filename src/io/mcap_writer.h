@@ -51,8 +51,8 @@ class McapWriter {
   void flush_chunk();
   void write_message_indexes(ChunkIndex& chunk);
   void write_summary();
-  mcap::Bytes statistics() const;
-  mcap::Bytes chunk_indexes() const;
+  mcap::RecordWriter statistics() const;
+  mcap::RecordWriter chunk_indexes() const;
 
   std::filesystem::path path_;
   std::ofstream file_;
@@ -63,12 +63,12 @@ class McapWriter {
   std::string packed_;
 
   std::vector<std::string> schema_types_;     ///< [schema id - 1]
-  mcap::Bytes schemas_, channels_;            ///< records for the summary
+  mcap::RecordWriter schemas_, channels_;            ///< records for the summary
   std::vector<std::uint32_t> message_count_;  ///< [channel id - 1]
   std::uint64_t total_count_ = 0;
   std::uint64_t first_time_ = 0, last_time_ = 0;
 
-  mcap::Bytes chunk_;
+  mcap::RecordWriter chunk_;
   std::uint64_t chunk_start_ = 0, chunk_end_ = 0;
   std::map<ChannelId, std::vector<IndexEntry>> chunk_index_;
   std::vector<ChunkIndex> chunks_;

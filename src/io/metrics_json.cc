@@ -28,28 +28,28 @@ const Metrics* child_of(const Metrics& parent, const std::string& word) {
   return &parent[word];
 }
 
-void add_figures(const std::string& path, const Metrics& value, std::vector<std::pair<std::string, double>>& figures) {
+void add_metrics(const std::string& path, const Metrics& value, std::vector<std::pair<std::string, double>>& values) {
   const auto below = [&path](const std::string& word) { return path.empty() ? word : path + "." + word; };
   if (value.is_object()) {
-    for (const auto& [key, child] : value.items()) add_figures(below(key), child, figures);
+    for (const auto& [key, child] : value.items()) add_metrics(below(key), child, values);
   } else if (value.is_array()) {
     for (std::size_t i = 0; i < value.size(); ++i) {
       const bool is_named = value[i].is_object() && value[i].contains("name");
-      add_figures(below(is_named ? value[i]["name"].get<std::string>() : fmt::format("{}", i)), value[i], figures);
+      add_metrics(below(is_named ? value[i]["name"].get<std::string>() : fmt::format("{}", i)), value[i], values);
     }
   } else if (value.is_boolean()) {
-    figures.emplace_back(path, value.get<bool>() ? 1.0 : 0.0);
+    values.emplace_back(path, value.get<bool>() ? 1.0 : 0.0);
   } else if (value.is_number() && std::isfinite(value.get<double>())) {
-    figures.emplace_back(path, value.get<double>());
+    values.emplace_back(path, value.get<double>());
   }
 }
 
 }  // namespace
 
-std::vector<std::pair<std::string, double>> figures_of(const Metrics& metrics) {
-  std::vector<std::pair<std::string, double>> figures;
-  add_figures("", metrics, figures);
-  return figures;
+std::vector<std::pair<std::string, double>> flatten_metrics(const Metrics& metrics) {
+  std::vector<std::pair<std::string, double>> values;
+  add_metrics("", metrics, values);
+  return values;
 }
 
 void save_metrics(const std::filesystem::path& file, const Metrics& metrics) { save_text(file, metrics.dump(2) + "\n"); }

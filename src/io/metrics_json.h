@@ -26,6 +26,6 @@ std::optional<double> metric_at(const Metrics& metrics, const std::string& path)
 
 /// Returns all metrics with their paths, in tree order. Entries of lists are addressed by name if they have one.
 /// Strings and nulls are skipped.
-std::vector<std::pair<std::string, double>> figures_of(const Metrics& metrics);
+std::vector<std::pair<std::string, double>> flatten_metrics(const Metrics& metrics);
 
 }  // namespace patrol::io

@@ -15,8 +15,8 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::size_t kMostCells = 100'000'000;
-constexpr int kLongestSide = 1'000'000;
+constexpr std::size_t kMaxCells = 100'000'000;
+constexpr int kMaxSide = 1'000'000;
 constexpr std::string_view kLand = ".GS", kWater = "W", kBlocked = "@OT";
 
 bool is_one_of(char terrain, std::string_view kinds) { return kinds.find(terrain) != std::string_view::npos; }
@@ -30,7 +30,7 @@ class Lines {
   std::optional<std::string_view> next() {
     const std::optional<LineReader::Line> line = reader_.next();
     if (!line) {
-      if (reader_.damage()) throw InputError(fmt::format("{}: {}", reader_.file().string(), *reader_.damage()));
+      if (reader_.read_error()) throw InputError(fmt::format("{}: {}", reader_.file().string(), *reader_.read_error()));
       return std::nullopt;
     }
     number_ = line->number;
@@ -58,7 +58,7 @@ GridHeader read_grid_header(Lines& lines) {
   GridHeader header;
   bool has_type = false;
   while (const auto text = lines.next()) {
-    LineFields fields(*text);
+    LineTokenizer fields(*text);
     try {
       const std::string_view key = fields.word("key");
       if (key == "map") {
@@ -70,14 +70,14 @@ GridHeader read_grid_header(Lines& lines) {
         if (const std::string_view type = fields.word("type"); type != "octile") lines.refuse(fmt::format("type: is {}, must be octile", type));
         has_type = true;
       } else if (key == "height") {
-        header.height = static_cast<int>(fields.integer("height", 1, kLongestSide));
+        header.height = static_cast<int>(fields.integer("height", 1, kMaxSide));
       } else if (key == "width") {
-        header.width = static_cast<int>(fields.integer("width", 1, kLongestSide));
+        header.width = static_cast<int>(fields.integer("width", 1, kMaxSide));
       } else {
         lines.refuse(fmt::format("{}: must be one of type, height, width, map", key));
       }
       if (!fields.is_empty()) lines.refuse(fmt::format("{}: holds more than one value", key));
-    } catch (const FieldError& error) {
+    } catch (const ParseError& error) {
       lines.refuse(error.what());
     }
   }
@@ -99,21 +99,21 @@ std::vector<std::string_view> split_words(std::string_view text) {
 MovingAiProblem parse_problem(std::string_view text) {
   constexpr std::size_t kNumFields = 9;
   const std::vector<std::string_view> fields = split_words(text);
-  if (fields.size() != kNumFields) throw FieldError(fmt::format("holds {} fields", fields.size()));
+  if (fields.size() != kNumFields) throw ParseError(fmt::format("holds {} fields", fields.size()));
   const auto integer = [&](std::size_t index, const char* what, int min, int max) {
-    return static_cast<int>(LineFields(fields[index]).integer(what, min, max));
+    return static_cast<int>(LineTokenizer(fields[index]).integer(what, min, max));
   };
   MovingAiProblem problem{.bucket = integer(0, "bucket", 0, std::numeric_limits<int>::max()), .map = std::string(fields[1])};
-  problem.width = integer(2, "width", 1, kLongestSide);
-  problem.height = integer(3, "height", 1, kLongestSide);
+  problem.width = integer(2, "width", 1, kMaxSide);
+  problem.height = integer(3, "height", 1, kMaxSide);
   const auto cell = [&](std::size_t index, const char* x, const char* y) {
     const int col = integer(index, x, 0, problem.width - 1);
     return Cell{col, problem.height - 1 - integer(index + 1, y, 0, problem.height - 1)};
   };
   problem.start = cell(4, "start x", "start y");
   problem.goal = cell(6, "goal x", "goal y");
-  problem.optimal_length = LineFields(fields[8]).number("optimal length");
-  if (problem.optimal_length < 0.0) throw FieldError("optimal length: must be at least 0");
+  problem.optimal_length = LineTokenizer(fields[8]).number("optimal length");
+  if (problem.optimal_length < 0.0) throw ParseError("optimal length: must be at least 0");
   problem.length_rounding = rounding_of(fields[8]);
   return problem;
 }
@@ -122,7 +122,7 @@ MovingAiProblem parse_problem(std::string_view text) {
 
 double rounding_of(std::string_view length) {
   constexpr int kMinDigits = 6;
-  const double value = LineFields(length).number("optimal length");
+  const double value = LineTokenizer(length).number("optimal length");
   if (value == 0.0) return 0.0;
   const std::string_view mantissa = length.substr(0, length.find_first_of("eE"));
   const std::size_t first = std::min(mantissa.find_first_of("123456789"), mantissa.size());
@@ -136,7 +136,7 @@ MovingAiMap load_moving_ai_map(const std::filesystem::path& file) {
   Lines lines(file);
   const GridHeader header = read_grid_header(lines);
   const auto width = static_cast<std::size_t>(header.width), height = static_cast<std::size_t>(header.height);
-  if (width * height > kMostCells) lines.refuse(fmt::format("map: {} x {} cells, at most {} are read", width, height, kMostCells));
+  if (width * height > kMaxCells) lines.refuse(fmt::format("map: {} x {} cells, at most {} are read", width, height, kMaxCells));
   std::vector<char> from_top;  // grows with the data, not with the size in the header
   for (std::size_t row = 0; row < height; ++row) {
     const auto text = lines.next();
@@ -179,7 +179,7 @@ std::vector<MovingAiProblem> load_moving_ai_problems(const std::filesystem::path
     try {
       problems.push_back(parse_problem(*text));
       problems.back().line = lines.number();
-    } catch (const FieldError& error) {
+    } catch (const ParseError& error) {
       lines.refuse(fmt::format("{}: a problem is bucket, map, width, height, start x, y, goal x, y, optimal length", error.what()));
     }
   }

@@ -12,22 +12,22 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::size_t kMostGoals = 1000;
+constexpr std::size_t kMaxGoals = 1000;
 
-MarkedGoal read_goal(const std::string& place, const Json& json) {
+SavedGoal read_goal(const std::string& place, const Json& json) {
   const JsonObject reader(place, json, {"number", "position", "orientation", "type", "accuracy"});
-  MarkedGoal goal{.number = reader.whole("number"), .T_map_body = reader.pose(), .type = reader.choice("type", kGoalTypes), .accuracy_m = reader.number("accuracy")};
+  SavedGoal goal{.number = reader.integer("number"), .T_map_body = reader.pose(), .type = reader.choice("type", kGoalTypes), .accuracy_m = reader.number("accuracy")};
   if (goal.accuracy_m <= 0.0) reader.fail("accuracy must be positive");
   return goal;
 }
 
 }  // namespace
 
-std::vector<MarkedGoal> load_nav(const std::filesystem::path& file) {
+std::vector<SavedGoal> load_nav(const std::filesystem::path& file) {
   const std::string name = file.string();
-  const Json json = load_json(file, kMostGoals);
+  const Json json = load_json(file, kMaxGoals);
   if (!json.is_array() || json.empty()) throw InputError(name + ": must be a list of at least one goal");
-  std::vector<MarkedGoal> goals;
+  std::vector<SavedGoal> goals;
   std::set<int> numbers;
   for (std::size_t i = 0; i < json.size(); ++i) {
     const std::string place = fmt::format("{}: [{}]", name, i);
@@ -39,9 +39,9 @@ std::vector<MarkedGoal> load_nav(const std::filesystem::path& file) {
   return goals;
 }
 
-void save_nav(const std::filesystem::path& file, const std::vector<MarkedGoal>& goals) {
+void save_nav(const std::filesystem::path& file, const std::vector<SavedGoal>& goals) {
   Json json = Json::array();
-  for (const MarkedGoal& goal : goals) {
+  for (const SavedGoal& goal : goals) {
     const Eigen::Quaterniond q = quaternion_from_yaw(goal.T_map_body.yaw);
     json.push_back({{"number", goal.number},
                     {"position", {goal.T_map_body.x, goal.T_map_body.y, 0.0}},

@@ -11,8 +11,8 @@ namespace patrol::io {
 /// float[3], "orientation": float[4] (x, y, z, w), "type": char, "accuracy": float}, in `map`, in meters. At least one
 /// goal, at most 1,000.
 /// Throws InputError with file, entry and key.
-std::vector<MarkedGoal> load_nav(const std::filesystem::path& file);
+std::vector<SavedGoal> load_nav(const std::filesystem::path& file);
 
-void save_nav(const std::filesystem::path& file, const std::vector<MarkedGoal>& goals);
+void save_nav(const std::filesystem::path& file, const std::vector<SavedGoal>& goals);
 
 }  // namespace patrol::io

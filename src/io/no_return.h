@@ -13,7 +13,7 @@ namespace patrol::io {
 struct NoReturnValue {
   double range_m = 0.0;
   std::uint64_t num_readings = 0;  ///< number of readings with this value in the examined scans
-  std::uint64_t num_places = 0;    ///< number of robot positions with such readings
+  std::uint64_t num_positions = 0;    ///< number of robot positions with such readings
 };
 
 /// Detector of the range that encodes "no return" in the first scans of a log. Examples: 81.83 m and 8.19 m (SICK), 50
@@ -24,20 +24,20 @@ struct NoReturnValue {
 /// robot moves, the maximum ranges vary and are few. A scan is examined only after the robot has moved since the last
 /// examined one, because a stationary robot in front of a wall gives no evidence. If a lidar reports several such
 /// values (SICK codes differ by millimeters), the lowest is returned.
-class NoReturnFinder {
+class NoReturnDetector {
  public:
   void add(const RecordedScan& recorded);
   /// Returns whether enough scans were examined; further scans are not needed.
-  bool has_seen_enough() const;
+  bool is_conclusive() const;
   std::optional<NoReturnValue> find() const;
 
  private:
   struct Count {
-    std::uint64_t readings = 0, places = 0, last_place = 0;
+    std::uint64_t readings = 0, positions = 0, last_position = 0;
   };
 
-  std::optional<Pose2> T_odom_place_;
-  std::uint64_t num_places_ = 0, num_readings_ = 0;
+  std::optional<Pose2> T_odom_examined_;
+  std::uint64_t num_positions_ = 0, num_readings_ = 0;
   std::map<float, Count> counts_;  ///< by range, m; ranges within 25 % of the maximum only
 };
 

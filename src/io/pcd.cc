@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kMostPcdPoints = 1'000'000'000;
 constexpr std::size_t kMostPcdFields = 1000;
-constexpr std::int64_t kMostOfOneField = 100'000;
+constexpr std::int64_t kMaxFieldCount = 100'000;
 
 struct PcdHeader {
   std::vector<PointColumn> columns;
@@ -26,7 +26,7 @@ struct PcdHeader {
   std::string data;
 };
 
-void read_values(FileText& text, const std::string& key, LineFields& fields, PcdHeader& header) {
+void read_values(FileText& text, const std::string& key, LineTokenizer& fields, PcdHeader& header) {
   if (key == "FIELDS") {
     if (fields.num_words() > kMostPcdFields) text.refuse(fmt::format("FIELDS has more than {} words", kMostPcdFields));
     while (!fields.is_empty()) header.columns.push_back({.name = std::string(fields.word("name"))});
@@ -37,7 +37,7 @@ void read_values(FileText& text, const std::string& key, LineFields& fields, Pcd
   } else if (key == "COUNT") {
     for (std::size_t i = 0; !fields.is_empty(); ++i) {
       if (i >= header.columns.size()) text.refuse("COUNT has more words than FIELDS");
-      header.columns[i].count = static_cast<std::size_t>(fields.integer("COUNT", 1, kMostOfOneField));
+      header.columns[i].count = static_cast<std::size_t>(fields.integer("COUNT", 1, kMaxFieldCount));
     }
   } else if (key == "WIDTH") {
     header.width = fields.integer("WIDTH", 0, kMostPcdPoints);
@@ -79,12 +79,12 @@ PcdHeader read_pcd_header(FileText& text) {
   while (header.data.empty()) {
     const auto line = text.next_line();
     if (!line) text.refuse("the header has no line DATA");
-    LineFields fields(*line);
+    LineTokenizer fields(*line);
     if (fields.is_empty() || line->front() == '#') continue;
     try {
       const std::string key(fields.word("key"));
       read_values(text, key, fields, header);
-    } catch (const FieldError& error) {
+    } catch (const ParseError& error) {
       text.refuse(error.what());
     }
   }
@@ -110,7 +110,7 @@ std::vector<ScannerPoint> load_pcd(const std::filesystem::path& file) {
   FileText text(file);
   PcdHeader header = read_pcd_header(text);
   PointTable table(text, std::move(header.columns), static_cast<std::size_t>(header.width * header.height));
-  std::vector<ScannerPoint> points = header.data == "ascii" ? table.read_figures() : table.read_binary();
+  std::vector<ScannerPoint> points = header.data == "ascii" ? table.read_ascii() : table.read_binary();
   table.expect_end();
   return points;
 }

@@ -28,7 +28,7 @@ struct PlyHeader {
   int num_elements = 0;
 };
 
-PointColumn read_property(FileText& text, LineFields& fields) {
+PointColumn read_property(FileText& text, LineTokenizer& fields) {
   const std::string type(fields.word("type"));
   if (type == "list") text.refuse("a list among the properties of vertex is not read");
   const auto known = kPlyTypes.find(type);
@@ -36,7 +36,7 @@ PointColumn read_property(FileText& text, LineFields& fields) {
   return {.name = std::string(fields.word("name")), .type = known->second};
 }
 
-void read_element(FileText& text, LineFields& fields, PlyHeader& header) {
+void read_element(FileText& text, LineTokenizer& fields, PlyHeader& header) {
   const std::string_view name = fields.word("name");
   const std::int64_t count = fields.integer("count", 0, kMostPlyPoints);
   if (header.num_elements++ > 0) return;
@@ -46,7 +46,7 @@ void read_element(FileText& text, LineFields& fields, PlyHeader& header) {
 
 /// Reads a line of the header; returns true at its last line.
 bool read_header_line(FileText& text, std::string_view line, PlyHeader& header) {
-  LineFields fields(line);
+  LineTokenizer fields(line);
   if (fields.is_empty()) return false;
   const std::string key(fields.word("key"));
   if (key == "end_header") return true;
@@ -73,7 +73,7 @@ PlyHeader read_ply_header(FileText& text) {
     if (!line) text.refuse("the header has no end");
     try {
       is_over = read_header_line(text, *line, header);
-    } catch (const FieldError& error) {
+    } catch (const ParseError& error) {
       text.refuse(error.what());
     }
   }
@@ -97,7 +97,7 @@ std::vector<ScannerPoint> load_ply(const std::filesystem::path& file) {
   FileText text(file);
   PlyHeader header = read_ply_header(text);
   PointTable table(text, std::move(header.columns), header.num_points);
-  std::vector<ScannerPoint> points = header.format == "ascii" ? table.read_figures() : table.read_binary();
+  std::vector<ScannerPoint> points = header.format == "ascii" ? table.read_ascii() : table.read_binary();
   if (header.num_elements == 1) table.expect_end();
   return points;
 }

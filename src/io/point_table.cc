@@ -18,7 +18,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little && sizeof(ScannerPoint) == 4 * sizeof(float));
 
 constexpr std::array kNames = {"x", "y", "z", "intensity"};
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{4} << 30;
+constexpr std::uintmax_t kMaxBytes = std::uintmax_t{4} << 30;
 
 template <typename Number>
 double number_at(const char* bytes) {
@@ -55,9 +55,9 @@ double number_at(const char* bytes, NumberType type) {
 
 /// Converts numbers to a point; returns false if one is not finite as a float.
 bool make_point(const std::array<double, 4>& numbers, ScannerPoint& point) {
-  constexpr double kMost = 1e30;
+  constexpr double kMaxValue = 1e30;
   for (const double number : numbers) {
-    if (!(std::abs(number) < kMost)) return false;
+    if (!(std::abs(number) < kMaxValue)) return false;
   }
   point = {static_cast<float>(numbers[0]), static_cast<float>(numbers[1]), static_cast<float>(numbers[2]), static_cast<float>(numbers[3])};
   return true;
@@ -72,8 +72,8 @@ std::size_t bytes_of(NumberType type) {
 
 FileText::FileText(const std::filesystem::path& file) : file_(file.string()) {
   std::error_code is_no_file;  // set if there is no file; the size is then undefined
-  if (const std::uintmax_t size = std::filesystem::file_size(file, is_no_file); !is_no_file && size > kMostBytes) {
-    throw InputError(fmt::format("{}: is larger than {} bytes: not read", file_, kMostBytes));
+  if (const std::uintmax_t size = std::filesystem::file_size(file, is_no_file); !is_no_file && size > kMaxBytes) {
+    throw InputError(fmt::format("{}: is larger than {} bytes: not read", file_, kMaxBytes));
   }
   text_ = load_text(file);
 }
@@ -123,7 +123,7 @@ std::vector<ScannerPoint> PointTable::read_binary() {
   return points;
 }
 
-std::vector<ScannerPoint> PointTable::read_figures() {
+std::vector<ScannerPoint> PointTable::read_ascii() {
   // Each number takes at least a digit and a blank: check the count before memory is allocated.
   if (num_points_ > (text_.rest().size() + 1) / (2 * row_numbers_)) {
     throw InputError(fmt::format("{}: ends too early for {} points", text_.file(), num_points_));
@@ -133,7 +133,7 @@ std::vector<ScannerPoint> PointTable::read_figures() {
     const auto line = text_.next_line();
     if (!line) throw InputError(fmt::format("{}: ends too early for {} points", text_.file(), num_points_));
     try {
-      LineFields fields(*line);
+      LineTokenizer fields(*line);
       std::array<double, 4> numbers{};
       for (std::size_t number = 0; number < row_numbers_; ++number) {
         const double value = fields.any_number("number");
@@ -143,7 +143,7 @@ std::vector<ScannerPoint> PointTable::read_figures() {
       }
       if (!fields.is_empty()) text_.refuse(fmt::format("holds more than {} numbers", row_numbers_));
       if (!make_point(numbers, point)) text_.refuse("is not finite");
-    } catch (const FieldError&) {
+    } catch (const ParseError&) {
       text_.refuse(fmt::format("must be {} numbers", row_numbers_));
     }
   }

@@ -50,7 +50,7 @@ class PointTable {
   PointTable(FileText& text, std::vector<PointColumn> columns, std::size_t num_points);
 
   std::vector<ScannerPoint> read_binary();
-  std::vector<ScannerPoint> read_figures();
+  std::vector<ScannerPoint> read_ascii();
   /// Throws InputError if non-blank data remain.
   void expect_end() const;
 

@@ -77,9 +77,9 @@ void pose3(Codec& codec, Pose3& pose) {
 
 template <typename Codec>
 void pose2(Codec& codec, Pose2& pose) {
-  Pose3 spatial = to_spatial(pose);
+  Pose3 spatial = to_pose3(pose);
   pose3(codec, spatial);
-  if constexpr (!Codec::kWrites) pose = to_planar(spatial);
+  if constexpr (!Codec::kWrites) pose = to_pose2(spatial);
 }
 
 /// The covariance of x, y, yaw inside ROS's 6 x 6 of x, y, z, roll, pitch, yaw.

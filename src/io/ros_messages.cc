@@ -8,12 +8,12 @@
 namespace patrol::io::ros {
 
 template <typename Codec>
-void describe(Codec& codec, LocalizationTrust& trust) {
-  header(codec, trust.stamp, frame_id::kMap);
-  codec(trust.trust);
-  codec(trust.weak_std_m);
-  codec(trust.weak_direction_rad);
-  codec(trust.is_lost);
+void describe(Codec& codec, LocalizationConfidence& confidence) {
+  header(codec, confidence.stamp, frame_id::kMap);
+  codec(confidence.confidence);
+  codec(confidence.max_std_m);
+  codec(confidence.max_std_direction_rad);
+  codec(confidence.is_lost);
 }
 
 template <typename Codec>
@@ -168,10 +168,10 @@ std::string frame_id_of(std::string_view bytes) {
   return frame;
 }
 
-PATROL_ROS_MESSAGE(LocalizationTrust);
+PATROL_ROS_MESSAGE(LocalizationConfidence);
 PATROL_ROS_MESSAGE(OdometryEstimate);
 PATROL_ROS_MESSAGE(PoseEstimate);
-PATROL_ROS_MESSAGE(RangePoseEstimate);
+PATROL_ROS_MESSAGE(UwbPoseEstimate);
 PATROL_ROS_MESSAGE(ParticleSet);
 PATROL_ROS_MESSAGE(MapUpdate);
 PATROL_ROS_MESSAGE(Path);

@@ -185,11 +185,11 @@ void describe(Codec& codec, DepthImage& image) {
 }
 
 template <typename Codec>
-void describe(Codec& codec, RemoteCommand& command) {
+void describe(Codec& codec, TeleopCommand& command) {
   header(codec, command.stamp, frame_id::kLevel);
   codec(command.vx_mps);
   codec(command.yaw_rate_radps);
-  codec(command.mark);
+  codec(command.save_goal);
   codec(command.hand_over);
 }
 
@@ -229,7 +229,7 @@ PATROL_ROS_SENSOR(DepthImage,
                   "# The fields of a sensor_msgs/Image (16UC1: depth along the optical axis, mm, 0 invalid), and the pinhole's, pixels.\n"
                   "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\nuint8[] data\n"
                   "float64 fx_px\nfloat64 fy_px\nfloat64 cx_px\nfloat64 cy_px\n");
-PATROL_ROS_SENSOR(RemoteCommand,
+PATROL_ROS_SENSOR(TeleopCommand,
                   "# What the person at the remote control asks for. Buttons: this place is a goal; the robot goes on by itself.\n"
                   "std_msgs/Header header\nfloat64 vx_mps\nfloat64 yaw_rate_radps\nbool mark\nbool hand_over\n");
 

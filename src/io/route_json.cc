@@ -12,7 +12,7 @@ namespace {
 
 Station read_station(const std::string& place, const Json& json) {
   const JsonObject reader(place, json, {"number", "name", "type", "position", "orientation", "target", "accuracy", "priority", "window"});
-  Station station{.number = reader.whole("number"), .name = reader.word("name"), .type = reader.choice("type", kStationTypes),
+  Station station{.number = reader.integer("number"), .name = reader.string("name"), .type = reader.choice("type", kStationTypes),
                   .T_route_body = reader.pose(), .p_route_target = {}, .accuracy_m = reader.number("accuracy")};
   if (station.accuracy_m <= 0.0) reader.fail("accuracy must be positive");
   if (reader.has("target")) {
@@ -21,12 +21,12 @@ Station read_station(const std::string& place, const Json& json) {
   } else if (station.type == StationType::kInspect) {
     reader.fail("target is missing: what an inspection looks at");
   }
-  if (reader.has("priority")) station.priority = reader.whole("priority");
+  if (reader.has("priority")) station.priority = reader.integer("priority");
   if (reader.has("window")) {
     const std::vector<double> window = reader.numbers("window", 2);
     station.earliest_s = window[0], station.latest_s = window[1];
-    constexpr double kLongest_s = 1e7;
-    if (station.earliest_s < 0.0 || station.latest_s < station.earliest_s || station.latest_s > kLongest_s) {
+    constexpr double kMaxDuration_s = 1e7;
+    if (station.earliest_s < 0.0 || station.latest_s < station.earliest_s || station.latest_s > kMaxDuration_s) {
       reader.fail("window must be two times in s, from 0 to 1e7 and in order");
     }
   }
@@ -56,7 +56,7 @@ std::vector<UwbAnchor> read_anchors(const std::string& place, const Json& json) 
   for (std::size_t i = 0; i < json.size(); ++i) {
     const JsonObject reader(fmt::format("{}: anchors[{}]", place, i), json[i], {"number", "position"});
     const std::vector<double> p = reader.numbers("position", 3);
-    anchors.push_back({.number = reader.whole("number"), .p_m = {p[0], p[1], p[2]}});
+    anchors.push_back({.number = reader.integer("number"), .p_m = {p[0], p[1], p[2]}});
     if (!numbers.insert(anchors.back().number).second) reader.fail(fmt::format("number {} stands there twice", anchors.back().number));
   }
   return anchors;
@@ -72,8 +72,8 @@ TunnelLining read_lining(const std::string& file, const Json& json) {
   const JsonObject reader(place, json, {"position", "orientation", "axis", "crown_radius", "crown_centre", "side_radius", "first_ring",
                                         "ring_length", "rings"});
   TunnelLining lining{.T_route_start = reader.pose(), .axis = {}, .crown_radius_m = reader.number("crown_radius"),
-                      .crown_centre_m = reader.number("crown_centre"), .side_radius_m = reader.number("side_radius"),
-                      .first_ring_m = reader.number("first_ring"), .ring_length_m = reader.number("ring_length"), .rings = reader.whole("rings")};
+                      .crown_center_m = reader.number("crown_centre"), .side_radius_m = reader.number("side_radius"),
+                      .first_ring_m = reader.number("first_ring"), .ring_length_m = reader.number("ring_length"), .rings = reader.integer("rings")};
   const Json& axis = reader.list("axis");
   for (std::size_t i = 0; i < axis.size(); ++i) {
     const JsonObject element(fmt::format("{}: axis[{}]", place, i), axis[i], {"length", "curvature"});
@@ -94,8 +94,8 @@ RouteFile load_route(const std::filesystem::path& file) {
   const Json json = load_json(file);
   const std::string name = file.string();
   const JsonObject root(name, json, {"version", "frame", "start", "stations", "keep_out", "anchors", "dock", "lining"});
-  if (root.whole("version") != 1) root.fail("version must be 1");
-  if (root.word("frame") != "site") root.fail("frame must be site");
+  if (root.integer("version") != 1) root.fail("version must be 1");
+  if (root.string("frame") != "site") root.fail("frame must be site");
   RouteFile route{.route = {}, .T_site_start = JsonObject(name + ": start", root.member("start"), {"position", "orientation"}).pose()};
   const Json& stations = root.list("stations");
   for (std::size_t i = 0; i < stations.size(); ++i) {

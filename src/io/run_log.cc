@@ -32,7 +32,7 @@ McapWriter::ChannelId RunLogWriter::add_channel(const std::string& topic, const 
 
 // odom -> base_footprint (level) -> base_link.
 void RunLogWriter::write_frames(Time log_time, const OdometryEstimate& odometry) {
-  const Pose3 T_odom_level{odometry.T_odom_body.position, quaternion_from_yaw(yaw_of(odometry.T_odom_body.rotation))};
+  const Pose3 T_odom_level{odometry.T_odom_body.position, quaternion_from_yaw(to_yaw(odometry.T_odom_body.rotation))};
   const TransformSet frames{{
       {odometry.stamp, frame_id::kOdom, frame_id::kLevel, T_odom_level},
       {odometry.stamp, frame_id::kLevel, frame_id::kBody, T_odom_level.inverse() * odometry.T_odom_body},
@@ -48,8 +48,8 @@ void RunLogWriter::write_frames(Time log_time, const OdometryEstimate& odometry)
 void RunLogWriter::write_frames(Time log_time, const PoseEstimate& estimate) {
   if (odometry_.empty()) return;
   const Pose3 T_odom_body = pose_at(odometry_, estimate.stamp).value_or(odometry_.back().pose);
-  const Pose2 T_map_odom = estimate.T_map_body * to_planar(T_odom_body).inverse();
-  const TransformSet frames{{{estimate.stamp, frame_id::kMap, frame_id::kOdom, to_spatial(T_map_odom)}}};
+  const Pose2 T_map_odom = estimate.T_map_body * to_pose2(T_odom_body).inverse();
+  const TransformSet frames{{{estimate.stamp, frame_id::kMap, frame_id::kOdom, to_pose3(T_map_odom)}}};
   writer_.write(channel<TransformSet>(kTf), log_time, encode(frames, names_));
 }
 

@@ -51,7 +51,7 @@ struct ScanLogSummary {
   /// Number of scans by assumption: the file has no or conflicting information.
   std::map<std::string, std::uint64_t> assumed;
   std::map<std::string, std::uint64_t> skipped;  ///< number by reason: needed, but unusable
-  std::vector<std::string> complaints;           ///< first errors of skipped records, each with its position
+  std::vector<std::string> warnings;           ///< first errors of skipped records, each with its position
 };
 
 /// Formats the statistics of a file without scans: "12 lines, 3 SYNC, 4 lines that cannot be read".
@@ -88,12 +88,12 @@ class ScanLog {
  protected:
   void count_ignored(const std::string& name);
   /// Throws InputError(complaint), or counts it if `skip_bad_lines` is set.
-  void refuse_or_skip(const ScanLogOptions& options, const std::string& reason, const std::string& complaint);
-  void count_skipped(const std::string& reason, const std::string& complaint);
+  void reject_or_skip(const ScanLogOptions& options, const std::string& reason, const std::string& warning);
+  void count_skipped(const std::string& reason, const std::string& warning);
   /// Adds a scan to the sorter; rejects or skips one that is too late for sorting. `place`: prefix of the error
   /// message.
   void sort_in(ScanSorter& sorter, RecordedScan scan, const ScanLogOptions& options, const std::string& place);
-  void count_given_out(const RecordedScan& scan);
+  void count_returned(const RecordedScan& scan);
 
   ScanLogSummary summary_;
 

@@ -22,27 +22,27 @@ class ScanSorter {
   Order add(RecordedScan scan) {
     const Time stamp = scan.scan.stamp;
     if (last_taken_ && stamp < *last_taken_) return Order::kTooLate;
-    const auto place = std::upper_bound(held_.begin(), held_.end(), stamp, [](Time t, const RecordedScan& held) { return t < held.scan.stamp; });
-    const Order order = place == held_.end() ? Order::kInOrder : Order::kReordered;
-    held_.insert(place, std::move(scan));
+    const auto position = std::upper_bound(pending_.begin(), pending_.end(), stamp, [](Time t, const RecordedScan& pending) { return t < pending.scan.stamp; });
+    const Order order = position == pending_.end() ? Order::kInOrder : Order::kReordered;
+    pending_.insert(position, std::move(scan));
     return order;
   }
 
   /// Returns the earliest scan if the window is full or the log is at its end.
   std::optional<RecordedScan> take(bool is_at_end) {
-    if (held_.empty() || (!is_at_end && held_.size() <= kWindow)) return std::nullopt;
-    std::optional<RecordedScan> first = std::move(held_.front());
-    held_.pop_front();
+    if (pending_.empty() || (!is_at_end && pending_.size() <= kWindow)) return std::nullopt;
+    std::optional<RecordedScan> first = std::move(pending_.front());
+    pending_.pop_front();
     last_taken_ = first->scan.stamp;
     return first;
   }
 
-  bool is_empty() const { return held_.empty(); }
+  bool is_empty() const { return pending_.empty(); }
   /// Returns the stamp of the last scan taken.
   std::optional<Time> last_taken() const { return last_taken_; }
 
  private:
-  std::deque<RecordedScan> held_;  ///< by increasing stamp
+  std::deque<RecordedScan> pending_;  ///< by increasing stamp
   std::optional<Time> last_taken_;
 };
 

@@ -74,7 +74,7 @@ void apply_override(YAML::Node root, const std::string& override) {
 // yaml-cpp counts lines from 0.
 int line_of(const YAML::Node& node) { return node.Mark().is_null() ? 0 : node.Mark().line + 1; }
 
-std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
+std::string closest_match(const std::string& word, const std::vector<std::string>& known) {
   std::string nearest;
   std::size_t least = std::max<std::size_t>(3, word.size() / 3 + 1);
   for (const std::string& candidate : known) {
@@ -98,7 +98,7 @@ void SettingsReader::finish() const {
     const std::string name = entry.first.Scalar();
     if (!seen.insert(name).second) fail(entry.first, key(name), "stands there twice");
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-    const std::string nearest = nearest_word(name, known_);
+    const std::string nearest = closest_match(name, known_);
     fail(entry.first, key(name),
          fmt::format("unknown key{} (known: {})", nearest.empty() ? "" : "; did you mean " + nearest + "?", fmt::join(known_, ", ")));
   }
@@ -179,7 +179,7 @@ YAML::Node load_document(const std::filesystem::path& file, const std::vector<st
   return document;
 }
 
-YAML::Node document_of(const std::vector<std::string>& overrides) {
+YAML::Node parse_overrides(const std::vector<std::string>& overrides) {
   YAML::Node document(YAML::NodeType::Map);
   for (const std::string& override : overrides) apply_override(document, override);
   return document;

@@ -74,7 +74,7 @@ class SettingsReader {
       if constexpr (!std::is_same_v<Value, bool>) {
         using Checked = std::conditional_t<std::is_same_v<Value, std::string>, std::string, double>;
         if (!allows(limits, static_cast<Checked>(value))) {
-          fail(node, key, fmt::format("{} is out of range: {}", node.Scalar(), rule_of(limits)));
+          fail(node, key, fmt::format("{} is out of range: {}", node.Scalar(), describe_limits(limits)));
         }
       }
     } else if constexpr (requires { value.begin(); }) {
@@ -149,7 +149,7 @@ class SettingsWriter {
 YAML::Node load_document(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 
 /// Returns a document that contains only the overrides; all other values are defaults.
-YAML::Node document_of(const std::vector<std::string>& overrides);
+YAML::Node parse_overrides(const std::vector<std::string>& overrides);
 
 /// Returns the line of a node in its file, starting at 1; 0 for nodes from overrides.
 int line_of(const YAML::Node& node);
@@ -169,9 +169,9 @@ Settings load_settings(const std::filesystem::path& file, const std::vector<std:
 
 /// Returns the defaults with the overrides of `--set`. Throws InputError with "--set" and the key.
 template <typename Settings>
-Settings settings_of(const std::vector<std::string>& overrides) {
+Settings parse_settings(const std::vector<std::string>& overrides) {
   Settings settings;
-  SettingsReader::read_section("--set", document_of(overrides), "", settings);
+  SettingsReader::read_section("--set", parse_overrides(overrides), "", settings);
   return settings;
 }
 
@@ -190,6 +190,6 @@ void save_settings(const std::filesystem::path& file, const Settings& settings, 
 }
 
 /// Returns the known word with the smallest edit distance to `word`; empty if none is similar.
-std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
+std::string closest_match(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace patrol::io

@@ -13,7 +13,7 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::size_t kMostScans = 1000;
+constexpr std::size_t kMaxScans = 1000;
 
 struct Entry {
   std::string station;
@@ -32,13 +32,13 @@ bool is_plain(const std::string& name) {
 
 std::vector<Entry> load_index(const std::filesystem::path& folder) {
   const std::filesystem::path file = index_file(folder);
-  const Json json = load_json(file, kMostScans);
+  const Json json = load_json(file, kMaxScans);
   if (!json.is_array()) throw InputError(file.string() + ": must be a list of scans");
   std::vector<Entry> entries;
   std::set<std::string> stations;
   for (std::size_t i = 0; i < json.size(); ++i) {
     const JsonObject reader(fmt::format("{}: [{}]", file.string(), i), json[i], {"station", "position", "orientation"});
-    Entry entry{.station = reader.word("station"), .T_map_scanner = to_spatial(reader.pose(), reader.numbers("position", 3)[2])};
+    Entry entry{.station = reader.string("station"), .T_map_scanner = to_pose3(reader.pose(), reader.numbers("position", 3)[2])};
     if (!is_plain(entry.station)) reader.fail(fmt::format("station = {}: must be made of letters, digits and underlines", entry.station));
     if (!stations.insert(entry.station).second) reader.fail(fmt::format("station {} stands there twice", entry.station));
     entries.push_back(std::move(entry));

@@ -15,8 +15,8 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::size_t kMostStations = 200;  // paths between all pairs are planned
-constexpr double kLongest_s = 1e7;
+constexpr std::size_t kMaxStations = 200;  // paths between all pairs are planned
+constexpr double kMaxDuration_s = 1e7;
 constexpr const char* kStationColumns = "name, x, y and, if wanted, service_s, earliest_s, latest_s, priority";
 
 /// Splits a line into cells. `refuse` does not return.
@@ -62,7 +62,7 @@ class StationReader {
       if (columns_.empty()) read_header(cells);
       else read_station(cells);
     }
-    if (lines_.damage()) throw InputError(fmt::format("{}: {}", lines_.file().string(), *lines_.damage()));
+    if (lines_.read_error()) throw InputError(fmt::format("{}: {}", lines_.file().string(), *lines_.read_error()));
     if (stations_.empty()) throw InputError(fmt::format("{}: holds no station", lines_.file().string()));
     return std::move(stations_);
   }
@@ -97,18 +97,18 @@ class StationReader {
       const auto index = columns_.find(column);
       if (index != columns_.end() && !cells[index->second].empty()) value = number(column, cells[index->second], min, max);
     };
-    constexpr double kFarthest = 1e8;
-    take("x", station.x, -kFarthest, kFarthest);
-    take("y", station.y, -kFarthest, kFarthest);
-    take("service_s", station.service_s, 0.0, kLongest_s);
-    take("earliest_s", station.earliest_s, 0.0, kLongest_s);
-    take("latest_s", station.latest_s, 0.0, kLongest_s);
+    constexpr double kMaxCoordinate = 1e8;
+    take("x", station.x, -kMaxCoordinate, kMaxCoordinate);
+    take("y", station.y, -kMaxCoordinate, kMaxCoordinate);
+    take("service_s", station.service_s, 0.0, kMaxDuration_s);
+    take("earliest_s", station.earliest_s, 0.0, kMaxDuration_s);
+    take("latest_s", station.latest_s, 0.0, kMaxDuration_s);
     double priority = 0.0;
     take("priority", priority, -1e6, 1e6);
     if (priority != std::floor(priority)) refuse(fmt::format("priority: {}: must be a whole number", priority));
     station.priority = static_cast<int>(priority);
     if (station.latest_s < station.earliest_s) refuse(fmt::format("latest_s: {}: must not be before earliest_s = {}", station.latest_s, station.earliest_s));
-    if (stations_.size() == kMostStations) refuse(fmt::format("is one station too many: at most {} are read", kMostStations));
+    if (stations_.size() == kMaxStations) refuse(fmt::format("is one station too many: at most {} are read", kMaxStations));
     stations_.push_back(station);
   }
 

@@ -14,21 +14,21 @@ namespace {
 
 constexpr double kUnitTol = 1e-3;  ///< tolerance of the norm of a quaternion: some files have only four digits
 
-StampedPose parse_pose(LineFields fields) {
+StampedPose parse_pose(LineTokenizer fields) {
   StampedPose entry{.stamp = fields.stamp("t"), .pose = {}};
   Eigen::Vector3d& p = entry.pose.position;
   for (int axis = 0; axis < 3; ++axis) p[axis] = fields.number("position");
   const double x = fields.number("qx"), y = fields.number("qy"), z = fields.number("qz"), w = fields.number("qw");
-  if (!fields.is_empty()) throw FieldError("more than eight words");
+  if (!fields.is_empty()) throw ParseError("more than eight words");
   entry.pose.rotation = Eigen::Quaterniond(w, x, y, z);
   return entry;
 }
 
 StampedPose read_pose(const std::string& file, const LineReader::Line& line) {
   try {
-    if (line.is_cut) throw FieldError("too long");
-    return parse_pose(LineFields(line.text));
-  } catch (const FieldError&) {
+    if (line.is_cut) throw ParseError("too long");
+    return parse_pose(LineTokenizer(line.text));
+  } catch (const ParseError&) {
     throw input_error(file, line.number, "must be eight finite numbers: t x y z qx qy qz qw");
   }
 }
@@ -39,7 +39,7 @@ Trajectory load_tum(const std::filesystem::path& file, SameStamps same_stamps) {
   LineReader lines(file);
   Trajectory trajectory;
   while (const auto line = lines.next()) {
-    if (LineFields(line->text).is_empty() || line->text.front() == '#') continue;
+    if (LineTokenizer(line->text).is_empty() || line->text.front() == '#') continue;
     StampedPose entry = read_pose(file.string(), *line);
     const double length = entry.pose.rotation.norm();
     if (std::abs(length - 1.0) > kUnitTol) throw input_error(file.string(), line->number, fmt::format("the quaternion has length {:.4g}, must be 1", length));
@@ -51,7 +51,7 @@ Trajectory load_tum(const std::filesystem::path& file, SameStamps same_stamps) {
     }
     trajectory.push_back(entry);
   }
-  if (lines.damage()) throw InputError(fmt::format("{}: {}", file.string(), *lines.damage()));
+  if (lines.read_error()) throw InputError(fmt::format("{}: {}", file.string(), *lines.read_error()));
   if (trajectory.empty()) throw InputError(file.string() + ": holds no poses");
   return trajectory;
 }

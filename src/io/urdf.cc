@@ -38,7 +38,7 @@ int line_of(const std::string& text, const std::string& name) {
 
 /// Wheel inside the belt of a track: a cylinder across the robot.
 struct Wheel {
-  Eigen::Vector3d centre_m;  ///< position in body
+  Eigen::Vector3d center_m;  ///< position in body
   double radius_m;
   double width_m;
 };
@@ -232,7 +232,7 @@ std::vector<Wheel> UrdfReader::read_wheels(const std::string& track) const {
       fail(track, "the collision shapes of a track are the wheels that its belt runs round: cylinders along y");
     }
     const auto& cylinder = static_cast<const urdf::Cylinder&>(*collision->geometry);
-    wheels.push_back({.centre_m = T_body_wheel.position, .radius_m = cylinder.radius, .width_m = cylinder.length});
+    wheels.push_back({.center_m = T_body_wheel.position, .radius_m = cylinder.radius, .width_m = cylinder.length});
   }
   return wheels;
 }
@@ -251,7 +251,7 @@ JointLimit UrdfReader::read_limit(const std::string& name) const {
 /// Returns the height of the contact with level ground in body.
 double underside_m(const std::vector<Wheel>& wheels) {
   double bottom = std::numeric_limits<double>::infinity();
-  for (const Wheel& wheel : wheels) bottom = std::min(bottom, wheel.centre_m.z() - wheel.radius_m);
+  for (const Wheel& wheel : wheels) bottom = std::min(bottom, wheel.center_m.z() - wheel.radius_m);
   return bottom;
 }
 
@@ -262,9 +262,9 @@ double contact_length_m(const std::vector<Wheel>& wheels) {
   const double bottom = underside_m(wheels);
   double front = -std::numeric_limits<double>::infinity(), rear = -front;
   for (const Wheel& wheel : wheels) {
-    if (wheel.centre_m.z() - wheel.radius_m > bottom + kLevel_m) continue;
-    front = std::max(front, wheel.centre_m.x());
-    rear = std::min(rear, wheel.centre_m.x());
+    if (wheel.center_m.z() - wheel.radius_m > bottom + kLevel_m) continue;
+    front = std::max(front, wheel.center_m.x());
+    rear = std::min(rear, wheel.center_m.x());
   }
   return front - rear;
 }
@@ -290,7 +290,7 @@ std::vector<Eigen::Vector2d> UrdfReader::read_footprint(const RobotDescription& 
     if (!robot.tracks) break;
     for (const Wheel& wheel : read_wheels(track)) {
       for (const double x : {-wheel.radius_m, wheel.radius_m}) {
-        for (const double y : {-0.5, 0.5}) points.emplace_back(wheel.centre_m.head<2>() + Eigen::Vector2d(x, y * wheel.width_m));
+        for (const double y : {-0.5, 0.5}) points.emplace_back(wheel.center_m.head<2>() + Eigen::Vector2d(x, y * wheel.width_m));
       }
     }
   }
@@ -314,7 +314,7 @@ void UrdfReader::read_tracks(RobotDescription& robot) const {
     robot.joint_names.push_back(side + std::string("_sprocket_joint"));
     robot.joint_limits.push_back(read_limit(robot.joint_names.back()));
   }
-  robot.tracks = TrackGeometry{.gauge_m = left.front().centre_m.y() - right.front().centre_m.y(),
+  robot.tracks = TrackGeometry{.gauge_m = left.front().center_m.y() - right.front().center_m.y(),
                                .width_m = left.front().width_m,
                                .contact_length_m = contact_length_m(left),
                                .sprocket_radius_m = sprocket_radius_m("left_sprocket"),

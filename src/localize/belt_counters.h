@@ -16,7 +16,7 @@ struct TrackSpeed {
 };
 
 /// Motion of the belts between two encoder readings.
-struct BeltInterval {
+struct EncoderInterval {
   Time start{}, end{};
   TrackSpeed speed{};
   TrackSpeed smooth{};             ///< smoothed with a time constant of 0.1 s
@@ -29,36 +29,36 @@ struct BeltInterval {
 };
 
 /// Track encoders: belt speeds from the running counts of the Hall sensors.
-class BeltCounters {
+class TrackEncoders {
  public:
   struct Settings {
-    double metres_per_tick;
+    double meters_per_tick;
     double max_acceleration_mps2;  ///< larger accelerations are rejected as a counter restart, unless they persist
   };
-  explicit BeltCounters(const Settings& settings) : settings_(settings) {}
+  explicit TrackEncoders(const Settings& settings) : settings_(settings) {}
 
   /// Adds a reading; stamps must increase. Returns nullopt for the first reading, after a long gap, and for implausible
   /// counts.
-  std::optional<BeltInterval> add(const TrackTicks& ticks);
+  std::optional<EncoderInterval> add(const TrackTicks& ticks);
 
   /// Returns whether there was no tick for at least `kStandstill`.
-  bool stand() const { return stand_since_ && last_ && last_->stamp - *stand_since_ >= kStandstill; }
+  bool is_stationary() const { return stationary_since_ && last_ && last_->stamp - *stationary_since_ >= kStandstill; }
   /// Returns the start of the standstill; valid only while `stand()` is true.
-  Time stand_since() const { return *stand_since_; }
+  Time stationary_since() const { return *stationary_since_; }
   /// Returns the most recent reading.
   const std::optional<TrackTicks>& last() const { return last_; }
 
   static constexpr Time kStandstill = std::chrono::milliseconds(300);
 
  private:
-  bool is_believable(const BeltInterval& interval);
+  bool accept_change(const EncoderInterval& interval);
 
   Settings settings_;
   std::optional<TrackTicks> last_;
-  std::optional<Time> stand_since_;
+  std::optional<Time> stationary_since_;
   std::optional<TrackSpeed> smooth_;
   double acceleration_mps2_ = 0.0;
-  std::optional<Time> disbelieved_since_;
+  std::optional<Time> rejected_since_;
 };
 
 }  // namespace patrol::localize

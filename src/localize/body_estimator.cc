@@ -60,9 +60,9 @@ BodyEstimator::BodyEstimator(const RobotDescription& robot, const BodyEstimatorS
                                             .foot_std_m = settings.standstill_foot_std_m},
                              .history_s = settings.history_s,
                              .extrapolation_s = settings.extrapolation_s}),
-      contact_({.touch_n = settings.touch_force_n,
-                .release_n = settings.release_force_n,
-                .full_n = settings.full_force_n,
+      contact_({.contact_on_n = settings.touch_force_n,
+                .contact_off_n = settings.release_force_n,
+                .full_weight_n = settings.full_force_n,
                 .settle_s = settings.contact_settle_s}) {
   if (robot.legs.size() != kNumLegs) {
     throw InputError(
@@ -90,7 +90,7 @@ void BodyEstimator::add(const JointState& joints) {
     return;
   }
   joints_move_ = is_moving;
-  if (last_contacts_ && *last_contacts_ >= sample.stamp) sample.trust = trust_;
+  if (last_contacts_ && *last_contacts_ >= sample.stamp) sample.weights = trust_;
   pending_.insert(sample);
   take_pending();
 }
@@ -112,7 +112,7 @@ void BodyEstimator::add(const FootContacts& contacts) {
   trust_ = contact_.update(contacts.stamp, force_n);
   last_contacts_ = contacts.stamp;
   for (LegSample& sample : pending_) {
-    if (!sample.trust && sample.stamp <= contacts.stamp) sample.trust = trust_;
+    if (!sample.weights && sample.stamp <= contacts.stamp) sample.weights = trust_;
   }
   take_pending();
 }
@@ -136,9 +136,9 @@ void BodyEstimator::take_pending() {
     const Time newest = pending_.newest().stamp;
     const bool imu_is_late = to_seconds(newest - sample.stamp) > settings_.imu_patience_s;
     if (sample.stamp > imu_.now() && !imu_is_late) return;
-    if (!sample.trust) {
+    if (!sample.weights) {
       if (std::max(imu_.now(), newest) - sample.stamp < kContactPatience) return;
-      if (last_contacts_ && sample.stamp - *last_contacts_ < kMaxContactAge) sample.trust = trust_;
+      if (last_contacts_ && sample.stamp - *last_contacts_ < kMaxContactAge) sample.weights = trust_;
     }
     if (sample.stamp > imu_.now()) coast_to(sample);
     pending_.pop_oldest();
@@ -147,7 +147,7 @@ void BodyEstimator::take_pending() {
 }
 
 void BodyEstimator::coast_to(const LegSample& sample) {
-  imu_.coast_to(sample.stamp, yaw_rate_by_feet(stance_feet(sample)).value_or(imu_.filter()->yaw_rate_radps()));
+  imu_.coast_to(sample.stamp, yaw_rate_from_feet(stance_feet(sample)).value_or(imu_.filter()->yaw_rate_radps()));
 }
 
 void BodyEstimator::use_legs(const LegSample& sample) {
@@ -156,7 +156,7 @@ void BodyEstimator::use_legs(const LegSample& sample) {
     imu_.reject();
     return;
   }
-  contacts_are_silent_ = !sample.trust;
+  contacts_are_silent_ = !sample.weights;
   const StanceFeet feet = stance_feet(sample);
   const std::optional<LegVelocity> legs = fuse_feet(
       feet, then->omega_body, then->v_body, settings_.foot_velocity_std_mps, settings_.slip_speed_mps);
@@ -165,7 +165,7 @@ void BodyEstimator::use_legs(const LegSample& sample) {
   imu_.filter()->correct_velocity(legs->v_body - then->v_body, legs->p_contact, legs->variance);
   measure_standstill(sample, *then, feet);
 
-  const double height = *height_by_feet(feet, imu_.filter()->up_in_body());
+  const double height = *height_from_feet(feet, imu_.filter()->up_in_body());
   const double dt_s = last_leg_update_ ? to_seconds(sample.stamp - *last_leg_update_) : kHeightTime_s;
   height_m_ += std::clamp(dt_s / kHeightTime_s, 0.0, 1.0) * (height - height_m_);
   last_leg_update_ = std::max(last_leg_update_.value_or(sample.stamp), sample.stamp);
@@ -173,14 +173,14 @@ void BodyEstimator::use_legs(const LegSample& sample) {
 }
 
 StanceFeet BodyEstimator::stance_feet(const LegSample& sample) const {
-  if (!sample.trust) return lowest_feet(sample);
+  if (!sample.weights) return lowest_feet(sample);
   StanceFeet feet;
   const Eigen::Vector3d up = imu_.filter()->up_in_body();
   for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
-    const double trust = (*sample.trust)[leg];
-    if (trust <= 0.0) continue;
+    const double weights = (*sample.weights)[leg];
+    if (weights <= 0.0) continue;
     StanceFoot foot = stance_foot(robot_.legs[leg], static_cast<int>(leg), sample, up);
-    foot.weight = trust;
+    foot.weight = weights;
     feet.push_back(foot);
   }
   return feet;
@@ -205,7 +205,7 @@ StanceFeet BodyEstimator::lowest_feet(const LegSample& sample) const {
 
 void BodyEstimator::measure_standstill(const LegSample& sample, const TrunkMotion& then,
                                        const StanceFeet& feet) {
-  if (imu_.is_silent() || !sample.trust || feet.count < kNumLegs) {
+  if (imu_.is_silent() || !sample.weights || feet.count < kNumLegs) {
     imu_.bias_meter().reset();
     return;
   }

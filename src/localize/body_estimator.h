@@ -124,7 +124,7 @@ class BodyEstimator {
   ContactDetector contact_;
   PendingReadings<LegSample> pending_;  ///< waiting for IMU and foot forces
   std::optional<Time> last_contacts_;
-  FootTrust trust_{};  ///< then
+  ContactWeights trust_{};  ///< then
   std::optional<Time> last_leg_update_;
   double height_m_ = 0.0;
 

@@ -18,14 +18,14 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kWidth_stds = 4.0;       // cutoff of a beam error in standard deviations
+constexpr double kCutoffSigma = 4.0;       // cutoff of a beam error in standard deviations
 constexpr double kCoarseWidth_m = 0.2;    // cutoff of the support during the coarse search
 constexpr int kCoarseSteps = 2;           // coarse steps to each side of the expected pose
 constexpr std::size_t kNumCandidates = 4;
 constexpr double kFineStep_m = 0.02;
 constexpr double kFinest_m = 0.0005;
 // Ratio of the yaw step to the position step of the search, for half the width of a post.
-constexpr double kRadPerMetre = 4.0;
+constexpr double kRadPerMeter = 4.0;
 // Maximum standard deviation in search coordinates; larger values mean a degenerate direction.
 constexpr double kMaxStd_m = 0.05;
 
@@ -43,25 +43,25 @@ DockDetector::DockDetector(const DockDetectorSettings& settings, std::vector<Eig
   radius_m_ = box.diagonal().norm() / 2.0;
 }
 
-std::optional<DockSighting> DockDetector::detect(const LevelScan& scan, const Pose2& T_level_expected) const {
+std::optional<DockDetection> DockDetector::detect(const LevelScan& scan, const Pose2& T_level_expected) const {
   if ((T_level_expected * middle_m_ - scan.origin_m).norm() > settings_.max_range_m) return std::nullopt;
   const std::vector<Beam> beams = beams_about(scan, T_level_expected);
   if (static_cast<int>(beams.size()) < settings_.min_beams) return std::nullopt;
   const std::vector<Beam> hits = hits_near(beams, scan.origin_m, T_level_expected);
   Fit fit = refine(hits, scan.origin_m, T_level_expected);
-  DockSighting sighting{.stamp = scan.stamp, .T_level_docked = fit.T_level_docked};
-  if (!judge(beams, scan.origin_m, sighting)) {  // not at the expected pose: search around it
+  DockDetection detection{.stamp = scan.stamp, .T_level_docked = fit.T_level_docked};
+  if (!accept(beams, scan.origin_m, detection)) {  // not at the expected pose: search around it
     fit = search(hits, scan.origin_m, T_level_expected);
-    sighting.T_level_docked = fit.T_level_docked;
-    if (!judge(beams, scan.origin_m, sighting)) return std::nullopt;
+    detection.T_level_docked = fit.T_level_docked;
+    if (!accept(beams, scan.origin_m, detection)) return std::nullopt;
   }
   const std::optional<Eigen::Matrix3d> spread = covariance(hits, scan.origin_m, fit);
   if (!spread) return std::nullopt;
-  sighting.covariance = *spread;
-  return sighting;
+  detection.covariance = *spread;
+  return detection;
 }
 
-double DockDetector::reach_m() const { return radius_m_ + settings_.search_m * std::sqrt(2.0) + settings_.margin_m; }
+double DockDetector::max_beam_distance_m() const { return radius_m_ + settings_.search_m * std::sqrt(2.0) + settings_.margin_m; }
 
 // Returns the beams that could hit the post anywhere in the search range, and those that pass its ends.
 std::vector<DockDetector::Beam> DockDetector::beams_about(const LevelScan& scan, const Pose2& T_level_expected) const {
@@ -74,7 +74,7 @@ std::vector<DockDetector::Beam> DockDetector::beams_about(const LevelScan& scan,
     const Eigen::Vector2d direction = along / range_m;
     const double ahead_m = direction.dot(to_post);
     const double aside_m = std::abs(direction.x() * to_post.y() - direction.y() * to_post.x());
-    if (ahead_m > -reach_m() && aside_m < reach_m()) beams.push_back({direction, range_m, beam.is_hit});
+    if (ahead_m > -max_beam_distance_m() && aside_m < max_beam_distance_m()) beams.push_back({direction, range_m, beam.is_hit});
   }
   return beams;
 }
@@ -86,7 +86,7 @@ std::vector<DockDetector::Beam> DockDetector::hits_near(const std::vector<Beam>&
   std::vector<Beam> hits;
   for (const Beam& beam : beams) {
     const double distance_m = (origin_m + beam.range_m * beam.direction - middle).norm();
-    if (beam.is_hit && distance_m < reach_m() + kCoarseWidth_m) hits.push_back(beam);
+    if (beam.is_hit && distance_m < max_beam_distance_m() + kCoarseWidth_m) hits.push_back(beam);
   }
   return hits;
 }
@@ -122,11 +122,11 @@ double DockDetector::support(const std::vector<Beam>& beams, const Eigen::Vector
 
 /// Translates the pose in level, or rotates it about the center of the outline. A rotation about the docked body, half
 /// a meter away, would also shift the outline. The coordinate search would then follow a narrow ridge in small steps.
-Pose2 DockDetector::moved(const Pose2& T_level_docked, int axis, double step_m) const {
+Pose2 DockDetector::step_pose(const Pose2& T_level_docked, int axis, double step_m) const {
   if (axis == 0) return {T_level_docked.x + step_m, T_level_docked.y, T_level_docked.yaw};
   if (axis == 1) return {T_level_docked.x, T_level_docked.y + step_m, T_level_docked.yaw};
   const Pose2 T_docked_middle{middle_m_.x(), middle_m_.y(), 0.0};
-  return T_level_docked * T_docked_middle * Pose2{0.0, 0.0, kRadPerMetre * step_m} * T_docked_middle.inverse();
+  return T_level_docked * T_docked_middle * Pose2{0.0, 0.0, kRadPerMeter * step_m} * T_docked_middle.inverse();
 }
 
 DockDetector::Fit DockDetector::search(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
@@ -136,8 +136,8 @@ DockDetector::Fit DockDetector::search(const std::vector<Beam>& beams, const Eig
     for (int j = -kCoarseSteps; j <= kCoarseSteps; ++j) {
       for (int k = -kCoarseSteps; k <= kCoarseSteps; ++k) {
         const double step_m = settings_.search_m / kCoarseSteps, step_rad = settings_.search_rad / kCoarseSteps;
-        const Pose2 turned = moved(T_level_expected, 2, k * step_rad / kRadPerMetre);
-        const Pose2 T = moved(moved(turned, 0, i * step_m), 1, j * step_m);
+        const Pose2 turned = step_pose(T_level_expected, 2, k * step_rad / kRadPerMeter);
+        const Pose2 T = step_pose(step_pose(turned, 0, i * step_m), 1, j * step_m);
         candidates.push_back({T, support(beams, origin_m, T, kCoarseWidth_m)});
       }
     }
@@ -155,7 +155,7 @@ DockDetector::Fit DockDetector::search(const std::vector<Beam>& beams, const Eig
 /// Refines a pose with an error of a few centimeters.
 DockDetector::Fit DockDetector::refine(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
                                        const Pose2& T_level_docked) const {
-  const double width_m = kWidth_stds * settings_.range_std_m;
+  const double width_m = kCutoffSigma * settings_.range_std_m;
   Fit fit{T_level_docked, support(beams, origin_m, T_level_docked, width_m)};
   climb(beams, origin_m, width_m, kFineStep_m, fit);
   return fit;
@@ -168,7 +168,7 @@ void DockDetector::climb(const std::vector<Beam>& beams, const Eigen::Vector2d& 
     bool has_gained = false;
     for (int axis = 0; axis < 3; ++axis) {
       for (const double sign : {1.0, -1.0}) {
-        const Pose2 there = moved(fit.T_level_docked, axis, sign * step_m);
+        const Pose2 there = step_pose(fit.T_level_docked, axis, sign * step_m);
         const double gained = support(beams, origin_m, there, width_m);
         if (gained <= fit.support) continue;
         fit = {there, gained};
@@ -183,9 +183,9 @@ void DockDetector::climb(const std::vector<Beam>& beams, const Eigen::Vector2d& 
 // sigma^2. The step equals the noise, in order to include the information of the edges.
 std::optional<Eigen::Matrix3d> DockDetector::covariance(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
                                                         const Fit& fit) const {
-  const double width_m = kWidth_stds * settings_.range_std_m, step_m = settings_.range_std_m;
+  const double width_m = kCutoffSigma * settings_.range_std_m, step_m = settings_.range_std_m;
   const auto loss = [&](int a, double step_a, int b, double step_b) {
-    return -support(beams, origin_m, moved(moved(fit.T_level_docked, a, step_a), b, step_b), width_m);
+    return -support(beams, origin_m, step_pose(step_pose(fit.T_level_docked, a, step_a), b, step_b), width_m);
   };
   Eigen::Matrix3d curvature;
   for (int a = 0; a < 3; ++a) {
@@ -202,19 +202,19 @@ std::optional<Eigen::Matrix3d> DockDetector::covariance(const std::vector<Beam>&
   // Transform from search coordinates to x, y, yaw of the docked body: a rotation about the center moves it.
   const Eigen::Vector2d arm = fit.T_level_docked.position() - fit.T_level_docked * middle_m_;
   Eigen::Matrix3d J;
-  J << 1.0, 0.0, -kRadPerMetre * arm.y(),
-       0.0, 1.0, kRadPerMetre * arm.x(),
-       0.0, 0.0, kRadPerMetre;
+  J << 1.0, 0.0, -kRadPerMeter * arm.y(),
+       0.0, 1.0, kRadPerMeter * arm.x(),
+       0.0, 0.0, kRadPerMeter;
   return J * information.inverse() * J.transpose();
 }
 
 /// Evaluates a detection: inlier ratio over the predicted beams, with free space next to the post. Sets the quality
 /// fields and returns whether the detection is accepted.
-bool DockDetector::judge(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, DockSighting& sighting) const {
-  const Pose2 T_docked_level = sighting.T_level_docked.inverse();
+bool DockDetector::accept(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, DockDetection& detection) const {
+  const Pose2 T_docked_level = detection.T_level_docked.inverse();
   const Eigen::Vector2d origin = T_docked_level * origin_m;
-  const double width_m = kWidth_stds * settings_.range_std_m;
-  int num_explained = 0, num_contradicting = 0;
+  const double width_m = kCutoffSigma * settings_.range_std_m;
+  int num_inliers = 0, num_outliers = 0;
   double squares = 0.0;
   for (const Beam& beam : beams) {
     const Eigen::Vector2d end = T_docked_level * Eigen::Vector2d(origin_m + beam.range_m * beam.direction);
@@ -222,21 +222,21 @@ bool DockDetector::judge(const std::vector<Beam>& beams, const Eigen::Vector2d& 
     const double error = beam.range_m - should_m;
     if (std::isfinite(should_m)) {
       const bool is_met = beam.is_hit && std::abs(error) <= width_m;
-      num_explained += is_met;
-      num_contradicting += !is_met;
+      num_inliers += is_met;
+      num_outliers += !is_met;
       if (is_met) squares += error * error;
     } else if (beam.is_hit) {
       double distance_m = std::numeric_limits<double>::infinity();
       for (std::size_t i = 0; i + 1 < profile_m_.size(); ++i) {
         distance_m = std::min(distance_m, distance_to_segment(end, profile_m_[i], profile_m_[i + 1]));
       }
-      num_contradicting += distance_m < settings_.margin_m;
+      num_outliers += distance_m < settings_.margin_m;
     }
   }
-  if (num_explained < settings_.min_beams) return false;
-  sighting.explained = static_cast<double>(num_explained) / (num_explained + num_contradicting);
-  sighting.rms_m = std::sqrt(squares / num_explained);
-  return sighting.explained >= settings_.min_explained && sighting.rms_m <= settings_.max_rms_m;
+  if (num_inliers < settings_.min_beams) return false;
+  detection.inlier_ratio = static_cast<double>(num_inliers) / (num_inliers + num_outliers);
+  detection.rms_m = std::sqrt(squares / num_inliers);
+  return detection.inlier_ratio >= settings_.min_explained && detection.rms_m <= settings_.max_rms_m;
 }
 
 }  // namespace patrol::localize

@@ -47,7 +47,7 @@ class DockDetector {
   DockDetector(const DockDetectorSettings& settings, std::vector<Eigen::Vector2d> profile_m);
 
   /// Searches the post in a scan. `T_level_expected`: expected docked pose in the present `level` frame.
-  std::optional<DockSighting> detect(const LevelScan& scan, const Pose2& T_level_expected) const;
+  std::optional<DockDetection> detect(const LevelScan& scan, const Pose2& T_level_expected) const;
 
  private:
   struct Beam {
@@ -64,18 +64,18 @@ class DockDetector {
   std::vector<Beam> hits_near(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
                               const Pose2& T_level_expected) const;
   /// Returns the radius around the center of the expected post that contains all relevant beams.
-  double reach_m() const;
+  double max_beam_distance_m() const;
   double support(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, const Pose2& T_level_docked,
                  double width_m) const;
   /// Returns the distance along a ray to the outline; infinite if the ray misses it.
   double cast(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction) const;
-  Pose2 moved(const Pose2& T_level_docked, int axis, double step_m) const;
+  Pose2 step_pose(const Pose2& T_level_docked, int axis, double step_m) const;
   Fit search(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, const Pose2& T_level_expected) const;
   Fit refine(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, const Pose2& T_level_docked) const;
   void climb(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, double width_m, double step_m, Fit& fit) const;
   std::optional<Eigen::Matrix3d> covariance(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
                                             const Fit& fit) const;
-  bool judge(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, DockSighting& sighting) const;
+  bool accept(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, DockDetection& detection) const;
 
   DockDetectorSettings settings_;
   std::vector<Eigen::Vector2d> profile_m_;

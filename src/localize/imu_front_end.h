@@ -19,7 +19,7 @@ template <typename Filter>
 class ImuFrontEnd {
  public:
   struct Settings {
-    StandstillBiasMeter::Settings standstill;
+    StationaryGyroBiasEstimator::Settings standstill;
     double history_s;
     double extrapolation_s;  ///< beyond the newest motion
   };
@@ -111,7 +111,7 @@ class ImuFrontEnd {
   /// None before the first reading that could start it.
   std::optional<Filter>& filter() { return filter_; }
   const std::optional<Filter>& filter() const { return filter_; }
-  StandstillBiasMeter& bias_meter() { return bias_meter_; }
+  StationaryGyroBiasEstimator& bias_meter() { return bias_meter_; }
   Time now() const { return now_; }              ///< instant of the filter's state
   bool is_silent() const { return is_silent_; }  ///< the filter's last step was without the IMU
 
@@ -127,7 +127,7 @@ class ImuFrontEnd {
   std::optional<Filter> filter_;
   Time now_{};
   MotionHistory history_;
-  StandstillBiasMeter bias_meter_;
+  StationaryGyroBiasEstimator bias_meter_;
   double extrapolation_s_;
   Time last_velocity_hold_{};
   FrozenReadings<6> frozen_;

@@ -20,7 +20,7 @@ constexpr double kCoastVelocityStd = 1.0;  // m/s/sqrt(s)
 
 InertialFilter::InertialFilter(const Settings& settings, const InertialSample& first)
     : settings_(settings), last_(first) {
-  motion_.T_odom_body.rotation = tilt_of(first.force_mps2);
+  motion_.T_odom_body.rotation = tilt_from_gravity(first.force_mps2);
   motion_.omega_body = first.rate_radps;
   const auto set_std = [this](int block, double std) {
     P_.diagonal().segment<3>(block).setConstant(std * std);
@@ -100,7 +100,7 @@ void InertialFilter::correct_gyro_bias(const Eigen::Vector3d& bias_radps, const 
   Gain K = W * S.inverse();
   K.middleRows<3>(kPosition).setZero();
   K.row(kRotation + 2).setZero();
-  shift(K * (bias_radps - gyro_bias_));
+  apply_error(K * (bias_radps - gyro_bias_));
   P_ += K * S * K.transpose() - K * W.transpose() - W * K.transpose();
   P_ = (0.5 * (P_ + P_.transpose())).eval();
 }
@@ -108,12 +108,12 @@ void InertialFilter::correct_gyro_bias(const Eigen::Vector3d& bias_radps, const 
 void InertialFilter::apply(const Gain& W, const Eigen::Matrix3d& S_inverse,
                            const Eigen::Vector3d& innovation) {
   const Gain K = W * S_inverse;
-  shift(K * innovation);
+  apply_error(K * innovation);
   P_.noalias() -= K * W.transpose();
   P_ = (0.5 * (P_ + P_.transpose())).eval();
 }
 
-void InertialFilter::shift(const Eigen::Matrix<double, 15, 1>& error) {
+void InertialFilter::apply_error(const Eigen::Matrix<double, 15, 1>& error) {
   Pose3& T = motion_.T_odom_body;
   T.position += error.segment<3>(kPosition);
   T.rotation = (rotation_by(error.segment<3>(kRotation)) * T.rotation).normalized();

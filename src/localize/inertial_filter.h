@@ -65,7 +65,7 @@ class InertialFilter {
  private:
   using Gain = Eigen::Matrix<double, 15, 3>;
   void add_dead_reckoning_noise(double dt_s);
-  void shift(const Eigen::Matrix<double, 15, 1>& error);
+  void apply_error(const Eigen::Matrix<double, 15, 1>& error);
   /// Corrects the state, and P by -W S^-1 W^T, where W = P H^T.
   void apply(const Gain& W, const Eigen::Matrix3d& S_inverse, const Eigen::Vector3d& innovation);
 

@@ -16,7 +16,7 @@ Eigen::Quaterniond rotation_by(const Eigen::Vector3d& angle_rad) {
   return Eigen::Quaterniond(1.0 - squared / 8.0, half.x(), half.y(), half.z()).normalized();
 }
 
-Eigen::Quaterniond tilt_of(const Eigen::Vector3d& force) {
+Eigen::Quaterniond tilt_from_gravity(const Eigen::Vector3d& force) {
   return quaternion_from_rpy(std::atan2(force.y(), force.z()),
                              std::atan2(-force.x(), std::hypot(force.y(), force.z())), 0.0);
 }

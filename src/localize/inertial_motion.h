@@ -30,7 +30,7 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v);
 Eigen::Quaterniond rotation_by(const Eigen::Vector3d& angle_rad);
 
 /// Returns roll and pitch for which gravity reads `force` at rest; yaw 0.
-Eigen::Quaterniond tilt_of(const Eigen::Vector3d& force);
+Eigen::Quaterniond tilt_from_gravity(const Eigen::Vector3d& force);
 
 /// Dead-reckoning step with its linearization point.
 struct InertialStep {

@@ -9,16 +9,16 @@
 
 namespace patrol::localize {
 
-FootTrust ContactDetector::update(Time stamp, const std::array<double, kNumLegs>& force_n) {
-  FootTrust trust{};
+ContactWeights ContactDetector::update(Time stamp, const std::array<double, kNumLegs>& force_n) {
+  ContactWeights weights{};
   for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
     const bool was_loaded = is_loaded_[leg];
-    is_loaded_[leg] = force_n[leg] > (was_loaded ? settings_.release_n : settings_.touch_n);
+    is_loaded_[leg] = force_n[leg] > (was_loaded ? settings_.contact_off_n : settings_.contact_on_n);
     if (is_loaded_[leg] && !was_loaded) loaded_since_[leg] = stamp;
     const bool has_settled = is_loaded_[leg] && to_seconds(stamp - loaded_since_[leg]) >= settings_.settle_s;
-    trust[leg] = has_settled ? std::clamp(force_n[leg] / settings_.full_n, 0.0, 1.0) : 0.0;
+    weights[leg] = has_settled ? std::clamp(force_n[leg] / settings_.full_weight_n, 0.0, 1.0) : 0.0;
   }
-  return trust;
+  return weights;
 }
 
 StanceFoot stance_foot(const LegGeometry& leg, int index, const LegSample& sample,
@@ -54,7 +54,7 @@ std::optional<LegVelocity> fuse_feet(const StanceFeet& feet, const Eigen::Vector
   return fused;
 }
 
-std::optional<double> yaw_rate_by_feet(const StanceFeet& feet) {
+std::optional<double> yaw_rate_from_feet(const StanceFeet& feet) {
   if (feet.count < 2) return std::nullopt;
   Eigen::Vector2d p_mean = Eigen::Vector2d::Zero(), v_mean = Eigen::Vector2d::Zero();
   for (const StanceFoot& foot : feet) {
@@ -72,7 +72,7 @@ std::optional<double> yaw_rate_by_feet(const StanceFeet& feet) {
   return moment / inertia;
 }
 
-std::optional<double> height_by_feet(const StanceFeet& feet, const Eigen::Vector3d& up_in_body) {
+std::optional<double> height_from_feet(const StanceFeet& feet, const Eigen::Vector3d& up_in_body) {
   double sum = 0.0, weight_sum = 0.0;
   for (const StanceFoot& foot : feet) {
     sum -= foot.weight * foot.p_contact.dot(up_in_body);

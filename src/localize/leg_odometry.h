@@ -14,7 +14,7 @@ namespace patrol::localize {
 inline constexpr int kNumLegs = 4;
 
 /// Probability-like weight that a foot is stationary on the ground: 0 (in the air) to 1.
-using FootTrust = std::array<double, kNumLegs>;
+using ContactWeights = std::array<double, kNumLegs>;
 
 /// Joint encoder readings of one instant, leg by leg in the order of RobotDescription::legs, with the foot contacts.
 struct LegSample {
@@ -22,23 +22,23 @@ struct LegSample {
   Eigen::Matrix<double, 3, kNumLegs> angle_rad =
       Eigen::Matrix<double, 3, kNumLegs>::Zero();  ///< columns: legs; rows: abduction, hip, knee
   Eigen::Matrix<double, 3, kNumLegs> speed_radps = Eigen::Matrix<double, 3, kNumLegs>::Zero();
-  std::optional<FootTrust> trust{};  ///< nullopt if the foot sensors have timed out
+  std::optional<ContactWeights> weights{};  ///< nullopt if the foot sensors have timed out
 };
 
 /// Detector of stance feet: force threshold with hysteresis. A foot counts after a settling time under load, when the
-/// touch-down impact is over. Its weight is proportional to the load up to `full_n`.
+/// touch-down impact is over. Its weight is proportional to the load up to `full_weight_n`.
 class ContactDetector {
  public:
   struct Settings {
-    double touch_n;    ///< contact starts above this force
-    double release_n;  ///< contact ends below this force
-    double full_n;
+    double contact_on_n;    ///< contact starts above this force
+    double contact_off_n;  ///< contact ends below this force
+    double full_weight_n;
     double settle_s;
   };
   explicit ContactDetector(const Settings& settings) : settings_(settings) {}
 
   /// Updates the contacts; stamps must increase.
-  FootTrust update(Time stamp, const std::array<double, kNumLegs>& force_n);
+  ContactWeights update(Time stamp, const std::array<double, kNumLegs>& force_n);
 
  private:
   Settings settings_;
@@ -91,10 +91,10 @@ std::optional<LegVelocity> fuse_feet(const StanceFeet& feet, const Eigen::Vector
 
 /// Returns the yaw rate of the trunk from the feet alone, rad/s, by least squares over at least two feet; used when the
 /// gyro has timed out.
-std::optional<double> yaw_rate_by_feet(const StanceFeet& feet);
+std::optional<double> yaw_rate_from_feet(const StanceFeet& feet);
 
 /// Returns the height of the trunk origin above the ground under the feet, along `up_in_body`, m; nullopt without
 /// stance feet.
-std::optional<double> height_by_feet(const StanceFeet& feet, const Eigen::Vector3d& up_in_body);
+std::optional<double> height_from_feet(const StanceFeet& feet, const Eigen::Vector3d& up_in_body);
 
 }  // namespace patrol::localize

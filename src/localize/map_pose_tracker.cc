@@ -15,17 +15,17 @@ void MapPoseTracker::correct(Time stamp, const Pose2& T_odom_body, const Pose2& 
 
 PoseEstimate MapPoseTracker::at(Time stamp, const Pose2& T_odom_body) const {
   const Pose2 T_map_body = T_map_odom_ * T_odom_body;
-  const Eigen::Vector2d way = T_map_body.position() - (T_map_odom_ * T_odom_corrected_).position();
+  const Eigen::Vector2d displacement = T_map_body.position() - (T_map_odom_ * T_odom_corrected_).position();
   const double turn = std::abs(wrap_angle(T_odom_body.yaw - T_odom_corrected_.yaw));
 
   // A heading error at the correction rotates the distance traveled since then.
-  Eigen::Matrix3d swing = Eigen::Matrix3d::Identity();
-  swing(0, 2) = -way.y();
-  swing(1, 2) = way.x();
-  Eigen::Matrix3d covariance = swing * covariance_ * swing.transpose();
-  covariance.diagonal().head<2>().array() += std::pow(drift_.way_std_m_per_m * way.norm(), 2);
+  Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
+  F(0, 2) = -displacement.y();
+  F(1, 2) = displacement.x();
+  Eigen::Matrix3d covariance = F * covariance_ * F.transpose();
+  covariance.diagonal().head<2>().array() += std::pow(drift_.position_std_m_per_m * displacement.norm(), 2);
   covariance(2, 2) +=
-      std::pow(drift_.turn_std_rad_per_m * way.norm() + drift_.turn_std_rad_per_rad * turn, 2);
+      std::pow(drift_.yaw_std_rad_per_m * displacement.norm() + drift_.yaw_std_rad_per_rad * turn, 2);
   return {.stamp = stamp, .T_map_body = T_map_body, .covariance = covariance};
 }
 

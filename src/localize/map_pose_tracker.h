@@ -6,9 +6,9 @@ namespace patrol::localize {
 
 /// Growth of the pose uncertainty by odometry, per distance and rotation since the last correction.
 struct OdometryDrift {
-  double way_std_m_per_m = 0.02;
-  double turn_std_rad_per_m = 0.005;
-  double turn_std_rad_per_rad = 0.01;
+  double position_std_m_per_m = 0.02;
+  double yaw_std_rad_per_m = 0.005;
+  double yaw_std_rad_per_rad = 0.01;
 };
 
 /// Pose of the level body in `map` at any time: the last correction of SLAM composed with the continuous odometry,

@@ -41,10 +41,10 @@ double normal_density(double x, double std) {
 }
 
 /// Returns the density of the sum of a normal and an exponential variable (exponentially modified Gaussian).
-double excess_density(double x, double std, double mean_excess) {
-  const double exponent = 0.5 * std * std / (mean_excess * mean_excess) - x / mean_excess;
-  const double tail = 0.5 * std::erfc((std / mean_excess - x / std) / std::numbers::sqrt2);
-  return std::exp(std::min(exponent, 500.0)) * tail / mean_excess;
+double nlos_density(double x, double std, double mean_bias) {
+  const double exponent = 0.5 * std * std / (mean_bias * mean_bias) - x / mean_bias;
+  const double tail = 0.5 * std::erfc((std / mean_bias - x / std) / std::numbers::sqrt2);
+  return std::exp(std::min(exponent, 500.0)) * tail / mean_bias;
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ RangeFilter::RangeFilter(const RangeFilterSettings& settings, const std::vector<
       anchors_(by_number(anchors_in_map)),
       T_body_uwb_(T_body_uwb) {}
 
-void RangeFilter::start_at(const PoseEstimate& start, const Pose3& T_odom_body, double z_m) {
+void RangeFilter::set_initial_pose(const PoseEstimate& start, const Pose3& T_odom_body, double z_m) {
   has_started_ = true;
   state_ = State{.stamp = start.stamp, .T_odom_body = T_odom_body, .T_map_body = start.T_map_body, .z_m = z_m};
   state_.P.topLeftCorner<3, 3>() = start.covariance;
@@ -67,13 +67,13 @@ void RangeFilter::start_at(const PoseEstimate& start, const Pose3& T_odom_body, 
 
 void RangeFilter::predict(Time stamp, const Pose3& T_odom_body, const Eigen::Vector3d& twist_std) {
   if (!has_started_ || stamp <= state_.stamp) return;
-  state_ = moved(state_, stamp, T_odom_body, twist_std);
+  state_ = predicted(state_, stamp, T_odom_body, twist_std);
   twist_std_ = twist_std;
 }
 
-RangeFilter::State RangeFilter::moved(State state, Time stamp, const Pose3& T_odom_body, const Eigen::Vector3d& twist_std) const {
+RangeFilter::State RangeFilter::predicted(State state, Time stamp, const Pose3& T_odom_body, const Eigen::Vector3d& twist_std) const {
   const double dt_s = to_seconds(stamp - state.stamp);
-  const Pose2 step = to_planar(state.T_odom_body).inverse() * to_planar(T_odom_body);
+  const Pose2 step = to_pose2(state.T_odom_body).inverse() * to_pose2(T_odom_body);
   const double way_m = step.position().norm(), turn_rad = std::abs(step.yaw);
 
   // Odometry increment, corrected by its estimated error.
@@ -110,29 +110,29 @@ RangeOutcome RangeFilter::add(const UwbRange& range, const Pose3& T_odom_body) {
   if (!has_started_ || !is_usable(range)) return outcome;
   Vector H;
   outcome.innovation_m = innovation(range, T_odom_body, H);
-  const double clear_var = settings_.range_std_m * settings_.range_std_m;
-  outcome.variance_m2 = H.dot(state_.P * H) + clear_var;
-  outcome.clear_probability = clear_probability(outcome.innovation_m, std::sqrt(outcome.variance_m2));
-  outcome.verdict = judge(outcome);
-  if (outcome.is_accepted()) correct(H, outcome.innovation_m, clear_var / outcome.clear_probability);
+  const double los_var = settings_.range_std_m * settings_.range_std_m;
+  outcome.variance_m2 = H.dot(state_.P * H) + los_var;
+  outcome.los_probability = los_probability(outcome.innovation_m, std::sqrt(outcome.variance_m2));
+  outcome.status = classify(outcome);
+  if (outcome.is_accepted()) correct(H, outcome.innovation_m, los_var / outcome.los_probability);
   count(outcome.is_accepted());
   return outcome;
 }
 
 bool RangeFilter::is_usable(const UwbRange& range) {
   if (!anchors_.contains(range.anchor) || !std::isfinite(range.range_m) || range.range_m < 0.0) return false;
-  const auto [entry, is_new] = heard_.try_emplace(range.anchor, Heard{range.stamp, range.range_m, 0});
-  Heard& heard = entry->second;
+  const auto [entry, is_new] = last_ranges_.try_emplace(range.anchor, LastRange{range.stamp, range.range_m, 0});
+  LastRange& last = entry->second;
   if (is_new) return true;
-  if (range.stamp <= heard.stamp) return false;
-  heard.repeats = range.range_m == heard.range_m ? heard.repeats + 1 : 0;
-  heard.stamp = range.stamp;
-  heard.range_m = range.range_m;
-  return heard.repeats < kFrozenRangeRepeats;
+  if (range.stamp <= last.stamp) return false;
+  last.repeats = range.range_m == last.range_m ? last.repeats + 1 : 0;
+  last.stamp = range.stamp;
+  last.range_m = range.range_m;
+  return last.repeats < kFrozenRangeRepeats;
 }
 
 double RangeFilter::innovation(const UwbRange& range, const Pose3& T_odom_body, Vector& H) const {
-  const Pose2 since = to_planar(state_.T_odom_body).inverse() * to_planar(T_odom_body);
+  const Pose2 since = to_pose2(state_.T_odom_body).inverse() * to_pose2(T_odom_body);
   const Pose2 T_map_then = state_.T_map_body * since;
   const double z_then = state_.z_m + T_odom_body.position.z() - state_.T_odom_body.position.z();
   const Eigen::Vector3d antenna = uwb_antenna_in_level(T_odom_body.rotation, T_body_uwb_, z_then);
@@ -140,21 +140,21 @@ double RangeFilter::innovation(const UwbRange& range, const Pose3& T_odom_body, 
   // A heading error at the present pose rotates the motion back to the time of the range.
   const Eigen::Vector2d back = T_map_then.position() - state_.T_map_body.position();
   H.setZero();
-  H.head<3>() = expected.by_pose;
-  H[kYaw] += expected.by_pose.y() * back.x() - expected.by_pose.x() * back.y();
-  H[kHeight] = expected.by_z;
+  H.head<3>() = expected.H_pose;
+  H[kYaw] += expected.H_pose.y() * back.x() - expected.H_pose.x() * back.y();
+  H[kHeight] = expected.H_z;
   return range.range_m - expected.range_m;
 }
 
-double RangeFilter::clear_probability(double innovation_m, double std_m) const {
+double RangeFilter::los_probability(double innovation_m, double std_m) const {
   const double clear = (1.0 - settings_.blocked_share) * normal_density(innovation_m, std_m);
-  const double blocked = settings_.blocked_share * excess_density(innovation_m, std_m, settings_.blocked_excess_m);
+  const double blocked = settings_.blocked_share * nlos_density(innovation_m, std_m, settings_.blocked_excess_m);
   return clear + blocked > 0.0 ? clear / (clear + blocked) : 0.0;
 }
 
-RangeVerdict RangeFilter::judge(const RangeOutcome& outcome) const {
-  if (outcome.innovation_m < -settings_.max_short_sigmas * std::sqrt(outcome.variance_m2)) return RangeVerdict::kTooShort;
-  return outcome.clear_probability < settings_.min_clear_probability ? RangeVerdict::kTooLong : RangeVerdict::kAccepted;
+RangeStatus RangeFilter::classify(const RangeOutcome& outcome) const {
+  if (outcome.innovation_m < -settings_.max_short_sigmas * std::sqrt(outcome.variance_m2)) return RangeStatus::kTooShort;
+  return outcome.los_probability < settings_.min_clear_probability ? RangeStatus::kTooLong : RangeStatus::kAccepted;
 }
 
 void RangeFilter::correct(const Vector& H, double innovation_m, double variance_m2) {
@@ -173,20 +173,20 @@ void RangeFilter::correct(const Vector& H, double innovation_m, double variance_
 void RangeFilter::count(bool is_accepted) {
   accepted_.push_back(is_accepted);
   if (static_cast<int>(accepted_.size()) > settings_.window) accepted_.pop_front();
-  if (static_cast<int>(accepted_.size()) < settings_.window || accepted_share() >= settings_.min_accepted_share) return;
-  ++doubts_;
+  if (static_cast<int>(accepted_.size()) < settings_.window || accepted_ratio() >= settings_.min_accepted_share) return;
+  ++num_resets_;
   accepted_.clear();
   state_.P.diagonal().head<2>().array() += settings_.doubt_std_m * settings_.doubt_std_m;
   state_.P(kYaw, kYaw) += settings_.doubt_std_rad * settings_.doubt_std_rad;
 }
 
-double RangeFilter::accepted_share() const {
+double RangeFilter::accepted_ratio() const {
   if (accepted_.empty()) return 1.0;
   return static_cast<double>(std::count(accepted_.begin(), accepted_.end(), true)) / static_cast<double>(accepted_.size());
 }
 
 PoseEstimate RangeFilter::estimate(Time stamp, const Pose3& T_odom_body) const {
-  const State state = moved(state_, std::max(stamp, state_.stamp), T_odom_body, twist_std_);
+  const State state = predicted(state_, std::max(stamp, state_.stamp), T_odom_body, twist_std_);
   return {.stamp = stamp, .T_map_body = state.T_map_body, .covariance = state.P.topLeftCorner<3, 3>()};
 }
 

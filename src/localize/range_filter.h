@@ -65,7 +65,7 @@ struct RangeFilterSettings {
   }
 };
 
-enum class RangeVerdict : std::uint8_t {
+enum class RangeStatus : std::uint8_t {
   kAccepted,
   kTooLong,   ///< probably NLOS
   kTooShort,  ///< outlier or wrong estimate, because no effect shortens a range
@@ -73,12 +73,12 @@ enum class RangeVerdict : std::uint8_t {
 };
 
 struct RangeOutcome {
-  RangeVerdict verdict = RangeVerdict::kUnusable;
+  RangeStatus status = RangeStatus::kUnusable;
   double innovation_m = 0.0;        ///< measured minus predicted range
   double variance_m2 = 0.0;         ///< variance of the innovation of a line-of-sight range
-  double clear_probability = 0.0;   ///< posterior probability of line of sight
+  double los_probability = 0.0;   ///< posterior probability of line of sight
 
-  bool is_accepted() const { return verdict == RangeVerdict::kAccepted; }
+  bool is_accepted() const { return status == RangeStatus::kAccepted; }
   /// Returns the normalized innovation squared: chi-square with one degree of freedom over the line-of-sight ranges of
   /// a consistent filter.
   double nis() const { return variance_m2 > 0.0 ? innovation_m * innovation_m / variance_m2 : 0.0; }
@@ -101,7 +101,7 @@ class RangeFilter {
   RangeFilter(const RangeFilterSettings& settings, const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb);
 
   /// Starts at a pose, at which the odometry pose is `T_odom_body`; the height above the origin of map is `z_m`.
-  void start_at(const PoseEstimate& start, const Pose3& T_odom_body, double z_m = 0.0);
+  void set_initial_pose(const PoseEstimate& start, const Pose3& T_odom_body, double z_m = 0.0);
   bool has_started() const { return has_started_; }
 
   /// Predicts with a new odometry pose; `twist_std` as in TrackOdometry::twist_std. Stamps must increase; older ones
@@ -116,9 +116,9 @@ class RangeFilter {
 
   double height_m() const { return state_.z_m; }
   /// Returns how many times the covariance was inflated after too many rejections.
-  std::uint64_t doubts() const { return doubts_; }
+  std::uint64_t num_resets() const { return num_resets_; }
   /// Returns the acceptance ratio over the last window of ranges; 1 before the first range.
-  double accepted_share() const;
+  double accepted_ratio() const;
 
  private:
   static constexpr int kYaw = 2, kHeight = 3, kDrift = 4, kSize = 7;
@@ -132,17 +132,17 @@ class RangeFilter {
     Eigen::Matrix<double, kSize, kSize> P = Eigen::Matrix<double, kSize, kSize>::Zero();
   };
   /// Most recent range of an anchor.
-  struct Heard {
+  struct LastRange {
     Time stamp{};
     double range_m = 0.0;
     int repeats = 0;
   };
-  State moved(State state, Time stamp, const Pose3& T_odom_body, const Eigen::Vector3d& twist_std) const;
+  State predicted(State state, Time stamp, const Pose3& T_odom_body, const Eigen::Vector3d& twist_std) const;
   bool is_usable(const UwbRange& range);
   /// Returns the innovation and its gradient with respect to the state.
   double innovation(const UwbRange& range, const Pose3& T_odom_body, Vector& H) const;
-  double clear_probability(double innovation_m, double std_m) const;
-  RangeVerdict judge(const RangeOutcome& outcome) const;
+  double los_probability(double innovation_m, double std_m) const;
+  RangeStatus classify(const RangeOutcome& outcome) const;
   void correct(const Vector& H, double innovation_m, double variance_m2);
   void count(bool is_accepted);
 
@@ -154,9 +154,9 @@ class RangeFilter {
   bool has_started_ = false;
   State state_;
   Eigen::Vector3d twist_std_ = Eigen::Vector3d::Zero();
-  std::map<int, Heard> heard_;
+  std::map<int, LastRange> last_ranges_;
   std::deque<bool> accepted_;
-  std::uint64_t doubts_ = 0;
+  std::uint64_t num_resets_ = 0;
 };
 
 }  // namespace patrol::localize

@@ -41,9 +41,9 @@ std::optional<LevelScan> ScanLeveler::level(const LaserScan& scan, const PoseLoo
   const std::optional<Pose3> T_odom_body = T_odom_body_at(beam_time(scan, last_beam));
   if (!T_odom_body) return std::nullopt;
   const Pose3 T_level_odom =
-      Pose3{T_odom_body->position, quaternion_from_yaw(yaw_of(T_odom_body->rotation))}.inverse();
+      Pose3{T_odom_body->position, quaternion_from_yaw(to_yaw(T_odom_body->rotation))}.inverse();
 
-  const auto mounted = [this](const Pose3& T_level_lidar) { return settings_.stabilized ? held_level(T_level_lidar) : T_level_lidar; };
+  const auto mounted = [this](const Pose3& T_level_lidar) { return settings_.stabilized ? remove_tilt(T_level_lidar) : T_level_lidar; };
   const std::size_t num_segments = std::min(kNumKnots - 1, num_beams);
   const auto knot_at = [&](std::size_t beam) -> std::optional<Knot> {
     const std::optional<Pose3> T = T_odom_body_at(beam_time(scan, static_cast<double>(beam)));

@@ -16,19 +16,19 @@ struct SlipEvidence {
 
 /// Slip detector: compares the speed change of the belts with the integrated IMU acceleration over a sliding window. An
 /// IMU cannot distinguish rest from steady motion. It does show whether the body accelerated together with the belts.
-class SlipWatch {
+class SlipDetector {
  public:
   struct Settings {
     double window_s;
     double threshold_mps;  ///< minimum disagreement; increased on a rough ride
   };
-  explicit SlipWatch(const Settings& settings) : settings_(settings) {}
+  explicit SlipDetector(const Settings& settings) : settings_(settings) {}
 
   /// Adds an IMU step: forward acceleration over the step that ends at `stamp`, without gravity.
   void add_acceleration(Time stamp, double dt_s, double acceleration_mps2);
   /// Adds a belt reading, not newer than the newest acceleration: mean belt speed and estimated body speed. Returns
   /// evidence if there is slip.
-  std::optional<SlipEvidence> add_speed(Time stamp, double belts_mps, double believed_mps);
+  std::optional<SlipEvidence> add_speed(Time stamp, double belts_mps, double estimated_mps);
   /// Starts a new window.
   void reset();
 
@@ -41,7 +41,7 @@ class SlipWatch {
   struct Reading {
     Sum sum;
     double belts_mps = 0.0;
-    double believed_mps = 0.0;
+    double estimated_mps = 0.0;
   };
   std::optional<Sum> sum_at(Time stamp) const;
 

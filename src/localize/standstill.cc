@@ -11,7 +11,7 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kEndShare = 0.2;          // fraction of the window that is averaged at each end
+constexpr double kEndFraction = 0.2;          // fraction of the window that is averaged at each end
 constexpr double kMaxGap_s = 0.02;         // maximum time between samples
 constexpr double kMaxSlip_m = 0.001;       // maximum residual of the rigid fit per foot
 constexpr double kMaxRotation_rad = 0.02;  // maximum rotation of a standing trunk
@@ -49,7 +49,7 @@ SmallRotation fit_rotation(const std::array<Eigen::Vector3d, kNumLegs>& before,
 
 }  // namespace
 
-void StandstillBiasMeter::End::add(const StanceFeet& feet, const Eigen::Vector3d& gyro_angle, double time) {
+void StationaryGyroBiasEstimator::End::add(const StanceFeet& feet, const Eigen::Vector3d& gyro_angle, double time) {
   for (const StanceFoot& foot : feet) {
     Eigen::Vector3d& sum = foot_m[static_cast<std::size_t>(foot.leg)];
     sum = count == 0 ? foot.p_contact : Eigen::Vector3d(sum + foot.p_contact);
@@ -59,13 +59,13 @@ void StandstillBiasMeter::End::add(const StanceFeet& feet, const Eigen::Vector3d
   ++count;
 }
 
-void StandstillBiasMeter::End::divide() {
+void StationaryGyroBiasEstimator::End::divide() {
   for (Eigen::Vector3d& foot : foot_m) foot /= count;
   gyro_angle_rad /= count;
   time_s /= count;
 }
 
-std::optional<GyroBiasReading> StandstillBiasMeter::add(Time stamp, const StanceFeet& all_feet,
+std::optional<GyroBiasMeasurement> StationaryGyroBiasEstimator::add(Time stamp, const StanceFeet& all_feet,
                                                         const Eigen::Vector3d& gyro_radps) {
   if (all_feet.count != kNumLegs || (is_open_ && (stamp <= last_ || to_seconds(stamp - last_) > kMaxGap_s)))
     reset();
@@ -82,25 +82,25 @@ std::optional<GyroBiasReading> StandstillBiasMeter::add(Time stamp, const Stance
   last_gyro_ = gyro_radps;
 
   const double age_s = to_seconds(stamp - start_);
-  if (age_s < kEndShare * settings_.window_s) first_.add(all_feet, gyro_angle_rad_, age_s);
-  if (age_s > (1.0 - kEndShare) * settings_.window_s) final_.add(all_feet, gyro_angle_rad_, age_s);
+  if (age_s < kEndFraction * settings_.window_s) first_.add(all_feet, gyro_angle_rad_, age_s);
+  if (age_s > (1.0 - kEndFraction) * settings_.window_s) final_.add(all_feet, gyro_angle_rad_, age_s);
   if (age_s < settings_.window_s) return std::nullopt;
   return close();
 }
 
-std::optional<GyroBiasReading> StandstillBiasMeter::close() {
+std::optional<GyroBiasMeasurement> StationaryGyroBiasEstimator::close() {
   is_open_ = false;
   first_.divide();
   final_.divide();
-  const SmallRotation turned = fit_rotation(first_.foot_m, final_.foot_m);
-  if (turned.max_residual_m > kMaxSlip_m || turned.angle_rad.norm() > kMaxRotation_rad) return std::nullopt;
+  const SmallRotation rotation = fit_rotation(first_.foot_m, final_.foot_m);
+  if (rotation.max_residual_m > kMaxSlip_m || rotation.angle_rad.norm() > kMaxRotation_rad) return std::nullopt;
 
   const double span_s = final_.time_s - first_.time_s;
   const Eigen::Vector3d angle_var =
-      2.0 * settings_.foot_std_m * settings_.foot_std_m * turned.information.inverse().diagonal();
+      2.0 * settings_.foot_std_m * settings_.foot_std_m * rotation.information.inverse().diagonal();
   const double gyro_var = std::pow(settings_.gyro_noise_radps_per_sqrt_hz, 2) / span_s;
-  return GyroBiasReading{
-      .bias_radps = (final_.gyro_angle_rad - first_.gyro_angle_rad - turned.angle_rad) / span_s,
+  return GyroBiasMeasurement{
+      .bias_radps = (final_.gyro_angle_rad - first_.gyro_angle_rad - rotation.angle_rad) / span_s,
       .variance = (angle_var / (span_s * span_s)).array() + gyro_var};
 }
 

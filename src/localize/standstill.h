@@ -11,7 +11,7 @@
 namespace patrol::localize {
 
 /// Measurement of the gyro bias during a standstill.
-struct GyroBiasReading {
+struct GyroBiasMeasurement {
   Eigen::Vector3d bias_radps = Eigen::Vector3d::Zero();  ///< in body
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();    ///< (rad/s)2
 };
@@ -19,7 +19,7 @@ struct GyroBiasReading {
 /// Estimator of the gyro bias while all feet are on the ground. A standing trunk still sways, so its rate is not
 /// assumed zero. Its rotation is measured with the feet (rigid fit of their positions in body); the rest of the
 /// integrated gyro rate is bias. Windows with a slipping foot (residual of the fit) are rejected.
-class StandstillBiasMeter {
+class StationaryGyroBiasEstimator {
  public:
   struct Settings {
     double window_s;
@@ -27,11 +27,11 @@ class StandstillBiasMeter {
     /// Standard deviation of the mean foot position at one end of the window: averaged encoder noise, and creep.
     double foot_std_m;
   };
-  explicit StandstillBiasMeter(const Settings& settings) : settings_(settings) {}
+  explicit StationaryGyroBiasEstimator(const Settings& settings) : settings_(settings) {}
 
   /// Adds a sample: contact points of all feet in body, and the raw gyro rate. Returns a bias measurement at the end of
   /// each complete window.
-  std::optional<GyroBiasReading> add(Time stamp, const StanceFeet& all_feet,
+  std::optional<GyroBiasMeasurement> add(Time stamp, const StanceFeet& all_feet,
                                      const Eigen::Vector3d& gyro_radps);
   /// Starts a new window, after a foot was lifted or data were missing.
   void reset() { is_open_ = false; }
@@ -49,7 +49,7 @@ class StandstillBiasMeter {
     void divide();
   };
 
-  std::optional<GyroBiasReading> close();
+  std::optional<GyroBiasMeasurement> close();
 
   Settings settings_;
   bool is_open_ = false;

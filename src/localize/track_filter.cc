@@ -17,8 +17,8 @@ constexpr double kTrackStartVelocityStd_mps = 0.05;
 constexpr double kTrackGate = 16.27;     // 99.9 % of chi-square, three degrees of freedom
 constexpr double kLostSpeedStd_mps = 0.1;
 constexpr double kBeltSmoothing_s = 1.0;
-constexpr double kTakeBack_s = 0.5;       // after a loss of traction; the first readings contain nearly all information
-constexpr int kPlace[4] = {Error::kPosition, Error::kPosition + 1, Error::kPosition + 2, Error::kRotation + 2};
+constexpr double kPoseCorrectionTime_s = 0.5;       // after a loss of traction; the first readings contain nearly all information
+constexpr int kPoseRows[4] = {Error::kPosition, Error::kPosition + 1, Error::kPosition + 2, Error::kRotation + 2};
 // Process noise without an IMU.
 constexpr double kTrackCoastYawRateStd = 0.05;  // rad/sqrt(s): yaw rate from the belts
 constexpr double kTrackCoastTiltStd = 0.03;     // rad/sqrt(s)
@@ -27,7 +27,7 @@ constexpr double kTrackCoastVelocityStd = 1.0;  // m/s/sqrt(s)
 }  // namespace
 
 TrackFilter::TrackFilter(const Settings& settings, const InertialSample& first) : settings_(settings), last_(first) {
-  motion_.T_odom_body.rotation = tilt_of(first.force_mps2);
+  motion_.T_odom_body.rotation = tilt_from_gravity(first.force_mps2);
   motion_.omega_body = first.rate_radps;
   const auto set_std = [this](int block, double std) { P_.diagonal().segment<3>(block).setConstant(std * std); };
   set_std(Error::kRotation, kTrackStartTiltStd_rad);
@@ -36,8 +36,8 @@ TrackFilter::TrackFilter(const Settings& settings, const InertialSample& first) 
   set_std(Error::kGyroBias, settings.gyro_bias_std_radps);
   set_std(Error::kAccelBias, settings.accel_bias_std_mps2);
   P_(kScale, kScale) = std::pow(settings.scale_std, 2);
-  P_(kTurnCentre, kTurnCentre) = std::pow(settings.turn_centre_x_std_m, 2);
-  P_(kTurnCentre + 1, kTurnCentre + 1) = std::pow(settings.turn_centre_y_std_m, 2);
+  P_(kIcr, kIcr) = std::pow(settings.turn_centre_x_std_m, 2);
+  P_(kIcr + 1, kIcr + 1) = std::pow(settings.turn_centre_y_std_m, 2);
 }
 
 void TrackFilter::predict(double dt_s, const InertialSample& sample) {
@@ -80,17 +80,17 @@ void TrackFilter::coast(double dt_s, double yaw_rate_radps) {
 }
 
 // First-order Gauss-Markov process: the value decays by a, and (1 - a^2) of the stationary variance is added.
-void TrackFilter::wander(double way_m, double turn_rad, double slip_std) {
-  const auto forget = [this](int row, double& value, double a, double std) {
+void TrackFilter::propagate_slip(double way_m, double turn_rad, double slip_std) {
+  const auto decay = [this](int row, double& value, double a, double std) {
     value *= a;
     P_.row(row) *= a;
     P_.col(row) *= a;
     P_(row, row) += (1.0 - a * a) * std * std;
   };
-  forget(kSlip, slip_, std::exp(-way_m / settings_.slip_length_m), slip_std);
+  decay(kSlip, slip_, std::exp(-way_m / settings_.slip_length_m), slip_std);
   const double a_turn = std::exp(-turn_rad / settings_.turn_centre_length_rad);
-  forget(kTurnCentre, turn_centre_m_.x(), a_turn, settings_.turn_centre_x_std_m);
-  forget(kTurnCentre + 1, turn_centre_m_.y(), a_turn, settings_.turn_centre_y_std_m);
+  decay(kIcr, icr_m_.x(), a_turn, settings_.turn_centre_x_std_m);
+  decay(kIcr + 1, icr_m_.y(), a_turn, settings_.turn_centre_y_std_m);
 }
 
 // With p = p_true - dp, omega = omega_true + dbg and s = scale + slip = s_true - ds, the innovation
@@ -100,7 +100,7 @@ void TrackFilter::wander(double way_m, double turn_rad, double slip_std) {
 // bias the scale by several percent. It is therefore smoothed over one second and predicted with the IMU in between.
 void TrackFilter::correct_speed(double dt_s, double belts_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps) {
   smooth_belts_mps_ += std::min(1.0, dt_s / kBeltSmoothing_s) * (belts_mps - smooth_belts_mps_);
-  const Eigen::Vector3d p(turn_centre_m_.x(), turn_centre_m_.y(), -settings_.height_m);
+  const Eigen::Vector3d p(icr_m_.x(), icr_m_.y(), -settings_.height_m);
   const Eigen::Vector3d innovation =
       Eigen::Vector3d(belts_mps - (scale_ + slip_) * smooth_belts_mps_, 0.0, 0.0) - then.v_body - then.omega_body.cross(p);
 
@@ -108,7 +108,7 @@ void TrackFilter::correct_speed(double dt_s, double belts_mps, const TrunkMotion
   H.middleCols<3>(Error::kVelocity).setIdentity();
   H.middleCols<3>(Error::kGyroBias) = cross_matrix(p);
   H(0, kScale) = H(0, kSlip) = smooth_belts_mps_;
-  H.middleCols<2>(kTurnCentre) = cross_matrix(then.omega_body).leftCols<2>();
+  H.middleCols<2>(kIcr) = cross_matrix(then.omega_body).leftCols<2>();
 
   const Gain W = P_ * H.transpose();
   Eigen::Matrix3d S = H * W;
@@ -116,7 +116,7 @@ void TrackFilter::correct_speed(double dt_s, double belts_mps, const TrunkMotion
   const double distance = innovation.dot(S.inverse() * innovation);
   if (distance > kTrackGate) S.diagonal().array() += std_mps.array().square() * (distance / kTrackGate - 1.0);
   apply(W, S, innovation);
-  takes_back_s_ = std::max(0.0, takes_back_s_ - dt_s);
+  pose_correction_time_s_ = std::max(0.0, pose_correction_time_s_ - dt_s);
 }
 
 void TrackFilter::correct_velocity(const Eigen::Vector3d& v_body, double std_mps) {
@@ -133,23 +133,23 @@ void TrackFilter::correct_gyro_bias(const Eigen::Vector3d& bias_radps, const Eig
   apply(W, S, bias_radps - gyro_bias_);
 }
 
-void TrackFilter::lose_grip(double forward_mps, double way_std_m) {
+void TrackFilter::start_slip(double forward_mps, double way_std_m) {
   motion_.v_body.x() = forward_mps;
-  forget_what_place_owes();
-  takes_back_s_ = std::numeric_limits<double>::infinity();
+  decorrelate_pose();
+  pose_correction_time_s_ = std::numeric_limits<double>::infinity();
   P_(Error::kVelocity, Error::kVelocity) += kLostSpeedStd_mps * kLostSpeedStd_mps;
   const Eigen::Vector3d along = motion_.T_odom_body.rotation * Eigen::Vector3d(way_std_m, 0.0, 0.0);
   P_.block<3, 3>(Error::kPosition, Error::kPosition) += along * along.transpose();
 }
 
-void TrackFilter::regain_grip(double belts_mps, double slip_std) {
-  takes_back_s_ = std::min(takes_back_s_, kTakeBack_s);
+void TrackFilter::end_slip(double belts_mps, double slip_std) {
+  pose_correction_time_s_ = std::min(pose_correction_time_s_, kPoseCorrectionTime_s);
   smooth_belts_mps_ = belts_mps;
   slip_ = 0.0;
-  isolate(kSlip, slip_std * slip_std);
+  decorrelate_state(kSlip, slip_std * slip_std);
 }
 
-void TrackFilter::isolate(int row, double variance) {
+void TrackFilter::decorrelate_state(int row, double variance) {
   P_.row(row).setZero();
   P_.col(row).setZero();
   P_(row, row) = variance;
@@ -157,39 +157,39 @@ void TrackFilter::isolate(int row, double variance) {
 
 void TrackFilter::set_origin() {
   Pose3& T = motion_.T_odom_body;
-  const Eigen::Quaterniond turn_back = quaternion_from_yaw(-yaw_of(T.rotation));
+  const Eigen::Quaterniond turn_back = quaternion_from_yaw(-to_yaw(T.rotation));
   T.position.setZero();
   T.rotation = (turn_back * T.rotation).normalized();
   const Eigen::Matrix3d R = turn_back.toRotationMatrix();
   P_.middleRows<3>(Error::kRotation) = (R * P_.middleRows<3>(Error::kRotation)).eval();
   P_.middleCols<3>(Error::kRotation) = (P_.middleCols<3>(Error::kRotation) * R.transpose()).eval();
-  for (const int row : kPlace) isolate(row, 0.0);
+  for (const int row : kPoseRows) decorrelate_state(row, 0.0);
 }
 
 // With rows of the gain set to zero, the covariance update has Joseph's form (Schmidt's consider update).
 void TrackFilter::apply(const Gain& W, const Eigen::Matrix3d& S, const Eigen::Vector3d& innovation) {
   Gain K = W * S.inverse();
-  if (takes_back_s_ <= 0.0) {
-    for (const int row : kPlace) K.row(row).setZero();
+  if (pose_correction_time_s_ <= 0.0) {
+    for (const int row : kPoseRows) K.row(row).setZero();
   }
-  shift(K * innovation);
+  apply_error(K * innovation);
   P_ += K * S * K.transpose() - K * W.transpose() - W * K.transpose();
   P_ = (0.5 * (P_ + P_.transpose())).eval();
 }
 
-void TrackFilter::forget_what_place_owes() {
-  constexpr std::size_t kRows = std::size(kPlace);
-  Eigen::Matrix<double, kRows, kRows> place;
+void TrackFilter::decorrelate_pose() {
+  constexpr std::size_t kRows = std::size(kPoseRows);
+  Eigen::Matrix<double, kRows, kRows> pose_block;
   for (std::size_t i = 0; i < kRows; ++i) {
-    for (std::size_t k = 0; k < kRows; ++k) place(i, k) = P_(kPlace[i], kPlace[k]);
+    for (std::size_t k = 0; k < kRows; ++k) pose_block(i, k) = P_(kPoseRows[i], kPoseRows[k]);
   }
-  for (const int row : kPlace) isolate(row, 0.0);
+  for (const int row : kPoseRows) decorrelate_state(row, 0.0);
   for (std::size_t i = 0; i < kRows; ++i) {
-    for (std::size_t k = 0; k < kRows; ++k) P_(kPlace[i], kPlace[k]) = place(i, k);
+    for (std::size_t k = 0; k < kRows; ++k) P_(kPoseRows[i], kPoseRows[k]) = pose_block(i, k);
   }
 }
 
-void TrackFilter::shift(const Eigen::Matrix<double, kSize, 1>& error) {
+void TrackFilter::apply_error(const Eigen::Matrix<double, kSize, 1>& error) {
   Pose3& T = motion_.T_odom_body;
   T.position += error.segment<3>(Error::kPosition);
   T.rotation = (rotation_by(error.segment<3>(Error::kRotation)) * T.rotation).normalized();
@@ -199,11 +199,11 @@ void TrackFilter::shift(const Eigen::Matrix<double, kSize, 1>& error) {
   motion_.omega_body -= error.segment<3>(Error::kGyroBias);
   scale_ += error[kScale];
   slip_ += error[kSlip];
-  turn_centre_m_ += error.segment<2>(kTurnCentre);
+  icr_m_ += error.segment<2>(kIcr);
 }
 
 // v = ((1 - scale - slip) u, 0) - omega x p
-Eigen::Vector2d TrackFilter::lasting_velocity_variance() const {
+Eigen::Vector2d TrackFilter::systematic_velocity_variance() const {
   const double u = smooth_belts_mps_, omega = motion_.omega_body.z();
   const Eigen::Vector4d ahead(-u, -u, 0.0, omega), left(0.0, 0.0, -omega, 0.0);
   const Eigen::Matrix4d P = P_.bottomRightCorner<4, 4>();

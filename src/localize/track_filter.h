@@ -47,7 +47,7 @@ class TrackFilter {
 
   /// Propagates slip and turn center over a belt motion. `slip_std`: stationary standard deviation of slip on this
   /// ground in this maneuver.
-  void wander(double way_m, double turn_rad, double slip_std);
+  void propagate_slip(double way_m, double turn_rad, double slip_std);
   /// Corrects with the belt speed over `dt_s`, during which the body motion was `then`. `std_mps`: standard deviations
   /// of the velocity of the turn center, in body. An innovation beyond the 99.9 % bound is down-weighted instead of
   /// rejected.
@@ -58,9 +58,9 @@ class TrackFilter {
 
   /// Starts a loss of traction: the body speed is set to the IMU estimate `forward_mps`. `way_std_m`: standard
   /// deviation of the distance error accumulated so far.
-  void lose_grip(double forward_mps, double way_std_m);
+  void start_slip(double forward_mps, double way_std_m);
   /// Ends a loss of traction, at rest or at this speed; resets the slip estimate.
-  void regain_grip(double belts_mps, double slip_std);
+  void end_slip(double belts_mps, double slip_std);
   /// Resets odom: its origin and x axis become those of the present pose.
   void set_origin();
 
@@ -73,26 +73,26 @@ class TrackFilter {
   double forward_acceleration_mps2() const { return forward_acceleration_mps2_; }
   double scale() const { return scale_; }
   double slip() const { return slip_; }
-  const Eigen::Vector2d& turn_centre_m() const { return turn_centre_m_; }
+  const Eigen::Vector2d& icr_m() const { return icr_m_; }
 
   /// Error covariance: rows and columns of InertialError, followed by these.
-  static constexpr int kScale = InertialError::kSize, kSlip = kScale + 1, kTurnCentre = kSlip + 1, kSize = kTurnCentre + 2;
+  static constexpr int kScale = InertialError::kSize, kSlip = kScale + 1, kIcr = kSlip + 1, kSize = kIcr + 2;
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   const Covariance& covariance() const { return P_; }
   /// Returns the variance of the longitudinal and lateral velocity from scale, slip and turn center, (m/s)2.
-  Eigen::Vector2d lasting_velocity_variance() const;
+  Eigen::Vector2d systematic_velocity_variance() const;
   /// Returns the covariance of x, y, yaw in odom.
   Eigen::Matrix3d planar_covariance() const;
 
  private:
   using Gain = Eigen::Matrix<double, kSize, 3>;
-  void shift(const Eigen::Matrix<double, kSize, 1>& error);
+  void apply_error(const Eigen::Matrix<double, kSize, 1>& error);
   void apply(const Gain& W, const Eigen::Matrix3d& S, const Eigen::Vector3d& innovation);
   /// Removes the correlation of position and yaw with the other states: later corrections leave their past errors
   /// unchanged.
-  void forget_what_place_owes();
+  void decorrelate_pose();
   /// Removes all correlations of a state and sets its variance.
-  void isolate(int row, double variance);
+  void decorrelate_state(int row, double variance);
 
   Settings settings_;
   TrunkMotion motion_;
@@ -100,10 +100,10 @@ class TrackFilter {
   Eigen::Vector3d accel_bias_ = Eigen::Vector3d::Zero();
   double scale_ = 0.0;
   double slip_ = 0.0;
-  Eigen::Vector2d turn_centre_m_ = Eigen::Vector2d::Zero();
+  Eigen::Vector2d icr_m_ = Eigen::Vector2d::Zero();
   InertialSample last_;
   double forward_acceleration_mps2_ = 0.0;
-  double takes_back_s_ = 0.0;      ///< remaining time in which corrections also change position and yaw
+  double pose_correction_time_s_ = 0.0;      ///< remaining time in which corrections also change position and yaw
   double smooth_belts_mps_ = 0.0;  ///< belt speed, predicted with the IMU and slowly corrected by the encoders
   Covariance P_ = Covariance::Zero();
 };

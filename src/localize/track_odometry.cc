@@ -69,10 +69,10 @@ TrackOdometry::TrackOdometry(const RobotDescription& robot, const TrackOdometryS
                                  .history_s = settings.history_s,
                                  .extrapolation_s = settings.extrapolation_s}),
       slip_watch_({.window_s = settings.slip_window_s, .threshold_mps = settings.slip_disagreement_mps}),
-      counters_({.metres_per_tick = metres_per_tick_, .max_acceleration_mps2 = settings.max_belt_acceleration_mps2}) {}
+      counters_({.meters_per_tick = metres_per_tick_, .max_acceleration_mps2 = settings.max_belt_acceleration_mps2}) {}
 
 void TrackOdometry::add(const Imu& imu) {
-  const std::optional<InertialSample> sample = imu_.accept(imu, !counters_.stand());
+  const std::optional<InertialSample> sample = imu_.accept(imu, !counters_.is_stationary());
   if (!sample) return;
   advance(imu.stamp, *sample);
   take_pending();
@@ -95,7 +95,7 @@ void TrackOdometry::advance(Time stamp, const InertialSample& sample) {
   const Step step = imu_.advance(stamp, sample, make_filter);
   if (step == Step::kIgnored) return;
   if (step == Step::kStarted) {
-    imu_.filter()->regain_grip(0.0, settings_.slip_std);
+    imu_.filter()->end_slip(0.0, settings_.slip_std);
     started_ = stamp;
   } else if (step == Step::kBridged) {
     slip_watch_.reset();
@@ -138,7 +138,7 @@ void TrackOdometry::coast_to(const TrackTicks& ticks) {
 
 void TrackOdometry::use_ticks(const TrackTicks& ticks) {
   const bool is_first = !counters_.last();
-  const std::optional<BeltInterval> belts = counters_.add(ticks);
+  const std::optional<EncoderInterval> belts = counters_.add(ticks);
   const std::optional<TrunkMotion> then = belts ? imu_.motion_at(belts->middle()) : std::nullopt;
   if (!then) {
     if (!is_first) imu_.reject();
@@ -148,7 +148,7 @@ void TrackOdometry::use_ticks(const TrackTicks& ticks) {
 
   const double disagreement = yaw_rate_disagreement_radps(*belts, *then);
   const double yaw_rate = std::abs(then->omega_body.z());
-  imu_.filter()->wander(0.5 * (std::abs(belts->speed.left_mps) + std::abs(belts->speed.right_mps)) * belts->dt_s(),
+  imu_.filter()->propagate_slip(0.5 * (std::abs(belts->speed.left_mps) + std::abs(belts->speed.right_mps)) * belts->dt_s(),
                   yaw_rate * belts->dt_s(), usual_slip_std(yaw_rate, disagreement));
   imu_.filter()->correct_speed(belts->dt_s(), belts->speed.mean_mps(), *then, speed_std(*belts, *then, disagreement));
   last_speed_update_ = belts->end;
@@ -156,7 +156,7 @@ void TrackOdometry::use_ticks(const TrackTicks& ticks) {
   imu_.remember();
 }
 
-double TrackOdometry::yaw_rate_disagreement_radps(const BeltInterval& belts, const TrunkMotion& then) const {
+double TrackOdometry::yaw_rate_disagreement_radps(const EncoderInterval& belts, const TrunkMotion& then) const {
   const double by_belts = belts.smooth.difference_mps() / (robot_.tracks->gauge_m * settings_.turn_ratio);
   return std::abs(by_belts - then.omega_body.z());
 }
@@ -169,9 +169,9 @@ double TrackOdometry::usual_slip_std(double yaw_rate_radps, double disagreement_
   return parts.norm();
 }
 
-Eigen::Vector3d TrackOdometry::speed_std(const BeltInterval& belts, const TrunkMotion& then,
+Eigen::Vector3d TrackOdometry::speed_std(const EncoderInterval& belts, const TrunkMotion& then,
                                          double disagreement_radps) const {
-  if (counters_.stand()) return Eigen::Vector3d::Constant(kStandingStd_mps);
+  if (counters_.is_stationary()) return Eigen::Vector3d::Constant(kStandingStd_mps);
   // A count is off by up to one tick at either end of the interval, evenly; two belts.
   const double step_std = belts.step_mps / std::sqrt(12.0);
   Eigen::Matrix<double, 5, 1> along;
@@ -183,7 +183,7 @@ Eigen::Vector3d TrackOdometry::speed_std(const BeltInterval& belts, const TrunkM
 
 // Belts that have lost their grip, and counters that stand still while the body goes on, look alike: what they say is not what
 // the body does. The IMU carries on alone until both agree for a while.
-bool TrackOdometry::watch_grip(const BeltInterval& belts) {
+bool TrackOdometry::watch_grip(const EncoderInterval& belts) {
   const double believed = imu_.filter()->motion().v_body.x(), belts_mps = belts.smooth.mean_mps();
   if (grip_is_lost_) {
     if (std::abs(belts_mps - believed) > kAgreement_mps) agree_since_.reset();
@@ -191,21 +191,21 @@ bool TrackOdometry::watch_grip(const BeltInterval& belts) {
     if (!agree_since_ || belts.end - *agree_since_ < kAgreement) return false;
     grip_is_lost_ = false;
     slip_watch_.reset();
-    imu_.filter()->regain_grip(belts_mps, settings_.slip_std);
+    imu_.filter()->end_slip(belts_mps, settings_.slip_std);
   }
   const auto evidence = slip_watch_.add_speed(belts.end, belts.speed.mean_mps(), believed);
   if (!evidence) return true;
   ++slip_events_;
   grip_is_lost_ = true;
   agree_since_.reset();
-  imu_.filter()->lose_grip(evidence->forward_mps, 0.5 * std::abs(evidence->disagreement_mps) * evidence->duration_s);
+  imu_.filter()->start_slip(evidence->forward_mps, 0.5 * std::abs(evidence->disagreement_mps) * evidence->duration_s);
   last_speed_ = imu_.filter()->motion().v_body;
   imu_.remember();
   return false;
 }
 
 void TrackOdometry::watch_standstill(const InertialSample& sample) {
-  if (!counters_.stand() || grip_is_lost_) {
+  if (!counters_.is_stationary() || grip_is_lost_) {
     imu_.bias_meter().reset();
     return;
   }
@@ -213,8 +213,8 @@ void TrackOdometry::watch_standstill(const InertialSample& sample) {
   if (!reading) return;
   if (reading->bias_radps.cwiseAbs().maxCoeff() > kMaxBiasSigmas * settings_.gyro_bias_std_radps) return;
   imu_.filter()->correct_gyro_bias(reading->bias_radps, reading->variance);
-  imu_.filter()->regain_grip(0.0, settings_.slip_std);
-  if (has_settled_ || to_seconds(imu_.now() - counters_.stand_since()) < settings_.settle_s) return;
+  imu_.filter()->end_slip(0.0, settings_.slip_std);
+  if (has_settled_ || to_seconds(imu_.now() - counters_.stationary_since()) < settings_.settle_s) return;
   imu_.filter()->set_origin();
   imu_.forget_history();
   has_settled_ = true;
@@ -244,7 +244,7 @@ Eigen::Vector3d TrackOdometry::twist_std() const {
   constexpr int kVelocity = InertialError::kVelocity, kBias = InertialError::kGyroBias + 2;
   const auto& P = imu_.filter()->covariance();
   Eigen::Vector2d variance = P.diagonal().segment<2>(kVelocity);
-  if (!ticks_are_silent()) variance = variance.cwiseMin(imu_.filter()->lasting_velocity_variance());
+  if (!ticks_are_silent()) variance = variance.cwiseMin(imu_.filter()->systematic_velocity_variance());
   const double sideways = kLastingSideways * imu_.filter()->motion().v_body.x();
   return {std::sqrt(variance.x()), std::hypot(std::sqrt(variance.y()), sideways), std::sqrt(P(kBias, kBias))};
 }

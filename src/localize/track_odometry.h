@@ -142,11 +142,11 @@ class TrackOdometry {
   /// Uses the counters that are due.
   void take_pending();
   void use_ticks(const TrackTicks& ticks);
-  double yaw_rate_disagreement_radps(const BeltInterval& belts, const TrunkMotion& then) const;
+  double yaw_rate_disagreement_radps(const EncoderInterval& belts, const TrunkMotion& then) const;
   double usual_slip_std(double yaw_rate_radps, double disagreement_radps) const;
-  Eigen::Vector3d speed_std(const BeltInterval& belts, const TrunkMotion& then, double disagreement_radps) const;
+  Eigen::Vector3d speed_std(const EncoderInterval& belts, const TrunkMotion& then, double disagreement_radps) const;
   /// Whether the belts say what the body does.
-  bool watch_grip(const BeltInterval& belts);
+  bool watch_grip(const EncoderInterval& belts);
   /// With the belts at rest: bias, slip, and whether the odometry may begin.
   void watch_standstill(const InertialSample& sample);
   void hold_velocity();
@@ -160,9 +160,9 @@ class TrackOdometry {
 
   Time started_{};
   bool has_settled_ = false;
-  SlipWatch slip_watch_;
+  SlipDetector slip_watch_;
 
-  BeltCounters counters_;
+  TrackEncoders counters_;
   PendingReadings<TrackTicks> pending_;  ///< waiting for the IMU
   std::optional<Time> last_speed_update_;
   Eigen::Vector3d last_speed_ = Eigen::Vector3d::Zero();  ///< of the body, when the belts were last believed, m/s

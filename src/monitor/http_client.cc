@@ -20,11 +20,11 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = boost::beast::http;
 
-constexpr std::uint64_t kMostAnswer = 16'000'000;
+constexpr std::uint64_t kMaxResponseBytes = 16'000'000;
 
-asio::awaitable<HttpAnswer> exchange(asio::io_context& context, const Url& url, const http::request<http::string_body>& request, double limit_s) {
+asio::awaitable<HttpClientResponse> exchange(asio::io_context& context, const Url& url, const http::request<http::string_body>& request, double timeout_s) {
   beast::tcp_stream stream(context);
-  stream.expires_after(std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * limit_s)));
+  stream.expires_after(std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * timeout_s)));
   asio::ip::tcp::resolver resolver(context);
   const auto places = co_await resolver.async_resolve(url.host, url.port, asio::use_awaitable);
   co_await stream.async_connect(places, asio::use_awaitable);
@@ -34,15 +34,15 @@ asio::awaitable<HttpAnswer> exchange(asio::io_context& context, const Url& url, 
   if (unsent == beast::error::timeout) throw boost::system::system_error(unsent);
   beast::flat_buffer buffer;
   http::response_parser<http::string_body> parser;
-  parser.body_limit(kMostAnswer);
+  parser.body_limit(kMaxResponseBytes);
   co_await http::async_read(stream, buffer, parser, asio::use_awaitable);
-  co_return HttpAnswer{.status = static_cast<int>(parser.get().result_int()), .body = std::move(parser.get().body())};
+  co_return HttpClientResponse{.status = static_cast<int>(parser.get().result_int()), .body = std::move(parser.get().body())};
 }
 
 }  // namespace
 
-std::optional<HttpAnswer> post_json(const Url& url, const std::string& path, const std::string& token, const std::string& body, double limit_s,
-                                    std::string* why) {
+std::optional<HttpClientResponse> post_json(const Url& url, const std::string& path, const std::string& token, const std::string& body, double timeout_s,
+                                    std::string* reason) {
   http::request<http::string_body> request(http::verb::post, path, 11);
   const std::string host = url.host.find(':') == std::string::npos ? url.host : "[" + url.host + "]";
   request.set(http::field::host, fmt::format("{}:{}", host, url.port));
@@ -53,8 +53,8 @@ std::optional<HttpAnswer> post_json(const Url& url, const std::string& path, con
   request.prepare_payload();
 
   asio::io_context context(1);
-  std::optional<HttpAnswer> answer;
-  asio::co_spawn(context, exchange(context, url, request, limit_s), [&](std::exception_ptr failure, HttpAnswer got) {
+  std::optional<HttpClientResponse> answer;
+  asio::co_spawn(context, exchange(context, url, request, timeout_s), [&](std::exception_ptr failure, HttpClientResponse got) {
     if (!failure) {
       answer = std::move(got);
       return;
@@ -62,7 +62,7 @@ std::optional<HttpAnswer> post_json(const Url& url, const std::string& path, con
     try {
       std::rethrow_exception(failure);
     } catch (const boost::system::system_error& error) {
-      if (why != nullptr) *why = error.code().message();
+      if (reason != nullptr) *reason = error.code().message();
     }
   });
   context.run();

@@ -79,25 +79,25 @@ HttpRequest head_of(const Parser& parser, const Ends& ends) {
   return head;
 }
 
-HttpResponse refusal_of(const Error& error) {
-  if (error == http::error::header_limit) return refusal(431, "the header is too large");
-  if (error == http::error::body_limit) return refusal(413, "the body is too large");
-  return refusal(400, "this is not an HTTP request");
+HttpResponse to_error_response(const Error& error) {
+  if (error == http::error::header_limit) return error_response(431, "the header is too large");
+  if (error == http::error::body_limit) return error_response(413, "the body is too large");
+  return error_response(400, "this is not an HTTP request");
 }
 
 /// Error response to a request with ambiguous framing (request smuggling), or with a body where none is allowed.
-std::optional<HttpResponse> refusal_of_framing(const Parser& parser) {
+std::optional<HttpResponse> check_framing(const Parser& parser) {
   const auto& message = parser.get();
   const std::size_t num_codings = message.count(http::field::transfer_encoding);
   if (num_codings > 1 || (num_codings == 1 && !beast::iequals(message[http::field::transfer_encoding], "chunked"))) {
-    return refusal(501, "Transfer-Encoding must be chunked, or none");
+    return error_response(501, "Transfer-Encoding must be chunked, or none");
   }
   if (num_codings == 1 && (message.count(http::field::content_length) > 0 || message.version() != 11)) {
-    return refusal(400, "Transfer-Encoding goes neither with Content-Length nor with HTTP/1.0");
+    return error_response(400, "Transfer-Encoding goes neither with Content-Length nor with HTTP/1.0");
   }
   const bool has_body = num_codings > 0 || parser.content_length().value_or(0) > 0;
   const bool is_read = message.method() == http::verb::get || message.method() == http::verb::head;
-  if (has_body && is_read) return refusal(400, fmt::format("a {} request must have no body", std::string(message.method_string())));
+  if (has_body && is_read) return error_response(400, fmt::format("a {} request must have no body", std::string(message.method_string())));
   return std::nullopt;
 }
 
@@ -125,8 +125,8 @@ http::response<http::string_body> to_message(HttpResponse&& response, unsigned v
 
 }  // namespace
 
-HttpResponse refusal(int status, const std::string& why) {
-  const nlohmann::json json = {{"error", io::on_one_line(why)}};
+HttpResponse error_response(int status, const std::string& reason) {
+  const nlohmann::json json = {{"error", io::on_one_line(reason)}};
   return {.status = status, .body = json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace), .headers = {}};
 }
 
@@ -134,7 +134,7 @@ class HttpServer::Connections {
  public:
   Connections(const HttpServerSettings& settings, HttpHandler& handler, Log log)
       : settings_(settings), handler_(handler), log_(std::move(log)),
-        bodies_(to_bytes(settings.max_bodies_mb)), answers_(to_bytes(settings.max_answers_mb)), context_(1), acceptor_(context_), signals_(context_, SIGINT, SIGTERM) {
+        bodies_(to_bytes(settings.max_bodies_mb)), responses_(to_bytes(settings.max_answers_mb)), context_(1), acceptor_(context_), signals_(context_, SIGINT, SIGTERM) {
     validate(settings, "monitor");
     try {
       const asio::ip::tcp::endpoint place = endpoint_of(context_, settings);
@@ -195,7 +195,7 @@ class HttpServer::Connections {
         continue;
       }
       try {
-        if (waiting_.size() + busy_.size() >= static_cast<std::size_t>(settings_.max_connections)) close_one();
+        if (waiting_.size() + busy_.size() >= static_cast<std::size_t>(settings_.max_connections)) close_slowest();
         asio::co_spawn(context_, serve(std::move(socket)), asio::detached);
       } catch (const std::exception& failure) {  // out of memory for this connection
         log("a connection given up: {}", failure.what());
@@ -205,7 +205,7 @@ class HttpServer::Connections {
 
   /// Closes the connection with the longest wait for its header, otherwise the one with the oldest request. Its
   /// coroutine removes it from the list.
-  void close_one() {
+  void close_slowest() {
     Connection* waits = first_open(waiting_);
     Connection* one = waits != nullptr ? waits : first_open(busy_);
     if (one == nullptr) return;
@@ -222,37 +222,37 @@ class HttpServer::Connections {
     Connection connection(beast::tcp_stream(std::move(socket)), busy_);
     try {
       beast::flat_buffer buffer(static_cast<std::size_t>(settings_.max_header_kb) * 1024 + 65536);
-      double limit_s = settings_.header_limit_s;
-      while (co_await serve_one(connection, buffer, limit_s)) limit_s = settings_.idle_limit_s;
+      double timeout_s = settings_.header_limit_s;
+      while (co_await serve_one(connection, buffer, timeout_s)) timeout_s = settings_.idle_limit_s;
     } catch (const std::exception& failure) {
       log("{} given up: {}", connection.peer, failure.what());
     }
   }
 
   /// Serves one request. Returns false at the end of the connection.
-  asio::awaitable<bool> serve_one(Connection& connection, beast::flat_buffer& buffer, double limit_s) {
+  asio::awaitable<bool> serve_one(Connection& connection, beast::flat_buffer& buffer, double timeout_s) {
     Parser parser;
     parser.header_limit(static_cast<std::uint32_t>(settings_.max_header_kb) * 1024);
     parser.body_limit(to_bytes(settings_.max_body_mb));
-    const Error error = co_await read_header(connection, buffer, parser, limit_s);
+    const Error error = co_await read_header(connection, buffer, parser, timeout_s);
     if (error == http::error::end_of_stream || error == asio::error::connection_reset || error == asio::error::operation_aborted) co_return false;
     if (error == beast::error::timeout) {
-      if (parser.got_some() || buffer.size() > 0) log("{} given up: no whole header within {} s", connection.peer, limit_s);
+      if (parser.got_some() || buffer.size() > 0) log("{} given up: no whole header within {} s", connection.peer, timeout_s);
       co_return false;
     }
     connection.stream.expires_after(milliseconds(settings_.request_limit_s));
     HttpRequest request = head_of(parser, connection);
-    std::optional<HttpResponse> refused = error ? refusal_of(error) : refusal_of_framing(parser);
-    if (!refused) refused = handler_.refuse(request);
+    std::optional<HttpResponse> error_reply = error ? to_error_response(error) : check_framing(parser);
+    if (!error_reply) error_reply = handler_.refuse(request);
     const std::size_t body_bytes = parser.chunked() ? to_bytes(settings_.max_body_mb) : parser.content_length().value_or(0);
-    std::optional<ByteBudget::Claim> body_claim = bodies_.claim(refused ? 0 : body_bytes);
-    if (!body_claim) refused = busy("too many bodies are on their way");
-    if (refused) {
-      co_await refuse(connection, request, std::move(*refused));
+    std::optional<ByteBudget::Claim> body_claim = bodies_.claim(error_reply ? 0 : body_bytes);
+    if (!body_claim) error_reply = busy("too many bodies are on their way");
+    if (error_reply) {
+      co_await refuse(connection, request, std::move(*error_reply));
       co_return false;
     }
     const bool is_read = co_await read_body(connection, buffer, parser, request);
-    if (!is_read || (request.method == "GET" && has_gone(connection))) co_return false;
+    if (!is_read || (request.method == "GET" && is_disconnected(connection))) co_return false;
 
     HttpResponse response = answer(request);
     request.body = std::string();
@@ -261,10 +261,10 @@ class HttpServer::Connections {
     co_return is_sent;
   }
 
-  asio::awaitable<Error> read_header(Connection& connection, beast::flat_buffer& buffer, Parser& parser, double limit_s) {
+  asio::awaitable<Error> read_header(Connection& connection, beast::flat_buffer& buffer, Parser& parser, double timeout_s) {
     Error error;
     connection.move_to(waiting_);
-    connection.stream.expires_after(milliseconds(limit_s));
+    connection.stream.expires_after(milliseconds(timeout_s));
     co_await http::async_read_header(connection.stream, buffer, parser, into(error));
     connection.move_to(busy_);
     co_return error;
@@ -282,7 +282,7 @@ class HttpServer::Connections {
       log("{} given up: {} {}: no whole body within {} s", connection.peer, request.method, request.path, settings_.request_limit_s);
     }
     if (error == http::error::body_limit || error == http::error::bad_chunk || error == http::error::bad_chunk_extension) {
-      co_await refuse(connection, request, refusal_of(error));
+      co_await refuse(connection, request, to_error_response(error));
     }
     request.body = std::move(parser.get().body());
     co_return !error;
@@ -290,10 +290,10 @@ class HttpServer::Connections {
 
   /// Sends a response. Returns false at the end of the connection.
   asio::awaitable<bool> send(Connection& connection, const HttpRequest& request, HttpResponse response, const Parser::value_type& asked) {
-    std::optional<ByteBudget::Claim> claim = answers_.claim(response.body.size());
+    std::optional<ByteBudget::Claim> claim = responses_.claim(response.body.size());
     if (!claim) {
       response = busy("too many answers wait to be read");
-      log_refusal(request, response);
+      log_error(request, response);
     }
     Error error;
     auto message = to_message(std::move(response), asked.version(), asked.keep_alive());
@@ -306,14 +306,14 @@ class HttpServer::Connections {
   }
 
   /// True when the client has closed its side; no response is computed for it.
-  static bool has_gone(Connection& connection) {
+  static bool is_disconnected(Connection& connection) {
     char byte = 0;
     const ssize_t count = ::recv(connection.stream.socket().native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
     return count == 0 || (count < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR);
   }
 
-  static HttpResponse busy(const std::string& why) {
-    HttpResponse response = refusal(503, why + ": try again in a second");
+  static HttpResponse busy(const std::string& reason) {
+    HttpResponse response = error_response(503, reason + ": try again in a second");
     response.headers.emplace_back("Retry-After", "1");
     return response;
   }
@@ -323,20 +323,20 @@ class HttpServer::Connections {
     try {
       response = handler_.answer(request);
     } catch (const std::exception& failure) {
-      response = refusal(500, failure.what());
+      response = error_response(500, failure.what());
     }
-    if (response.status >= 400) log_refusal(request, response);
+    if (response.status >= 400) log_error(request, response);
     return response;
   }
 
-  void log_refusal(const HttpRequest& request, const HttpResponse& response) {
+  void log_error(const HttpRequest& request, const HttpResponse& response) {
     log("{} {} {} {}: {}", request.peer, response.status, request.method, request.path, response.body);
   }
 
   /// Sends an error response and closes the connection. Input is discarded for a limited time; otherwise the client
   /// would not receive the response.
   asio::awaitable<void> refuse(Connection& connection, const HttpRequest& request, HttpResponse response) {
-    log_refusal(request, response);
+    log_error(request, response);
     auto message = to_message(std::move(response), 11, false);
     Error error;
     co_await http::async_write(connection.stream, message, into(error));
@@ -354,7 +354,7 @@ class HttpServer::Connections {
   Log log_;
   /// oldest first; destroyed after the connections, which end with the context
   std::list<Connection*> waiting_, busy_;
-  ByteBudget bodies_, answers_;
+  ByteBudget bodies_, responses_;
   asio::io_context context_;
   asio::ip::tcp::acceptor acceptor_;
   asio::signal_set signals_;

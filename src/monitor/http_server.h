@@ -62,7 +62,7 @@ struct HttpResponse {
 };
 
 /// Builds an error response: {"error": "one line"}.
-HttpResponse refusal(int status, const std::string& why);
+HttpResponse error_response(int status, const std::string& reason);
 
 /// Interface of the request handler. Called for one request at a time.
 class HttpHandler {

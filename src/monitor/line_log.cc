@@ -47,7 +47,7 @@ bool LineLog::write_bytes(const std::string& bytes) const {
   return count == static_cast<ssize_t>(bytes.size());
 }
 
-void survive_lost_output() {
+void ignore_lost_output() {
   std::signal(SIGPIPE, SIG_IGN);
   for (int descriptor = 0; descriptor <= STDERR_FILENO; ++descriptor) {
     // gets the lowest free descriptor

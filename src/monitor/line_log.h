@@ -9,7 +9,7 @@ namespace patrol::monitor {
 /// (closed, full, or a pipe without reader) are counted, and their number precedes the next written line. Not
 /// thread-safe.
 ///
-/// The process must ignore SIGPIPE (`survive_lost_output`).
+/// The process must ignore SIGPIPE (`ignore_lost_output`).
 class LineLog {
  public:
   explicit LineLog(int descriptor) : descriptor_(descriptor) {}
@@ -29,6 +29,6 @@ class LineLog {
 
 /// Ignores SIGPIPE, and opens /dev/null for closed standard streams. Otherwise a socket or the database would get their
 /// descriptors, and with them log lines.
-void survive_lost_output();
+void ignore_lost_output();
 
 }  // namespace patrol::monitor

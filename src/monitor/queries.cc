@@ -15,16 +15,16 @@ namespace {
 
 using io::Json;
 
-constexpr int kMostChanges = 200;
-constexpr int kMostTrackPoints = 600;
-constexpr int kMostRings = 500;
-constexpr int kMostRingRows = 40;  // per ring
-constexpr int kMostGasRows = 2'000;
-constexpr int kMostLines = 2'000;
-constexpr int kMostStations = 20;
-constexpr int kMostPage = 200;
-constexpr int kMostRunStations = 500;  // limits of one page, also those below
-constexpr int kMostCells = 4'000;
+constexpr int kMaxChanges = 200;
+constexpr int kMaxTrackPoints = 600;
+constexpr int kMaxRings = 500;
+constexpr int kMaxRingRows = 40;  // per ring
+constexpr int kMaxGasRows = 2'000;
+constexpr int kMaxLines = 2'000;
+constexpr int kMaxStations = 20;
+constexpr int kMaxPageRows = 200;
+constexpr int kMaxRunStations = 500;  // limits of one page, also those below
+constexpr int kMaxCells = 4'000;
 constexpr int kPageLines = 400;
 constexpr int kPageRings = 100;
 
@@ -73,13 +73,13 @@ Json findings_page(Database& database, const AlarmsPage& page) {
   const std::string where = fmt::format(" WHERE findings.level >= 2 AND (?1 = 0 OR findings.number < ?1){} ORDER BY findings.number DESC LIMIT ?2",
                                         page.only_open ? " AND findings.acknowledged_ms IS NULL" : "");
   Statement rows = database.prepare(kFindings + where);
-  return objects_of(rows.bind(page.before, std::clamp(page.limit, 1, kMostPage)));
+  return objects_of(rows.bind(page.before, std::clamp(page.limit, 1, kMaxPageRows)));
 }
 
 /// At most 600 equally spaced positions of a run, and the last one.
 Json track_of(Database& database, std::int64_t run, std::int64_t num_poses) {
   Json track = Json::array();
-  const std::int64_t step = num_poses / kMostTrackPoints + 1;
+  const std::int64_t step = num_poses / kMaxTrackPoints + 1;
   Statement row = database.prepare("SELECT x, y FROM poses WHERE run = ?1 AND place = ?2");
   const auto add = [&](std::int64_t place) {
     if (row.bind(run, place).step()) track.push_back({row.number(0), row.number(1)});
@@ -100,13 +100,13 @@ Json map_geometry(Database& database, std::int64_t seq) {
 /// Adds one page of a run's stations and the first number of the next page.
 void add_stations(Json& json, Database& database, std::int64_t run, std::int64_t first) {
   Statement row = database.prepare("SELECT value FROM runs, json_each(stations) WHERE number = ?1 LIMIT ?2 OFFSET ?3");
-  row.bind(run, kMostRunStations + 1, first);
+  row.bind(run, kMaxRunStations + 1, first);
   Json list = Json::array();
   while (row.step()) list.push_back(Json::parse(row.text(0)));
-  const bool has_more = list.size() > static_cast<std::size_t>(kMostRunStations);
+  const bool has_more = list.size() > static_cast<std::size_t>(kMaxRunStations);
   if (has_more) list.erase(list.size() - 1);
   json["stations"] = std::move(list);
-  json["next_station"] = has_more ? Json(first + kMostRunStations) : Json(nullptr);
+  json["next_station"] = has_more ? Json(first + kMaxRunStations) : Json(nullptr);
 }
 
 /// Newest result of each station with its data as stored.
@@ -115,7 +115,7 @@ std::string newest_of(Database& database, const std::string& world, const char* 
   Statement row = database.prepare(
       "SELECT results.robot, results.run, results.time_s, results.made_ms, results.data FROM newest JOIN results USING (seq) "
       "WHERE newest.world = ?1 AND newest.kind = ?2 ORDER BY newest.made_ms DESC LIMIT ?3");
-  row.bind(world, kind, kMostStations);
+  row.bind(world, kind, kMaxStations);
   while (row.step()) {
     std::string one = Json{{"robot", row.text(0)}, {"run", row.text(1)}, {"time_s", row.number(2)}, {"made_ms", row.integer(3)}}.dump();
     one.pop_back();
@@ -129,10 +129,10 @@ bool add_scans(Json& scans, Database& database, const std::string& world, Lining
   Statement scan = database.prepare(
       "SELECT seq, results.robot, results.run, results.time_s, results.made_ms, results.summary FROM newest JOIN results USING (seq) "
       "WHERE newest.world = ?1 AND newest.kind = 'lining' ORDER BY newest.made_ms DESC, seq DESC LIMIT ?2 OFFSET ?3");
-  scan.bind(world, std::max<std::int64_t>(kMostStations - page.scan, 0), page.scan);
+  scan.bind(world, std::max<std::int64_t>(kMaxStations - page.scan, 0), page.scan);
   Statement cell = database.prepare("SELECT value FROM results, json_each(data, '$.cells') WHERE seq = ?1 LIMIT ?2 OFFSET ?3");
   scans = Json::array();
-  for (int num_left = kMostCells; scan.step(); ++page.scan, page.cell = 0) {
+  for (int num_left = kMaxCells; scan.step(); ++page.scan, page.cell = 0) {
     if (num_left == 0) return true;
     Json data = Json::parse(scan.text(5));
     Json& cells = data["cells"] = Json::array();
@@ -149,32 +149,32 @@ bool add_scans(Json& scans, Database& database, const std::string& world, Lining
 bool add_lines(Json& lines, Database& database, const std::string& world, LiningPage& page) {
   Statement rows =
       database.prepare("SELECT ring, name, made_ms, change_m, std_m, before_m FROM lines WHERE world = ?1 ORDER BY ring, name LIMIT ?2 OFFSET ?3");
-  const std::int64_t limit = std::clamp<std::int64_t>(kMostLines - page.line, 0, kPageLines);
+  const std::int64_t limit = std::clamp<std::int64_t>(kMaxLines - page.line, 0, kPageLines);
   lines = objects_of(rows.bind(world, limit, page.line));
   page.line += limit;
-  return static_cast<std::int64_t>(lines.size()) == limit && page.line < kMostLines;
+  return static_cast<std::int64_t>(lines.size()) == limit && page.line < kMaxLines;
 }
 
-/// Adds [ring, made_ms, inward_m, std_m, clock_deg] for the newest scans of each ring, in order of time.
+/// Adds [ring, created_ms, inward_m, std_m, clock_deg] for the newest scans of each ring, in order of time.
 bool add_rings(Json& rings, Database& database, const std::string& world, LiningPage& page) {
   Statement numbers = database.prepare(
       "WITH RECURSIVE known (ring) AS (SELECT min(ring) FROM rings WHERE world = ?1 UNION ALL "
       "SELECT (SELECT min(ring) FROM rings WHERE world = ?1 AND ring > known.ring) FROM known WHERE known.ring IS NOT NULL) "
       "SELECT ring FROM known WHERE ring IS NOT NULL LIMIT ?2 OFFSET ?3");
   Statement row = database.prepare("SELECT made_ms, inward_m, std_m, clock_deg FROM rings WHERE world = ?1 AND ring = ?2 ORDER BY made_ms DESC LIMIT ?3");
-  const std::int64_t limit = std::clamp<std::int64_t>(kMostRings - page.ring, 0, kPageRings);
+  const std::int64_t limit = std::clamp<std::int64_t>(kMaxRings - page.ring, 0, kPageRings);
   rings = Json::array();
   std::int64_t count = 0;
   for (numbers.bind(world, limit, page.ring); numbers.step(); ++count) {
     const std::int64_t ring = numbers.integer(0);
     Json one = Json::array();
-    row.bind(world, ring, kMostRingRows);
+    row.bind(world, ring, kMaxRingRows);
     while (row.step()) one.push_back({ring, row.integer(0), row.number(1), value_of(row, 2), row.number(3)});
     std::reverse(one.begin(), one.end());
     rings.insert(rings.end(), one.begin(), one.end());
   }
   page.ring += limit;
-  return count == limit && page.ring < kMostRings;
+  return count == limit && page.ring < kMaxRings;
 }
 
 }  // namespace
@@ -184,23 +184,23 @@ std::string changes(Database& database, std::int64_t since, std::int64_t now_ms)
   revision.step();
   Json json = {{"revision", revision.integer(0)}, {"now_ms", now_ms}, {"open", open_count(database)}};
   Statement rows = database.prepare(std::string(kRobots) + " WHERE robots.revision > ?1 ORDER BY robots.robot LIMIT ?2");
-  json["robots"] = objects_of(rows.bind(since, kMostChanges + 1));
-  json["more_robots"] = json["robots"].size() > static_cast<std::size_t>(kMostChanges);
+  json["robots"] = objects_of(rows.bind(since, kMaxChanges + 1));
+  json["more_robots"] = json["robots"].size() > static_cast<std::size_t>(kMaxChanges);
   if (json["more_robots"]) json["robots"].erase(json["robots"].size() - 1);
   if (since == 0) {
-    json["findings"] = findings_page(database, {.limit = kMostPage});
-    for (Json& open : findings_page(database, {.only_open = true, .limit = kMostPage})) json["findings"].push_back(std::move(open));
+    json["findings"] = findings_page(database, {.limit = kMaxPageRows});
+    for (Json& open : findings_page(database, {.only_open = true, .limit = kMaxPageRows})) json["findings"].push_back(std::move(open));
   } else {
     Statement findings =
         database.prepare(std::string(kFindings) + " WHERE findings.revision > ?1 AND findings.level >= 2 ORDER BY findings.number DESC LIMIT ?2");
-    json["findings"] = objects_of(findings.bind(since, kMostChanges));
+    json["findings"] = objects_of(findings.bind(since, kMaxChanges));
   }
   return json.dump();
 }
 
 std::string robots(Database& database, const RobotsPage& page) {
   Statement rows = database.prepare(std::string(kRobots) + " WHERE robots.robot > ?1 ORDER BY robots.robot LIMIT ?2");
-  const int limit = std::clamp(page.limit, 1, kMostPage);
+  const int limit = std::clamp(page.limit, 1, kMaxPageRows);
   Json list = objects_of(rows.bind(page.after, limit + 1));
   const bool has_more = list.size() > static_cast<std::size_t>(limit);
   if (has_more) list.erase(list.size() - 1);
@@ -222,7 +222,7 @@ std::optional<std::string> run_details(Database& database, const std::string& ro
   json["map"] = row.is_null(2) ? Json(nullptr) : map_geometry(database, row.integer(2));
   add_stations(json, database, number, station);
   Statement findings = database.prepare(std::string(kFindings) + " WHERE findings.run = ?1 ORDER BY findings.number DESC LIMIT ?2");
-  json["findings"] = objects_of(findings.bind(number, kMostPage));
+  json["findings"] = objects_of(findings.bind(number, kMaxPageRows));
   Statement runs = database.prepare("SELECT run, first_ms, state FROM runs WHERE robot = ?1 ORDER BY first_ms DESC LIMIT 50");
   json["runs"] = objects_of(runs.bind(robot));
   return json.dump();
@@ -230,7 +230,7 @@ std::optional<std::string> run_details(Database& database, const std::string& ro
 
 std::string LiningPage::text() const { return fmt::format("{}.{}.{}.{}", scan, cell, line, ring); }
 
-LiningPage lining_page_from(const std::string& text) {
+LiningPage parse_lining_page(const std::string& text) {
   constexpr std::int64_t kMax = 1'000'000;
   LiningPage page;
   if (text.empty()) return page;
@@ -261,7 +261,7 @@ std::string water(Database& database, const std::string& world) { return fmt::fo
 std::string gas(Database& database, const std::string& world) {
   Json list = Json::array();
   Statement row = database.prepare("SELECT station, made_ms, column_ppm_m FROM gas WHERE world = ?1 ORDER BY made_ms DESC LIMIT ?2");
-  row.bind(world, kMostGasRows);
+  row.bind(world, kMaxGasRows);
   while (row.step()) list.push_back({row.text(0), row.integer(1), row.number(2)});
   std::reverse(list.begin(), list.end());
   return Json{{"gas", list}}.dump();
@@ -272,7 +272,7 @@ std::string history(Database& database, const HistoryPage& page) {
   sql += page.robot.empty() ? " AND ?2 = ''" : " AND robot = ?2";
   sql += page.kind.empty() ? " AND ?3 = '' AND kind NOT IN ('pose', 'map')" : " AND kind = ?3";
   Statement row = database.prepare(sql + " ORDER BY seq DESC LIMIT ?4");
-  const int limit = std::clamp(page.limit, 1, kMostPage);
+  const int limit = std::clamp(page.limit, 1, kMaxPageRows);
   row.bind(page.before, page.robot, page.kind, limit + 1);
   Json list = Json::array();
   while (row.step()) {

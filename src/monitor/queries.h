@@ -44,17 +44,17 @@ struct LiningPage {
   std::int64_t line = 0;
   std::int64_t ring = 0;  ///< index of the ring among the scanned rings
 
-  /// Inverse of `lining_page_from`.
+  /// Inverse of `parse_lining_page`.
   std::string text() const;
 };
 /// Parses "scan.cell.line.ring"; an empty text is the first page. Throws InputError for any other text.
-LiningPage lining_page_from(const std::string& text);
+LiningPage parse_lining_page(const std::string& text);
 
 /// {"scans": [...], "lines": [...], "rings": [...], "next": text or null} of a world. `scans`: newest scan of each
 /// station. `lines`: newest and previous change of each convergence line. `rings`: maximum inward displacement of each
 /// ring in its newest 40 scans. A page has at most 4,000 cells, 400 lines and 100 rings. A scan that does not fit
 /// continues on the next page with the same `seq`. For long scans, lists other than `cells` are given by their length
-/// (summary_of in result.h).
+/// (to_summary in result.h).
 std::string lining(Database& database, const std::string& world, const LiningPage& page = {});
 
 /// {"water": [...]}: newest result of each station. {"gas": [...]}: newest 2,000 measurements.
@@ -68,7 +68,7 @@ struct HistoryPage {
   std::int64_t before = 0;  ///< results with lower numbers; 0: from the newest
   int limit = 25;
 };
-/// {"results": [...], "more": bool}: results with the summary of their data (summary_of in result.h), newest first.
+/// {"results": [...], "more": bool}: results with the summary of their data (to_summary in result.h), newest first.
 std::string history(Database& database, const HistoryPage& page);
 
 /// PNG of a map, none for an unknown number.

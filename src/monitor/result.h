@@ -18,7 +18,7 @@ struct Result {
   std::string world;
   std::int64_t sequence = 0;  ///< number in the run, from 0
   double time_s = 0.0;        ///< simulated time since the start of the run
-  std::int64_t made_ms = 0;   ///< creation time by the robot's clock, ms since 1970, UTC
+  std::int64_t created_ms = 0;   ///< creation time by the robot's clock, ms since 1970, UTC
   std::string kind;           ///< pose, map, event, lining, water or status
   std::string data;           ///< JSON object of that kind, keys in fixed order
 };
@@ -31,10 +31,10 @@ std::string to_json(const Result& result);
 std::vector<Result> results_from_json(const std::string& text);
 
 /// Content of a result for comparison: all fields except the id.
-std::string content_of(const Result& result);
+std::string to_content(const Result& result);
 
 /// Data for a table row. In long data, lists are replaced by their lengths and the picture is omitted.
-std::string summary_of(const Result& result);
+std::string to_summary(const Result& result);
 
 /// Formats milliseconds since 1970 as "2026-11-22T10:45:33.120Z" (RFC 3339). `from_utc` is the inverse and throws
 /// InputError for any other text.

@@ -19,7 +19,7 @@ namespace {
 using io::Json;
 
 constexpr std::string_view kAlarms = "/api/alarms/", kAcknowledge = "/acknowledge", kMaps = "/api/maps/", kResults = "/api/results";
-constexpr std::size_t kLongestWho = 80, kLongestNote = 500, kMaxShownHost = 100;
+constexpr std::size_t kMaxWhoBytes = 80, kMaxNoteBytes = 500, kMaxShownHost = 100;
 constexpr const char* kPolicy = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
                                 "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
@@ -32,7 +32,7 @@ const Asset* asset_at(std::string_view path) {
                                   {"/page.css", "text/css; charset=utf-8", kPageStyle},
                                   {"/page.js", "text/javascript; charset=utf-8", kPageScript},
                                   {"/site.js", "text/javascript; charset=utf-8", kSiteScript},
-                                  {"/words.js", "text/javascript; charset=utf-8", kWordsScript},
+                                  {"/words.js", "text/javascript; charset=utf-8", kFormatScript},
                                   {"/map.js", "text/javascript; charset=utf-8", kMapScript},
                                   {"/plots.js", "text/javascript; charset=utf-8", kPlotsScript},
                                   {"/uplot.js", "text/javascript; charset=utf-8", kPlotLibrary},
@@ -52,7 +52,7 @@ std::optional<std::int64_t> whole(std::string_view text) {
 }
 
 /// Number between prefix and suffix of a path, none if the path has another form.
-std::optional<std::int64_t> number_in(std::string_view path, std::string_view head, std::string_view tail) {
+std::optional<std::int64_t> number_between(std::string_view path, std::string_view head, std::string_view tail) {
   if (!path.starts_with(head) || !path.ends_with(tail) || path.size() <= head.size() + tail.size()) return std::nullopt;
   return whole(path.substr(head.size(), path.size() - head.size() - tail.size()));
 }
@@ -85,13 +85,13 @@ std::string_view bearer_token(std::string_view header) {
   return header;
 }
 
-bool is_place_to_post(std::string_view path) { return path == kResults || number_in(path, kAlarms, kAcknowledge).has_value(); }
+bool is_post_path(std::string_view path) { return path == kResults || number_between(path, kAlarms, kAcknowledge).has_value(); }
 
-bool is_place_to_get(std::string_view path) {
+bool is_get_path(std::string_view path) {
   for (const char* known : {"/api/changes", "/api/robots", "/api/alarms", "/api/run", "/api/lining", "/api/water", "/api/gas", "/api/history"}) {
     if (path == known) return true;
   }
-  return asset_at(path) != nullptr || number_in(path, kMaps, "").has_value();
+  return asset_at(path) != nullptr || number_between(path, kMaps, "").has_value();
 }
 
 HttpResponse get(Database& database, const HttpRequest& request) {
@@ -107,10 +107,10 @@ HttpResponse get(Database& database, const HttpRequest& request) {
   }
   if (path == "/api/run") {
     const auto details = run_details(database, parameter(request, "robot"), parameter(request, "run"), count(request, "station", 0));
-    return details ? fresh(*details) : refusal(404, "there is no such robot or run");
+    return details ? fresh(*details) : error_response(404, "there is no such robot or run");
   }
   if (path == "/api/lining") {
-    return fresh(lining(database, parameter(request, "world"), lining_page_from(parameter(request, "after"))));
+    return fresh(lining(database, parameter(request, "world"), parse_lining_page(parameter(request, "after"))));
   }
   if (path == "/api/water") return fresh(water(database, parameter(request, "world")));
   if (path == "/api/gas") return fresh(gas(database, parameter(request, "world")));
@@ -118,8 +118,8 @@ HttpResponse get(Database& database, const HttpRequest& request) {
     return fresh(history(database, {.robot = parameter(request, "robot"), .kind = parameter(request, "kind"), .before = count(request, "before", 0),
                                     .limit = limit_of(request, 25)}));
   }
-  const auto image = map_image(database, *number_in(path, kMaps, ""));
-  if (!image) return refusal(404, "there is no such map");
+  const auto image = map_image(database, *number_between(path, kMaps, ""));
+  if (!image) return error_response(404, "there is no such map");
   return {.type = "image/png", .body = *image, .headers = {{"Cache-Control", "no-store"}}};
 }
 
@@ -131,18 +131,18 @@ Service::Service(Store& store, std::string token, HttpServer::Log log, HostNames
 std::optional<HttpResponse> Service::refuse(const HttpRequest& head) {
   if (!hosts_.allow(head.host, head.local)) {
     const std::string host = head.host.substr(0, kMaxShownHost);
-    return refusal(421, fmt::format("Host '{}': not a name of this platform: must be its address, localhost, or a name of --allow-host", host));
+    return error_response(421, fmt::format("Host '{}': not a name of this platform: must be its address, localhost, or a name of --allow-host", host));
   }
-  const bool posts = is_place_to_post(head.path), gets = is_place_to_get(head.path);
-  if (!posts && !gets) return refusal(404, "there is nothing here");
+  const bool posts = is_post_path(head.path), gets = is_get_path(head.path);
+  if (!posts && !gets) return error_response(404, "there is nothing here");
   const std::string allowed = posts ? "POST" : "GET";
   if (head.method != allowed) {
-    HttpResponse no = refusal(405, fmt::format("only {} is allowed here", allowed));
+    HttpResponse no = error_response(405, fmt::format("only {} is allowed here", allowed));
     no.headers.emplace_back("Allow", allowed);
     return no;
   }
   if (posts && !is_same_token(bearer_token(head.authorization), token_)) {
-    HttpResponse no = refusal(401, head.authorization.empty() ? "a token is needed: Authorization: Bearer ..." : "this is not the token");
+    HttpResponse no = error_response(401, head.authorization.empty() ? "a token is needed: Authorization: Bearer ..." : "this is not the token");
     no.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"patrol\"");
     return no;
   }
@@ -155,19 +155,19 @@ HttpResponse Service::answer(const HttpRequest& request) {
     if (request.method == "POST") return acknowledge(request);
     return get(store_.database(), request);
   } catch (const InputError& error) {
-    return refusal(400, error.what());
+    return error_response(400, error.what());
   }
 }
 
 HttpResponse Service::take_results(const HttpRequest& request) {
   const std::vector<Result> results = results_from_json(request.body);
-  const std::vector<Stored> stored = store_.add(results, now_ms());
+  const std::vector<StoreStatus> stored = store_.add(results, now_ms());
   Json list = Json::array();
   bool has_conflict = false;
   for (std::size_t i = 0; i < results.size(); ++i) {
-    const bool is_conflict = stored[i] == Stored::kConflict;
+    const bool is_conflict = stored[i] == StoreStatus::kConflict;
     has_conflict = has_conflict || is_conflict;
-    list.push_back({{"id", results[i].id}, {"status", is_conflict ? "conflict" : stored[i] == Stored::kKnown ? "known" : "stored"}});
+    list.push_back({{"id", results[i].id}, {"status", is_conflict ? "conflict" : stored[i] == StoreStatus::kExisting ? "known" : "stored"}});
     if (is_conflict) log_(fmt::format("{} 409: another result with the id {} is there already", request.peer, results[i].id));
   }
   Json answer = {{"results", list}};
@@ -179,14 +179,14 @@ HttpResponse Service::acknowledge(const HttpRequest& request) {
   io::check_json("body", request.body, 10);
   const Json json = Json::parse(request.body);
   const io::JsonObject object("body", json, {"who", "note"});
-  const std::string who = object.word("who"), note = object.word("note");
-  if (who.empty() || who.size() > kLongestWho) object.fail(fmt::format("who must have 1 ... {} bytes", kLongestWho));
-  if (note.size() > kLongestNote) object.fail(fmt::format("note must have at most {} bytes", kLongestNote));
-  const std::int64_t number = *number_in(request.path, kAlarms, kAcknowledge);
+  const std::string who = object.string("who"), note = object.string("note");
+  if (who.empty() || who.size() > kMaxWhoBytes) object.fail(fmt::format("who must have 1 ... {} bytes", kMaxWhoBytes));
+  if (note.size() > kMaxNoteBytes) object.fail(fmt::format("note must have at most {} bytes", kMaxNoteBytes));
+  const std::int64_t number = *number_between(request.path, kAlarms, kAcknowledge);
   switch (store_.acknowledge(number, who, note, now_ms())) {
-    case Acknowledged::kUnknown: return refusal(404, "there is no such alarm");
-    case Acknowledged::kAlready: return refusal(409, "this alarm is acknowledged already");
-    case Acknowledged::kDone: break;
+    case AcknowledgeStatus::kUnknown: return error_response(404, "there is no such alarm");
+    case AcknowledgeStatus::kAlready: return error_response(409, "this alarm is acknowledged already");
+    case AcknowledgeStatus::kDone: break;
   }
   log_(fmt::format("{} alarm {} acknowledged by {}", request.peer, number, who));
   return {.body = Json{{"number", number}}.dump(), .headers = {}};

@@ -11,14 +11,14 @@
 namespace patrol::monitor {
 
 /// Outcome of storing a result.
-enum class Stored {
+enum class StoreStatus {
   kNew,
-  kKnown,     ///< an equal result exists
+  kExisting,     ///< an equal result exists
   kConflict,  ///< another result with the same id exists; nothing is changed
 };
 
 /// Outcome of an acknowledgment: done, acknowledged earlier, or unknown finding.
-enum class Acknowledged { kDone, kAlready, kUnknown };
+enum class AcknowledgeStatus { kDone, kAlready, kUnknown };
 
 /// Store of results, one per id, durable once `add` returns. Updates the tables of the page (views.h) in the same
 /// transaction.
@@ -28,16 +28,16 @@ class Store {
   explicit Store(const std::filesystem::path& folder);
 
   /// Stores all results in one transaction; on an exception none is stored.
-  std::vector<Stored> add(const std::vector<Result>& results, std::int64_t received_ms);
+  std::vector<StoreStatus> add(const std::vector<Result>& results, std::int64_t received_ms);
 
   /// Acknowledges a warning or alarm with the user's name and note.
-  Acknowledged acknowledge(std::int64_t finding, const std::string& who, const std::string& note, std::int64_t now_ms);
+  AcknowledgeStatus acknowledge(std::int64_t finding, const std::string& who, const std::string& note, std::int64_t now_ms);
 
   /// Database for the queries of queries.h.
   Database& database() { return database_; }
 
  private:
-  Stored add_one(const Result& result, std::int64_t received_ms, std::int64_t revision);
+  StoreStatus add_one(const Result& result, std::int64_t received_ms, std::int64_t revision);
   std::int64_t next_revision();
 
   FolderLock lock_;

@@ -16,7 +16,7 @@
 namespace patrol::monitor {
 namespace {
 
-constexpr std::size_t kShortest = 16;
+constexpr std::size_t kMinTokenLength = 16;
 
 std::string new_token() {
   std::array<unsigned char, 32> bytes{};
@@ -26,10 +26,10 @@ std::string new_token() {
 
 }  // namespace
 
-void check_token(const std::string& place, const std::string& token) {
-  if (token.size() < kShortest) throw InputError(fmt::format("{}: a token must have at least {} characters", place, kShortest));
+void check_token(const std::string& location, const std::string& token) {
+  if (token.size() < kMinTokenLength) throw InputError(fmt::format("{}: a token must have at least {} characters", location, kMinTokenLength));
   const bool is_plain = std::all_of(token.begin(), token.end(), [](char c) { return c > 0x20 && c < 0x7f; });
-  if (!is_plain) throw InputError(fmt::format("{}: a token must be of letters, digits and signs of ASCII, without spaces", place));
+  if (!is_plain) throw InputError(fmt::format("{}: a token must be of letters, digits and signs of ASCII, without spaces", location));
 }
 
 std::string load_token(const std::filesystem::path& file) {
@@ -39,7 +39,7 @@ std::string load_token(const std::filesystem::path& file) {
   return token;
 }
 
-std::string token_of_folder(const std::filesystem::path& folder) {
+std::string load_or_create_token(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "token";
   if (std::filesystem::exists(file)) return load_token(file);
   const std::string token = new_token(), line = token + "\n";

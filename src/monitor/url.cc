@@ -40,7 +40,7 @@ void split_target(const std::string& target, std::string& path, std::map<std::st
   }
 }
 
-Url url_from(const std::string& text) {
+Url parse_url(const std::string& text) {
   const auto refuse = [&] { return InputError(fmt::format("{}: must be an address such as http://127.0.0.1:8080", text)); };
   constexpr std::string_view kScheme = "http://";
   std::string_view rest = text;

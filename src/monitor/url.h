@@ -17,6 +17,6 @@ struct Url {
 };
 
 /// Parses "http://host[:port][/]". Throws InputError for any other text.
-Url url_from(const std::string& text);
+Url parse_url(const std::string& text);
 
 }  // namespace patrol::monitor

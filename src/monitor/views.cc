@@ -60,14 +60,14 @@ WarningLevel finding_level(EventKind kind) {
 }
 
 /// Time used for ordering results. A robot clock that is too far ahead must not hide all later results.
-std::int64_t counted_ms(const Result& result, const Filed& filed) {
-  return result.made_ms > filed.received_ms + kClockTolerance_ms ? filed.received_ms : result.made_ms;
+std::int64_t ordering_ms(const Result& result, const RecordInfo& filed) {
+  return result.created_ms > filed.received_ms + kClockTolerance_ms ? filed.received_ms : result.created_ms;
 }
 
 /// Adds one result to the tables.
 class Entry {
  public:
-  Entry(Database& database, const Result& result, const Filed& filed) : database_(database), result_(result), filed_(filed), made_ms_(counted_ms(result, filed)) {
+  Entry(Database& database, const Result& result, const RecordInfo& filed) : database_(database), result_(result), filed_(filed), made_ms_(ordering_ms(result, filed)) {
     open_run();
   }
 
@@ -80,7 +80,7 @@ class Entry {
     else if (result_.kind == "water") enter_water(io::water_from_json("result", data));
     else if (result_.kind == "map") enter_map();
     else is_mark = false;
-    const bool is_newest = touch_robot(is_mark);
+    const bool is_newest = update_robot(is_mark);
     if (result_.kind == "pose") enter_pose(data, is_newest);
   }
 
@@ -94,7 +94,7 @@ class Entry {
   }
 
   /// Updates the robot's state. Late results of an earlier run do not change it.
-  bool touch_robot(bool is_mark) {
+  bool update_robot(bool is_mark) {
     database_.prepared("INSERT INTO robots (robot, run, made_ms, received_ms, time_s, revision) VALUES (?1, ?2, ?3, ?4, ?5, ?6) ON CONFLICT (robot) DO NOTHING")
         .bind(result_.robot, run_, made_ms_, filed_.received_ms, result_.time_s, filed_.revision)
         .run();
@@ -202,19 +202,19 @@ class Entry {
     if (level == WarningLevel::kNone) return;
     database_.prepared("INSERT INTO findings (run, time_s, made_ms, received_ms, level, kind, subject, text, x, y, revision) "
                       "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)")
-        .bind(run_, result_.time_s, result_.made_ms, filed_.received_ms, static_cast<int>(level), kind, subject, text, p_map.x(), p_map.y(), filed_.revision)
+        .bind(run_, result_.time_s, result_.created_ms, filed_.received_ms, static_cast<int>(level), kind, subject, text, p_map.x(), p_map.y(), filed_.revision)
         .run();
   }
 
   Database& database_;
   const Result& result_;
-  const Filed& filed_;
+  const RecordInfo& filed_;
   std::int64_t made_ms_;  ///< time used for ordering
   std::int64_t run_ = 0;
 };
 
 }  // namespace
 
-void update_views(Database& database, const Result& result, const Filed& filed) { Entry(database, result, filed).enter(); }
+void update_views(Database& database, const Result& result, const RecordInfo& filed) { Entry(database, result, filed).enter(); }
 
 }  // namespace patrol::monitor

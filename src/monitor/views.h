@@ -6,7 +6,7 @@
 namespace patrol::monitor {
 
 /// Database record of a stored result.
-struct Filed {
+struct RecordInfo {
   std::int64_t seq = 0;          ///< row in `results`
   std::int64_t received_ms = 0;  ///< time of reception, ms since 1970, UTC
   std::int64_t revision = 0;     ///< revision of the transaction that stored it
@@ -21,6 +21,6 @@ extern const char* const kViews;
 inline constexpr std::int64_t kClockTolerance_ms = 60'000;
 
 /// Adds a new result to the tables.
-void update_views(Database& database, const Result& result, const Filed& filed);
+void update_views(Database& database, const Result& result, const RecordInfo& filed);
 
 }  // namespace patrol::monitor

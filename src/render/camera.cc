@@ -21,7 +21,7 @@ std::optional<double> roof_height_m(const Eigen::Vector3d& p_world_body, const F
 
 }  // namespace
 
-CameraKind camera_kind(const std::string& name) {
+CameraKind parse_camera_kind(const std::string& name) {
   if (name == "chase") return CameraKind::kChase;
   if (name == "top") return CameraKind::kTop;
   if (name == "onboard") return CameraKind::kOnboard;
@@ -77,7 +77,7 @@ std::optional<Projected> Projector::project(const Eigen::Vector3d& point_m) cons
 View CameraRig::follow(const Pose3& T_world_body, double elapsed_s) {
   constexpr double kFollow_s = 0.25, kTurn_s = 0.6;  // time constants
   constexpr double kTopHeight_m = 14.0;
-  const double heading = yaw_of(T_world_body.rotation);
+  const double heading = to_yaw(T_world_body.rotation);
   if (!focus_m_) {
     focus_m_ = T_world_body.position;
     heading_rad_ = heading;
@@ -97,28 +97,28 @@ View CameraRig::follow(const Pose3& T_world_body, double elapsed_s) {
 }
 
 View CameraRig::on_board(const Pose3& T_world_body) const {
-  const Pose3 T_world_level{T_world_body.position, quaternion_from_yaw(yaw_of(T_world_body.rotation))};
+  const Pose3 T_world_level{T_world_body.position, quaternion_from_yaw(to_yaw(T_world_body.rotation))};
   View view = look_at(T_world_level * head_m_, T_world_level * (head_m_ + Eigen::Vector3d(4.0, 0.0, -0.25)));
   view.field_of_view_rad = 1.1;
   return view;
 }
 
 View CameraRig::chase(double elapsed_s) {
-  constexpr double kReturn_s = 0.8, kLookUp_s = 1.5;  // time constants; the approach is immediate
+  constexpr double kReturn_s = 0.8, kRoof_s = 1.5;  // time constants; the approach is immediate
   constexpr double kClearance_m = 0.25;
   constexpr double kUp_m = 0.5;  // raises the target under a roof
   const Pose3 T_world_rig{*focus_m_, quaternion_from_yaw(heading_rad_)};
   const Eigen::Vector3d over_robot = T_world_rig * Eigen::Vector3d(0.0, 0.0, 0.4);
   const Eigen::Vector3d back = T_world_rig * Eigen::Vector3d(-2.4, 0.0, 1.15) - over_robot;
-  double reach = 1.0;
+  double distance_fraction = 1.0;
   if (free_distance_) {
     const double wanted_m = back.norm() + kClearance_m;
     const double free_m = free_distance_(over_robot, back.normalized(), wanted_m);
-    reach = std::clamp((free_m - kClearance_m) / back.norm(), 0.2, 1.0);
+    distance_fraction = std::clamp((free_m - kClearance_m) / back.norm(), 0.2, 1.0);
   }
-  reach_ = std::min(reach, reach_ + (1.0 - std::exp(-elapsed_s / kReturn_s)) * (reach - reach_));
-  roofed_ += (1.0 - std::exp(-elapsed_s / kLookUp_s)) * ((roof_height_m(*focus_m_, free_distance_) ? 1.0 : 0.0) - roofed_);
-  return look_at(over_robot + reach_ * back, T_world_rig * Eigen::Vector3d(0.9, 0.0, kUp_m * roofed_));
+  distance_fraction_ = std::min(distance_fraction, distance_fraction_ + (1.0 - std::exp(-elapsed_s / kReturn_s)) * (distance_fraction - distance_fraction_));
+  roof_weight_ += (1.0 - std::exp(-elapsed_s / kRoof_s)) * ((roof_height_m(*focus_m_, free_distance_) ? 1.0 : 0.0) - roof_weight_);
+  return look_at(over_robot + distance_fraction_ * back, T_world_rig * Eigen::Vector3d(0.9, 0.0, kUp_m * roof_weight_));
 }
 
 }  // namespace patrol::render

@@ -20,7 +20,7 @@ enum class CameraKind {
 };
 
 /// Parses "chase", "top" or "onboard". Throws InputError for any other text.
-CameraKind camera_kind(const std::string& name);
+CameraKind parse_camera_kind(const std::string& name);
 
 /// Pose, target and projection of a camera.
 struct View {
@@ -107,8 +107,8 @@ class CameraRig {
   Eigen::Vector3d head_m_;
   std::optional<Eigen::Vector3d> focus_m_;  ///< low-pass filtered
   double heading_rad_ = 0.0;                ///< low-pass filtered
-  double reach_ = 1.0;  ///< fraction of the full camera distance, low-pass filtered; 1 without obstacles
-  double roofed_ = 0.0;                     ///< low-pass filtered; 1 under a roof
+  double distance_fraction_ = 1.0;  ///< fraction of the full camera distance, low-pass filtered; 1 without obstacles
+  double roof_weight_ = 0.0;                     ///< low-pass filtered; 1 under a roof
 };
 
 }  // namespace patrol::render

@@ -17,7 +17,7 @@ using RowMajor3 = Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>;
 constexpr float kBrightest = 254.0f;  // the red channel contains the segment number plus one
 
 /// Copies the render model for OpenGL without textures, shadows and multisampling.
-sim::ModelPtr strip_looks(const mjModel& view, const sim::PinholeLens& lens) {
+sim::ModelPtr strip_appearance(const mjModel& view, const sim::PinholeLens& lens) {
   sim::ModelPtr model(mj_copyModel(nullptr, &view));
   model->ntex = 0;
   model->vis.quality.shadowsize = 0;
@@ -43,9 +43,9 @@ bool is_housing(const mjModel& model, int geom) {
 bool is_drawn(const mjModel& model, int geom) {
   constexpr float kSeeThrough = 0.5f;
   const int group = model.geom_group[geom];
-  const bool is_for_the_eye = group == sim::kGroupSolid || group == sim::kGroupEyeOnly || group == sim::kGroupRobotVisual;
+  const bool is_visible_group = group == sim::kGroupSolid || group == sim::kGroupVisualOnly || group == sim::kGroupRobotVisual;
   const float alpha = std::min(model.geom_rgba[4 * geom + 3], rgba_of(model, geom)[3]);
-  return is_for_the_eye && alpha > kSeeThrough && !is_housing(model, geom);
+  return is_visible_group && alpha > kSeeThrough && !is_housing(model, geom);
 }
 
 /// Luminance of the geom's color (ITU-R BT.709).
@@ -56,7 +56,7 @@ float reflectivity_of(const mjModel& model, int geom) {
 
 /// Replaces a thin round bar by a square bar of equal cross-section with a hundredth of the vertices. The error is a
 /// quarter of the radius at the edges, at most 8 mm.
-void square_off(mjvGeom& drawn) {
+void use_square_section(mjvGeom& drawn) {
   constexpr float kThin_m = 0.03f;
   if (drawn.type != mjGEOM_CAPSULE && drawn.type != mjGEOM_CYLINDER) return;
   const float radius_m = drawn.size[0];
@@ -88,7 +88,7 @@ struct DepthRenderer::Camera {
 };
 
 DepthRenderer::DepthRenderer(const mjModel& view, const sim::PinholeLens& lens, double near_m, double far_m)
-    : lens_(lens), near_m_(near_m), far_m_(far_m), model_(strip_looks(view, lens)), offscreen_(*model_, lens.width_px, lens.height_px) {
+    : lens_(lens), near_m_(near_m), far_m_(far_m), model_(strip_appearance(view, lens)), offscreen_(*model_, lens.width_px, lens.height_px) {
   offscreen_.context().readDepthMap = mjDEPTH_ZEROFAR;  // as stored by OpenGL, with the best resolution far away
   collect();
   find_large_meshes();
@@ -111,13 +111,13 @@ void DepthRenderer::collect() {
                 .position = Eigen::Vector3d(view.geom_pos + 3 * geom),
                 .rotation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix(),
                 .radius_m = view.geom_rbound[geom],
-                .is_endless = {view.geom_size[3 * geom] <= 0.0, view.geom_size[3 * geom + 1] <= 0.0},
+                .is_infinite = {view.geom_size[3 * geom] <= 0.0, view.geom_size[3 * geom + 1] <= 0.0},
                 .drawn = {}};
     const RowMajor3 R = shape.rotation;
     mjv_initGeom(&shape.drawn, view.geom_type[geom], view.geom_size + 3 * geom, shape.position.data(), R.data(), kWhite);
     if (view.geom_type[geom] == mjGEOM_MESH) shape.drawn.dataid = 2 * view.geom_dataid[geom];
     if (view.geom_type[geom] == mjGEOM_HFIELD) shape.drawn.dataid = view.geom_dataid[geom];
-    square_off(shape.drawn);
+    use_square_section(shape.drawn);
     shape.drawn.segid = static_cast<int>(std::lround(kBrightest * reflectivity_of(view, geom)));
     shapes_.push_back(shape);
   }
@@ -193,19 +193,19 @@ void DepthRenderer::place(Shape& shape, const mjData& data) const {
 }
 
 /// Limits an infinite plane to the camera's range, centered below the camera.
-void DepthRenderer::cut_endless(Shape& shape, const Camera& camera) const {
+void DepthRenderer::limit_infinite_plane(Shape& shape, const Camera& camera) const {
   if (shape.drawn.type != mjGEOM_PLANE) return;
   Eigen::Map<Eigen::Vector3f> position(shape.drawn.pos);
   const Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>> R(shape.drawn.mat);
   const Eigen::Vector3f to_eye = camera.eye.cast<float>() - position;
   for (int axis = 0; axis < 2; ++axis) {
-    if (!shape.is_endless[static_cast<std::size_t>(axis)]) continue;
+    if (!shape.is_infinite[static_cast<std::size_t>(axis)]) continue;
     shape.drawn.size[axis] = static_cast<float>(2.0 * far_m_);
     position += R.col(axis) * R.col(axis).dot(to_eye);
   }
 }
 
-bool DepthRenderer::is_in_sight(const Shape& shape, const Camera& camera) const {
+bool DepthRenderer::is_in_view(const Shape& shape, const Camera& camera) const {
   if (shape.radius_m <= 0.0) return true;
   const Eigen::Vector3d to_shape = Eigen::Map<const Eigen::Vector3f>(shape.drawn.pos).cast<double>() - camera.eye;
   const double ahead_m = camera.forward().dot(to_shape);
@@ -228,7 +228,7 @@ void DepthRenderer::aim(const Camera& camera) {
   scene_.camera[0] = scene_.camera[1] = gl;
 }
 
-void DepthRenderer::draw(const mjData& data, const Pose3& T_world_camera, sim::SurfaceImage& image) {
+void DepthRenderer::draw(const mjData& data, const Pose3& T_world_camera, sim::IdealDepthImage& image) {
   const Camera camera(T_world_camera, lens_);
   offscreen_.make_current();
   upload_near(camera.eye);
@@ -236,8 +236,8 @@ void DepthRenderer::draw(const mjData& data, const Pose3& T_world_camera, sim::S
   scene_.ngeom = 0;
   for (Shape& shape : shapes_) {
     place(shape, data);
-    cut_endless(shape, camera);
-    if (is_in_sight(shape, camera)) scene_.geoms[scene_.ngeom++] = shape.drawn;
+    limit_infinite_plane(shape, camera);
+    if (is_in_view(shape, camera)) scene_.geoms[scene_.ngeom++] = shape.drawn;
   }
   offscreen_.render(scene_);
   offscreen_.read(colors_);

@@ -34,7 +34,7 @@ class DepthRenderer : public sim::DepthImager {
   DepthRenderer& operator=(const DepthRenderer&) = delete;
 
   /// Renders depth and reflectivity, row 0 at the top. Depth is along the viewing axis, infinite without a surface.
-  void draw(const mjData& data, const Pose3& T_world_camera, sim::SurfaceImage& image) override;
+  void draw(const mjData& data, const Pose3& T_world_camera, sim::IdealDepthImage& image) override;
 
   /// Number of geoms in the last picture.
   int num_drawn() const { return scene_.ngeom; }
@@ -49,7 +49,7 @@ class DepthRenderer : public sim::DepthImager {
     Eigen::Vector3d position;  ///< in the body frame
     Eigen::Matrix3d rotation;  ///< R_body_geom
     double radius_m;           ///< radius of the bounding sphere about `position`; 0 for a plane
-    std::array<bool, 2> is_endless;  ///< plane without end along its x, y
+    std::array<bool, 2> is_infinite;  ///< plane without end along its x, y
     mjvGeom drawn;
   };
   struct Camera;
@@ -65,8 +65,8 @@ class DepthRenderer : public sim::DepthImager {
   void find_large_meshes();
   void upload_near(const Eigen::Vector3d& eye);
   void place(Shape& shape, const mjData& data) const;
-  void cut_endless(Shape& shape, const Camera& camera) const;
-  bool is_in_sight(const Shape& shape, const Camera& camera) const;
+  void limit_infinite_plane(Shape& shape, const Camera& camera) const;
+  bool is_in_view(const Shape& shape, const Camera& camera) const;
   void aim(const Camera& camera);
 
   sim::PinholeLens lens_;

@@ -18,10 +18,10 @@ namespace {
 /// (eglGetProcAddress before OSMesaGetProcAddress). A program linked with EGL could therefore never use OSMesa.
 class EglLibrary {
  public:
-  explicit EglLibrary(bool is_seen_by_mujoco)
-      : handle_(dlopen("libEGL.so.1", RTLD_NOW | (is_seen_by_mujoco ? RTLD_GLOBAL : RTLD_LOCAL))) {}
+  explicit EglLibrary(bool is_global)
+      : handle_(dlopen("libEGL.so.1", RTLD_NOW | (is_global ? RTLD_GLOBAL : RTLD_LOCAL))) {}
 
-  bool is_there() const { return handle_ != nullptr; }
+  bool is_loaded() const { return handle_ != nullptr; }
 
   template <typename Function>
   Function function(const char* name) const {
@@ -34,7 +34,7 @@ class EglLibrary {
   void* handle_;  // never closed: MuJoCo keeps pointers into the library
 };
 
-bool has_word(const char* words, std::string_view word) {
+bool contains_word(const char* words, std::string_view word) {
   return words != nullptr && std::string_view(words).find(word) != std::string_view::npos;
 }
 
@@ -42,13 +42,13 @@ std::vector<EGLDeviceEXT> graphics_cards(const EglLibrary& egl) {
   const auto query_devices = egl.function<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
   const auto query_string = egl.function<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
   if (query_devices == nullptr || query_string == nullptr) return {};
-  constexpr int kMostDevices = 32;
-  std::vector<EGLDeviceEXT> devices(kMostDevices);
+  constexpr int kMaxDevices = 32;
+  std::vector<EGLDeviceEXT> devices(kMaxDevices);
   EGLint num_devices = 0;
-  if (query_devices(kMostDevices, devices.data(), &num_devices) != EGL_TRUE) return {};
+  if (query_devices(kMaxDevices, devices.data(), &num_devices) != EGL_TRUE) return {};
   devices.resize(static_cast<std::size_t>(num_devices));
   std::erase_if(devices, [&](EGLDeviceEXT device) {
-    return has_word(query_string(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
+    return contains_word(query_string(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
   });
   return devices;
 }
@@ -108,12 +108,12 @@ class EglContext : public GlContext {
 
 bool has_graphics_card() {
   const EglLibrary egl(false);
-  return egl.is_there() && open_graphics_card(egl) != EGL_NO_DISPLAY;
+  return egl.is_loaded() && open_graphics_card(egl) != EGL_NO_DISPLAY;
 }
 
 std::unique_ptr<GlContext> make_egl_context() {
   const EglLibrary egl(true);
-  if (!egl.is_there()) throw InputError("renderer = egl: libEGL.so.1 is not installed (package libegl1)");
+  if (!egl.is_loaded()) throw InputError("renderer = egl: libEGL.so.1 is not installed (package libegl1)");
   return std::make_unique<EglContext>(egl);
 }
 

@@ -22,11 +22,11 @@ double scatter(std::int64_t along, int across, int up, unsigned axis) {
 }
 
 /// Optical depth of the gas on a coarse grid of pixels; the gas has no sharp edges.
-struct Veil {
+struct OpticalDepthImage {
   int step, width, height;
   std::vector<float> optical_depth;
 
-  Veil(const Frame& frame, int step_px)
+  OpticalDepthImage(const Frame& frame, int step_px)
       : step(step_px),
         width((frame.width() + step - 1) / step + 1),
         height((frame.height() + step - 1) / step + 1),
@@ -36,7 +36,7 @@ struct Veil {
 
 /// Adds a puff's optical depth: all of it where no object is in front of the puff's far side, none where an object is
 /// in front of its near side.
-void add(Veil& veil, const Frame& frame, const std::vector<float>& depth, const Projector& projector, const Puff& puff) {
+void add(OpticalDepthImage& veil, const Frame& frame, const std::vector<float>& depth, const Projector& projector, const Puff& puff) {
   constexpr double kReach = 2.3;  // in standard deviations
   const std::optional<Projected> middle = projector.project(puff.p_world_m);
   if (!middle || middle->distance_m < 2.0 * puff.radius_m) return;
@@ -50,12 +50,12 @@ void add(Veil& veil, const Frame& frame, const std::vector<float>& depth, const 
       const int px = std::min(x * veil.step, frame.width() - 1), py = std::min(y * veil.step, frame.height() - 1);
       const double free_m = projector.distance_m(depth[static_cast<std::size_t>(py * frame.width() + px)]) - middle->distance_m;
       const double seen = std::clamp(0.5 + 0.5 * free_m / puff.radius_m, 0.0, 1.0);
-      veil.at(x, y) += static_cast<float>(puff.column_ppm_m / kVeiling_ppm_m * (1.0 - q) * (1.0 - q) * seen);
+      veil.at(x, y) += static_cast<float>(puff.column_ppm_m / kVeilColumn_ppm_m * (1.0 - q) * (1.0 - q) * seen);
     }
   }
 }
 
-void lay_over(Frame& frame, Veil& veil) {
+void blend_over(Frame& frame, OpticalDepthImage& veil) {
   for (int y = 0; y < frame.height(); ++y) {
     const int v = y / veil.step;
     const float fy = static_cast<float>(y % veil.step) / static_cast<float>(veil.step);
@@ -84,7 +84,7 @@ GasCloud::GasCloud(const mjModel& world, const std::vector<sim::LeakSettings>& l
 // Samples the plume on a lattice that widens downwind at about the plume's rate. Each puff contains the gas around its
 // lattice point.
 std::vector<Puff> GasCloud::puffs(double now_s, double drift_m) const {
-  constexpr double kStep_m = 0.15, kUpwind_m = 0.25, kReach_m = 6.0, kLeast_ppm_m = 15.0;
+  constexpr double kStep_m = 0.15, kUpwind_m = 0.25, kReach_m = 6.0, kMinColumn_ppm_m = 15.0;
   constexpr int kBeside = 3;
   const Eigen::Vector2d across_wind(-downwind_.y(), downwind_.x());
   std::vector<Puff> puffs;
@@ -105,7 +105,7 @@ std::vector<Puff> GasCloud::puffs(double now_s, double drift_m) const {
           const double radius_m = std::hypot(0.05, 0.65 * spacing_m);
           const double mass_kg = plume.gas.concentration_kgpm3(p, now_s) * kStep_m * spacing_m * spacing_m;
           const double column_ppm_m = ends * mass_kg / (2.0 * std::numbers::pi * radius_m * radius_m) / sim::kMethaneDensity_kgpm3 * 1e6;
-          if (column_ppm_m > kLeast_ppm_m) puffs.push_back({p, radius_m, column_ppm_m});
+          if (column_ppm_m > kMinColumn_ppm_m) puffs.push_back({p, radius_m, column_ppm_m});
         }
       }
     }
@@ -116,9 +116,9 @@ std::vector<Puff> GasCloud::puffs(double now_s, double drift_m) const {
 void draw_puffs(Frame& frame, const std::vector<float>& depth, const Projector& projector, const std::vector<Puff>& puffs) {
   if (puffs.empty()) return;
   constexpr int kCoarseHeight_px = 360;
-  Veil veil(frame, std::max(1, frame.height() / kCoarseHeight_px));
+  OpticalDepthImage veil(frame, std::max(1, frame.height() / kCoarseHeight_px));
   for (const Puff& puff : puffs) add(veil, frame, depth, projector, puff);
-  lay_over(frame, veil);
+  blend_over(frame, veil);
 }
 
 }  // namespace patrol::render

@@ -42,8 +42,8 @@ class GasCloud {
 };
 
 /// Draws puffs on a finished frame, occluded by objects in front of them. `depth` as in Offscreen::read_depth. A column
-/// of kVeiling_ppm_m transmits 37 % of the background.
-inline constexpr double kVeiling_ppm_m = 4000.0;
+/// of kVeilColumn_ppm_m transmits 37 % of the background.
+inline constexpr double kVeilColumn_ppm_m = 4000.0;
 void draw_puffs(Frame& frame, const std::vector<float>& depth, const Projector& projector, const std::vector<Puff>& puffs);
 
 }  // namespace patrol::render

@@ -14,11 +14,11 @@ using RowMajor3f = Eigen::Matrix<float, 3, 3, Eigen::RowMajor>;
 Pose2 level_pose(const mjData& data, int body) {
   const mjtNum* p = data.xpos + 3 * body;
   const mjtNum* q = data.xquat + 4 * body;
-  return {p[0], p[1], yaw_of({q[0], q[1], q[2], q[3]})};
+  return {p[0], p[1], to_yaw({q[0], q[1], q[2], q[3]})};
 }
 
 void tint(mjvGeom& geom, double opacity) {
-  constexpr double kMostOpaque = 0.32;  // MuJoCo 3.17 blends translucent geoms twice
+  constexpr double kMaxOpacity = 0.32;  // MuJoCo 3.17 blends translucent geoms twice
   geom.category = mjCAT_DECOR;  // casts no shadow
   geom.matid = -1;
   geom.emission = 0.4f;
@@ -26,16 +26,16 @@ void tint(mjvGeom& geom, double opacity) {
   geom.rgba[0] = static_cast<float>(kEstimateColor.r) / 255.0f;
   geom.rgba[1] = static_cast<float>(kEstimateColor.g) / 255.0f;
   geom.rgba[2] = static_cast<float>(kEstimateColor.b) / 255.0f;
-  geom.rgba[3] = static_cast<float>(kMostOpaque * opacity);
+  geom.rgba[3] = static_cast<float>(kMaxOpacity * opacity);
 }
 
 }  // namespace
 
 double ghost_opacity(const Pose2& T_true_estimate) {
-  constexpr double kUnseen_m = 0.04, kSeen_m = 0.12;
+  constexpr double kInvisibleError_m = 0.04, kOpaqueError_m = 0.12;
   constexpr double kLever_m = 0.5;  // half length of the robot: converts yaw error to displacement
   const double off_m = T_true_estimate.position().norm() + kLever_m * std::abs(T_true_estimate.yaw);
-  return std::clamp((off_m - kUnseen_m) / (kSeen_m - kUnseen_m), 0.0, 1.0);
+  return std::clamp((off_m - kInvisibleError_m) / (kOpaqueError_m - kInvisibleError_m), 0.0, 1.0);
 }
 
 void add_ghost(mjvScene& scene, const mjModel& model, const mjData& data, const Pose2& T_true_estimate) {

@@ -17,7 +17,7 @@ constexpr bool kHasOsmesa = false;
 std::unique_ptr<GlContext> make_osmesa_context() { throw InputError("renderer = osmesa: this program was built without OSMesa"); }
 #endif
 
-Renderer renderer_named(const std::string& name) {
+Renderer parse_renderer(const std::string& name) {
   if (name == "auto") return Renderer::kAuto;
   if (name == "egl") return Renderer::kEgl;
   if (name != "osmesa") throw InputError("renderer = " + name + ": must be one of auto, egl, osmesa");

@@ -13,7 +13,7 @@ enum class Renderer {
 };
 
 /// Parses "auto", "egl" or "osmesa". Throws InputError for any other text.
-Renderer renderer_named(const std::string& name);
+Renderer parse_renderer(const std::string& name);
 
 /// Software renderer: OSMesa if the program was built with it, else EGL.
 Renderer software_renderer();

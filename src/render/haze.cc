@@ -6,8 +6,8 @@
 namespace patrol::render {
 namespace {
 
-std::uint8_t mix(std::uint8_t thing, std::uint8_t haze, double share_of_thing) {
-  return static_cast<std::uint8_t>(std::lround(haze + share_of_thing * (thing - haze)));
+std::uint8_t mix(std::uint8_t thing, std::uint8_t haze, double transmittance) {
+  return static_cast<std::uint8_t>(std::lround(haze + transmittance * (thing - haze)));
 }
 
 }  // namespace
@@ -20,9 +20,9 @@ void add_haze(Frame& frame, const std::vector<float>& depth, const View& view, c
     for (int x = 0; x < frame.width(); ++x, ++pixel) {
       const double along_axis_m = projector.distance_m(depth[pixel]) - view.near_m;
       const double off_axis = std::hypot(x + 0.5 - 0.5 * frame.width(), y + 0.5 - 0.5 * frame.height()) / projector.focal_px();
-      const double share = std::exp(-haze.extinction_per_m * along_axis_m * std::sqrt(1.0 + off_axis * off_axis));
+      const double transmittance = std::exp(-haze.extinction_per_m * along_axis_m * std::sqrt(1.0 + off_axis * off_axis));
       Color& color = frame.at(x, y);
-      color = {mix(color.r, haze.color.r, share), mix(color.g, haze.color.g, share), mix(color.b, haze.color.b, share)};
+      color = {mix(color.r, haze.color.r, transmittance), mix(color.g, haze.color.g, transmittance), mix(color.b, haze.color.b, transmittance)};
     }
   }
 }

@@ -17,19 +17,19 @@ constexpr int kFooter_px = 92, kEdge_px = 16;
 class Sheet {
  public:
   Sheet(const HeatMap& map, int max_width_px) : map_(map) {
-    for (const HeatMap::Place& place : map.places) shown_.extend(place.p_m);
+    for (const HeatMap::Sample& place : map.positions) shown_.extend(place.p_m);
     constexpr double kMargin_m = 1.5;
     shown_.min().array() -= kMargin_m;
     shown_.max().array() += kMargin_m;
     constexpr double kMaxHeight_px = 1100.0;
     px_per_m_ = std::min({max_width_px / shown_.sizes().x(), kMaxHeight_px / shown_.sizes().y(), 1.0 / map.surfaces.geometry().resolution_m});
     picture_height_px_ = static_cast<int>(std::ceil(px_per_m_ * shown_.sizes().y()));
-    constexpr int kLeastWidth_px = 640;  // minimum width for the color scale
-    frame_ = Frame(std::max(static_cast<int>(std::ceil(px_per_m_ * shown_.sizes().x())), kLeastWidth_px), picture_height_px_ + kFooter_px, kPaper);
+    constexpr int kMinWidth_px = 640;  // minimum width for the color scale
+    frame_ = Frame(std::max(static_cast<int>(std::ceil(px_per_m_ * shown_.sizes().x())), kMinWidth_px), picture_height_px_ + kFooter_px, kPaper);
   }
 
   Frame draw() {
-    draw_places();
+    draw_values();
     draw_surfaces();
     draw_strokes();
     draw_scale();
@@ -41,11 +41,11 @@ class Sheet {
     return px_per_m_ * Eigen::Vector2d(p_m.x() - shown_.min().x(), shown_.max().y() - p_m.y());
   }
 
-  void draw_places() {
+  void draw_values() {
     const int side_px = std::max(1, static_cast<int>(std::ceil(px_per_m_ * map_.step_m)));
-    for (const HeatMap::Place& place : map_.places) {
+    for (const HeatMap::Sample& place : map_.positions) {
       const Eigen::Vector2d corner = pixel_of(place.p_m + 0.5 * map_.step_m * Eigen::Vector2d(-1.0, 1.0));
-      fill_rectangle(frame_, static_cast<int>(std::lround(corner.x())), static_cast<int>(std::lround(corner.y())), side_px, side_px, {heat_color(place.share)});
+      fill_rectangle(frame_, static_cast<int>(std::lround(corner.x())), static_cast<int>(std::lround(corner.y())), side_px, side_px, {heat_color(place.color_fraction)});
     }
   }
 
@@ -62,7 +62,7 @@ class Sheet {
   }
 
   void draw_strokes() {
-    for (const HeatMap::Place& place : map_.places) {
+    for (const HeatMap::Sample& place : map_.positions) {
       if (!place.has_stroke) continue;
       const Eigen::Vector2d half = 0.42 * map_.step_m * Eigen::Vector2d(std::cos(place.stroke_rad), std::sin(place.stroke_rad));
       draw_line(frame_, pixel_of(place.p_m - half), pixel_of(place.p_m + half), 1.4, {kStroke});
@@ -79,7 +79,7 @@ class Sheet {
       fill_rectangle(frame_, kEdge_px + x, top + kBarTop_px, 1, kBarHeight_px, {heat_color(static_cast<double>(x) / (kBarWidth_px - 1))});
     }
     for (const HeatMap::Tick& tick : map_.scale) {
-      const int x = kEdge_px + static_cast<int>(std::lround(tick.share * (kBarWidth_px - 1)));
+      const int x = kEdge_px + static_cast<int>(std::lround(tick.color_fraction * (kBarWidth_px - 1)));
       fill_rectangle(frame_, x, top + kBarTop_px + kBarHeight_px, 1, 4, {kWriting});
       small.draw(frame_, std::max(kEdge_px, x - small.width_px(tick.text) / 2), top + kBarTop_px + kBarHeight_px + 18, tick.text, {kWriting});
     }
@@ -94,12 +94,12 @@ class Sheet {
 
 }  // namespace
 
-Color heat_color(double share) {
+Color heat_color(double color_fraction) {
   struct Stop {
     double r, g, b;
   };
   static constexpr std::array<Stop, 5> kStops = {{{38, 42, 92}, {36, 104, 142}, {44, 160, 132}, {134, 204, 84}, {252, 230, 60}}};
-  const double place = std::clamp(share, 0.0, 1.0) * (kStops.size() - 1);
+  const double place = std::clamp(color_fraction, 0.0, 1.0) * (kStops.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
   const double way = place - static_cast<double>(below);
   const auto mix = [&](double a, double b) { return static_cast<std::uint8_t>(std::lround(a + way * (b - a))); };

@@ -12,19 +12,19 @@ namespace patrol::render {
 
 /// Scalar value at map positions, drawn as colors under the surfaces of the map.
 struct HeatMap {
-  struct Place {
+  struct Sample {
     Eigen::Vector2d p_m;
-    double share = 0.0;            ///< position on the color scale, 0 ... 1
+    double color_fraction = 0.0;            ///< position on the color scale, 0 ... 1
     bool has_stroke = false;
     double stroke_rad = 0.0;       ///< direction of the stroke, in the map's frame
   };
   struct Tick {
-    double share = 0.0;
+    double color_fraction = 0.0;
     std::string text;
   };
   OccupancyGrid surfaces;  ///< map drawn over the colors
   double step_m = 0.5;             ///< distance between positions; each is drawn as a square of this side
-  std::vector<Place> places;
+  std::vector<Sample> positions;
   std::string title;
   std::string note;
   std::vector<Tick> scale;         ///< labels below the color scale
@@ -35,6 +35,6 @@ Frame draw_heat_map(const HeatMap& map, int max_width_px = 1600);
 
 /// Color scale from dark blue over green to yellow. Lightness increases, so it is readable with color blindness and in
 /// gray.
-Color heat_color(double share);
+Color heat_color(double color_fraction);
 
 }  // namespace patrol::render

@@ -18,7 +18,7 @@ constexpr Color kOccupiedCell{16, 18, 24};
 constexpr Color kBorderColor{235, 238, 242};
 
 /// Bounding box of the known cells, in world.
-Eigen::AlignedBox2d known_part(const OccupancyGrid& map, const Pose2& T_world_map) {
+Eigen::AlignedBox2d known_bounds(const OccupancyGrid& map, const Pose2& T_world_map) {
   const GridGeometry& geometry = map.geometry();
   Cell low{geometry.width, geometry.height}, high{-1, -1};
   for (int row = 0; row < geometry.height; ++row) {
@@ -43,7 +43,7 @@ Eigen::AlignedBox2d known_part(const OccupancyGrid& map, const Pose2& T_world_ma
 
 void MapInset::draw(Frame& frame, const RunSnapshot& snapshot) {
   if (!snapshot.map) return;
-  if (snapshot.map != map_) lay_out(frame, snapshot);
+  if (snapshot.map != map_) update_picture(frame, snapshot);
   if (picture_.width() == 0) return;
 
   const double scale = frame.height() / 720.0;  // line width scale
@@ -73,7 +73,7 @@ void MapInset::draw(Frame& frame, const RunSnapshot& snapshot) {
     draw_line(inset, middle - 5.0 * size * ahead, middle + 10.0 * size * ahead, 3.0 * size, {color, 1.0});
     draw_disc(inset, middle, 4.5 * size, {color, 1.0});
   };
-  draw_robot(to_planar(snapshot.T_world_body), 1.25 * scale, kTruthColor);
+  draw_robot(to_pose2(snapshot.T_world_body), 1.25 * scale, kTruthColor);
   draw_robot(snapshot.T_world_map * snapshot.T_map_body, scale, kRobotColor);
 
   const int margin = static_cast<int>(std::lround(16 * scale)), border = std::max(1, static_cast<int>(std::lround(2 * scale)));
@@ -83,12 +83,12 @@ void MapInset::draw(Frame& frame, const RunSnapshot& snapshot) {
 }
 
 // Paints the pixel of every occupied cell, so that walls of one cell stay visible at any scale.
-void MapInset::lay_out(const Frame& frame, const RunSnapshot& snapshot) {
+void MapInset::update_picture(const Frame& frame, const RunSnapshot& snapshot) {
   constexpr double kMaxWidth = 0.28, kMaxHeight = 0.52, kMaxStripWidth = 0.42;  // fractions of the frame
   constexpr double kStrip = 4.0;  // aspect ratio above which a map may be wider, because it is low
   constexpr double kMargin_m = 1.0;
   map_ = snapshot.map;
-  Eigen::AlignedBox2d shown = known_part(*map_, snapshot.T_world_map);
+  Eigen::AlignedBox2d shown = known_bounds(*map_, snapshot.T_world_map);
   picture_ = Frame();
   if (shown.isEmpty()) return;
   shown.min().array() -= kMargin_m;

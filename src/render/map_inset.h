@@ -15,7 +15,7 @@ class MapInset {
   void draw(Frame& frame, const RunSnapshot& snapshot);
 
  private:
-  void lay_out(const Frame& frame, const RunSnapshot& snapshot);
+  void update_picture(const Frame& frame, const RunSnapshot& snapshot);
   /// Pixel of a world point in the inset.
   Eigen::Vector2d pixel_of(const Eigen::Vector2d& p_world_m) const;
 

@@ -27,11 +27,11 @@ std::string figures_text(const RunSnapshot& snapshot) {
   return fmt::format("{}    position error {:.3f} m    heading error {:.2f}°    {} {:.1f} m",
                                  clock_text(snapshot.state.stamp), snapshot.T_true_estimate.position().norm(),
                                  to_deg(std::abs(snapshot.T_true_estimate.yaw)),
-                                 snapshot.is_driving ? "driven" : "walked", snapshot.travelled_m);
+                                 snapshot.is_driving ? "driven" : "walked", snapshot.traveled_m);
 }
 
 /// Reading of the methane meter and playback speed.
-std::string beside_text(const RunSnapshot& snapshot, const std::optional<FilmNote>& note) {
+std::string status_text(const RunSnapshot& snapshot, const std::optional<FilmNote>& note) {
   std::string text;
   if (snapshot.gas) text += fmt::format("methane {:.0f} ppm m", snapshot.gas->column_ppm_m);
   if (note) text += fmt::format("    {:.0f}×", note->speed);
@@ -51,7 +51,7 @@ void Overlay::draw(Frame& frame, const std::vector<float>& depth, const View& vi
                    const std::optional<FilmNote>& note) {
   const Projector projector(view, frame.width(), frame.height());
   draw_puffs(frame, depth, projector, gas_.puffs(to_seconds(snapshot.state.stamp), note ? kDrift_mps * note->film_s : 0.0));
-  WorldInk ink(frame, depth, projector);
+  WorldOverlay ink(frame, depth, projector);
   ink.polyline(snapshot.planned_path, 0.03, {kPlanColor, 0.85});
   ink.polyline(snapshot.true_path, 0.06, {kTruthColor, 0.85});
   ink.polyline(snapshot.estimated_path, 0.03, {kEstimateColor, 0.95});
@@ -71,10 +71,10 @@ void Overlay::draw_figures(Frame& frame, const RunSnapshot& snapshot, const std:
   const int baseline = margin + figures_.height_px();
   const int width = frame.width() - 4 * margin;
   figures_.draw(frame, 2 * margin, baseline, figures_.fitted(figures_text(snapshot), width), {kTextColor, 1.0});
-  const std::string beside = beside_text(snapshot, note);
-  const int beside_width = words_.width_px(beside);
-  words_.draw(frame, frame.width() - 2 * margin - beside_width, baseline + line, beside, {kTextColor, 1.0});
-  words_.draw(frame, 2 * margin, baseline + line, words_.fitted(snapshot.event, width - beside_width - 2 * margin),
+  const std::string status = status_text(snapshot, note);
+  const int status_width = words_.width_px(status);
+  words_.draw(frame, frame.width() - 2 * margin - status_width, baseline + line, status, {kTextColor, 1.0});
+  words_.draw(frame, 2 * margin, baseline + line, words_.fitted(snapshot.event, width - status_width - 2 * margin),
               {snapshot.is_alarm ? kAlarmColor : kTextColor, 1.0});
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 /// Creates a thread's resources and reports success or the error through `is_ready`. Null on failure.
 template <typename Make>
-auto made_or_told(std::promise<void>& is_ready, Make make) -> decltype(make()) {
+auto create_or_report(std::promise<void>& is_ready, Make make) -> decltype(make()) {
   try {
     auto made = make();
     is_ready.set_value();
@@ -25,11 +25,11 @@ auto made_or_told(std::promise<void>& is_ready, Make make) -> decltype(make()) {
 
 }  // namespace
 
-PaintThread::PaintThread(const mjModel& view, const PaintSettings& settings) {
+FrameRenderer::FrameRenderer(const mjModel& view, const FrameSettings& settings) {
   std::promise<void> can_draw, can_finish;
   std::future<void> readiness[] = {can_draw.get_future(), can_finish.get_future()};
-  drawer_ = std::thread([this, &view, settings, ready = std::move(can_draw)]() mutable { draw_worlds(view, settings, std::move(ready)); });
-  finisher_ = std::thread([this, settings, ready = std::move(can_finish)]() mutable { finish_frames(settings, std::move(ready)); });
+  world_thread_ = std::thread([this, &view, settings, ready = std::move(can_draw)]() mutable { run_world_thread(view, settings, std::move(ready)); });
+  overlay_thread_ = std::thread([this, settings, ready = std::move(can_finish)]() mutable { run_overlay_thread(settings, std::move(ready)); });
   try {
     for (std::future<void>& ready : readiness) ready.get();
   } catch (...) {
@@ -38,28 +38,28 @@ PaintThread::PaintThread(const mjModel& view, const PaintSettings& settings) {
   }
 }
 
-PaintThread::~PaintThread() { stop(); }
+FrameRenderer::~FrameRenderer() { stop(); }
 
-void PaintThread::stop() {
-  ordered_.close();
+void FrameRenderer::stop() {
+  queued_.close();
   drawn_.close();
-  drawer_.join();
-  finisher_.join();
+  world_thread_.join();
+  overlay_thread_.join();
 }
 
-std::future<Frame> PaintThread::paint(RunSnapshot snapshot, const View& view, std::optional<FilmNote> note) {
-  Order order{.snapshot = std::move(snapshot), .view = view, .note = std::move(note), .frame = {}, .depth = {}, .result = {}};
+std::future<Frame> FrameRenderer::paint(RunSnapshot snapshot, const View& view, std::optional<FilmNote> note) {
+  FrameRequest order{.snapshot = std::move(snapshot), .view = view, .note = std::move(note), .frame = {}, .depth = {}, .result = {}};
   std::future<Frame> frame = order.result.get_future();
-  ordered_.put(std::move(order));
+  queued_.put(std::move(order));
   return frame;
 }
 
-void PaintThread::draw_worlds(const mjModel& view, const PaintSettings& settings, std::promise<void> is_ready) {
-  const auto painter = made_or_told(is_ready, [&] {
-    return std::make_unique<ScenePainter>(view, settings.width, settings.height, settings.extinction_per_m, settings.renderer);
+void FrameRenderer::run_world_thread(const mjModel& view, const FrameSettings& settings, std::promise<void> is_ready) {
+  const auto painter = create_or_report(is_ready, [&] {
+    return std::make_unique<SceneRenderer>(view, settings.width, settings.height, settings.extinction_per_m, settings.renderer);
   });
   if (!painter) return;
-  while (std::optional<Order> order = ordered_.take()) {
+  while (std::optional<FrameRequest> order = queued_.take()) {
     try {
       painter->set_state(order->snapshot.state);
       painter->set_estimate(order->snapshot.T_true_estimate);
@@ -71,10 +71,10 @@ void PaintThread::draw_worlds(const mjModel& view, const PaintSettings& settings
   }
 }
 
-void PaintThread::finish_frames(const PaintSettings& settings, std::promise<void> is_ready) {
-  const auto overlay = made_or_told(is_ready, [&] { return std::make_unique<Overlay>(settings.height, settings.gas); });
+void FrameRenderer::run_overlay_thread(const FrameSettings& settings, std::promise<void> is_ready) {
+  const auto overlay = create_or_report(is_ready, [&] { return std::make_unique<Overlay>(settings.height, settings.gas); });
   if (!overlay) return;
-  while (std::optional<Order> order = drawn_.take()) {
+  while (std::optional<FrameRequest> order = drawn_.take()) {
     try {
       smooth_edges(order->frame);
       overlay->draw(order->frame, order->depth, order->view, order->snapshot, order->note);

@@ -16,7 +16,7 @@
 namespace patrol::render {
 
 /// Settings of the renderer that apply to all frames.
-struct PaintSettings {
+struct FrameSettings {
   int width = 1280;
   int height = 720;
   double extinction_per_m = 0.0;  ///< extinction coefficient of the dust
@@ -28,20 +28,20 @@ struct PaintSettings {
 /// the overlay. Only the first uses OpenGL. With one context in each of two threads, OSMesa 22.3 crashed in one of 13
 /// films (cause unknown). Its rasterizer uses every core with one context already. A frame depends only on the
 /// arguments of `paint`.
-class PaintThread {
+class FrameRenderer {
  public:
   /// Waits until OpenGL and fonts are ready, or rethrows the error of the thread that failed. `view` must outlive this
   /// object.
-  PaintThread(const mjModel& view, const PaintSettings& settings);
-  ~PaintThread();
-  PaintThread(const PaintThread&) = delete;
-  PaintThread& operator=(const PaintThread&) = delete;
+  FrameRenderer(const mjModel& view, const FrameSettings& settings);
+  ~FrameRenderer();
+  FrameRenderer(const FrameRenderer&) = delete;
+  FrameRenderer& operator=(const FrameRenderer&) = delete;
 
   /// Queues a frame. `note` as in Overlay::draw. Thread-safe.
   std::future<Frame> paint(RunSnapshot snapshot, const View& view, std::optional<FilmNote> note = {});
 
  private:
-  struct Order {
+  struct FrameRequest {
     RunSnapshot snapshot;
     View view;
     std::optional<FilmNote> note;
@@ -49,12 +49,12 @@ class PaintThread {
     std::vector<float> depth;
     std::promise<Frame> result;
   };
-  void draw_worlds(const mjModel& view, const PaintSettings& settings, std::promise<void> is_ready);
-  void finish_frames(const PaintSettings& settings, std::promise<void> is_ready);
+  void run_world_thread(const mjModel& view, const FrameSettings& settings, std::promise<void> is_ready);
+  void run_overlay_thread(const FrameSettings& settings, std::promise<void> is_ready);
   void stop();
 
-  WorkQueue<Order> ordered_, drawn_;
-  std::thread drawer_, finisher_;
+  WorkQueue<FrameRequest> queued_, drawn_;
+  std::thread world_thread_, overlay_thread_;
 };
 
 }  // namespace patrol::render

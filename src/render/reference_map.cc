@@ -27,7 +27,7 @@ struct CutGeom {
   Bounds bounds;  ///< in world
 };
 
-bool stands_still(const mjModel& model, int body) {
+bool is_static(const mjModel& model, int body) {
   return model.body_weldid[body] == 0 && model.body_mocapid[model.body_rootid[body]] < 0;
 }
 
@@ -48,7 +48,7 @@ Bounds bounds_in_world(const mjModel& model, const mjData& data, int geom) {
 std::vector<CutGeom> geoms_cut_at(const mjModel& model, const mjData& data, double height_m) {
   std::vector<CutGeom> cut;
   for (int geom = 0; geom < model.ngeom; ++geom) {
-    if (!stands_still(model, model.geom_bodyid[geom]) || !lidar_can_hit(model, geom)) continue;
+    if (!is_static(model, model.geom_bodyid[geom]) || !lidar_can_hit(model, geom)) continue;
     if (model.geom_type[geom] == mjGEOM_PLANE) continue;  // has no interior
     const Bounds bounds = bounds_in_world(model, data, geom);
     if (bounds.min().z() < height_m && bounds.max().z() > height_m) cut.push_back({geom, bounds});
@@ -196,7 +196,7 @@ Grid<std::uint8_t> cast_surfaces(const mjModel& model, const mjData& data, const
       origin += (found->distance_m + kStep_m) * direction;
       length_m -= found->distance_m + kStep_m;
       const Cell cell = geometry.cell_at(origin.head<2>());
-      if (hit.contains(cell) && stands_still(model, model.geom_bodyid[found->geom])) hit.at(cell) = 1;
+      if (hit.contains(cell) && is_static(model, model.geom_bodyid[found->geom])) hit.at(cell) = 1;
     }
   };
   const Eigen::Vector2d size = geometry.resolution_m * Eigen::Vector2d(geometry.width, geometry.height);
@@ -235,12 +235,12 @@ ReferenceMapCheck check_and_complete(OccupancyGrid& map, const Grid<std::uint8_t
       // Rays also hit surfaces inside overlapping objects; these do not belong to the map.
       const bool is_buried = rendered.at(cell) == kUnknown;
       if (!is_surface(cell) && (!is_hit(cell) || is_buried)) continue;
-      ++check.cells_checked;
+      ++check.num_checked;
       const bool is_found_by_both = is_surface(cell) ? any_near(cell, is_hit) : any_near(cell, is_surface);
-      if (is_found_by_both) ++check.cells_agreeing;
+      if (is_found_by_both) ++check.num_agreeing;
       if (is_hit(cell) && !is_found_by_both) {
         map.at(cell) = kOccupied;
-        ++check.cells_added;
+        ++check.num_added;
       }
     }
   }

@@ -17,13 +17,13 @@ struct ReferenceMapSettings {
 
 /// Agreement of rendered slice and ray casts about the surfaces.
 struct ReferenceMapCheck {
-  std::size_t cells_checked = 0;   ///< cells that the render or a ray marks as a surface
-  std::size_t cells_agreeing = 0;  ///< cells marked by both within one cell
-  std::size_t cells_added = 0;     ///< objects thinner than a cell: found by rays only and added to the map
+  std::size_t num_checked = 0;   ///< cells that the render or a ray marks as a surface
+  std::size_t num_agreeing = 0;  ///< cells marked by both within one cell
+  std::size_t num_added = 0;     ///< objects thinner than a cell: found by rays only and added to the map
 
-  double share_agreeing() const {
-    return cells_checked == 0 ? 1.0
-                              : static_cast<double>(cells_agreeing) / static_cast<double>(cells_checked);
+  double agreement_ratio() const {
+    return num_checked == 0 ? 1.0
+                              : static_cast<double>(num_agreeing) / static_cast<double>(num_checked);
   }
 };
 

@@ -19,7 +19,7 @@ namespace patrol::render {
 namespace {
 
 /// Log handlers that feed the follower and call `on_state` after each state.
-io::LogHandlers handlers_for(RunFollower& follower, std::function<void(Time)> on_state) {
+io::LogHandlers handlers_for(SnapshotBuilder& follower, std::function<void(Time)> on_state) {
   const auto feed = [&follower](Time, const auto& message) { follower.add(message); };
   io::LogHandlers handlers;
   handlers.on<LaserScan>(feed);
@@ -41,19 +41,19 @@ io::LogHandlers handlers_for(RunFollower& follower, std::function<void(Time)> on
 /// Exception that interrupts the reading of a log when the progress callback returns false.
 struct Interrupted {};
 
-FreeDistance free_distance_in(const RunFollower& follower) {
+FreeDistance free_distance_in(const SnapshotBuilder& follower) {
   return [&follower](const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m) {
     return follower.free_distance_m(from_m, direction, max_m);
   };
 }
 
 /// Camera rig that detects obstacles in the follower's world.
-CameraRig camera_on(const RunFollower& follower, CameraKind kind) {
+CameraRig camera_on(const SnapshotBuilder& follower, CameraKind kind) {
   const std::optional<Eigen::Vector3d> head_m = follower.head_m();
   return head_m ? CameraRig(kind, free_distance_in(follower), *head_m) : CameraRig(kind, free_distance_in(follower));
 }
 
-PaintSettings paint_settings(const ReplaySettings& settings, const mjModel& view) {
+FrameSettings frame_settings(const ReplaySettings& settings, const mjModel& view) {
   return {.width = settings.width,
           .height = settings.height,
           .extinction_per_m = settings.dust.extinction_per_m(),
@@ -83,17 +83,17 @@ ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel 
   prepare(*model.view, settings);
   const RunHistory history = read_run_history(log_mcap, view, T_world_map);
   if (history.num_states == 0) throw no_states(log_mcap);
-  ShotPlan plan = plan_shots(history, find_moments(history, T_world_map, settings.announced), settings.cut, settings.speed);
+  ShotPlan plan = plan_shots(history, find_highlights(history, T_world_map, settings.announced), settings.style, settings.speed);
   const double length_s = std::max(plan.speed.length_s(), 1e-9);
   ReplaySummary summary{.end = history.end, .num_chapters = static_cast<int>(plan.chapters.size())};
 
-  RunFollower follower(view, T_world_map);
+  SnapshotBuilder follower(view, T_world_map);
   if (settings.map) follower.add(MapUpdate{.stamp = {}, .map = *settings.map});
   Director director(std::move(plan), camera_on(follower, settings.camera), free_distance_in(follower));
-  Film film(view, paint_settings(settings, view), settings.frames_per_second, std::move(director), out_mp4);
+  Film film(view, frame_settings(settings, view), settings.frames_per_second, std::move(director), out_mp4);
   try {
     summary.log_is_complete = io::read_run_log(log_mcap, handlers_for(follower, [&](Time) {
-                                                 film.shoot(follower.snapshot());
+                                                 film.add_snapshot(follower.snapshot());
                                                  if (progress && !progress(std::min(1.0, film.length_s() / length_s))) throw Interrupted();
                                                }));
   } catch (const Interrupted&) {
@@ -108,7 +108,7 @@ ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel 
 void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, const Pose2& T_world_map,
            const ReplaySettings& settings, Time at, const std::filesystem::path& out_png) {
   prepare(*model.view, settings);
-  RunFollower follower(*model.view, T_world_map);
+  SnapshotBuilder follower(*model.view, T_world_map);
   if (settings.map) follower.add(MapUpdate{.stamp = {}, .map = *settings.map});
   CameraRig rig = camera_on(follower, settings.camera);
   std::optional<View> view;
@@ -117,7 +117,7 @@ void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, con
   };
   io::read_run_log(log_mcap, handlers_for(follower, follow), Time::min(), at);
   if (!view) throw no_states(log_mcap);
-  PaintThread painter(*model.view, paint_settings(settings, *model.view));
+  FrameRenderer painter(*model.view, frame_settings(settings, *model.view));
   save_png(out_png, painter.paint(follower.snapshot(), *view).get());
 }
 

@@ -20,7 +20,7 @@ namespace patrol::render {
 
 /// Settings of a film or a still picture.
 struct ReplaySettings {
-  Cut cut = Cut::kStory;
+  FilmStyle style = FilmStyle::kHighlights;
   CameraKind camera = CameraKind::kChase;  ///< camera outside of planned shots
   SpeedSettings speed = {};
   int width = 1280;
@@ -32,7 +32,7 @@ struct ReplaySettings {
   std::vector<sim::LeakSettings> leaks = {};  ///< gas leaks of the run
   sim::WindSettings wind = {};
   LightSettings light = {};
-  std::vector<Moment> announced = {};  ///< events known only to the scenario, e.g. injected faults
+  std::vector<Highlight> announced = {};  ///< events known only to the scenario, e.g. injected faults
 };
 
 /// Called with the completed fraction, 0 ... 1. Returns false to interrupt the replay.

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kPathStep_m = 0.05;  // minimum distance between points of a drawn path
 constexpr double kAboveGround_m = 0.01;
-constexpr double kCarried_m = 0.5;  // a larger step between two true poses is a kidnapping, not a motion of the robot
+constexpr double kMinKidnapStep_m = 0.5;  // a larger step between two true poses is a kidnapping, not a motion of the robot
 
 void extend(std::vector<Eigen::Vector3d>& path, const Eigen::Vector3d& point) {
   if (path.empty() || (point - path.back()).head<2>().norm() >= kPathStep_m) path.push_back(point);
@@ -43,7 +43,7 @@ bool has_tracks(const mjModel& model) { return mj_name2id(&model, mjOBJ_BODY, "l
 
 }  // namespace
 
-RunFollower::RunFollower(const mjModel& view, const Pose2& T_world_map)
+SnapshotBuilder::SnapshotBuilder(const mjModel& view, const Pose2& T_world_map)
     : scenery_(view), T_body_lidar_(lidar_on_body(view)) {
   if (const auto T_body_camera = sensor_on_body(view, "depth_camera")) head_m_ = T_body_camera->position;
   snapshot_.T_world_map = T_world_map;
@@ -56,53 +56,53 @@ RunFollower::RunFollower(const mjModel& view, const Pose2& T_world_map)
   scenery_.update(*data);
 }
 
-void RunFollower::add(const OdometryEstimate& odometry) {
+void SnapshotBuilder::add(const OdometryEstimate& odometry) {
   constexpr Time kMemory = std::chrono::seconds(2);
   if (!odometry_.empty() && odometry.stamp <= odometry_.back().stamp) return;
   odometry_.push_back({odometry.stamp, odometry.T_odom_body});
   while (odometry_.front().stamp < odometry.stamp - kMemory) odometry_.pop_front();
 }
 
-void RunFollower::add(const PoseEstimate& estimate) {
+void SnapshotBuilder::add(const PoseEstimate& estimate) {
   snapshot_.T_map_body = estimate.T_map_body;
   const Pose2 T_world_estimate = snapshot_.T_world_map * estimate.T_map_body;
   extend(snapshot_.estimated_path, on_ground(T_world_estimate.position()));
   if (const std::optional<Pose3> truth = pose_at(truth_, estimate.stamp)) {
-    snapshot_.T_true_estimate = to_planar(*truth).inverse() * T_world_estimate;
+    snapshot_.T_true_estimate = to_pose2(*truth).inverse() * T_world_estimate;
   }
-  if (scan_) place_scan(estimate);
+  if (scan_) transform_scan(estimate);
 }
 
-void RunFollower::add(const Path& plan) {
+void SnapshotBuilder::add(const Path& plan) {
   snapshot_.planned_path.clear();
   for (const Pose2& T_map_body : plan.T_map_body) {
     extend(snapshot_.planned_path, on_ground(snapshot_.T_world_map * T_map_body.position()));
   }
 }
 
-void RunFollower::add(const Event& event) {
+void SnapshotBuilder::add(const Event& event) {
   snapshot_.event = event.text;
   snapshot_.is_alarm = class_of(event.kind) == EventClass::kHazard && level_of(event.kind) == WarningLevel::kAlarm;
 }
 
-void RunFollower::add(const GroundTruth& truth) {
+void SnapshotBuilder::add(const GroundTruth& truth) {
   if (!truth_.empty()) {
     if (truth.stamp <= truth_.back().stamp) return;
     const double step_m = (truth.T_world_body.position - truth_.back().pose.position).head<2>().norm();
-    if (step_m < kCarried_m) snapshot_.travelled_m += step_m;
+    if (step_m < kMinKidnapStep_m) snapshot_.traveled_m += step_m;
   }
   truth_.push_back({truth.stamp, truth.T_world_body});
   snapshot_.T_world_body = truth.T_world_body;
   extend(snapshot_.true_path, on_ground(truth.T_world_body.position.head<2>()));
 }
 
-double RunFollower::free_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction,
+double SnapshotBuilder::free_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction,
                                     double max_m) const {
   const auto hit = scenery_.cast(from_m, direction, max_m, sim::kRayScenery);
   return hit ? hit->distance_m : max_m;
 }
 
-Eigen::Vector3d RunFollower::on_ground(const Eigen::Vector2d& p_world_m) const {
+Eigen::Vector3d SnapshotBuilder::on_ground(const Eigen::Vector2d& p_world_m) const {
   // start above the robot, on ground that the robot may climb later
   constexpr double kOverBody_m = 0.5, kReach_m = 3.0;
   const double eye_z_m = snapshot_.T_world_body.position.z() + kOverBody_m;
@@ -113,15 +113,15 @@ Eigen::Vector3d RunFollower::on_ground(const Eigen::Vector2d& p_world_m) const {
 
 // Transforms each beam by the pose of its own time: the estimate gives the planar pose at one stamp, odometry the
 // motion and tilt around it.
-void RunFollower::place_scan(const PoseEstimate& estimate) {
+void SnapshotBuilder::transform_scan(const PoseEstimate& estimate) {
   const Trajectory odometry(odometry_.begin(), odometry_.end());
   const Pose3 T_world_estimate =
-      to_spatial(snapshot_.T_world_map * estimate.T_map_body, snapshot_.T_world_body.position.z());
+      to_pose3(snapshot_.T_world_map * estimate.T_map_body, snapshot_.T_world_body.position.z());
   const std::optional<Pose3> T_odom_estimate = pose_at(odometry, estimate.stamp);
   Pose3 T_world_odom;  // gravity-aligned; odometry's height replaced by the true one
   if (T_odom_estimate) {
     T_world_odom =
-        T_world_estimate * to_spatial(to_planar(*T_odom_estimate), T_odom_estimate->position.z()).inverse();
+        T_world_estimate * to_pose3(to_pose2(*T_odom_estimate), T_odom_estimate->position.z()).inverse();
   }
   snapshot_.scan.clear();
   const LaserScan& scan = *scan_;

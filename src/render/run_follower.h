@@ -13,10 +13,10 @@
 namespace patrol::render {
 
 /// Builds the snapshot of a run up to the current log message.
-class RunFollower {
+class SnapshotBuilder {
  public:
   /// `view` must outlive this object.
-  RunFollower(const mjModel& view, const Pose2& T_world_map);
+  SnapshotBuilder(const mjModel& view, const Pose2& T_world_map);
 
   void add(const LaserScan& scan) { scan_ = scan; }
   void add(const OdometryEstimate& odometry);
@@ -37,7 +37,7 @@ class RunFollower {
 
  private:
   Eigen::Vector3d on_ground(const Eigen::Vector2d& p_world_m) const;
-  void place_scan(const PoseEstimate& estimate);
+  void transform_scan(const PoseEstimate& estimate);
 
   sim::LidarScene scenery_;
   Pose3 T_body_lidar_;

@@ -27,7 +27,7 @@ struct RunSnapshot {
   std::vector<Pose2> particles;                 ///< in map
   std::shared_ptr<const OccupancyGrid> map;     ///< in map; null before the first map
   Pose2 T_true_estimate;  ///< newest estimate of the level body relative to its true pose at that stamp
-  double travelled_m = 0.0;
+  double traveled_m = 0.0;
   std::optional<GasReading> gas;                ///< newest reading; none without a methane meter
   bool is_driving = false;  ///< tracked robot, not a walking one
   std::string event;      ///< text of the newest event

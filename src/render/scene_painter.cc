@@ -52,7 +52,7 @@ double smooth_step(double from, double to, double x) {
 /// Darkness of a lamp's shadows at the focus, 0 ... 1. Fades to 0 at the end of the lamp's shadow map (`reach_rad` off
 /// its axis), where MuJoCo 3.17 draws speckles. Also fades to 0 where another lamp is equally near, because that lamp
 /// then becomes the shadow light.
-double shadow_share(const mjvLight& lamp, const Eigen::Vector3d& focus, double reach_rad, double second_nearest_m) {
+double shadow_weight(const mjvLight& lamp, const Eigen::Vector3d& focus, double reach_rad, double second_nearest_m) {
   constexpr double kEdge_rad = 0.09, kFade_rad = 0.22, kFade_m = 2.0;
   const Eigen::Vector3d ray = focus - to_eigen(lamp.pos);
   const double off_axis_rad = std::acos(std::clamp(ray.normalized().dot(to_eigen(lamp.dir).normalized()), -1.0, 1.0));
@@ -76,15 +76,15 @@ void set_replay_quality(mjModel& view) {
   view.vis.map.shadowclip = static_cast<float>(kShadowReach_m / view.stat.extent);
 }
 
-ScenePainter::ScenePainter(const mjModel& view, int width, int height, double extinction_per_m, Renderer renderer)
+SceneRenderer::SceneRenderer(const mjModel& view, int width, int height, double extinction_per_m, Renderer renderer)
     : model_(view),
       data_(sim::make_data(view)),
       offscreen_(view, width, height, renderer),
       dust_{extinction_per_m, to_color(view.vis.rgba.fog)},
-      shadow_reach_m_(static_cast<double>(view.vis.map.shadowclip) * view.stat.extent) {
+      shadow_half_width_m_(static_cast<double>(view.vis.map.shadowclip) * view.stat.extent) {
   mjv_defaultOption(&options_);
   std::fill(std::begin(options_.geomgroup), std::end(options_.geomgroup), mjtByte{0});
-  for (const int group : {sim::kGroupSolid, sim::kGroupEyeOnly, sim::kGroupRobotVisual})
+  for (const int group : {sim::kGroupSolid, sim::kGroupVisualOnly, sim::kGroupRobotVisual})
     options_.geomgroup[group] = 1;
   std::fill(std::begin(options_.sitegroup), std::end(options_.sitegroup), mjtByte{0});
   mjv_defaultScene(&scene_);
@@ -95,20 +95,20 @@ ScenePainter::ScenePainter(const mjModel& view, int width, int height, double ex
   mj_forward(&model_, data_.get());
 }
 
-ScenePainter::~ScenePainter() { mjv_freeScene(&scene_); }
+SceneRenderer::~SceneRenderer() { mjv_freeScene(&scene_); }
 
-void ScenePainter::set_state(const SimState& state) {
+void SceneRenderer::set_state(const SimState& state) {
   put_state(model_, state, *data_);
   mj_comPos(&model_, data_.get());
   mj_camlight(&model_, data_.get());
 }
 
-void ScenePainter::draw(const View& view, Frame& frame, std::vector<float>& depth) {
+void SceneRenderer::draw(const View& view, Frame& frame, std::vector<float>& depth) {
   scene_.camera[0] = scene_.camera[1] = gl_camera(view);
   mjv_updateScene(&model_, data_.get(), &options_, nullptr, nullptr, mjCAT_ALL, &scene_);
   add_ghost(scene_, model_, *data_, T_true_estimate_);
-  light_around(view);
-  drop_unseen(view);
+  center_light(view);
+  cull_geoms(view);
   offscreen_.render(scene_);
   offscreen_.read(frame);
   offscreen_.read_depth(depth);
@@ -117,21 +117,21 @@ void ScenePainter::draw(const View& view, Frame& frame, std::vector<float>& dept
 
 // The shadow map covers a square around the sun's position: move the sun to the focus. Toward the sun the outer quarter
 // of the square has speckles (depth offset too small in MuJoCo 3.17), so the square is shifted toward the sun.
-void ScenePainter::light_around(const View& view) {
+void SceneRenderer::center_light(const View& view) {
   constexpr double kSunDistance_m = 25.0, kTowardsSun = 0.15;
   mjvLight* sun = find_sun(scene_);
-  if (sun == nullptr) return let_nearest_lamp_throw_shadows(view);
+  if (sun == nullptr) return select_shadow_light(view);
   const Eigen::Vector3d rays = to_eigen(sun->dir);
   const Eigen::Vector3d on_ground(rays.x(), rays.y(), 0.0);
   const Eigen::Vector3d place =
-      view.focus - kSunDistance_m * rays - kTowardsSun * shadow_reach_m_ * on_ground.normalized();
+      view.focus - kSunDistance_m * rays - kTowardsSun * shadow_half_width_m_ * on_ground.normalized();
   for (int axis = 0; axis < 3; ++axis) sun->pos[axis] = static_cast<float>(place[axis]);
 }
 
 // Underground, shadows come from lamps. A frame has time for one shadow map: that of the nearest lamp. For partly dark
-// shadows (`shadow_share`) the lamp is split into two, one with and one without shadows.
-void ScenePainter::let_nearest_lamp_throw_shadows(const View& view) {
-  constexpr int kMostLights = 8;  // limit of OpenGL's fixed-function pipeline
+// shadows (`shadow_weight`) the lamp is split into two, one with and one without shadows.
+void SceneRenderer::select_shadow_light(const View& view) {
+  constexpr int kMaxLights = 8;  // limit of OpenGL's fixed-function pipeline
   const auto away_m = [&](const mjvLight& light) {
     return light.headlight ? std::numeric_limits<double>::infinity() : (to_eigen(light.pos) - view.focus).norm();
   };
@@ -144,8 +144,8 @@ void ScenePainter::let_nearest_lamp_throw_shadows(const View& view) {
     if (other != lamp) second_m = std::min(second_m, away_m(*other));
   }
   const double reach_deg = static_cast<double>(lamp->cutoff * model_.vis.map.shadowscale);
-  double share = shadow_share(*lamp, view.focus, to_rad(reach_deg), second_m);
-  const bool has_room = scene_.nlight < kMostLights;
+  double share = shadow_weight(*lamp, view.focus, to_rad(reach_deg), second_m);
+  const bool has_room = scene_.nlight < kMaxLights;
   if (!has_room) share = std::round(share);
   if (share == 0.0) return;
   has_shadow_lamp_ = true;
@@ -159,20 +159,20 @@ void ScenePainter::let_nearest_lamp_throw_shadows(const View& view) {
 }
 
 /// True if an object there could cast a shadow near the focus.
-bool ScenePainter::may_shade(const View& view, const Eigen::Vector3d& center, double radius) {
+bool SceneRenderer::may_cast_shadow(const View& view, const Eigen::Vector3d& center, double radius) {
   constexpr double kLampShadow_m = 5.0;  // shadows of objects farther from the focus are not visible in the picture
   if (has_shadow_lamp_) return (center - view.focus).norm() < kLampShadow_m + radius;
   const mjvLight* sun = find_sun(scene_);
   if (sun == nullptr || scene_.flags[mjRND_SHADOW] == 0) return false;
   const double off_axis = (center - view.focus).cross(to_eigen(sun->dir).normalized()).norm();
-  return off_axis < std::numbers::sqrt2 * shadow_reach_m_ + radius;
+  return off_axis < std::numbers::sqrt2 * shadow_half_width_m_ + radius;
 }
 
 // Removes geoms smaller than a pixel, and geoms that neither are in view nor cast a shadow into it. Vertex processing
 // takes half of a frame in software.
-void ScenePainter::drop_unseen(const View& view) {
+void SceneRenderer::cull_geoms(const View& view) {
   const auto sides = sides_of(view, static_cast<double>(offscreen_.width()) / offscreen_.height());
-  const auto is_in_sight = [&](const Eigen::Vector3d& center, double radius) {
+  const auto is_in_view = [&](const Eigen::Vector3d& center, double radius) {
     return std::ranges::all_of(sides,
                                [&](const Eigen::Vector3d& n) { return n.dot(center - view.eye) > -radius; });
   };
@@ -185,7 +185,7 @@ void ScenePainter::drop_unseen(const View& view) {
     if (geom.type == mjGEOM_PLANE || geom.type == mjGEOM_HFIELD || geom.modelrbound <= 0.0f) return false;
     const Eigen::Vector3d center = to_eigen(geom.pos);
     if (is_speck(center, geom.modelrbound)) return true;
-    return !is_in_sight(center, geom.modelrbound) && !may_shade(view, center, geom.modelrbound);
+    return !is_in_view(center, geom.modelrbound) && !may_cast_shadow(view, center, geom.modelrbound);
   });
   scene_.ngeom = static_cast<int>(last - scene_.geoms);
 }

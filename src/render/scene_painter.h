@@ -18,14 +18,14 @@ namespace patrol::render {
 void set_replay_quality(mjModel& view);
 
 /// Renders the world with robot and actors at a state of the simulation.
-class ScenePainter {
+class SceneRenderer {
  public:
   /// `view` is a render model (sim/model_assembly.h) and must outlive the painter. `extinction_per_m` is that of the
   /// dust, drawn in the color of the world's fog. Throws std::runtime_error without OpenGL.
-  ScenePainter(const mjModel& view, int width, int height, double extinction_per_m = 0.0, Renderer renderer = software_renderer());
-  ~ScenePainter();
-  ScenePainter(const ScenePainter&) = delete;
-  ScenePainter& operator=(const ScenePainter&) = delete;
+  SceneRenderer(const mjModel& view, int width, int height, double extinction_per_m = 0.0, Renderer renderer = software_renderer());
+  ~SceneRenderer();
+  SceneRenderer(const SceneRenderer&) = delete;
+  SceneRenderer& operator=(const SceneRenderer&) = delete;
 
   /// Moves robot and actors. Throws InputError when the state does not belong to this model.
   void set_state(const SimState& state);
@@ -40,10 +40,10 @@ class ScenePainter {
   mjvScene& scene() { return scene_; }
 
  private:
-  void light_around(const View& view);
-  void let_nearest_lamp_throw_shadows(const View& view);
-  bool may_shade(const View& view, const Eigen::Vector3d& center, double radius);
-  void drop_unseen(const View& view);
+  void center_light(const View& view);
+  void select_shadow_light(const View& view);
+  bool may_cast_shadow(const View& view, const Eigen::Vector3d& center, double radius);
+  void cull_geoms(const View& view);
 
   const mjModel& model_;
   sim::DataPtr data_;
@@ -53,7 +53,7 @@ class ScenePainter {
   Haze dust_;
   Pose2 T_true_estimate_;
   bool has_shadow_lamp_ = false;  ///< a lamp casts shadows in the last scene
-  double shadow_reach_m_;  ///< half of the side of the square that the shadow map covers
+  double shadow_half_width_m_;  ///< half of the side of the square that the shadow map covers
 };
 
 }  // namespace patrol::render

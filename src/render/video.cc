@@ -22,14 +22,14 @@ extern "C" {
 namespace patrol::render {
 namespace {
 
-std::string libav_words(int code) {
+std::string libav_message(int code) {
   char text[AV_ERROR_MAX_STRING_SIZE] = {};
   av_strerror(code, text, sizeof text);
   return text;
 }
 
 int checked(int code, const char* doing) {
-  if (code < 0) throw std::runtime_error(fmt::format("video: {}: {}", doing, libav_words(code)));
+  if (code < 0) throw std::runtime_error(fmt::format("video: {}: {}", doing, libav_message(code)));
   return code;
 }
 

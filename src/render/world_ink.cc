@@ -11,23 +11,23 @@ constexpr double kMinWidth = 1.6 / 720.0;  // fraction of the frame's height
 }  // namespace
 
 /// Projected line segment; 1 / distance is linear along it.
-struct WorldInk::Stroke {
+struct WorldOverlay::Stroke {
   Eigen::Vector2d from, to;
   double inverse_from, inverse_to;        ///< 1/m
   double half_width_from, half_width_to;  ///< pixels
 };
 
-WorldInk::WorldInk(Frame& frame, const std::vector<float>& depth, const Projector& projector)
+WorldOverlay::WorldOverlay(Frame& frame, const std::vector<float>& depth, const Projector& projector)
     : frame_(frame), depth_(depth), projector_(projector), coverage_(depth.size(), 0) {}
 
-void WorldInk::polyline(std::span<const Eigen::Vector3d> points_m, double width_m, const Brush& brush) {
+void WorldOverlay::polyline(std::span<const Eigen::Vector3d> points_m, double width_m, const Brush& brush) {
   for (std::size_t i = 1; i < points_m.size(); ++i) {
     stroke(projector_.to_camera(points_m[i - 1]), projector_.to_camera(points_m[i]), width_m);
   }
   blend_in(brush);
 }
 
-void WorldInk::dots(std::span<const Eigen::Vector3d> points_m, double radius_m, const Brush& brush) {
+void WorldOverlay::dots(std::span<const Eigen::Vector3d> points_m, double radius_m, const Brush& brush) {
   for (const Eigen::Vector3d& point : points_m) {
     const Eigen::Vector3d in_camera = projector_.to_camera(point);
     stroke(in_camera, in_camera, 2.0 * radius_m);
@@ -35,7 +35,7 @@ void WorldInk::dots(std::span<const Eigen::Vector3d> points_m, double radius_m, 
   blend_in(brush);
 }
 
-void WorldInk::stroke(const Eigen::Vector3d& from_in_camera, const Eigen::Vector3d& to_in_camera,
+void WorldOverlay::stroke(const Eigen::Vector3d& from_in_camera, const Eigen::Vector3d& to_in_camera,
                       double width_m) {
   Eigen::Vector3d a = from_in_camera, b = to_in_camera;
   const double near_m = projector_.near_m();
@@ -54,7 +54,7 @@ void WorldInk::stroke(const Eigen::Vector3d& from_in_camera, const Eigen::Vector
          .half_width_to = half_width(to.distance_m)});
 }
 
-void WorldInk::cover(const Stroke& stroke) {
+void WorldOverlay::cover(const Stroke& stroke) {
   const Eigen::Vector2d along = stroke.to - stroke.from;
   const double reach = std::max(stroke.half_width_from, stroke.half_width_to) + 0.5;
   const Eigen::Vector2d low = stroke.from.cwiseMin(stroke.to).array() - reach;
@@ -95,12 +95,12 @@ void WorldInk::cover(const Stroke& stroke) {
 
 // Tolerance: one pixel away, flat ground observed from a height of 1 m is nearer or farther by this much, and must not
 // occlude a line on it.
-bool WorldInk::is_hidden(std::size_t pixel, double distance_m) const {
+bool WorldOverlay::is_hidden(std::size_t pixel, double distance_m) const {
   const double tolerance_m = 0.04 + 1.5 * distance_m * distance_m / projector_.focal_px();
   return distance_m > projector_.distance_m(depth_[pixel]) + tolerance_m;
 }
 
-void WorldInk::blend_in(const Brush& brush) {
+void WorldOverlay::blend_in(const Brush& brush) {
   for (int y = top_; y <= bottom_; ++y) {
     for (int x = 0; x < frame_.width(); ++x) {
       std::uint8_t& covered = coverage_[static_cast<std::size_t>(y * frame_.width() + x)];

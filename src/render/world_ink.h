@@ -14,10 +14,10 @@ namespace patrol::render {
 
 /// Draws lines and dots at world positions on a finished frame, scaled by distance and occluded by objects in front of
 /// them. Cheaper than adding them to the scene, with anti-aliased edges.
-class WorldInk {
+class WorldOverlay {
  public:
   /// `depth` as in Offscreen::read_depth. All three arguments must outlive this object.
-  WorldInk(Frame& frame, const std::vector<float>& depth, const Projector& projector);
+  WorldOverlay(Frame& frame, const std::vector<float>& depth, const Projector& projector);
 
   /// Draws line segments of constant width in world, at least 1.6 pixels at a frame height of 720.
   void polyline(std::span<const Eigen::Vector3d> points_m, double width_m, const Brush& brush);

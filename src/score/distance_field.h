@@ -24,14 +24,14 @@ class DistanceField {
 
  private:
   /// Position of a point among the four surrounding cell centers.
-  struct Place {
+  struct GridPosition {
     /// distances at the lower left, lower right, upper left and upper right center, m
     std::array<double, 4> corners;
     Eigen::Vector2d fraction;       ///< fraction of the step from the lower left center along x and y, 0 ... 1
     /// offset of the point from the outermost cell centers, in cells; zero inside the grid
-    Eigen::Vector2d way_to_grid;
+    Eigen::Vector2d offset_to_grid;
   };
-  Place place_of(const Eigen::Vector2d& p_m) const;
+  GridPosition to_tunnel_coordinates(const Eigen::Vector2d& p_m) const;
 
   GridGeometry geometry_;
   std::vector<float> distance_m_;  ///< [row * width + column]

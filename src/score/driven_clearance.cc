@@ -46,7 +46,7 @@ DrivenClearance driven_clearance(const Trajectory& T_world_body, const std::vect
   std::vector<double> clearances_m;
   Eigen::Vector2d last = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   for (const StampedPose& stamped : T_world_body) {
-    const Pose2 T_world = to_planar(stamped.pose);
+    const Pose2 T_world = to_pose2(stamped.pose);
     if ((T_world.position() - last).norm() < spacing_m) continue;
     last = T_world.position();
     const Pose2 T_body_world = T_world.inverse();
@@ -60,7 +60,7 @@ DrivenClearance driven_clearance(const Trajectory& T_world_body, const std::vect
   return {.mean_m = mean(clearances_m),
           .p05_m = percentile(clearances_m, 0.05),
           .min_m = *std::min_element(clearances_m.begin(), clearances_m.end()),
-          .places = clearances_m.size()};
+          .num_positions = clearances_m.size()};
 }
 
 }  // namespace patrol::score

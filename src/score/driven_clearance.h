@@ -15,7 +15,7 @@ struct DrivenClearance {
   double mean_m = 0.0;
   double p05_m = 0.0;  ///< 5th percentile
   double min_m = 0.0;  ///< minimum; 0 at a collision
-  std::size_t places = 0;  ///< number of evaluated path positions
+  std::size_t num_positions = 0;  ///< number of evaluated path positions
 };
 
 inline constexpr double kMaxClearance_m = 3.0;  ///< upper limit; larger clearances count as this value

@@ -30,7 +30,7 @@ struct GoalError {
 /// Repeatability as in [Liu21, tab. 2]. A goal saved during teleoperation is compared with the robot's true pose at the
 /// time of saving, so the error contains map, localization and control. `given` goals (in map) are transformed to world
 /// by `T_world_map`.
-std::vector<GoalError> goal_errors(const std::vector<Event>& events, const std::vector<MarkedGoal>& given,
+std::vector<GoalError> goal_errors(const std::vector<Event>& events, const std::vector<SavedGoal>& given,
                                    const Pose2& T_world_map, const Trajectory& T_world_body);
 
 /// Errors of all dockings relative to the surveyed docked pose.

@@ -5,18 +5,18 @@
 namespace patrol::score {
 
 InspectionScore inspection_score(const std::vector<Event>& events, const Pose2& T_world_map,
-                                 const std::vector<TrueLeak>& leaks, double max_distance_m) {
+                                 const std::vector<LeakGroundTruth>& leaks, double max_distance_m) {
   InspectionScore score;
   score.leaks = static_cast<int>(leaks.size());
   std::set<std::string> found;
   for (const Event& event : events) {
     if (event.kind != EventKind::kGasAlarm) continue;
-    Finding finding{.station = event.subject,
+    ScoredAlarm finding{.station = event.subject,
                     .column_ppm_m = event.value,
                     .p_world_m = T_world_map * event.p_map_target,
                     .leak = "",
                     .error_m = max_distance_m};
-    for (const TrueLeak& leak : leaks) {
+    for (const LeakGroundTruth& leak : leaks) {
       const double distance_m = (finding.p_world_m - leak.p_world_m).norm();
       if (distance_m > finding.error_m) continue;
       finding.leak = leak.name;

@@ -11,13 +11,13 @@
 namespace patrol::score {
 
 /// Leak of the simulated world.
-struct TrueLeak {
+struct LeakGroundTruth {
   std::string name;
   Eigen::Vector2d p_world_m = Eigen::Vector2d::Zero();
 };
 
 /// Gas alarm of the robot with the leak that it is assigned to.
-struct Finding {
+struct ScoredAlarm {
   std::string station;
   double column_ppm_m = 0.0;  ///< measured methane column
   Eigen::Vector2d p_world_m = Eigen::Vector2d::Zero();  ///< position reported by the robot
@@ -30,12 +30,12 @@ struct InspectionScore {
   int leaks = 0;
   int leaks_found = 0;
   int false_alarms = 0;
-  std::vector<Finding> findings;
+  std::vector<ScoredAlarm> findings;
 };
 
 /// Assigns each alarm to the nearest leak within `max_distance_m`. An alarm with no leak in this radius is a false
 /// alarm.
 InspectionScore inspection_score(const std::vector<Event>& events, const Pose2& T_world_map,
-                                 const std::vector<TrueLeak>& leaks, double max_distance_m = 2.0);
+                                 const std::vector<LeakGroundTruth>& leaks, double max_distance_m = 2.0);
 
 }  // namespace patrol::score

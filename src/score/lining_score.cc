@@ -7,7 +7,7 @@
 namespace patrol::score {
 namespace {
 
-double true_peak_m(const TrueLining& truth, int ring) {
+double true_peak_m(const LiningGroundTruth& truth, int ring) {
   double peak_m = 0.0;
   for (int clock_deg = 0; clock_deg < 360; ++clock_deg) {
     const double moved_m = truth.inward_m(ring, clock_deg);
@@ -16,7 +16,7 @@ double true_peak_m(const TrueLining& truth, int ring) {
   return peak_m;
 }
 
-RingScore found_ring(const RingFinding& finding, const TrueLining& truth, const Pose3& T_world_map, const std::string& station, double peak_m) {
+RingScore found_ring(const RingFinding& finding, const LiningGroundTruth& truth, const Pose3& T_world_map, const std::string& station, double peak_m) {
   const TunnelLining& design = truth.design;
   const Eigen::Vector3d p_world = design.intrados(design.middle_of_ring_m(finding.ring), finding.clock_deg) + Eigen::Vector3d(0.0, 0.0, truth.invert_m);
   return {.station = station,
@@ -29,7 +29,7 @@ RingScore found_ring(const RingFinding& finding, const TrueLining& truth, const 
           .place_error_m = (T_world_map * finding.p_map - p_world).norm()};
 }
 
-void add_rings(const LiningResult& result, const TrueLining& truth, const Pose3& T_world_map, double moved_m, double still_m, LiningScore& score) {
+void add_rings(const LiningResult& result, const LiningGroundTruth& truth, const Pose3& T_world_map, double moved_m, double still_m, LiningScore& score) {
   std::set<int> in_view;
   for (const LiningCell& cell : result.cells) in_view.insert(cell.ring);
   for (const RingFinding& finding : result.findings) in_view.insert(finding.ring);
@@ -48,13 +48,13 @@ void add_rings(const LiningResult& result, const TrueLining& truth, const Pose3&
     ++score.found;
     score.max_error_m = std::max(score.max_error_m, std::abs(ring_score.error_m));
     score.max_peak_error_m = std::max(score.max_peak_error_m, std::abs(ring_score.peak_error_m));
-    score.max_place_error_m = std::max(score.max_place_error_m, ring_score.place_error_m);
+    score.max_position_error_m = std::max(score.max_position_error_m, ring_score.place_error_m);
   }
 }
 
 }  // namespace
 
-LiningScore lining_score(const std::vector<LiningResult>& results, const TrueLining& truth, const Pose3& T_world_map, double moved_m, double still_m) {
+LiningScore lining_score(const std::vector<LiningResult>& results, const LiningGroundTruth& truth, const Pose3& T_world_map, double moved_m, double still_m) {
   LiningScore score;
   double squares = 0.0;
   int held = 0;

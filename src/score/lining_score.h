@@ -13,7 +13,7 @@
 namespace patrol::score {
 
 /// Ground truth of the lining deformation. Inward displacement along the radius is positive, as in LiningCell.
-struct TrueLining {
+struct LiningGroundTruth {
   TunnelLining design;     ///< design geometry, in world
   double invert_m = 0.0;   ///< height of the design's invert, in world
   /// true inward displacement at a clock position, 0 at the crown
@@ -44,7 +44,7 @@ struct LiningScore {
   int false_findings = 0;
   double max_error_m = 0.0;      ///< maximum |error_m| of the found rings
   double max_peak_error_m = 0.0;
-  double max_place_error_m = 0.0;
+  double max_position_error_m = 0.0;
   int cells = 0;  ///< number of evaluated cells
   double cell_rmse_m = 0.0;  ///< RMS error of the cells' displacement
   /// fraction of cells whose 95 % interval contains the true displacement at the cell's middle
@@ -54,7 +54,7 @@ struct LiningScore {
 
 /// Evaluates the findings of all stations. A ring counts as moved when its peak displacement is at least `moved_m`, and
 /// a finding is false when it is below `still_m`. Between the two limits, a finding and its absence are both correct.
-LiningScore lining_score(const std::vector<LiningResult>& results, const TrueLining& truth, const Pose3& T_world_map, double moved_m = 0.0025,
+LiningScore lining_score(const std::vector<LiningResult>& results, const LiningGroundTruth& truth, const Pose3& T_world_map, double moved_m = 0.0025,
                          double still_m = 0.0015);
 
 }  // namespace patrol::score

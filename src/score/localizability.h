@@ -23,24 +23,24 @@ struct Localizability {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   /// Standard deviations of the position with unknown heading, along the least observable direction and across it.
   /// `kUnbounded_m` when the scan does not constrain the direction.
-  double weak_std_m = 0.0;
-  double strong_std_m = 0.0;
-  double weak_direction_rad = 0.0;  ///< least observable direction in world, -pi/2 ... pi/2
+  double max_std_m = 0.0;
+  double min_std_m = 0.0;
+  double max_std_direction_rad = 0.0;  ///< least observable direction in world, -pi/2 ... pi/2
 
   static constexpr double kUnbounded_m = 100.0;
   static constexpr double kDegenerate_m = 0.1;  ///< standard deviation above which the pose counts as degenerate
 
-  bool is_degenerate() const { return weak_std_m > kDegenerate_m; }
+  bool is_degenerate() const { return max_std_m > kDegenerate_m; }
 };
 
 /// Computes the bound from the returns of one scan. `scan` contains only beams that hit a surface.
-Localizability localizability(const std::vector<SurfaceReturn>& scan, const BeamNoise& noise);
+Localizability localizability(const std::vector<BeamReturn>& scan, const BeamNoise& noise);
 
 /// Bound on the pose with the covariance and the confidence that the stack reported for it.
 struct LocalizabilitySample {
   Localizability truth;
-  double claimed_std_m = 0.0;          ///< standard deviation along the weakest direction of the stack's covariance
-  double claimed_direction_rad = 0.0;  ///< weakest direction of the stack's covariance, in world
+  double reported_std_m = 0.0;          ///< standard deviation along the weakest direction of the stack's covariance
+  double reported_direction_rad = 0.0;  ///< weakest direction of the stack's covariance, in world
   std::optional<double> trust;         ///< confidence, 0 lost ... 1 certain; none when the stack does not report one
 };
 
@@ -48,20 +48,20 @@ struct LocalizabilitySample {
 /// that vary, are none without them.
 struct LocalizabilityScore {
   std::size_t num_poses = 0;
-  double weak_std_median_m = 0.0;
-  double weak_std_max_m = 0.0;
-  double degenerate_share = 0.0;                      ///< fraction of poses that are degenerate
+  double max_std_median_m = 0.0;
+  double max_std_max_m = 0.0;
+  double degenerate_fraction = 0.0;                      ///< fraction of poses that are degenerate
   /// Spearman's correlation of the reported with the true standard deviation
   std::optional<double> covariance_rank_correlation;
   /// Spearman's correlation of the confidence with the true standard deviation; -1 is best
-  std::optional<double> trust_rank_correlation;
+  std::optional<double> confidence_rank_correlation;
   /// probability that a degenerate pose has a larger reported standard deviation than a non-degenerate one (AUC); 0.5
   /// is chance level
   std::optional<double> covariance_detection;
   /// probability that a degenerate pose has a lower confidence than a non-degenerate one (AUC)
-  std::optional<double> trust_detection;
+  std::optional<double> confidence_detection;
   /// mean error of the weakest direction over the degenerate poses, 0 ... 90
-  std::optional<double> weak_direction_error_deg;
+  std::optional<double> max_std_direction_error_deg;
 };
 
 /// Evaluates the samples of a run.

@@ -11,9 +11,9 @@ namespace {
 constexpr Time kSpacing = std::chrono::milliseconds(500);
 
 /// Confidence of the estimate with the same stamp.
-std::optional<double> confidence_at(const std::vector<LocalizationTrust>& trusts, Time stamp) {
-  const auto found = std::ranges::lower_bound(trusts, stamp, {}, &LocalizationTrust::stamp);
-  if (found == trusts.end() || found->stamp != stamp) return std::nullopt;
+std::optional<double> confidence_at(const std::vector<LocalizationConfidence>& confidences, Time stamp) {
+  const auto found = std::ranges::lower_bound(confidences, stamp, {}, &LocalizationConfidence::stamp);
+  if (found == confidences.end() || found->stamp != stamp) return std::nullopt;
   return found->trust;
 }
 
@@ -27,18 +27,18 @@ std::vector<TrackedLocalizability> track_localizability(const RunRecord& record,
     const std::optional<Pose3> truth = pose_at(record.T_world_body, stamp);
     if (!truth) continue;
     const Eigen::Vector2d p_world_m = truth->position.head<2>();
-    const SymmetricAxes own = symmetric_axes(record.covariances[i].topLeftCorner<2, 2>());
+    const PrincipalAxes own = principal_axes(record.covariances[i].topLeftCorner<2, 2>());
     track.push_back({.stamp = stamp,
                      .p_world_m = p_world_m,
                      .sample = {.truth = oracle(p_world_m),
-                                .claimed_std_m = std::sqrt(std::max(own.large, 0.0)),
-                                .claimed_direction_rad = T_world_map.yaw + own.large_direction_rad,
-                                .trust = confidence_at(record.trusts, stamp)}});
+                                .reported_std_m = std::sqrt(std::max(own.large, 0.0)),
+                                .reported_direction_rad = T_world_map.yaw + own.large_direction_rad,
+                                .trust = confidence_at(record.confidences, stamp)}});
   }
   return track;
 }
 
-LocalizabilityScore score_of(const std::vector<TrackedLocalizability>& track) {
+LocalizabilityScore mean_weight(const std::vector<TrackedLocalizability>& track) {
   std::vector<LocalizabilitySample> samples;
   for (const TrackedLocalizability& at : track) samples.push_back(at.sample);
   return localizability_score(samples);

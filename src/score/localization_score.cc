@@ -7,41 +7,41 @@
 namespace patrol::score {
 namespace {
 
-constexpr double kStrayed_m = 0.5;
-constexpr double kDoubted = 0.5;
-constexpr Time kKeeps = std::chrono::seconds(5);
+constexpr double kMaxAcceptedError_m = 0.5;
+constexpr double kLowConfidence = 0.5;
+constexpr Time kStablePeriod = std::chrono::seconds(5);
 
 /// Newest confidence up to `stamp`, null before the first one.
-const LocalizationTrust* trust_at(const std::vector<LocalizationTrust>& trusts, Time stamp) {
-  const auto after = std::upper_bound(trusts.begin(), trusts.end(), stamp,
-                                      [](Time time, const LocalizationTrust& trust) { return time < trust.stamp; });
-  return after == trusts.begin() ? nullptr : &*std::prev(after);
+const LocalizationConfidence* confidence_at(const std::vector<LocalizationConfidence>& confidences, Time stamp) {
+  const auto after = std::upper_bound(confidences.begin(), confidences.end(), stamp,
+                                      [](Time time, const LocalizationConfidence& trust) { return time < trust.stamp; });
+  return after == confidences.begin() ? nullptr : &*std::prev(after);
 }
 
 }  // namespace
 
-LocalizationScore localization_score(const std::vector<MatchedPose>& matched, const std::vector<LocalizationTrust>& trusts) {
+LocalizationScore localization_score(const std::vector<MatchedPose>& matched, const std::vector<LocalizationConfidence>& confidences) {
   LocalizationScore score;
-  for (std::size_t i = 0; i < trusts.size(); ++i) {
-    score.min_trust = std::min(score.min_trust, trusts[i].trust);
-    if (trusts[i].trust < kDoubted && !score.doubted_s) score.doubted_s = to_seconds(trusts[i].stamp);
-    if (trusts[i].is_lost && i + 1 < trusts.size()) score.lost_s += to_seconds(trusts[i + 1].stamp - trusts[i].stamp);
+  for (std::size_t i = 0; i < confidences.size(); ++i) {
+    score.min_confidence = std::min(score.min_confidence, confidences[i].trust);
+    if (confidences[i].trust < kLowConfidence && !score.low_confidence_at_s) score.low_confidence_at_s = to_seconds(confidences[i].stamp);
+    if (confidences[i].is_lost && i + 1 < confidences.size()) score.lost_s += to_seconds(confidences[i + 1].stamp - confidences[i].stamp);
   }
   for (const MatchedPose& pose : matched) {
-    const LocalizationTrust* trust = trust_at(trusts, pose.stamp);
+    const LocalizationConfidence* trust = confidence_at(confidences, pose.stamp);
     if (trust == nullptr || trust->is_lost) continue;
     score.max_error_m = std::max(score.max_error_m, pose.position_error_m());
-    if (pose.position_error_m() > kStrayed_m && !score.strayed_s) score.strayed_s = to_seconds(pose.stamp);
+    if (pose.position_error_m() > kMaxAcceptedError_m && !score.error_exceeded_at_s) score.error_exceeded_at_s = to_seconds(pose.stamp);
   }
   return score;
 }
 
 RelocalizationScore relocalization_score(Time kidnapped, const std::vector<MatchedPose>& matched,
-                                         const std::vector<LocalizationTrust>& trusts) {
-  RelocalizationScore score{.at_s = to_seconds(kidnapped), .said_lost_s = {}, .relocalized_s = {}};
-  for (const LocalizationTrust& trust : trusts) {
+                                         const std::vector<LocalizationConfidence>& confidences) {
+  RelocalizationScore score{.at_s = to_seconds(kidnapped), .time_to_detect_s = {}, .relocalized_s = {}};
+  for (const LocalizationConfidence& trust : confidences) {
     if (trust.stamp < kidnapped || !trust.is_lost) continue;
-    score.said_lost_s = to_seconds(trust.stamp - kidnapped);
+    score.time_to_detect_s = to_seconds(trust.stamp - kidnapped);
     break;
   }
   constexpr Time kNever = Time::max();
@@ -49,12 +49,12 @@ RelocalizationScore relocalization_score(Time kidnapped, const std::vector<Match
   bool is_first = true;
   for (const MatchedPose& pose : matched) {
     if (pose.stamp < kidnapped) continue;
-    if (std::exchange(is_first, false)) score.moved_m = pose.position_error_m();
-    const LocalizationTrust* trust = trust_at(trusts, pose.stamp);
-    const bool is_good = pose.position_error_m() < kStrayed_m && trust != nullptr && !trust->is_lost;
+    if (std::exchange(is_first, false)) score.displacement_m = pose.position_error_m();
+    const LocalizationConfidence* trust = confidence_at(confidences, pose.stamp);
+    const bool is_good = pose.position_error_m() < kMaxAcceptedError_m && trust != nullptr && !trust->is_lost;
     if (!is_good) good_since = kNever;
     if (is_good) good_since = std::min(good_since, pose.stamp);
-    if (good_since != kNever && pose.stamp - good_since >= kKeeps) break;
+    if (good_since != kNever && pose.stamp - good_since >= kStablePeriod) break;
   }
   if (good_since != kNever) score.relocalized_s = to_seconds(good_since - kidnapped);
   return score;

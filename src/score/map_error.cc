@@ -40,7 +40,7 @@ Grid<float> on_cells(const Grid<std::uint8_t>& marked, const std::vector<double>
   return cells;
 }
 
-double share_within(const std::vector<double>& values, double limit) {
+double fraction_within(const std::vector<double>& values, double limit) {
   std::size_t within = 0;
   for (const double value : values) within += value <= limit ? 1 : 0;
   return values.empty() ? 0.0 : static_cast<double>(within) / static_cast<double>(values.size());
@@ -72,19 +72,19 @@ MapError map_error(const OccupancyGrid& built, const Pose2& T_world_map, const R
   const Grid<std::uint8_t> built_occupied = occupied_cells(built);
   const Grid<std::uint8_t> reference_occupied = occupied_cells(reference.cells);
   const std::vector<Eigen::Vector2d> built_points = centers_of(built_occupied);
-  const std::vector<Eigen::Vector2d> seeable_points = centers_of(occupied_cells(seeable_part(reference)));
+  const std::vector<Eigen::Vector2d> observable_points = centers_of(occupied_cells(observable_part(reference)));
   if (built_points.empty()) throw InputError("the built map has no occupied cell");
-  if (seeable_points.empty()) throw InputError("the reference map has no occupied cell that could be seen");
+  if (observable_points.empty()) throw InputError("the reference map has no occupied cell that could be seen");
 
   const std::vector<double> nearest_m = distances_m(DistanceField(reference_occupied), T_world_map, built_points);
   const Pose2 T_map_world = T_world_map.inverse();
-  const std::vector<double> missed_m = distances_m(DistanceField(built_occupied), T_map_world, seeable_points);
+  const std::vector<double> recall_distances_m = distances_m(DistanceField(built_occupied), T_map_world, observable_points);
   return {.num_occupied = built_points.size(),
           .nearest_mean_m = mean(nearest_m),
           .nearest_var_m2 = variance(nearest_m),
           .nearest_p95_m = percentile(nearest_m, 0.95),
-          .coverage = share_within(missed_m, kCoveredWithin_m),
-          .iou = intersection_over_union(built_occupied, T_map_world, seeable_points),
+          .coverage = fraction_within(recall_distances_m, kCoveredWithin_m),
+          .iou = intersection_over_union(built_occupied, T_map_world, observable_points),
           .cells_m = on_cells(built_occupied, nearest_m)};
 }
 

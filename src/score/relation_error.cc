@@ -29,7 +29,7 @@ class PoseLookup {
   }
 
  private:
-  Pose2 reference_at(const StampedPose& entry) const { return to_planar(entry.pose) * T_body_reference_; }
+  Pose2 reference_at(const StampedPose& entry) const { return to_pose2(entry.pose) * T_body_reference_; }
 
   Pose2 find(Time stamp) {
     const auto after = std::lower_bound(trajectory_.begin(), trajectory_.end(), stamp, [](const StampedPose& entry, Time t) { return entry.stamp < t; });
@@ -58,7 +58,7 @@ class PoseLookup {
   std::size_t num_interpolated_ = 0, num_outside_ = 0;
 };
 
-ErrorSpread spread_of(const std::vector<double>& values) {
+ErrorSpread to_spread(const std::vector<double>& values) {
   const double center = mean(values);
   double sum = 0.0;
   for (const double value : values) sum += (value - center) * (value - center);
@@ -90,12 +90,12 @@ RelationError relation_error(const Trajectory& T_map_body, const std::vector<Pos
     rot_deg.push_back(kDegPerRad * std::abs(wrap_angle(T_from_to.yaw - relation.T_from_to.yaw)));
   }
   RelationError error{.num_relations = relations.size(),
-                      .trans_m = spread_of(trans_m),
-                      .squared_trans_m2 = spread_of(squares(trans_m)),
+                      .trans_m = to_spread(trans_m),
+                      .squared_trans_m2 = to_spread(squares(trans_m)),
                       .trans_median_m = upper_median(trans_m),
                       .trans_max_m = maximum(trans_m),
-                      .rot_deg = spread_of(rot_deg),
-                      .squared_rot_deg2 = spread_of(squares(rot_deg)),
+                      .rot_deg = to_spread(rot_deg),
+                      .squared_rot_deg2 = to_spread(squares(rot_deg)),
                       .rot_median_deg = upper_median(rot_deg),
                       .rot_max_deg = maximum(rot_deg)};
   lookup.count(error);

@@ -19,8 +19,8 @@ struct RunRecord {
   Trajectory T_odom_body;
   Trajectory T_world_body;  ///< ground truth
   std::vector<Event> events;
-  std::vector<LocalizationTrust> trusts;
-  std::vector<RemoteCommand> remote;
+  std::vector<LocalizationConfidence> confidences;
+  std::vector<TeleopCommand> remote;
   std::vector<Collision> collisions;
   std::vector<LiningResult> linings;
   std::vector<WaterResult> waters;

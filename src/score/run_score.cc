@@ -11,18 +11,18 @@ NavigationScore navigation_score(const RunRecord& record, const RunReferences& r
 }
 
 std::optional<KnownMapScore> known_map_score(const RunRecord& record, const RunReferences& references, const Pose2& T_world_map) {
-  if (record.trusts.empty()) return std::nullopt;
-  std::vector<MatchedPose> matched = match_poses(record.T_map_body, T_world_map, record.T_world_body);
-  std::erase_if(matched, [&](const MatchedPose& pose) { return pose.stamp < record.trusts.front().stamp; });
-  KnownMapScore score{.localization = localization_score(matched, record.trusts), .kidnaps = {}};
-  for (const Time kidnapped : references.kidnaps) score.kidnaps.push_back(relocalization_score(kidnapped, matched, record.trusts));
+  if (record.confidences.empty()) return std::nullopt;
+  std::vector<MatchedPose> matched = pair_poses(record.T_map_body, T_world_map, record.T_world_body);
+  std::erase_if(matched, [&](const MatchedPose& pose) { return pose.stamp < record.confidences.front().stamp; });
+  KnownMapScore score{.localization = localization_score(matched, record.confidences), .kidnaps = {}};
+  for (const Time kidnapped : references.kidnaps) score.kidnaps.push_back(relocalization_score(kidnapped, matched, record.confidences));
   return score;
 }
 
 void add_inspection(const RunRecord& record, const RunReferences& references, EstimateScore& score) {
   score.inspection = inspection_score(record.events, score.T_world_map, references.leaks);
   if (!record.linings.empty() && references.lining) {
-    score.lining = lining_score(record.linings, *references.lining, to_spatial(score.T_world_map));
+    score.lining = lining_score(record.linings, *references.lining, to_pose3(score.T_world_map));
   }
   if (!record.waters.empty() && references.p_body_antenna) {
     score.water = water_score(record.waters, references.waters, score.T_world_map, record.T_world_body, *references.p_body_antenna);
@@ -43,11 +43,11 @@ MissionScore mission_score(const RunRecord& record) {
 EstimateScore estimate_score(const RunRecord& record, const RunReferences& references) {
   const Trajectory& truth = record.T_world_body;
   // A given map has its origin where the survey says; a map of the run has it where the robot truly started.
-  const Pose2 T_world_map = references.T_world_map ? *references.T_world_map : join_at_start(record.T_map_body, truth);
+  const Pose2 T_world_map = references.T_world_map ? *references.T_world_map : align_at_start(record.T_map_body, truth);
   EstimateScore score{.T_world_map = T_world_map,
                       .pose = trajectory_error(record.T_map_body, T_world_map, truth),
                       .aligned_pose = aligned_error(record.T_map_body, truth),
-                      .odometry = trajectory_error(record.T_odom_body, join_at_start(record.T_odom_body, truth), truth),
+                      .odometry = trajectory_error(record.T_odom_body, align_at_start(record.T_odom_body, truth), truth),
                       .map = map_error(record.map, T_world_map, references.map),
                       .map_agreement = references.map_agreement,
                       .localizability = track_localizability(record, T_world_map, references.localizability),

@@ -26,11 +26,11 @@ struct RunReferences {
   double map_agreement = 0.0;                 ///< ratio of the reference's cells that an independent rendering confirms
   std::optional<Pose2> T_world_map;           ///< pose of a given map's frame; none: the map begins at the robot's true start
   Route route;                                ///< survey, in world
-  std::vector<MarkedGoal> goals;              ///< given goals, in map
+  std::vector<SavedGoal> goals;              ///< given goals, in map
   std::vector<Eigen::Vector2d> footprint_m;   ///< outline of the robot
-  std::vector<TrueLeak> leaks;
-  std::optional<TrueLining> lining;
-  std::vector<TrueWater> waters;
+  std::vector<LeakGroundTruth> leaks;
+  std::optional<LiningGroundTruth> lining;
+  std::vector<WaterGroundTruth> waters;
   std::optional<Eigen::Vector3d> p_body_antenna;  ///< mount of the sounding antenna, m
   std::vector<Time> kidnaps;
   LocalizabilityOracle localizability;

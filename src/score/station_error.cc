@@ -19,19 +19,19 @@ constexpr double kRobust_m = 0.05;        // scale of the Cauchy weight
 constexpr int kMinPoints = 30;
 constexpr int kIterations = 20;
 // directions below this fraction of the largest information eigenvalue are not moved
-constexpr double kWeakShare = 0.03;
+constexpr double kDegenerateRatio = 0.03;
 
 // Search for displacements outside the convergence basin of the fit from the identity.
 constexpr double kSearch_m = 3.0;         // maximum along either axis
 constexpr double kSearchStep_m = 0.1;
 constexpr double kSearchRobust_m = 0.1;   // scale of the Cauchy weight during the search, wider to bridge the steps
-constexpr double kSearchTurn_deg = 2.0;   // step of the yaw
-constexpr int kSearchTurns = 2;
+constexpr double kSearchYawStep_deg = 2.0;   // step of the yaw
+constexpr int kSearchYawSteps = 2;
 constexpr std::size_t kMaxSearchPoints = 300;
 // the smaller of two motions counts when its score is at least this fraction of the other's
-constexpr double kAsGoodShare = 0.9;
+constexpr double kEquivalentScoreRatio = 0.9;
 
-std::vector<Eigen::Vector2d> points_round(const OccupancyGrid& built, const Pose2& T_world_map, const Eigen::Vector2d& center,
+std::vector<Eigen::Vector2d> points_near(const OccupancyGrid& built, const Pose2& T_world_map, const Eigen::Vector2d& center,
                                           double radius_m) {
   std::vector<Eigen::Vector2d> near;
   for (const Eigen::Vector2d& p_map : occupied_points(built)) {
@@ -61,7 +61,7 @@ Eigen::Vector3d step(const DistanceField& field, const std::vector<Eigen::Vector
   Eigen::Vector3d result = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
     const double value = eigen.values[i];
-    if (value <= kWeakShare * eigen.values[2]) continue;
+    if (value <= kDegenerateRatio * eigen.values[2]) continue;
     result -= eigen.vectors.col(i) * (eigen.vectors.col(i).dot(gradient) / value);
   }
   return result;
@@ -78,7 +78,7 @@ Pose2 refine(const DistanceField& field, const std::vector<Eigen::Vector2d>& poi
 }
 
 /// Mean weight of the moved points: 1 when all lie on surfaces, near 0 when all are much farther than `robust_m`.
-double score_of(const DistanceField& field, const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& center,
+double mean_weight(const DistanceField& field, const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& center,
                 const Pose2& motion, double robust_m) {
   double sum = 0.0;
   for (const Eigen::Vector2d& point : points) {
@@ -88,7 +88,7 @@ double score_of(const DistanceField& field, const std::vector<Eigen::Vector2d>& 
   return sum / static_cast<double>(points.size());
 }
 
-/// Smallest motion of a grid whose score is within `kAsGoodShare` of the best. Along a straight wall many motions fit
+/// Smallest motion of a grid whose score is within `kEquivalentScoreRatio` of the best. Along a straight wall many motions fit
 /// equally well; the smallest is the one across the wall.
 Pose2 search(const DistanceField& field, const std::vector<Eigen::Vector2d>& all, const Eigen::Vector2d& center, double radius_m) {
   std::vector<Eigen::Vector2d> points;
@@ -103,18 +103,18 @@ Pose2 search(const DistanceField& field, const std::vector<Eigen::Vector2d>& all
   std::vector<Candidate> candidates;
   double best = 0.0;
   const int steps = static_cast<int>(std::lround(kSearch_m / kSearchStep_m));
-  for (int turn = -kSearchTurns; turn <= kSearchTurns; ++turn) {
-    const double yaw = turn * to_rad(kSearchTurn_deg);
+  for (int turn = -kSearchYawSteps; turn <= kSearchYawSteps; ++turn) {
+    const double yaw = turn * to_rad(kSearchYawStep_deg);
     for (int i = -steps; i <= steps; ++i) {
       for (int j = -steps; j <= steps; ++j) {
         const Pose2 motion{kSearchStep_m * i, kSearchStep_m * j, yaw};
-        const double score = score_of(field, points, center, motion, kSearchRobust_m);
+        const double score = mean_weight(field, points, center, motion, kSearchRobust_m);
         candidates.push_back({motion, score, std::hypot(motion.x, motion.y, yaw * radius_m)});
         best = std::max(best, score);
       }
     }
   }
-  std::erase_if(candidates, [&](const Candidate& candidate) { return candidate.score < kAsGoodShare * best; });
+  std::erase_if(candidates, [&](const Candidate& candidate) { return candidate.score < kEquivalentScoreRatio * best; });
   const auto is_smaller = [](const Candidate& a, const Candidate& b) { return a.size_m < b.size_m; };
   return std::min_element(candidates.begin(), candidates.end(), is_smaller)->motion;
 }
@@ -124,15 +124,15 @@ Pose2 search(const DistanceField& field, const std::vector<Eigen::Vector2d>& all
 std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2& T_world_map,
                                          const ReferenceMap& reference, const Eigen::Vector2d& p_world_target,
                                          double radius_m) {
-  const std::vector<Eigen::Vector2d> points = points_round(built, T_world_map, p_world_target, radius_m);
+  const std::vector<Eigen::Vector2d> points = points_near(built, T_world_map, p_world_target, radius_m);
   if (points.size() < kMinPoints) return std::nullopt;
   const DistanceField field(occupied_cells(reference.cells));
   if (!std::isfinite(field.distance_m(p_world_target))) return std::nullopt;
-  const auto score = [&](const Pose2& motion) { return score_of(field, points, p_world_target, motion, kRobust_m); };
+  const auto score = [&](const Pose2& motion) { return mean_weight(field, points, p_world_target, motion, kRobust_m); };
   const Pose2 near = refine(field, points, p_world_target, {}, radius_m);
-  if (score(near) >= kAsGoodShare) return near.position().norm();  // the score is at most 1
+  if (score(near) >= kEquivalentScoreRatio) return near.position().norm();  // the score is at most 1
   const Pose2 far = refine(field, points, p_world_target, search(field, points, p_world_target, radius_m), radius_m);
-  const bool is_near_as_good = score(near) >= kAsGoodShare * score(far);
+  const bool is_near_as_good = score(near) >= kEquivalentScoreRatio * score(far);
   return (is_near_as_good ? near : far).position().norm();
 }
 
@@ -149,12 +149,12 @@ std::vector<StationError> station_errors(const Route& route_in_world, const std:
       if (event.kind != EventKind::kStationReached || event.subject != station.name) continue;
       const std::optional<Pose3> truth = pose_at(T_world_body, event.stamp);
       if (!truth) continue;
-      const Pose2 T_world_truth = to_planar(*truth), T_world_estimate = T_world_map * event.T_map_body;
+      const Pose2 T_world_truth = to_pose2(*truth), T_world_estimate = T_world_map * event.T_map_body;
       error.is_reached = true;
       error.position_error_m = (T_world_estimate.position() - T_world_truth.position()).norm();
       error.heading_error_deg =
           to_deg(std::abs(wrap_angle(T_world_estimate.yaw - T_world_truth.yaw)));
-      error.stand_error_m = (T_world_truth.position() - station.T_route_body.position()).norm();
+      error.goal_position_error_m = (T_world_truth.position() - station.T_route_body.position()).norm();
     }
     errors.push_back(error);
   }

@@ -19,7 +19,7 @@ struct StationError {
   bool is_reached = false;
   double position_error_m = 0.0;   ///< error of the estimated pose at the time of the arrival event
   double heading_error_deg = 0.0;  ///< absolute value, at the arrival event
-  double stand_error_m = 0.0;      ///< distance of the true position from the surveyed one
+  double goal_position_error_m = 0.0;      ///< distance of the true position from the surveyed one
   std::optional<double> map_error_m;  ///< displacement of the station's target in the built map
 };
 

@@ -16,7 +16,7 @@ double student_t(std::size_t degrees_of_freedom, double level) {
 }
 
 /// Ranks from 1, [value]; equal values have the mean of their ranks.
-std::vector<double> ranks_of(const std::vector<double>& values) {
+std::vector<double> to_ranks(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
@@ -80,7 +80,7 @@ std::optional<Interval> mean_interval(const std::vector<double>& values, double 
 }
 
 std::optional<double> rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  const std::vector<double> ranks_a = ranks_of(a), ranks_b = ranks_of(b);
+  const std::vector<double> ranks_a = to_ranks(a), ranks_b = to_ranks(b);
   const double spread = std::sqrt(variance(ranks_a) * variance(ranks_b));
   if (!(spread > 0.0)) return std::nullopt;
   const double mean_a = mean(ranks_a), mean_b = mean(ranks_b);
@@ -89,8 +89,8 @@ std::optional<double> rank_correlation(const std::vector<double>& a, const std::
   return covariance / static_cast<double>(a.size() - 1) / spread;
 }
 
-std::optional<double> chance_of_order(const std::vector<double>& values, const std::vector<bool>& is_marked) {
-  const std::vector<double> ranks = ranks_of(values);
+std::optional<double> roc_auc(const std::vector<double>& values, const std::vector<bool>& is_marked) {
+  const std::vector<double> ranks = to_ranks(values);
   double sum = 0.0, num_marked = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!is_marked[i]) continue;

@@ -34,6 +34,6 @@ std::optional<double> rank_correlation(const std::vector<double>& a, const std::
 
 /// Probability that a marked value is greater than an unmarked one; ties count half. This is the area under the ROC
 /// curve, Mann-Whitney's U / (n m). None unless there are marked and unmarked values.
-std::optional<double> chance_of_order(const std::vector<double>& values, const std::vector<bool>& is_marked);
+std::optional<double> roc_auc(const std::vector<double>& values, const std::vector<bool>& is_marked);
 
 }  // namespace patrol::score

@@ -11,7 +11,7 @@
 namespace patrol::score {
 namespace {
 
-constexpr double kStretch_m = 1.0;
+constexpr double kSegment_m = 1.0;
 constexpr Time kMaxStampDifference = std::chrono::milliseconds(10);
 
 struct RelativeError {
@@ -22,14 +22,14 @@ struct RelativeError {
 /// Relative pose error [Kuemmerle09; Sturm12] of every segment from a pose to the first pose that is at least 1 m of
 /// true distance later.
 RelativeError relative_error(const std::vector<MatchedPose>& poses) {
-  std::vector<double> way_m(poses.size(), 0.0);
+  std::vector<double> traveled_m(poses.size(), 0.0);
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    way_m[i] = way_m[i - 1] +
+    traveled_m[i] = traveled_m[i - 1] +
                (poses[i].T_world_truth.position() - poses[i - 1].T_world_truth.position()).norm();
   }
   RelativeError error;
   for (std::size_t begin = 0, end = 0; begin < poses.size(); ++begin) {
-    while (end < poses.size() && way_m[end] - way_m[begin] < kStretch_m) ++end;
+    while (end < poses.size() && traveled_m[end] - traveled_m[begin] < kSegment_m) ++end;
     if (end == poses.size()) break;
     const Pose2 truth = poses[begin].T_world_truth.inverse() * poses[end].T_world_truth;
     const Pose2 estimate = poses[begin].T_world_estimate.inverse() * poses[end].T_world_estimate;
@@ -70,9 +70,9 @@ PointPairs pair_by_stamp(const Trajectory& estimate, const Trajectory& reference
   const auto count = static_cast<Eigen::Index>(indices.size());
   PointPairs pairs{Eigen::Matrix3Xd(3, count), Eigen::Matrix3Xd(3, count)};
   for (Eigen::Index i = 0; i < count; ++i) {
-    const auto [of_shorter, of_longer] = indices[static_cast<std::size_t>(i)];
-    (estimate_is_shorter ? pairs.estimate : pairs.reference).col(i) = shorter[of_shorter].pose.position;
-    (estimate_is_shorter ? pairs.reference : pairs.estimate).col(i) = longer[of_longer].pose.position;
+    const auto [shorter_index, longer_index] = indices[static_cast<std::size_t>(i)];
+    (estimate_is_shorter ? pairs.estimate : pairs.reference).col(i) = shorter[shorter_index].pose.position;
+    (estimate_is_shorter ? pairs.reference : pairs.estimate).col(i) = longer[longer_index].pose.position;
   }
   return pairs;
 }
@@ -96,22 +96,22 @@ Pose3 fit_rigid_motion(const PointPairs& pairs) {
 
 }  // namespace
 
-Pose2 join_at_start(const Trajectory& T_map_body, const Trajectory& T_world_body) {
+Pose2 align_at_start(const Trajectory& T_map_body, const Trajectory& T_world_body) {
   for (const StampedPose& entry : T_map_body) {
     if (const auto truth = pose_at(T_world_body, entry.stamp)) {
-      return to_planar(*truth) * to_planar(entry.pose).inverse();
+      return to_pose2(*truth) * to_pose2(entry.pose).inverse();
     }
   }
   throw InputError("the estimate and the reference have no instant in common");
 }
 
-std::vector<MatchedPose> match_poses(const Trajectory& T_map_body, const Pose2& T_world_map,
+std::vector<MatchedPose> pair_poses(const Trajectory& T_map_body, const Pose2& T_world_map,
                                      const Trajectory& T_world_body) {
   std::vector<MatchedPose> matches;
   matches.reserve(T_map_body.size());
   for (const StampedPose& entry : T_map_body) {
     if (const auto truth = pose_at(T_world_body, entry.stamp)) {
-      matches.push_back({entry.stamp, T_world_map * to_planar(entry.pose), to_planar(*truth)});
+      matches.push_back({entry.stamp, T_world_map * to_pose2(entry.pose), to_pose2(*truth)});
     }
   }
   return matches;
@@ -119,7 +119,7 @@ std::vector<MatchedPose> match_poses(const Trajectory& T_map_body, const Pose2& 
 
 TrajectoryError trajectory_error(const Trajectory& T_map_body, const Pose2& T_world_map,
                                  const Trajectory& T_world_body) {
-  const std::vector<MatchedPose> poses = match_poses(T_map_body, T_world_map, T_world_body);
+  const std::vector<MatchedPose> poses = pair_poses(T_map_body, T_world_map, T_world_body);
   if (poses.empty()) throw InputError("the estimate and the reference have no instant in common");
   std::vector<double> position_m, heading_rad;
   for (const MatchedPose& pose : poses) {

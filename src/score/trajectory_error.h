@@ -23,10 +23,10 @@ struct MatchedPose {
 /// Pose of the estimate's frame in world that makes both trajectories agree at their first common stamp. This models a
 /// robot that starts at a known pose and is not corrected afterwards. Throws InputError when the trajectories do not
 /// overlap in time.
-Pose2 join_at_start(const Trajectory& T_map_body, const Trajectory& T_world_body);
+Pose2 align_at_start(const Trajectory& T_map_body, const Trajectory& T_world_body);
 
 /// Matches every pose of the estimate within the time range of the ground truth, interpolated to the pose's stamp.
-std::vector<MatchedPose> match_poses(const Trajectory& T_map_body, const Pose2& T_world_map,
+std::vector<MatchedPose> pair_poses(const Trajectory& T_map_body, const Pose2& T_world_map,
                                      const Trajectory& T_world_body);
 
 /// Trajectory error without any fit of the estimate to the ground truth.

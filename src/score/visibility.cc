@@ -56,46 +56,46 @@ std::vector<Eigen::Vector2d> thin_out(const Trajectory& T_world_body, double spa
   return places;
 }
 
-void mark_round(ReferenceMap& reference, Cell hit) {
+void mark_neighborhood(ReferenceMap& reference, Cell hit) {
   for (int row = hit.row - 1; row <= hit.row + 1; ++row) {
     for (int col = hit.col - 1; col <= hit.col + 1; ++col) {
       if (reference.cells.contains({col, row}) && reference.cells.at({col, row}) == kOccupied) {
-        reference.is_seeable.at({col, row}) = 1;
+        reference.is_observable.at({col, row}) = 1;
       }
     }
   }
 }
 
-void look(ReferenceMap& reference, const Eigen::Vector2d& from_m, double angle_rad, double max_range_m) {
+void mark_ray(ReferenceMap& reference, const Eigen::Vector2d& from_m, double angle_rad, double max_range_m) {
   CellWalk walk(reference.cells.geometry(), from_m, {std::cos(angle_rad), std::sin(angle_rad)});
   for (; reference.cells.contains(walk.cell()) && walk.entered_at_m() <= max_range_m; walk.advance()) {
     const std::int8_t value = reference.cells.at(walk.cell());
     if (value == kUnknown) return;
-    reference.is_seeable.at(walk.cell()) = 1;
-    if (value == kOccupied) return mark_round(reference, walk.cell());
+    reference.is_observable.at(walk.cell()) = 1;
+    if (value == kOccupied) return mark_neighborhood(reference, walk.cell());
   }
 }
 
 }  // namespace
 
-ReferenceMap mark_seeable(OccupancyGrid reference, const Trajectory& T_world_body, double max_range_m, double spacing_m) {
+ReferenceMap mark_observable(OccupancyGrid reference, const Trajectory& T_world_body, double max_range_m, double spacing_m) {
   const GridGeometry geometry = reference.geometry();
   ReferenceMap marked{std::move(reference), Grid<std::uint8_t>(geometry)};
-  // Adjacent rays are two cells apart at full range; `mark_round` fills the gap.
+  // Adjacent rays are two cells apart at full range; `mark_neighborhood` fills the gap.
   const double step_rad = 2.0 * geometry.resolution_m / max_range_m;
   const int num_rays = static_cast<int>(std::ceil(2.0 * std::numbers::pi / step_rad));
   for (const Eigen::Vector2d& place : thin_out(T_world_body, spacing_m)) {
     for (int ray = 0; ray < num_rays; ++ray) {
-      look(marked, place, 2.0 * std::numbers::pi * ray / num_rays, max_range_m);
+      mark_ray(marked, place, 2.0 * std::numbers::pi * ray / num_rays, max_range_m);
     }
   }
   return marked;
 }
 
-OccupancyGrid seeable_part(const ReferenceMap& reference) {
+OccupancyGrid observable_part(const ReferenceMap& reference) {
   OccupancyGrid part = reference.cells;
   for (std::size_t i = 0; i < part.values().size(); ++i) {
-    if (reference.is_seeable.values()[i] == 0) part.values()[i] = kUnknown;
+    if (reference.is_observable.values()[i] == 0) part.values()[i] = kUnknown;
   }
   return part;
 }

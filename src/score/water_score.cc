@@ -12,7 +12,7 @@ namespace {
 /// 95 % quantile of the chi-squared distribution with three degrees of freedom.
 constexpr double kChiSquared3 = 7.815;
 
-std::optional<std::size_t> nearest_body(const std::vector<TrueWater>& bodies, const Eigen::Vector3d& p_world_m, double max_distance_m) {
+std::optional<std::size_t> nearest_body(const std::vector<WaterGroundTruth>& bodies, const Eigen::Vector3d& p_world_m, double max_distance_m) {
   std::optional<std::size_t> nearest;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const double distance_m = (bodies[i].p_world_m - p_world_m).norm();
@@ -25,31 +25,31 @@ std::optional<std::size_t> nearest_body(const std::vector<TrueWater>& bodies, co
 
 }  // namespace
 
-WaterScore water_score(const std::vector<WaterResult>& results, const std::vector<TrueWater>& bodies, const Pose2& T_world_map,
+WaterScore water_score(const std::vector<WaterResult>& results, const std::vector<WaterGroundTruth>& bodies, const Pose2& T_world_map,
                        const Trajectory& T_world_body, const Eigen::Vector3d& p_body_antenna, double max_distance_m) {
   WaterScore score{.bodies = static_cast<int>(bodies.size()), .findings = {}};
   std::set<std::size_t> found;
   for (const WaterResult& result : results) {
     if (result.soundings > 0) ++score.stations;
-    const std::optional<Pose3> standing = pose_at(T_world_body, result.stamp);
-    if (!result.is_found || !standing) continue;
-    const Pose3 T_world_map_at_height = to_spatial(T_world_map, standing->position.z());
+    const std::optional<Pose3> T_world_body_at_stamp = pose_at(T_world_body, result.stamp);
+    if (!result.is_found || !T_world_body_at_stamp) continue;
+    const Pose3 T_world_map_at_height = to_pose3(T_world_map, T_world_body_at_stamp->position.z());
     const Eigen::Vector3d p_world_m = T_world_map_at_height * result.p_map;
     WaterFinding finding{.station = result.station, .body = nearest_body(bodies, p_world_m, max_distance_m)};
     if (!finding.body) {
       ++score.false_alarms;
     } else {
       found.insert(*finding.body);
-      const TrueWater& body = bodies[*finding.body];
-      const Eigen::Vector3d error_m = p_world_m - body.p_world_m, way_m = body.p_world_m - *standing * p_body_antenna;
+      const WaterGroundTruth& body = bodies[*finding.body];
+      const Eigen::Vector3d error_m = p_world_m - body.p_world_m, way_m = body.p_world_m - *T_world_body_at_stamp * p_body_antenna;
       const Eigen::Matrix3d R = T_world_map_at_height.rotation.toRotationMatrix();
       const Eigen::Matrix3d covariance_m2 = R * result.covariance_m2 * R.transpose();
       finding.position_error_m = error_m.norm();
       finding.ahead_error_m = error_m.dot(way_m.normalized());
       finding.radius_error_m = result.radius_m - body.radius_m;
-      finding.distance_holds = way_m.norm() >= result.distance_low_m && way_m.norm() <= result.distance_high_m;
-      finding.radius_holds = body.radius_m >= result.radius_low_m && body.radius_m <= result.radius_high_m;
-      finding.position_holds = error_m.dot(solve_symmetric(covariance_m2, error_m)) <= kChiSquared3;
+      finding.distance_in_interval = way_m.norm() >= result.distance_low_m && way_m.norm() <= result.distance_high_m;
+      finding.radius_in_interval = body.radius_m >= result.radius_low_m && body.radius_m <= result.radius_high_m;
+      finding.position_in_ellipsoid = error_m.dot(solve_symmetric(covariance_m2, error_m)) <= kChiSquared3;
     }
     score.findings.push_back(finding);
   }

@@ -12,7 +12,7 @@
 namespace patrol::score {
 
 /// Water body of the simulated world.
-struct TrueWater {
+struct WaterGroundTruth {
   Eigen::Vector3d p_world_m = Eigen::Vector3d::Zero();
   double radius_m = 0.0;
 };
@@ -24,9 +24,9 @@ struct WaterFinding {
   double position_error_m = 0.0;    ///< distance in space (3D)
   double ahead_error_m = 0.0;  ///< error along the line from the antenna to the body; positive: reported too far away
   double radius_error_m = 0.0;
-  bool distance_holds = false;      ///< the reported distance interval contains the true distance
-  bool radius_holds = false;  ///< the reported radius interval contains the true radius
-  bool position_holds = false;      ///< the true position lies within the 95 % ellipsoid of the reported one
+  bool distance_in_interval = false;      ///< the reported distance interval contains the true distance
+  bool radius_in_interval = false;  ///< the reported radius interval contains the true radius
+  bool position_in_ellipsoid = false;      ///< the true position lies within the 95 % ellipsoid of the reported one
 };
 
 /// Number of bodies found and missed and of false alarms, with all findings.
@@ -43,7 +43,7 @@ struct WaterScore {
 /// false alarm. Findings are transformed to world by `T_world_map` in the plane and by the robot's true height, which
 /// is not estimated. Distances start at the true antenna, `p_body_antenna` in body. Without any sounding, no body
 /// counts as missed.
-WaterScore water_score(const std::vector<WaterResult>& results, const std::vector<TrueWater>& bodies, const Pose2& T_world_map,
+WaterScore water_score(const std::vector<WaterResult>& results, const std::vector<WaterGroundTruth>& bodies, const Pose2& T_world_map,
                        const Trajectory& T_world_body, const Eigen::Vector3d& p_body_antenna, double max_distance_m = 6.0);
 
 }  // namespace patrol::score

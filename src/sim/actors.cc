@@ -20,8 +20,8 @@ constexpr double kHipWidth_m = 0.09;    // lateral offset of each hip from the c
 constexpr double kThigh_m = 0.43, kShank_m = 0.43;
 constexpr double kStep_m = 0.65;        // length of a step; a stride is two steps
 
-constexpr double kForesight_s = 1.5;    // prediction horizon for the robot's position
-constexpr double kForesightStep_s = 0.25;
+constexpr double kPredictionHorizon_s = 1.5;    // prediction horizon for the robot's position
+constexpr double kPredictionStep_s = 0.25;
 
 /// Half extents of an actor along and across its course; the lateral one includes a comfort margin.
 struct Extent {
@@ -77,7 +77,7 @@ constexpr double kLeg_m = kThigh_m + kShank_m - 0.012;  // distance from hip to 
                                                         // knee
 
 /// Returns the fraction of the full stride length that is used at a speed.
-double stride_share(double speed_mps) { return std::min(speed_mps / 0.4, 1.0); }
+double stride_fraction(double speed_mps) { return std::min(speed_mps / 0.4, 1.0); }
 
 /// Returns the phase of a foot in its stride: stance for 0 ... 0.5, then swing. `side` 0 is left.
 double stride_phase(double walked_m, int side) {
@@ -91,7 +91,7 @@ double foot_forward_m(double phase) { return kStep_m * (phase < 0.5 ? 0.5 - 2.0 
 /// Returns the drop of the hip as it passes over the stance foot like the end of a stiff pendulum.
 double hip_drop_m(double walked_m, double speed_mps) {
   const double left = stride_phase(walked_m, 0);
-  const double forward = stride_share(speed_mps) * foot_forward_m(left < 0.5 ? left : stride_phase(walked_m, 1));
+  const double forward = stride_fraction(speed_mps) * foot_forward_m(left < 0.5 ? left : stride_phase(walked_m, 1));
   return kLeg_m - std::sqrt(kLeg_m * kLeg_m - forward * forward);
 }
 
@@ -175,28 +175,28 @@ double Actors::course_rad(const Actor& actor) {
   return actor.path.heading_rad(along_path(actor)) + (is_returning(actor) ? std::numbers::pi : 0.0);
 }
 
-bool Actors::must_wait(const Actor& actor, const RobotInView& robot) {
+bool Actors::must_yield(const Actor& actor, const ObservedRobot& robot) {
   const double course = course_rad(actor);
   const Eigen::Vector2d ahead(std::cos(course), std::sin(course));
   const Eigen::Vector2d p_actor = actor.path.position(along_path(actor));
   const Extent extent = extent_of(actor.settings);
-  for (double in_s = 0.0; in_s <= kForesight_s; in_s += kForesightStep_s) {
+  for (double in_s = 0.0; in_s <= kPredictionHorizon_s; in_s += kPredictionStep_s) {
     const Eigen::Vector2d to_robot = robot.p_world + in_s * robot.v_world_mps - p_actor;
     const double gap_m = to_robot.dot(ahead) - extent.half_length_m;
     const double across_m = std::abs(to_robot.x() * ahead.y() - to_robot.y() * ahead.x());
-    const double nearest_m = in_s > 0.0 ? robot.radius_m : -extent.half_length_m;  // an actor closer than this clears
+    const double min_gap_m = in_s > 0.0 ? robot.radius_m : -extent.half_length_m;  // an actor closer than this clears
                                                                                    // the robot's path sooner by walking
                                                                                    // on
-    if (gap_m > nearest_m && gap_m < actor.settings.yield_distance_m && across_m < extent.half_width_m + robot.radius_m) return true;
+    if (gap_m > min_gap_m && gap_m < actor.settings.yield_distance_m && across_m < extent.half_width_m + robot.radius_m) return true;
   }
   return false;
 }
 
-void Actors::advance(Time now, const RobotInView& robot, mjData& data) {
+void Actors::advance(Time now, const ObservedRobot& robot, mjData& data) {
   const double dt_s = to_seconds(now - last_);
   last_ = now;
   for (Actor& actor : actors_) {
-    const bool waits = must_wait(actor, robot);
+    const bool waits = must_yield(actor, robot);
     const bool is_over = !actor.settings.loop && actor.walked_m >= actor.path.length_m();
     const double wanted = waits || is_over || to_seconds(now) < actor.settings.start_s ? 0.0 : actor.settings.speed_mps;
     const double change = (waits ? 4.0 : 1.0) * kAcceleration_mps2 * dt_s;
@@ -214,8 +214,8 @@ std::vector<Eigen::Vector2d> Actors::positions() const {
 
 void Actors::place(const Actor& actor, mjData& data) const {
   const double along = along_path(actor);
-  const bool is_turned = is_returning(actor) && actor.settings.kind != "car";  // a car reverses
-  const double heading = actor.path.heading_rad(along) + (is_turned ? std::numbers::pi : 0.0);
+  const bool is_facing_back = is_returning(actor) && actor.settings.kind != "car";  // a car reverses
+  const double heading = actor.path.heading_rad(along) + (is_facing_back ? std::numbers::pi : 0.0);
   // Average the ground height so that the hip rises at curbs over a step length instead of at once.
   const auto ground_at_index = [&](double at) {
     const auto i = static_cast<std::size_t>(std::clamp(at / kGroundStep_m, 0.0, static_cast<double>(actor.ground_m.size() - 1)));
@@ -227,13 +227,13 @@ void Actors::place(const Actor& actor, mjData& data) const {
   const double drop = has_legs ? hip_drop_m(actor.walked_m, actor.speed_mps) : 0.0;
   const Eigen::Vector3d origin(place.x(), place.y(), ground + actor.base_height_m - drop);
   set_pose(data, actor.mocap[0], origin, quaternion_from_yaw(heading));
-  if (has_legs) place_legs(actor, origin, heading, data);
+  if (has_legs) write_leg_poses(actor, origin, heading, data);
 }
 
 // Each foot is in stance for half a stride while the hip passes over it, then swings forward at twice the speed.
-void Actors::place_legs(const Actor& actor, const Eigen::Vector3d& hip, double heading_rad, mjData& data) const {
+void Actors::write_leg_poses(const Actor& actor, const Eigen::Vector3d& hip, double heading_rad, mjData& data) const {
   const Eigen::Quaterniond yaw = quaternion_from_yaw(heading_rad);
-  const double share = stride_share(actor.speed_mps);
+  const double share = stride_fraction(actor.speed_mps);
   const double hip_height = kLeg_m - hip_drop_m(actor.walked_m, actor.speed_mps);
   for (int side = 0; side < 2; ++side) {
     const double phase = stride_phase(actor.walked_m, side);

@@ -49,7 +49,7 @@ struct ActorSettings {
 };
 
 /// Robot as the actors observe it, in world.
-struct RobotInView {
+struct ObservedRobot {
   Eigen::Vector2d p_world;
   Eigen::Vector2d v_world_mps = Eigen::Vector2d::Zero();
   double radius_m = 0.0;  ///< radius of the circle around the robot's outline
@@ -85,7 +85,7 @@ class Actors {
   Actors(const mjModel& model, const std::vector<ActorSettings>& settings);
 
   /// Advances all actors to `now` and writes their poses.
-  void advance(Time now, const RobotInView& robot, mjData& data);
+  void advance(Time now, const ObservedRobot& robot, mjData& data);
 
   /// Returns the positions of all actors, in world.
   std::vector<Eigen::Vector2d> positions() const;
@@ -102,11 +102,11 @@ class Actors {
   };
 
   void place(const Actor& actor, mjData& data) const;
-  void place_legs(const Actor& actor, const Eigen::Vector3d& hip, double heading_rad, mjData& data) const;
+  void write_leg_poses(const Actor& actor, const Eigen::Vector3d& hip, double heading_rad, mjData& data) const;
   static double along_path(const Actor& actor);
   static bool is_returning(const Actor& actor);
   static double course_rad(const Actor& actor);
-  static bool must_wait(const Actor& actor, const RobotInView& robot);
+  static bool must_yield(const Actor& actor, const ObservedRobot& robot);
 
   std::vector<Actor> actors_;
   Time last_{};

@@ -18,9 +18,9 @@ int joint_id(const mjModel& physics, const char* name) {
   return joint;
 }
 
-/// Returns the speed from which a servo can stop within `way_rad`.
-double braking_speed(double way_rad, double acceleration_radps2) {
-  return std::copysign(std::sqrt(2.0 * acceleration_radps2 * std::abs(way_rad)), way_rad);
+/// Returns the speed from which a servo can stop within `distance_rad`.
+double braking_speed(double distance_rad, double acceleration_radps2) {
+  return std::copysign(std::sqrt(2.0 * acceleration_radps2 * std::abs(distance_rad)), distance_rad);
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ void AntennaMount::command(const AntennaCommand& command) {
 }
 
 double AntennaMount::encoder_rad(const Servo& servo, const mjData& data) const {
-  const double angle_rad = data.qpos[servo.qpos] + servo.alignment_rad + servo.slack_rad;
+  const double angle_rad = data.qpos[servo.qpos] + servo.alignment_rad + servo.backlash_rad;
   const double step_rad = settings_.resolution_deg * kDegree;
   return step_rad > 0.0 ? step_rad * std::round(angle_rad / step_rad) : angle_rad;
 }
@@ -59,18 +59,18 @@ double AntennaMount::encoder_rad(const Servo& servo, const mjData& data) const {
 void AntennaMount::step(const mjModel& physics, mjData& data) {
   const double tick_s = physics.opt.timestep;
   for (Servo& servo : servos_) {
-    const double way_rad = servo.target_rad - servo.setpoint_rad;
-    const double most_radps = std::min(settings_.max_speed_radps, std::abs(braking_speed(way_rad, settings_.max_acceleration_radps2)));
-    const double gain_radps = settings_.max_acceleration_radps2 * tick_s;
-    const double wanted_radps = std::clamp(way_rad / tick_s, -most_radps, most_radps);
-    servo.speed_radps = std::clamp(wanted_radps, servo.speed_radps - gain_radps, servo.speed_radps + gain_radps);
-    if (std::abs(way_rad) <= std::abs(servo.speed_radps) * tick_s) servo.speed_radps = way_rad / tick_s;
+    const double distance_rad = servo.target_rad - servo.setpoint_rad;
+    const double limit_radps = std::min(settings_.max_speed_radps, std::abs(braking_speed(distance_rad, settings_.max_acceleration_radps2)));
+    const double max_change_radps = settings_.max_acceleration_radps2 * tick_s;
+    const double wanted_radps = std::clamp(distance_rad / tick_s, -limit_radps, limit_radps);
+    servo.speed_radps = std::clamp(wanted_radps, servo.speed_radps - max_change_radps, servo.speed_radps + max_change_radps);
+    if (std::abs(distance_rad) <= std::abs(servo.speed_radps) * tick_s) servo.speed_radps = distance_rad / tick_s;
     servo.setpoint_rad += servo.speed_radps * tick_s;
-    if (servo.speed_radps != 0.0) servo.slack_rad = std::copysign(settings_.backlash_deg / 2.0 * kDegree, servo.speed_radps);
+    if (servo.speed_radps != 0.0) servo.backlash_rad = std::copysign(settings_.backlash_deg / 2.0 * kDegree, servo.speed_radps);
 
     const double error_rad = servo.setpoint_rad - encoder_rad(servo, data);
-    const bool lets_go = servo.speed_radps == 0.0 && std::abs(error_rad) < settings_.dead_band_deg * kDegree;
-    const double spring_nm = lets_go ? 0.0 : settings_.stiffness_nm_per_rad * error_rad;
+    const bool is_within_dead_band = servo.speed_radps == 0.0 && std::abs(error_rad) < settings_.dead_band_deg * kDegree;
+    const double spring_nm = is_within_dead_band ? 0.0 : settings_.stiffness_nm_per_rad * error_rad;
     const double torque_nm = spring_nm + settings_.damping_nms_per_rad * (servo.speed_radps - data.qvel[servo.dof]);
     data.ctrl[servo.motor] = std::clamp(torque_nm, -servo.limit.effort_nm, servo.limit.effort_nm);
   }
@@ -82,7 +82,7 @@ std::optional<AntennaState> AntennaMount::read(const mjData& data, Time now) {
   return AntennaState{.stamp = now, .yaw_rad = encoder_rad(servos_[0], data), .pitch_rad = encoder_rad(servos_[1], data)};
 }
 
-bool AntennaMount::is_out(const mjData& data) const {
+bool AntennaMount::is_deployed(const mjData& data) const {
   constexpr double kStowed_rad = 3.0 * kDegree;
   return std::any_of(servos_.begin(), servos_.end(),
                      [&](const Servo& servo) { return std::abs(encoder_rad(servo, data) - servo.stowed_rad) > kStowed_rad; });

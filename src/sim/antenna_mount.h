@@ -33,7 +33,7 @@ class AntennaMount {
   std::optional<AntennaState> read(const mjData& data, Time now);
 
   /// Returns whether the antenna is not stowed, according to the encoders.
-  bool is_out(const mjData& data) const;
+  bool is_deployed(const mjData& data) const;
 
  private:
   struct Servo {
@@ -42,7 +42,7 @@ class AntennaMount {
     double stowed_rad;
     double alignment_rad;
     double target_rad, setpoint_rad, speed_radps = 0.0;
-    double slack_rad = 0.0;  ///< half the backlash, signed by the side of the last motion
+    double backlash_rad = 0.0;  ///< half the backlash, signed by the side of the last motion
   };
   double encoder_rad(const Servo& servo, const mjData& data) const;
 

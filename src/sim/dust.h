@@ -26,7 +26,7 @@ struct DustSettings {
 
   /// Returns the distance in clear air from which a surface returns as little light as from `distance_m` in dust. Both
   /// fall with the square of the distance, in dust also with exp(-extinction) each way.
-  double clear_distance_m(double distance_m) const { return distance_m * std::exp(extinction_per_m() * distance_m); }
+  double equivalent_clear_distance_m(double distance_m) const { return distance_m * std::exp(extinction_per_m() * distance_m); }
 };
 
 }  // namespace patrol::sim

@@ -204,12 +204,12 @@ RTCRayHit make_query(const Eigen::Vector3d& origin, const Eigen::Vector3d& direc
 
 }  // namespace
 
-bool is_round(int type) {
+bool is_analytic(int type) {
   return type == mjGEOM_SPHERE || type == mjGEOM_CAPSULE || type == mjGEOM_CYLINDER ||
          type == mjGEOM_ELLIPSOID;
 }
 
-bool is_asset(int type) { return !is_round(type) && type != mjGEOM_BOX && type != mjGEOM_PLANE; }
+bool is_asset(int type) { return !is_analytic(type) && type != mjGEOM_BOX && type != mjGEOM_PLANE; }
 
 EmbreeScene::EmbreeScene(RTCDevice device, RTCBuildQuality quality)
     : device_(device), scene_(rtcNewScene(device)) {
@@ -220,7 +220,7 @@ EmbreeScene::EmbreeScene(RTCDevice device, RTCBuildQuality quality)
 EmbreeScene::~EmbreeScene() { rtcReleaseScene(scene_); }
 
 void EmbreeScene::add(const mjModel& model, const PlacedGeom& placed) {
-  const RTCGeometry geometry = is_round(placed.type) ? make_round(placed) : make_triangles(model, placed);
+  const RTCGeometry geometry = is_analytic(placed.type) ? make_round(placed) : make_triangles(model, placed);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_, geometry);
   rtcReleaseGeometry(geometry);

@@ -25,7 +25,7 @@ struct PlacedGeom {
 };
 
 /// Returns whether the type is a sphere, capsule, cylinder or ellipsoid.
-bool is_round(int type);
+bool is_analytic(int type);
 
 /// Returns whether the shape is stored in the model instead of in the geom's size: meshes, height fields and others.
 bool is_asset(int type);

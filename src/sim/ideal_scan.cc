@@ -7,9 +7,9 @@
 
 namespace patrol::sim {
 
-std::vector<SurfaceReturn> ideal_scan(const LidarScene& scene, const Eigen::Vector3d& p_world_m, const IdealScanSettings& settings) {
+std::vector<BeamReturn> ideal_scan(const LidarScene& scene, const Eigen::Vector3d& p_world_m, const IdealScanSettings& settings) {
   const double least_cosine = std::cos(to_rad(settings.grazing_deg));
-  std::vector<SurfaceReturn> returns;
+  std::vector<BeamReturn> returns;
   for (int beam = 0; beam < settings.beams; ++beam) {
     const double angle = 2.0 * std::numbers::pi * beam / settings.beams;
     const Eigen::Vector3d direction(std::cos(angle), std::sin(angle), 0.0);

@@ -16,7 +16,7 @@
 namespace patrol::sim {
 namespace {
 
-bool is_seen(const mjModel& model, int geom) {
+bool is_visible_to_lidar(const mjModel& model, int geom) {
   const int group = model.geom_group[geom];
   const bool is_transparent = model.geom_rgba[4 * geom + 3] <= 0.0f;
   return group == kGroupLidarOnly ||
@@ -44,7 +44,7 @@ struct MovingPart {
 };
 
 /// Returns whether the ray enters the box before `reach_m` or starts inside it.
-bool meets(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+bool intersects(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
            double reach_m) {
   const Eigen::Array3d inverse = direction.array().inverse();
   const Eigen::Array3d to_lower = (box.min() - origin).array() * inverse,
@@ -73,7 +73,7 @@ class Boxes {
 
   /// Calls `visit` with the index of every box that the ray may enter before `reach_m` or starts inside.
   template <typename Visit>
-  void visit_met(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float reach_m,
+  void visit_intersected(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float reach_m,
                  Visit visit) const {
     // Replace zero components by a tiny value, so that the inverse is finite and no product below is 0 x infinity.
     const Eigen::Array3f inverse =
@@ -111,13 +111,13 @@ class Boxes {
 struct LidarScene::Impl {
   explicit Impl(const mjModel& view) : model(view), device(rtcNewDevice("threads=1")) {
     if (device == nullptr) throw std::runtime_error("Embree cannot start");
-    still = std::make_unique<EmbreeScene>(device, RTC_BUILD_QUALITY_HIGH);
+    static_scene = std::make_unique<EmbreeScene>(device, RTC_BUILD_QUALITY_HIGH);
     const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(&model), mj_deleteData);
     mj_kinematics(&model, data.get());
     for (int geom = 0; geom < model.ngeom; ++geom) {
-      if (is_seen(model, geom)) add_geom(*data, geom);
+      if (is_visible_to_lidar(model, geom)) add_geom(*data, geom);
     }
-    still->build();
+    static_scene->build();
     for (MovingPart& part : parts) {
       if (part.assets) part.assets->build();
       enclose(part);
@@ -127,7 +127,7 @@ struct LidarScene::Impl {
   }
 
   ~Impl() {
-    still.reset();
+    static_scene.reset();
     parts.clear();
     rtcReleaseDevice(device);
   }
@@ -143,7 +143,7 @@ struct LidarScene::Impl {
     Eigen::Map<Eigen::Vector3d>(placed.position) = R_world_body.transpose() * (p_geom - p_body);
     Eigen::Map<Matrix3>(placed.rotation) = R_world_body.transpose() * R_world_geom;
     if (body == 0) {
-      still->add(model, placed);
+      static_scene->add(model, placed);
       return;
     }
     MovingPart& part = part_of(body, mask_of(model, model.geom_bodyid[geom]));
@@ -185,11 +185,11 @@ struct LidarScene::Impl {
   }
 
   /// Replaces `best` by the hit on a part if it is nearer than `reach_m`, and reduces `reach_m`.
-  static void cast_at(const MovingPart& part, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+  static void cast_at_part(const MovingPart& part, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                       double& reach_m, std::optional<RayHit>& best) {
     const Eigen::Vector3d from = part.rotation.transpose() * (origin - part.position);
     const Eigen::Vector3d along = part.rotation.transpose() * direction;
-    if (!meets(part.box, from, along, reach_m)) return;
+    if (!intersects(part.box, from, along, reach_m)) return;
     bool is_nearer = false;
     if (part.assets) {
       if (const auto hit = part.assets->cast(from, along, reach_m)) {
@@ -214,11 +214,11 @@ struct LidarScene::Impl {
   std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                              double max_range_m, std::uint32_t mask) const {
     std::optional<RayHit> best;
-    if (mask & kRayScenery) best = still->cast(origin, direction, max_range_m);
+    if (mask & kRayScenery) best = static_scene->cast(origin, direction, max_range_m);
     double reach_m = best ? best->distance_m : max_range_m;
-    boxes.visit_met(origin.cast<float>(), direction.cast<float>(), static_cast<float>(reach_m),
+    boxes.visit_intersected(origin.cast<float>(), direction.cast<float>(), static_cast<float>(reach_m),
                     [&](std::size_t i) {
-                      if (parts[i].mask & mask) cast_at(parts[i], origin, direction, reach_m, best);
+                      if (parts[i].mask & mask) cast_at_part(parts[i], origin, direction, reach_m, best);
                     });
     if (best && best->normal.dot(direction) > 0.0) best->normal = -best->normal;
     return best;
@@ -226,7 +226,7 @@ struct LidarScene::Impl {
 
   const mjModel& model;
   RTCDevice device;
-  std::unique_ptr<EmbreeScene> still;
+  std::unique_ptr<EmbreeScene> static_scene;
   std::vector<MovingPart> parts;
   Boxes boxes;  ///< bounding boxes, [part]
 };
@@ -235,7 +235,7 @@ LidarScene::LidarScene(const mjModel& view) : impl_(std::make_unique<Impl>(view)
 LidarScene::~LidarScene() = default;
 
 const mjModel& LidarScene::model() const { return impl_->model; }
-RTCSceneTy* LidarScene::still_scene() const { return impl_->still->handle(); }
+RTCSceneTy* LidarScene::static_scene() const { return impl_->static_scene->handle(); }
 void LidarScene::update(const mjData& data) { impl_->place(data); }
 
 std::optional<RayHit> LidarScene::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,

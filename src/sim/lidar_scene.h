@@ -55,7 +55,7 @@ class LidarScene {
 
   const mjModel& model() const;
   /// Returns Embree's scene of the static geometry, for benchmarks.
-  RTCSceneTy* still_scene() const;
+  RTCSceneTy* static_scene() const;
 
  private:
   struct Impl;

@@ -14,18 +14,18 @@ namespace patrol::sim {
 namespace {
 
 /// Returns the fraction of `inward_mm` that applies at a clock position.
-double share_at(const LiningMoveSettings& move, double clock_deg) {
+double fraction_at(const LiningDeformationSettings& move, double clock_deg) {
   if (move.kind == "settlement") return std::max(0.0, std::cos(clock_deg * kDegree));
   if (move.kind == "bulge") {
-    const double aside_deg = std::abs(std::remainder(clock_deg - move.clock_deg, 360.0));
-    return aside_deg < move.half_width_deg ? std::pow(std::cos(0.5 * std::numbers::pi * aside_deg / move.half_width_deg), 2.0) : 0.0;
+    const double offset_deg = std::abs(std::remainder(clock_deg - move.clock_deg, 360.0));
+    return offset_deg < move.half_width_deg ? std::pow(std::cos(0.5 * std::numbers::pi * offset_deg / move.half_width_deg), 2.0) : 0.0;
   }
   return 1.0;
 }
 
-void check(const std::vector<LiningMoveSettings>& moves, const std::optional<TunnelLining>& design) {
+void check(const std::vector<LiningDeformationSettings>& moves, const std::optional<TunnelLining>& design) {
   for (std::size_t i = 0; i < moves.size(); ++i) {
-    const LiningMoveSettings& move = moves[i];
+    const LiningDeformationSettings& move = moves[i];
     validate(move, fmt::format("lining.{}", i));
     const auto refuse = [&](const char* field, int ring, const std::string& why) {
       throw InputError(fmt::format("lining.{}.{} = {}: {}", i, field, ring, why));
@@ -41,15 +41,15 @@ constexpr double kIntradosTol_m = 0.05;
 
 }  // namespace
 
-double inward_m(const std::vector<LiningMoveSettings>& moves, int ring, double clock_deg) {
+double inward_m(const std::vector<LiningDeformationSettings>& moves, int ring, double clock_deg) {
   double inward = 0.0;
-  for (const LiningMoveSettings& move : moves) {
-    if (ring >= move.first_ring && ring <= move.last_ring) inward += 1e-3 * move.inward_mm * share_at(move, clock_deg);
+  for (const LiningDeformationSettings& move : moves) {
+    if (ring >= move.first_ring && ring <= move.last_ring) inward += 1e-3 * move.inward_mm * fraction_at(move, clock_deg);
   }
   return inward;
 }
 
-void move_lining(const std::vector<LiningMoveSettings>& moves, const std::optional<TunnelLining>& design, mjModel& view) {
+void deform_lining(const std::vector<LiningDeformationSettings>& moves, const std::optional<TunnelLining>& design, mjModel& view) {
   check(moves, design);
   if (moves.empty()) return;
   const int geom = mj_name2id(&view, mjOBJ_GEOM, "lining");
@@ -62,15 +62,15 @@ void move_lining(const std::vector<LiningMoveSettings>& moves, const std::option
   for (int corner = 0; corner < view.mesh_vertnum[mesh]; ++corner) {
     Eigen::Map<Eigen::Vector3f> in_mesh(view.mesh_vert + 3 * (view.mesh_vertadr[mesh] + corner));
     const Eigen::Vector3d p_world = T_world_mesh * in_mesh.cast<double>();
-    const TunnelPlace place = design->place_of(p_world);
+    const TunnelCoordinates place = design->to_tunnel_coordinates(p_world);
     const double clock_deg = design->clock_deg(place);
-    const double radius_m = std::hypot(place.left_m, place.height_m - design->crown_centre_m);
+    const double radius_m = std::hypot(place.left_m, place.height_m - design->crown_center_m);
     if (std::abs(radius_m - design->radius_at(clock_deg)) > kIntradosTol_m) continue;
     const double inward = inward_m(moves, design->ring_at(place.chainage_m), clock_deg);
     if (inward == 0.0) continue;
-    const double kept = 1.0 - inward / radius_m;  // fraction of the distance from the half circle's center that remains
-    const Eigen::Vector2d moved = design->point_at(place.chainage_m, kept * place.left_m);
-    const Eigen::Vector3d p_moved(moved.x(), moved.y(), design->crown_centre_m + kept * (place.height_m - design->crown_centre_m));
+    const double scale = 1.0 - inward / radius_m;  // fraction of the distance from the half circle's center that remains
+    const Eigen::Vector2d moved = design->point_at(place.chainage_m, scale * place.left_m);
+    const Eigen::Vector3d p_moved(moved.x(), moved.y(), design->crown_center_m + scale * (place.height_m - design->crown_center_m));
     in_mesh = (T_world_mesh.inverse() * p_moved).cast<float>();
   }
 }

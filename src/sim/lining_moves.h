@@ -18,7 +18,7 @@ namespace patrol::sim {
 /// - settlement: the half circle moves down by `inward_mm`, which is inward by the cosine of the clock position; the
 /// walls below stay.
 /// - bulge: moves inward by `inward_mm` at `clock_deg`, decreasing as cos^2 to zero at `half_width_deg` on both sides.
-struct LiningMoveSettings {
+struct LiningDeformationSettings {
   std::string kind = "convergence";
   int first_ring = 1;
   int last_ring = 1;
@@ -39,12 +39,12 @@ struct LiningMoveSettings {
 
 /// Returns the displacement of a ring's intrados at `clock_deg`, toward the center of the half circle. Deformations add
 /// up.
-double inward_m(const std::vector<LiningMoveSettings>& moves, int ring, double clock_deg);
+double inward_m(const std::vector<LiningDeformationSettings>& moves, int ring, double clock_deg);
 
 /// Deforms the inner face of the mesh of geom `lining`, whose vertices are on both sides of every joint between rings.
 ///
 /// Precondition: no scene and no renderer has been made of `view`. `design` is in world. Throws InputError naming
 /// `lining.<index>.<field>` when a setting is out of range, the ring does not exist, or the world has no lining.
-void move_lining(const std::vector<LiningMoveSettings>& moves, const std::optional<TunnelLining>& design, mjModel& view);
+void deform_lining(const std::vector<LiningDeformationSettings>& moves, const std::optional<TunnelLining>& design, mjModel& view);
 
 }  // namespace patrol::sim

@@ -15,21 +15,21 @@ namespace patrol::sim {
 namespace {
 
 /// Removes every geom that cannot be in contact. Masses are explicit in the files, so nothing else changes.
-void strip_untouchable(mjSpec& spec) { spec.compiler.discardvisual = 1; }
+void strip_visual_geoms(mjSpec& spec) { spec.compiler.discardvisual = 1; }
 
-SpecPtr load_world(const std::string& world_xml, const std::vector<PropSettings>& props) {
+SpecPtr load_world(const std::string& world_xml, const std::vector<StaticObstacleSettings>& props) {
   SpecPtr spec = load_spec(world_xml);
-  add_props(*spec, props);
+  add_static_obstacles(*spec, props);
   return spec;
 }
 
 double start_height_m(const std::string& world_xml, mjSpec& world, const Stance& stance, const Pose2& T_world_start) {
-  strip_untouchable(world);
+  strip_visual_geoms(world);
   const ModelPtr model = compile(world, world_xml);
   const DataPtr data = make_data(*model);
   mj_forward(model.get(), data.get());
   try {
-    return ground_height_m(*model, *data, stance, T_world_start, stance.eye_height_m) + stance.height_m;
+    return ground_height_m(*model, *data, stance, T_world_start, stance.max_ground_height_m) + stance.height_m;
   } catch (const InputError& error) {
     throw InputError(fmt::format("start pose {} in {}", error.what(), world_xml));
   }
@@ -52,7 +52,7 @@ void refuse_start_inside_something(const mjModel& model, const std::vector<doubl
 
 /// Enables sleep, with which MuJoCo computes the poses of static bodies once instead of at every step. The robot never
 /// sleeps.
-void spare_still_bodies(mjSpec& spec) {
+void enable_sleep(mjSpec& spec) {
   spec.option.enableflags |= mjENBL_SLEEP;
   mjs_findBody(&spec, frame_id::kBody)->sleep = mjSLEEP_NEVER;
 }
@@ -60,23 +60,23 @@ void spare_still_bodies(mjSpec& spec) {
 }  // namespace
 
 double ground_height_m(const mjModel& model, const mjData& data, const Stance& stance, const Pose2& T_world_body,
-                       double eye_height_m) {
+                       double max_ground_height_m) {
   constexpr mjtByte kScenery[mjNGROUP] = {1, 1, 1, 1, 0, 0};  // all groups but the robot's own
   const mjtNum down[3] = {0.0, 0.0, -1.0};
   double nearest_m = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector2d& support : stance.support_m) {
+  for (const Eigen::Vector2d& support : stance.support_points_m) {
     const Eigen::Vector2d p_world = T_world_body * support;
-    const mjtNum from[3] = {p_world.x(), p_world.y(), eye_height_m};
+    const mjtNum from[3] = {p_world.x(), p_world.y(), max_ground_height_m};
     const mjtNum distance = mj_ray(&model, &data, from, down, kScenery, 1, -1, nullptr, nullptr);
     if (distance >= 0.0) nearest_m = std::min(nearest_m, distance);
   }
   if (!std::isfinite(nearest_m)) {
     throw InputError(fmt::format("({:.2f}, {:.2f}): there is no ground below it", T_world_body.x, T_world_body.y));
   }
-  return eye_height_m - nearest_m;
+  return max_ground_height_m - nearest_m;
 }
 
-void put_legs_in_start_posture(const mjModel& model, mjtNum* qpos) {
+void set_start_posture(const mjModel& model, mjtNum* qpos) {
   for (int joint = 0; joint < model.njnt; ++joint) {
     const char* name = mj_id2name(&model, mjOBJ_JOINT, joint);
     if (model.jnt_type[joint] != mjJNT_HINGE || name == nullptr) continue;
@@ -90,19 +90,19 @@ void put_legs_in_start_posture(const mjModel& model, mjtNum* qpos) {
 }
 
 AssembledModel assemble_model(const std::string& world_xml, const std::string& robot_urdf, const Pose2& T_world_start,
-                              const std::vector<PropSettings>& props) {
+                              const std::vector<StaticObstacleSettings>& props) {
   AssembledModel assembled;
-  assembled.stance = stance_of(robot_urdf);
+  assembled.stance = to_stance(robot_urdf);
   const double height_m = start_height_m(world_xml, *load_world(world_xml, props), assembled.stance, T_world_start);
   const SpecPtr view = load_world(world_xml, props), physics = load_world(world_xml, props);
-  for (mjSpec* spec : {view.get(), physics.get()}) add_robot(*spec, robot_urdf, to_spatial(T_world_start, height_m));
-  strip_untouchable(*physics);
-  spare_still_bodies(*physics);
+  for (mjSpec* spec : {view.get(), physics.get()}) add_robot(*spec, robot_urdf, to_pose3(T_world_start, height_m));
+  strip_visual_geoms(*physics);
+  enable_sleep(*physics);
   assembled.view = compile(*view, world_xml);
   assembled.physics = compile(*physics, world_xml);
   const mjModel& model = *assembled.physics;
   assembled.start_qpos.assign(model.qpos0, model.qpos0 + model.nq);
-  put_legs_in_start_posture(model, assembled.start_qpos.data());
+  set_start_posture(model, assembled.start_qpos.data());
   stow_antenna(model, assembled.start_qpos.data());
   refuse_start_inside_something(model, assembled.start_qpos, T_world_start);
   return assembled;

@@ -22,18 +22,18 @@ struct AssembledModel {
 /// Adds the robot of a URDF and static obstacles to the world of an MJCF file, with the robot standing on the ground at
 /// `T_world_start`. Throws InputError when a file is invalid or the start pose is inside an object.
 AssembledModel assemble_model(const std::string& world_xml, const std::string& robot_urdf, const Pose2& T_world_start,
-                              const std::vector<PropSettings>& props = {});
+                              const std::vector<StaticObstacleSettings>& props = {});
 
 /// Returns the ground height below the robot with its base at `T_world_body`, m: the highest collision surface below
-/// `eye_height_m` under any support point of its stance. The robot itself is ignored. Throws InputError if there is
+/// `max_ground_height_m` under any support point of its stance. The robot itself is ignored. Throws InputError if there is
 /// none.
 double ground_height_m(const mjModel& model, const mjData& data, const Stance& stance, const Pose2& T_world_body,
-                       double eye_height_m);
+                       double max_ground_height_m);
 
 /// Standing posture at the start, for robots with legs: abduction, hip, knee of each leg, rad.
 inline constexpr double kStartPosture[3] = {0.0, 0.8, -1.6};
 
 /// Sets the leg joints in `qpos` (nq) to `kStartPosture` and changes nothing else.
-void put_legs_in_start_posture(const mjModel& model, mjtNum* qpos);
+void set_start_posture(const mjModel& model, mjtNum* qpos);
 
 }  // namespace patrol::sim

@@ -8,17 +8,17 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kReach_m = 0.8;    // maximum extent of a robot from its origin, lying on its side with its legs
+constexpr double kRobotExtent_m = 0.8;    // maximum extent of a robot from its origin, lying on its side with its legs
                                     // stretched
-constexpr double kMoveOn_m = 0.2;   // travel after which the tree is rebuilt
-constexpr double kInTime_m = 0.05;  // exceeds the motion of any body in one tick
+constexpr double kRebuildDistance_m = 0.2;   // travel after which the tree is rebuilt
+constexpr double kMotionMargin_m = 0.05;  // exceeds the motion of any body in one tick
 
 }  // namespace
 
-NearbyScenery::NearbyScenery(mjModel& physics)
+CollisionCuller::CollisionCuller(mjModel& physics)
     : physics_(physics),
       robot_(mj_name2id(&physics, mjOBJ_BODY, frame_id::kBody)),
-      planted_about_(Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity())) {
+      bvh_center_(Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity())) {
   const int root = physics.body_bvhadr[0];
   for (int node = root; node < root + physics.body_bvhnum[0]; ++node) {
     if (physics.bvh_nodeid[node] < 0) continue;
@@ -41,33 +41,33 @@ NearbyScenery::NearbyScenery(mjModel& physics)
   }
 }
 
-void NearbyScenery::update(const mjData& data) {
+void CollisionCuller::update(const mjData& data) {
   const Eigen::Vector3d robot(data.xpos + 3 * robot_);
-  if (!leaves_.empty() && !((robot - planted_about_).cwiseAbs().maxCoeff() < kMoveOn_m)) plant_tree(robot);
+  if (!leaves_.empty() && !((robot - bvh_center_).cwiseAbs().maxCoeff() < kRebuildDistance_m)) rebuild_bvh(robot);
   for (const Actor& actor : actors_) {
-    const double reach = actor.radius_m + kReach_m + kInTime_m;
+    const double reach = actor.radius_m + kRobotExtent_m + kMotionMargin_m;
     const bool is_near = (Eigen::Vector3d(data.xpos + 3 * actor.body) - robot).squaredNorm() < reach * reach;
     physics_.body_contype[actor.body] = is_near ? actor.contype : 0;
     physics_.body_conaffinity[actor.body] = is_near ? actor.conaffinity : 0;
   }
 }
 
-void NearbyScenery::plant_tree(const Eigen::Vector3d& robot) {
-  planted_about_ = robot;
-  near_.clear();
-  const Eigen::Array3d reach = Eigen::Array3d::Constant(kReach_m + kMoveOn_m + kInTime_m);
+void CollisionCuller::rebuild_bvh(const Eigen::Vector3d& robot) {
+  bvh_center_ = robot;
+  near_leaves_.clear();
+  const Eigen::Array3d reach = Eigen::Array3d::Constant(kRobotExtent_m + kRebuildDistance_m + kMotionMargin_m);
   for (const Leaf& leaf : leaves_) {
-    if (((leaf.centre - robot).array().abs() < leaf.half.array() + reach).all()) near_.push_back(leaf);
+    if (((leaf.centre - robot).array().abs() < leaf.half.array() + reach).all()) near_leaves_.push_back(leaf);
   }
-  if (near_.empty()) near_.push_back(leaves_.front());  // a tree has at least one leaf
-  planted_nodes_ = 0;
-  plant(near_.begin(), near_.end(), 0);
-  physics_.body_bvhnum[0] = planted_nodes_;
+  if (near_leaves_.empty()) near_leaves_.push_back(leaves_.front());  // a tree has at least one leaf
+  num_nodes_ = 0;
+  build_bvh(near_leaves_.begin(), near_leaves_.end(), 0);
+  physics_.body_bvhnum[0] = num_nodes_;
 }
 
 /// Appends the tree over [begin, end) to the nodes written so far, parents first as in MuJoCo; returns its root.
-int NearbyScenery::plant(std::vector<Leaf>::iterator begin, std::vector<Leaf>::iterator end, int depth) {
-  const int node = planted_nodes_++;
+int CollisionCuller::build_bvh(std::vector<Leaf>::iterator begin, std::vector<Leaf>::iterator end, int depth) {
+  const int node = num_nodes_++;
   Eigen::Vector3d lower = begin->centre - begin->half, upper = begin->centre + begin->half;
   for (auto leaf = begin + 1; leaf != end; ++leaf) {
     lower = lower.cwiseMin(leaf->centre - leaf->half);
@@ -81,8 +81,8 @@ int NearbyScenery::plant(std::vector<Leaf>::iterator begin, std::vector<Leaf>::i
     std::sort(begin, end, [axis](const Leaf& a, const Leaf& b) {
       return a.centre[axis] != b.centre[axis] ? a.centre[axis] < b.centre[axis] : a.geom < b.geom;
     });
-    left = plant(begin, middle, depth + 1);
-    right = plant(middle, end, depth + 1);
+    left = build_bvh(begin, middle, depth + 1);
+    right = build_bvh(middle, end, depth + 1);
   }
   const int address = physics_.body_bvhadr[0] + node;
   physics_.bvh_depth[address] = depth;

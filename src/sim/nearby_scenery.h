@@ -13,10 +13,10 @@ namespace patrol::sim {
 /// MuJoCo searches a static bounding-volume tree of the world's geoms for each body of the robot; in a street that tree
 /// is deep. This class replaces it by a tree of the few geoms near the robot and rebuilds it when the robot has moved.
 /// It disables contacts of distant actors. Contacts are identical with and without culling.
-class NearbyScenery {
+class CollisionCuller {
  public:
   /// `physics` must outlive this; its tree and the contact bits of its actors are changed.
-  explicit NearbyScenery(mjModel& physics);
+  explicit CollisionCuller(mjModel& physics);
 
   /// Updates the culling with the poses in `data`, which may be one tick old.
   void update(const mjData& data);
@@ -33,16 +33,16 @@ class NearbyScenery {
     double radius_m;  ///< radius around the body's origin
   };
 
-  void plant_tree(const Eigen::Vector3d& robot);
-  int plant(std::vector<Leaf>::iterator begin, std::vector<Leaf>::iterator end, int depth);
+  void rebuild_bvh(const Eigen::Vector3d& robot);
+  int build_bvh(std::vector<Leaf>::iterator begin, std::vector<Leaf>::iterator end, int depth);
 
   mjModel& physics_;
   int robot_;
   std::vector<Leaf> leaves_;  ///< all geoms of the world body
   std::vector<Actor> actors_;
-  std::vector<Leaf> near_;  ///< geoms in the present tree
-  int planted_nodes_ = 0;
-  Eigen::Vector3d planted_about_;
+  std::vector<Leaf> near_leaves_;  ///< geoms in the present tree
+  int num_nodes_ = 0;
+  Eigen::Vector3d bvh_center_;
 };
 
 }  // namespace patrol::sim

@@ -12,7 +12,7 @@
 namespace patrol::sim {
 
 /// Object lying on a building site below the plane of a 2D lidar, or a parked truck.
-struct PropSettings {
+struct StaticObstacleSettings {
   std::string kind = "rebar";
   double x_m = 0.0;  ///< center, in world
   double y_m = 0.0;
@@ -28,7 +28,7 @@ struct PropSettings {
 };
 
 /// Dimensions of a kind of object.
-struct PropSize {
+struct StaticObstacleSize {
   double length_m;
   double width_m;
   double height_m;  ///< height above z = 0; the object extends another 0.1 m into uneven ground
@@ -36,12 +36,12 @@ struct PropSize {
 
 /// Returns the dimensions of a kind. rebar: a bundle of 2 m; kerb: a kerbstone on its side; hose: 1.6 m of a 10 cm
 /// hose; brick: two bricks, stacked; truck: a dump truck with its nose along x (sim/truck_prop.h).
-PropSize prop_size(const std::string& kind);
+StaticObstacleSize static_obstacle_size(const std::string& kind);
 
 /// Adds the objects to a world. Each is one collision geom `prop_<number>`, from 1, in group 0. A rebar bundle and a
 /// truck have a hull in group 3 and visual parts. Objects lie at z = 0, within centimeters of the ground of tunnel and
 /// street. Throws InputError naming `props.<index>.<field>` when a setting is out of range.
-void add_props(mjSpec& world, const std::vector<PropSettings>& props);
+void add_static_obstacles(mjSpec& world, const std::vector<StaticObstacleSettings>& props);
 
 /// Low obstacles along a robot's route. The route is divided into `count` equal parts, each with one obstacle at a
 /// random position.
@@ -64,6 +64,6 @@ struct LowObstacleSettings {
 
 /// Returns obstacles with kinds, positions and angles determined by `seed`; obstacle i does not depend on the others.
 /// Throws InputError when the route is too short for `count` obstacles.
-std::vector<PropSettings> scatter_low_obstacles(const LowObstacleSettings& settings, std::uint64_t seed);
+std::vector<StaticObstacleSettings> scatter_low_obstacles(const LowObstacleSettings& settings, std::uint64_t seed);
 
 }  // namespace patrol::sim

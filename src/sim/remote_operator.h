@@ -14,7 +14,7 @@
 
 namespace patrol::sim {
 
-struct RemoteOperatorSettings {
+struct TeleopOperatorSettings {
   double speed_mps = 0.8;
   double yaw_rate_radps = 0.6;         ///< yaw rate of a turn in place
   double reaction_s = 0.25;            ///< delay from an observation to the resulting command
@@ -41,40 +41,40 @@ struct RemoteOperatorSettings {
 ///
 /// At marked waypoints the operator stops, turns the robot to the heading, presses the button and waits while the robot
 /// is busy. At the end the operator hands over control.
-class RemoteOperator {
+class TeleopOperator {
  public:
   /// `drive` is in world.
-  RemoteOperator(const RemoteOperatorSettings& settings, RemoteDrive drive, std::uint64_t seed);
+  TeleopOperator(const TeleopOperatorSettings& settings, TeleopRoute drive, std::uint64_t seed);
 
   /// Returns a command when one is due. Call at every tick. Returns nothing before operator and robot have met and
   /// after the handover.
-  std::optional<RemoteCommand> step(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people,
+  std::optional<TeleopCommand> step(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people,
                                     bool is_busy = false);
 
  private:
   enum class Phase { kWaiting, kDriving, kTurning, kLooking, kMarked, kDone };
 
-  bool has_met(Time now, const Pose2& T_world_body);
-  RemoteCommand decide(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people, bool is_busy);
-  void drive(const Pose2& T_world_body, RemoteCommand& command);
-  void turn_to(double yaw_rad, const Pose2& T_world_body, RemoteCommand& command) const;
-  bool passed(const Pose2& T_world_body) const;
-  bool is_somebody_ahead(const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people) const;
-  Eigen::Vector2d pursued_point(const Eigen::Vector2d& p_world_body) const;
-  const DriveWaypoint& waypoint() const { return drive_[next_]; }
+  bool robot_has_arrived(Time now, const Pose2& T_world_body);
+  TeleopCommand decide(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people, bool is_busy);
+  void drive(const Pose2& T_world_body, TeleopCommand& command);
+  void rotate_to(double yaw_rad, const Pose2& T_world_body, TeleopCommand& command) const;
+  bool has_passed_waypoint(const Pose2& T_world_body) const;
+  bool is_pedestrian_ahead(const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people) const;
+  Eigen::Vector2d pursuit_point(const Eigen::Vector2d& p_world_body) const;
+  const TeleopWaypoint& waypoint() const { return drive_[next_]; }
 
-  RemoteOperatorSettings settings_;
-  RemoteDrive drive_;
-  RandomStream hand_;
+  TeleopOperatorSettings settings_;
+  TeleopRoute drive_;
+  RandomStream steering_noise_;
   Phase phase_ = Phase::kDriving;
   std::size_t next_ = 0;
   Eigen::Vector2d leg_start_m_ = Eigen::Vector2d::Zero();
   bool has_started_ = false;
-  std::optional<std::pair<Time, Pose2>> stands_since_;  ///< start of the present standstill, while waiting for the
+  std::optional<std::pair<Time, Pose2>> stationary_since_;  ///< start of the present standstill, while waiting for the
                                                         ///< robot
   Time phase_start_{};
   std::uint64_t count_ = 0;
-  std::deque<std::pair<Time, Pose2>> seen_;
+  std::deque<std::pair<Time, Pose2>> observed_;
 };
 
 }  // namespace patrol::sim

@@ -204,13 +204,13 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& path) {
 }
 
 /// Returns the stance on feet: two links of 0.213 m at 0.8 rad, plus the foot.
-Stance stance_on_feet() { return {.height_m = 0.322, .support_m = {Eigen::Vector2d::Zero()}, .eye_height_m = 0.3}; }
+Stance stance_on_feet() { return {.height_m = 0.322, .support_points_m = {Eigen::Vector2d::Zero()}, .max_ground_height_m = 0.3}; }
 
 bool has_tracks(const urdf::ModelInterface& model) { return model.getLink("left_track") != nullptr; }
 
 }  // namespace
 
-Stance stance_of(const std::string& urdf_path) {
+Stance to_stance(const std::string& urdf_path) {
   const urdf::ModelInterfaceSharedPtr model = parse(urdf_path);
   return has_tracks(*model) ? stance_on_tracks(*model) : stance_on_feet();
 }

@@ -11,9 +11,9 @@ namespace patrol::sim {
 
 /// Groups of geoms (README, "Worlds").
 inline constexpr int kGroupSolid = 0;        ///< scenery visible to cameras and lidar
-inline constexpr int kGroupEyeOnly = 1;
+inline constexpr int kGroupVisualOnly = 1;
 inline constexpr int kGroupLidarOnly = 2;
-inline constexpr int kGroupTouchOnly = 3;
+inline constexpr int kGroupCollisionOnly = 3;
 inline constexpr int kGroupRobotVisual = 4;
 inline constexpr int kGroupRobotCollision = 5;
 
@@ -24,11 +24,11 @@ inline constexpr int kRobotConaffinity = 1;
 /// Placement of a robot, upright on level ground.
 struct Stance {
   double height_m = 0.0;                   ///< height of the base above the ground
-  std::vector<Eigen::Vector2d> support_m;  ///< points at which the ground height is sampled, in level
-  double eye_height_m = 0.0;               ///< surfaces above this height, in world, are not ground at the start
+  std::vector<Eigen::Vector2d> support_points_m;  ///< points at which the ground height is sampled, in level
+  double max_ground_height_m = 0.0;               ///< surfaces above this height, in world, are not ground at the start
 };
 
-Stance stance_of(const std::string& urdf_path);
+Stance to_stance(const std::string& urdf_path);
 
 /// Adds the robot of a URDF to a world.
 ///

@@ -118,7 +118,7 @@ void use_track_friction(mjOption& option) {
 
 Stance stance_on_tracks(const urdf::ModelInterface& robot) {
   constexpr double kDrop_m = 0.01;
-  Stance stance{.height_m = 0.0, .support_m = {Eigen::Vector2d::Zero()}, .eye_height_m = 1.0};
+  Stance stance{.height_m = 0.0, .support_points_m = {Eigen::Vector2d::Zero()}, .max_ground_height_m = 1.0};
   for (const char* name : {"left_track", "right_track"}) {
     const urdf::LinkConstSharedPtr track = robot.getLink(name);
     if (!track) throw InputError("robot " + robot.getName() + ": there is no link named " + name);
@@ -127,7 +127,7 @@ Stance stance_on_tracks(const urdf::ModelInterface& robot) {
       const urdf::Vector3& centre = wheel->origin.position;
       const double radius_m = wheel_shape(*wheel).radius;
       stance.height_m = std::max(stance.height_m, radius_m - centre.z - origin.z + kDrop_m);
-      stance.support_m.emplace_back(origin.x + centre.x, origin.y + centre.y);
+      stance.support_points_m.emplace_back(origin.x + centre.x, origin.y + centre.y);
     }
   }
   return stance;

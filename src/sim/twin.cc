@@ -18,7 +18,7 @@ namespace patrol::sim {
 namespace {
 
 /// Contacts interrupted for less than this are one contact.
-constexpr Time kSameTouch = std::chrono::milliseconds(500);
+constexpr Time kContactGap = std::chrono::milliseconds(500);
 
 bool begins_with_one_of(std::string_view name, std::initializer_list<std::string_view> prefixes) {
   return std::any_of(prefixes.begin(), prefixes.end(), [&](std::string_view prefix) { return name.starts_with(prefix); });
@@ -60,34 +60,34 @@ std::string geom_name(const mjModel& model, int geom) {
   return fmt::format("geom {} of {}", geom, body == nullptr ? "?" : body);
 }
 
-std::unique_ptr<Locomotion> make_locomotion(const TwinSettings& settings, const RobotDescription& robot, mjModel& physics) {
+std::unique_ptr<Locomotion> make_locomotion(const SimulatorSettings& settings, const RobotDescription& robot, mjModel& physics) {
   if (!robot.tracks) return std::make_unique<QuadrupedDrive>(robot, settings.locomotion);
   return std::make_unique<TrackDrive>(robot, settings.track_drive, settings.sensors.hall.ticks_per_rad(), physics);
 }
 
-AssembledModel assemble(const TwinSettings& settings) {
+AssembledModel assemble(const SimulatorSettings& settings) {
   AssembledModel model = assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start, settings.props);
-  move_lining(settings.lining_moves, settings.lining, *model.view);
+  deform_lining(settings.lining_deformations, settings.lining, *model.view);
   return model;
 }
 
 }  // namespace
 
-Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uint64_t seed,
+Simulator::Simulator(const SimulatorSettings& settings, const RobotDescription& robot, std::uint64_t seed,
            const DepthImagerFactory& make_depth_imager)
     : model_(assemble(settings)),
       data_(make_data(*model_.physics)),
-      nearby_(*model_.physics),
+      culler_(*model_.physics),
       robot_body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)),
       robot_radius_m_(robot.outline_radius_m()),
       settings_(settings),
       locomotion_(make_locomotion(settings, robot, *model_.physics)),
       actors_(*model_.physics, settings.actors),
       sensors_(settings.sensors, robot, *model_.physics, *model_.view,
-               GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed, make_depth_imager, settings.underground),
+               GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed, make_depth_imager, settings.subsurface),
       recorded_(settings.recorded),
       tick_(from_seconds(model_.physics->opt.timestep)) {
-  if (!settings.drive.empty()) driver_.emplace(settings.driver, settings.drive, seed);
+  if (!settings.drive.empty()) operator_.emplace(settings.driver, settings.drive, seed);
   if (robot.antenna) antenna_.emplace(settings.sensors.antenna, *robot.antenna, *model_.physics, seed);
   if (robot_body_ < 0) throw InputError(fmt::format("{}: no link named {}", settings.robot_urdf, frame_id::kBody));
   std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
@@ -98,17 +98,17 @@ Twin::Twin(const TwinSettings& settings, const RobotDescription& robot, std::uin
 
 // Between steps, kinematics, forces and readings are those of `now_`; a step integrates the state and evaluates the
 // next one. The firmware's torques use readings that are one tick old, as on a real robot.
-void Twin::step() {
+void Simulator::step() {
   const mjModel* model = model_.physics.get();
   {
-    const auto lap = clock_.lap("locomotion");
+    const auto timer = clock_.time_stage("locomotion");
     const NewestReadings& newest = sensors_.newest();
     locomotion_->step({.imu = newest.imu, .joints = newest.joints, .feet = newest.feet, .ticks = newest.ticks}, command_,
                       *model_.physics, *data_);
     if (antenna_) antenna_->step(*model_.physics, *data_);
   }
   {
-    const auto lap = clock_.lap("actors");
+    const auto timer = clock_.time_stage("actors");
     const GroundTruth robot = truth();
     actors_.advance(now_ + tick_,
                     {.p_world = robot.T_world_body.position.head<2>(),
@@ -117,24 +117,24 @@ void Twin::step() {
                     *data_);
   }
   {
-    const auto lap = clock_.lap("physics");
-    hold_still();
+    const auto timer = clock_.time_stage("physics");
+    suppress_slip();
     mj_Euler(model, data_.get());
     now_ += tick_;
-    nearby_.update(*data_);
+    culler_.update(*data_);
     mj_forward(model, data_.get());
     throw_if_diverged();
-    note_collisions();
+    record_collisions();
   }
-  hear_remote();
-  const auto lap = clock_.lap("sensors");
+  receive_teleop();
+  const auto timer = clock_.time_stage("sensors");
   sensors_.step(*model, *data_, now_);
   if (antenna_) {
     if (const auto state = antenna_->read(*data_, now_)) sensors_.add(*state);
   }
 }
 
-void Twin::command(const InstrumentCommand& command) {
+void Simulator::command(const InstrumentCommand& command) {
   const auto* antenna = std::get_if<AntennaCommand>(&command);
   if (antenna != nullptr && antenna_) antenna_->command(*antenna);
   sensors_.command(command);
@@ -143,15 +143,15 @@ void Twin::command(const InstrumentCommand& command) {
 // MuJoCo's friction is soft: a standing robot creeps by micrometers and millidegrees per second, up to 0.07 degrees
 // during a scan in the tunnel. A parked robot does not creep. So the solver removes the residual slip while an
 // instrument needs the robot to stand still.
-void Twin::hold_still() {
+void Simulator::suppress_slip() {
   constexpr int kNoSlipIterations = 3;
   const bool is_asked_to_stand = command_.vx_mps == 0.0 && command_.vy_mps == 0.0 && command_.yaw_rate_radps == 0.0;
   model_.physics->opt.noslip_iterations = sensors_.is_busy() && is_asked_to_stand ? kNoSlipIterations : 0;
 }
 
-void Twin::hear_remote() {
-  if (driver_) {
-    if (const auto command = driver_->step(now_, to_planar(truth().T_world_body), actors_.positions(), is_busy())) {
+void Simulator::receive_teleop() {
+  if (operator_) {
+    if (const auto command = operator_->step(now_, to_pose2(truth().T_world_body), actors_.positions(), is_busy())) {
       sensors_.add(*command);
     }
   }
@@ -160,15 +160,15 @@ void Twin::hear_remote() {
   }
 }
 
-void Twin::put_at(const Pose2& T_world_body) {
+void Simulator::teleport(const Pose2& T_world_body) {
   mjModel& model = *model_.physics;
   constexpr double kEyeAboveBase_m = 1.0;
-  const double eye_height_m = truth().T_world_body.position.z() + kEyeAboveBase_m;
-  const double ground_m = ground_height_m(model, *data_, model_.stance, T_world_body, eye_height_m);
-  const Pose3 pose = to_spatial(T_world_body, ground_m + model_.stance.height_m);
+  const double max_ground_height_m = truth().T_world_body.position.z() + kEyeAboveBase_m;
+  const double ground_m = ground_height_m(model, *data_, model_.stance, T_world_body, max_ground_height_m);
+  const Pose3 pose = to_pose3(T_world_body, ground_m + model_.stance.height_m);
 
   const int root = model.jnt_qposadr[model.body_jntadr[robot_body_]];
-  put_legs_in_start_posture(model, data_->qpos);
+  set_start_posture(model, data_->qpos);
   std::copy_n(pose.position.data(), 3, data_->qpos + root);
   const double quaternion[4] = {pose.rotation.w(), pose.rotation.x(), pose.rotation.y(), pose.rotation.z()};
   std::copy_n(quaternion, 4, data_->qpos + root + 3);
@@ -177,11 +177,11 @@ void Twin::put_at(const Pose2& T_world_body) {
 
   locomotion_->restart();
   mj_kinematics(&model, data_.get());
-  nearby_.update(*data_);
+  culler_.update(*data_);
   mj_forward(&model, data_.get());
 }
 
-void Twin::note_collisions() {
+void Simulator::record_collisions() {
   const mjModel& model = *model_.physics;
   const auto is_robot = [&](int geom) { return model.body_rootid[model.geom_bodyid[geom]] == robot_body_; };
   double lowest_m = std::numeric_limits<double>::infinity();
@@ -198,19 +198,19 @@ void Twin::note_collisions() {
 
     const Collision collision{.stamp = now_, .first = geom_name(model, robot_geom), .second = geom_name(model, other)};
     const std::string& thing = collision.second;
-    const auto known = std::find_if(touching_.begin(), touching_.end(),
+    const auto known = std::find_if(contacts_.begin(), contacts_.end(),
                                     [&](const auto& touch) { return touch.first == thing; });
-    if (known == touching_.end()) {
-      touching_.emplace_back(thing, now_);
+    if (known == contacts_.end()) {
+      contacts_.emplace_back(thing, now_);
       collisions_.push_back(collision);
     } else {
-      if (now_ - known->second > kSameTouch) collisions_.push_back(collision);
+      if (now_ - known->second > kContactGap) collisions_.push_back(collision);
       known->second = now_;
     }
   }
 }
 
-void Twin::throw_if_diverged() const {
+void Simulator::throw_if_diverged() const {
   for (int i = 0; i < model_.physics->nq; ++i) {
     if (!std::isfinite(data_->qpos[i])) {
       throw std::runtime_error(fmt::format("the physics diverged at {:.3f} s", to_seconds(now_)));
@@ -218,9 +218,9 @@ void Twin::throw_if_diverged() const {
   }
 }
 
-std::vector<SensorMessage> Twin::take_messages() { return sensors_.take_due(now_); }
+std::vector<SensorMessage> Simulator::take_messages() { return sensors_.take_due(now_); }
 
-GroundTruth Twin::truth() const {
+GroundTruth Simulator::truth() const {
   const mjtNum* position = data_->xpos + 3 * robot_body_;
   const mjtNum* rotation = data_->xquat + 4 * robot_body_;
   mjtNum velocity[6];  // angular, then linear part, in the body's frame
@@ -230,7 +230,7 @@ GroundTruth Twin::truth() const {
           .twist = {.linear = Eigen::Vector3d(velocity + 3), .angular = Eigen::Vector3d(velocity)}};
 }
 
-SimState Twin::state() const {
+SimState Simulator::state() const {
   SimState state{.stamp = now_, .qpos = {data_->qpos, data_->qpos + model_.physics->nq}, .mocap = {}};
   for (int body = 0; body < model_.physics->nmocap; ++body) {
     state.mocap.insert(state.mocap.end(), data_->mocap_pos + 3 * body, data_->mocap_pos + 3 * body + 3);
@@ -239,6 +239,6 @@ SimState Twin::state() const {
   return state;
 }
 
-std::vector<Collision> Twin::take_collisions() { return std::exchange(collisions_, {}); }
+std::vector<Collision> Simulator::take_collisions() { return std::exchange(collisions_, {}); }
 
 }  // namespace patrol::sim

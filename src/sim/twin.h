@@ -28,32 +28,32 @@
 namespace patrol::sim {
 
 /// Physical side of a scenario: world, robot, environment and traffic.
-struct TwinSettings {
+struct SimulatorSettings {
   std::string world_xml;
   std::string robot_urdf;
   Pose2 T_world_start;  ///< start pose of the robot
   SensorSuiteSettings sensors;
   LocomotionSettings locomotion;   ///< settings for a robot with legs
   TrackDriveSettings track_drive;  ///< settings for a robot with tracks
-  std::vector<PropSettings> props;
+  std::vector<StaticObstacleSettings> props;
   std::optional<TunnelLining> lining;            ///< lining of the world, in world
-  std::vector<LiningMoveSettings> lining_moves;
+  std::vector<LiningDeformationSettings> lining_deformations;
   std::vector<ActorSettings> actors;
   std::vector<LeakSettings> leaks;
   WindSettings wind;
-  Underground underground;
+  Subsurface subsurface;
   std::vector<FaultSettings> faults;
-  RemoteDrive drive;                    ///< teleoperated route, in world; empty: no operator
-  RemoteOperatorSettings driver;
-  std::vector<RemoteCommand> recorded;  ///< recorded teleoperation commands, replayed instead of `drive`
+  TeleopRoute drive;                    ///< teleoperated route, in world; empty: no operator
+  TeleopOperatorSettings driver;
+  std::vector<TeleopCommand> recorded;  ///< recorded teleoperation commands, replayed instead of `drive`
 };
 
 /// Simulator of robot, world, sensors and actors, advanced tick by tick. Takes velocity commands and returns sensor
 /// messages. The ground truth is only for logging and scoring.
-class Twin {
+class Simulator {
  public:
   /// A depth camera requires `make_depth_imager` (render/depth_renderer.h).
-  Twin(const TwinSettings& settings, const RobotDescription& robot, std::uint64_t seed,
+  Simulator(const SimulatorSettings& settings, const RobotDescription& robot, std::uint64_t seed,
        const DepthImagerFactory& make_depth_imager = {});
 
   /// Advances the simulation by one physics tick (2 ms).
@@ -65,7 +65,7 @@ class Twin {
   /// Passes a command to the inspection instruments; effective at once.
   void command(const InstrumentCommand& command);
   /// Returns whether the robot must stand still because an instrument is measuring or the antenna is not stowed.
-  bool is_busy() const { return sensors_.is_busy() || (antenna_ && antenna_->is_out(*data_)); }
+  bool is_busy() const { return sensors_.is_busy() || (antenna_ && antenna_->is_deployed(*data_)); }
 
   /// Removes and returns the sensor messages that are due, in order of delivery.
   std::vector<SensorMessage> take_messages();
@@ -79,37 +79,37 @@ class Twin {
 
   /// Moves the robot to another pose, upright on the ground and at rest, and restarts its firmware. The ground is
   /// searched from a meter above the robot's present height. Throws InputError where there is no ground.
-  void put_at(const Pose2& T_world_body);
+  void teleport(const Pose2& T_world_body);
 
   const SensorSuite& sensors() const { return sensors_; }
   const mjModel& physics() const { return *model_.physics; }
-  const PartClock& clock() const { return clock_; }
+  const StageProfiler& clock() const { return clock_; }
 
  private:
-  void hold_still();
-  void hear_remote();
-  void note_collisions();
+  void suppress_slip();
+  void receive_teleop();
+  void record_collisions();
   void throw_if_diverged() const;
 
   AssembledModel model_;
   DataPtr data_;
-  NearbyScenery nearby_;
+  CollisionCuller culler_;
   int robot_body_;
   double robot_radius_m_;
-  TwinSettings settings_;
+  SimulatorSettings settings_;
   std::unique_ptr<Locomotion> locomotion_;
   std::optional<AntennaMount> antenna_;
   Actors actors_;
   SensorSuite sensors_;
-  std::optional<RemoteOperator> driver_;
-  std::vector<RemoteCommand> recorded_;
+  std::optional<TeleopOperator> operator_;
+  std::vector<TeleopCommand> recorded_;
   std::size_t num_replayed_ = 0;
   VelocityCommand command_;
   Time now_{};
   Time tick_;
   std::vector<Collision> collisions_;
-  std::vector<std::pair<std::string, Time>> touching_;  ///< pairs in contact, with the last time of contact
-  PartClock clock_;
+  std::vector<std::pair<std::string, Time>> contacts_;  ///< pairs in contact, with the last time of contact
+  StageProfiler clock_;
 };
 
 }  // namespace patrol::sim

@@ -34,7 +34,7 @@ struct RockSettings {
 };
 
 /// Subsurface ahead of the tunnel face.
-struct Underground {
+struct Subsurface {
   RockSettings rock;
   std::vector<WaterBodySettings> water;
 };

@@ -2,7 +2,7 @@
 
 namespace patrol::slam {
 
-SlamUpdate FilteredPath::update(const LevelScan& scan, const Pose2& T_odom_body) {
+SlamUpdate TrajectoryRbpf::update(const LevelScan& scan, const Pose2& T_odom_body) {
   const SlamUpdate update = filter_.update(scan, T_odom_body);
   if (update.is_keyframe) {
     keyframe_scans_.push_back(path_.size());
@@ -12,7 +12,7 @@ SlamUpdate FilteredPath::update(const LevelScan& scan, const Pose2& T_odom_body)
   return update;
 }
 
-std::vector<Pose2> FilteredPath::path() const {
+std::vector<Pose2> TrajectoryRbpf::path() const {
   const std::vector<Pose2> keyframes = filter_.best_path();
   std::vector<Pose2> T_map_body;
   T_map_body.reserve(path_.size());
@@ -20,7 +20,7 @@ std::vector<Pose2> FilteredPath::path() const {
   return T_map_body;
 }
 
-PoseGraph FilteredPath::graph() const {
+PoseGraph TrajectoryRbpf::graph() const {
   PoseGraph graph{.T_map_node = filter_.best_path(), .edges = {}};
   for (std::size_t i = 0; i + 1 < graph.T_map_node.size(); ++i) {
     graph.edges.push_back({.from = static_cast<int>(i),

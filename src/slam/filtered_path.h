@@ -10,11 +10,11 @@
 namespace patrol::slam {
 
 /// Grid RBPF plus the pose of every scan relative to its keyframe.
-class FilteredPath {
+class TrajectoryRbpf {
  public:
-  FilteredPath(const GridSlamSettings& settings, std::uint64_t seed) : filter_(settings, seed) {}
+  TrajectoryRbpf(const GridSlamSettings& settings, std::uint64_t seed) : filter_(settings, seed) {}
 
-  void add(const RangeSighting& sighting) { filter_.add(sighting); }
+  void add(const RangeMeasurement& measurement) { filter_.add(measurement); }
   SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
   void finish() {}
 
@@ -22,7 +22,7 @@ class FilteredPath {
   /// Trajectory of the currently best particle, [scan].
   std::vector<Pose2> path() const;
   /// Scan index of each keyframe, [keyframe].
-  const std::vector<std::size_t>& node_scans() const { return keyframe_scans_; }
+  const std::vector<std::size_t>& node_scan_indices() const { return keyframe_scans_; }
   OccupancyGrid map() const { return filter_.map(); }
   ParticleSet particles() const { return filter_.particles(); }
   /// Chain of keyframes; the edges have identity information.

@@ -50,10 +50,10 @@ void GridMap::add_hit(const Eigen::Vector2d& p_map) {
 
 // Voxel traversal [Amanatides87].
 void GridMap::add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2d& to_map, int weight, bool stop_at_surface) {
-  const Eigen::Vector2d way = to_map - from_map;
-  const double length_m = way.norm();
+  const Eigen::Vector2d ray = to_map - from_map;
+  const double length_m = ray.norm();
   if (!(length_m > 0.0)) return;
-  const Eigen::Vector2d direction = way / length_m;
+  const Eigen::Vector2d direction = ray / length_m;
   Cell at = cell_at(from_map);
   const int step_x = direction.x() < 0.0 ? -1 : 1, step_y = direction.y() < 0.0 ? -1 : 1;
   constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -69,7 +69,7 @@ void GridMap::add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2
 
   GridTile* tile = nullptr;
   int tile_col = 0, tile_row = 0;
-  for (double travelled = 0.0; travelled < length_m;) {
+  for (double traveled = 0.0; traveled < length_m;) {
     if (!tile || tile_of(at.col) != tile_col || tile_of(at.row) != tile_row) {
       tile_col = tile_of(at.col), tile_row = tile_of(at.row);
       tile = writable_tile(tile_col, tile_row);
@@ -88,11 +88,11 @@ void GridMap::add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2
       }
     }
     if (next_x < next_y) {
-      travelled = next_x;
+      traveled = next_x;
       next_x += delta_x;
       at.col += step_x;
     } else {
-      travelled = next_y;
+      traveled = next_y;
       next_y += delta_y;
       at.row += step_y;
     }
@@ -102,7 +102,7 @@ void GridMap::add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2
 GridTile* GridMap::writable_tile(int tile_col, int tile_row) {
   const auto is_kept = [this](int index) { return index >= -max_tile_ && index < max_tile_; };
   if (!is_kept(tile_col) || !is_kept(tile_row)) return nullptr;
-  grow_to_hold(tile_col, tile_row);
+  grow_to_include(tile_col, tile_row);
   auto& tile = tiles_[static_cast<std::size_t>((tile_row - first_row_) * num_cols_ + tile_col - first_col_)];
   if (!tile) {
     tile = std::make_shared<GridTile>();
@@ -113,7 +113,7 @@ GridTile* GridMap::writable_tile(int tile_col, int tile_row) {
 }
 
 // Grows by a margin of tiles, so that the pointers are not copied at every step.
-void GridMap::grow_to_hold(int tile_col, int tile_row) {
+void GridMap::grow_to_include(int tile_col, int tile_row) {
   constexpr int kMargin = 16;
   const bool is_inside = tile_col >= first_col_ && tile_col < first_col_ + num_cols_ && tile_row >= first_row_ &&
                          tile_row < first_row_ + num_rows_;
@@ -143,7 +143,7 @@ std::size_t GridMap::num_tiles() const {
   return static_cast<std::size_t>(std::count_if(tiles_.begin(), tiles_.end(), [](const auto& tile) { return tile != nullptr; }));
 }
 
-std::size_t GridMap::num_own_tiles() const {
+std::size_t GridMap::num_unshared_tiles() const {
   return static_cast<std::size_t>(
       std::count_if(tiles_.begin(), tiles_.end(), [](const auto& tile) { return tile && tile.use_count() == 1; }));
 }

@@ -28,7 +28,7 @@ struct GridCell {
   /// many passes as hits. An object in a cell observed as free appears only after as many hits as exceed a quarter of
   /// the passes.
   bool is_surface() const { return hits > 0 && 4U * hits >= passes; }
-  bool is_known() const { return hits > 0 || passes > 0; }
+  bool is_observed() const { return hits > 0 || passes > 0; }
 };
 
 /// Square block of cells, shared between particles and copied on write.
@@ -85,7 +85,7 @@ class GridMap {
   template <typename Visitor>
   void for_each_tile(Visitor&& visit) const;
   /// Number of tiles not shared with another map: the actual memory cost of this particle.
-  std::size_t num_own_tiles() const;
+  std::size_t num_unshared_tiles() const;
   std::size_t num_tiles() const;
 
  private:
@@ -98,7 +98,7 @@ class GridMap {
     return tiles_[static_cast<std::size_t>(row * num_cols_ + col)].get();
   }
   GridTile* writable_tile(int tile_col, int tile_row);
-  void grow_to_hold(int tile_col, int tile_row);
+  void grow_to_include(int tile_col, int tile_row);
   template <typename Visitor>
   bool visit_surface(Cell cell, int radius, Visitor&& visit) const;
 

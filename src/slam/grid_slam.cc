@@ -13,21 +13,21 @@
 namespace patrol::slam {
 namespace {
 
-ParticleFilterParts parts_of(const GridSlamSettings& settings) {
+ParticleFilterComponents components_from(const GridSlamSettings& settings) {
   validate(settings, "slam");
   if (settings.optimizer != "none" && settings.proposal != "motion") {
     throw InputError("slam.optimizer = " + settings.optimizer + ": moves what is drawn from odometry, which slam.proposal: motion asks for");
   }
-  ParticleFilterSettings parts = settings_of_paper(settings.optimizer);
-  parts.resample_threshold = settings.resample_threshold;
-  return make_parts(parts);
+  ParticleFilterSettings components = published_settings(settings.optimizer);
+  components.resample_threshold = settings.resample_threshold;
+  return make_components(components);
 }
 
 }  // namespace
 
 GridSlam::GridSlam(const GridSlamSettings& settings, std::uint64_t seed, const Pose2& T_map_start)
     : settings_(settings),
-      parts_(parts_of(settings)),
+      components_(components_from(settings)),
       proposal_noise_(seed, "slam/proposal"),
       resampling_noise_(seed, "slam/resampling"),
       T_map_last_(T_map_start) {
@@ -38,18 +38,18 @@ SlamUpdate GridSlam::update(const LevelScan& scan, const Pose2& T_odom_body) {
   if (keyframes_ == 0) T_odom_last_ = T_odom_keyframe_ = T_odom_body, keyframe_stamp_ = scan.stamp;
   const bool is_level = scan.tilt_rad <= settings_.max_tilt_rad;
   std::vector<MatchPoint> points;
-  if (is_level) points = select_match_points(scan, settings_.matching.point_spacing_m, settings_.matching.max_points);
+  if (is_level) points = downsample_scan(scan, settings_.matching.point_spacing_m, settings_.matching.max_points);
 
-  accept_ranges(T_odom_body, scan.stamp);
+  gate_ranges(T_odom_body, scan.stamp);
   Proposal best = track(points, T_odom_body, scan.stamp);
   SlamUpdate update;
   update.is_keyframe = is_level && is_keyframe_due(best.posterior.mean);
   if (update.is_keyframe) {
     T_map_last_ = best.posterior.mean;
     const bool is_by_match = settings_.proposal == "scan_match" || particles_.size() == 1;
-    const double tracked_share = best.matched_share;
+    const double tracked_inlier_ratio = best.inlier_ratio;
     best = is_by_match ? move_by_scan_match(points, T_odom_body, scan.stamp, update) : move_by_odometry(points, T_odom_body, scan.stamp, update);
-    if (!is_by_match) best.matched_share = tracked_share;
+    if (!is_by_match) best.inlier_ratio = tracked_inlier_ratio;
     integrate(scan);
     T_odom_keyframe_ = T_odom_body, keyframe_stamp_ = scan.stamp;
     ranges_.clear();
@@ -58,13 +58,13 @@ SlamUpdate GridSlam::update(const LevelScan& scan, const Pose2& T_odom_body) {
   T_map_last_ = update.T_map_body = best.posterior.mean;
   T_odom_last_ = T_odom_body;
   update.covariance = best.posterior.covariance;
-  update.match_score = best.matched_share;
+  update.match_score = best.inlier_ratio;
   return update;
 }
 
 Proposal GridSlam::move_by_scan_match(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp, SlamUpdate& update) {
   const std::vector<Proposal> proposals = propose(points, T_odom_body, stamp);
-  move_particles(proposals);
+  sample_particles(proposals);
   update.effective_sample_size = choose_best();
   const Proposal best = proposals[best_];
   update.resampled = resample_if_needed(update.effective_sample_size);
@@ -80,13 +80,13 @@ Proposal GridSlam::move_by_odometry(const std::vector<MatchPoint>& points, const
     log_weights.push_back(particle.log_weight + prediction.log_density);
   }
   RandomSequence random(proposal_noise_, keyframes_);
-  GridStep step(particles_, predictions, points, settings_.likelihood_gain, settings_.matching);
-  advance_particles(step, parts_, random, log_weights);
+  RbpfParticleProblem step(particles_, predictions, points, settings_.likelihood_tempering, settings_.matching);
+  propagate_and_weight(step, components_, random, log_weights);
   for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].log_weight = log_weights[i];
 
   update.effective_sample_size = choose_best();
   const Proposal best{.posterior = {.mean = particles_[best_].T_map_body, .covariance = predictions[best_].covariance}};
-  update.resampled = renew_particles(step, parts_, particles().weights, random, log_weights);
+  update.resampled = resample_if_depleted(step, components_, particles().weights, random, log_weights);
   for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].log_weight = log_weights[i];
   if (update.resampled) {
     // After resampling, the trajectory of the best particle continues in the nearest one.
@@ -105,12 +105,12 @@ GridSlam::Prediction GridSlam::predict(const Particle& particle, const Pose2& T_
 }
 
 // Use the same ranges for all particles; otherwise particles that reject a range would be favored.
-void GridSlam::accept_ranges(const Pose2& T_odom_body, Time stamp) {
+void GridSlam::gate_ranges(const Pose2& T_odom_body, Time stamp) {
   if (settings_.ranges.enabled) {
-    for (const RangeSighting& sighting : new_ranges_) {
+    for (const RangeMeasurement& measurement : new_ranges_) {
       const PoseGaussian pose = predict(particles_[best_], T_odom_body, stamp).pose;
-      if (is_plausible(range_innovation(pose, T_odom_body, sighting, settings_.ranges), settings_.ranges)) {
-        ranges_.push_back(sighting);
+      if (passes_gate(range_innovation(pose, T_odom_body, measurement, settings_.ranges), settings_.ranges)) {
+        ranges_.push_back(measurement);
       }
     }
   }
@@ -123,10 +123,10 @@ Proposal GridSlam::track(const std::vector<MatchPoint>& points, const Pose2& T_o
   const PoseGaussian prediction = predict(particle, T_odom_body, stamp).pose;
   const Pose2 T_map_start = T_map_last_ * (T_odom_last_.inverse() * T_odom_body);
   const auto match_from = [&](const Pose2& start) {
-    return propose_from_scan(particle.map, points, start, prediction, settings_.likelihood_gain, settings_.matching);
+    return laplace_proposal(particle.map, points, start, prediction, settings_.likelihood_tempering, settings_.matching);
   };
   Proposal tracked = match_from(T_map_start);
-  if (tracked.matched_share > 0.0 || points.empty() || !particle.map.has_surface()) return tracked;
+  if (tracked.inlier_ratio > 0.0 || points.empty() || !particle.map.has_surface()) return tracked;
   return match_from(search_pose(particle.map, points, T_map_start, settings_.matching));
 }
 
@@ -144,20 +144,20 @@ std::vector<Proposal> GridSlam::propose(const std::vector<MatchPoint>& points, c
   std::vector<Proposal> proposals;
   for (const Particle& particle : particles_) {
     const Prediction prediction = predict(particle, T_odom_body, stamp);
-    proposals.push_back(propose_from_scan(particle.map, points, particle.T_map_body * T_keyframe_body, prediction.pose,
-                                          settings_.likelihood_gain, settings_.matching));
-    proposals.back().log_weight_change += prediction.log_density;
+    proposals.push_back(laplace_proposal(particle.map, points, particle.T_map_body * T_keyframe_body, prediction.pose,
+                                          settings_.likelihood_tempering, settings_.matching));
+    proposals.back().log_weight_increment += prediction.log_density;
   }
   return proposals;
 }
 
-void GridSlam::move_particles(const std::vector<Proposal>& proposals) {
+void GridSlam::sample_particles(const std::vector<Proposal>& proposals) {
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const auto unit = [&](std::uint64_t axis) { return proposal_noise_.normal(keyframes_, 3 * i + axis); };
-    const bool is_drawn = particles_.size() > 1;
+    const bool is_sampled = particles_.size() > 1;
     particles_[i].T_map_body =
-        is_drawn ? proposals[i].sample({unit(0), unit(1), unit(2)}) : proposals[i].posterior.mean;
-    particles_[i].log_weight += proposals[i].log_weight_change;
+        is_sampled ? proposals[i].sample({unit(0), unit(1), unit(2)}) : proposals[i].posterior.mean;
+    particles_[i].log_weight += proposals[i].log_weight_increment;
   }
 }
 
@@ -171,7 +171,7 @@ double GridSlam::choose_best() {
 bool GridSlam::resample_if_needed(double num_effective) {
   if (num_effective >= settings_.resample_threshold * static_cast<double>(particles_.size())) return false;
   const std::vector<std::size_t> parents =
-      resample_systematic(particles().weights, resampling_noise_.uniform(keyframes_));
+      systematic_parents(particles().weights, resampling_noise_.uniform(keyframes_));
   std::vector<Particle> children;
   for (const std::size_t parent : parents) {
     children.push_back(particles_[parent]);
@@ -187,7 +187,7 @@ bool GridSlam::resample_if_needed(double num_effective) {
 void GridSlam::integrate(const LevelScan& scan) {
   for (Particle& particle : particles_) {
     integrate_scan(scan, particle.T_map_body, settings_.integration, particle.map);
-    particle.path = std::make_shared<PathStep>(particle.T_map_body, particle.path);
+    particle.path = std::make_shared<TrajectoryNode>(particle.T_map_body, particle.path);
   }
   ++keyframes_;
   if (keyframes_ == static_cast<std::uint64_t>(settings_.initial_keyframes)) {
@@ -196,11 +196,11 @@ void GridSlam::integrate(const LevelScan& scan) {
   }
 }
 
-OccupancyGrid GridSlam::map() const { return render_map(particles_[best_].map, settings_.min_hits_occupied, settings_.min_hit_share_occupied); }
+OccupancyGrid GridSlam::map() const { return render_map(particles_[best_].map, settings_.min_hits_occupied, settings_.min_occupied_hit_ratio); }
 
 std::vector<Pose2> GridSlam::best_path() const {
   std::vector<Pose2> T_map_body;
-  for (const PathStep* step = particles_[best_].path.get(); step; step = step->before.get()) T_map_body.push_back(step->T_map_body);
+  for (const TrajectoryNode* step = particles_[best_].path.get(); step; step = step->before.get()) T_map_body.push_back(step->T_map_body);
   std::reverse(T_map_body.begin(), T_map_body.end());
   return T_map_body;
 }

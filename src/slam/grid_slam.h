@@ -24,7 +24,7 @@ struct GridSlamSettings {
   double max_extent_m = 400.0;            ///< side of the mapped square around the origin
   int min_hits_occupied = 2;              ///< published map only: cells with fewer hits are treated as outliers
   /// Published map only: minimum ratio of hits to hits plus passes; below it the cell was occupied by a moving object.
-  double min_hit_share_occupied = 0.5;
+  double min_occupied_hit_ratio = 0.5;
   // Map updates.
   double keyframe_distance_m = 0.5;
   double keyframe_angle_rad = 0.12;
@@ -33,7 +33,7 @@ struct GridSlamSettings {
   int initial_keyframes = 25;  ///< the first N scans are all keyframes, because the map heading depends on them
   // Filter; the cost is proportional to the number of particles.
   int particles = 8;
-  double likelihood_gain = 0.2;  ///< tempering factor: fraction of the points with independent errors (proposal.h)
+  double likelihood_tempering = 0.2;  ///< tempering factor: fraction of the points with independent errors (proposal.h)
   std::string proposal = "scan_match";    ///< scan_match; or motion: sample from odometry only, as in FastSLAM
   /// Optimizer applied to the odometry samples, with the resampler of its source; only with `proposal: motion`.
   std::string optimizer = "none";
@@ -49,13 +49,13 @@ struct GridSlamSettings {
     visit("resolution_m", self.resolution_m, between(0.01, 1.0));
     visit("max_extent_m", self.max_extent_m, between(1.0, 5000.0));
     visit("min_hits_occupied", self.min_hits_occupied, between(1, 1000));
-    visit("min_hit_share_occupied", self.min_hit_share_occupied, between(0.0, 1.0));
+    visit("min_hit_share_occupied", self.min_occupied_hit_ratio, between(0.0, 1.0));
     visit("keyframe_distance_m", self.keyframe_distance_m, between(0.0, 10.0));
     visit("keyframe_angle_rad", self.keyframe_angle_rad, between(0.0, 3.2));
     visit("max_tilt_rad", self.max_tilt_rad, between(0.0, 1.6));
     visit("initial_keyframes", self.initial_keyframes, between(1, 1000));
     visit("particles", self.particles, between(1, 10000));
-    visit("likelihood_gain", self.likelihood_gain, between(0.0, 1.0));
+    visit("likelihood_gain", self.likelihood_tempering, between(0.0, 1.0));
     visit("proposal", self.proposal, one_of({"scan_match", "motion"}));
     visit("optimizer", self.optimizer, one_of(optimizers()));
     visit("resample_threshold", self.resample_threshold, between(0.0, 1.0));
@@ -90,7 +90,7 @@ class GridSlam {
 
   /// Adds a UWB range measured before the next scan. Ranges constrain the particles along directions that scans leave
   /// degenerate, for example along a lined tunnel. NLOS ranges are rejected by the gate.
-  void add(const RangeSighting& sighting) { new_ranges_.push_back(sighting); }
+  void add(const RangeMeasurement& measurement) { new_ranges_.push_back(measurement); }
 
   /// Processes a scan; `T_odom_body` is the odometry at its stamp.
   SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
@@ -110,11 +110,11 @@ class GridSlam {
     double log_density = 0.0;
   };
 
-  void accept_ranges(const Pose2& T_odom_body, Time stamp);
+  void gate_ranges(const Pose2& T_odom_body, Time stamp);
   Proposal track(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp) const;
   bool is_keyframe_due(const Pose2& T_map_body) const;
   std::vector<Proposal> propose(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp) const;
-  void move_particles(const std::vector<Proposal>& proposals);
+  void sample_particles(const std::vector<Proposal>& proposals);
   Proposal move_by_scan_match(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp, SlamUpdate& update);
   Proposal move_by_odometry(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp, SlamUpdate& update);
   double choose_best();
@@ -123,7 +123,7 @@ class GridSlam {
   Prediction predict(const Particle& particle, const Pose2& T_odom_body, Time stamp) const;
 
   GridSlamSettings settings_;
-  ParticleFilterParts parts_;  ///< components for particles sampled from odometry
+  ParticleFilterComponents components_;  ///< components for particles sampled from odometry
   RandomStream proposal_noise_, resampling_noise_;
   std::vector<Particle> particles_;  ///< one until the initial keyframes are mapped, then `settings.particles`
   std::size_t best_ = 0;             ///< index of the particle with the largest weight
@@ -133,8 +133,8 @@ class GridSlam {
   Pose2 T_odom_last_;      ///< odometry at the newest scan
   Pose2 T_odom_keyframe_;  ///< odometry at the last keyframe
   Time keyframe_stamp_{};
-  std::vector<RangeSighting> new_ranges_;  ///< not yet gated
-  std::vector<RangeSighting> ranges_;      ///< accepted since the last keyframe
+  std::vector<RangeMeasurement> new_ranges_;  ///< not yet gated
+  std::vector<RangeMeasurement> ranges_;      ///< accepted since the last keyframe
 };
 
 }  // namespace patrol::slam

@@ -8,36 +8,36 @@
 
 namespace patrol::slam {
 
-GridStep::GridStep(std::vector<Particle>& particles, std::vector<PoseGaussian> predictions, const std::vector<MatchPoint>& points, double likelihood_gain,
+RbpfParticleProblem::RbpfParticleProblem(std::vector<Particle>& particles, std::vector<PoseGaussian> predictions, const std::vector<MatchPoint>& points, double likelihood_tempering,
                    const ScanMatcherSettings& settings)
-    : particles_(particles), predictions_(std::move(predictions)), points_(points), likelihood_gain_(likelihood_gain), settings_(settings),
+    : particles_(particles), predictions_(std::move(predictions)), points_(points), likelihood_tempering_(likelihood_tempering), settings_(settings),
       positions_(particles.size()) {
   for (const PoseGaussian& prediction : predictions_) roots_.push_back(cholesky_factor(prediction.covariance));
 }
 
-Position GridStep::draw(std::size_t, RandomSequence& random) const {
+Position RbpfParticleProblem::sample(std::size_t, RandomSequence& random) const {
   const double x = random.normal(), y = random.normal(), yaw = random.normal();
   return Eigen::Vector3d(x, y, yaw);
 }
 
-double GridStep::log_fitness(std::size_t particle, const Position& position) const {
-  return likelihood_gain_ * scan_log_likelihood(particles_[particle].map, points_, pose_at(particle, position), settings_);
+double RbpfParticleProblem::log_fitness(std::size_t particle, const Position& position) const {
+  return likelihood_tempering_ * scan_log_likelihood(particles_[particle].map, points_, pose_at(particle, position), settings_);
 }
 
-double GridStep::settle(std::size_t particle, const Position& position) {
+double RbpfParticleProblem::commit(std::size_t particle, const Position& position) {
   positions_[particle] = position;
   particles_[particle].T_map_body = pose_at(particle, position);
   return log_fitness(particle, position);
 }
 
-void GridStep::reproduce(const std::vector<Offspring>& offspring) {
+void RbpfParticleProblem::apply_resampling(const std::vector<Offspring>& offspring) {
   std::vector<Particle> children;
   for (const Offspring& child : offspring) {
-    const std::size_t source = child.share > 0.0 ? child.toward : child.parent;
+    const std::size_t source = child.attraction > 0.0 ? child.attractor : child.parent;
     Particle& particle = children.emplace_back(particles_[source]);
-    if (child.share == 0.0 && child.mutation == 0.0) continue;
+    if (child.attraction == 0.0 && child.mutation == 0.0) continue;
     const Position own = positions_[child.parent];
-    particle.T_map_body = pose_at(source, (1.0 + child.mutation) * (own + child.share * (positions_[source] - own)));
+    particle.T_map_body = pose_at(source, (1.0 + child.mutation) * (own + child.attraction * (positions_[source] - own)));
   }
   particles_ = std::move(children);
 }

@@ -37,8 +37,8 @@ std::optional<LocalLine> fit_local_line(const GridMap& map, const Eigen::Vector2
   normal /= length;
   return LocalLine{.point_map = p_map + Eigen::Vector2d(mx, my),
                    .normal_map = normal,
-                   .roughness_var_m2 = across,
-                   .straightness = 1.0 - across / along,
+                   .normal_var_m2 = across,
+                   .linearity = 1.0 - across / along,
                    .num_hits = num_hits};
 }
 

@@ -10,7 +10,7 @@ namespace patrol::slam {
 /// Noise spreads the hits of a wall over two or three cells across it. The mean hit of each surface cell is therefore
 /// projected onto the local line, and only the cell that contains the projection is occupied. Walls are thus one cell
 /// thick and located at the average of all hits. Cells with fewer than `min_hits` hits are outliers. Cells where the
-/// ratio of hits to all beams is below `min_hit_share` were occupied by moving objects.
-OccupancyGrid render_map(const GridMap& map, int min_hits, double min_hit_share = 0.0);
+/// ratio of hits to all beams is below `min_hit_ratio` were occupied by moving objects.
+OccupancyGrid render_map(const GridMap& map, int min_hits, double min_hit_ratio = 0.0);
 
 }  // namespace patrol::slam

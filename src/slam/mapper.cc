@@ -12,13 +12,13 @@ namespace {
 /// Adapter from a mapping class to the Mapper interface. Ranges and particles are forwarded only if the class supports
 /// them.
 template <typename Method>
-class MapperOf final : public Mapper {
+class MapperAdapter final : public Mapper {
  public:
   template <typename... Arguments>
-  explicit MapperOf(Arguments&&... arguments) : method_(std::forward<Arguments>(arguments)...) {}
+  explicit MapperAdapter(Arguments&&... arguments) : method_(std::forward<Arguments>(arguments)...) {}
 
-  void add(const RangeSighting& sighting) override {
-    if constexpr (requires { method_.add(sighting); }) method_.add(sighting);
+  void add(const RangeMeasurement& measurement) override {
+    if constexpr (requires { method_.add(measurement); }) method_.add(measurement);
   }
   SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body) override {
     if constexpr (std::is_same_v<decltype(method_.update(scan, T_odom_body)), Pose2>) {
@@ -31,7 +31,7 @@ class MapperOf final : public Mapper {
   std::vector<Pose2> path() const override { return method_.path(); }
   OccupancyGrid map() override { return method_.map(); }
   PoseGraph graph() const override { return method_.graph(); }
-  std::vector<std::size_t> node_scans() const override { return method_.node_scans(); }
+  std::vector<std::size_t> node_scan_indices() const override { return method_.node_scan_indices(); }
   ParticleSet particles() const override {
     if constexpr (requires { method_.particles(); }) return method_.particles();
     return {};
@@ -44,15 +44,15 @@ class MapperOf final : public Mapper {
 constexpr std::array kMethods = std::to_array<MappingMethod>({
     {"graph", "Submaps and a pose graph with loop closures, of Cartographer's class",
      [](const MapperSettings& settings, const BoostedStumps&, std::uint64_t) -> std::unique_ptr<Mapper> {
-       return std::make_unique<MapperOf<GraphSlam>>(settings.graph);
+       return std::make_unique<MapperAdapter<GraphSlam>>(settings.graph);
      }},
     {"rbpf", "Rao-Blackwellized particle filter with improved proposals, of Gmapping's class",
      [](const MapperSettings& settings, const BoostedStumps&, std::uint64_t seed) -> std::unique_ptr<Mapper> {
-       return std::make_unique<MapperOf<TrackedRbpf>>(settings.rbpf, seed);
+       return std::make_unique<MapperAdapter<ScanOdometryRbpf>>(settings.rbpf, seed);
      }},
     {"submap_rbpf", "Submaps of such a filter, connected by classified neighbors (paper 002)",
-     [](const MapperSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed) -> std::unique_ptr<Mapper> {
-       return std::make_unique<MapperOf<SubmapRbpf>>(settings.submap_rbpf, neighbours, seed);
+     [](const MapperSettings& settings, const BoostedStumps& neighbors, std::uint64_t seed) -> std::unique_ptr<Mapper> {
+       return std::make_unique<MapperAdapter<SubmapRbpf>>(settings.submap_rbpf, neighbors, seed);
      },
      true},
 });
@@ -61,9 +61,9 @@ constexpr std::array kMethods = std::to_array<MappingMethod>({
 
 std::span<const MappingMethod> mapping_methods() { return kMethods; }
 
-std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed) {
+std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, const BoostedStumps& neighbors, std::uint64_t seed) {
   validate(settings, "slam");
-  return row_named(mapping_methods(), settings.method, "slam.method").make(settings, neighbours, seed);
+  return row_named(mapping_methods(), settings.method, "slam.method").make(settings, neighbors, seed);
 }
 
 }  // namespace patrol::slam

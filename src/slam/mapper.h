@@ -27,7 +27,7 @@ struct MapperSettings;
 struct MappingMethod {
   std::string_view name;     ///< text in settings and on the command line
   std::string_view summary;  ///< one line of documentation
-  std::unique_ptr<Mapper> (*make)(const MapperSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed);
+  std::unique_ptr<Mapper> (*make)(const MapperSettings& settings, const BoostedStumps& neighbors, std::uint64_t seed);
   bool needs_neighbor_model = false;  ///< whether it classifies pairs of submaps
 };
 
@@ -36,7 +36,7 @@ std::span<const MappingMethod> mapping_methods();
 struct MapperSettings {
   std::string method = "graph";
   GraphSlamSettings graph;
-  TrackedRbpfSettings rbpf;
+  ScanOdometryRbpfSettings rbpf;
   SubmapRbpfSettings submap_rbpf;
 
   template <typename Self, typename Visitor>
@@ -54,7 +54,7 @@ class Mapper {
   virtual ~Mapper() = default;
 
   /// Adds a UWB range measured before the next scan. Methods without range updates ignore it.
-  virtual void add(const RangeSighting& sighting) = 0;
+  virtual void add(const RangeMeasurement& measurement) = 0;
   /// Processes a scan and returns the current pose in map. The origin of map is the pose of the first scan;
   /// `T_odom_body` is the odometry at the stamp of the scan. Methods without a covariance estimate leave the covariance
   /// zero.
@@ -70,11 +70,11 @@ class Mapper {
   /// Keyframes and the relative pose constraints between them. Methods without loop closure return odometry edges only.
   virtual PoseGraph graph() const = 0;
   /// Index of the scan taken at each node, [node of the graph].
-  virtual std::vector<std::size_t> node_scans() const = 0;
+  virtual std::vector<std::size_t> node_scan_indices() const = 0;
 };
 
 /// Builds the method of that name. `neighbours` classifies pairs of submaps, for methods that need it.
 /// Throws InputError when a setting breaks its rule.
-std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed);
+std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, const BoostedStumps& neighbors, std::uint64_t seed);
 
 }  // namespace patrol::slam

@@ -6,7 +6,7 @@
 namespace patrol::slam {
 namespace {
 
-std::vector<MatchPoint> average_neighbours(const LevelScan& scan, double spacing_m) {
+std::vector<MatchPoint> average_neighbors(const LevelScan& scan, double spacing_m) {
   std::vector<MatchPoint> points;
   Eigen::Vector2d first = Eigen::Vector2d::Zero(), sum = Eigen::Vector2d::Zero();
   int count = 0;
@@ -31,8 +31,8 @@ std::vector<MatchPoint> average_neighbours(const LevelScan& scan, double spacing
 
 }  // namespace
 
-std::vector<MatchPoint> select_match_points(const LevelScan& scan, double spacing_m, int max_points) {
-  std::vector<MatchPoint> points = average_neighbours(scan, spacing_m);
+std::vector<MatchPoint> downsample_scan(const LevelScan& scan, double spacing_m, int max_points) {
+  std::vector<MatchPoint> points = average_neighbors(scan, spacing_m);
   const auto limit = static_cast<std::size_t>(max_points);
   if (points.size() <= limit) return points;
   std::vector<MatchPoint> chosen;

@@ -17,6 +17,6 @@ struct MatchPoint {
 /// Downsamples the hits of a scan uniformly in space: consecutive beams that end within `spacing_m` of the first of
 /// them are averaged. A near wall is thus weighted by its length, not by its angle; far walls, which constrain the
 /// heading, keep their weight. If more than `max_points` remain, a regular subset is returned.
-std::vector<MatchPoint> select_match_points(const LevelScan& scan, double spacing_m, int max_points);
+std::vector<MatchPoint> downsample_scan(const LevelScan& scan, double spacing_m, int max_points);
 
 }  // namespace patrol::slam

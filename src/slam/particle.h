@@ -9,15 +9,15 @@
 namespace patrol::slam {
 
 /// Node of a particle's trajectory, a linked list from the newest keyframe backward that all descendants share.
-struct PathStep {
+struct TrajectoryNode {
   Pose2 T_map_body;
-  std::shared_ptr<PathStep> before;
+  std::shared_ptr<TrajectoryNode> before;
 
-  PathStep(const Pose2& pose, std::shared_ptr<PathStep> earlier) : T_map_body(pose), before(std::move(earlier)) {}
-  PathStep(const PathStep&) = delete;
-  PathStep& operator=(const PathStep&) = delete;
+  TrajectoryNode(const Pose2& pose, std::shared_ptr<TrajectoryNode> earlier) : T_map_body(pose), before(std::move(earlier)) {}
+  TrajectoryNode(const TrajectoryNode&) = delete;
+  TrajectoryNode& operator=(const TrajectoryNode&) = delete;
   /// Frees the list in a loop: recursion over a trajectory of 100,000 steps would overflow the stack.
-  ~PathStep() {
+  ~TrajectoryNode() {
     while (before && before.use_count() == 1) before = std::move(before->before);
   }
 };
@@ -27,7 +27,7 @@ struct Particle {
   Pose2 T_map_body;
   double log_weight = 0.0;
   GridMap map;
-  std::shared_ptr<PathStep> path = nullptr;  ///< trajectory: poses at all keyframes
+  std::shared_ptr<TrajectoryNode> path = nullptr;  ///< trajectory: poses at all keyframes
 };
 
 }  // namespace patrol::slam

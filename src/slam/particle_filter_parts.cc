@@ -37,10 +37,10 @@ constexpr std::array kOptimizers = std::to_array<OptimizerRow>({
 });
 
 constexpr std::array kResamplers = std::to_array<ResamplerRow>({
-    {"multinomial", "One independent draw for each new particle", resample_multinomially},
-    {"systematic", "One draw for all new particles, at equal steps of the cumulative weight", resample_evenly},
-    {"residual", "Integer parts of the expected counts for certain, the rest drawn", resample_by_residuals},
-    {"low_weight", "Low-weight optimization of paper 000; biased", draw_low_weights_up},
+    {"multinomial", "One independent draw for each new particle", resample_multinomial},
+    {"systematic", "One draw for all new particles, at equal steps of the cumulative weight", resample_systematic},
+    {"residual", "Integer parts of the expected counts for certain, the rest drawn", resample_residual},
+    {"low_weight", "Low-weight optimization of paper 000; biased", optimize_low_weights},
     {"stepwise", "Stepwise resampling of paper 001; biased",
      [](const std::vector<double>& weights, RandomSequence& random) { return resample_stepwise(weights, random); }},
 });
@@ -51,11 +51,11 @@ std::span<const OptimizerRow> optimizers() { return kOptimizers; }
 
 std::span<const ResamplerRow> resamplers() { return kResamplers; }
 
-ParticleFilterSettings settings_of_paper(const std::string& optimizer) {
+ParticleFilterSettings published_settings(const std::string& optimizer) {
   return {.optimizer = optimizer, .resampler = std::string(row_named(kOptimizers, optimizer, "optimizer").resampler)};
 }
 
-ParticleFilterParts make_parts(const ParticleFilterSettings& settings) {
+ParticleFilterComponents make_components(const ParticleFilterSettings& settings) {
   validate(settings, "particle_filter");
   return {.optimizer = row_named(kOptimizers, settings.optimizer, "optimizer").make(settings),
           .resample = row_named(kResamplers, settings.resampler, "resampler").resample,

@@ -53,15 +53,15 @@ struct ParticleFilterSettings {
 
 /// Optimizer with the resampler of its source: low-weight optimization for ISCSO [Wu25], stepwise resampling for IFA
 /// [Cui21], systematic resampling for all others.
-ParticleFilterSettings settings_of_paper(const std::string& optimizer);
+ParticleFilterSettings published_settings(const std::string& optimizer);
 
-struct ParticleFilterParts {
+struct ParticleFilterComponents {
   std::shared_ptr<const SwarmOptimizer> optimizer;  ///< null: particles keep the sampled positions
-  Resampler resample = resample_evenly;
+  Resampler resample = resample_systematic;
   double resample_threshold = 0.5;
 };
 
 /// Throws InputError if a setting is invalid.
-ParticleFilterParts make_parts(const ParticleFilterSettings& settings);
+ParticleFilterComponents make_components(const ParticleFilterSettings& settings);
 
 }  // namespace patrol::slam

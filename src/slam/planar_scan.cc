@@ -7,7 +7,7 @@ namespace patrol::slam {
 namespace {
 
 /// Fraction of a small motion at constant velocity.
-Pose2 part_of(const Pose2& motion, double share) { return {share * motion.x, share * motion.y, share * motion.yaw}; }
+Pose2 interpolate_motion(const Pose2& motion, double share) { return {share * motion.x, share * motion.y, share * motion.yaw}; }
 
 }  // namespace
 
@@ -24,7 +24,7 @@ LevelScan planar_scan(const RecordedScan& recorded, const PlanarScanSettings& se
     const double length = is_hit ? range : std::isinf(range) ? settings.no_return_free_m : settings.max_range_m;
     if (!(length > 0.0)) continue;
     const double angle = scan.angle_min_rad + static_cast<double>(beam) * scan.angle_increment_rad;
-    const Pose2 T_body_then = part_of(recorded.T_first_last, static_cast<double>(beam) / last_beam);
+    const Pose2 T_body_then = interpolate_motion(recorded.T_begin_end, static_cast<double>(beam) / last_beam);
     const Eigen::Vector2d end = T_body_then * (recorded.T_body_lidar * Eigen::Vector2d(length * std::cos(angle), length * std::sin(angle)));
     level.beams.push_back({end.cast<float>(), is_hit});
   }

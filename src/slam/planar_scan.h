@@ -22,7 +22,7 @@ struct PlanarScanSettings {
 };
 
 /// Converts a recorded scan of a horizontal lidar to a LevelScan in the body frame at its first beam. If the log gives
-/// the motion during the scan (`T_first_last`), each beam is motion-compensated.
+/// the motion during the scan (`T_begin_end`), each beam is motion-compensated.
 LevelScan planar_scan(const RecordedScan& recorded, const PlanarScanSettings& settings);
 
 }  // namespace patrol::slam

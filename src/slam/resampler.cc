@@ -12,7 +12,7 @@ namespace {
 /// Relative rounding tolerance of stepwise resampling: particles of equal weight all survive.
 constexpr double kRounding = 1e-12;
 
-std::size_t drawn_from(const std::vector<double>& weights, double uniform) {
+std::size_t sample_index(const std::vector<double>& weights, double uniform) {
   double cumulative = 0.0;
   const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
   for (std::size_t i = 0; i + 1 < weights.size(); ++i) {
@@ -22,7 +22,7 @@ std::size_t drawn_from(const std::vector<double>& weights, double uniform) {
   return weights.size() - 1;
 }
 
-std::vector<std::size_t> by_falling_weight(const std::vector<double>& weights) {
+std::vector<std::size_t> order_by_descending_weight(const std::vector<double>& weights) {
   std::vector<std::size_t> order(weights.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return weights[a] > weights[b]; });
@@ -31,19 +31,19 @@ std::vector<std::size_t> by_falling_weight(const std::vector<double>& weights) {
 
 }  // namespace
 
-std::vector<Offspring> resample_multinomially(const std::vector<double>& weights, RandomSequence& random) {
+std::vector<Offspring> resample_multinomial(const std::vector<double>& weights, RandomSequence& random) {
   std::vector<Offspring> children;
-  for (std::size_t i = 0; i < weights.size(); ++i) children.push_back({.parent = drawn_from(weights, random.uniform())});
+  for (std::size_t i = 0; i < weights.size(); ++i) children.push_back({.parent = sample_index(weights, random.uniform())});
   return children;
 }
 
-std::vector<Offspring> resample_evenly(const std::vector<double>& weights, RandomSequence& random) {
+std::vector<Offspring> resample_systematic(const std::vector<double>& weights, RandomSequence& random) {
   std::vector<Offspring> children;
-  for (const std::size_t parent : resample_systematic(weights, random.uniform())) children.push_back({.parent = parent});
+  for (const std::size_t parent : systematic_parents(weights, random.uniform())) children.push_back({.parent = parent});
   return children;
 }
 
-std::vector<Offspring> resample_by_residuals(const std::vector<double>& weights, RandomSequence& random) {
+std::vector<Offspring> resample_residual(const std::vector<double>& weights, RandomSequence& random) {
   std::vector<Offspring> children;
   std::vector<double> rests;
   for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -51,20 +51,20 @@ std::vector<Offspring> resample_by_residuals(const std::vector<double>& weights,
     for (int copies = static_cast<int>(expected); copies > 0 && children.size() < weights.size(); --copies) children.push_back({.parent = i});
     rests.push_back(expected - std::floor(expected));
   }
-  while (children.size() < weights.size()) children.push_back({.parent = drawn_from(rests, random.uniform())});
+  while (children.size() < weights.size()) children.push_back({.parent = sample_index(rests, random.uniform())});
   return children;
 }
 
-std::vector<Offspring> draw_low_weights_up(const std::vector<double>& weights, RandomSequence& random) {
+std::vector<Offspring> optimize_low_weights(const std::vector<double>& weights, RandomSequence& random) {
   const double num_effective = effective_sample_size(weights);
   const auto num_high = static_cast<std::size_t>(std::clamp(std::ceil(num_effective) - 1.0, 1.0, static_cast<double>(weights.size())));
-  const std::vector<std::size_t> order = by_falling_weight(weights);
+  const std::vector<std::size_t> order = order_by_descending_weight(weights);
   std::vector<Offspring> children;
   for (std::size_t rank = 0; rank < order.size(); ++rank) {
     Offspring child{.parent = order[rank]};
     if (rank >= num_high) {
-      child.toward = order[random.index(num_high)];
-      child.share = random.uniform();
+      child.attractor = order[random.index(num_high)];
+      child.attraction = random.uniform();
     }
     children.push_back(child);
   }
@@ -72,7 +72,7 @@ std::vector<Offspring> draw_low_weights_up(const std::vector<double>& weights, R
 }
 
 std::vector<Offspring> resample_stepwise(const std::vector<double>& weights, RandomSequence& random, const StepwiseResampling& settings) {
-  const std::vector<std::size_t> order = by_falling_weight(weights);
+  const std::vector<std::size_t> order = order_by_descending_weight(weights);
   double average = 0.0, power = 1.0, sum = 0.0;
   for (const std::size_t i : order) {
     average = settings.averaging * average + (1.0 - settings.averaging) * weights[i];

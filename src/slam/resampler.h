@@ -11,8 +11,8 @@ namespace patrol::slam {
 /// Recipe of a new particle: a copy of `parent`, optionally moved toward another particle or perturbed.
 struct Offspring {
   std::size_t parent = 0;
-  std::size_t toward = 0;     ///< index of the attracting particle; state = parent + share (toward - parent)
-  double share = 0.0;
+  std::size_t attractor = 0;     ///< index of the attracting particle; state = parent + share (toward - parent)
+  double attraction = 0.0;
   double mutation = 0.0;      ///< relative perturbation: the state, or its increment, is multiplied by 1 + mutation
 };
 
@@ -21,18 +21,18 @@ using Resampler = std::function<std::vector<Offspring>(const std::vector<double>
 
 /// Multinomial resampling [Gordon93]: each new particle samples its parent independently. Unbiased: the mean number of
 /// children is N w.
-std::vector<Offspring> resample_multinomially(const std::vector<double>& weights, RandomSequence& random);
+std::vector<Offspring> resample_multinomial(const std::vector<double>& weights, RandomSequence& random);
 
 /// Systematic resampling with one random number for all particles (core/particle_weights.h). Unbiased.
-std::vector<Offspring> resample_evenly(const std::vector<double>& weights, RandomSequence& random);
+std::vector<Offspring> resample_systematic(const std::vector<double>& weights, RandomSequence& random);
 
 /// Residual resampling [Liu98]: floor(N w) copies of each particle, the rest sampled from the remainders. Unbiased.
-std::vector<Offspring> resample_by_residuals(const std::vector<double>& weights, RandomSequence& random);
+std::vector<Offspring> resample_residual(const std::vector<double>& weights, RandomSequence& random);
 
 /// Low-weight optimization of [Wu25, eqs. 3, 4]. The M particles of largest weight are kept, with M the largest integer
 /// below N_eff. Every other particle is moved by a random fraction toward a random one of them. Biased: the M particles
 /// count equally whatever their weights, and the moved particles are not samples of the weighted set.
-std::vector<Offspring> draw_low_weights_up(const std::vector<double>& weights, RandomSequence& random);
+std::vector<Offspring> optimize_low_weights(const std::vector<double>& weights, RandomSequence& random);
 
 struct StepwiseResampling {
   double averaging = 0.8;       ///< beta of [Cui21, eq. 7]

@@ -21,8 +21,8 @@ struct NormalEquations {
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   double log_likelihood = 0.0;
-  int num_known = 0;    ///< points in observed cells
-  int num_matched = 0;  ///< points near a surface, out of num_known
+  int num_observed = 0;    ///< points in observed cells
+  int num_matched = 0;  ///< points near a surface, out of num_observed
 };
 
 double squared(double value) { return value * value; }
@@ -36,7 +36,7 @@ struct PointTerm {
 };
 
 /// Returns none in unobserved cells.
-std::optional<PointTerm> term_of(const GridMap& map, const MatchPoint& point, const Eigen::Matrix2d& R, const Eigen::Vector2d& t, const ScanMatcherSettings& settings) {
+std::optional<PointTerm> to_term(const GridMap& map, const MatchPoint& point, const Eigen::Matrix2d& R, const Eigen::Vector2d& t, const ScanMatcherSettings& settings) {
   const double kernel_var = squared(settings.kernel_m);
   PointTerm term{.line = {}, .arm = R * point.p_body};
   const Eigen::Vector2d p_map = t + term.arm;
@@ -44,15 +44,15 @@ std::optional<PointTerm> term_of(const GridMap& map, const MatchPoint& point, co
   term.line = fit_local_line(map, p_map, settings.surface_radius_cells);
   if (!term.line) {
     const GridCell* cell = map.find(map.cell_at(p_map));
-    if (!cell || !cell->is_known()) return std::nullopt;
+    if (!cell || !cell->is_observed()) return std::nullopt;
     term.log_likelihood = -0.5 * kernel_var / point_var * std::log1p(squared(settings.surface_radius_cells * map.resolution_m()) / kernel_var);
     return term;
   }
   // Cauchy: loss = kernel^2 log(1 + (r/kernel)^2), weight = 1 / (1 + (r/kernel)^2).
   term.residual_m = term.line->distance_m(p_map);
-  term.variance = point_var + term.line->roughness_var_m2 + squared(settings.point_std_m) / term.line->num_hits;
+  term.variance = point_var + term.line->normal_var_m2 + squared(settings.point_std_m) / term.line->num_hits;
   const double ratio = squared(term.residual_m) / kernel_var;
-  term.weight = squared(term.line->straightness) / (term.variance * (1.0 + ratio));
+  term.weight = squared(term.line->linearity) / (term.variance * (1.0 + ratio));
   term.log_likelihood = -0.5 * kernel_var / term.variance * std::log1p(ratio);
   return term;
 }
@@ -63,9 +63,9 @@ NormalEquations linearize(const GridMap& map, const std::vector<MatchPoint>& poi
   const Eigen::Matrix2d R = Eigen::Rotation2Dd(T_map_body.yaw).toRotationMatrix();
   const Eigen::Vector2d t = T_map_body.position();
   for (const MatchPoint& point : points) {
-    const std::optional<PointTerm> term = term_of(map, point, R, t, settings);
+    const std::optional<PointTerm> term = to_term(map, point, R, t, settings);
     if (!term) continue;
-    ++sum.num_known;
+    ++sum.num_observed;
     sum.log_likelihood += term->log_likelihood;
     if (!term->line) continue;
     ++sum.num_matched;
@@ -78,9 +78,9 @@ NormalEquations linearize(const GridMap& map, const std::vector<MatchPoint>& poi
 }
 
 /// Number of points on or next to a surface cell.
-int count_on_surface(const GridMap& map, const std::vector<Eigen::Vector2d>& turned, const Eigen::Vector2d& shift) {
+int count_on_surface(const GridMap& map, const std::vector<Eigen::Vector2d>& rotated, const Eigen::Vector2d& shift) {
   int count = 0;
-  for (const Eigen::Vector2d& point : turned) count += map.is_surface_within(map.cell_at(point + shift), 1) ? 1 : 0;
+  for (const Eigen::Vector2d& point : rotated) count += map.is_surface_within(map.cell_at(point + shift), 1) ? 1 : 0;
   return count;
 }
 
@@ -94,20 +94,20 @@ std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<Matc
 
   while (!result.converged && result.iterations < settings.max_iterations) {
     const NormalEquations sum = linearize(map, points, result.T_map_body, settings);
-    const double share = sum.num_known > 0 ? static_cast<double>(sum.num_matched) / sum.num_known : 0.0;
-    if (sum.num_matched < kMinPoints || share < settings.min_matched_share) return std::nullopt;
+    const double share = sum.num_observed > 0 ? static_cast<double>(sum.num_matched) / sum.num_observed : 0.0;
+    if (sum.num_matched < kMinPoints || share < settings.min_inlier_ratio) return std::nullopt;
 
     Eigen::Matrix3d H = sum.H + prior_information;
     Eigen::Vector3d b = sum.b;
-    if (prior) b += prior_information * prior->offset_of(result.T_map_body);
+    if (prior) b += prior_information * prior->residual_to_mean(result.T_map_body);
     H.diagonal() += Eigen::Vector3d::Constant(1e-9 * H.trace());  // without a prior a direction may be degenerate
     const Eigen::Vector3d step = -solve_symmetric(H, b);
     if (!step.allFinite()) return std::nullopt;
 
-    result.T_map_body = shifted(result.T_map_body, step);
+    result.T_map_body = perturbed(result.T_map_body, step);
     result.information = sum.H;
     result.log_likelihood = sum.log_likelihood;
-    result.matched_share = share;
+    result.inlier_ratio = share;
     result.num_matched = sum.num_matched;
     result.converged = step.head<2>().norm() < kStepTol_m && std::abs(step.z()) < kStepTol_rad;
     ++result.iterations;
@@ -119,7 +119,7 @@ double scan_log_likelihood(const GridMap& map, const std::vector<MatchPoint>& po
   const NormalEquations sum = linearize(map, points, T_map_body, settings);
   const double kernel_var = squared(settings.kernel_m);
   const double outlier_loss = std::log1p(squared(settings.surface_radius_cells * map.resolution_m()) / kernel_var);
-  const double num_unknown = static_cast<double>(points.size()) - sum.num_known;
+  const double num_unknown = static_cast<double>(points.size()) - sum.num_observed;
   return sum.log_likelihood - 0.5 * num_unknown * kernel_var / squared(settings.point_std_m) * outlier_loss;
 }
 
@@ -128,7 +128,7 @@ std::vector<double> point_log_likelihoods(const GridMap& map, const std::vector<
   std::vector<double> log_likelihoods;
   log_likelihoods.reserve(points.size());
   for (const MatchPoint& point : points) {
-    const std::optional<PointTerm> term = term_of(map, point, R, T_map_body.position(), settings);
+    const std::optional<PointTerm> term = to_term(map, point, R, T_map_body.position(), settings);
     log_likelihoods.push_back(term ? term->log_likelihood : std::numeric_limits<double>::quiet_NaN());
   }
   return log_likelihoods;
@@ -142,22 +142,22 @@ Pose2 search_pose(const GridMap& map, const std::vector<MatchPoint>& points, con
   // A cell and its neighbors cover 1.5 cells each way: steps of two cells skip nothing, also at the farthest point.
   const double step_m = 2.0 * map.resolution_m(), step_rad = 2.0 * map.resolution_m() / far_m;
   const int steps = static_cast<int>(std::ceil(settings.search_window_m / step_m));
-  const int turns = static_cast<int>(std::ceil(settings.search_window_rad / step_rad));
+  const int num_rotations = static_cast<int>(std::ceil(settings.search_window_rad / step_rad));
 
   Pose2 best = T_map_center;
   double best_score = -1.0;
-  std::vector<Eigen::Vector2d> turned;
-  for (int turn = -turns; turn <= turns; ++turn) {
-    const double yaw = T_map_center.yaw + turn * step_rad;
+  std::vector<Eigen::Vector2d> rotated;
+  for (int rotation = -num_rotations; rotation <= num_rotations; ++rotation) {
+    const double yaw = T_map_center.yaw + rotation * step_rad;
     const Eigen::Rotation2Dd R(yaw);
-    turned.clear();
-    for (std::size_t i = 0; i < points.size(); i += stride) turned.push_back(R * points[i].p_body);
+    rotated.clear();
+    for (std::size_t i = 0; i < points.size(); i += stride) rotated.push_back(R * points[i].p_body);
     for (int i = -steps; i <= steps; ++i) {
       for (int j = -steps; j <= steps; ++j) {
         const Eigen::Vector2d shift = T_map_center.position() + step_m * Eigen::Vector2d(i, j);
         // Prefer the pose closest to the center among equal counts.
-        const double tie = 1e-3 * (std::abs(i) + std::abs(j) + std::abs(turn));
-        const double score = count_on_surface(map, turned, shift) - tie;
+        const double tie = 1e-3 * (std::abs(i) + std::abs(j) + std::abs(rotation));
+        const double score = count_on_surface(map, rotated, shift) - tie;
         if (score > best_score) best_score = score, best = {shift.x(), shift.y(), wrap_angle(yaw)};
       }
     }

@@ -20,7 +20,7 @@ struct ScanMatcherSettings {
   double kernel_m = 0.05;  ///< scale of the Cauchy kernel; residuals beyond it are down-weighted as outliers
   int surface_radius_cells = 3;          ///< neighborhood of the line fit; also the largest initial distance of a point
   int max_iterations = 8;
-  double min_matched_share = 0.3;        ///< matches with a smaller inlier ratio are rejected
+  double min_inlier_ratio = 0.3;        ///< matches with a smaller inlier ratio are rejected
   double search_window_m = 0.3;          ///< coarse search: half width along x and y
   double search_window_rad = 0.12;
   int search_points = 200;
@@ -34,7 +34,7 @@ struct ScanMatcherSettings {
     visit("kernel_m", self.kernel_m, between(1e-3, 10.0));
     visit("surface_radius_cells", self.surface_radius_cells, between(1, 10));
     visit("max_iterations", self.max_iterations, between(1, 100));
-    visit("min_matched_share", self.min_matched_share, between(0.0, 1.0));
+    visit("min_matched_share", self.min_inlier_ratio, between(0.0, 1.0));
     visit("search_window_m", self.search_window_m, between(0.0, 5.0));
     visit("search_window_rad", self.search_window_rad, between(0.0, 1.6));
     visit("search_points", self.search_points, between(3, 10000));
@@ -47,7 +47,7 @@ struct MatchResult {
   /// that the map leaves degenerate, for example along a corridor.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double log_likelihood = 0.0;  ///< log likelihood of the scan at the pose, up to a constant
-  double matched_share = 0.0;   ///< inlier ratio: points near a surface / points in observed cells
+  double inlier_ratio = 0.0;   ///< inlier ratio: points near a surface / points in observed cells
   int num_matched = 0;
   int iterations = 0;
   bool converged = false;

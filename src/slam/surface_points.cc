@@ -26,11 +26,11 @@ std::vector<Eigen::Vector2d> surface_points(const GridMap& map) {
   return points;
 }
 
-std::vector<Eigen::Vector2d> facings_of(const std::vector<Eigen::Vector2d>& points, const GridMap& map, double radius_m) {
-  constexpr double kLeastOneSided = 0.3;  // 0.64 for a half disc
+std::vector<Eigen::Vector2d> estimate_free_space_normals(const std::vector<Eigen::Vector2d>& points, const GridMap& map, double radius_m) {
+  constexpr double kMinOneSidedness = 0.3;  // 0.64 for a half disc
   const int reach = static_cast<int>(std::ceil(radius_m / map.resolution_m()));
-  std::vector<Eigen::Vector2d> facings;
-  facings.reserve(points.size());
+  std::vector<Eigen::Vector2d> free_space_normals;
+  free_space_normals.reserve(points.size());
   for (const Eigen::Vector2d& p : points) {
     const Cell at = map.cell_at(p);
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -40,15 +40,15 @@ std::vector<Eigen::Vector2d> facings_of(const std::vector<Eigen::Vector2d>& poin
         const GridCell* cell = map.find({col, row});
         const Eigen::Vector2d towards = map.center_of({col, row}) - p;
         const double distance_m = towards.norm();
-        if (!cell || !cell->is_known() || cell->is_surface() || distance_m > radius_m || distance_m == 0.0) continue;
+        if (!cell || !cell->is_observed() || cell->is_surface() || distance_m > radius_m || distance_m == 0.0) continue;
         sum += towards / distance_m;
         ++free;
       }
     }
     const double one_sided = free > 0 ? sum.norm() / free : 0.0;
-    facings.push_back(one_sided < kLeastOneSided ? Eigen::Vector2d(0.0, 0.0) : Eigen::Vector2d(sum.normalized()));
+    free_space_normals.push_back(one_sided < kMinOneSidedness ? Eigen::Vector2d(0.0, 0.0) : Eigen::Vector2d(sum.normalized()));
   }
-  return facings;
+  return free_space_normals;
 }
 
 }  // namespace patrol::slam

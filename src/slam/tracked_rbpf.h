@@ -15,7 +15,7 @@ namespace patrol::slam {
 
 /// Filter settings for scan-to-scan odometry: enough particles for a building, small motion noise, no leg-specific
 /// errors.
-GridSlamSettings tracked_filter();
+GridSlamSettings default_filter_settings();
 
 /// Odometry that predicts the particles of `rbpf`.
 enum class RbpfOdometry : std::uint8_t { kGiven, kScanMatched };
@@ -28,10 +28,10 @@ static_assert(is_in_order(kRbpfOdometries));
 
 /// Settings of the method `rbpf`, in one section with those of its filter. The defaults are those for a recorded log, whose odometry is of unknown
 /// quality. A robot of this program has odometry of known quality: its stack uses the odometry as given and fewer particles.
-struct TrackedRbpfSettings {
+struct ScanOdometryRbpfSettings {
   std::string odometry = "scan_matched";  ///< odometry that predicts the particles (`kRbpfOdometries`)
   ScanTrackerSettings tracking;           ///< matching from scan to scan, with `odometry: scan_matched`
-  GridSlamSettings filter = tracked_filter();
+  GridSlamSettings filter = default_filter_settings();
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -46,12 +46,12 @@ struct TrackedRbpfSettings {
 ///
 /// With `odometry: scan_matched`, matching from scan to scan corrects the odometry before the filter uses it: the particles have only its small errors to
 /// correct, and wrong wheel odometry does not mislead all of them.
-class TrackedRbpf {
+class ScanOdometryRbpf {
  public:
-  TrackedRbpf(const TrackedRbpfSettings& settings, std::uint64_t seed);
+  ScanOdometryRbpf(const ScanOdometryRbpfSettings& settings, std::uint64_t seed);
 
   /// A range between scans; left out before the first scan.
-  void add(RangeSighting sighting);
+  void add(RangeMeasurement measurement);
   SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
   void finish() {}
 
@@ -60,7 +60,7 @@ class TrackedRbpf {
   OccupancyGrid map() const { return filtered_.map(); }
   ParticleSet particles() const { return filtered_.particles(); }
   PoseGraph graph() const { return filtered_.graph(); }
-  std::vector<std::size_t> node_scans() const { return filtered_.node_scans(); }
+  std::vector<std::size_t> node_scan_indices() const { return filtered_.node_scan_indices(); }
 
  private:
   /// Poses of the newest scan in the given and in the corrected odometry.
@@ -70,7 +70,7 @@ class TrackedRbpf {
 
   std::optional<ScanTracker> tracker_;  ///< none with `odometry: given`
   std::optional<OdometryPair> newest_;  ///< with a tracker
-  FilteredPath filtered_;
+  TrajectoryRbpf filtered_;
 };
 
 }  // namespace patrol::slam

@@ -19,26 +19,26 @@ std::unique_ptr<Mission> make_gas_mission(const StackSettings& settings, const R
   const auto& stations = route_in_map.stations;
   if (std::any_of(stations.begin(), stations.end(), [](const Station& station) { return station.type == StationType::kInspect; }))
     robot.T_body("tdlas");
-  std::string about_order;
+  std::string order_text;
   if (settings.mission.order == "best" && !route_in_map.stations.empty()) {
     StationOrder order = order_stations(route_in_map, robot, settings.plan, settings.mission, seed);
     route_in_map.stations = std::move(order.stations);
-    about_order = std::move(order.text);
+    order_text = std::move(order.text);
   }
-  return std::make_unique<GasMission>(settings.mission, std::move(route_in_map), std::move(about_order));
+  return std::make_unique<GasMission>(settings.mission, std::move(route_in_map), std::move(order_text));
 }
 
-void check_goals(const std::vector<MarkedGoal>& goals, const RobotDescription& robot, const Route& site_in_map) {
-  if (std::none_of(goals.begin(), goals.end(), [](const MarkedGoal& goal) { return goal.type == GoalType::kScan; })) return;
+void validate_goals(const std::vector<SavedGoal>& goals, const RobotDescription& robot, const Route& site_in_map) {
+  if (std::none_of(goals.begin(), goals.end(), [](const SavedGoal& goal) { return goal.type == GoalType::kScan; })) return;
   if (!site_in_map.lining) throw InputError("tour: a goal is of type D, but the site's survey has no lining");
   robot.T_body("scanner");
 }
 
 std::unique_ptr<Mission> make_tunnel_mission(const StackSettings& settings, const RobotDescription& robot,
                                              const Route& site_in_map, const StackStart& start) {
-  auto mission = std::make_unique<TunnelMission>(settings.tour, start.goals, start.has_remote, start.map.has_value());
-  check_goals(start.goals, robot, site_in_map);
-  if (!start.map && !start.has_remote && settings.localizer == "automatic") {
+  auto mission = std::make_unique<TunnelMission>(settings.tour, start.goals, start.has_teleop, start.map.has_value());
+  validate_goals(start.goals, robot, site_in_map);
+  if (!start.map && !start.has_teleop && settings.localizer == "automatic") {
     throw InputError("tour: there is no map, and no remote control to make one");
   }
   const bool needs_dock = settings.tour.docks || (settings.tour.starts_docked && !settings.tour.starts_at_survey);
@@ -76,13 +76,13 @@ Stack make_stack(const StackSettings& settings, const RobotDescription& robot, c
   MotionExecutor motion(settings, robot, site_in_map, start.seed);
   std::unique_ptr<Mission> mission = make_mission(settings, robot, site_in_map, start);
   InstrumentSet instruments = make_instruments(settings, robot, site_in_map, start);
-  LocalizerStart localizer{.map = std::move(start.map), .has_mapping_drive = is_tunnel(settings) && start.has_remote,
+  LocalizerStart localizer{.map = std::move(start.map), .has_mapping_drive = is_tunnel(settings) && start.has_teleop,
                            .neighbor_model = std::move(start.neighbor_model)};
   return Stack({.pose = PosePipeline(settings, robot, site_in_map, std::move(localizer), start.seed),
                 .motion = std::move(motion),
                 .mission = std::move(mission),
                 .instruments = std::move(instruments),
-                .sensor_watch = SensorWatch(settings.sensor_watch),
+                .sensor_watch = SensorMonitor(settings.sensor_watch),
                 .dock = site_in_map.dock,
                 .map_period_s = start.map_period_s});
 }

@@ -6,7 +6,7 @@
 namespace patrol::stack {
 namespace {
 
-constexpr Time kRemoteHold =
+constexpr Time kTeleopCommandValidity =
     std::chrono::milliseconds(500);  // validity of a teleoperation command
 
 DockingFeedback feedback_of(plan::DockingStatus status) {
@@ -33,13 +33,13 @@ MotionExecutor::MotionExecutor(const StackSettings& settings, const RobotDescrip
 
 void MotionExecutor::add(const LevelScan& scan, const ScanPose& pose) {
   navigator_.add_scan(scan, pose.T_map_body);
-  if (docking_.status() == plan::DockingStatus::kDocking) look_for_dock(scan, pose);
+  if (docking_.status() == plan::DockingStatus::kDocking) detect_dock(scan, pose);
 }
 
-void MotionExecutor::look_for_dock(const LevelScan& scan, const ScanPose& pose) {
+void MotionExecutor::detect_dock(const LevelScan& scan, const ScanPose& pose) {
   const Pose2 T_level_expected =
       docking_.T_level_docked(pose.T_odom_body).value_or(pose.T_map_body.inverse() * dock_->T_route_docked);
-  const std::optional<DockSighting> sighting = dock_detector_->detect(scan, T_level_expected);
+  const std::optional<DockDetection> sighting = dock_detector_->detect(scan, T_level_expected);
   if (sighting) docking_.add(*sighting, pose.T_odom_body);
 }
 
@@ -53,7 +53,7 @@ VelocityCommand MotionExecutor::step(Time now, const Task& task, const Pose2& T_
   if (motion_ == Motion::kNavigate) return navigate(now, task.goal, T_map_body, output);
   if (motion_ == Motion::kDock) return go_to_dock(now, T_map_body, T_odom_body, output);
   navigate(now, std::nullopt, T_map_body, output);
-  if (motion_ == Motion::kFollowRemote) return remote_command(now);
+  if (motion_ == Motion::kTeleop) return teleop_command(now);
   if (motion_ != Motion::kUndock) return {};
   if (is_new) docking_.undock(now, T_odom_body);
   return move_at_dock(now, T_map_body, T_odom_body, output);
@@ -72,11 +72,11 @@ VelocityCommand MotionExecutor::navigate(Time now, const std::optional<Navigatio
   return step.command;
 }
 
-VelocityCommand MotionExecutor::remote_command(Time now) const {
+VelocityCommand MotionExecutor::teleop_command(Time now) const {
   VelocityCommand command;
-  if (!last_remote_ || now - last_remote_->stamp >= kRemoteHold) return command;
-  command.vx_mps = last_remote_->vx_mps;
-  command.yaw_rate_radps = last_remote_->yaw_rate_radps;
+  if (!last_teleop_ || now - last_teleop_->stamp >= kTeleopCommandValidity) return command;
+  command.vx_mps = last_teleop_->vx_mps;
+  command.yaw_rate_radps = last_teleop_->yaw_rate_radps;
   return command;
 }
 

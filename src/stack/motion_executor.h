@@ -28,13 +28,13 @@ class MotionExecutor {
   void set_map(const OccupancyGrid& map) { navigator_.set_map(map); }
   /// Adds obstacles, and detects the charging post while the robot docks.
   void add(const LevelScan& scan, const ScanPose& pose);
-  void add(const UltrasonicRange& range, const StandingPlace& place) {
+  void add(const UltrasonicRange& range, const StationPose& place) {
     navigator_.add_range(range, place.T_level_body, place.T_map_body);
   }
-  void add(const DepthImage& image, const StandingPlace& place) {
+  void add(const DepthImage& image, const StationPose& place) {
     navigator_.add_depth(image, place.T_level_body, place.T_map_body);
   }
-  void add(const RemoteCommand& command) { last_remote_ = command; }
+  void add(const TeleopCommand& command) { last_teleop_ = command; }
 
   /// Returns the velocity command for a control period; publishes paths and events.
   VelocityCommand step(Time now, const Task& task, const Pose2& T_map_body, const Pose2& T_odom_body,
@@ -43,21 +43,21 @@ class MotionExecutor {
   NavigationFeedback navigation() const;
   DockingFeedback docking() const { return docking_feedback_; }
   /// Returns whether the robot is teleoperated.
-  bool follows_remote() const { return motion_ == Motion::kFollowRemote; }
+  bool is_teleoperated() const { return motion_ == Motion::kTeleop; }
 
  private:
   VelocityCommand navigate(Time now, const std::optional<NavigationGoal>& goal, const Pose2& T_map_body,
                            StackOutput& output);
-  VelocityCommand remote_command(Time now) const;
+  VelocityCommand teleop_command(Time now) const;
   VelocityCommand go_to_dock(Time now, const Pose2& T_map_body, const Pose2& T_odom_body, StackOutput& output);
   VelocityCommand move_at_dock(Time now, const Pose2& T_map_body, const Pose2& T_odom_body, StackOutput& output);
-  void look_for_dock(const LevelScan& scan, const ScanPose& pose);
+  void detect_dock(const LevelScan& scan, const ScanPose& pose);
 
   plan::Navigator navigator_;
   plan::Docking docking_;
   std::optional<Dock> dock_;
   std::optional<localize::DockDetector> dock_detector_;
-  std::optional<RemoteCommand> last_remote_;
+  std::optional<TeleopCommand> last_teleop_;
   Motion motion_ = Motion::kStand;
   plan::NavigationStatus navigation_ = plan::NavigationStatus::kIdle;
   DockingFeedback docking_feedback_ = DockingFeedback::kUnderWay;

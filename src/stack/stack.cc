@@ -19,32 +19,32 @@ Stack::Stack(StackParts parts) : parts_(std::move(parts)), map_period_(from_seco
 }
 
 void Stack::handle(const SensorMessage& message) {
-  if (!parts_.sensor_watch.hear(message, now_)) return;
-  const auto place_at = [this](Time stamp) { return parts_.pose.place_at(stamp); };
+  if (!parts_.sensor_watch.receive(message, now_)) return;
+  const auto station_pose_at = [this](Time stamp) { return parts_.pose.station_pose_at(stamp); };
   std::visit(Overloaded{
                  [&](const LaserScan& scan) { handle_scan(scan); },
                  [&](const UltrasonicRange& range) {
-                   if (const auto place = place_at(range.stamp)) parts_.motion.add(range, *place);
+                   if (const auto place = station_pose_at(range.stamp)) parts_.motion.add(range, *place);
                  },
                  [&](const DepthImage& image) {
-                   const auto lap = output_.lap("planning");
-                   if (const auto place = place_at(image.stamp)) parts_.motion.add(image, *place);
+                   const auto timer = output_.time_stage("planning");
+                   if (const auto place = station_pose_at(image.stamp)) parts_.motion.add(image, *place);
                  },
-                 [&](const RemoteCommand& command) {
-                   new_remote_ = command;
+                 [&](const TeleopCommand& command) {
+                   new_teleop_ = command;
                    parts_.motion.add(command);
                  },
                  [&](const auto&) { parts_.pose.add(message, output_); },
              },
              message);
-  parts_.instruments.add(message, place_at);
+  parts_.instruments.add(message, station_pose_at);
 }
 
 void Stack::handle_scan(const LaserScan& raw) {
   const std::optional<LevelScan> scan = parts_.pose.level(raw, output_);
   if (!scan) return;
   const ScanPose pose = parts_.pose.localize(*scan, output_);
-  const auto lap = output_.lap("planning");
+  const auto timer = output_.time_stage("planning");
   parts_.motion.add(*scan, pose);
 }
 
@@ -66,32 +66,32 @@ void Stack::step(Time now) {
   }
   if (now < next_control_) return;
   next_control_ += kControlPeriod;
-  const auto lap = output_.lap("planning");
-  const Pose2 T_odom_body = to_planar(odometry->T_odom_body);
-  watch_sensors(now, T_odom_body);
+  const auto timer = output_.time_stage("planning");
+  const Pose2 T_odom_body = to_pose2(odometry->T_odom_body);
+  monitor_sensors(now, T_odom_body);
   command_ = control({.now = now,
                       .odometry = *odometry,
                       .T_odom_body = T_odom_body,
                       .pose = parts_.pose.pose_at(odometry->stamp, T_odom_body)});
-  if (!parts_.sensor_watch.can_drive() && !parts_.motion.follows_remote()) command_ = {};
+  if (!parts_.sensor_watch.can_drive() && !parts_.motion.is_teleoperated()) command_ = {};
   command_.stamp = now;
   output_.publish(command_);
 }
 
 void Stack::publish_map(Time now) {
-  const auto lap = output_.lap("slam");
+  const auto timer = output_.time_stage("slam");
   MapUpdate update{now, parts_.pose.map()};
   parts_.motion.set_map(update.map);
   output_.publish(std::move(update));
 }
 
-void Stack::watch_sensors(Time now, const Pose2& T_odom_body) {
+void Stack::monitor_sensors(Time now, const Pose2& T_odom_body) {
   const Pose2 T_map_body = parts_.pose.pose_at(now, T_odom_body).T_map_body;
   for (const SensorChange& change : parts_.sensor_watch.step(now, T_odom_body, command_)) {
-    output_.publish_event(now, T_map_body, change.is_back ? EventKind::kSensorRecovered : EventKind::kSensorFault,
+    output_.publish_event(now, T_map_body, change.has_recovered ? EventKind::kSensorRecovered : EventKind::kSensorFault,
                           change.text, change.sensor);
   }
-  if (!parts_.sensor_watch.has_given_up(now) || mission_is_over()) return;
+  if (!parts_.sensor_watch.must_abort(now) || mission_is_over()) return;
   output_.publish(parts_.mission->abort(now, EventKind::kSensorFailed,
                                         "A sensor that driving needs did not come back: the mission is over."));
 }
@@ -116,9 +116,9 @@ void Stack::advance_mission(const Period& period) {
                                                            .navigation = parts_.motion.navigation(),
                                                            .docking = parts_.motion.docking(),
                                                            .inspection = inspection_,
-                                                           .remote = std::exchange(new_remote_, std::nullopt)});
+                                                           .teleop = std::exchange(new_teleop_, std::nullopt)});
   for (Event& event : output.events) output_.publish(std::move(event));
-  if (output.map_is_made) {
+  if (output.is_map_complete) {
     parts_.pose.finish_map(period.pose);
     publish_map(period.now);
   }
@@ -127,14 +127,14 @@ void Stack::advance_mission(const Period& period) {
 }
 
 void Stack::relocalize(Relocalization how, const OdometryEstimate& odometry) {
-  if (how == Relocalization::kAnywhere) parts_.pose.start_anywhere();
+  if (how == Relocalization::kAnywhere) parts_.pose.start_global_localization();
   if (how == Relocalization::kAtDock) parts_.pose.restart_at(parts_.dock->T_route_docked, odometry);
 }
 
 void Stack::inspect(const Period& period) {
-  const auto lap = output_.lap("inspection");
-  const StandingPlace here = parts_.pose.place_at(period.odometry.stamp)
-                                 .value_or(StandingPlace{.T_level_body = {}, .T_map_body = period.pose.T_map_body});
+  const auto timer = output_.time_stage("inspection");
+  const StationPose here = parts_.pose.station_pose_at(period.odometry.stamp)
+                                 .value_or(StationPose{.T_level_body = {}, .T_map_body = period.pose.T_map_body});
   inspection_ = parts_.instruments.step(period.now, task_.inspection, here, output_);
 }
 

@@ -22,7 +22,7 @@ struct StackParts {
   MotionExecutor motion;
   std::unique_ptr<Mission> mission;
   InstrumentSet instruments;
-  SensorWatch sensor_watch;
+  SensorMonitor sensor_watch;
   std::optional<Dock> dock;   ///< charging post of the site, in map
   double map_period_s = 5.0;  ///< interval between published maps while the map grows
 };
@@ -44,7 +44,7 @@ class Stack {
   MapUpdate final_map(Time now) { return {now, parts_.pose.map()}; }
   /// Removes and returns the messages published since the last call, in order.
   std::vector<StackMessage> take_messages() { return output_.take_messages(); }
-  const PartClock& clock() const { return output_.clock(); }
+  const StageProfiler& clock() const { return output_.clock(); }
 
  private:
   /// State of the robot in a control period.
@@ -57,7 +57,7 @@ class Stack {
 
   void handle_scan(const LaserScan& scan);
   void publish_map(Time now);
-  void watch_sensors(Time now, const Pose2& T_odom_body);
+  void monitor_sensors(Time now, const Pose2& T_odom_body);
   VelocityCommand control(const Period& period);
   void advance_mission(const Period& period);
   void inspect(const Period& period);
@@ -68,7 +68,7 @@ class Stack {
   StackOutput output_;
   Task task_;
   InspectionProgress inspection_;
-  std::optional<RemoteCommand> new_remote_;
+  std::optional<TeleopCommand> new_teleop_;
   VelocityCommand command_;
   Time now_{};
   Time map_period_;

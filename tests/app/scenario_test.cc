@@ -24,7 +24,7 @@ TEST(Scenario, EveryOneOfEveryWorldIsReadFindsItsFilesAndExpectsSomething) {
     const Scenario scenario = load_scenario(entry.path());
     const ScenarioFiles files = load_scenario_files(scenario, find_data_root(entry.path()));
     EXPECT_TRUE(std::filesystem::exists(files.world_xml)) << entry.path();
-    EXPECT_FALSE(files.route.stations.empty() && files.goals.empty() && !files.has_remote()) << entry.path() << " leads nowhere";
+    EXPECT_FALSE(files.route.stations.empty() && files.goals.empty() && !files.has_teleop()) << entry.path() << " leads nowhere";
     EXPECT_FALSE(scenario.expect.empty()) << entry.path() << " expects nothing";
   }
   EXPECT_GE(num_scenarios, 10);

@@ -104,7 +104,7 @@ void RaysAgainstBareEmbree(benchmark::State& state) {
   Street street;
   const sim::ModelPtr frozen = freeze(street);
   const sim::LidarScene frozen_scene(*frozen);
-  RTCSceneTy* still = frozen_scene.still_scene();
+  RTCSceneTy* still = frozen_scene.static_scene();
   Ratio ratio;
   for (auto _ : state) {
     ratio.reference([&] {
@@ -142,11 +142,11 @@ void LidarTick(benchmark::State& state) {
   for (auto _ : state) {
     const Pose3 before = street.robot.T_world_body();
     street.robot.step({.stamp = {}, .vx_mps = 0.5, .vy_mps = 0.0, .yaw_rate_radps = 0.0});
-    const double start = thread_seconds();
+    const double start = thread_cpu_time_s();
     street.scene.update(street.robot.data());
-    const double updated = thread_seconds();
+    const double updated = thread_cpu_time_s();
     lidar.advance(now, now + kTick, before, street.robot.T_world_body());
-    const double end = thread_seconds();
+    const double end = thread_cpu_time_s();
     now += kTick;
     lidar.take_scans();
     update_s += updated - start;

@@ -66,7 +66,7 @@ void UpdateAgainstBareFieldLoop(benchmark::State& state) {
   const test::Tunnel tunnel;
   const Pose3 T_body_uwb{{-0.2, 0.1, 0.3}, Eigen::Quaterniond::Identity()};
   MonteCarloLocalizer localizer(bench_settings(), test::tunnel_map(), tunnel.anchors(), T_body_uwb, 1);
-  localizer.start_at({}, Eigen::Vector3d(0.04, 0.04, 0.003).asDiagonal());
+  localizer.set_initial_pose({}, Eigen::Vector3d(0.04, 0.04, 0.003).asDiagonal());
   test::TunnelDrive drive(tunnel.world, tunnel.anchors(), T_body_uwb, {}, {.speed_mps = 0.2}, 1);
   const PlainField field(test::tunnel_map());
   Ratio ratio;
@@ -74,7 +74,7 @@ void UpdateAgainstBareFieldLoop(benchmark::State& state) {
   for (auto _ : state) {
     for (int i = 0; i < 10; ++i) drive.step();
     if (with_ranges) {
-      for (const UwbRange& range : drive.ranges()) localizer.add(range, to_spatial(drive.T_odom_body()));
+      for (const UwbRange& range : drive.ranges()) localizer.add(range, to_pose3(drive.T_odom_body()));
     }
     const LevelScan scan = drive.scan();
     const BeamEnds ends = localize::select_beam_ends(scan, kBeams);

@@ -96,7 +96,7 @@ void StepAgainstBareLoop(benchmark::State& state) {
   std::size_t num_steps = 0;
   for (auto _ : state) {  // one round
     BareLoop bare(world, particles);
-    slam::FastSlam slam({.particles = static_cast<int>(particles)}, world.motion, world.noise, slam::make_parts({}), 1);
+    slam::FastSlam slam({.particles = static_cast<int>(particles)}, world.motion, world.noise, slam::make_components({}), 1);
     double round_s = 0.0;
     for (std::size_t k = 0; k < drive.controls.size(); ++k, ++num_steps) {
       ratio.reference([&] { sum += bare.step(drive.controls[k], drive.seen[k]); });

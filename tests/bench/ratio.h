@@ -31,9 +31,9 @@ class Ratio {
  private:
   template <typename Work>
   static double seconds_of(Work& work) {
-    const double start = thread_seconds();
+    const double start = thread_cpu_time_s();
     work();
-    return thread_seconds() - start;
+    return thread_cpu_time_s() - start;
   }
 
   double reference_s_ = 0.0, subject_s_ = 0.0;

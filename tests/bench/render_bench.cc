@@ -77,7 +77,7 @@ void ReplayFrameAgainstBareRender(benchmark::State& state) {
       sim::assemble_model(root + "/worlds/street/street.xml", root + "/models/quadruped/quadruped.urdf",
                           {11.0, 8.0, std::numbers::pi / 2.0});
   set_replay_quality(*model.view);
-  ScenePainter painter(*model.view, kWidth, kHeight);
+  SceneRenderer painter(*model.view, kWidth, kHeight);
   Overlay overlay(kHeight);
   std::vector<RunSnapshot> snapshots;
   const GridGeometry block{.resolution_m = 0.05, .width = 2000, .height = 1200, .origin_m = {-10.0, -50.0}};
@@ -126,8 +126,8 @@ void DepthFrame(benchmark::State& state, const std::string& world, const std::st
   const sim::DataPtr data = sim::make_data(*model.view);
   mj_forward(model.view.get(), data.get());
   const DepthCameraSettings camera;
-  DepthRenderer renderer(*model.view, sim::lens_of(camera), 0.05, 1.1 * camera.range_max_m);
-  sim::SurfaceImage image;
+  DepthRenderer renderer(*model.view, sim::make_lens(camera), 0.05, 1.1 * camera.range_max_m);
+  sim::IdealDepthImage image;
   std::size_t frame = 0;
   int num_drawn = 0;
   renderer.draw(*data, {}, image);  // compiles the shaders

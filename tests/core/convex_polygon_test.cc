@@ -20,7 +20,7 @@ ConvexPolygon moved(const ConvexPolygon& polygon, double x, double y) {
 TEST(ConvexHull, OfASquareAndWhatLiesInItIsItsFourCorners) {
   const ConvexPolygon hull = convex_hull({{1, 1}, {2, 2}, {0, 0}, {0, 2}, {1, 0}, {2, 0}, {0.5, 1.5}, {2, 2}});
   EXPECT_EQ(hull, kSquare) << "no corner twice, none on a side";
-  EXPECT_EQ(area_of(hull), 4.0);
+  EXPECT_EQ(polygon_area(hull), 4.0);
 }
 
 TEST(ConvexHull, HoldsAllPointsAndTurnsLeftOnly) {
@@ -37,26 +37,26 @@ TEST(ConvexHull, HoldsAllPointsAndTurnsLeftOnly) {
 TEST(ConvexHull, OfNothingAPointOrALineHasNoArea) {
   EXPECT_TRUE(convex_hull({}).empty());
   EXPECT_EQ(convex_hull({{1, 1}, {1, 1}}).size(), 1U);
-  EXPECT_EQ(area_of(convex_hull({{0, 0}, {1, 1}, {3, 3}, {2, 2}})), 0.0);
-  EXPECT_EQ(area_of({}), 0.0);
+  EXPECT_EQ(polygon_area(convex_hull({{0, 0}, {1, 1}, {3, 3}, {2, 2}})), 0.0);
+  EXPECT_EQ(polygon_area({}), 0.0);
 }
 
 TEST(Intersection, OfTwoSquaresIsTheirCommonRectangle) {
-  EXPECT_NEAR(area_of(intersection_of(kSquare, moved(kSquare, 0.5, 1.5))), 1.5 * 0.5, kExactTol);
-  EXPECT_NEAR(area_of(intersection_of(kSquare, kSquare)), 4.0, kExactTol);
-  EXPECT_EQ(area_of(intersection_of(kSquare, moved(kSquare, 3.0, 0.0))), 0.0);
-  EXPECT_EQ(area_of(intersection_of(kSquare, moved(kSquare, 2.0, 0.0))), 0.0) << "a side in common";
-  EXPECT_TRUE(intersection_of(kSquare, {{0, 0}, {1, 1}}).empty());
+  EXPECT_NEAR(polygon_area(intersect_polygons(kSquare, moved(kSquare, 0.5, 1.5))), 1.5 * 0.5, kExactTol);
+  EXPECT_NEAR(polygon_area(intersect_polygons(kSquare, kSquare)), 4.0, kExactTol);
+  EXPECT_EQ(polygon_area(intersect_polygons(kSquare, moved(kSquare, 3.0, 0.0))), 0.0);
+  EXPECT_EQ(polygon_area(intersect_polygons(kSquare, moved(kSquare, 2.0, 0.0))), 0.0) << "a side in common";
+  EXPECT_TRUE(intersect_polygons(kSquare, {{0, 0}, {1, 1}}).empty());
 }
 
 // Within |x| + |y| < 1.5 of its middle a square of side 2 loses four triangles with legs of 0.5:
 // 4 - 4 (1/2) (1/2)^2 = 3.5.
 TEST(Intersection, OfASquareAndOneTurnedIsAnOctagon) {
   const ConvexPolygon turned = {{1 + 1.5, 1}, {1, 1 + 1.5}, {1 - 1.5, 1}, {1, 1 - 1.5}};
-  const ConvexPolygon both = intersection_of(kSquare, turned);
+  const ConvexPolygon both = intersect_polygons(kSquare, turned);
   EXPECT_EQ(both.size(), 8U);
-  EXPECT_NEAR(area_of(both), 3.5, kExactTol);
-  EXPECT_NEAR(area_of(intersection_of(turned, kSquare)), 3.5, kExactTol);
+  EXPECT_NEAR(polygon_area(both), 3.5, kExactTol);
+  EXPECT_NEAR(polygon_area(intersect_polygons(turned, kSquare)), 3.5, kExactTol);
 }
 
 }  // namespace

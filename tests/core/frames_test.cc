@@ -21,9 +21,9 @@ TEST(PoseNear, SeesAMillimetreAndAMilliradian) {
   EXPECT_THAT((Pose2{1.0, 2.0, 3.0 - 2.0 * kPi}), Pose2Near(a, 0.0, kExactTol));
   EXPECT_THAT((Pose2{1.001, 2.0, 3.0}), Not(Pose2Near(a, 0.0009, 1.0)));
   EXPECT_THAT((Pose2{1.0, 2.0, 3.001}), Not(Pose2Near(a, 1.0, 0.0009)));
-  const Pose3 b = to_spatial(a);
-  EXPECT_THAT(to_spatial({1.001, 2.0, 3.0}), Not(Pose3Near(b, 0.0009, 1.0)));
-  EXPECT_THAT(to_spatial({1.0, 2.0, 3.001}), Not(Pose3Near(b, 1.0, 0.0009)));
+  const Pose3 b = to_pose3(a);
+  EXPECT_THAT(to_pose3({1.001, 2.0, 3.0}), Not(Pose3Near(b, 0.0009, 1.0)));
+  EXPECT_THAT(to_pose3({1.0, 2.0, 3.001}), Not(Pose3Near(b, 1.0, 0.0009)));
   EXPECT_THAT((Pose3{b.position, Eigen::Quaterniond(-b.rotation.coeffs())}), Pose3Near(b, 0.0, 1e-7));
 }
 
@@ -72,10 +72,10 @@ TEST(Pose2, CompositionActsAsOneAfterTheOtherAndWraps) {
 
 TEST(Pose3, AgreesWithPose2InThePlane) {
   const Pose2 T_a_b{1.0, 2.0, 3.0}, T_b_c{-4.0, 0.5, 2.0};
-  EXPECT_THAT(to_planar(to_spatial(T_a_b, 0.3) * to_spatial(T_b_c)),
+  EXPECT_THAT(to_pose2(to_pose3(T_a_b, 0.3) * to_pose3(T_b_c)),
               Pose2Near(T_a_b * T_b_c, kExactTol, kExactTol));
-  EXPECT_THAT(to_planar(to_spatial(T_a_b).inverse()), Pose2Near(T_a_b.inverse(), kExactTol, kExactTol));
-  EXPECT_DOUBLE_EQ((to_spatial(T_a_b, 0.3) * to_spatial(T_b_c)).position.z(), 0.3);
+  EXPECT_THAT(to_pose2(to_pose3(T_a_b).inverse()), Pose2Near(T_a_b.inverse(), kExactTol, kExactTol));
+  EXPECT_DOUBLE_EQ((to_pose3(T_a_b, 0.3) * to_pose3(T_b_c)).position.z(), 0.3);
 }
 
 TEST(Pose3, InverseUndoesATiltedPose) {
@@ -96,8 +96,8 @@ TEST(QuaternionFromRpy, TurnsAboutFixedXThenYThenZ) {
 
 TEST(YawOf, ReadsTheHeadingUnderAnyTilt) {
   for (const double yaw : {-3.0, -0.5, 0.0, 1.0, 3.1}) {
-    EXPECT_NEAR(yaw_of(quaternion_from_rpy(0.3, -0.2, yaw)), yaw, kExactTol);
-    EXPECT_NEAR(yaw_of(quaternion_from_yaw(yaw)), yaw, kExactTol);
+    EXPECT_NEAR(to_yaw(quaternion_from_rpy(0.3, -0.2, yaw)), yaw, kExactTol);
+    EXPECT_NEAR(to_yaw(quaternion_from_yaw(yaw)), yaw, kExactTol);
   }
 }
 
@@ -111,7 +111,7 @@ TEST(Interpolate, HalfwayHalvesWayAndTurn) {
 
 TEST(Interpolate, TurnsTheShortWayAcrossTheHalfTurn) {
   const Pose3 a{{}, quaternion_from_yaw(kPi - 0.1)}, b{{}, quaternion_from_yaw(-kPi + 0.1)};
-  EXPECT_NEAR(std::abs(yaw_of(interpolate(a, b, 0.5).rotation)), kPi, 1e-9);
+  EXPECT_NEAR(std::abs(to_yaw(interpolate(a, b, 0.5).rotation)), kPi, 1e-9);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ std::vector<double> random_weights(std::uint64_t seed, std::size_t count) {
 
 std::vector<int> children_of(const std::vector<double>& weights, double uniform) {
   std::vector<int> children(weights.size());
-  for (const std::size_t parent : resample_systematic(weights, uniform)) ++children[parent];
+  for (const std::size_t parent : systematic_parents(weights, uniform)) ++children[parent];
   return children;
 }
 
@@ -74,7 +74,7 @@ TEST(ResampleSystematic, IsUnbiasedToTwoInAThousand) {
 }
 
 TEST(ResampleSystematic, EqualWeightsKeepEveryoneInOrder) {
-  EXPECT_EQ(resample_systematic(std::vector<double>(5, 0.2), 0.5), (std::vector<std::size_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(systematic_parents(std::vector<double>(5, 0.2), 0.5), (std::vector<std::size_t>{0, 1, 2, 3, 4}));
 }
 
 TEST(ResampleSystematic, AWeightOfZeroHasNoChildren) {

@@ -24,14 +24,14 @@ TEST(SensorRegistry, NamesAndTopicsAreUniqueAndEveryEntryIsDocumented) {
 TEST(SensorRegistry, EverySensorHasFaultMagnitudesOrAReasonNotToBeInTheFaultMatrix) {
   for (const SensorInfo& info : kSensorInfos) {
     const bool has_magnitudes = info.fault.drift_per_s > 0.0 && info.fault.spike > 0.0 && *info.fault.unit != '\0';
-    const bool has_reason = *info.not_in_fault_matrix != '\0';
+    const bool has_reason = *info.fault_matrix_exclusion_reason != '\0';
     EXPECT_NE(has_magnitudes, has_reason) << info.name;
   }
 }
 
 TEST(SensorRegistry, ASensorThatDrivingNeedsIsMonitored) {
   for (const SensorInfo& info : kSensorInfos) {
-    EXPECT_TRUE(!info.is_needed_to_drive || info.timeout != SensorTimeout::kNone) << info.name;
+    EXPECT_TRUE(!info.is_required_to_drive || info.timeout != SensorTimeout::kNone) << info.name;
   }
 }
 

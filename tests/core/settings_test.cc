@@ -66,14 +66,14 @@ TEST(Validate, RefusesWhatIsNotFiniteEvenWithoutARule) {
   EXPECT_THAT(complaint_about({.loads_kg = {nan}}), ::testing::StartsWith("loads_kg.0 = nan: "));
   EXPECT_THAT(complaint_about({.loads_kg = {infinity}}), ::testing::StartsWith("loads_kg.0 = inf: "));
   EXPECT_FALSE(allows(any(), nan));
-  EXPECT_EQ(rule_of(any()), "must be finite");
+  EXPECT_EQ(describe_limits(any()), "must be finite");
 }
 
 TEST(Limits, AreClosedIntervals) {
   EXPECT_TRUE(allows(between(1.0, 2.0), 1.0));
   EXPECT_TRUE(allows(between(1.0, 2.0), 2.0));
   EXPECT_FALSE(allows(between(1.0, 2.0), 2.0 + 1e-15));
-  EXPECT_EQ(rule_of({.max = 3.0, .allowed = {}}), "must be at most 3");
+  EXPECT_EQ(describe_limits({.max = 3.0, .allowed = {}}), "must be at most 3");
 }
 
 TEST(InputErrorText, HasFileAndLineWhereThereIsOne) {

@@ -54,18 +54,18 @@ TEST(TemResponse, TheRocksRateGrowsWithItsConductivityAsTheBornIntegralSays) {
   const Eigen::Vector3d axis(std::sqrt(1.0 / 3.0), std::sqrt(2.0 / 3.0), 0.0);
   double sum = 0.0;
   for (double r = step_m / 2.0; r < 300.0; r += step_m) sum += 4.0 * kPi * r * r * step_m * born_rate(0.003, {r, 0.0, 0.0}, axis, time_s);
-  EXPECT_NEAR(sum / (1.5 * rock_rate(0.003, time_s) / 0.003), 1.0, 1e-3);
+  EXPECT_NEAR(sum / (1.5 * whole_space_response(0.003, time_s) / 0.003), 1.0, 1e-3);
 }
 
 TEST(TemResponse, ASphereOfRockInRockIsNotThere) {
-  const SphereRate rate = sphere_rate(0.003, {16.0, 6.0, 0.003}, 1e-5);
-  EXPECT_LT(std::abs(rate.axial) + std::abs(rate.transverse), 1e-10 * rock_rate(0.003, 1e-5));
+  const SphereResponse rate = sphere_response(0.003, {16.0, 6.0, 0.003}, 1e-5);
+  EXPECT_LT(std::abs(rate.axial) + std::abs(rate.transverse), 1e-10 * whole_space_response(0.003, 1e-5));
 }
 
 TEST(TemResponse, AWeakSphereInRockDoesWhatTheBornIntegralSaysToOnePerCent) {
   const ConductiveSphere sphere{.distance_m = 16.0, .radius_m = 6.0, .conductivity_spm = 0.003 * 1.001};
   for (const double time_s : {1e-6, 4e-6, 2e-5}) {
-    const SphereRate rate = sphere_rate(0.003, sphere, time_s);
+    const SphereResponse rate = sphere_response(0.003, sphere, time_s);
     const double axial = weak_sphere_rate(0.003, sphere, Eigen::Vector3d::UnitX(), time_s);
     const double transverse = weak_sphere_rate(0.003, sphere, Eigen::Vector3d::UnitY(), time_s);
     const double tol = 0.01 * (std::abs(axial) + std::abs(transverse));
@@ -79,7 +79,7 @@ TEST(TemResponse, ASmallFarSphereInTheVoidDecaysAsWaitsSumSays) {
   const ConductiveSphere sphere{.distance_m = 40.0, .radius_m = 1.0, .conductivity_spm = 0.6};
   for (const double share : {0.2, 0.5, 1.0, 2.0, 4.0, 8.0}) {
     const double time_s = share * decay_time(sphere);
-    const SphereRate rate = sphere_rate(kNoRock, sphere, time_s);
+    const SphereResponse rate = sphere_response(kNoRock, sphere, time_s);
     EXPECT_NEAR(rate.axial / far_sphere_rate(sphere, time_s), 1.0, 3e-3) << share;
     EXPECT_NEAR(rate.axial / rate.transverse, 4.0, 0.01) << share;  // a dipole's field: twice as strong there, and twice back
   }
@@ -88,12 +88,12 @@ TEST(TemResponse, ASmallFarSphereInTheVoidDecaysAsWaitsSumSays) {
 TEST(TemResponse, LateItFallsWithTheTimeConstantMuSigmaASquaredOverPiSquared) {
   const ConductiveSphere sphere{.distance_m = 100.0, .radius_m = 6.0, .conductivity_spm = 0.6};
   const double tau_s = decay_time(sphere);  // 2.75 us
-  const double fall = std::log(sphere_rate(kNoRock, sphere, 5.0 * tau_s).axial / sphere_rate(kNoRock, sphere, 6.0 * tau_s).axial);
+  const double fall = std::log(sphere_response(kNoRock, sphere, 5.0 * tau_s).axial / sphere_response(kNoRock, sphere, 6.0 * tau_s).axial);
   EXPECT_NEAR(fall, 1.0, 1e-4);  // the next mode, of half that time constant at most and smaller by (a / R)^2, has gone
 }
 
 TEST(TemResponse, TwiceAsFarIsTwoToTheSixthAsWeak) {
-  const SphereRate near = sphere_rate(kNoRock, {60.0, 2.0, 0.6}, 2e-6), far = sphere_rate(kNoRock, {120.0, 2.0, 0.6}, 2e-6);
+  const SphereResponse near = sphere_response(kNoRock, {60.0, 2.0, 0.6}, 2e-6), far = sphere_response(kNoRock, {120.0, 2.0, 0.6}, 2e-6);
   EXPECT_NEAR(near.axial / far.axial, 64.0, 0.01 * 64.0);
   EXPECT_NEAR(near.transverse / far.transverse, 64.0, 0.01 * 64.0);
 }
@@ -102,43 +102,43 @@ TEST(TemResponse, TwiceAsFarIsTwoToTheSixthAsWeak) {
 TEST(TemResponse, TheWholeDecayAddsUpToThePerfectConductorsField) {
   const ConductiveSphere sphere{.distance_m = 40.0, .radius_m = 1.0, .conductivity_spm = 0.6};
   const double tau_s = decay_time(sphere), ratio = 1.02, first_s = 1e-3 * tau_s;
-  double sum = 2.0 * first_s * sphere_rate(kNoRock, sphere, first_s).axial;  // it begins as t^-1/2
+  double sum = 2.0 * first_s * sphere_response(kNoRock, sphere, first_s).axial;  // it begins as t^-1/2
   for (double time_s = first_s; time_s < 15.0 * tau_s; time_s *= ratio) {
-    sum += sphere_rate(kNoRock, sphere, time_s * std::sqrt(ratio)).axial * time_s * (ratio - 1.0);
+    sum += sphere_response(kNoRock, sphere, time_s * std::sqrt(ratio)).axial * time_s * (ratio - 1.0);
   }
   EXPECT_NEAR(sum / (kMu0 * 2.0 / (4.0 * kPi * std::pow(40.0, 6))), 1.0, 5e-3);
 }
 
-TemWindow usual_window() {
-  TemWindow window;
+TemGateLayout usual_window() {
+  TemGateLayout window;
   for (double gate_s = 2e-6; gate_s < 3e-4; gate_s *= std::pow(10.0, 0.1)) window.gate_s.push_back(gate_s);
   return window;
 }
 
 // Integrating t^-5/2 twice gives F(t) = 4/3 t^-1/2; its differences over ramp T and gate a ... b give the mean.
 TEST(TemGates, TheRockThroughRampAndGatesIsItsDoubleIntegralToOneInTenThousand) {
-  const TemWindow window = usual_window();
-  const Eigen::VectorXd rate = gated_rock(TemGates(window), 0.003);
+  const TemGateLayout window = usual_window();
+  const Eigen::VectorXd rate = gated_whole_space_response(TemGates(window), 0.003);
   for (std::size_t gate = 0; gate < window.gate_s.size(); ++gate) {
     const double a = window.gate_s[gate] * (1.0 - window.gate_width / 2.0), b = window.gate_s[gate] * (1.0 + window.gate_width / 2.0);
     const double T = window.ramp_s;
     const auto F = [](double t) { return 4.0 / 3.0 / std::sqrt(t); };
     const double mean = (F(b + T) - F(a + T) - F(b) + F(a)) / (T * (b - a));
-    EXPECT_NEAR(rate[static_cast<Eigen::Index>(gate)] / (rock_rate(0.003, 1.0) * mean), 1.0, 1e-4) << window.gate_s[gate];
+    EXPECT_NEAR(rate[static_cast<Eigen::Index>(gate)] / (whole_space_response(0.003, 1.0) * mean), 1.0, 1e-4) << window.gate_s[gate];
   }
 }
 
 TEST(TemGates, ASphereThroughRampAndGatesIsTheFineSumToThreePerMille) {
-  const TemWindow window = usual_window();
+  const TemGateLayout window = usual_window();
   const ConductiveSphere sphere{.distance_m = 16.0, .radius_m = 6.0, .conductivity_spm = 0.6};
-  const GatedSphere gated = gated_sphere(TemGates(window), 0.003, sphere);
+  const GatedSphereResponse gated = gated_sphere_response(TemGates(window), 0.003, sphere);
   constexpr int kSteps = 30;
   for (const std::size_t gate : {0UL, 4UL, 8UL}) {
     double sum = 0.0;
     for (int i = 0; i < kSteps; ++i) {
       for (int j = 0; j < kSteps; ++j) {
         const double time_s = window.gate_s[gate] * (1.0 + window.gate_width * ((i + 0.5) / kSteps - 0.5)) + window.ramp_s * (j + 0.5) / kSteps;
-        sum += sphere_rate(0.003, sphere, time_s).axial / (kSteps * kSteps);
+        sum += sphere_response(0.003, sphere, time_s).axial / (kSteps * kSteps);
       }
     }
     EXPECT_NEAR(gated.axial[static_cast<Eigen::Index>(gate)] / sum, 1.0, 3e-3) << window.gate_s[gate];

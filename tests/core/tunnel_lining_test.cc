@@ -14,7 +14,7 @@ TunnelLining tunnel() {
   return {.T_route_start = {3.0, -2.0, 0.7},
           .axis = {{80.0, 0.0}, {90.0, 1.0 / 400.0}},
           .crown_radius_m = 5.5,
-          .crown_centre_m = 2.5,
+          .crown_center_m = 2.5,
           .side_radius_m = 8.0,
           .first_ring_m = 0.0,
           .ring_length_m = 2.0,
@@ -25,7 +25,7 @@ TEST(TunnelLining, PointsAlongStraightAndCurveComeBackAsTheirPlaces) {
   for (const double chainage_m : {-5.0, 0.0, 33.0, 79.9, 80.1, 120.0, 169.0, 180.0}) {
     for (const double left_m : {-4.5, 0.0, 5.2}) {
       const Eigen::Vector2d p = tunnel().point_at(chainage_m, left_m);
-      const TunnelPlace place = tunnel().place_of({p.x(), p.y(), 1.5});
+      const TunnelCoordinates place = tunnel().to_tunnel_coordinates({p.x(), p.y(), 1.5});
       EXPECT_NEAR(place.chainage_m, chainage_m, 1e-9) << chainage_m << " " << left_m;
       EXPECT_NEAR(place.left_m, left_m, 1e-9) << chainage_m << " " << left_m;
       EXPECT_EQ(place.height_m, 1.5);
@@ -40,8 +40,8 @@ TEST(TunnelLining, CurveToTheRightMirrorsTheCurveToTheLeft) {
   const Eigen::Vector2d p = left.point_at(150.0, 2.0), q = right.point_at(150.0, -2.0);
   EXPECT_NEAR(p.x(), q.x(), 1e-12);
   EXPECT_NEAR(p.y(), -q.y(), 1e-12);
-  EXPECT_NEAR(right.place_of({q.x(), q.y(), 0.0}).chainage_m, 150.0, 1e-9);
-  EXPECT_NEAR(right.place_of({q.x(), q.y(), 0.0}).left_m, -2.0, 1e-9);
+  EXPECT_NEAR(right.to_tunnel_coordinates({q.x(), q.y(), 0.0}).chainage_m, 150.0, 1e-9);
+  EXPECT_NEAR(right.to_tunnel_coordinates({q.x(), q.y(), 0.0}).left_m, -2.0, 1e-9);
 }
 
 TEST(TunnelLining, ArcOf70mTurnsTheAxisBy70Over400) {
@@ -66,7 +66,7 @@ TEST(TunnelLining, IntradosIsTheHalfCircleAboveAndTheSideWallsBelow) {
     const double across_m = radius_m * std::abs(std::sin(angle)), up_m = radius_m * std::cos(angle);
     EXPECT_NEAR(std::hypot(across_m + 2.5, up_m), 8.0, 1e-12);
   }
-  const TunnelPlace place = lining.place_of(lining.intrados(101.0, 130.0));
+  const TunnelCoordinates place = lining.to_tunnel_coordinates(lining.intrados(101.0, 130.0));
   EXPECT_NEAR(place.chainage_m, 101.0, 1e-9);
   EXPECT_NEAR(lining.clock_deg(place), 130.0, 1e-9);
 }

@@ -46,16 +46,16 @@ TEST(Uwb, GradientIsTheDifferenceQuotient) {
   };
   const PredictedRange predicted = predict_uwb_range(anchor, pose, antenna, calibration);
   const double h = 1e-4;
-  EXPECT_NEAR(predicted.by_pose.x(), (range(h, 0, 0, 0) - range(-h, 0, 0, 0)) / (2 * h), kDerivativeTol);
-  EXPECT_NEAR(predicted.by_pose.y(), (range(0, h, 0, 0) - range(0, -h, 0, 0)) / (2 * h), kDerivativeTol);
-  EXPECT_NEAR(predicted.by_pose.z(), (range(0, 0, h, 0) - range(0, 0, -h, 0)) / (2 * h), kDerivativeTol);
-  EXPECT_NEAR(predicted.by_z, (range(0, 0, 0, h) - range(0, 0, 0, -h)) / (2 * h), kDerivativeTol);
+  EXPECT_NEAR(predicted.H_pose.x(), (range(h, 0, 0, 0) - range(-h, 0, 0, 0)) / (2 * h), kDerivativeTol);
+  EXPECT_NEAR(predicted.H_pose.y(), (range(0, h, 0, 0) - range(0, -h, 0, 0)) / (2 * h), kDerivativeTol);
+  EXPECT_NEAR(predicted.H_pose.z(), (range(0, 0, h, 0) - range(0, 0, -h, 0)) / (2 * h), kDerivativeTol);
+  EXPECT_NEAR(predicted.H_z, (range(0, 0, 0, h) - range(0, 0, 0, -h)) / (2 * h), kDerivativeTol);
 }
 
 TEST(Uwb, OnTheAnchorItselfTheGradientIsZeroAndNotNaN) {
   const PredictedRange predicted = predict_uwb_range({.p_m = {1.0, 2.0, 0.5}}, {1.0, 2.0, 0.3}, {0, 0, 0.5}, kUnbiased);
   EXPECT_NEAR(predicted.range_m, 0.0, kExactTol);
-  EXPECT_EQ(predicted.by_pose, Eigen::Vector3d::Zero());
+  EXPECT_EQ(predicted.H_pose, Eigen::Vector3d::Zero());
 }
 
 TEST(Uwb, PitchOfTenDegreesMovesAnAntennaOneMetreUpAheadBySineTen) {

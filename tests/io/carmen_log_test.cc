@@ -285,8 +285,8 @@ TEST(CarmenLog, WithSkippingWhatCanBeReadIsUsedAndTheRestCounted) {
   ASSERT_EQ(result.scans.size(), 2U);
   EXPECT_EQ(result.scans[1].scan.stamp, 3s);
   EXPECT_THAT(result.summary.skipped, ElementsAre(Pair("lines that cannot be read", 4U)));
-  ASSERT_EQ(result.summary.complaints.size(), 4U);
-  EXPECT_THAT(result.summary.complaints[2], EndsWith("a.log:4: the line is longer than 1048576 bytes"));
+  ASSERT_EQ(result.summary.warnings.size(), 4U);
+  EXPECT_THAT(result.summary.warnings[2], EndsWith("a.log:4: the line is longer than 1048576 bytes"));
   EXPECT_THAT(to_text(result.summary), StartsWith("2 scans\nskipped: 4 lines that cannot be read\n  "));
 }
 

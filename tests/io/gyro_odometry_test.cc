@@ -16,7 +16,7 @@ constexpr double kBias = 0.02;
 struct Drive {
   double slope = 1.0;          ///< odometry's turn over the true one
   double gyro_factor = 1.0;
-  double standing_s = 5.0;     ///< at the start
+  double stationary_s = 5.0;     ///< at the start
   bool has_gap = false;        ///< of the gyro, from 20 s to 22 s
 };
 
@@ -29,7 +29,7 @@ Driven drive(const Drive& how) {
   Driven driven;
   for (int tick = 0; tick <= 6000; ++tick) {
     const Time now = tick * 10ms;
-    const double t = to_seconds(now) - how.standing_s, rate = t > 0.0 ? 0.5 * std::sin(t) : 0.0;
+    const double t = to_seconds(now) - how.stationary_s, rate = t > 0.0 ? 0.5 * std::sin(t) : 0.0;
     if (!how.has_gap || now <= 20s || now >= 22s) driven.gyro.add(now, how.gyro_factor * rate + kBias);
     const double turn = t > 0.0 ? 0.01 * 0.5 * std::sin(t - 0.005) : 0.0, way = t > 0.0 ? 0.005 : 0.0;
     if (tick > 0) {
@@ -47,16 +47,16 @@ TEST(GyroOdometry, TurnsByTheGyroWithoutTheBiasThatItShowedStanding) {
   EXPECT_GT((driven.T_odom.position() - driven.T_true.position()).norm(), 0.5);
   EXPECT_THAT(driven.T_fused, test::Pose2Near(driven.T_true, 0.005, 1e-3));
   EXPECT_NEAR(driven.gyro.bias_radps().value(), kBias, 1e-4);
-  EXPECT_NEAR(driven.gyro.standing_s(), 5.0, 0.21);
+  EXPECT_NEAR(driven.gyro.stationary_s(), 5.0, 0.21);
   EXPECT_EQ(driven.gyro.uncovered_s(), 0.0);
-  EXPECT_EQ(driven.gyro.way_without_bias_s(), 0.0);
+  EXPECT_EQ(driven.gyro.motion_without_bias_s(), 0.0);
 }
 
 TEST(GyroOdometry, NeverSeenStandingItsBiasIsTakenAsNoneAndTheTimeSaid) {
-  const Driven driven = drive({.slope = 1.2, .standing_s = 0.0});
+  const Driven driven = drive({.slope = 1.2, .stationary_s = 0.0});
   EXPECT_FALSE(driven.gyro.bias_radps());
   EXPECT_NEAR(wrap_angle(driven.T_fused.yaw - driven.T_true.yaw - 60.0 * kBias), 0.0, 0.01);
-  EXPECT_NEAR(driven.gyro.way_without_bias_s(), 60.0, 0.5);
+  EXPECT_NEAR(driven.gyro.motion_without_bias_s(), 60.0, 0.5);
 }
 
 TEST(GyroOdometry, AnEarlierBiasCountsUntilTheRobotStands) {
@@ -67,7 +67,7 @@ TEST(GyroOdometry, AnEarlierBiasCountsUntilTheRobotStands) {
   gyro.fuse(4s, {2.0, 0.0, 0.0});
   for (int second = 5; second <= 9; ++second) gyro.fuse(second * 1s, {2.0, 0.0, 0.0});
   EXPECT_NEAR(gyro.bias_radps().value(), 0.02, 1e-9);
-  EXPECT_EQ(gyro.way_without_bias_s(), 0.0);
+  EXPECT_EQ(gyro.motion_without_bias_s(), 0.0);
 }
 
 TEST(GyroOdometry, WhereTheGyroIsSilentOdometryTurns) {
@@ -77,20 +77,20 @@ TEST(GyroOdometry, WhereTheGyroIsSilentOdometryTurns) {
 }
 
 TEST(GyroOdometry, TellsAgreementFromContradictionFromNothingInCommon) {
-  EXPECT_EQ(GyroOdometry().verdict(), GyroVerdict::kUnknown);
-  EXPECT_EQ(drive({.slope = 1.005}).gyro.verdict(), GyroVerdict::kAgrees) << "the bias does not matter";
-  EXPECT_EQ(drive({.slope = 1.1}).gyro.verdict(), GyroVerdict::kContradicts);
-  EXPECT_EQ(drive({.slope = 0.9}).gyro.verdict(), GyroVerdict::kContradicts);
-  EXPECT_EQ(drive({.gyro_factor = -1.0}).gyro.verdict(), GyroVerdict::kUnrelated) << "hangs upside down";
-  EXPECT_EQ(drive({.gyro_factor = 0.0}).gyro.verdict(), GyroVerdict::kUnknown) << "another axis";
+  EXPECT_EQ(GyroOdometry().consistency(), GyroConsistency::kUnknown);
+  EXPECT_EQ(drive({.slope = 1.005}).gyro.consistency(), GyroConsistency::kAgrees) << "the bias does not matter";
+  EXPECT_EQ(drive({.slope = 1.1}).gyro.consistency(), GyroConsistency::kContradicts);
+  EXPECT_EQ(drive({.slope = 0.9}).gyro.consistency(), GyroConsistency::kContradicts);
+  EXPECT_EQ(drive({.gyro_factor = -1.0}).gyro.consistency(), GyroConsistency::kUnrelated) << "hangs upside down";
+  EXPECT_EQ(drive({.gyro_factor = 0.0}).gyro.consistency(), GyroConsistency::kUnknown) << "another axis";
 }
 
 TEST(GyroOdometry, TurnsWithinAScanToo) {
   GyroOdometry gyro(0.1);
   for (int tick = 0; tick <= 10; ++tick) gyro.add(tick * 10ms, 1.1);
-  const Pose2 turned = gyro.turned({0.05, 0.0, 0.0}, 20ms, 70ms);
-  EXPECT_THAT(turned, test::Pose2Near(Pose2{0.05 * std::cos(0.025), 0.05 * std::sin(0.025), 0.05}, 1e-12, 1e-12));
-  EXPECT_THAT(gyro.turned({0.05, 0.0, 0.01}, 70ms, 120ms), test::Pose2Near(Pose2{0.05, 0.0, 0.01}, 0.0, 0.0)) << "not covered";
+  const Pose2 replace_rotation = gyro.replace_rotation({0.05, 0.0, 0.0}, 20ms, 70ms);
+  EXPECT_THAT(replace_rotation, test::Pose2Near(Pose2{0.05 * std::cos(0.025), 0.05 * std::sin(0.025), 0.05}, 1e-12, 1e-12));
+  EXPECT_THAT(gyro.replace_rotation({0.05, 0.0, 0.01}, 70ms, 120ms), test::Pose2Near(Pose2{0.05, 0.0, 0.01}, 0.0, 0.0)) << "not covered";
 }
 
 TEST(GyroOdometry, StampsThatDoNotGrowAreDropped) {

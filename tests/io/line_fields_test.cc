@@ -11,10 +11,10 @@ using namespace std::chrono_literals;
 
 template <typename Read>
 std::string complaint_about(const std::string& line, const Read& read) {
-  LineFields fields(line);
+  LineTokenizer fields(line);
   try {
     read(fields);
-  } catch (const FieldError& error) {
+  } catch (const ParseError& error) {
     return error.what();
   }
   return "";
@@ -43,8 +43,8 @@ TEST(ParseStamp, WhatIsNoTimeOfUseIsNone) {
   }
 }
 
-TEST(LineFields, TakesWordsBetweenBlanks) {
-  LineFields fields("  one\ttwo  3.5 -1e-2 \r");
+TEST(LineTokenizer, TakesWordsBetweenBlanks) {
+  LineTokenizer fields("  one\ttwo  3.5 -1e-2 \r");
   EXPECT_EQ(fields.num_words(), 4U);
   EXPECT_EQ(fields.word("a"), "one");
   EXPECT_EQ(fields.word("b"), "two");
@@ -55,31 +55,31 @@ TEST(LineFields, TakesWordsBetweenBlanks) {
   EXPECT_EQ(fields.num_words(), 0U);
 }
 
-TEST(LineFields, AnyNumberMayBeInfiniteOrNoneButNumberMayNot) {
-  LineFields fields("inf nan +1.5");
+TEST(LineTokenizer, AnyNumberMayBeInfiniteOrNoneButNumberMayNot) {
+  LineTokenizer fields("inf nan +1.5");
   EXPECT_TRUE(std::isinf(fields.any_number("a")));
   EXPECT_TRUE(std::isnan(fields.any_number("b")));
   EXPECT_EQ(fields.any_number("c"), 1.5);
-  EXPECT_EQ(complaint_about("nan", [](LineFields& f) { f.number("x"); }), "x 'nan' is not a finite number");
-  EXPECT_EQ(complaint_about("-inf", [](LineFields& f) { f.number("x"); }), "x '-inf' is not a finite number");
+  EXPECT_EQ(complaint_about("nan", [](LineTokenizer& f) { f.number("x"); }), "x 'nan' is not a finite number");
+  EXPECT_EQ(complaint_about("-inf", [](LineTokenizer& f) { f.number("x"); }), "x '-inf' is not a finite number");
 }
 
-TEST(LineFields, NamesWhatIsNoNumber) {
-  EXPECT_EQ(complaint_about("1,5", [](LineFields& f) { f.any_number("range"); }), "range '1,5' is not a number");
-  EXPECT_EQ(complaint_about("", [](LineFields& f) { f.number("range"); }), "ends before range");
-  EXPECT_EQ(complaint_about("1.5x", [](LineFields& f) { f.stamp("t"); }), "t '1.5x' is not a time in seconds");
-  EXPECT_EQ(complaint_about("11", [](LineFields& f) { f.integer("n", 0, 10); }), "n '11' must be a whole number in 0 ... 10");
-  EXPECT_EQ(complaint_about("1.0", [](LineFields& f) { f.integer("n", 0, 10); }), "n '1.0' must be a whole number in 0 ... 10");
-  EXPECT_EQ(complaint_about(std::string(100, 'x'), [](LineFields& f) { f.number("n"); }), "n '" + std::string(24, 'x') + "...' is not a finite number");
+TEST(LineTokenizer, NamesWhatIsNoNumber) {
+  EXPECT_EQ(complaint_about("1,5", [](LineTokenizer& f) { f.any_number("range"); }), "range '1,5' is not a number");
+  EXPECT_EQ(complaint_about("", [](LineTokenizer& f) { f.number("range"); }), "ends before range");
+  EXPECT_EQ(complaint_about("1.5x", [](LineTokenizer& f) { f.stamp("t"); }), "t '1.5x' is not a time in seconds");
+  EXPECT_EQ(complaint_about("11", [](LineTokenizer& f) { f.integer("n", 0, 10); }), "n '11' must be a whole number in 0 ... 10");
+  EXPECT_EQ(complaint_about("1.0", [](LineTokenizer& f) { f.integer("n", 0, 10); }), "n '1.0' must be a whole number in 0 ... 10");
+  EXPECT_EQ(complaint_about(std::string(100, 'x'), [](LineTokenizer& f) { f.number("n"); }), "n '" + std::string(24, 'x') + "...' is not a finite number");
 }
 
-TEST(LineFields, APoseIsWrappedAndOnTheEarth) {
-  LineFields fields("1 2 7");
+TEST(LineTokenizer, APoseIsWrappedAndOnTheEarth) {
+  LineTokenizer fields("1 2 7");
   const Pose2 pose = fields.pose("pose");
   EXPECT_EQ(pose.x, 1.0);
   EXPECT_EQ(pose.y, 2.0);
   EXPECT_NEAR(pose.yaw, 7.0 - 2.0 * std::numbers::pi, 1e-15);
-  EXPECT_EQ(complaint_about("1e300 0 0", [](LineFields& f) { f.pose("pose"); }), "pose (1e+300 m, 0 m) is off the earth");
+  EXPECT_EQ(complaint_about("1e300 0 0", [](LineTokenizer& f) { f.pose("pose"); }), "pose (1e+300 m, 0 m) is off the earth");
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST(LineReader, AQuarterOfAGigabyteWithoutALineEndTakesTenMegabytesOfMemory) {
   LineReader reader(folder / "zeros");
   EXPECT_TRUE(reader.next()->is_cut);
   EXPECT_FALSE(reader.next());
-  EXPECT_EQ(reader.damage(), "more than 67108864 bytes have no line's end, nothing is read") << "after 64 MB it is given up";
+  EXPECT_EQ(reader.read_error(), "more than 67108864 bytes have no line's end, nothing is read") << "after 64 MB it is given up";
   getrusage(RUSAGE_SELF, &after);
   EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 10'000) << "KiB";
 }
@@ -78,19 +78,19 @@ TEST(LineReader, SaysThatGzipIsCutOffOrDamagedAfterTheLastGoodLine) {
   {
     LineReader reader(TemporaryFile("a.gz", bytes).path());
     while (reader.next()) {}
-    EXPECT_EQ(reader.damage(), std::nullopt);
+    EXPECT_EQ(reader.read_error(), std::nullopt);
   }
   const TemporaryFile cut("a.gz", bytes.substr(0, bytes.size() / 2));
   LineReader reader(cut.path());
   int count = 0;
   while (reader.next()) ++count;
-  EXPECT_EQ(reader.damage(), "the gzip data are cut off");
+  EXPECT_EQ(reader.read_error(), "the gzip data are cut off");
   EXPECT_GT(count, 5'000);
   for (std::size_t i = bytes.size() / 2; i < bytes.size() / 2 + 50; ++i) bytes[i] = '\x55';
   const TemporaryFile damaged("a.gz", bytes);
   LineReader other(damaged.path());
   while (other.next()) {}
-  EXPECT_EQ(other.damage(), "the gzip data are damaged");
+  EXPECT_EQ(other.read_error(), "the gzip data are damaged");
 }
 
 TEST(LineReader, ProgressGrowsFromZeroToOne) {

@@ -80,8 +80,8 @@ TEST_F(McapScans, WhereBeamsHaveTimesTheMotionFromTheFirstToTheLastIsGiven) {
   const Read result = read();
   ASSERT_EQ(result.scans.size(), 2U);
   EXPECT_THAT(result.scans[0].T_odom_body, Pose2Near(Pose2{1.25, 0.0, 0.0}, kExactTol, kExactTol));
-  EXPECT_THAT(result.scans[0].T_first_last, Pose2Near(Pose2{0.2, 0.0, 0.0}, 1e-6, 1e-6));  // float32 in the message
-  EXPECT_THAT(result.scans[1].T_first_last, Pose2Near(Pose2{}, kExactTol, kExactTol));
+  EXPECT_THAT(result.scans[0].T_begin_end, Pose2Near(Pose2{0.2, 0.0, 0.0}, 1e-6, 1e-6));  // float32 in the message
+  EXPECT_THAT(result.scans[1].T_begin_end, Pose2Near(Pose2{}, kExactTol, kExactTol));
 }
 
 TEST_F(McapScans, WithoutAnOdometryTopicTfIsTakenOverItsFramesBetween) {
@@ -177,7 +177,7 @@ TEST_F(McapScans, ScansOutsideTheOdometrysTimeAreSkippedAndCounted) {
   ASSERT_EQ(result.scans.size(), 1U);
   EXPECT_EQ(result.scans[0].scan.stamp, 1500ms);
   EXPECT_THAT(result.summary.skipped, ElementsAre(Pair("scans without odometry", 2U)));
-  EXPECT_THAT(result.summary.complaints.at(0), EndsWith("log.mcap: no odometry at the scan of 0.500000000 s"));
+  EXPECT_THAT(result.summary.warnings.at(0), EndsWith("log.mcap: no odometry at the scan of 0.500000000 s"));
 }
 
 TEST_F(McapScans, RangesAreTidiedAsRep117Asks) {

@@ -66,7 +66,7 @@ TEST(FiguresOf, GoThroughTheTreeAndNameEntriesOfLists) {
                            {"list", {1, nullptr}}};
   const std::vector<std::pair<std::string, double>> expected = {
       {"mission.completed", 1.0}, {"stations.box.error_m", 0.5}, {"stations.1.error_m", 0.25}, {"list.0", 1.0}};
-  EXPECT_EQ(figures_of(metrics), expected);
+  EXPECT_EQ(flatten_metrics(metrics), expected);
 }
 
 TEST(LoadMetrics, BrokenAndMissingFilesAreNamed) {

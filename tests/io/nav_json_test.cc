@@ -43,7 +43,7 @@ std::string complaint_after(const std::function<void(Json& goal)>& change) {
 
 TEST(LoadNav, ReadsTheFieldsOfPaper004) {
   const TemporaryFile file("nav.json", make_nav().dump());
-  const std::vector<MarkedGoal> goals = load_nav(file.path());
+  const std::vector<SavedGoal> goals = load_nav(file.path());
   ASSERT_EQ(goals.size(), 2U);
   EXPECT_EQ(goals[1].number, 2);
   EXPECT_THAT(goals[1].T_map_body, Pose2Near((Pose2{75.0, -2.0, std::numbers::pi}), 0.0, 1e-12));
@@ -54,7 +54,7 @@ TEST(LoadNav, ReadsTheFieldsOfPaper004) {
 TEST(LoadNav, WhatWasSavedIsReadBack) {
   const TemporaryFile file("nav.json", "");
   save_nav(file.path(), {{.number = 4, .T_map_body = {1.25, -2.5, 0.75}, .type = GoalType::kVia, .accuracy_m = 0.3}});
-  const std::vector<MarkedGoal> goals = load_nav(file.path());
+  const std::vector<SavedGoal> goals = load_nav(file.path());
   ASSERT_EQ(goals.size(), 1U);
   EXPECT_EQ(goals[0].number, 4);
   EXPECT_THAT(goals[0].T_map_body, Pose2Near((Pose2{1.25, -2.5, 0.75}), 1e-12, 1e-12));

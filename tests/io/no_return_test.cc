@@ -34,31 +34,31 @@ std::vector<float> corridor_cm(double x_m, float no_return_m) {
 }
 
 TEST(NoReturn, EightMetresThatComeBackFromFortyPlacesAreNone) {
-  NoReturnFinder finder;
+  NoReturnDetector finder;
   for (int place = 0; place < 40; ++place) finder.add(scan_at(0.3 * place, corridor_cm(0.3 * place, 8.0F)));
   const auto found = finder.find();
   ASSERT_TRUE(found);
   EXPECT_EQ(found->range_m, 8.0F);
-  EXPECT_EQ(found->num_places, 40U);
+  EXPECT_EQ(found->num_positions, 40U);
   EXPECT_GE(found->num_readings, 40U * 13U) << "within 7 degrees of straight ahead";
 }
 
 TEST(NoReturn, OfSeveralCodesTheLowestIsFound) {
-  NoReturnFinder finder;
+  NoReturnDetector finder;
   for (int place = 0; place < 40; ++place) finder.add(scan_at(0.3 * place, corridor_cm(0.3 * place, place % 2 == 0 ? 8.191F : 8.183F)));
   ASSERT_TRUE(finder.find());
   EXPECT_FLOAT_EQ(static_cast<float>(finder.find()->range_m), 8.183F);
 }
 
 TEST(NoReturn, ALidarThatSaysNothingWhereNothingComesBackHasNone) {
-  NoReturnFinder finder;
+  NoReturnDetector finder;
   for (int place = 0; place < 90; ++place) finder.add(scan_at(0.3 * place, corridor_cm(0.3 * place, kInfinity)));
   EXPECT_FALSE(finder.find());
 }
 
 // Without noise the end of the corridor is the same to the bit in every scan.
 TEST(NoReturn, StandingBeforeAWallProvesNothing) {
-  NoReturnFinder finder;
+  NoReturnDetector finder;
   for (int scan = 0; scan < 1000; ++scan) finder.add(scan_at(0.0, std::vector<float>(20, 5.0F)));
   EXPECT_FALSE(finder.find());
   for (int place = 0; place < 9; ++place) finder.add(scan_at(1.0 + place, std::vector<float>(20, 5.0F)));
@@ -66,7 +66,7 @@ TEST(NoReturn, StandingBeforeAWallProvesNothing) {
 }
 
 TEST(NoReturn, AWallAlongTheWayIsNoneAsItsNeighboursAreReadAsOften) {
-  NoReturnFinder finder;
+  NoReturnDetector finder;
   for (int place = 0; place < 100; ++place) {
     std::vector<float> ranges_m;
     for (int beam = 0; beam < 40; ++beam) ranges_m.push_back(std::round(500.0F / std::cos(0.01F * static_cast<float>(beam))) / 100.0F);  // 5.00, 5.00, 5.00, 5.01 ...

@@ -26,22 +26,22 @@ std::string complaint(const std::string& name, const std::string& text, const Lo
 }
 
 std::string drive_complaint(const std::string& waypoints) {
-  return complaint("d.json", R"({"version": 1, "frame": "site", "waypoints": )" + waypoints + "}", load_drive);
+  return complaint("d.json", R"({"version": 1, "frame": "site", "waypoints": )" + waypoints + "}", load_teleop_route);
 }
 
 std::string remote_complaint(const std::string& lines) {
-  return complaint("r.csv", "time_s,vx_mps,yaw_rate_radps,mark,hand_over\n" + lines, load_remote);
+  return complaint("r.csv", "time_s,vx_mps,yaw_rate_radps,mark,hand_over\n" + lines, load_teleop);
 }
 
 TEST(LoadDrive, ReadsReversesAndMarks) {
   const TemporaryFile file("d.json", R"({"version": 1, "frame": "site", "waypoints": [
     {"position": [1, 2], "reverse": true}, {"position": [3, 4], "mark_heading_deg": 90}]})");
-  const RemoteDrive drive = load_drive(file.path());
+  const TeleopRoute drive = load_teleop_route(file.path());
   ASSERT_EQ(drive.size(), 2u);
   EXPECT_TRUE(drive[0].is_reverse);
-  EXPECT_FALSE(drive[0].is_mark);
+  EXPECT_FALSE(drive[0].is_goal);
   EXPECT_EQ(drive[1].p_m, Eigen::Vector2d(3.0, 4.0));
-  EXPECT_TRUE(drive[1].is_mark);
+  EXPECT_TRUE(drive[1].is_goal);
   EXPECT_DOUBLE_EQ(drive[1].heading_rad, std::numbers::pi / 2.0);
 }
 
@@ -60,20 +60,20 @@ TEST(LoadDrive, NamesTheWaypointAndTheKey) {
 
 TEST(LoadRemote, WhatWasSavedIsReadBack) {
   const TemporaryFile file("r.csv", "");
-  save_remote(file.path(), {{.stamp = 100ms, .vx_mps = 0.5, .yaw_rate_radps = -0.25},
-                            {.stamp = 200ms, .mark = true},
+  save_teleop(file.path(), {{.stamp = 100ms, .vx_mps = 0.5, .yaw_rate_radps = -0.25},
+                            {.stamp = 200ms, .save_goal = true},
                             {.stamp = 300ms, .hand_over = true}});
-  const std::vector<RemoteCommand> commands = load_remote(file.path());
+  const std::vector<TeleopCommand> commands = load_teleop(file.path());
   ASSERT_EQ(commands.size(), 3u);
   EXPECT_EQ(commands[0].stamp, 100ms);
   EXPECT_EQ(commands[0].vx_mps, 0.5);
   EXPECT_EQ(commands[0].yaw_rate_radps, -0.25);
-  EXPECT_TRUE(commands[1].mark);
+  EXPECT_TRUE(commands[1].save_goal);
   EXPECT_TRUE(commands[2].hand_over);
 }
 
 TEST(LoadRemote, NamesTheLine) {
-  EXPECT_EQ(complaint("r.csv", "t,v\n", load_remote),
+  EXPECT_EQ(complaint("r.csv", "t,v\n", load_teleop),
             "r.csv:1: the first line must be time_s,vx_mps,yaw_rate_radps,mark,hand_over");
   EXPECT_EQ(remote_complaint(""), "r.csv: holds no command");
   EXPECT_EQ(remote_complaint("0,1,2,0\n"), "r.csv:2: must be 5 numbers with commas between, time_s,vx_mps,yaw_rate_radps,mark,hand_over");

@@ -147,7 +147,7 @@ TEST_F(RunLog, FramesChainFromMapToBodyAtTheEstimatesStamp) {
   EXPECT_EQ(frames[4].parent + " " + frames[4].child, "map odom");
   EXPECT_THAT(frames[0].T_parent_child * frames[1].T_parent_child, Pose3Near(T_odom_body, 1e-12, 1e-7));
   EXPECT_NEAR((frames[0].T_parent_child.rotation * Eigen::Vector3d::UnitZ()).z(), 1.0, 1e-12) << "level";
-  EXPECT_THAT(to_planar(frames[4].T_parent_child * frames[0].T_parent_child),
+  EXPECT_THAT(to_pose2(frames[4].T_parent_child * frames[0].T_parent_child),
               Pose2Near(T_map_body, 1e-12, 1e-12));
 }
 

@@ -77,8 +77,8 @@ inline DepthImage sample_depth() {
           .cy_px = 1.0,
           .depth_mm = {1000, 2000, 0, 65535, 1, 256}};
 }
-inline RemoteCommand sample_remote() {
-  return {.stamp = kSampleStamp, .vx_mps = 0.5, .yaw_rate_radps = -0.25, .mark = true, .hand_over = true};
+inline TeleopCommand sample_remote() {
+  return {.stamp = kSampleStamp, .vx_mps = 0.5, .yaw_rate_radps = -0.25, .save_goal = true, .hand_over = true};
 }
 inline PanoramicScan sample_panorama() {
   return {.stamp = kSampleStamp, .points = {{1.0F, -2.0F, 0.5F, 120.0F}, {-4.0F, 0.25F, 5.5F, 7.0F}}};
@@ -107,8 +107,8 @@ inline WaterResult sample_water() {
   water.covariance_m2 << 1.0, 0.25, 0.5, 0.25, 2.0, -0.125, 0.5, -0.125, 3.0;
   return water;
 }
-inline LocalizationTrust sample_trust() {
-  return {.stamp = kSampleStamp, .trust = 0.25, .weak_std_m = 0.75, .weak_direction_rad = 1.5, .is_lost = true};
+inline LocalizationConfidence sample_trust() {
+  return {.stamp = kSampleStamp, .confidence = 0.25, .max_std_m = 0.75, .max_std_direction_rad = 1.5, .is_lost = true};
 }
 inline Eigen::Matrix3d sample_covariance() {
   Eigen::Matrix3d P;
@@ -171,7 +171,7 @@ inline auto all_samples() {
                     sample_gas(), sample_fix(), sample_ticks(), sample_uwb(),
                     sample_ultrasonic(), sample_depth(), sample_remote(), sample_panorama(),
                     sample_antenna(), sample_sounding(), ScanCommand{kSampleStamp}, AntennaCommand{kSampleStamp, 0.5, -0.25},
-                    SoundingCommand{kSampleStamp}, WarningCommand{kSampleStamp, true, false}, sample_lining(), sample_water(), sample_trust(), sample_odometry(), sample_estimate(), RangePoseEstimate{sample_estimate()}, sample_particles(),
+                    SoundingCommand{kSampleStamp}, WarningCommand{kSampleStamp, true, false}, sample_lining(), sample_water(), sample_trust(), sample_odometry(), sample_estimate(), UwbPoseEstimate{sample_estimate()}, sample_particles(),
                     sample_map(), sample_path(), sample_command(), sample_event(), sample_truth(),
                     sample_state(), sample_collision(), sample_transforms());
 }

@@ -291,9 +291,9 @@ TEST(SaveSettings, ACommentStandsAtTheHeadAndIsNotRead) {
 }
 
 TEST(NearestWord, IsNearOrEmpty) {
-  EXPECT_EQ(nearest_word("partcles", {"particles", "paths"}), "particles");
-  EXPECT_EQ(nearest_word("xyz", {"particles", "paths"}), "");
-  EXPECT_EQ(nearest_word("", {}), "");
+  EXPECT_EQ(closest_match("partcles", {"particles", "paths"}), "particles");
+  EXPECT_EQ(closest_match("xyz", {"particles", "paths"}), "");
+  EXPECT_EQ(closest_match("", {}), "");
 }
 
 }  // namespace

@@ -11,11 +11,11 @@ namespace patrol::io::station_scans_test {
 namespace {
 
 std::vector<StationScan> two_scans() {
-  return {{.station = "goal_1", .T_map_scanner = to_spatial(Pose2{-31.0, 0.25, 3.0}, 0.75), .points = {{1.0F, -2.0F, 0.5F, 120.0F}, {-4.0F, 0.25F, 5.5F, 7.0F}}},
-          {.station = "goal_2", .T_map_scanner = to_spatial(Pose2{-60.0, 0.5, -1.5}, 0.75), .points = {{8.0F, 9.0F, 1.5F, 0.0F}}}};
+  return {{.station = "goal_1", .T_map_scanner = to_pose3(Pose2{-31.0, 0.25, 3.0}, 0.75), .points = {{1.0F, -2.0F, 0.5F, 120.0F}, {-4.0F, 0.25F, 5.5F, 7.0F}}},
+          {.station = "goal_2", .T_map_scanner = to_pose3(Pose2{-60.0, 0.5, -1.5}, 0.75), .points = {{8.0F, 9.0F, 1.5F, 0.0F}}}};
 }
 
-std::string refusal(const std::filesystem::path& folder) {
+std::string error_response(const std::filesystem::path& folder) {
   try {
     load_station_scans(folder);
   } catch (const InputError& error) {
@@ -41,7 +41,7 @@ TEST(StationScans, AStationThatLeadsOutOfTheFolderIsRefused) {
   const test::TemporaryFolder folder;
   save_station_scans(folder.path(), two_scans());
   save_text(folder.path() / "scans.json", R"([{"station": "../goal_1", "position": [0, 0, 1], "orientation": [0, 0, 0, 1]}])");
-  EXPECT_EQ(refusal(folder.path()),
+  EXPECT_EQ(error_response(folder.path()),
             (folder.path() / "scans.json").string() + ": [0]: station = ../goal_1: must be made of letters, digits and underlines");
 }
 
@@ -49,7 +49,7 @@ TEST(StationScans, ACloudThatIsNotThereIsNamed) {
   const test::TemporaryFolder folder;
   save_station_scans(folder.path(), two_scans());
   std::filesystem::remove(folder.path() / "goal_2.ply");
-  EXPECT_NE(refusal(folder.path()).find("goal_2.ply"), std::string::npos);
+  EXPECT_NE(error_response(folder.path()).find("goal_2.ply"), std::string::npos);
 }
 
 }  // namespace

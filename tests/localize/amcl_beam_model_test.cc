@@ -26,7 +26,7 @@ TEST(BeamModel, IsAProbabilityOverRangesAndNoEcho) {
     constexpr double kStep = 1e-3;
     double sum = 0.0;
     for (double range_m = 0.5 * kStep; range_m < settings.max_range_m; range_m += kStep) sum += kStep * std::exp(beam_log_likelihood(range_m, expected_m, settings));
-    const double no_echo = settings.max_share / (settings.hit_share + settings.short_share + settings.max_share + settings.random_share);
+    const double no_echo = settings.z_max / (settings.z_hit + settings.z_short + settings.z_max + settings.z_rand);
     EXPECT_NEAR(sum + no_echo, 1.0, 1e-3) << expected_m;
   }
 }

@@ -15,8 +15,8 @@ constexpr double kBeams = 20.0;  // that a scan counts for
 
 const GlobalSearch& tunnel_search() {
   static const LineField lines(test::tunnel_map(), 6);
-  static const GlobalSearch search({}, {}, test::tunnel_map(), lines);
-  return search;
+  static const GlobalSearch global_localization({}, {}, test::tunnel_map(), lines);
+  return global_localization;
 }
 
 GlobalSearch::Candidates find(const Pose2& truth, const std::vector<AnchoredRange>& ranges = {}) {
@@ -69,11 +69,11 @@ TEST(GlobalSearch, RangesDecideWhereTheScanCannot) {
 
 TEST(GlobalSearch, DrawsAsManyPosesAsAskedNearTheCandidates) {
   const GlobalSearch::Candidates candidates = find({6.0, 0.4, 0.1});
-  const std::vector<Pose2> poses = draw_poses(candidates, 200, RandomStream(1, "test/draw"), 0);
+  const std::vector<Pose2> poses = sample_poses(candidates, 200, RandomStream(1, "test/draw"), 0);
   ASSERT_EQ(poses.size(), 200U);
   const auto near = std::count_if(poses.begin(), poses.end(), [](const Pose2& pose) { return std::hypot(pose.x - 6.0, pose.y - 0.4) < 0.6; });
   EXPECT_GT(near, 180);
-  EXPECT_TRUE(draw_poses({}, 200, RandomStream(1, "test/draw"), 0).empty());
+  EXPECT_TRUE(sample_poses({}, 200, RandomStream(1, "test/draw"), 0).empty());
 }
 
 TEST(GlobalSearch, AMapSmallerThanItsStepsHasAPlaceAllTheSame) {

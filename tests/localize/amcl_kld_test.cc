@@ -12,7 +12,7 @@ namespace {
 
 constexpr KldSettings kFree{.min_particles = 1, .max_particles = 1000000};
 
-// Twice max_error times the particles is the chi-square quantile of bins - 1 degrees of freedom. Tables: 0.99 quantiles 23.209
+// Twice max_kl_divergence times the particles is the chi-square quantile of bins - 1 degrees of freedom. Tables: 0.99 quantiles 23.209
 // (10), 76.154 (50), 135.807 (100); Wilson and Hilferty come within one percent.
 TEST(KldParticles, AreTheChiSquareQuantileOverTwiceTheError) {
   EXPECT_NEAR(kld_particles(11, kFree), 23.209 / 0.1, 3.0);
@@ -28,7 +28,7 @@ TEST(KldParticles, StayWithinTheirLimits) {
 
 TEST(KldParticles, GrowWithTheBinsAndFallWithTheError) {
   EXPECT_LT(kld_particles(50, kFree), kld_particles(51, kFree));
-  EXPECT_LT(kld_particles(50, {.max_error = 0.1, .min_particles = 1}), kld_particles(50, kFree));
+  EXPECT_LT(kld_particles(50, {.max_kl_divergence = 0.1, .min_particles = 1}), kld_particles(50, kFree));
 }
 
 TEST(PoseBins, ArePlacesAndHeadings) {
@@ -46,16 +46,16 @@ TEST(PoseBins, ClumpTogetherWhereTheyTouchAlsoRoundTheCircle) {
   bins.add({0.6, 0.6, -std::numbers::pi + 0.01});
   bins.add({5.0, 0.1, 0.0});
   bins.add({1.1, 1.1, -std::numbers::pi + 0.2});
-  EXPECT_EQ(bins.clumps(), (std::vector<std::size_t>{0, 0, 2, 0}));
+  EXPECT_EQ(bins.clusters(), (std::vector<std::size_t>{0, 0, 2, 0}));
 }
 
 TEST(ParticleCloud, TheHeaviestClumpIsDescribedAndNotTheOthers) {
   const std::vector<Pose2> poses = {{0.0, 0.0, 3.1}, {0.2, 0.0, -3.1}, {20.0, 0.0, 0.0}};
   const std::vector<double> weights = {0.3, 0.3, 0.4};
-  const std::vector<std::size_t> clumps = clumps_of(poses, {});
-  const HeaviestClump heaviest = heaviest_clump(clumps, weights);
-  EXPECT_NEAR(heaviest.weight, 0.6, 1e-12);
-  const slam::PoseGaussian gaussian = gaussian_of(poses, weights, clumps, heaviest.number);
+  const std::vector<std::size_t> clusters = cluster_particles(poses, {});
+  const DominantCluster dominant = find_dominant_cluster(clusters, weights);
+  EXPECT_NEAR(dominant.weight, 0.6, 1e-12);
+  const slam::PoseGaussian gaussian = cluster_gaussian(poses, weights, clusters, dominant.number);
   EXPECT_THAT(gaussian.mean, test::Pose2Near((Pose2{0.1, 0.0, std::numbers::pi}), 1e-9, 1e-9));
   EXPECT_NEAR(gaussian.covariance(0, 0), 0.01, 1e-12);                               // 0.1^2 either side
   EXPECT_NEAR(gaussian.covariance(2, 2), std::pow(std::numbers::pi - 3.1, 2), 1e-9);

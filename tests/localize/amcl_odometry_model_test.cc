@@ -21,10 +21,10 @@ Spread spread_after(int steps, const OdometryModelSettings& settings) {
   const RandomStream noise(1, "test/motion"), start(2, "test/start");
   ParticleCloud cloud;
   for (std::uint64_t i = 0; i < kParticles; ++i) cloud.add({}, settings.way_scale_std * start.normal(0, i));
-  for (int step = 0; step < steps; ++step) move_particles(cloud, kStep, 0.2, settings, noise, static_cast<std::uint64_t>(step));
+  for (int step = 0; step < steps; ++step) propagate_particles(cloud, kStep, 0.2, settings, noise, static_cast<std::uint64_t>(step));
   double sum = 0.0, squares = 0.0, scales = 0.0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    sum += cloud.T_map_body[i].x, squares += cloud.T_map_body[i].x * cloud.T_map_body[i].x, scales += cloud.way_scale[i] * cloud.way_scale[i];
+    sum += cloud.T_map_body[i].x, squares += cloud.T_map_body[i].x * cloud.T_map_body[i].x, scales += cloud.odometry_scale[i] * cloud.odometry_scale[i];
   }
   return {std::sqrt(squares / kParticles - std::pow(sum / kParticles, 2)), std::sqrt(scales / kParticles)};
 }
@@ -54,14 +54,14 @@ TEST(OdometryModel, TheScaleKeepsItsDeviation) {
 TEST(OdometryModel, WithoutScaleTheSpreadGrowsWithTheRoot) {
   OdometryModelSettings settings = only_scale();
   settings.way_scale_std = 0.0;
-  settings.noise.along_std_m_per_m = 0.01;
+  settings.noise.longitudinal_std_m_per_m = 0.01;
   EXPECT_NEAR(spread_after(100, settings).along_std, 0.002 * std::sqrt(100.0), 0.02 * 4.0 / 63.2);
 }
 
 // 2 m ahead with 2 % of scale, and a heading known to 0.1 rad: 4 cm along, 20 cm across.
 TEST(OdometryModel, AGaussianIsMovedAsTheParticlesAre) {
   const slam::PoseGaussian before{.mean = {}, .covariance = Eigen::Vector3d(0.0, 0.0, 0.01).asDiagonal()};
-  const slam::PoseGaussian now = moved(before, {2.0, 0.0, 0.3}, 1.0, only_scale());
+  const slam::PoseGaussian now = predict(before, {2.0, 0.0, 0.3}, 1.0, only_scale());
   EXPECT_THAT(now.mean, test::Pose2Near((Pose2{2.0, 0.0, 0.3}), 1e-12, 1e-12));
   EXPECT_NEAR(std::sqrt(now.covariance(0, 0)), 0.04, 1e-6);
   EXPECT_NEAR(std::sqrt(now.covariance(1, 1)), 0.2, 1e-6);
@@ -72,7 +72,7 @@ TEST(OdometryModel, TheSameTickDrawsTheSameAndAnotherAnother) {
   const auto draw = [&](std::uint64_t tick) {
     ParticleCloud cloud;
     cloud.add({}, 0.0);
-    move_particles(cloud, kStep, 0.2, {}, noise, tick);
+    propagate_particles(cloud, kStep, 0.2, {}, noise, tick);
     return cloud.T_map_body.front().vector();
   };
   EXPECT_EQ(draw(3), draw(3));

@@ -42,7 +42,7 @@ TEST(RefinePose, RecoversTenCentimetresAndTwoDegreesToTwoCentimetresAndATenthOfA
     const Pose2 start{truth.x + sign * 0.1, truth.y - sign * 0.05, truth.yaw + sign * 2.0 * kDegree};
     const RefinedPose refined = refine_pose(tunnel_lines(), look(tunnel.world, truth), wide_about(start), start, {});
     EXPECT_TRUE(refined.is_matched);
-    EXPECT_GT(refined.matched_share, 0.95);
+    EXPECT_GT(refined.inlier_ratio, 0.95);
     EXPECT_THAT(refined.posterior.mean, Pose2Near(truth, 0.02, 0.1 * kDegree));
   }
 }
@@ -67,7 +67,7 @@ TEST(RefinePose, AnUnknownTruckPullsByLessThanOneCentimetre) {
   const RefinedPose clear = refine_pose(tunnel_lines(), look(tunnel.world, truth), wide_about(truth), truth, {});
   tunnel.world.add_box(2.5, 1.4, 11.5, 3.8);
   const RefinedPose hidden = refine_pose(tunnel_lines(), look(tunnel.world, truth), wide_about(truth), truth, {});
-  EXPECT_LT(hidden.matched_share, 0.8);
+  EXPECT_LT(hidden.inlier_ratio, 0.8);
   EXPECT_THAT(hidden.posterior.mean, Pose2Near(clear.posterior.mean, 0.01, 0.1 * kDegree));
 }
 
@@ -92,8 +92,8 @@ TEST(ScanProposal, GoesTheWayThatTheScanKnows) {
   refined.posterior.mean = {5.0, 1.0, 0.0};
   refined.information(1, 1) = 100.0;
   const ScanProposal proposal(refined, Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal());
-  EXPECT_THAT(proposal.draw({4.0, 0.0, 0.2}, Eigen::Vector3d::Zero()), Pose2Near((Pose2{4.0, 0.5, 0.2}), 1e-9, 1e-9));
-  const Pose2 drawn = proposal.draw({4.0, 0.0, 0.2}, {1.0, 1.0, 0.0});
+  EXPECT_THAT(proposal.sample({4.0, 0.0, 0.2}, Eigen::Vector3d::Zero()), Pose2Near((Pose2{4.0, 0.5, 0.2}), 1e-9, 1e-9));
+  const Pose2 drawn = proposal.sample({4.0, 0.0, 0.2}, {1.0, 1.0, 0.0});
   EXPECT_NEAR(drawn.x, 4.1, 1e-9);
   EXPECT_NEAR(drawn.y, 0.5 + std::sqrt(0.005), 1e-9);
 }

@@ -7,10 +7,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-BeltCounters make_counters() { return BeltCounters({.metres_per_tick = 0.001, .max_acceleration_mps2 = 10.0}); }
+TrackEncoders make_counters() { return TrackEncoders({.meters_per_tick = 0.001, .max_acceleration_mps2 = 10.0}); }
 
-TEST(BeltCounters, TenTicksOfAMillimetreInTwentyMillisecondsAreHalfAMetreASecond) {
-  BeltCounters counters = make_counters();
+TEST(TrackEncoders, TenTicksOfAMillimetreInTwentyMillisecondsAreHalfAMetreASecond) {
+  TrackEncoders counters = make_counters();
   EXPECT_FALSE(counters.add({milliseconds(0), 100, 200})) << "one reading is no way";
   const auto belts = counters.add({milliseconds(20), 110, 194});
   ASSERT_TRUE(belts);
@@ -22,18 +22,18 @@ TEST(BeltCounters, TenTicksOfAMillimetreInTwentyMillisecondsAreHalfAMetreASecond
   EXPECT_EQ(belts->middle(), milliseconds(10));
 }
 
-TEST(BeltCounters, StandAfterThreeHundredMillisecondsWithoutATick) {
-  BeltCounters counters = make_counters();
+TEST(TrackEncoders, StandAfterThreeHundredMillisecondsWithoutATick) {
+  TrackEncoders counters = make_counters();
   for (int i = 0; i <= 14; ++i) counters.add({milliseconds(20 * i), 5, 5});
-  EXPECT_FALSE(counters.stand());
+  EXPECT_FALSE(counters.is_stationary());
   counters.add({milliseconds(300), 5, 5});
-  EXPECT_TRUE(counters.stand());
+  EXPECT_TRUE(counters.is_stationary());
   counters.add({milliseconds(320), 5, 6});
-  EXPECT_FALSE(counters.stand());
+  EXPECT_FALSE(counters.is_stationary());
 }
 
-TEST(BeltCounters, AJumpIsDisbelievedAndASpeedThatLastsIsNot) {
-  BeltCounters counters = make_counters();
+TEST(TrackEncoders, AJumpIsDisbelievedAndASpeedThatLastsIsNot) {
+  TrackEncoders counters = make_counters();
   counters.add({milliseconds(0), 0, 0});
   counters.add({milliseconds(20), 10, 10});
   EXPECT_FALSE(counters.add({milliseconds(40), 100010, 100010})) << "5000 m/s";
@@ -43,8 +43,8 @@ TEST(BeltCounters, AJumpIsDisbelievedAndASpeedThatLastsIsNot) {
   EXPECT_EQ(refused, 14) << "for 0.3 s a leap to 5 m/s";
 }
 
-TEST(BeltCounters, NothingIsSaidAcrossAGapOfASecond) {
-  BeltCounters counters = make_counters();
+TEST(TrackEncoders, NothingIsSaidAcrossAGapOfASecond) {
+  TrackEncoders counters = make_counters();
   counters.add({milliseconds(0), 0, 0});
   EXPECT_FALSE(counters.add({milliseconds(1000), 500, 500}));
   EXPECT_TRUE(counters.add({milliseconds(1020), 510, 510}));

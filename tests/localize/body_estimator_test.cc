@@ -34,8 +34,8 @@ void run(WalkingRobot& robot, BodyEstimator& estimator, double until_s, const Ou
 }
 
 double yaw_error(const BodyEstimator& estimator, const WalkingRobot& robot) {
-  return wrap_angle(yaw_of(estimator.estimate()->T_odom_body.rotation) -
-                    yaw_of(robot.T_world_body().rotation));
+  return wrap_angle(to_yaw(estimator.estimate()->T_odom_body.rotation) -
+                    to_yaw(robot.T_world_body().rotation));
 }
 
 double tilt_error(const BodyEstimator& estimator, const WalkingRobot& robot) {

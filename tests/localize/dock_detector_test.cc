@@ -26,7 +26,7 @@ RoomWorld make_portal(const Pose2& T_world_docked) {
   return world.add_wall(-20.0, -3.0, 3.0, -3.0).add_wall(-20.0, 3.0, 3.0, 3.0).add_wall(3.0, -3.0, 3.0, 3.0);
 }
 
-std::optional<DockSighting> look(const RoomWorld& world, const Pose2& T_world_body, const Pose2& T_level_expected,
+std::optional<DockDetection> look(const RoomWorld& world, const Pose2& T_world_body, const Pose2& T_level_expected,
                                  std::uint64_t tick = 0, double range_std_m = kStd_m,
                                  const std::vector<Eigen::Vector2d>& profile_m = make_dock_profile()) {
   const RandomStream noise(5, "test/lidar");
@@ -39,10 +39,10 @@ TEST(DockDetector, WithoutNoiseFindsThePostToThreeMillimetresFromThirtyCentimetr
   const Pose2 T_level_docked = T_world_body.inverse();
   for (const Pose2& off : {Pose2{0.0, 0.0, 0.0}, Pose2{0.25, -0.2, 0.15}, Pose2{-0.25, 0.25, -0.15}}) {
     const Pose2 expected{T_level_docked.x + off.x, T_level_docked.y + off.y, T_level_docked.yaw + off.yaw};
-    const auto sighting = look(make_portal({}), T_world_body, expected, 0, 0.0);
-    ASSERT_TRUE(sighting);
-    EXPECT_THAT(sighting->T_level_docked, Pose2Near(T_level_docked, 0.003, 0.004));
-    EXPECT_GT(sighting->explained, 0.95);
+    const auto detection = look(make_portal({}), T_world_body, expected, 0, 0.0);
+    ASSERT_TRUE(detection);
+    EXPECT_THAT(detection->T_level_docked, Pose2Near(T_level_docked, 0.003, 0.004));
+    EXPECT_GT(detection->inlier_ratio, 0.95);
   }
 }
 
@@ -57,11 +57,11 @@ TEST(DockDetector, ItsErrorsAreAsLargeAsItsCovarianceSays) {
     const Pose2 T_world_body{-1.4 * stream.uniform(0), 0.1 * stream.uniform(1) - 0.05, 0.2 * stream.uniform(2) - 0.1};
     const Pose2 T_level_docked = T_world_body.inverse();
     const Pose2 expected{T_level_docked.x + 0.1, T_level_docked.y - 0.1, T_level_docked.yaw + 0.05};
-    const auto sighting = look(make_portal({}), T_world_body, expected, i);
-    ASSERT_TRUE(sighting) << i;
-    const Eigen::Vector3d error(sighting->T_level_docked.x - T_level_docked.x, sighting->T_level_docked.y - T_level_docked.y,
-                                wrap_angle(sighting->T_level_docked.yaw - T_level_docked.yaw));
-    squares += error.dot(sighting->covariance.inverse() * error);
+    const auto detection = look(make_portal({}), T_world_body, expected, i);
+    ASSERT_TRUE(detection) << i;
+    const Eigen::Vector3d error(detection->T_level_docked.x - T_level_docked.x, detection->T_level_docked.y - T_level_docked.y,
+                                wrap_angle(detection->T_level_docked.yaw - T_level_docked.yaw));
+    squares += error.dot(detection->covariance.inverse() * error);
     worst_m = std::max(worst_m, error.head<2>().norm());
     worst_rad = std::max(worst_rad, std::abs(error.z()));
   }
@@ -75,10 +75,10 @@ TEST(DockDetector, ItsErrorsAreAsLargeAsItsCovarianceSays) {
 TEST(DockDetector, FindsTheMiddleOfAFlatFaceByItsEdges) {
   const std::vector<Eigen::Vector2d> box = {{0.9, -0.2}, {0.7, -0.2}, {0.7, 0.2}, {0.9, 0.2}};
   const Pose2 T_world_body{-1.0, 0.03, 0.02};
-  const auto sighting =
+  const auto detection =
       look(make_dock_world({}, box), T_world_body, Pose2{0.05, 0.1, 0.02} * T_world_body.inverse(), 0, kStd_m, box);
-  ASSERT_TRUE(sighting);
-  EXPECT_THAT(sighting->T_level_docked, Pose2Near(T_world_body.inverse(), 0.02, 2.0 * kDegree));
+  ASSERT_TRUE(detection);
+  EXPECT_THAT(detection->T_level_docked, Pose2Near(T_world_body.inverse(), 0.02, 2.0 * kDegree));
 }
 
 // The notches look alike, 0.36 m apart: from the whole search it must not take one for the other. A single look errs by up to
@@ -90,10 +90,10 @@ TEST(DockDetector, IsNotMistakenByOneNotchOfTwo) {
     const RandomStream stream(i, "test/expected");
     const Pose2 expected{T_level_docked.x + 0.5 * (stream.uniform(0) - 0.5), T_level_docked.y + 0.6 * (stream.uniform(1) - 0.5),
                          T_level_docked.yaw + 0.3 * (stream.uniform(2) - 0.5)};
-    const auto sighting = look(make_dock_world({}, test::make_notched_dock_profile()), T_world_body, expected, i, kStd_m,
+    const auto detection = look(make_dock_world({}, test::make_notched_dock_profile()), T_world_body, expected, i, kStd_m,
                                test::make_notched_dock_profile());
-    ASSERT_TRUE(sighting) << i;
-    EXPECT_THAT(sighting->T_level_docked, Pose2Near(T_level_docked, 0.05, 4.0 * kDegree)) << i;
+    ASSERT_TRUE(detection) << i;
+    EXPECT_THAT(detection->T_level_docked, Pose2Near(T_level_docked, 0.05, 4.0 * kDegree)) << i;
   }
 }
 

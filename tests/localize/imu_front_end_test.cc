@@ -69,7 +69,7 @@ TEST(ImuFrontEnd, BridgesGapsAndIsSilentOnlyUntilTheNextReading) {
   imu.coast_to(1100ms, 0.3);
   EXPECT_TRUE(imu.is_silent());
   EXPECT_EQ(imu.now(), Time(1100ms));
-  EXPECT_NEAR(yaw_of(imu.estimate().T_odom_body.rotation), 0.045 * 0.3, 1e-9);
+  EXPECT_NEAR(to_yaw(imu.estimate().T_odom_body.rotation), 0.045 * 0.3, 1e-9);
   add(imu, resting(1104ms));
   EXPECT_FALSE(imu.is_silent());
 }
@@ -82,9 +82,9 @@ TEST(ImuFrontEnd, PosesAreRememberedAndExtrapolatedForALittle) {
   imu.coast_to(1100ms, 0.5);
   EXPECT_FALSE(imu.T_odom_body_at(999ms));
   ASSERT_TRUE(imu.T_odom_body_at(1050ms));
-  EXPECT_NEAR(yaw_of(imu.T_odom_body_at(1050ms)->rotation), 0.025, 1e-9);
+  EXPECT_NEAR(to_yaw(imu.T_odom_body_at(1050ms)->rotation), 0.025, 1e-9);
   ASSERT_TRUE(imu.T_odom_body_at(1200ms));
-  EXPECT_NEAR(yaw_of(imu.T_odom_body_at(1200ms)->rotation), 0.1, 1e-9);
+  EXPECT_NEAR(to_yaw(imu.T_odom_body_at(1200ms)->rotation), 0.1, 1e-9);
   EXPECT_FALSE(imu.T_odom_body_at(1251ms));
 }
 

@@ -35,7 +35,7 @@ TEST(InertialFilter, HalfATurnPerSecondEndsAtHalfATurn) {
   InertialFilter filter(quiet(), {.rate_radps = {0, 0, std::numbers::pi}, .force_mps2 = kAtRest});
   for (int i = 0; i < 250; ++i)
     filter.predict(kDt, {.rate_radps = {0, 0, std::numbers::pi}, .force_mps2 = kAtRest});
-  EXPECT_NEAR(std::abs(yaw_of(filter.motion().T_odom_body.rotation)), std::numbers::pi, 1e-6);
+  EXPECT_NEAR(std::abs(to_yaw(filter.motion().T_odom_body.rotation)), std::numbers::pi, 1e-6);
 }
 
 TEST(InertialFilter, ConstantAccelerationGrowsAsHalfATSquared) {
@@ -93,7 +93,7 @@ TEST(InertialFilter, BiasReadingMovesNeitherPlaceNorHeading) {
   filter.correct_gyro_bias({0, 0, 0.01}, Eigen::Vector3d::Constant(1e-8));
   EXPECT_NEAR(filter.gyro_bias_radps().z(), 0.01, 1e-4);
   EXPECT_LT((filter.motion().T_odom_body.position - before.position).norm(), 1e-12);
-  EXPECT_LT(std::abs(yaw_of(filter.motion().T_odom_body.rotation) - yaw_of(before.rotation)), 1e-6);
+  EXPECT_LT(std::abs(to_yaw(filter.motion().T_odom_body.rotation) - to_yaw(before.rotation)), 1e-6);
   EXPECT_NEAR(filter.planar_covariance()(2, 2), covariance(2, 2), 1e-3 * covariance(2, 2)) << "nor does it grow surer of them";
 }
 
@@ -124,7 +124,7 @@ TEST(InertialFilter, CovarianceStaysSymmetricAndPositive) {
 TEST(InertialFilter, CoastingGrowsYawUncertaintyWithTime) {
   InertialFilter filter(quiet(), {.force_mps2 = kAtRest});
   for (int i = 0; i < 125; ++i) filter.coast(kDt, 0.2);
-  EXPECT_NEAR(yaw_of(filter.motion().T_odom_body.rotation), 0.1, 1e-9);
+  EXPECT_NEAR(to_yaw(filter.motion().T_odom_body.rotation), 0.1, 1e-9);
   EXPECT_GT(filter.planar_covariance()(2, 2), 0.5 * 0.05 * 0.05 * 0.99);
 }
 

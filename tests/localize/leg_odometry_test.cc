@@ -18,7 +18,7 @@ LegSample standing_pose() {
 }
 
 TEST(ContactDetector, CountsAFootOnceItsTouchDownIsOverAndUntilItIsReleased) {
-  ContactDetector detector({.touch_n = 15.0, .release_n = 8.0, .full_n = 40.0, .settle_s = 0.010});
+  ContactDetector detector({.contact_on_n = 15.0, .contact_off_n = 8.0, .full_weight_n = 40.0, .settle_s = 0.010});
   const auto at = [&](int ms, double force) {
     return detector.update(std::chrono::milliseconds(ms), {force, 0.0, 0.0, 0.0})[0];
   };
@@ -63,7 +63,7 @@ TEST(FuseFeet, TurningTrunkOverRestingFeetIsNotMoving) {
     feet.push_back({.p_contact = p, .v_contact = -omega.cross(p)});
   }
   EXPECT_NEAR(fuse_feet(feet, omega, Eigen::Vector3d::Zero(), 0.1, 0.15)->v_body.norm(), 0.0, kExactTol);
-  EXPECT_NEAR(*yaw_rate_by_feet(feet), 1.0, kExactTol);
+  EXPECT_NEAR(*yaw_rate_from_feet(feet), 1.0, kExactTol);
 }
 
 TEST(FuseFeet, FootSlippingFourTimesTheLimitKeepsASixteenthOfItsWeight) {
@@ -78,8 +78,8 @@ TEST(FuseFeet, FootSlippingFourTimesTheLimitKeepsASixteenthOfItsWeight) {
 TEST(FuseFeet, NoFootNoAnswer) {
   const StanceFeet none;
   EXPECT_FALSE(fuse_feet(none, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.1, 0.1));
-  EXPECT_FALSE(height_by_feet(none, Eigen::Vector3d::UnitZ()));
-  EXPECT_FALSE(yaw_rate_by_feet(none));
+  EXPECT_FALSE(height_from_feet(none, Eigen::Vector3d::UnitZ()));
+  EXPECT_FALSE(yaw_rate_from_feet(none));
 }
 
 TEST(HeightByFeet, IsTheLegsLengthAndTheFootsRadius) {
@@ -90,7 +90,7 @@ TEST(HeightByFeet, IsTheLegsLengthAndTheFootsRadius) {
     feet.push_back(stance_foot(robot.legs[static_cast<std::size_t>(leg)], leg, standing_pose(),
                                Eigen::Vector3d::UnitZ()));
   }
-  EXPECT_NEAR(*height_by_feet(feet, Eigen::Vector3d::UnitZ()), 2.0 * 0.213 * std::cos(0.8) + 0.02, kExactTol);
+  EXPECT_NEAR(*height_from_feet(feet, Eigen::Vector3d::UnitZ()), 2.0 * 0.213 * std::cos(0.8) + 0.02, kExactTol);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ TEST(MapPoseTracker, CarriesACorrectionOnByOdometry) {
 }
 
 TEST(MapPoseTracker, HeadingErrorSwingsTheWayRound) {
-  MapPoseTracker tracker({.way_std_m_per_m = 0.0, .turn_std_rad_per_m = 0.0, .turn_std_rad_per_rad = 0.0});
+  MapPoseTracker tracker({.position_std_m_per_m = 0.0, .yaw_std_rad_per_m = 0.0, .yaw_std_rad_per_rad = 0.0});
   tracker.correct(Time{0}, {}, {}, kCovariance);
   // 10 m along x with 1 mrad of heading: 1 cm across, (1e-3 * 10)^2 = 1e-4 more than before.
   const Eigen::Matrix3d covariance = tracker.at(from_seconds(10.0), {10.0, 0.0, 0.0}).covariance;

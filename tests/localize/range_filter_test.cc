@@ -33,7 +33,7 @@ struct TunnelRun {
   double end_error_m = 0.0;
   double nis_sum = 0.0;  ///< of the clear ranges
   int num_clear = 0, num_blocked = 0, num_blocked_accepted = 0, num_clear_refused = 0;
-  std::uint64_t doubts = 0;
+  std::uint64_t num_resets = 0;
 };
 
 struct TunnelSetting {
@@ -70,7 +70,7 @@ TunnelRun drive_tunnel(std::uint64_t seed, const TunnelSetting& setting) {
       const RandomStream draw(seed, "start");
       start.T_map_body = {setting.start_error_m + kStartStd_m * draw.normal(0), kStartStd_m * draw.normal(1), kStartStd_rad * draw.normal(2)};
       start.covariance.diagonal() << kStartStd_m * kStartStd_m, kStartStd_m * kStartStd_m, kStartStd_rad * kStartStd_rad;
-      filter.start_at(start, estimate->T_odom_body);
+      filter.set_initial_pose(start, estimate->T_odom_body);
     }
     filter.predict(estimate->stamp, estimate->T_odom_body, odometry.twist_std());
     if (++step % 2 != 0) continue;
@@ -86,7 +86,7 @@ TunnelRun drive_tunnel(std::uint64_t seed, const TunnelSetting& setting) {
       }
     }
     const PoseEstimate pose = filter.estimate(drive.now(), estimate->T_odom_body);
-    const Pose2 truth = to_planar(T_map_body);
+    const Pose2 truth = to_pose2(T_map_body);
     const Eigen::Vector3d error(pose.T_map_body.x - truth.x, pose.T_map_body.y - truth.y, wrap_angle(pose.T_map_body.yaw - truth.yaw));
     result.max_error_m = std::max(result.max_error_m, error.head<2>().norm());
     result.end_error_m = error.head<2>().norm();
@@ -98,7 +98,7 @@ TunnelRun drive_tunnel(std::uint64_t seed, const TunnelSetting& setting) {
     }
   }
   result.mean_nees /= seconds;
-  result.doubts = filter.doubts();
+  result.num_resets = filter.num_resets();
   return result;
 }
 
@@ -111,7 +111,7 @@ TEST(RangeFilter, OverTheWholeTunnelErrsLessThanFifteenCentimetresWithThirtyPerc
     EXPECT_LT(run.max_error_m, 0.15) << "seed " << seed;
     EXPECT_GT(run.max_odometry_error_m, 2.0) << "odometry alone does not do it, seed " << seed;
     EXPECT_NEAR(static_cast<double>(run.num_blocked) / (run.num_blocked + run.num_clear), 0.3, 0.02);
-    EXPECT_EQ(run.doubts, 0U);
+    EXPECT_EQ(run.num_resets, 0U);
   }
 }
 
@@ -146,7 +146,7 @@ TEST(RangeFilter, WithBlockedRangesTheNeesStaysWithinItsBounds) {
 TEST(RangeFilter, AStartTwoMetresOffIsDoubtedAndFoundAgain) {
   const TunnelRun run = drive_tunnel(1, {.blocked_share = 0.3, .until_s = 43.0, .start_error_m = 2.0});
   EXPECT_GT(run.max_error_m, 1.9);
-  EXPECT_GE(run.doubts, 1U);
+  EXPECT_GE(run.num_resets, 1U);
   EXPECT_LT(run.end_error_m, 0.15);
 }
 
@@ -163,7 +163,7 @@ struct Standing {
     PoseEstimate start;
     start.stamp = now;
     start.covariance.diagonal() << std_m * std_m, 1.0, 1e-4;
-    filter->start_at(start, Pose3{});
+    filter->set_initial_pose(start, Pose3{});
   }
   RangeOutcome read(double range_m) {
     now += std::chrono::milliseconds(50);
@@ -179,7 +179,7 @@ TEST(RangeFilter, OneRangeIsWeighedAsKalmanSays) {
   EXPECT_NEAR(outcome.innovation_m, -0.05, 1e-9);
   EXPECT_NEAR(outcome.variance_m2, 0.02, 1e-6);  // 0.1^2 of the pose and 0.1^2 of the range
   // x = 0.05 P / (P + R / clear)
-  const double expected = 0.05 * 0.01 / (0.01 + 0.01 / outcome.clear_probability);
+  const double expected = 0.05 * 0.01 / (0.01 + 0.01 / outcome.los_probability);
   const PoseEstimate estimate = standing.filter->estimate(standing.now, Pose3{});
   EXPECT_NEAR(estimate.T_map_body.x, expected, 1e-6);
   EXPECT_NEAR(estimate.T_map_body.y, 0.0, 1e-12);
@@ -188,12 +188,12 @@ TEST(RangeFilter, OneRangeIsWeighedAsKalmanSays) {
 
 TEST(RangeFilter, HalfAMetreTooLongIsBlockedAndHalfAMetreTooShortIsAnOutlier) {
   Standing standing(0.01);
-  EXPECT_EQ(standing.read(10.5).verdict, RangeVerdict::kTooLong);
-  EXPECT_EQ(standing.read(9.5).verdict, RangeVerdict::kTooShort);
-  EXPECT_EQ(standing.read(10.05).verdict, RangeVerdict::kAccepted);
+  EXPECT_EQ(standing.read(10.5).status, RangeStatus::kTooLong);
+  EXPECT_EQ(standing.read(9.5).status, RangeStatus::kTooShort);
+  EXPECT_EQ(standing.read(10.05).status, RangeStatus::kAccepted);
   // One-sided: three sigma too long are refused, as much too short is not.
-  EXPECT_EQ(standing.read(10.32).verdict, RangeVerdict::kTooLong);
-  EXPECT_EQ(standing.read(9.70).verdict, RangeVerdict::kAccepted);
+  EXPECT_EQ(standing.read(10.32).status, RangeStatus::kTooLong);
+  EXPECT_EQ(standing.read(9.70).status, RangeStatus::kAccepted);
 }
 
 TEST(RangeFilter, ExcessDensityIsThatOfTheSum) {
@@ -201,7 +201,7 @@ TEST(RangeFilter, ExcessDensityIsThatOfTheSum) {
   Standing standing(0.01);
   double last = 1.0;
   for (const double range_m : {10.0, 10.1, 10.2, 10.3, 10.4}) {
-    const double probability = standing.read(range_m).clear_probability;
+    const double probability = standing.read(range_m).los_probability;
     EXPECT_LT(probability, last);
     last = probability;
   }
@@ -213,17 +213,17 @@ TEST(RangeFilter, UnusableRangesChangeNothing) {
   const PoseEstimate before = standing.filter->estimate(standing.now, Pose3{});
   RangeFilter& filter = *standing.filter;
   const Time later = standing.now + std::chrono::milliseconds(10);
-  EXPECT_EQ(filter.add({.stamp = later, .anchor = 99, .range_m = 9.9}, Pose3{}).verdict, RangeVerdict::kUnusable);
-  EXPECT_EQ(filter.add({.stamp = standing.now, .anchor = 3, .range_m = 9.9}, Pose3{}).verdict, RangeVerdict::kUnusable) << "heard";
-  EXPECT_EQ(filter.add({.stamp = later, .anchor = 3, .range_m = std::nan("")}, Pose3{}).verdict, RangeVerdict::kUnusable);
-  EXPECT_EQ(filter.add({.stamp = later, .anchor = 3, .range_m = -1.0}, Pose3{}).verdict, RangeVerdict::kUnusable);
+  EXPECT_EQ(filter.add({.stamp = later, .anchor = 99, .range_m = 9.9}, Pose3{}).status, RangeStatus::kUnusable);
+  EXPECT_EQ(filter.add({.stamp = standing.now, .anchor = 3, .range_m = 9.9}, Pose3{}).status, RangeStatus::kUnusable) << "heard";
+  EXPECT_EQ(filter.add({.stamp = later, .anchor = 3, .range_m = std::nan("")}, Pose3{}).status, RangeStatus::kUnusable);
+  EXPECT_EQ(filter.add({.stamp = later, .anchor = 3, .range_m = -1.0}, Pose3{}).status, RangeStatus::kUnusable);
   EXPECT_EQ(filter.estimate(standing.now, Pose3{}).T_map_body.vector(), before.T_map_body.vector());
 }
 
 TEST(RangeFilter, AFrozenReadingIsRefusedFromItsSixthRepeat) {
   Standing standing(0.1);
   for (int repeat = 0; repeat < 5; ++repeat) EXPECT_TRUE(standing.read(10.02).is_accepted());
-  EXPECT_EQ(standing.read(10.02).verdict, RangeVerdict::kUnusable);
+  EXPECT_EQ(standing.read(10.02).status, RangeStatus::kUnusable);
   EXPECT_TRUE(standing.read(10.03).is_accepted());
 }
 
@@ -232,17 +232,17 @@ TEST(RangeFilter, NeverLocksItselfOut) {
   Standing standing(0.01);
   EXPECT_FALSE(standing.read(8.0).is_accepted());
   for (int read = 0; read < 200; ++read) standing.read(8.0 + 0.001 * (read % 7));
-  EXPECT_GE(standing.filter->doubts(), 1U);
+  EXPECT_GE(standing.filter->num_resets(), 1U);
   EXPECT_NEAR(standing.filter->estimate(standing.now, Pose3{}).T_map_body.x, 2.0, 0.05);
 }
 
 TEST(RangeFilter, ALateRangeIsMeasuredFromWhereTheBodyWas) {
   Standing standing(0.1);
   RangeFilter& filter = *standing.filter;
-  const Pose3 now_in_odom = to_spatial({0.5, 0.0, 0.0});
+  const Pose3 now_in_odom = to_pose3({0.5, 0.0, 0.0});
   filter.predict(standing.now + std::chrono::milliseconds(500), now_in_odom, Eigen::Vector3d::Zero());
   const RangeOutcome outcome = filter.add({.stamp = standing.now + std::chrono::milliseconds(200), .anchor = 3, .range_m = 9.8},
-                                          to_spatial({0.2, 0.0, 0.0}));
+                                          to_pose3({0.2, 0.0, 0.0}));
   EXPECT_NEAR(outcome.innovation_m, 0.0, 1e-9);
 }
 

@@ -66,7 +66,7 @@ double distance_to_wall(const Eigen::Vector2d& p) {
 }
 
 double worst_wall_error(const LevelScan& level) {
-  const Pose2 T_odom_level = to_planar(wobbling(level.stamp));
+  const Pose2 T_odom_level = to_pose2(wobbling(level.stamp));
   double worst = 0.0;
   for (const LevelScan::Beam& beam : level.beams) {
     if (beam.is_hit) worst = std::max(worst, distance_to_wall(T_odom_level * beam.end_m.cast<double>()));
@@ -98,7 +98,7 @@ TEST(ScanLeveler, WithoutTheMotionTheSameWallsAreHalfAMetreOff) {
 
 TEST(ScanLeveler, ScansOfAStabilizedLidarAreExactOnceItIsKnown) {
   // What a lidar on a gimbal sees: from where the wobbling body carries it, but level.
-  const auto level_lidar = [](Time stamp) { return std::optional(held_level(wobbling(stamp) * kLidar) * kLidar.inverse()); };
+  const auto level_lidar = [](Time stamp) { return std::optional(remove_tilt(wobbling(stamp) * kLidar) * kLidar.inverse()); };
   const LaserScan scan = scan_room(level_lidar, Time{0}, 3200, -10.0);
   EXPECT_LT(worst_wall_error(*ScanLeveler(kLidar, {.stabilized = true}).level(scan, PoseLookup(wobbling), 0.3)), 0.001);
   EXPECT_GT(worst_wall_error(*ScanLeveler(kLidar, {}).level(scan, PoseLookup(wobbling), 0.3)), 0.001);
@@ -222,7 +222,7 @@ TEST(ScanLeveler, WithTheEstimatorInTheLoopWallsAreAsGoodAsItsPose) {
   const LaserScan scan = scan_room([&](Time t) { return pose_at(truth, t); }, start, 1600, 0.0);
   const auto level = ScanLeveler(kLidar, {}).level(scan, estimator);
   ASSERT_TRUE(level);
-  const Pose2 T_world_level = to_planar(*pose_at(truth, level->stamp));
+  const Pose2 T_world_level = to_pose2(*pose_at(truth, level->stamp));
   for (const auto& beam : level->beams) {
     if (!beam.is_hit) continue;
     EXPECT_LT(distance_to_wall(T_world_level * beam.end_m.cast<double>()), 0.02);

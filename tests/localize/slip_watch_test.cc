@@ -10,7 +10,7 @@ namespace {
 constexpr double kDt = 0.004;
 
 struct Drive {
-  SlipWatch watch;
+  SlipDetector watch;
   int step = 0;
 
   Drive() : watch({.window_s = 1.0, .threshold_mps = 0.2}) {}
@@ -30,21 +30,21 @@ struct Drive {
   }
 };
 
-TEST(SlipWatch, BeltsThatTakeTheBodyAlongAreNoEvidence) {
+TEST(SlipDetector, BeltsThatTakeTheBodyAlongAreNoEvidence) {
   EXPECT_FALSE(Drive().speed_up(1.0, 1.0, 1.5));
   EXPECT_FALSE(Drive().speed_up(1.0, 0.9, 1.5)) << "a tenth is ordinary slip";
 }
 
-TEST(SlipWatch, BeltsAloneAtOneMetrePerSecondSquaredAreNoticedAtTwentyCentimetresPerSecond) {
+TEST(SlipDetector, BeltsAloneAtOneMetrePerSecondSquaredAreNoticedAtTwentyCentimetresPerSecond) {
   const auto evidence = Drive().speed_up(1.0, 0.0, 1.0);
   ASSERT_TRUE(evidence);
   EXPECT_NEAR(evidence->disagreement_mps, 0.2, 0.021);  // a reading each 20 ms
   EXPECT_NEAR(evidence->forward_mps, 0.0, 1e-9);
 }
 
-TEST(SlipWatch, TooGentleForTheWindowGoesUnnoticed) { EXPECT_FALSE(Drive().speed_up(0.15, 0.0, 3.0)); }
+TEST(SlipDetector, TooGentleForTheWindowGoesUnnoticed) { EXPECT_FALSE(Drive().speed_up(0.15, 0.0, 3.0)); }
 
-TEST(SlipWatch, ARoughRideAsksForMore) {
+TEST(SlipDetector, ARoughRideAsksForMore) {
   // Half the square of 2 * 5 m/s2 each 4 ms: 0.028 m/s per step, 0.2 m/s over 0.2 s; four of these on top of 0.2.
   EXPECT_FALSE(Drive().speed_up(1.0, 0.0, 0.4, 5.0));
   EXPECT_TRUE(Drive().speed_up(1.0, 0.0, 0.4));

@@ -12,9 +12,9 @@ namespace {
 constexpr double kSmallAngleTol = 1e-6;  // rad/s; the rigid fit is linear in angles of a milliradian
 
 /// A trunk that sways by `yaw(t)` over four feet that stay; the gyro reads its rate and a bias.
-std::optional<GyroBiasReading> stand(const std::function<double(double)>& yaw, const Eigen::Vector3d& bias,
+std::optional<GyroBiasMeasurement> stand(const std::function<double(double)>& yaw, const Eigen::Vector3d& bias,
                                      const std::function<double(double)>& slip = nullptr) {
-  StandstillBiasMeter meter({.window_s = 1.0, .gyro_noise_radps_per_sqrt_hz = 1e-4, .foot_std_m = 1e-5});
+  StationaryGyroBiasEstimator meter({.window_s = 1.0, .gyro_noise_radps_per_sqrt_hz = 1e-4, .foot_std_m = 1e-5});
   for (int tick = 0; tick <= 250; ++tick) {
     const double t = 0.004 * tick;
     StanceFeet feet;
@@ -31,21 +31,21 @@ std::optional<GyroBiasReading> stand(const std::function<double(double)>& yaw, c
   return std::nullopt;
 }
 
-TEST(StandstillBiasMeter, StillTrunkReadsTheBiasExactly) {
+TEST(StationaryGyroBiasEstimator, StillTrunkReadsTheBiasExactly) {
   const Eigen::Vector3d bias(0.003, -0.002, 0.004);
   const auto reading = stand([](double) { return 0.0; }, bias);
   ASSERT_TRUE(reading);
   EXPECT_LT((reading->bias_radps - bias).norm(), 1e-12);
 }
 
-TEST(StandstillBiasMeter, SwayOfFiveMilliradiansIsNotTakenForBias) {
+TEST(StationaryGyroBiasEstimator, SwayOfFiveMilliradiansIsNotTakenForBias) {
   const Eigen::Vector3d bias(0.0, 0.0, 0.004);
   const auto reading = stand([](double t) { return 0.005 * std::sin(1.5 * t); }, bias);
   ASSERT_TRUE(reading);
   EXPECT_LT((reading->bias_radps - bias).norm(), 20.0 * kSmallAngleTol);
 }
 
-TEST(StandstillBiasMeter, VarianceIsThatOfGyroNoiseAndFeet) {
+TEST(StationaryGyroBiasEstimator, VarianceIsThatOfGyroNoiseAndFeet) {
   const auto reading = stand([](double) { return 0.0; }, Eigen::Vector3d::Zero());
   // Span between the means of the ends: 0.8 s. Yaw: 4 feet at 0.19, 0.13 m have a moment of 4 * 0.053 m2.
   const double gyro = 1e-4 * 1e-4 / 0.8,
@@ -53,12 +53,12 @@ TEST(StandstillBiasMeter, VarianceIsThatOfGyroNoiseAndFeet) {
   EXPECT_NEAR(reading->variance.z(), gyro + feet, 0.02 * (gyro + feet));
 }
 
-TEST(StandstillBiasMeter, FootThatSlipsFiveMillimetresSpoilsTheWindow) {
+TEST(StationaryGyroBiasEstimator, FootThatSlipsFiveMillimetresSpoilsTheWindow) {
   EXPECT_FALSE(
       stand([](double) { return 0.0; }, Eigen::Vector3d::Zero(), [](double t) { return 0.005 * t; }));
 }
 
-TEST(StandstillBiasMeter, TurningRobotIsNotStanding) {
+TEST(StationaryGyroBiasEstimator, TurningRobotIsNotStanding) {
   EXPECT_FALSE(stand([](double t) { return 0.1 * t; }, Eigen::Vector3d::Zero()));
 }
 

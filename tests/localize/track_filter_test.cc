@@ -33,7 +33,7 @@ void drive(TrackFilter& filter, double belts_mps, double duration_s, double slip
   for (int step = 1; step <= std::lround(duration_s / kDt); ++step) {
     filter.predict(kDt, kAtRest);
     if (step % 5 != 0) continue;
-    filter.wander(std::abs(belts_mps) * 0.02, 0.0, slip_std);
+    filter.propagate_slip(std::abs(belts_mps) * 0.02, 0.0, slip_std);
     filter.correct_speed(0.02, belts_mps, filter.motion(), {0.005, 0.005, 0.005});
   }
 }
@@ -64,7 +64,7 @@ TEST(TrackFilter, AStandstillsBiasMovesNeitherPlaceNorHeading) {
   filter.correct_gyro_bias({0.0, 0.0, 0.0008}, Eigen::Vector3d::Constant(1e-10));
   EXPECT_EQ(filter.motion().T_odom_body.position, before.position);
   // Roll and pitch move with the bias: of the second order that is yaw.
-  EXPECT_NEAR(yaw_of(filter.motion().T_odom_body.rotation), yaw_of(before.rotation), 1e-7);
+  EXPECT_NEAR(to_yaw(filter.motion().T_odom_body.rotation), to_yaw(before.rotation), 1e-7);
   EXPECT_NEAR(filter.gyro_bias_radps().z(), 0.0008, 1e-6);
 }
 
@@ -85,10 +85,10 @@ TEST(TrackFilter, WhatTheImuDriftedWithoutGripIsTakenBack) {
   TrackFilter filter(quiet(), kAtRest);
   filter.set_origin();
   drive(filter, 0.2, 20.0, 0.02);
-  filter.lose_grip(0.2, 0.0);
+  filter.start_slip(0.2, 0.0);
   const double lost_m = filter.motion().T_odom_body.position.x();
   for (int step = 0; step < 250; ++step) filter.predict(kDt, kAtRest);
-  filter.regain_grip(0.3, 0.02);
+  filter.end_slip(0.3, 0.02);
   drive(filter, 0.3, 1.0, 0.02);
   EXPECT_NEAR(filter.motion().T_odom_body.position.x() - lost_m, 0.3 + 0.3, 0.03);
 }
@@ -96,9 +96,9 @@ TEST(TrackFilter, WhatTheImuDriftedWithoutGripIsTakenBack) {
 TEST(TrackFilter, CovarianceStaysPositiveThroughDriveAndLossOfGrip) {
   TrackFilter filter(quiet(), kAtRest);
   drive(filter, 0.5, 5.0, 0.02);
-  filter.lose_grip(0.2, 0.1);
+  filter.start_slip(0.2, 0.1);
   filter.predict(kDt, kAtRest);
-  filter.regain_grip(0.5, 0.02);
+  filter.end_slip(0.5, 0.02);
   drive(filter, 0.5, 5.0, 0.02);
   const Eigen::SelfAdjointEigenSolver<TrackFilter::Covariance> solver(filter.covariance());
   EXPECT_GT(solver.eigenvalues().minCoeff(), -1e-12);
@@ -112,8 +112,8 @@ TEST(TrackFilter, TheTurnsCentreFiveCentimetresBehindDragsTheBodySideways) {
     if (step % 5 == 0) filter.correct_speed(0.02, 0.0, filter.motion(), {0.005, 0.005, 0.005});
   }
   // Turning on the spot by 0.5 rad/s, 0.05 m of centre leave 0.025 m/s to the left, and 0.02 m leave 0.01 m/s ahead.
-  EXPECT_NEAR(std::sqrt(filter.lasting_velocity_variance().y()), 0.025, 0.005);
-  EXPECT_NEAR(std::sqrt(filter.lasting_velocity_variance().x()), 0.010, 0.002);
+  EXPECT_NEAR(std::sqrt(filter.systematic_velocity_variance().y()), 0.025, 0.005);
+  EXPECT_NEAR(std::sqrt(filter.systematic_velocity_variance().x()), 0.010, 0.002);
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ void run(TrackedDrive& drive, TrackOdometry& odometry, double until_s, const Out
 
 /// Estimate less truth: x, y, yaw. Odom starts where the robot has stood, which is the world's origin.
 Eigen::Vector3d planar_error(const TrackOdometry& odometry, const TrackedDrive& drive) {
-  const Pose2 estimate = to_planar(odometry.estimate()->T_odom_body), truth = to_planar(drive.T_world_body());
+  const Pose2 estimate = to_pose2(odometry.estimate()->T_odom_body), truth = to_pose2(drive.T_world_body());
   return {estimate.x - truth.x, estimate.y - truth.y, wrap_angle(estimate.yaw - truth.yaw)};
 }
 
@@ -51,9 +51,9 @@ double nees(const TrackOdometry& odometry, const TrackedDrive& drive) {
 }
 
 /// Dead reckoning by the counters alone, as wheeled robots do it: heading by the belts' difference over the gauge.
-Pose2 by_counters_alone(const Pose2& before, const TrackTicks& last, const TrackTicks& now, double metres_per_tick, double gauge_m) {
-  const double left = metres_per_tick * static_cast<double>(now.left - last.left);
-  const double right = metres_per_tick * static_cast<double>(now.right - last.right);
+Pose2 by_counters_alone(const Pose2& before, const TrackTicks& last, const TrackTicks& now, double meters_per_tick, double gauge_m) {
+  const double left = meters_per_tick * static_cast<double>(now.left - last.left);
+  const double right = meters_per_tick * static_cast<double>(now.right - last.right);
   return before * Pose2{0.5 * (left + right), 0.0, (right - left) / gauge_m};
 }
 

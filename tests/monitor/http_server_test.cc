@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 class Echo final : public HttpHandler {
  public:
   std::optional<HttpResponse> refuse(const HttpRequest& head) override {
-    if (head.method == "POST" && head.authorization != "Bearer key") return refusal(401, "no");
+    if (head.method == "POST" && head.authorization != "Bearer key") return error_response(401, "no");
     return std::nullopt;
   }
   HttpResponse answer(const HttpRequest& request) override {
@@ -92,7 +92,7 @@ class Server : public testing::Test {
     const std::lock_guard lock(mutex_);
     return log_;
   }
-  std::optional<HttpAnswer> post(const std::string& body, const std::string& token = "key") {
+  std::optional<HttpClientResponse> post(const std::string& body, const std::string& token = "key") {
     return post_json({.host = "127.0.0.1", .port = std::to_string(port())}, "/", token, body, 5.0);
   }
   bool is_alive() {

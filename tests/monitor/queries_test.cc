@@ -49,10 +49,10 @@ TEST_F(Queries, ResultsOfAnEarlierRunThatComeLateDoNotMoveTheRobot) {
 
 TEST_F(Queries, AStampOfTheFutureDoesNotFreezeARobot) {
   Result ahead = pose_result(1, 9.0), lining_ahead = lining_result(2, 4.0, "run_0");
-  ahead.made_ms = lining_ahead.made_ms = kNoon_ms + 1'000'000'000'000;
+  ahead.created_ms = lining_ahead.created_ms = kNoon_ms + 1'000'000'000'000;
   add({ahead, lining_ahead});
   Result later = result_of("pose", {{"x", 3.0}, {"y", 2.0}, {"yaw", 0.5}}, 4, "run_2"), later_lining = lining_result(5, 12.0, "run_2");
-  later.made_ms = later_lining.made_ms = kNoon_ms + 60'000;
+  later.created_ms = later_lining.created_ms = kNoon_ms + 60'000;
   store_.add({later, later_lining}, kNoon_ms + 60'000);
   const Json robot = Json::parse(robots(database()))["robots"][0];
   EXPECT_EQ(robot["x"], 3.0);
@@ -66,9 +66,9 @@ TEST_F(Queries, AStampOfTheFutureDoesNotFreezeARobot) {
 
 TEST_F(Queries, AStampWithinTheToleranceCountsAsItIs) {
   Result ahead = pose_result(1, 9.0);
-  ahead.made_ms = kNoon_ms + 50'000 + kClockTolerance_ms;
+  ahead.created_ms = kNoon_ms + 50'000 + kClockTolerance_ms;
   add({ahead});
-  EXPECT_EQ(Json::parse(robots(database()))["robots"][0]["made_ms"], ahead.made_ms);
+  EXPECT_EQ(Json::parse(robots(database()))["robots"][0]["made_ms"], ahead.created_ms);
 }
 
 TEST_F(Queries, ChangesGiveWhatIsNewSinceARevision) {
@@ -180,7 +180,7 @@ TEST_F(Queries, ALongLiningComesInPages) {
   std::size_t num_lines = 0, num_pages = 0;
   std::set<int> rings;
   for (Json next = ""; !next.is_null(); ++num_pages) {
-    const std::string text = lining(database(), "street", lining_page_from(next.get<std::string>()));
+    const std::string text = lining(database(), "street", parse_lining_page(next.get<std::string>()));
     EXPECT_LT(text.size(), 1'000'000U);
     const Json page = Json::parse(text);
     for (const Json& scan : page["scans"]) {
@@ -197,7 +197,7 @@ TEST_F(Queries, ALongLiningComesInPages) {
   EXPECT_EQ(cells.size(), 10'000U);
   EXPECT_EQ(num_lines, 900U);
   EXPECT_EQ(rings.size(), 200U);
-  for (const char* wrong : {"x", "1", "1.2.3", "1.2.3.4.5", "-1.0.0.0", "1.2.3.x", "9999999999.0.0.0", "1..2.3"}) EXPECT_THROW(lining_page_from(wrong), InputError) << wrong;
+  for (const char* wrong : {"x", "1", "1.2.3", "1.2.3.4.5", "-1.0.0.0", "1.2.3.x", "9999999999.0.0.0", "1..2.3"}) EXPECT_THROW(parse_lining_page(wrong), InputError) << wrong;
 }
 
 TEST_F(Queries, ALineOfAnOlderScanThatComesLateDoesNotReplaceTheNewer) {

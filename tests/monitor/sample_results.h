@@ -16,7 +16,7 @@ inline constexpr std::int64_t kNoon_ms = 1'795'262'400'000;  // 2026-11-21T12:00
 /// The sequence-th of a run of spot-1's in the street.
 inline monitor::Result result_of(const std::string& kind, const nlohmann::json& data, int sequence, const std::string& run = "run_1", const std::string& robot = "spot-1") {
   return {.id = fmt::format("{}/{}/{}", robot, run, sequence), .robot = robot, .run = run, .world = "street", .sequence = sequence, .time_s = 1.0 * sequence,
-          .made_ms = kNoon_ms + 1000 * sequence, .kind = kind, .data = data.dump()};
+          .created_ms = kNoon_ms + 1000 * sequence, .kind = kind, .data = data.dump()};
 }
 
 inline monitor::Result pose_result(int sequence, double x = 1.0) { return result_of("pose", {{"x", x}, {"y", 2.0}, {"yaw", 0.5}}, sequence); }

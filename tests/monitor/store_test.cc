@@ -23,8 +23,8 @@ TEST(Store, TheSameResultIsKeptOnce) {
   const TemporaryFolder folder;
   Store store(folder.path());
   const std::vector<Result> alarm = {event_result(1, "alarm", "well_1", 640.0)};
-  EXPECT_EQ(store.add(alarm, kNoon_ms), std::vector{Stored::kNew});
-  EXPECT_EQ(store.add(alarm, kNoon_ms + 5), std::vector{Stored::kKnown});
+  EXPECT_EQ(store.add(alarm, kNoon_ms), std::vector{StoreStatus::kNew});
+  EXPECT_EQ(store.add(alarm, kNoon_ms + 5), std::vector{StoreStatus::kExisting});
   EXPECT_EQ(count(store, "results"), 1);
   EXPECT_EQ(count(store, "findings"), 1);
 }
@@ -33,7 +33,7 @@ TEST(Store, AnotherOneOfTheSameIdChangesNothing) {
   const TemporaryFolder folder;
   Store store(folder.path());
   store.add({pose_result(1, 1.0)}, kNoon_ms);
-  EXPECT_EQ(store.add({pose_result(1, 9.0), pose_result(2, 3.0)}, kNoon_ms), (std::vector{Stored::kConflict, Stored::kNew}));
+  EXPECT_EQ(store.add({pose_result(1, 9.0), pose_result(2, 3.0)}, kNoon_ms), (std::vector{StoreStatus::kConflict, StoreStatus::kNew}));
   Statement row = store.database().prepare("SELECT data FROM results WHERE id = 'spot-1/run_1/1'");
   ASSERT_TRUE(row.step());
   EXPECT_EQ(row.text(0), R"({"x":1.0,"y":2.0,"yaw":0.5})");
@@ -47,7 +47,7 @@ TEST(Store, NothingOfABatchIsKeptWhenOneFails) {
   EXPECT_ANY_THROW(store.add({pose_result(1), broken}, kNoon_ms));
   EXPECT_EQ(count(store, "results"), 0);
   EXPECT_EQ(count(store, "poses"), 0);
-  EXPECT_EQ(store.add({pose_result(1)}, kNoon_ms), std::vector{Stored::kNew});
+  EXPECT_EQ(store.add({pose_result(1)}, kNoon_ms), std::vector{StoreStatus::kNew});
 }
 
 TEST(Store, WhatItKeptIsThereWhenItIsOpenedAgain) {
@@ -55,7 +55,7 @@ TEST(Store, WhatItKeptIsThereWhenItIsOpenedAgain) {
   { Store(folder.path()).add({pose_result(1), event_result(2, "alarm", "well_1")}, kNoon_ms); }
   Store again(folder.path());
   EXPECT_EQ(count(again, "results"), 2);
-  EXPECT_EQ(again.add({pose_result(1)}, kNoon_ms), std::vector{Stored::kKnown});
+  EXPECT_EQ(again.add({pose_result(1)}, kNoon_ms), std::vector{StoreStatus::kExisting});
 }
 
 TEST(Store, ItsFilesAreReadableByTheirOwnerOnly) {
@@ -90,9 +90,9 @@ TEST(Store, AnAlarmIsAcknowledgedOnce) {
   const TemporaryFolder folder;
   Store store(folder.path());
   store.add({event_result(1, "alarm", "well_1")}, kNoon_ms);
-  EXPECT_EQ(store.acknowledge(1, "Li", "valve closed", kNoon_ms + 9), Acknowledged::kDone);
-  EXPECT_EQ(store.acknowledge(1, "Wu", "", kNoon_ms + 10), Acknowledged::kAlready);
-  EXPECT_EQ(store.acknowledge(2, "Wu", "", kNoon_ms + 10), Acknowledged::kUnknown);
+  EXPECT_EQ(store.acknowledge(1, "Li", "valve closed", kNoon_ms + 9), AcknowledgeStatus::kDone);
+  EXPECT_EQ(store.acknowledge(1, "Wu", "", kNoon_ms + 10), AcknowledgeStatus::kAlready);
+  EXPECT_EQ(store.acknowledge(2, "Wu", "", kNoon_ms + 10), AcknowledgeStatus::kUnknown);
   Statement row = store.database().prepare("SELECT who, note, acknowledged_ms FROM findings");
   row.step();
   EXPECT_EQ(row.text(0) + ": " + row.text(1), "Li: valve closed");

@@ -12,9 +12,9 @@ namespace {
 
 TEST(Token, IsMadeOnceForItsOwnersEyesAlone) {
   const test::TemporaryFolder folder;
-  const std::string token = token_of_folder(folder.path());
+  const std::string token = load_or_create_token(folder.path());
   EXPECT_EQ(token.size(), 64U);
-  EXPECT_EQ(token_of_folder(folder.path()), token);
+  EXPECT_EQ(load_or_create_token(folder.path()), token);
   struct stat info{};
   ASSERT_EQ(::stat((folder / "token").c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 0777U, 0600U);
@@ -24,7 +24,7 @@ TEST(Token, IsItsOwnersAloneAlthoughAnotherFileWasLeftInItsPlace) {
   const test::TemporaryFolder folder;
   test::write_bytes(folder / "token.part", "");
   ASSERT_EQ(::chmod((folder / "token.part").c_str(), 0644), 0);
-  token_of_folder(folder.path());
+  load_or_create_token(folder.path());
   struct stat info{};
   ASSERT_EQ(::stat((folder / "token").c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 0777U, 0600U);

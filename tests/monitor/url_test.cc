@@ -8,15 +8,15 @@ namespace patrol::monitor::url_test {
 namespace {
 
 TEST(Url, HasHostAndPort) {
-  EXPECT_EQ(url_from("http://tunnel-office:8080/").host, "tunnel-office");
-  EXPECT_EQ(url_from("http://tunnel-office:8080/").port, "8080");
-  EXPECT_EQ(url_from("http://10.0.0.1").port, "80");
-  EXPECT_EQ(url_from("http://[::1]:99").host, "::1");
+  EXPECT_EQ(parse_url("http://tunnel-office:8080/").host, "tunnel-office");
+  EXPECT_EQ(parse_url("http://tunnel-office:8080/").port, "8080");
+  EXPECT_EQ(parse_url("http://10.0.0.1").port, "80");
+  EXPECT_EQ(parse_url("http://[::1]:99").host, "::1");
 }
 
 TEST(Url, AnythingElseIsRefused) {
   for (const char* wrong : {"", "localhost:8080", "https://a", "http://", "http://:80", "http://a:0", "http://a:65536", "http://a:b", "http://a/b", "http://me@a"}) {
-    EXPECT_THROW(url_from(wrong), InputError) << wrong;
+    EXPECT_THROW(parse_url(wrong), InputError) << wrong;
   }
 }
 

@@ -39,7 +39,7 @@ TEST(Projector, AgreesWithMuJoCoWithinAPixelAndOnDepthWithinAMillimetre) {
   const sim::ModelPtr model =
       small_scene(R"(<geom type="sphere" size="0.05" pos="4 0.7 1.1" rgba="1 0 0 1"/>)");
   const View view = look_at({0.0, -0.5, 1.6}, {4.0, 0.0, 0.9});
-  ScenePainter painter(*model, 640, 360);
+  SceneRenderer painter(*model, 640, 360);
   Frame frame;
   std::vector<float> depth;
   painter.draw(view, frame, depth);
@@ -138,9 +138,9 @@ TEST(CameraRigTest, OnBoardIsWhereTheRobotHasItsCamera) {
 }
 
 TEST(CameraKindTest, AnUnknownNameIsRefusedWithTheOnesThatAre) {
-  EXPECT_EQ(camera_kind("top"), CameraKind::kTop);
+  EXPECT_EQ(parse_camera_kind("top"), CameraKind::kTop);
   try {
-    camera_kind("drone");
+    parse_camera_kind("drone");
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "camera = drone: must be one of chase, top, onboard");

@@ -38,7 +38,7 @@ struct Look {
   sim::ModelPtr model;
   sim::DataPtr data;
   Pose3 T;
-  sim::SurfaceImage image;
+  sim::IdealDepthImage image;
   int num_drawn = 0;
 };
 
@@ -191,7 +191,7 @@ TEST(DepthRenderer, TwoInOneThreadTakeTurns) {
                       far_wall = small_scene(R"(<geom type="box" pos="5.1 0 0" size="0.1 5 5"/>)");
   const sim::DataPtr near_data = sim::make_data(*near_wall), far_data = sim::make_data(*far_wall);
   DepthRenderer near_camera(*near_wall, kLens, 0.1, 10.0), far_camera(*far_wall, kLens, 0.1, 10.0);
-  sim::SurfaceImage image;
+  sim::IdealDepthImage image;
   for (int round = 0; round < 3; ++round) {
     near_camera.draw(*near_data, kAhead, image);
     EXPECT_NEAR(image.depth_m[2440], 2.0, 1e-4);

@@ -29,7 +29,7 @@ class GhostTest : public ::testing::Test {
   }
 
   sim::ModelPtr model = small_scene(kRobotBeforeWall);
-  ScenePainter painter{*model, kWidth, kHeight};
+  SceneRenderer painter{*model, kWidth, kHeight};
 };
 
 TEST_F(GhostTest, StandsWhereTheRobotBelievesToBeAndOneSeesTheGroundThroughIt) {

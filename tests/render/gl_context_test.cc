@@ -40,11 +40,11 @@ TEST(GlContext, EglAndOsmesaPaintTheSamePicture) {
 }
 
 TEST(GlContext, KnowsItsRenderersByName) {
-  EXPECT_EQ(renderer_named("auto"), Renderer::kAuto);
-  EXPECT_EQ(renderer_named("egl"), Renderer::kEgl);
-  EXPECT_EQ(renderer_named("osmesa"), Renderer::kOsmesa);
+  EXPECT_EQ(parse_renderer("auto"), Renderer::kAuto);
+  EXPECT_EQ(parse_renderer("egl"), Renderer::kEgl);
+  EXPECT_EQ(parse_renderer("osmesa"), Renderer::kOsmesa);
   try {
-    renderer_named("glx");
+    parse_renderer("glx");
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "renderer = glx: must be one of auto, egl, osmesa");

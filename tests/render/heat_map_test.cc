@@ -7,8 +7,8 @@ namespace {
 
 TEST(HeatMap, LightnessGrowsWithTheFigure) {
   double before = -1.0;
-  for (double share = 0.0; share <= 1.0; share += 0.05) {
-    const Color color = heat_color(share);
+  for (double color_fraction = 0.0; color_fraction <= 1.0; color_fraction += 0.05) {
+    const Color color = heat_color(color_fraction);
     const double lightness = 0.2126 * color.r + 0.7152 * color.g + 0.0722 * color.b;
     EXPECT_GT(lightness, before);
     before = lightness;
@@ -18,7 +18,7 @@ TEST(HeatMap, LightnessGrowsWithTheFigure) {
 TEST(HeatMap, APlaceHasItsColourAndASurfaceIsDark) {
   OccupancyGrid surfaces({.resolution_m = 0.1, .width = 100, .height = 100, .origin_m = {0.0, 0.0}}, kFree);
   for (int row = 0; row < 100; ++row) surfaces.at({80, row}) = kOccupied;
-  const HeatMap map{.surfaces = surfaces, .step_m = 1.0, .places = {{.p_m = {5.0, 5.0}, .share = 1.0}, {.p_m = {7.0, 5.0}, .share = 0.0}}, .title = "", .note = "", .scale = {}};
+  const HeatMap map{.surfaces = surfaces, .step_m = 1.0, .positions = {{.p_m = {5.0, 5.0}, .color_fraction = 1.0}, {.p_m = {7.0, 5.0}, .color_fraction = 0.0}}, .title = "", .note = "", .scale = {}};
   const Frame frame = draw_heat_map(map);
   // The picture begins 1.5 m beside the places: 10 pixels a metre, x from 3.5 m, y down from 6.5 m.
   EXPECT_EQ(frame.at(15, 15), heat_color(1.0));

@@ -24,7 +24,7 @@ constexpr const char* kLamp = R"(<material name="lamp" rgba="0.6 0.6 0.4 1" emis
 Frame draw_at(double brightness_share) {
   const sim::ModelPtr model = small_scene(kCave, kLamp);
   set_light(*model, {.brightness_share = brightness_share});
-  ScenePainter painter(*model, kWidth, kHeight);
+  SceneRenderer painter(*model, kWidth, kHeight);
   Frame frame;
   std::vector<float> depth;
   painter.draw(look_at({-3.0, 0.0, 1.5}, {2.0, 0.0, 1.0}), frame, depth);

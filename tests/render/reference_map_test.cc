@@ -46,8 +46,8 @@ TEST(ReferenceMapTest, ABoxIsItsOutlineWithTheUnknownInside) {
                       [](double x, double y) { return x > 2.01 && x < 3.01 && y > 1.01 && y < 1.51; }),
             0);
   EXPECT_EQ(num_occupied(reference.map), 2u * 40 + 2 * 18);
-  EXPECT_EQ(reference.check.share_agreeing(), 1.0);
-  EXPECT_EQ(reference.check.cells_added, 0u);
+  EXPECT_EQ(reference.check.agreement_ratio(), 1.0);
+  EXPECT_EQ(reference.check.num_added, 0u);
 }
 
 TEST(ReferenceMapTest, SurfaceCellsLieBehindTheSurfaceByLessThanACell) {
@@ -91,7 +91,7 @@ TEST(ReferenceMapTest, AHeightFieldIsCutWhereItsGroundIsHigherThanTheLidar) {
   EXPECT_EQ(num_wrong(reference.map,
                       [](double x, double y) { return std::abs(x + 0.01) < 1.2 && y > -0.99 && y < 1.01; }),
             0);
-  EXPECT_EQ(reference.check.share_agreeing(), 1.0);
+  EXPECT_EQ(reference.check.agreement_ratio(), 1.0);
 }
 
 TEST(ReferenceMapTest, GroundBelowTheLidarIsNoSurface) {
@@ -112,7 +112,7 @@ TEST(ReferenceMapTest, OverlappingThingsAreOne) {
                                (x > 0.51 && x < 1.51 && y > 0.31 && y < 0.71);
                       }),
             0);
-  EXPECT_EQ(reference.check.share_agreeing(), 1.0);
+  EXPECT_EQ(reference.check.agreement_ratio(), 1.0);
 }
 
 TEST(ReferenceMapTest, ShowsWhatTheLidarCanHitAndNothingElse) {
@@ -153,8 +153,8 @@ TEST(ReferenceMapTest, RaysAddWhatIsThinnerThanACell) {
   const auto model = small_scene(R"(<geom type="box" size="0.0025 0.5 0.5" pos="1.0075 0.51 0.5"/>)");
   const ReferenceMap reference = reference_map(*model);
   for (double y = 0.03; y < 1.0; y += 0.025) EXPECT_EQ(value_at(reference.map, 1.0075, y), kOccupied) << y;
-  EXPECT_EQ(reference.check.cells_added, num_occupied(reference.map));
-  EXPECT_EQ(reference.check.share_agreeing(), 0.0);
+  EXPECT_EQ(reference.check.num_added, num_occupied(reference.map));
+  EXPECT_EQ(reference.check.agreement_ratio(), 0.0);
 }
 
 TEST(ReferenceMapTest, IsSeamlessAcrossRenderedTiles) {
@@ -174,8 +174,8 @@ TEST(ReferenceMapTest, RenderAndRaysAgreeOnShapesOfEveryKind) {
                                     <geom type="sphere" size="0.5" pos="2 2 0.2"/>
                                     <geom type="cylinder" size="0.04 1" pos="4 2 1"/>)");
   const ReferenceMapCheck check = reference_map(*model).check;
-  EXPECT_GT(check.cells_checked, 500u);
-  EXPECT_GE(check.share_agreeing(), 0.999);
+  EXPECT_GT(check.num_checked, 500u);
+  EXPECT_GE(check.agreement_ratio(), 0.999);
 }
 
 TEST(ReferenceMapTest, AWorldWithNothingThereIsAnError) {

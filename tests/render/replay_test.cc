@@ -44,7 +44,7 @@ class Replay : public ::testing::Test {
   test::TemporaryFolder folder;
   const std::filesystem::path log = folder / "log.mcap";
   const std::filesystem::path film = folder / "replay.mp4";
-  ReplaySettings settings{.cut = Cut::kPlain, .speed = {.fast = 1.0}, .width = 160, .height = 90, .frames_per_second = 10.0};
+  ReplaySettings settings{.style = FilmStyle::kContinuous, .speed = {.fast = 1.0}, .width = 160, .height = 90, .frames_per_second = 10.0};
 };
 
 TEST_F(Replay, FilmsTheRunAtTheRateThatWasAsked) {
@@ -64,7 +64,7 @@ TEST_F(Replay, FourTimesTheSpeedIsAQuarterOfTheFrames) {
 }
 
 TEST_F(Replay, IsTheSameFilmEachTime) {
-  settings.cut = Cut::kStory;
+  settings.style = FilmStyle::kHighlights;
   settings.speed.fast = 2.0;
   replay(log, model(), {}, settings, folder / "one.mp4");
   replay(log, model(), {}, settings, folder / "again.mp4");
@@ -73,15 +73,15 @@ TEST_F(Replay, IsTheSameFilmEachTime) {
 
 // 1.98 s at 8 would be 0.2475 s of film. The fault's scene reaches over the whole run: 1.98 / 2 = 0.99 s, frames at 0 ... 0.9 s.
 TEST_F(Replay, OfAStoryIsSlowAtItsMomentsAndHasThemForChapters) {
-  settings.cut = Cut::kStory;
+  settings.style = FilmStyle::kHighlights;
   settings.speed = {.fast = 8.0, .slow = 2.0};
-  settings.announced = {{1s, MomentKind::kFault, "Fault: silence of lidar"}};
+  settings.announced = {{1s, HighlightKind::kFault, "Fault: silence of lidar"}};
   const ReplaySummary summary = replay(log, model(), {}, settings, film);
   EXPECT_EQ(summary.num_frames, 10);
   const VideoInfo info = inspect_video(film);
   ASSERT_EQ(info.chapters.size(), 1u);
   EXPECT_EQ(info.chapters[0].title, "Largest position error: 0.050 m; Fault: silence of lidar");
-  settings.cut = Cut::kPlain;
+  settings.style = FilmStyle::kContinuous;
   EXPECT_EQ(replay(log, model(), {}, settings, film).num_frames, 3);
 }
 

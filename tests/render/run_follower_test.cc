@@ -37,7 +37,7 @@ class RunFollowerTest : public ::testing::Test {
  protected:
   sim::ModelPtr model = small_scene(kRobotBeforeWall);
   const Pose2 T_world_map{10.0, 20.0, std::numbers::pi / 2.0};  // map's x is north
-  RunFollower follower{*model, T_world_map};
+  SnapshotBuilder follower{*model, T_world_map};
 };
 
 TEST_F(RunFollowerTest, ErrorsAreThoseOfTheEstimatesOwnInstant) {
@@ -53,7 +53,7 @@ TEST_F(RunFollowerTest, ErrorsAreThoseOfTheEstimatesOwnInstant) {
 
 TEST_F(RunFollowerTest, AddsUpTheWayWalked) {
   for (int i = 0; i <= 100; ++i) follower.add(truth_at(i * 10ms, 0.03 * i, 0.04 * i, 0.0));
-  EXPECT_NEAR(follower.snapshot().travelled_m, 5.0, 1e-9);
+  EXPECT_NEAR(follower.snapshot().traveled_m, 5.0, 1e-9);
 }
 
 TEST_F(RunFollowerTest, PathsLieOnTheGround) {
@@ -125,7 +125,7 @@ TEST(RunFollowerAmong, ActorsDrawsPathsOnTheGroundAndNotOnThem) {
   const auto model =
       small_scene(std::string(kRobotBeforeWall) +
                   R"(<body pos="1 0 0.1" mocap="true"><geom type="box" size="0.3 0.3 0.1"/></body>)");
-  RunFollower follower(*model, {});
+  SnapshotBuilder follower(*model, {});
   follower.add(truth_at(0s, 1.0, 0.0, 0.0));
   EXPECT_THAT(follower.snapshot().true_path.back(), VectorNear(Eigen::Vector3d(1.0, 0.0, 0.01), 1e-4));
   EXPECT_EQ(follower.free_distance_m({0.0, 0.0, 0.1}, Eigen::Vector3d::UnitX(), 2.0), 2.0);
@@ -134,7 +134,7 @@ TEST(RunFollowerAmong, ActorsDrawsPathsOnTheGroundAndNotOnThem) {
 
 TEST(RunFollowerBefore, ABridgeDrawsThePlanOnItsDeckAndNotUnderIt) {
   const auto model = small_scene(std::string(kRobotBeforeWall) + R"(<geom type="box" size="0.5 1 0.05" pos="2 0 0.45"/>)");
-  RunFollower follower(*model, {});
+  SnapshotBuilder follower(*model, {});
   follower.add(truth_at(0s, 0.0, 0.0, 0.0));
   follower.add(Path{.stamp = 0s, .T_map_body = {{0.0, 0.0, 0.0}, {2.0, 0.0, 0.0}}});
   EXPECT_THAT(follower.snapshot().planned_path.back(), VectorNear(Eigen::Vector3d(2.0, 0.0, 0.51), 1e-4));
@@ -142,7 +142,7 @@ TEST(RunFollowerBefore, ABridgeDrawsThePlanOnItsDeckAndNotUnderIt) {
 
 TEST(RunFollowerOf, ARobotThatWalksHasNoCameraAndDoesNotDrive) {
   const auto model = small_scene(kRobotBeforeWall);
-  const RunFollower follower(*model, {});
+  const SnapshotBuilder follower(*model, {});
   EXPECT_FALSE(follower.head_m());
   EXPECT_FALSE(follower.snapshot().is_driving);
 }
@@ -153,14 +153,14 @@ TEST(RunFollowerOf, ATrackedRobotDrivesAndLooksOutOfItsDepthCamera) {
       <site name="lidar" pos="0 0 0.4"/><site name="depth_camera" pos="0.4 0 0.2" euler="0 20 0"/>
       <body name="left_sprocket" pos="0 0.3 0"><joint axis="0 1 0"/><geom size="0.1"/></body>
     </body>)");
-  const RunFollower follower(*model, {});
+  const SnapshotBuilder follower(*model, {});
   EXPECT_TRUE(follower.snapshot().is_driving);
   EXPECT_THAT(follower.head_m().value(), VectorNear(Eigen::Vector3d(0.4, 0.0, 0.2), 1e-9));
 }
 
 TEST(RunFollowerWithout, ALidarIsRefused) {
   const auto model = small_scene(R"(<body name="base_link"><geom size="0.1"/></body>)");
-  EXPECT_THROW(RunFollower(*model, {}), InputError);
+  EXPECT_THROW(SnapshotBuilder(*model, {}), InputError);
 }
 
 }  // namespace

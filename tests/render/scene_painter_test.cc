@@ -34,7 +34,7 @@ class ScenePainterTest : public ::testing::Test {
   }
 
   sim::ModelPtr model = small_scene(kYard);
-  ScenePainter painter{*model, kWidth, kHeight};
+  SceneRenderer painter{*model, kWidth, kHeight};
   std::vector<float> depth;
 };
 
@@ -129,7 +129,7 @@ constexpr const char* kPostBetweenLamps = R"(
 // The lamp over x = -2 m, 4 m up, throws the shadow of the post's upper edge, 1 m up, to x = 0.8 m.
 TEST(ScenePainterUnderLamps, TheNearestOneThrowsShadows) {
   const sim::ModelPtr model = small_scene(kPostBetweenLamps);
-  ScenePainter painter(*model, kWidth, kHeight);
+  SceneRenderer painter(*model, kWidth, kHeight);
   const View above = look_at({0.0, 0.0, 5.0}, {0.0, 0.0, 0.0});
   Frame frame;
   std::vector<float> depth;
@@ -147,7 +147,7 @@ TEST(ScenePainterUnderLamps, TheNearestOneThrowsShadows) {
 // 0.6 of the cutoff of 80 degrees is what a shadow map covers: over 10 m, seen from 4 m up, it is too far.
 TEST(ScenePainterUnderLamps, FarFromAllOfThemThereAreNoShadows) {
   const sim::ModelPtr model = small_scene(kPostBetweenLamps);
-  ScenePainter painter(*model, kWidth, kHeight);
+  SceneRenderer painter(*model, kWidth, kHeight);
   Frame frame;
   std::vector<float> depth;
   const auto num_casting = [&](double x_m) {
@@ -167,7 +167,7 @@ TEST(ScenePainterUnderLamps, ShadowsDoNotPop) {
   <light pos="8 0 4" dir="0 0 -1" cutoff="80" exponent="1" diffuse="0.6 0.6 0.6" castshadow="false"/>
   <geom type="plane" size="30 30 1" rgba="0.5 0.5 0.5 1"/>
   <geom type="box" size="0.1 0.3 0.5" pos="2 0 0.5" rgba="0.5 0.1 0.1 1"/>)");
-  ScenePainter painter(*model, kWidth, kHeight);
+  SceneRenderer painter(*model, kWidth, kHeight);
   Frame frame;
   std::vector<float> depth;
   int last = -1, brightest = 0, darkest = 255;
@@ -195,8 +195,8 @@ TEST(ScenePainterInDust, WhatIsFarTakesTheColourOfTheFogAndWhatIsNearDoesNot) {
   const View view = kFromBehind;
   Frame clear, dusty;
   std::vector<float> depth;
-  ScenePainter(*model, kWidth, kHeight).draw(view, clear, depth);
-  ScenePainter(*model, kWidth, kHeight, 0.2).draw(view, dusty, depth);
+  SceneRenderer(*model, kWidth, kHeight).draw(view, clear, depth);
+  SceneRenderer(*model, kWidth, kHeight, 0.2).draw(view, dusty, depth);
   const Projector projector(view, kWidth, kHeight);
   const auto expect_haze = [&](const Eigen::Vector3d& point_m) {
     const Eigen::Vector2d pixel = projector.project(point_m)->pixel;

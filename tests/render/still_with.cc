@@ -10,7 +10,7 @@ int main(int, char** argv) {
   using namespace patrol::render;
   try {
     const patrol::sim::ModelPtr model = small_scene(kRobotBeforeWall);
-    ScenePainter painter(*model, 320, 180, 0.0, renderer_named(argv[1]));
+    SceneRenderer painter(*model, 320, 180, 0.0, parse_renderer(argv[1]));
     painter.set_state(reference_state(*model));
     Frame frame;
     std::vector<float> depth;

@@ -45,15 +45,15 @@ struct OdometryReport {
 OdometryReport walk(const std::vector<Leg>& legs, std::uint64_t seed, const localize::BodyEstimatorSettings& settings = {}) {
   const test::TemporaryFile world("flat.xml", kFlatWorld);
   const RobotDescription robot = io::load_robot_description(kRobotUrdf);
-  sim::TwinSettings twin_settings;
-  twin_settings.world_xml = world.path();
-  twin_settings.robot_urdf = kRobotUrdf;
-  twin_settings.sensors.lidar.enabled = false;
-  sim::Twin twin(twin_settings, robot, seed);
+  sim::SimulatorSettings simulator_settings;
+  simulator_settings.world_xml = world.path();
+  simulator_settings.robot_urdf = kRobotUrdf;
+  simulator_settings.sensors.lidar.enabled = false;
+  sim::Simulator twin(simulator_settings, robot, seed);
   localize::BodyEstimator estimator(robot, settings);
 
   OdometryReport report;
-  const Pose3 start = to_spatial(to_planar(twin.truth().T_world_body), twin.truth().T_world_body.position.z());
+  const Pose3 start = to_pose3(to_pose2(twin.truth().T_world_body), twin.truth().T_world_body.position.z());
   Pose3 truth_before = start, estimate_before;
   double estimated_way = 0.0;
   int samples = 0;
@@ -73,7 +73,7 @@ OdometryReport walk(const std::vector<Leg>& legs, std::uint64_t seed, const loca
       if (!estimate || estimate->stamp != twin.now()) continue;
       const GroundTruth truth = twin.truth();
       const Pose3 T_odom_body = start.inverse() * truth.T_world_body;
-      const double yaw_error = wrap_angle(yaw_of(estimate->T_odom_body.rotation) - yaw_of(T_odom_body.rotation));
+      const double yaw_error = wrap_angle(to_yaw(estimate->T_odom_body.rotation) - to_yaw(T_odom_body.rotation));
       report.max_yaw_error_rad = std::max(report.max_yaw_error_rad, std::abs(yaw_error));
       const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
       const double cos_tilt = (T_odom_body.rotation.conjugate() * up).dot(estimate->T_odom_body.rotation.conjugate() * up);

@@ -50,7 +50,7 @@ WaterResult sound_and_invert(const Truth& truth, bool has_water, std::uint64_t s
   const sim::Tem tem({}, {.conductivity_spm = truth.rock_spm}, water, seed);
   RandomSequence error(RandomStream(seed, "test/angles"), 0);
   const double yaw_off = 0.3 * kDegree * error.normal(), pitch_off = 0.3 * kDegree * error.normal();
-  std::vector<inspect::AimedSounding> soundings;
+  std::vector<inspect::OrientedSounding> soundings;
   for (const inspect::AntennaPose& pose : inspect::antenna_poses(settings.sounding, antenna)) {
     const Pose3 T_world_tem = antenna.T_body_tem(pose.yaw_rad + yaw_off + 0.2 * kDegree * error.normal(),
                                                  pose.pitch_rad + pitch_off + 0.2 * kDegree * error.normal());
@@ -62,22 +62,22 @@ WaterResult sound_and_invert(const Truth& truth, bool has_water, std::uint64_t s
 }
 
 TEST(WaterAhead, IsLocatedWithinTwoMetresInNineOfTenSeedsAndTheIntervalsHoldTheTruthInEight) {
-  int located = 0, distance_holds = 0, radius_holds = 0;
+  int located = 0, distance_in_interval = 0, radius_in_interval = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const Truth truth = draw_truth({}, seed);
     const WaterResult result = sound_and_invert(truth, true, seed);
     const double error_m = (result.p_map - truth.p_body).norm();
     located += result.is_found && error_m < 2.0 ? 1 : 0;
-    distance_holds += truth.sphere.distance_m >= result.distance_low_m && truth.sphere.distance_m <= result.distance_high_m ? 1 : 0;
-    radius_holds += truth.sphere.radius_m >= result.radius_low_m && truth.sphere.radius_m <= result.radius_high_m ? 1 : 0;
+    distance_in_interval += truth.sphere.distance_m >= result.distance_low_m && truth.sphere.distance_m <= result.distance_high_m ? 1 : 0;
+    radius_in_interval += truth.sphere.radius_m >= result.radius_low_m && truth.sphere.radius_m <= result.radius_high_m ? 1 : 0;
     std::printf("seed %2d: evidence %6.1f, %5.2f m from the truth; distance %5.2f m (%5.2f ... %5.2f), radius %4.2f m (%4.2f ... %4.2f)\n",
                 static_cast<int>(seed), result.evidence, error_m, truth.sphere.distance_m, result.distance_low_m, result.distance_high_m,
                 truth.sphere.radius_m, result.radius_low_m, result.radius_high_m);
   }
   EXPECT_GE(located, 9);
   // Of ten intervals of 95 %, fewer than eight hold in 1 of 90 such tests.
-  EXPECT_GE(distance_holds, 8);
-  EXPECT_GE(radius_holds, 8);
+  EXPECT_GE(distance_in_interval, 8);
+  EXPECT_GE(radius_in_interval, 8);
 }
 
 TEST(WaterAhead, NoneIsReportedInTenSeedsWhereThereIsNone) {

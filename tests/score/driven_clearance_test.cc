@@ -21,7 +21,7 @@ OccupancyGrid map_with(const std::vector<Cell>& occupied) {
 
 Trajectory drive_along_x(double y_m, double yaw, double from_m, double to_m) {
   Trajectory way;
-  for (int i = 0; i <= 100; ++i) way.push_back({from_seconds(0.1 * i), to_spatial(Pose2{from_m + (to_m - from_m) * i / 100.0, y_m, yaw})});
+  for (int i = 0; i <= 100; ++i) way.push_back({from_seconds(0.1 * i), to_pose3(Pose2{from_m + (to_m - from_m) * i / 100.0, y_m, yaw})});
   return way;
 }
 
@@ -43,13 +43,13 @@ TEST(DrivenClearance, IsNoughtWhereItTouchesAndThreeMetresWhereNothingIsNear) {
 }
 
 TEST(DrivenClearance, CountsPlacesATenthOfAMetreApart) {
-  EXPECT_NEAR(static_cast<double>(driven_clearance(drive_along_x(5.0, 0.0, 1.0, 9.0), kOutline, map_with({})).places), 8.0 / 0.16 + 1.0, 1.0);  // steps of 0.08 m: every other
-  EXPECT_EQ(driven_clearance(drive_along_x(5.0, 0.0, 1.0, 1.0), kOutline, map_with({})).places, 1u);  // standing still
+  EXPECT_NEAR(static_cast<double>(driven_clearance(drive_along_x(5.0, 0.0, 1.0, 9.0), kOutline, map_with({})).num_positions), 8.0 / 0.16 + 1.0, 1.0);  // steps of 0.08 m: every other
+  EXPECT_EQ(driven_clearance(drive_along_x(5.0, 0.0, 1.0, 1.0), kOutline, map_with({})).num_positions, 1u);  // standing still
 }
 
 TEST(DrivenClearance, OfNoWayOrNoOutlineIsNothing) {
-  EXPECT_EQ(driven_clearance({}, kOutline, map_with({})).places, 0u);
-  EXPECT_EQ(driven_clearance(drive_along_x(5.0, 0.0, 1.0, 9.0), {}, map_with({})).places, 0u);
+  EXPECT_EQ(driven_clearance({}, kOutline, map_with({})).num_positions, 0u);
+  EXPECT_EQ(driven_clearance(drive_along_x(5.0, 0.0, 1.0, 9.0), {}, map_with({})).num_positions, 0u);
 }
 
 }  // namespace

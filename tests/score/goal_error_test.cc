@@ -20,7 +20,7 @@ Event event(EventKind kind, const char* subject, Time stamp, double value = 0.0)
 
 /// At 1 s at (10, 0), at 2 s 3 cm ahead and 4 cm beside of it and turned by 2 degrees, at 3 s exactly there.
 Trajectory truth() {
-  return {{1s, to_spatial({10.0, 0.0, 0.0})}, {2s, to_spatial({10.03, 0.04, 2.0 * kDegree})}, {3s, to_spatial({10.0, 0.0, 0.0})}};
+  return {{1s, to_pose3({10.0, 0.0, 0.0})}, {2s, to_pose3({10.03, 0.04, 2.0 * kDegree})}, {3s, to_pose3({10.0, 0.0, 0.0})}};
 }
 
 TEST(GoalErrors, AMarkedGoalIsMetWhereTheRobotTrulyStoodAtTheMark) {
@@ -38,7 +38,7 @@ TEST(GoalErrors, AMarkedGoalIsMetWhereTheRobotTrulyStoodAtTheMark) {
 }
 
 TEST(GoalErrors, AGivenGoalIsMetWhereTheMapLiesInTheWorld) {
-  const MarkedGoal goal{.number = 4, .T_map_body = {8.0, 0.0, 0.0}};
+  const SavedGoal goal{.number = 4, .T_map_body = {8.0, 0.0, 0.0}};
   const std::vector<GoalError> errors = goal_errors({event(EventKind::kGoalReached, "goal_4", 1s, 1)}, {goal}, {1.0, 0.0, 0.0}, truth());
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_NEAR(errors[0].arrivals[0].position_error_m, 1.0, 1e-12);

@@ -17,7 +17,7 @@ Event alarm_at(double x, double y, const std::string& station = "box_2") {
           .p_map_target = {x, y}};
 }
 
-const std::vector<TrueLeak> kLeaks = {{"leak_a", {10.0, 0.0}}, {"leak_b", {20.0, 0.0}}};
+const std::vector<LeakGroundTruth> kLeaks = {{"leak_a", {10.0, 0.0}}, {"leak_b", {20.0, 0.0}}};
 
 TEST(InspectionScore, AnAlarmHalfAMetreFromALeakFindsIt) {
   const InspectionScore score = inspection_score({alarm_at(10.3, 0.4)}, {}, kLeaks);

@@ -8,8 +8,8 @@ namespace patrol::score::lining_score_test {
 namespace {
 
 /// Ring 3 has moved by 6 mm all round, ring 5 outwards by 4 mm, ring 7 by 2 mm: neither must it be found, nor is it wrong to.
-TrueLining truth() {
-  return {.design = {.T_route_start = {}, .axis = {{100.0, 0.0}}, .crown_radius_m = 5.5, .crown_centre_m = 2.5, .side_radius_m = 8.0,
+LiningGroundTruth truth() {
+  return {.design = {.T_route_start = {}, .axis = {{100.0, 0.0}}, .crown_radius_m = 5.5, .crown_center_m = 2.5, .side_radius_m = 8.0,
                      .first_ring_m = 0.0, .ring_length_m = 2.0, .rings = 50},
           .invert_m = 0.1,
           .inward_m = [](int ring, double) { return ring == 3 ? 0.006 : ring == 5 ? -0.004 : ring == 7 ? 0.002 : 0.0; }};
@@ -41,7 +41,7 @@ TEST(LiningScore, RingPushedBy6mmAndReportedWith7IsFoundWithAnErrorOf1) {
   EXPECT_EQ(score.false_findings, 0);
   EXPECT_NEAR(score.max_error_m, 0.001, 1e-12);
   EXPECT_NEAR(score.max_peak_error_m, 0.001, 1e-12);
-  EXPECT_NEAR(score.max_place_error_m, 0.5, 1e-12);  // 0.3 aside, 0.4 down
+  EXPECT_NEAR(score.max_position_error_m, 0.5, 1e-12);  // 0.3 aside, 0.4 down
 }
 
 TEST(LiningScore, MovedRingInViewWithoutAFindingIsMissedAndOneOutOfViewIsNot) {

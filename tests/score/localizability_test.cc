@@ -22,9 +22,9 @@ struct Wall {
 };
 
 /// Range and normal along a beam inside a convex room.
-std::optional<SurfaceReturn> look(const std::vector<Wall>& room, const Eigen::Vector2d& p_m, double angle_rad) {
+std::optional<BeamReturn> look(const std::vector<Wall>& room, const Eigen::Vector2d& p_m, double angle_rad) {
   const Eigen::Vector2d direction(std::cos(angle_rad), std::sin(angle_rad));
-  std::optional<SurfaceReturn> nearest;
+  std::optional<BeamReturn> nearest;
   for (const Wall& wall : room) {
     const double approach = wall.normal.dot(direction);
     if (approach >= -1e-9) continue;
@@ -36,8 +36,8 @@ std::optional<SurfaceReturn> look(const std::vector<Wall>& room, const Eigen::Ve
   return nearest;
 }
 
-std::vector<SurfaceReturn> scan(const std::vector<Wall>& room, const Eigen::Vector2d& p_m, double yaw_rad = 0.0, int beams = 360) {
-  std::vector<SurfaceReturn> returns;
+std::vector<BeamReturn> scan(const std::vector<Wall>& room, const Eigen::Vector2d& p_m, double yaw_rad = 0.0, int beams = 360) {
+  std::vector<BeamReturn> returns;
   for (int beam = 0; beam < beams; ++beam) {
     if (const auto hit = look(room, p_m, yaw_rad + 2.0 * kPi * (beam + 0.5) / beams)) returns.push_back(*hit);
   }
@@ -49,14 +49,14 @@ const std::vector<Wall> kCorridor = {{{0.0, 1.0}, -2.0}, {{0.0, -1.0}, -2.0}};
 
 // Each of n beams from the middle of a round room meets its wall head-on, and tells sigma along itself: the sum of cos^2 is n / 2.
 TEST(Localizability, FromTheMiddleOfARoundRoomTheDeviationIsSigmaTimesTheRootOfTwoOverN) {
-  std::vector<SurfaceReturn> returns;
+  std::vector<BeamReturn> returns;
   for (int i = 0; i < 100; ++i) {
     const double angle = 2.0 * kPi * i / 100;
     returns.push_back({.direction = {std::cos(angle), std::sin(angle)}, .range_m = 4.0, .normal = {-std::cos(angle), -std::sin(angle), 0.0}});
   }
   const Localizability result = localizability(returns, {.range_std_m = 0.02});
-  EXPECT_NEAR(result.weak_std_m, 0.02 * std::sqrt(2.0 / 100.0), 1e-12);
-  EXPECT_NEAR(result.strong_std_m, result.weak_std_m, 1e-12);
+  EXPECT_NEAR(result.max_std_m, 0.02 * std::sqrt(2.0 / 100.0), 1e-12);
+  EXPECT_NEAR(result.min_std_m, result.max_std_m, 1e-12);
   EXPECT_NEAR(result.information(2, 2), 0.0, 1e-9);  // round: it does not tell the heading
 }
 
@@ -65,28 +65,28 @@ TEST(Localizability, ACorridorTellsNothingAlongItself) {
     std::vector<Wall> turned = kCorridor;
     for (Wall& wall : turned) wall.normal = Eigen::Rotation2Dd(turn_rad) * wall.normal;
     const Localizability result = localizability(scan(turned, {0.0, 0.0}), {.range_std_m = 0.02});
-    EXPECT_EQ(result.weak_std_m, Localizability::kUnbounded_m);
+    EXPECT_EQ(result.max_std_m, Localizability::kUnbounded_m);
     EXPECT_TRUE(result.is_degenerate());
-    EXPECT_NEAR(std::remainder(result.weak_direction_rad - turn_rad, kPi), 0.0, 1e-6);
-    EXPECT_LT(result.strong_std_m, 0.02);
+    EXPECT_NEAR(std::remainder(result.max_std_direction_rad - turn_rad, kPi), 0.0, 1e-6);
+    EXPECT_LT(result.min_std_m, 0.02);
   }
 }
 
 TEST(Localizability, AnEmptyScanTellsNothing) {
   const Localizability result = localizability({}, {});
-  EXPECT_EQ(result.weak_std_m, Localizability::kUnbounded_m);
-  EXPECT_EQ(result.strong_std_m, Localizability::kUnbounded_m);
+  EXPECT_EQ(result.max_std_m, Localizability::kUnbounded_m);
+  EXPECT_EQ(result.min_std_m, Localizability::kUnbounded_m);
 }
 
 TEST(Localizability, TwiceTheNoiseIsTwiceTheDeviation) {
   const auto returns = scan(kRoom, {0.5, 0.3});
-  EXPECT_NEAR(localizability(returns, {.range_std_m = 0.02}).weak_std_m, 2.0 * localizability(returns, {.range_std_m = 0.01}).weak_std_m, 1e-12);
+  EXPECT_NEAR(localizability(returns, {.range_std_m = 0.02}).max_std_m, 2.0 * localizability(returns, {.range_std_m = 0.01}).max_std_m, 1e-12);
 }
 
 TEST(Localizability, ARobotTurnedInThePlaceIsLocalizedAsWell) {
   const Localizability ahead = localizability(scan(kRoom, {0.5, 0.3}), {.range_std_m = 0.02});
   const Localizability turned = localizability(scan(kRoom, {0.5, 0.3}, 0.7, 3600), {.range_std_m = 0.02 * std::sqrt(10.0)});
-  EXPECT_NEAR(turned.weak_std_m / ahead.weak_std_m, 1.0, 0.02);
+  EXPECT_NEAR(turned.max_std_m / ahead.max_std_m, 1.0, 0.02);
 }
 
 // Grazing beams change much with the pose, and as much with their own direction.
@@ -130,7 +130,7 @@ TEST(Localizability, LeastSquaresOverFourHundredNoisyScansSpreadsAsTheBoundSays)
   constexpr double kRangeStd_m = 0.005;
   const Eigen::Vector3d truth(0.4, 0.2, 0.3);
   const Localizability bound = localizability(scan(kRoom, truth.head<2>(), truth.z(), 180), {.range_std_m = kRangeStd_m});
-  const Eigen::Vector2d weak(std::cos(bound.weak_direction_rad), std::sin(bound.weak_direction_rad));
+  const Eigen::Vector2d weak(std::cos(bound.max_std_direction_rad), std::sin(bound.max_std_direction_rad));
   const Eigen::Vector2d strong(-weak.y(), weak.x());
   double weak_sum = 0.0, strong_sum = 0.0;
   constexpr int kTrials = 400;
@@ -140,36 +140,36 @@ TEST(Localizability, LeastSquaresOverFourHundredNoisyScansSpreadsAsTheBoundSays)
     strong_sum += std::pow(error.dot(strong), 2);
   }
   // The deviation of 400 trials is known to 1 / sqrt(800) = 3.5 %.
-  EXPECT_NEAR(std::sqrt(weak_sum / kTrials) / bound.weak_std_m, 1.0, 0.12);
-  EXPECT_NEAR(std::sqrt(strong_sum / kTrials) / bound.strong_std_m, 1.0, 0.12);
+  EXPECT_NEAR(std::sqrt(weak_sum / kTrials) / bound.max_std_m, 1.0, 0.12);
+  EXPECT_NEAR(std::sqrt(strong_sum / kTrials) / bound.min_std_m, 1.0, 0.12);
 }
 
-LocalizabilitySample sample(double true_std_m, double claimed_std_m, std::optional<double> trust = {}) {
-  LocalizabilitySample sample{.truth = {}, .claimed_std_m = claimed_std_m, .claimed_direction_rad = 0.1, .trust = trust};
-  sample.truth.weak_std_m = true_std_m;
+LocalizabilitySample sample(double true_std_m, double reported_std_m, std::optional<double> trust = {}) {
+  LocalizabilitySample sample{.truth = {}, .reported_std_m = reported_std_m, .reported_direction_rad = 0.1, .trust = trust};
+  sample.truth.max_std_m = true_std_m;
   return sample;
 }
 
 TEST(LocalizabilityScore, AStackThatKnowsItsWeaknessScoresOneAndOneThatHasItBackwardsNothing) {
   const LocalizabilityScore knows = localizability_score({sample(0.01, 0.02, 0.9), sample(0.05, 0.03, 0.8), sample(0.5, 0.3, 0.3), sample(2.0, 0.9, 0.1)});
   EXPECT_DOUBLE_EQ(*knows.covariance_rank_correlation, 1.0);
-  EXPECT_DOUBLE_EQ(*knows.trust_rank_correlation, -1.0);
+  EXPECT_DOUBLE_EQ(*knows.confidence_rank_correlation, -1.0);
   EXPECT_DOUBLE_EQ(*knows.covariance_detection, 1.0);
-  EXPECT_DOUBLE_EQ(*knows.trust_detection, 1.0);
-  EXPECT_DOUBLE_EQ(knows.degenerate_share, 0.5);
-  EXPECT_NEAR(*knows.weak_direction_error_deg, 0.1 * 180.0 / kPi, 1e-12);
+  EXPECT_DOUBLE_EQ(*knows.confidence_detection, 1.0);
+  EXPECT_DOUBLE_EQ(knows.degenerate_fraction, 0.5);
+  EXPECT_NEAR(*knows.max_std_direction_error_deg, 0.1 * 180.0 / kPi, 1e-12);
 
   const LocalizabilityScore backwards = localizability_score({sample(0.01, 0.9), sample(2.0, 0.02)});
   EXPECT_DOUBLE_EQ(*backwards.covariance_rank_correlation, -1.0);
   EXPECT_DOUBLE_EQ(*backwards.covariance_detection, 0.0);
-  EXPECT_FALSE(backwards.trust_detection);
+  EXPECT_FALSE(backwards.confidence_detection);
 }
 
 TEST(LocalizabilityScore, WithoutDegeneratePosesThereIsNothingToDetect) {
   const LocalizabilityScore score = localizability_score({sample(0.01, 0.02, 1.0), sample(0.02, 0.02, 1.0)});
   EXPECT_FALSE(score.covariance_detection);
   EXPECT_FALSE(score.covariance_rank_correlation);  // what is claimed does not vary
-  EXPECT_FALSE(score.weak_direction_error_deg);
+  EXPECT_FALSE(score.max_std_direction_error_deg);
   EXPECT_EQ(localizability_score({}).num_poses, 0u);
 }
 

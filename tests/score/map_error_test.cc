@@ -127,7 +127,7 @@ TEST(MapError, WhatCouldNotBeSeenIsNotMissed) {
   for (int col = 0; col < 100; ++col) half.at({col, 5}) = kOccupied;
   ReferenceMap reference = all_seeable(wall);
   for (int row = 0; row < 10; ++row) {
-    for (int col = 100; col < 200; ++col) reference.is_seeable.at({col, row}) = 0;
+    for (int col = 100; col < 200; ++col) reference.is_observable.at({col, row}) = 0;
   }
   const MapError error = map_error(half, {}, reference);
   EXPECT_EQ(error.coverage, 1.0);

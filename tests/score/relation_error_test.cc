@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 
 constexpr double kTol = 1e-12;
 
-StampedPose pose_at(Time stamp, double x, double y = 0.0, double yaw = 0.0) { return {stamp, to_spatial(Pose2{x, y, yaw})}; }
+StampedPose pose_at(Time stamp, double x, double y = 0.0, double yaw = 0.0) { return {stamp, to_pose3(Pose2{x, y, yaw})}; }
 
 /// Along x at 1 m/s, once a second.
 Trajectory straight() {
@@ -38,7 +38,7 @@ TEST(RelationError, DoesNotChangeWhenTheWholeTrajectoryIsMoved) {
   const std::vector<PoseRelation> relations = {{0s, 3s, {2.0, 0.5, 0.1}}, {2s, 7s, {5.5, -0.5, -0.2}}};
   const Pose2 T_new_old{100.0, -50.0, 2.0};
   Trajectory moved = straight();
-  for (StampedPose& entry : moved) entry.pose = to_spatial(T_new_old * to_planar(entry.pose));
+  for (StampedPose& entry : moved) entry.pose = to_pose3(T_new_old * to_pose2(entry.pose));
   EXPECT_NEAR(relation_error(moved, relations).trans_m.mean, relation_error(straight(), relations).trans_m.mean, kTol);
   EXPECT_NEAR(relation_error(moved, relations).rot_deg.mean, relation_error(straight(), relations).rot_deg.mean, 1e-10);
 }

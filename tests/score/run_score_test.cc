@@ -21,7 +21,7 @@ RunRecord perfect_run() {
   RunRecord record;
   for (int i = 0; i <= 40; ++i) {
     const Pose2 T_world_body{0.1 * std::min(i, 20), 0.1 * std::max(i - 20, 0), 0.0};
-    const StampedPose pose{.stamp = from_seconds(0.1 * i), .pose = to_spatial(T_world_body)};
+    const StampedPose pose{.stamp = from_seconds(0.1 * i), .pose = to_pose3(T_world_body)};
     record.T_world_body.push_back(pose);
     record.T_map_body.push_back(pose);
     record.T_odom_body.push_back(pose);
@@ -33,7 +33,7 @@ RunRecord perfect_run() {
 
 RunReferences wall_references() {
   RunReferences references;
-  references.map = {.cells = wall_map(), .is_seeable = Grid<std::uint8_t>(wall_map().geometry(), 1)};
+  references.map = {.cells = wall_map(), .is_observable = Grid<std::uint8_t>(wall_map().geometry(), 1)};
   references.localizability = [](const Eigen::Vector2d&) { return Localizability{}; };
   return references;
 }
@@ -90,7 +90,7 @@ TEST(EstimateScore, ScoresLocalizationOnAKnownMapAndEachKidnap) {
   references.kidnaps = {1s, 2s};
   const EstimateScore score = estimate_score(record, references);
   ASSERT_TRUE(score.known_map);
-  EXPECT_NEAR(score.known_map->localization.min_trust, 0.9, 1e-12);
+  EXPECT_NEAR(score.known_map->localization.min_confidence, 0.9, 1e-12);
   EXPECT_EQ(score.known_map->kidnaps.size(), 2U);
 }
 

@@ -134,8 +134,8 @@ TEST(StationErrors, TellBeliefTruthAndSurveyApart) {
       .stations = {make_station("box_1", {2.0, 1.0, 0.0}), make_station("box_2", {9.0, 1.0, 0.0})},
       .keep_out_lines = {}, .anchors = {}, .dock = {}};
   // At 1 s the robot stands at (2, 1.1) heading 3 degrees; it believes (2.03, 1.14) and 5 degrees.
-  const Trajectory truth = {{Time(0s), to_spatial({1.0, 1.1, 3.0 * kDegree})},
-                            {Time(2s), to_spatial({3.0, 1.1, 3.0 * kDegree})}};
+  const Trajectory truth = {{Time(0s), to_pose3({1.0, 1.1, 3.0 * kDegree})},
+                            {Time(2s), to_pose3({3.0, 1.1, 3.0 * kDegree})}};
   const Pose2 T_world_map{0.5, 0.0, 0.0};
   const auto errors = station_errors(route, {reached("box_1", 1s, {1.53, 1.14, 5.0 * kDegree})}, T_world_map,
                                      truth, make_walls(), all_seeable(make_walls()));
@@ -144,7 +144,7 @@ TEST(StationErrors, TellBeliefTruthAndSurveyApart) {
   EXPECT_TRUE(errors[0].is_reached);
   EXPECT_NEAR(errors[0].position_error_m, 0.05, 1e-9);
   EXPECT_NEAR(errors[0].heading_error_deg, 2.0, 1e-9);
-  EXPECT_NEAR(errors[0].stand_error_m, 0.1, 1e-9);
+  EXPECT_NEAR(errors[0].goal_position_error_m, 0.1, 1e-9);
   EXPECT_TRUE(errors[0].map_error_m);
   EXPECT_EQ(errors[1].name, "box_2");
   EXPECT_FALSE(errors[1].is_reached);

@@ -82,10 +82,10 @@ TEST(RankCorrelation, IsOneForAnyGrowingRelationAndMinusOneForAFallingOne) {
 TEST(RankCorrelation, TiesShareTheirMeanRank) { EXPECT_NEAR(*rank_correlation({10, 20, 20, 30}, {1, 2, 3, 4}), 4.5 / std::sqrt(22.5), 1e-12); }
 
 TEST(ChanceOfOrder, CountsPairsAndTiesHalf) {
-  EXPECT_DOUBLE_EQ(*chance_of_order({1, 2, 3, 4}, {false, false, true, true}), 1.0);
-  EXPECT_DOUBLE_EQ(*chance_of_order({1, 3, 2, 4}, {false, false, true, true}), 0.75);
-  EXPECT_DOUBLE_EQ(*chance_of_order({7, 7}, {false, true}), 0.5);
-  EXPECT_FALSE(chance_of_order({1, 2}, {true, true}));
+  EXPECT_DOUBLE_EQ(*roc_auc({1, 2, 3, 4}, {false, false, true, true}), 1.0);
+  EXPECT_DOUBLE_EQ(*roc_auc({1, 3, 2, 4}, {false, false, true, true}), 0.75);
+  EXPECT_DOUBLE_EQ(*roc_auc({7, 7}, {false, true}), 0.5);
+  EXPECT_FALSE(roc_auc({1, 2}, {true, true}));
 }
 
 }  // namespace

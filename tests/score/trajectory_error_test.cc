@@ -24,7 +24,7 @@ Trajectory make_trajectory(const std::vector<Pose2>& poses,
   Trajectory trajectory;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const int index = static_cast<int>(i);
-    trajectory.push_back({index * 100ms, to_spatial(change(index, poses[i]), 0.3)});
+    trajectory.push_back({index * 100ms, to_pose3(change(index, poses[i]), 0.3)});
   }
   return trajectory;
 }
@@ -111,8 +111,8 @@ TEST(TrajectoryError, AWalkOfLessThanAMetreHasNoRelativeError) {
 TEST(MatchPoses, InterpolatesTheTruthAndLeavesOutWhatLiesOutside) {
   const Trajectory truth = make_trajectory(straight(10));
   const Trajectory estimate = {
-      {Time(-1ms), {}}, {Time(150ms), to_spatial({1.0, 0.0, 0.0})}, {Time(1001ms), {}}};
-  const auto matches = match_poses(estimate, {0.0, 0.0, std::numbers::pi / 2.0}, truth);
+      {Time(-1ms), {}}, {Time(150ms), to_pose3({1.0, 0.0, 0.0})}, {Time(1001ms), {}}};
+  const auto matches = pair_poses(estimate, {0.0, 0.0, std::numbers::pi / 2.0}, truth);
   ASSERT_EQ(matches.size(), 1U);
   EXPECT_THAT(matches[0].T_world_truth, Pose2Near((Pose2{2.375, 3.0, 0.0}), kExactTol, kExactTol));
   EXPECT_THAT(matches[0].T_world_estimate,
@@ -127,7 +127,7 @@ TEST(JoinAtStart, MakesTheFirstCommonInstantExactAndFitsNothingAfterwards) {
     return T_map_world * Pose2{p.x, p.y + 0.001 * (i - 10), p.yaw};
   });
   estimate.erase(estimate.begin(), estimate.begin() + 10);
-  const Pose2 T_world_map = join_at_start(estimate, truth);
+  const Pose2 T_world_map = align_at_start(estimate, truth);
   EXPECT_THAT(T_world_map, Pose2Near(T_map_world.inverse(), kExactTol, kExactTol));
   EXPECT_NEAR(trajectory_error(estimate, T_world_map, truth).ate_max_m, 0.071, kExactTol);
 }
@@ -136,7 +136,7 @@ TEST(TrajectoryError, WithoutACommonInstantIsRefused) {
   const Trajectory walk = make_trajectory(straight(4));
   const Trajectory later = {{Time(10s), {}}, {Time(11s), {}}};
   EXPECT_THROW(trajectory_error(later, {}, walk), InputError);
-  EXPECT_THROW(join_at_start(later, walk), InputError);
+  EXPECT_THROW(align_at_start(later, walk), InputError);
   EXPECT_THROW(trajectory_error({}, {}, walk), InputError);
 }
 
@@ -165,9 +165,9 @@ TEST(AlignedError, DoesNotFitTheScale) {
   for (const Eigen::Vector2d& corner :
        {Eigen::Vector2d(1, 1), Eigen::Vector2d(-1, 1), Eigen::Vector2d(-1, -1), Eigen::Vector2d(1, -1)}) {
     const Time stamp = i++ * 1s;
-    square.push_back({stamp, to_spatial({corner.x(), corner.y(), 0.0})});
+    square.push_back({stamp, to_pose3({corner.x(), corner.y(), 0.0})});
     const Eigen::Vector2d out = corner * (1.0 + 0.01 / std::sqrt(2.0));
-    larger.push_back({stamp, to_spatial({out.x(), out.y(), 0.0})});
+    larger.push_back({stamp, to_pose3({out.x(), out.y(), 0.0})});
   }
   const AlignedError error = aligned_error(larger, square);
   EXPECT_NEAR(error.rmse_m, 0.01, kExactTol);

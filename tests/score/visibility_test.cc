@@ -27,7 +27,7 @@ OccupancyGrid draw(const std::vector<std::string>& rows) {
 
 /// What is seeable, drawn the same way; '?' for the rest.
 std::vector<std::string> drawing_of(const ReferenceMap& reference) {
-  const OccupancyGrid part = seeable_part(reference);
+  const OccupancyGrid part = observable_part(reference);
   std::vector<std::string> rows;
   for (int row = part.geometry().height - 1; row >= 0; --row) {
     rows.emplace_back();
@@ -42,7 +42,7 @@ std::vector<std::string> drawing_of(const ReferenceMap& reference) {
 Trajectory at(const std::vector<Eigen::Vector2d>& places) {
   Trajectory trajectory;
   for (const Eigen::Vector2d& p : places)
-    trajectory.push_back({static_cast<int>(trajectory.size()) * 1s, to_spatial({p.x(), p.y(), 0.0})});
+    trajectory.push_back({static_cast<int>(trajectory.size()) * 1s, to_pose3({p.x(), p.y(), 0.0})});
   return trajectory;
 }
 
@@ -52,38 +52,38 @@ const std::vector<std::string> kRoom = {"###########", "#....#....#", "#....#...
                                         "#....#....#", "#.........#", "###########"};
 
 TEST(MarkSeeable, AnInnerWallHidesWhatIsBehindIt) {
-  const ReferenceMap seen = mark_seeable(draw(kRoom), at({{2.5, 3.5}}), 30.0);
+  const ReferenceMap seen = mark_observable(draw(kRoom), at({{2.5, 3.5}}), 30.0);
   EXPECT_EQ(drawing_of(seen), (std::vector<std::string>{"#######????", "#....#?????", "#....#?????",
                                                         "#....#?????", "#......????", "########???"}));
 }
 
 TEST(MarkSeeable, TwoPlacesSeeWhatEitherSees) {
-  const ReferenceMap seen = mark_seeable(draw(kRoom), at({{2.5, 3.5}, {8.5, 3.5}}), 30.0);
+  const ReferenceMap seen = mark_observable(draw(kRoom), at({{2.5, 3.5}, {8.5, 3.5}}), 30.0);
   for (const std::string& row : drawing_of(seen)) EXPECT_EQ(row.find('?'), std::string::npos) << row;
 }
 
 TEST(MarkSeeable, NothingBeyondTheRangeIsSeen) {
   const std::vector<std::string> corridor = {"####################", "#..................#",
                                              "####################"};
-  const ReferenceMap seen = mark_seeable(draw(corridor), at({{1.5, 1.5}}), 5.0);
-  EXPECT_EQ(seen.is_seeable.at({6, 1}), 1);  // entered after 4.5 m
-  EXPECT_EQ(seen.is_seeable.at({7, 1}), 0);
-  EXPECT_EQ(seen.is_seeable.at({19, 1}), 0);
+  const ReferenceMap seen = mark_observable(draw(corridor), at({{1.5, 1.5}}), 5.0);
+  EXPECT_EQ(seen.is_observable.at({6, 1}), 1);  // entered after 4.5 m
+  EXPECT_EQ(seen.is_observable.at({7, 1}), 0);
+  EXPECT_EQ(seen.is_observable.at({19, 1}), 0);
 }
 
 TEST(MarkSeeable, TheInsideOfSolidThingsIsNotSeen) {
   const std::vector<std::string> block = {".......", ".#####.", ".#   #.", ".#####.", "......."};
-  const ReferenceMap seen = mark_seeable(draw(block), at({{0.5, 2.5}}), 30.0);
-  EXPECT_EQ(seen.is_seeable.at({3, 2}), 0);
-  EXPECT_EQ(seen.is_seeable.at({1, 2}), 1);
-  EXPECT_EQ(seen.is_seeable.at({5, 2}), 0) << "the far side";
+  const ReferenceMap seen = mark_observable(draw(block), at({{0.5, 2.5}}), 30.0);
+  EXPECT_EQ(seen.is_observable.at({3, 2}), 0);
+  EXPECT_EQ(seen.is_observable.at({1, 2}), 1);
+  EXPECT_EQ(seen.is_observable.at({5, 2}), 0) << "the far side";
 }
 
 TEST(MarkSeeable, FromInsideASolidThingOrOutsideTheMapNothingIsSeen) {
   for (const Eigen::Vector2d& place : {Eigen::Vector2d(3.5, 2.5), Eigen::Vector2d(-5.0, 2.5)}) {
     const std::vector<std::string> block = {".......", ".#####.", ".#   #.", ".#####.", "......."};
-    const ReferenceMap seen = mark_seeable(draw(block), at({place}), 30.0);
-    for (const std::uint8_t is_seen : seen.is_seeable.values()) ASSERT_EQ(is_seen, 0);
+    const ReferenceMap seen = mark_observable(draw(block), at({place}), 30.0);
+    for (const std::uint8_t is_seen : seen.is_observable.values()) ASSERT_EQ(is_seen, 0);
   }
 }
 
@@ -91,10 +91,10 @@ TEST(MarkSeeable, PlacesNearerThanTheSpacingAreLeftOut) {
   // From the second place one could look behind the wall, but it lies only 0.4 m after the first.
   const std::vector<std::string> room = {"#########", "#...#...#", "#...#...#", "#.......#", "#########"};
   const Trajectory walk = at({{3.9, 1.5}, {4.3, 1.5}});
-  EXPECT_EQ(drawing_of(mark_seeable(draw(room), walk, 30.0, 0.5)),
-            drawing_of(mark_seeable(draw(room), at({{3.9, 1.5}}), 30.0)));
-  EXPECT_NE(drawing_of(mark_seeable(draw(room), walk, 30.0, 0.3)),
-            drawing_of(mark_seeable(draw(room), at({{3.9, 1.5}}), 30.0)));
+  EXPECT_EQ(drawing_of(mark_observable(draw(room), walk, 30.0, 0.5)),
+            drawing_of(mark_observable(draw(room), at({{3.9, 1.5}}), 30.0)));
+  EXPECT_NE(drawing_of(mark_observable(draw(room), walk, 30.0, 0.3)),
+            drawing_of(mark_observable(draw(room), at({{3.9, 1.5}}), 30.0)));
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr Time kTick = std::chrono::milliseconds(2);
-const RobotInView kFarAway{.p_world = {1000.0, 1000.0}};
+const ObservedRobot kFarAway{.p_world = {1000.0, 1000.0}};
 
 /// A walker with legs and a cart, on the ground and on a pavement 0.1 m high beyond x = 10 m.
 const std::string kTraffic = R"(<geom type="plane" size="50 50 1"/>
@@ -52,7 +52,7 @@ ActorSettings walker(std::vector<WaypointSettings> path) {
 
 /// Calls `look` at every tick of `seconds`. The robot keeps its velocity.
 void run(Traffic& traffic, const ActorSettings& settings, double seconds,
-         const std::function<void(double)>& look, RobotInView robot = kFarAway) {
+         const std::function<void(double)>& look, ObservedRobot robot = kFarAway) {
   Actors actors(*traffic.model, {settings});
   for (Time now{}; now <= from_seconds(seconds); now += kTick) {
     actors.advance(now, robot, *traffic.data);
@@ -187,7 +187,7 @@ TEST(Actors, ARobotThatCrossesAtOneMetrePerSecondIsNeverTouched) {
   for (double from_m = -10.0; from_m <= 1.0; from_m += 0.25) {
     for (const double side : {-1.0, 1.0}) {
       Traffic traffic;
-      RobotInView robot{.p_world = {4.0, side * from_m}, .v_world_mps = {0.0, side}, .radius_m = 0.6};
+      ObservedRobot robot{.p_world = {4.0, side * from_m}, .v_world_mps = {0.0, side}, .radius_m = 0.6};
       const Eigen::Vector2d start = robot.p_world, velocity = robot.v_world_mps;
       double nearest_m = 100.0;
       run(traffic, walker({{.x_m = 0, .y_m = 0}, {.x_m = 30, .y_m = 0}}), 14.0,

@@ -16,8 +16,8 @@
 namespace patrol::sim::antenna_mount_test {
 namespace {
 
-TwinSettings settings_for(const test::TemporaryFile& world) {
-  TwinSettings settings;
+SimulatorSettings settings_for(const test::TemporaryFile& world) {
+  SimulatorSettings settings;
   settings.world_xml = world.path();
   settings.robot_urdf = kTrackedUrdf;
   settings.sensors.lidar.enabled = settings.sensors.tdlas.enabled = settings.sensors.gnss.enabled = false;
@@ -50,7 +50,7 @@ class AntennaOnTheRobot : public testing::Test {
   }
 
   test::TemporaryFile file_;
-  Twin twin_;
+  Simulator twin_;
   std::vector<AntennaState> states_;
   std::optional<TemSounding> sounding_;
   double fastest_radps_ = 0.0;

@@ -21,7 +21,7 @@ class Painted : public DepthImager {
  public:
   using Depth = std::function<double(int u, int v)>;
   explicit Painted(Depth depth_m, double reflectivity) : depth_m_(std::move(depth_m)), reflectivity_(reflectivity) {}
-  void draw(const mjData&, const Pose3&, SurfaceImage& image) override {
+  void draw(const mjData&, const Pose3&, IdealDepthImage& image) override {
     image.depth_m.clear();
     for (int v = 0; v < kHeight; ++v) {
       for (int u = 0; u < kWidth; ++u) image.depth_m.push_back(static_cast<float>(depth_m_(u, v)));
@@ -139,7 +139,7 @@ TEST(DepthCamera, HalfThePixelsAlongEdgesAreLostAndNoneOfASlope) {
 /// The ground `height_m` below a level camera, with nothing above the horizon.
 Painted::Depth ground(double height_m) {
   return [=](int, int v) {
-    const double down = (v - 29.5) / lens_of({}).focal_px;
+    const double down = (v - 29.5) / make_lens({}).focal_px;
     return down > 0.0 ? height_m / down : std::numeric_limits<double>::infinity();
   };
 }

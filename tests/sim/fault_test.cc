@@ -31,7 +31,7 @@ class HeldRobot {
   /// Everything that arrives within `seconds`, by the message's type.
   std::map<std::size_t, std::vector<Arrival>> run(const SensorSuiteSettings& settings,
                                                   const std::vector<FaultSettings>& faults, double seconds,
-                                                  std::vector<FaultReport>* reports = nullptr) {
+                                                  std::vector<FaultStatus>* reports = nullptr) {
     SensorSuite suite(settings, io::load_robot_description(kRobotUrdf), robot_.model(), robot_.view(),
                       GasPlume(Eigen::Vector3d::Zero(), 0.0, {}), faults, 1);
     std::map<std::size_t, std::vector<Arrival>> arrivals;
@@ -110,7 +110,7 @@ TEST(SensorSuite, LatencyAloneChangesNoReading) {
 
 TEST(Fault, SilenceOfHalfASecondTakes125ImuMessagesAndNoOther) {
   HeldRobot robot;
-  std::vector<FaultReport> reports;
+  std::vector<FaultStatus> reports;
   auto arrivals = robot.run({}, {fault("imu", "silence", 0.5, 0.5)}, 1.499, &reports);
   EXPECT_EQ(arrivals[SensorMessage(Imu{}).index()].size(), 375u - 125u);
   EXPECT_EQ(arrivals[SensorMessage(JointState{}).index()].size(), 375u);
@@ -118,7 +118,7 @@ TEST(Fault, SilenceOfHalfASecondTakes125ImuMessagesAndNoOther) {
     EXPECT_FALSE(arrival.stamp() >= from_seconds(0.5) && arrival.stamp() < from_seconds(1.0));
   }
   ASSERT_EQ(reports.size(), 1u);
-  EXPECT_TRUE(reports[0].is_executed);
+  EXPECT_TRUE(reports[0].was_triggered);
 }
 
 TEST(Fault, AFrozenImuRepeatsItsLastReadingUnderNewStamps) {
@@ -190,20 +190,20 @@ TEST(Fault, ALidarsDriftMovesItsRangesAndGnssLosesItsHeight) {
 }
 
 TEST(Fault, OneThatNeverComesIsReportedAsNotExecuted) {
-  std::vector<FaultReport> reports;
+  std::vector<FaultStatus> reports;
   HeldRobot().run({}, {fault("imu", "silence", 100.0, 1.0), fault("lidar3d", "silence", 0.0, 1.0)}, 0.5,
                   &reports);
   ASSERT_EQ(reports.size(), 2u);
-  EXPECT_FALSE(reports[0].is_executed);
-  EXPECT_FALSE(reports[1].is_executed);  // that lidar is switched off
+  EXPECT_FALSE(reports[0].was_triggered);
+  EXPECT_FALSE(reports[1].was_triggered);  // that lidar is switched off
 }
 
 TEST(Fault, AFreezeBeforeTheFirstReadingHasNothingToRepeatAndIsNotExecuted) {
   SensorSuiteSettings settings;
   settings.gnss.rate_hz = 1.0;
-  std::vector<FaultReport> reports;
+  std::vector<FaultStatus> reports;
   HeldRobot().run(settings, {fault("gnss", "freeze", 0.0, 0.5)}, 0.6, &reports);
-  EXPECT_FALSE(reports[0].is_executed);
+  EXPECT_FALSE(reports[0].was_triggered);
 }
 
 }  // namespace

@@ -19,11 +19,11 @@ const std::string kTunnelXml = PATROL_SOURCE_DIR "/worlds/tunnel/tunnel.xml";
 
 TunnelLining tunnel_lining() { return *io::load_route(PATROL_SOURCE_DIR "/worlds/tunnel/site.json").route.lining; }
 
-LiningMoveSettings convergence(int first, int last, double mm) {
+LiningDeformationSettings convergence(int first, int last, double mm) {
   return {.kind = "convergence", .first_ring = first, .last_ring = last, .inward_mm = mm};
 }
-LiningMoveSettings settlement(int ring, double mm) { return {.kind = "settlement", .first_ring = ring, .last_ring = ring, .inward_mm = mm}; }
-LiningMoveSettings bulge(int ring, double mm, double clock_deg, double half_width_deg) {
+LiningDeformationSettings settlement(int ring, double mm) { return {.kind = "settlement", .first_ring = ring, .last_ring = ring, .inward_mm = mm}; }
+LiningDeformationSettings bulge(int ring, double mm, double clock_deg, double half_width_deg) {
   return {.kind = "bulge", .first_ring = ring, .last_ring = ring, .inward_mm = mm, .clock_deg = clock_deg, .half_width_deg = half_width_deg};
 }
 
@@ -45,7 +45,7 @@ TEST(LiningMoves, ASettlementOf12MillimetresIs12InwardsAtTheCrown6At2OClockAndNo
 
 // cos^2 of half way to the edge is a half.
 TEST(LiningMoves, ABulgeOf6MillimetresHas3HalfWayToItsEdgeAcrossTheCrownToo) {
-  const std::vector<LiningMoveSettings> moves = {bulge(20, 6.0, 350.0, 40.0)};
+  const std::vector<LiningDeformationSettings> moves = {bulge(20, 6.0, 350.0, 40.0)};
   EXPECT_DOUBLE_EQ(inward_m(moves, 20, 350.0), 0.006);
   EXPECT_NEAR(inward_m(moves, 20, 10.0), 0.003, 1e-12);
   EXPECT_NEAR(inward_m(moves, 20, 330.0), 0.003, 1e-12);
@@ -65,7 +65,7 @@ class MovedTunnel : public testing::Test {
     moves_ = {convergence(5, 5, 12.0), settlement(20, 6.0), bulge(35, 12.0, 60.0, 25.0), convergence(44, 45, -3.0), bulge(46, 6.0, 270.0, 30.0)};
     before_ = load_spec(kTunnelXml), after_ = load_spec(kTunnelXml);
     before_model_ = compile(*before_, kTunnelXml), after_model_ = compile(*after_, kTunnelXml);
-    move_lining(moves_, *lining_, *after_model_);
+    deform_lining(moves_, *lining_, *after_model_);
     for (const ModelPtr* model : {&before_model_, &after_model_}) lining_id_ = mj_name2id(model->get(), mjOBJ_GEOM, "lining");
     before_scene_ = new LidarScene(*before_model_), after_scene_ = new LidarScene(*after_model_);
   }
@@ -85,7 +85,7 @@ class MovedTunnel : public testing::Test {
     const double angle = to_rad(clock_deg), from_m = lining_->radius_at(clock_deg) - kBefore_m;
     const auto at = [&](double radius_m) {
       const Eigen::Vector2d p = lining_->point_at(chainage_m, -radius_m * std::sin(angle));
-      return Eigen::Vector3d(p.x(), p.y(), lining_->crown_centre_m + radius_m * std::cos(angle));
+      return Eigen::Vector3d(p.x(), p.y(), lining_->crown_center_m + radius_m * std::cos(angle));
     };
     const Eigen::Vector3d direction = (at(from_m + 1.0) - at(from_m)).normalized();
     const auto hit = scene.cast(at(from_m), direction, 0.1, kRayScenery);
@@ -97,7 +97,7 @@ class MovedTunnel : public testing::Test {
   }
 
   static inline TunnelLining* lining_;
-  static inline std::vector<LiningMoveSettings> moves_;
+  static inline std::vector<LiningDeformationSettings> moves_;
   static inline SpecPtr before_, after_;
   static inline ModelPtr before_model_, after_model_;
   static inline LidarScene *before_scene_, *after_scene_;
@@ -136,11 +136,11 @@ TEST_F(MovedTunnel, TheIntradosIsWithinAMillimetreOfTheDesign) {
   }
 }
 
-std::string refusal(const LiningMoveSettings& move, const std::optional<TunnelLining>& design, const std::string& world = "<mujoco/>") {
+std::string error_response(const LiningDeformationSettings& move, const std::optional<TunnelLining>& design, const std::string& world = "<mujoco/>") {
   const SpecPtr spec = parse_spec(world);
   const ModelPtr model = compile(*spec, "world");
   try {
-    move_lining({convergence(1, 1, 1.0), move}, design, *model);
+    deform_lining({convergence(1, 1, 1.0), move}, design, *model);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -148,17 +148,17 @@ std::string refusal(const LiningMoveSettings& move, const std::optional<TunnelLi
 }
 
 TEST(LiningMoves, WhatCannotBeMovedIsRefusedByItsPlaceInTheList) {
-  EXPECT_EQ(refusal(convergence(2, 51, 3.0), tunnel_lining()), "lining.1.last_ring = 51: the lining has 50 rings");
-  EXPECT_EQ(refusal(convergence(7, 5, 3.0), tunnel_lining()), "lining.1.last_ring = 5: must be at least first_ring, 7");
-  EXPECT_EQ(refusal(bulge(2, 3.0, 0.0, 0.0), tunnel_lining()), "lining.1.half_width_deg = 0: must lie in 1 ... 180");
-  EXPECT_EQ(refusal(convergence(2, 2, 3.0), std::nullopt), "lining.0.first_ring = 1: the mission's file describes no lining");
-  EXPECT_EQ(refusal(convergence(2, 2, 3.0), tunnel_lining()), "lining.0.first_ring: the world has no mesh named lining that could be moved");
+  EXPECT_EQ(error_response(convergence(2, 51, 3.0), tunnel_lining()), "lining.1.last_ring = 51: the lining has 50 rings");
+  EXPECT_EQ(error_response(convergence(7, 5, 3.0), tunnel_lining()), "lining.1.last_ring = 5: must be at least first_ring, 7");
+  EXPECT_EQ(error_response(bulge(2, 3.0, 0.0, 0.0), tunnel_lining()), "lining.1.half_width_deg = 0: must lie in 1 ... 180");
+  EXPECT_EQ(error_response(convergence(2, 2, 3.0), std::nullopt), "lining.0.first_ring = 1: the mission's file describes no lining");
+  EXPECT_EQ(error_response(convergence(2, 2, 3.0), tunnel_lining()), "lining.0.first_ring: the world has no mesh named lining that could be moved");
 }
 
 TEST(LiningMoves, WithoutMovesAnyWorldIsGood) {
   const SpecPtr spec = parse_spec("<mujoco/>");
   const ModelPtr model = compile(*spec, "world");
-  EXPECT_NO_THROW(move_lining({}, std::nullopt, *model));
+  EXPECT_NO_THROW(deform_lining({}, std::nullopt, *model));
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ std::string read(const std::string& path) {
 
 /// What the call throws, as text.
 template <typename Call>
-std::string refusal(Call call) {
+std::string error_response(Call call) {
   try {
     call();
   } catch (const InputError& error) {
@@ -182,13 +182,13 @@ TEST(ModelAssembly, TheTrackedRobotStartsAHandsBreadthAboveRubbleAndAboveAKerbUn
 TEST(ModelAssembly, PropsAreThereToBeTouchedAndSeen) {
   const test::TemporaryFile file("world.xml", make_flat_world());
   const AssembledModel model =
-      assemble_model(file.path(), kTrackedUrdf, {}, {PropSettings{.kind = "kerb", .x_m = 2.0, .y_m = 0.0, .turn_deg = 0.0}});
+      assemble_model(file.path(), kTrackedUrdf, {}, {StaticObstacleSettings{.kind = "kerb", .x_m = 2.0, .y_m = 0.0, .turn_deg = 0.0}});
   EXPECT_GE(mj_name2id(model.physics.get(), mjOBJ_GEOM, "prop_1"), 0);
   EXPECT_GE(mj_name2id(model.view.get(), mjOBJ_GEOM, "prop_1"), 0);
 }
 
 TEST(ModelAssembly, AStartInsideAWallIsRefusedWithTheWallsName) {
-  const std::string said = refusal([] {
+  const std::string said = error_response([] {
     on_plane(R"(<geom name="garden_wall" type="box" pos="1 0 0.5" size="0.2 3 0.5"/>)", {1.0, 0.0, 0.0});
   });
   EXPECT_THAT(said, HasSubstr("start pose (1.00, 0.00)"));
@@ -198,20 +198,20 @@ TEST(ModelAssembly, AStartInsideAWallIsRefusedWithTheWallsName) {
 TEST(ModelAssembly, AStartOverNothingIsRefused) {
   const test::TemporaryFile world("world.xml",
                                   make_world(R"(<geom type="box" pos="0 0 -0.1" size="1 1 0.1"/>)"));
-  EXPECT_THAT(refusal([&] {
+  EXPECT_THAT(error_response([&] {
                 assemble_model(world.path(), kRobotUrdf, {20.0, 0.0, 0.0});
               }),
               HasSubstr("no ground"));
 }
 
 TEST(ModelAssembly, AMissingOrBrokenFileIsRefusedByName) {
-  EXPECT_THAT(refusal([] { assemble_model("no/such/world.xml", kRobotUrdf, {}); }),
+  EXPECT_THAT(error_response([] { assemble_model("no/such/world.xml", kRobotUrdf, {}); }),
               HasSubstr("no/such/world.xml"));
   const test::TemporaryFile broken("broken.xml",
                                    "<mujoco><worldbody><geom tipe=\"box\"/></worldbody></mujoco>");
-  EXPECT_THAT(refusal([&] { assemble_model(broken.path(), kRobotUrdf, {}); }), HasSubstr("broken.xml"));
+  EXPECT_THAT(error_response([&] { assemble_model(broken.path(), kRobotUrdf, {}); }), HasSubstr("broken.xml"));
   const test::TemporaryFile world("world.xml", make_flat_world());
-  EXPECT_THAT(refusal([&] { assemble_model(world.path(), "no/such/robot.urdf", {}); }),
+  EXPECT_THAT(error_response([&] { assemble_model(world.path(), "no/such/robot.urdf", {}); }),
               HasSubstr("no/such/robot.urdf"));
 }
 

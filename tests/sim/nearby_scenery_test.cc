@@ -25,11 +25,11 @@ std::vector<Touch> touches(const mjData& data) {
   return all;
 }
 
-TEST(NearbyScenery, At600PlacesOfTheStreetAndAnyPostureTheContactsAreThoseOfTheWholeStreet) {
+TEST(CollisionCuller, At600PlacesOfTheStreetAndAnyPostureTheContactsAreThoseOfTheWholeStreet) {
   const AssembledModel whole = assemble_model(kStreetXml, kRobotUrdf, kStreetStart);
   const AssembledModel spared = assemble_model(kStreetXml, kRobotUrdf, kStreetStart);
   const DataPtr a = make_data(*whole.physics), b = make_data(*spared.physics);
-  NearbyScenery nearby(*spared.physics);
+  CollisionCuller nearby(*spared.physics);
   const RandomStream random(1, "places");
   std::size_t contacts = 0;
   int with_actors = 0;
@@ -58,7 +58,7 @@ TEST(NearbyScenery, At600PlacesOfTheStreetAndAnyPostureTheContactsAreThoseOfTheW
   EXPECT_GT(with_actors, 50);
 }
 
-TEST(NearbyScenery, OnRubbleWithStonesTheTrackedRobotDrivesAsInTheWholeWorldToTheLastBit) {
+TEST(CollisionCuller, OnRubbleWithStonesTheTrackedRobotDrivesAsInTheWholeWorldToTheLastBit) {
   const auto drive = [](bool spare) {
     std::string world = make_rubble_world(10.0, 4.0);
     const std::string stone = R"(<geom name="ground_stone" type="sphere" size="0.2" pos="0.4 0.25 -0.1" contype="1" conaffinity="2"/>)";
@@ -72,7 +72,7 @@ TEST(NearbyScenery, OnRubbleWithStonesTheTrackedRobotDrivesAsInTheWholeWorldToTh
   EXPECT_GT(spared.position.x(), 0.5);
 }
 
-TEST(NearbyScenery, AWorldOfAPlaneOnlyKeepsItsGround) {
+TEST(CollisionCuller, AWorldOfAPlaneOnlyKeepsItsGround) {
   WalkingRobot robot(make_flat_world());
   EXPECT_LT(robot.stand(0.5).moved.position().norm(), 0.02);
   EXPECT_GE(robot.state().ncon, 3);

@@ -13,9 +13,9 @@
 namespace patrol::sim::props_test {
 namespace {
 
-ModelPtr world_with(const std::vector<PropSettings>& props) {
+ModelPtr world_with(const std::vector<StaticObstacleSettings>& props) {
   const SpecPtr spec = parse_spec("<mujoco/>");
-  add_props(*spec, props);
+  add_static_obstacles(*spec, props);
   return compile(*spec, "props");
 }
 
@@ -45,7 +45,7 @@ TEST(Props, EachKindHasOneTouchableGeomUnderItsNumberAndIsSeenAtItsHeight) {
       EXPECT_EQ(model->geom_conaffinity[geom], 2) << kind;
     }
     EXPECT_EQ(touchable, 1) << kind;
-    const double height = prop_size(kind).height_m;
+    const double height = static_obstacle_size(kind).height_m;
     EXPECT_NEAR(seen_height(*model, 3.0, -1.0), height, 1e-6) << kind;
     EXPECT_GE(height, 0.06);
     EXPECT_LE(height, 0.25) << "a lidar at 0.35 m must look over it";
@@ -86,18 +86,18 @@ TEST(Props, ATruckTurnedBy90DegreesStandsOnItsWheelsNoseTo90DegreesAndIsTouchedA
   for (int geom = 0; geom < model->ngeom; ++geom) touchable += model->geom_contype[geom] != 0;
   EXPECT_EQ(touchable, 1);
   EXPECT_EQ(model->geom_group[mj_name2id(model.get(), mjOBJ_GEOM, "prop_1")], 3);
-  EXPECT_EQ(prop_size("truck").height_m, 3.0);
+  EXPECT_EQ(static_obstacle_size("truck").height_m, 3.0);
 }
 
 TEST(LowObstacles, NoneIsATruck) {
   const LowObstacleSettings settings{.count = 200, .route = {{0.0, 0.0}, {900.0, 0.0}}, .clear_ends_m = 0.0, .beside_m = 0.5, .apart_m = 1.0};
-  for (const PropSettings& prop : scatter_low_obstacles(settings, 4)) EXPECT_NE(prop.kind, "truck");
+  for (const StaticObstacleSettings& static_obstacle : scatter_low_obstacles(settings, 4)) EXPECT_NE(static_obstacle.kind, "truck");
 }
 
 TEST(Props, AnUnknownKindIsRefusedByItsPlaceInTheList) {
   const SpecPtr spec = parse_spec("<mujoco/>");
   try {
-    add_props(*spec, {{.kind = "kerb"}, {.kind = "sofa"}});
+    add_static_obstacles(*spec, {{.kind = "kerb"}, {.kind = "sofa"}});
     FAIL() << "a sofa was taken";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "props.1.kind = sofa: must be one of rebar, kerb, hose, brick, truck");
@@ -109,10 +109,10 @@ TEST(LowObstacles, TwentyLieWithinHalfAMetreOfTheRouteTwoMetresApartAndClearOfIt
     const auto props = scatter_low_obstacles(twenty_on_a_bent_route(), seed);
     ASSERT_EQ(props.size(), 20u);
     double last_along = 4.0 - 1.0;  // the first part begins 4 m on, and half of `apart` of it is left free
-    for (const PropSettings& prop : props) {
-      const double from_first = std::abs(prop.y_m), from_second = std::abs(prop.x_m - 60.0);
+    for (const StaticObstacleSettings& static_obstacle : props) {
+      const double from_first = std::abs(static_obstacle.y_m), from_second = std::abs(static_obstacle.x_m - 60.0);
       EXPECT_LE(std::min(from_first, from_second), 0.5);
-      const double along = from_first <= 0.5 && prop.x_m <= 60.0 ? prop.x_m : 60.0 + prop.y_m;
+      const double along = from_first <= 0.5 && static_obstacle.x_m <= 60.0 ? static_obstacle.x_m : 60.0 + static_obstacle.y_m;
       EXPECT_GE(along - last_along, 2.0 - 0.5 - 1e-9);  // at the bend, beside the route is along it
       last_along = along;
     }
@@ -128,10 +128,10 @@ TEST(LowObstacles, AllKindsComeUpAndOffsetsAreUniformWithinFourStandardErrors) {
                                      .apart_m = 1.0};
   std::set<std::string> kinds;
   double sum = 0.0, sum_of_squares = 0.0;
-  for (const PropSettings& prop : scatter_low_obstacles(settings, 3)) {
-    kinds.insert(prop.kind);
-    sum += prop.y_m;
-    sum_of_squares += prop.y_m * prop.y_m;
+  for (const StaticObstacleSettings& static_obstacle : scatter_low_obstacles(settings, 3)) {
+    kinds.insert(static_obstacle.kind);
+    sum += static_obstacle.y_m;
+    sum_of_squares += static_obstacle.y_m * static_obstacle.y_m;
   }
   EXPECT_EQ(kinds.size(), 4u);
   const double n = 1000.0, variance = 1.0 / 12.0;  // of a uniform variable one metre wide

@@ -38,7 +38,7 @@ class BeamGrid {
   PanoramicScannerSettings settings_;
 };
 
-Eigen::Matrix3d tilt_of(double roll_deg, double pitch_deg) {
+Eigen::Matrix3d tilt_from_gravity(double roll_deg, double pitch_deg) {
   return quaternion_from_rpy(roll_deg * kDegree, pitch_deg * kDegree, 0.0).toRotationMatrix();
 }
 
@@ -58,7 +58,7 @@ std::vector<std::uint64_t> single_beams(const io::StationScan& scan) {
     int most = -1;
     for (double roll = roll_from; roll <= roll_from + 2.0 * reach_deg; roll += step_deg) {
       for (double pitch = pitch_from; pitch <= pitch_from + 2.0 * reach_deg; pitch += step_deg) {
-        const Eigen::Matrix3d R_scanner_level = tilt_of(roll, pitch).transpose();
+        const Eigen::Matrix3d R_scanner_level = tilt_from_gravity(roll, pitch).transpose();
         int on_grid = 0;
         for (std::size_t i = 0; i < points.size(); i += stride) on_grid += grid.beam_at(R_scanner_level * points[i], step_deg).has_value();
         if (on_grid > most) most = on_grid, roll_deg = roll, pitch_deg = pitch;
@@ -70,7 +70,7 @@ std::vector<std::uint64_t> single_beams(const io::StationScan& scan) {
   search(0.004, 0.0008, points.size() / 4000);
   std::vector<std::uint64_t> beams;
   for (const Eigen::Vector3d& p : points) {
-    if (const auto beam = grid.beam_at(tilt_of(roll_deg, pitch_deg).transpose() * p, 0.004)) beams.push_back(*beam);
+    if (const auto beam = grid.beam_at(tilt_from_gravity(roll_deg, pitch_deg).transpose() * p, 0.004)) beams.push_back(*beam);
   }
   return beams;
 }

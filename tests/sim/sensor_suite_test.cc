@@ -46,7 +46,7 @@ struct Arrival {
 
 struct Ride {
   std::vector<Arrival> arrivals;
-  std::vector<FaultReport> faults;
+  std::vector<FaultStatus> faults;
   int busy_ticks = 0;
 
   template <typename Message>
@@ -63,7 +63,7 @@ struct Ride {
 class WallImager : public DepthImager {
  public:
   explicit WallImager(const PinholeLens& lens) : pixels_(static_cast<std::size_t>(lens.width_px * lens.height_px)) {}
-  void draw(const mjData&, const Pose3&, SurfaceImage& image) override {
+  void draw(const mjData&, const Pose3&, IdealDepthImage& image) override {
     image.depth_m.assign(pixels_, 2.0f);
     image.reflectivity.assign(pixels_, 1.0f);
   }
@@ -134,7 +134,7 @@ std::vector<Arrival> scans_of(const SensorSuiteSettings& settings, const std::ve
   return stand(settings, 9.0, faults, make_robot(), make_wall_imager, {from_seconds(1.0), from_seconds(2.0), from_seconds(4.0)}).of<PanoramicScan>();
 }
 
-std::string refusal(const SensorSuiteSettings& settings, const std::string& missing_frame) {
+std::string error_response(const SensorSuiteSettings& settings, const std::string& missing_frame) {
   RobotDescription robot = make_robot();
   robot.T_body_sensor.erase(missing_frame);
   try {
@@ -192,10 +192,10 @@ TEST(SensorSuite, FaultsOfUltrasonicAndDepthCameraAreExecuted) {
   settings.depth_camera = with_depth_camera().depth_camera;
   const Ride ride = stand(settings, 1.0, {fault("ultrasonic", "freeze", 0.1, 0.5), fault("depth_camera", "silence", 0.1, 0.5),
                                           fault("depth_camera", "drift", 0.7, 0.3, 0.5), fault("uwb", "silence", 0.0, 1.0)});
-  EXPECT_TRUE(ride.faults[0].is_executed);
-  EXPECT_TRUE(ride.faults[1].is_executed);
-  EXPECT_TRUE(ride.faults[2].is_executed);
-  EXPECT_FALSE(ride.faults[3].is_executed);
+  EXPECT_TRUE(ride.faults[0].was_triggered);
+  EXPECT_TRUE(ride.faults[1].was_triggered);
+  EXPECT_TRUE(ride.faults[2].was_triggered);
+  EXPECT_FALSE(ride.faults[3].was_triggered);
   const auto frames = ride.of<DepthImage>();  // 0 and 0.6 s, 0.8 s; 0.2 and 0.4 s are silent
   ASSERT_EQ(frames.size(), 3u);
   EXPECT_NEAR(std::get<DepthImage>(frames[2].message).depth_mm[2440], 2050, 60);  // 0.1 s at 0.5 m/s
@@ -233,10 +233,10 @@ TEST(SensorSuite, AScannersFaultsAreSilenceDelayAndADriftOfItsRanges) {
 }
 
 TEST(SensorSuite, AnEnabledSensorWithoutItsFrameIsRefusedByName) {
-  EXPECT_EQ(refusal(with_scanner(), "scanner"), "robot carrier: there is no link named scanner");
-  EXPECT_EQ(refusal(with_uwb(), "uwb"), "robot carrier: there is no link named uwb");
-  EXPECT_EQ(refusal(with_ultrasonic(), "ultrasonic_0"), "robot carrier: there is no link named ultrasonic_0");
-  EXPECT_EQ(refusal(with_depth_camera(), "depth_camera"), "robot carrier: there is no link named depth_camera");
+  EXPECT_EQ(error_response(with_scanner(), "scanner"), "robot carrier: there is no link named scanner");
+  EXPECT_EQ(error_response(with_uwb(), "uwb"), "robot carrier: there is no link named uwb");
+  EXPECT_EQ(error_response(with_ultrasonic(), "ultrasonic_0"), "robot carrier: there is no link named ultrasonic_0");
+  EXPECT_EQ(error_response(with_depth_camera(), "depth_camera"), "robot carrier: there is no link named depth_camera");
 }
 
 TEST(SensorSuite, EveryFaultOfUwbIsExecutedAndOneOfASilentSensorIsNot) {
@@ -245,7 +245,7 @@ TEST(SensorSuite, EveryFaultOfUwbIsExecutedAndOneOfASilentSensorIsNot) {
                            fault("uwb", "spikes", 1.0, 1.0), fault("remote", "silence", 0.0, 9.0)});
   ASSERT_EQ(ride.faults.size(), 5u);
   const std::vector<bool> executed = {true, true, false, true, false};
-  for (std::size_t i = 0; i < executed.size(); ++i) EXPECT_EQ(ride.faults[i].is_executed, executed[i]) << i;
+  for (std::size_t i = 0; i < executed.size(); ++i) EXPECT_EQ(ride.faults[i].was_triggered, executed[i]) << i;
 }
 
 TEST(SensorSuite, ADriftOf1MetrePerSecondLengthensUwbRangesByTheTimeSinceItsStart) {

@@ -33,7 +33,7 @@ TemSounding sound(const TemSettings& settings, const std::vector<WaterBodySettin
 
 TEST(Tem, InRockAloneAnIdealInstrumentReadsTheMomentTimesTheRocksDecayFromEverySide) {
   const TemSounding ahead = sound(ideal(), {}, Eigen::Vector3d::UnitX()), up = sound(ideal(), {}, Eigen::Vector3d::UnitZ());
-  const Eigen::VectorXd rock = gated_rock(TemGates({.gate_s = ahead.gate_s}), 0.003);
+  const Eigen::VectorXd rock = gated_whole_space_response(TemGates({.gate_s = ahead.gate_s}), 0.003);
   ASSERT_EQ(ahead.gate_s.size(), 22U);  // ten a decade from 2 to 300 us
   EXPECT_NEAR(ahead.gate_s[10], 2e-5, 1e-12);
   for (std::size_t gate = 0; gate < ahead.gate_s.size(); ++gate) {
@@ -45,7 +45,7 @@ TEST(Tem, InRockAloneAnIdealInstrumentReadsTheMomentTimesTheRocksDecayFromEveryS
 TEST(Tem, OfABodyAheadItReadsTheAxialDecayAndTurnedBySixtyDegreesAQuarterOfTheWayFromTheTransverse) {
   const TemSounding none = sound(ideal(), {}, Eigen::Vector3d::UnitX()), ahead = sound(ideal(), {kBody}, Eigen::Vector3d::UnitX());
   const TemSounding turned = sound(ideal(), {kBody}, {0.5, std::sqrt(0.75), 0.0});
-  const GatedSphere body = gated_sphere(TemGates({.gate_s = none.gate_s}), 0.003, {16.0, 6.0, 0.6});
+  const GatedSphereResponse body = gated_sphere_response(TemGates({.gate_s = none.gate_s}), 0.003, {16.0, 6.0, 0.6});
   for (Eigen::Index gate = 0; gate < body.axial.size(); ++gate) {
     const auto g = static_cast<std::size_t>(gate);
     const double tol = 1e-12 * none.rate_tps[g];

@@ -16,32 +16,32 @@ const double kTicksPerRad = HallSettings{}.ticks_per_rad();
 constexpr TrackMotor kMotor{.max_torque_nm = 45.0, .stall_torque_nm = 120.0, .no_load_radps = 18.7};
 
 TEST(TrackMotor, DrivesWithNoMoreThanItsLineAndBrakesWithAllItsCurrent) {
-  EXPECT_DOUBLE_EQ(kMotor.possible_nm(100.0, 0.0), 45.0);
-  EXPECT_NEAR(kMotor.possible_nm(100.0, 0.75 * 18.7), 30.0, 1e-12);  // 120 * (1 - 0.75)
-  EXPECT_DOUBLE_EQ(kMotor.possible_nm(100.0, 18.7), 0.0);
-  EXPECT_DOUBLE_EQ(kMotor.possible_nm(-100.0, 18.7), -45.0);
-  EXPECT_DOUBLE_EQ(kMotor.possible_nm(7.0, 3.0), 7.0);
+  EXPECT_DOUBLE_EQ(kMotor.feasible_torque_nm(100.0, 0.0), 45.0);
+  EXPECT_NEAR(kMotor.feasible_torque_nm(100.0, 0.75 * 18.7), 30.0, 1e-12);  // 120 * (1 - 0.75)
+  EXPECT_DOUBLE_EQ(kMotor.feasible_torque_nm(100.0, 18.7), 0.0);
+  EXPECT_DOUBLE_EQ(kMotor.feasible_torque_nm(-100.0, 18.7), -45.0);
+  EXPECT_DOUBLE_EQ(kMotor.feasible_torque_nm(7.0, 3.0), 7.0);
 }
 
 /// A sprocket with nothing but its inertia and a load against it.
 struct LoneSprocket {
-  SprocketRegulator regulator{{}, kMotor, kTicksPerRad, kTick_s};
+  SprocketSpeedController regulator{{}, kMotor, kTicksPerRad, kTick_s};
   double inertia_kgm2 = 0.5;
   double angle_rad = 0.0, speed_radps = 0.0;
 
-  double step(double wanted_radps, double load_nm = 0.0) {
+  double step(double requested_radps, double load_nm = 0.0) {
     const auto count = static_cast<std::int64_t>(std::floor(angle_rad * kTicksPerRad));
-    const double torque = regulator.step(wanted_radps, count);
+    const double torque = regulator.step(requested_radps, count);
     speed_radps += kTick_s * (torque - load_nm) / inertia_kgm2;
     angle_rad += kTick_s * speed_radps;
     return torque;
   }
-  void run(double wanted_radps, double duration_s, double load_nm = 0.0) {
-    for (double t = 0.0; t < duration_s; t += kTick_s) step(wanted_radps, load_nm);
+  void run(double requested_radps, double duration_s, double load_nm = 0.0) {
+    for (double t = 0.0; t < duration_s; t += kTick_s) step(requested_radps, load_nm);
   }
 };
 
-TEST(SprocketRegulator, UnderALoadOf15NmItTurnsAt7RadPerSecondToWithin1PercentByTheTicks) {
+TEST(SprocketSpeedController, UnderALoadOf15NmItTurnsAt7RadPerSecondToWithin1PercentByTheTicks) {
   LoneSprocket sprocket;
   sprocket.run(7.0, 2.0, 15.0);
   const double start = sprocket.angle_rad;
@@ -50,7 +50,7 @@ TEST(SprocketRegulator, UnderALoadOf15NmItTurnsAt7RadPerSecondToWithin1PercentBy
   EXPECT_NEAR(sprocket.regulator.speed_radps(), 7.0, 0.5);
 }
 
-TEST(SprocketRegulator, IsStableWithTheInertiaOfABeltOnIceAndOfTheWholeRobot) {
+TEST(SprocketSpeedController, IsStableWithTheInertiaOfABeltOnIceAndOfTheWholeRobot) {
   for (const double inertia : {0.16, 0.6}) {
     LoneSprocket sprocket{.inertia_kgm2 = inertia};
     sprocket.run(5.0, 2.0);
@@ -65,7 +65,7 @@ TEST(SprocketRegulator, IsStableWithTheInertiaOfABeltOnIceAndOfTheWholeRobot) {
   }
 }
 
-TEST(SprocketRegulator, AfterTenSecondsOfStallItOvershootsByLessThanAFifthOfARadian) {
+TEST(SprocketSpeedController, AfterTenSecondsOfStallItOvershootsByLessThanAFifthOfARadian) {
   LoneSprocket sprocket;
   for (double t = 0.0; t < 10.0; t += kTick_s) EXPECT_LE(sprocket.regulator.step(5.0, 0), 45.0);
   sprocket.run(0.0, 1.0);
@@ -89,9 +89,9 @@ struct BenchRun {
     for (double t = 0.0; t < duration_s; t += kTick_s) {
       const auto count = [](double rad) { return static_cast<std::int64_t>(std::floor(rad * kTicksPerRad)); };
       const TrackTicks ticks{.stamp = {}, .left = count(angle[0]), .right = count(angle[1])};
-      orders = controller.step(level_imu(gyro_radps), ticks, asked);
+      drive_command = controller.step(level_imu(gyro_radps), ticks, asked);
       for (std::size_t side = 0; side < 2; ++side) {
-        speed[side] += kTick_s * orders.torque_nm[side] / 0.3;
+        speed[side] += kTick_s * drive_command.torque_nm[side] / 0.3;
         angle[side] += kTick_s * speed[side];
       }
     }
@@ -99,7 +99,7 @@ struct BenchRun {
   double belt_mps(std::size_t side) const { return 0.070 * speed[side]; }
 
   TrackController controller;
-  TrackOrders orders;
+  TrackDriveCommand drive_command;
   double angle[2] = {}, speed[2] = {};
 };
 
@@ -140,12 +140,12 @@ TEST(TrackController, WhenTheGyroReadsTooLittleTheBeltsTurnFaster) {
 TEST(TrackController, TheBrakeClosesAfterHalfASecondAtRestAndOpensOnCommand) {
   BenchRun bench({});
   bench.run(command(0.0, 0.0), 0.4);
-  EXPECT_FALSE(bench.orders.is_brake_closed);
+  EXPECT_FALSE(bench.drive_command.is_brake_closed);
   bench.run(command(0.0, 0.0), 0.2);
-  EXPECT_TRUE(bench.orders.is_brake_closed);
-  EXPECT_EQ(bench.orders.torque_nm[0], 0.0);
+  EXPECT_TRUE(bench.drive_command.is_brake_closed);
+  EXPECT_EQ(bench.drive_command.torque_nm[0], 0.0);
   bench.run(command(0.3, 0.0), 0.05);
-  EXPECT_FALSE(bench.orders.is_brake_closed);
+  EXPECT_FALSE(bench.drive_command.is_brake_closed);
 }
 
 TEST(TrackController, BeyondSixtyDegreesFor300MillisecondsIsAFall) {

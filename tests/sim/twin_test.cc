@@ -23,11 +23,11 @@ namespace {
 /// A twin of a robot in a small world, with no sensor but those that its firmware reads.
 class SmallTwin {
  public:
-  SmallTwin(const std::string& urdf, const std::string& world, const TwinSettings& settings = {})
+  SmallTwin(const std::string& urdf, const std::string& world, const SimulatorSettings& settings = {})
       : file_("world.xml", world), twin_(make(urdf, settings)) {}
 
-  Twin& operator*() { return twin_; }
-  Twin* operator->() { return &twin_; }
+  Simulator& operator*() { return twin_; }
+  Simulator* operator->() { return &twin_; }
 
   /// Messages that were delivered meanwhile.
   std::vector<SensorMessage> run(double vx_mps, double duration_s) {
@@ -41,15 +41,15 @@ class SmallTwin {
   }
 
  private:
-  Twin make(const std::string& urdf, TwinSettings settings) const {
+  Simulator make(const std::string& urdf, SimulatorSettings settings) const {
     settings.world_xml = file_.path();
     settings.robot_urdf = urdf;
     settings.sensors.lidar.enabled = settings.sensors.tdlas.enabled = settings.sensors.gnss.enabled = false;
-    return Twin(settings, io::load_robot_description(urdf), 1);
+    return Simulator(settings, io::load_robot_description(urdf), 1);
   }
 
   test::TemporaryFile file_;
-  Twin twin_;
+  Simulator twin_;
 };
 
 template <typename Message>
@@ -58,7 +58,7 @@ std::ptrdiff_t count(const std::vector<SensorMessage>& messages) {
                        [](const SensorMessage& message) { return std::holds_alternative<Message>(message); });
 }
 
-TEST(Twin, ATrackedRobotSends50TicksASecondAndNothingOfLegs) {
+TEST(Simulator, ATrackedRobotSends50TicksASecondAndNothingOfLegs) {
   SmallTwin twin(kTrackedUrdf, make_flat_world());
   const auto messages = twin.run(0.5, 2.0);
   EXPECT_NEAR(static_cast<double>(count<TrackTicks>(messages)), 100.0, 1.0);
@@ -68,24 +68,24 @@ TEST(Twin, ATrackedRobotSends50TicksASecondAndNothingOfLegs) {
   EXPECT_NEAR(twin->truth().T_world_body.position.x(), 0.5 * (2.0 - 0.3), 0.1);
 }
 
-TEST(Twin, ARobotOnLegsSendsNoTicks) {
+TEST(Simulator, ARobotOnLegsSendsNoTicks) {
   SmallTwin twin(kRobotUrdf, make_flat_world());
   EXPECT_EQ(count<TrackTicks>(twin.run(0.0, 0.2)), 0);
 }
 
-TEST(Twin, LiftedToAnotherPlaceEitherRobotStandsThereUprightAndItsCountersKnowNothingOfIt) {
+TEST(Simulator, LiftedToAnotherPlaceEitherRobotStandsThereUprightAndItsCountersKnowNothingOfIt) {
   for (const std::string& urdf : {kTrackedUrdf, kRobotUrdf}) {
     SmallTwin twin(urdf, make_flat_world(R"(<geom name="ground_stage" type="box" pos="6 2 0.1" size="1 1 0.1"/>)"));
     twin.run(0.4, 2.0);
     const SimState before = twin->state();
-    twin->put_at({6.0, 2.0, 2.0});
+    twin->teleport({6.0, 2.0, 2.0});
     const SimState after = twin->state();
     if (urdf == kTrackedUrdf) {
       EXPECT_TRUE(std::equal(before.qpos.begin() + 7, before.qpos.end(), after.qpos.begin() + 7)) << "belts and springs";
     }
     const GroundTruth at_once = twin->truth();
     EXPECT_NEAR(at_once.T_world_body.position.x(), 6.0, 1e-9);
-    EXPECT_NEAR(yaw_of(at_once.T_world_body.rotation), 2.0, 1e-9);
+    EXPECT_NEAR(to_yaw(at_once.T_world_body.rotation), 2.0, 1e-9);
     EXPECT_EQ(at_once.twist.linear.norm(), 0.0);
     twin.run(0.0, 3.0);
     const Pose3 later = twin->truth().T_world_body;
@@ -96,8 +96,8 @@ TEST(Twin, LiftedToAnotherPlaceEitherRobotStandsThereUprightAndItsCountersKnowNo
 }
 
 // Four standard deviations of the tilt that is left (19") are 1.5 mm at 4 m.
-TEST(Twin, AScanOfTheTrackedRobotOnFlatGroundHasTheFloor85CentimetresBelowItAndTheRobotStandsStill) {
-  TwinSettings settings;
+TEST(Simulator, AScanOfTheTrackedRobotOnFlatGroundHasTheFloor85CentimetresBelowItAndTheRobotStandsStill) {
+  SimulatorSettings settings;
   settings.sensors.scanner.enabled = true;
   settings.sensors.scanner.step_deg = 2.0;
   settings.sensors.scanner.duration_s = 5.0;
@@ -129,8 +129,8 @@ TEST(Twin, AScanOfTheTrackedRobotOnFlatGroundHasTheFloor85CentimetresBelowItAndT
   EXPECT_GT(robot, 10);
 }
 
-TEST(Twin, OnRoughGroundARobotThatCreepsStandsWithin5MicrometresAndAThousandthOfADegreeOverAScan) {
-  TwinSettings settings;
+TEST(Simulator, OnRoughGroundARobotThatCreepsStandsWithin5MicrometresAndAThousandthOfADegreeOverAScan) {
+  SimulatorSettings settings;
   settings.sensors.scanner.enabled = true;
   settings.sensors.scanner.step_deg = 10.0;
   SmallTwin twin(kTrackedUrdf, make_rubble_world(16.0, 6.0, 0.006, 0.003), settings);
@@ -150,9 +150,9 @@ TEST(Twin, OnRoughGroundARobotThatCreepsStandsWithin5MicrometresAndAThousandthOf
   EXPECT_GT(free_m, 10.0 * held_m) << "the soft contact lets it creep, or there is nothing to be held";
 }
 
-TEST(Twin, RingsOfAWorldWithoutALiningCannotBeMoved) {
-  TwinSettings settings;
-  settings.lining_moves = {{.kind = "settlement", .first_ring = 2, .last_ring = 2, .inward_mm = 6.0}};
+TEST(Simulator, RingsOfAWorldWithoutALiningCannotBeMoved) {
+  SimulatorSettings settings;
+  settings.lining_deformations = {{.kind = "settlement", .first_ring = 2, .last_ring = 2, .inward_mm = 6.0}};
   EXPECT_THAT([&] { SmallTwin(kTrackedUrdf, make_flat_world(), settings); },
               testing::ThrowsMessage<InputError>("lining.0.first_ring = 2: the mission's file describes no lining"));
 }
@@ -163,7 +163,7 @@ std::string kerb(double x_m, double height_m, double half_length_m = 0.09) {
 }
 
 // The tunnel's stones are 22 cm high.
-TEST(Twin, ADriveAgainstTheSideOfACurbStoneThatIsHigherThanAStreetsIsACollision) {
+TEST(Simulator, ADriveAgainstTheSideOfACurbStoneThatIsHigherThanAStreetsIsACollision) {
   for (const std::string& urdf : {kTrackedUrdf, kRobotUrdf}) {
     for (const double height_m : {0.17, 0.22, 0.3}) {
       SmallTwin twin(urdf, make_flat_world(kerb(1.0, height_m)));
@@ -175,7 +175,7 @@ TEST(Twin, ADriveAgainstTheSideOfACurbStoneThatIsHigherThanAStreetsIsACollision)
   }
 }
 
-TEST(Twin, WalkingAndDrivingOverALowCurbStoneIsNone) {
+TEST(Simulator, WalkingAndDrivingOverALowCurbStoneIsNone) {
   for (const std::string& urdf : {kTrackedUrdf, kRobotUrdf}) {
     for (const double height_m : {0.05, 0.12}) {
       SmallTwin twin(urdf, make_flat_world(kerb(1.0, height_m, 5.0)));
@@ -188,26 +188,26 @@ TEST(Twin, WalkingAndDrivingOverALowCurbStoneIsNone) {
   }
 }
 
-TEST(Twin, StandingAndDrivingOnTopOfAHighCurbStoneIsNone) {
+TEST(Simulator, StandingAndDrivingOnTopOfAHighCurbStoneIsNone) {
   for (const std::string& urdf : {kTrackedUrdf, kRobotUrdf}) {
     SmallTwin twin(urdf, make_flat_world(kerb(2.0, 0.22, 5.0)));
-    twin->put_at({5.0, 0.0, 0.0});
+    twin->teleport({5.0, 0.0, 0.0});
     twin.run(0.4, 2.0);
     EXPECT_THAT(twin->take_collisions(), testing::IsEmpty()) << urdf;
   }
 }
 
-TEST(Twin, PutDownOnRubbleItDrivesOn) {
+TEST(Simulator, PutDownOnRubbleItDrivesOn) {
   SmallTwin twin(kTrackedUrdf, make_rubble_world(16.0, 6.0));
   twin.run(0.5, 1.0);
-  twin->put_at({-6.0, 1.0, 0.0});
+  twin->teleport({-6.0, 1.0, 0.0});
   twin.run(0.5, 4.0);
   EXPECT_NEAR(twin->truth().T_world_body.position.x(), -6.0 + 0.5 * 3.7, 0.2);
 }
 
-TEST(Twin, WhereThereIsNoGroundItCannotBePut) {
+TEST(Simulator, WhereThereIsNoGroundItCannotBePut) {
   SmallTwin twin(kTrackedUrdf, make_rubble_world(4.0, 4.0));
-  EXPECT_THAT([&] { twin->put_at({50.0, 0.0, 0.0}); },
+  EXPECT_THAT([&] { twin->teleport({50.0, 0.0, 0.0}); },
               testing::ThrowsMessage<InputError>(testing::HasSubstr("(50.00, 0.00): there is no ground below it")));
 }
 

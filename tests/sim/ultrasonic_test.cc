@@ -242,7 +242,7 @@ TEST(Ultrasonic, WithoutNoiseTheSamePingsAreLost) {
   EXPECT_GT(lost, 5);
 }
 
-std::string refusal(const UltrasonicSettings& settings, const RobotDescription& robot) {
+std::string error_response(const UltrasonicSettings& settings, const RobotDescription& robot) {
   const SmallWorld world("");
   try {
     UltrasonicRing ring(settings, world.scene, robot, 1);
@@ -253,10 +253,10 @@ std::string refusal(const UltrasonicSettings& settings, const RobotDescription& 
 }
 
 TEST(Ultrasonic, ARobotWithoutTransducersAndSlotsTooShortAreRefusedInASentence) {
-  EXPECT_EQ(refusal({}, make_ring({}, {})), "robot carrier: there is no link named ultrasonic_0");
+  EXPECT_EQ(error_response({}, make_ring({}, {})), "robot carrier: there is no link named ultrasonic_0");
   UltrasonicSettings fast;
   fast.ping_rate_hz = 50.0;
-  EXPECT_EQ(refusal(fast, make_ring()),
+  EXPECT_EQ(error_response(fast, make_ring()),
             "sensors.ultrasonic.ping_rate_hz = 50: must be at most 42.5, or an echo from range_max_m = 4 comes after the next ping");
 }
 

@@ -105,7 +105,7 @@ TEST(Uwb, BehindAWallTheExcessIsExponentialOf40CentimetresAndThreeInTenAreLost) 
 
 bool is_blocked_by(const std::string& geom) {
   const SmallWorld world(geom);
-  return is_uwb_path_blocked(world.scene, {0, 0, 1}, {20, 0, 1});
+  return is_uwb_path_nlos(world.scene, {0, 0, 1}, {20, 0, 1});
 }
 
 TEST(Uwb, AManOrAPillarBlocksThePathAndACableDoesNot) {

@@ -135,12 +135,12 @@ TEST(GridMap, ACopySharesEveryTileUntilOneIsWritten) {
   GridMap map = make_map();
   for (double x : {0.05, 4.0, 8.0}) map.add_hit({x, 0.05});
   ASSERT_EQ(map.num_tiles(), 3U);
-  ASSERT_EQ(map.num_own_tiles(), 3U);
+  ASSERT_EQ(map.num_unshared_tiles(), 3U);
   GridMap copy = map;
-  EXPECT_EQ(map.num_own_tiles(), 0U);
+  EXPECT_EQ(map.num_unshared_tiles(), 0U);
   copy.add_hit({4.5, 0.05});
-  EXPECT_EQ(map.num_own_tiles(), 1U);
-  EXPECT_EQ(copy.num_own_tiles(), 1U);
+  EXPECT_EQ(map.num_unshared_tiles(), 1U);
+  EXPECT_EQ(copy.num_unshared_tiles(), 1U);
   EXPECT_FALSE(map.is_surface(map.cell_at({4.5, 0.05})));
   EXPECT_TRUE(copy.is_surface(map.cell_at({4.5, 0.05})));
   EXPECT_EQ(map.find({0, 0}), copy.find({0, 0}));

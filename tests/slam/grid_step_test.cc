@@ -29,7 +29,7 @@ Start start_of_the_street() {
     scan = street.scan(T_world_start, Time{}, {.beams = 800, .range_std_m = 0.01}, noise, i);
     integrate_scan(scan, {}, {}, start.map);
   }
-  start.points = select_match_points(scan, start.matching.point_spacing_m, start.matching.max_points);
+  start.points = downsample_scan(scan, start.matching.point_spacing_m, start.matching.max_points);
   return start;
 }
 
@@ -42,42 +42,42 @@ PoseGaussian wrong_prediction() {
 
 double mean_error_m(const std::string& optimizer, const Start& start) {
   std::vector<Particle> particles(20, {.T_map_body = {}, .map = start.map});
-  GridStep step(particles, std::vector<PoseGaussian>(particles.size(), wrong_prediction()), start.points, 0.2, start.matching);
+  RbpfParticleProblem step(particles, std::vector<PoseGaussian>(particles.size(), wrong_prediction()), start.points, 0.2, start.matching);
   std::vector<double> log_weights(particles.size(), 0.0);
   RandomSequence random(RandomStream(3, "test/particles"), 0);
-  advance_particles(step, make_parts({.optimizer = optimizer}), random, log_weights);
+  propagate_and_weight(step, make_components({.optimizer = optimizer}), random, log_weights);
   double error_m = 0.0;
   for (const Particle& particle : particles) error_m += particle.T_map_body.position().norm() / static_cast<double>(particles.size());
   return error_m;
 }
 
-TEST(GridStep, AnIncrementOfZeroIsWhereOdometrySaysAndOneOfOneADeviationBeyond) {
+TEST(RbpfParticleProblem, AnIncrementOfZeroIsWhereOdometrySaysAndOneOfOneADeviationBeyond) {
   const Start start = start_of_the_street();
   std::vector<Particle> particles(1, {.T_map_body = {}, .map = start.map});
-  GridStep step(particles, {wrong_prediction()}, start.points, 0.2, start.matching);
-  step.settle(0, Eigen::Vector3d::Zero());
+  RbpfParticleProblem step(particles, {wrong_prediction()}, start.points, 0.2, start.matching);
+  step.commit(0, Eigen::Vector3d::Zero());
   EXPECT_DOUBLE_EQ(particles[0].T_map_body.x, 0.1);
-  step.settle(0, Eigen::Vector3d(1.0, -1.0, 1.0));
+  step.commit(0, Eigen::Vector3d(1.0, -1.0, 1.0));
   EXPECT_NEAR(particles[0].T_map_body.x, 0.2, 1e-12);
   EXPECT_NEAR(particles[0].T_map_body.y, -0.1, 1e-12);
   EXPECT_NEAR(particles[0].T_map_body.yaw, 0.01, 1e-12);
 }
 
 // Deviations of 10 cm about a prediction that is 10 cm off: E |(0.1 + 0.1 x, 0.1 y)| is about 0.155 m for normal x, y.
-TEST(GridStep, SwarmsBringParticlesNearerToTheTruthThanOdometrysDrawsAtLeastByAThird) {
+TEST(RbpfParticleProblem, SwarmsBringParticlesNearerToTheTruthThanOdometrysDrawsAtLeastByAThird) {
   const Start start = start_of_the_street();
   const double drawn_m = mean_error_m("none", start);
   EXPECT_NEAR(drawn_m, 0.155, 0.05);
   for (const char* optimizer : {"woa", "ba", "fa", "ifa", "scso", "iscso"}) EXPECT_LT(mean_error_m(optimizer, start), 0.67 * drawn_m) << optimizer;
 }
 
-TEST(GridStep, AParticleThatIsDrawnTowardsAnotherTakesItsMapAndAShareOfItsIncrement) {
+TEST(RbpfParticleProblem, AParticleThatIsDrawnTowardsAnotherTakesItsMapAndAShareOfItsIncrement) {
   const Start start = start_of_the_street();
   std::vector<Particle> particles = {{.T_map_body = {}, .map = GridMap(0.05, 400.0)}, {.T_map_body = {}, .map = start.map}};
-  GridStep step(particles, {wrong_prediction(), wrong_prediction()}, start.points, 0.2, start.matching);
-  step.settle(0, Eigen::Vector3d(2.0, 0.0, 0.0));
-  step.settle(1, Eigen::Vector3d(0.0, 2.0, 0.0));
-  step.reproduce({{.parent = 0, .toward = 1, .share = 0.25}, {.parent = 1}});
+  RbpfParticleProblem step(particles, {wrong_prediction(), wrong_prediction()}, start.points, 0.2, start.matching);
+  step.commit(0, Eigen::Vector3d(2.0, 0.0, 0.0));
+  step.commit(1, Eigen::Vector3d(0.0, 2.0, 0.0));
+  step.apply_resampling({{.parent = 0, .attractor = 1, .attraction = 0.25}, {.parent = 1}});
   EXPECT_NEAR(particles[0].T_map_body.x, 0.1 + 0.1 * 1.5, 1e-12);  // 2 + 0.25 (0 - 2)
   EXPECT_NEAR(particles[0].T_map_body.y, 0.1 * 0.5, 1e-12);
   EXPECT_TRUE(particles[0].map.has_surface());

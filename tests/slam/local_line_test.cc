@@ -35,8 +35,8 @@ TEST(FitLocalLine, MeasuresThreeCentimetresFromAWallAtAnyAngleToATenthOfAMillime
     EXPECT_NEAR(std::abs(line->distance_m(Eigen::Vector2d(0.312, -0.457) + 0.03 * across)), 0.03, 1e-4)
         << degrees;
     EXPECT_NEAR(std::abs(line->normal_map.dot(across)), 1.0, 1e-3) << degrees;
-    EXPECT_GT(line->straightness, 0.99) << degrees;
-    EXPECT_LT(line->roughness_var_m2, 1e-6) << degrees;
+    EXPECT_GT(line->linearity, 0.99) << degrees;
+    EXPECT_LT(line->normal_var_m2, 1e-6) << degrees;
   }
 }
 
@@ -53,7 +53,7 @@ TEST(FitLocalLine, ACornerIsNotStraight) {
   for (int i = -100; i <= 100; ++i) map.add_hit({0.02, 0.02 + 0.01 * i});
   const auto line = fit_local_line(map, {0.02, 0.02}, 3);
   ASSERT_TRUE(line);
-  EXPECT_LT(line->straightness, 0.97);
+  EXPECT_LT(line->linearity, 0.97);
 }
 
 TEST(FitLocalLine, TwoCellsOrNoneMakeNoLine) {

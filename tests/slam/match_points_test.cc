@@ -19,7 +19,7 @@ LevelScan scan_of(const std::vector<Eigen::Vector2f>& ends, bool are_hits = true
 
 TEST(SelectMatchPoints, NeighboursWithinTheSpacingBecomeTheirMean) {
   const auto points =
-      select_match_points(scan_of({{1.0F, 0.0F}, {1.0F, 0.04F}, {1.0F, 0.08F}, {1.0F, 0.2F}}), 0.1, 100);
+      downsample_scan(scan_of({{1.0F, 0.0F}, {1.0F, 0.04F}, {1.0F, 0.08F}, {1.0F, 0.2F}}), 0.1, 100);
   ASSERT_EQ(points.size(), 2U);
   EXPECT_THAT(points[0].p_body, VectorNear(Eigen::Vector2d(1.0, 0.04), 1e-6));
   EXPECT_THAT(points[1].p_body, VectorNear(Eigen::Vector2d(1.0, 0.2), 1e-6));
@@ -28,21 +28,21 @@ TEST(SelectMatchPoints, NeighboursWithinTheSpacingBecomeTheirMean) {
 TEST(SelectMatchPoints, RangesCountFromTheLidar) {
   LevelScan scan = scan_of({{3.0F, 4.0F}});
   scan.origin_m = {3.0, 1.0};
-  EXPECT_NEAR(select_match_points(scan, 0.1, 100)[0].range_m, 3.0, 1e-6);
+  EXPECT_NEAR(downsample_scan(scan, 0.1, 100)[0].range_m, 3.0, 1e-6);
 }
 
 TEST(SelectMatchPoints, TakeNoBeamsWithoutEchoAndNoInvalidOnes) {
   const float nan = std::numeric_limits<float>::quiet_NaN(),
               infinity = std::numeric_limits<float>::infinity();
-  EXPECT_TRUE(select_match_points(scan_of({{1.0F, 0.0F}, {2.0F, 0.0F}}, false), 0.1, 100).empty());
-  EXPECT_EQ(select_match_points(scan_of({{nan, 0.0F}, {1.0F, infinity}, {2.0F, 0.0F}}), 0.1, 100).size(), 1U);
-  EXPECT_TRUE(select_match_points({}, 0.1, 100).empty());
+  EXPECT_TRUE(downsample_scan(scan_of({{1.0F, 0.0F}, {2.0F, 0.0F}}, false), 0.1, 100).empty());
+  EXPECT_EQ(downsample_scan(scan_of({{nan, 0.0F}, {1.0F, infinity}, {2.0F, 0.0F}}), 0.1, 100).size(), 1U);
+  EXPECT_TRUE(downsample_scan({}, 0.1, 100).empty());
 }
 
 TEST(SelectMatchPoints, KeepEveryTenthOfAThousandWhenAHundredAreAllowed) {
   std::vector<Eigen::Vector2f> ends;
   for (int i = 0; i < 1000; ++i) ends.emplace_back(static_cast<float>(i), 0.0F);
-  const auto points = select_match_points(scan_of(ends), 0.1, 100);
+  const auto points = downsample_scan(scan_of(ends), 0.1, 100);
   ASSERT_EQ(points.size(), 100U);
   for (std::size_t i = 0; i < points.size(); ++i)
     EXPECT_DOUBLE_EQ(points[i].p_body.x(), 10.0 * static_cast<double>(i));

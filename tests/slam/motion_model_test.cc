@@ -18,11 +18,11 @@ constexpr double kExactTol = 1e-12;
 constexpr double kPi = std::numbers::pi;
 
 // Whole numbers: 0.3 along and 0.1 across per metre, 0.2 per rad, 0.4 per metre and 0.5 per second of turn.
-const MotionModelSettings kSettings{.along_std_m_per_m = 0.3,
-                                    .across_std_m_per_m = 0.1,
-                                    .turn_std_rad_per_rad = 0.2,
-                                    .turn_std_rad_per_m = 0.4,
-                                    .turn_std_rad_per_s = 0.5,
+const MotionModelSettings kSettings{.longitudinal_std_m_per_m = 0.3,
+                                    .lateral_std_m_per_m = 0.1,
+                                    .yaw_std_rad_per_rad = 0.2,
+                                    .yaw_std_rad_per_m = 0.4,
+                                    .yaw_std_rad_per_s = 0.5,
                                     .min_std_m = 0.01,
                                     .min_std_rad = 0.02};
 
@@ -67,7 +67,7 @@ TEST(ProposalSample, HasTheMomentsOfItsPosterior) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (std::uint64_t i = 0; i < kDraws; ++i) {
     const Pose2 drawn = proposal.sample({stream.normal(i, 0), stream.normal(i, 1), stream.normal(i, 2)});
-    const Eigen::Vector3d offset = proposal.posterior.offset_of(drawn);
+    const Eigen::Vector3d offset = proposal.posterior.residual_to_mean(drawn);
     mean += offset / kDraws;
     covariance += offset * offset.transpose() / kDraws;
   }
@@ -83,7 +83,7 @@ TEST(ProposalSample, HasTheMomentsOfItsPosterior) {
 
 TEST(MotionModelSettings, RefuseANegativeSpreadByName) {
   MotionModelSettings settings;
-  settings.across_std_m_per_m = -0.1;
+  settings.lateral_std_m_per_m = -0.1;
   try {
     validate(settings, "slam.motion");
     FAIL() << "accepted";

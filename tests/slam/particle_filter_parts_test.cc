@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 
 template <typename Optimizer>
 bool makes(const char* name) {
-  return dynamic_cast<const Optimizer*>(make_parts({.optimizer = name}).optimizer.get()) != nullptr;
+  return dynamic_cast<const Optimizer*>(make_components({.optimizer = name}).optimizer.get()) != nullptr;
 }
 
 TEST(MakeParts, EachOfSixNamesIsItsOptimizer) {
@@ -26,19 +26,19 @@ TEST(MakeParts, EachOfSixNamesIsItsOptimizer) {
   EXPECT_TRUE(makes<ImprovedFireflyOptimizer>("ifa"));
   EXPECT_TRUE(makes<SandCatOptimizer>("scso"));
   EXPECT_TRUE(makes<SandCatOptimizer>("iscso"));
-  EXPECT_EQ(make_parts({}).optimizer, nullptr);
+  EXPECT_EQ(make_components({}).optimizer, nullptr);
 }
 
 /// Of four particles for three generations: 4 at the start and 4 each.
 int num_judgements(const char* name) {
   int count = 0;
-  const Fitness judge = [&](std::size_t, const Position& position) {
+  const Fitness fitness_of = [&](std::size_t, const Position& position) {
     ++count;
     return -position.squaredNorm();
   };
   RandomSequence random(RandomStream(1, "test/parts"), 0);
-  Swarm swarm = make_swarm(std::vector<Position>(4, Eigen::Vector2d(1.0, 2.0)), judge);
-  make_parts({.optimizer = name, .optimizer_iterations = 3}).optimizer->move(swarm, judge, random);
+  Swarm swarm = make_swarm(std::vector<Position>(4, Eigen::Vector2d(1.0, 2.0)), fitness_of);
+  make_components({.optimizer = name, .optimizer_iterations = 3}).optimizer->move(swarm, fitness_of, random);
   return count;
 }
 
@@ -53,26 +53,26 @@ TEST(MakeParts, EachOfFiveNamesIsItsResampler) {
   const std::vector<double> weights = {0.7, 0.1, 0.1, 0.1};
   const auto same = [&](const char* name, const Resampler& expected) {
     RandomSequence random(RandomStream(1, "test/parts"), 0), again(RandomStream(1, "test/parts"), 0);
-    const std::vector<Offspring> got = make_parts({.resampler = name}).resample(weights, random), want = expected(weights, again);
+    const std::vector<Offspring> got = make_components({.resampler = name}).resample(weights, random), want = expected(weights, again);
     for (std::size_t i = 0; i < want.size(); ++i) {
       EXPECT_EQ(got[i].parent, want[i].parent) << name;
-      EXPECT_EQ(got[i].toward, want[i].toward) << name;
-      EXPECT_EQ(got[i].share, want[i].share) << name;
+      EXPECT_EQ(got[i].attractor, want[i].attractor) << name;
+      EXPECT_EQ(got[i].attraction, want[i].attraction) << name;
       EXPECT_EQ(got[i].mutation, want[i].mutation) << name;
     }
     return got;
   };
-  same("multinomial", resample_multinomially);
-  same("systematic", resample_evenly);
-  same("residual", resample_by_residuals);
-  EXPECT_GT(same("low_weight", draw_low_weights_up).back().share, 0.0);
+  same("multinomial", resample_multinomial);
+  same("systematic", resample_systematic);
+  same("residual", resample_residual);
+  EXPECT_GT(same("low_weight", optimize_low_weights).back().attraction, 0.0);
   EXPECT_NE(same("stepwise", [](const auto& w, RandomSequence& random) { return resample_stepwise(w, random); }).back().mutation, 0.0);
 }
 
 TEST(MakeParts, RefusesWhatIsNoNameOrOutOfItsRange) {
   const auto complaint = [](const ParticleFilterSettings& settings) -> std::string {
     try {
-      make_parts(settings);
+      make_components(settings);
     } catch (const InputError& error) {
       return error.what();
     }

@@ -22,13 +22,13 @@ class WalkProblem {
   WalkProblem(const Walk& walk, double z, std::vector<double>& states) : walk_(walk), z_(z), states_(states) {}
 
   std::size_t size() const { return states_.size(); }
-  Position draw(std::size_t i, RandomSequence& random) const { return at(walk_.a * states_[i] + walk_.b + walk_.q * random.normal()); }
+  Position sample(std::size_t i, RandomSequence& random) const { return at(walk_.a * states_[i] + walk_.b + walk_.q * random.normal()); }
   double log_fitness(std::size_t, const Position& position) const { return -0.5 * std::pow((z_ - position(0)) / walk_.r, 2); }
-  double settle(std::size_t i, const Position& position) {
+  double commit(std::size_t i, const Position& position) {
     states_[i] = position(0);
     return log_fitness(i, position);
   }
-  void reproduce(const std::vector<Offspring>& offspring) {
+  void apply_resampling(const std::vector<Offspring>& offspring) {
     std::vector<double> children;
     for (const Offspring& child : offspring) children.push_back(states_[child.parent]);
     states_ = children;
@@ -64,7 +64,7 @@ Gaussian moments_of(const std::vector<double>& states, const std::vector<double>
 
 /// Calls see(step, Kalman's answer, the particles', their effective number) after each of 20 measurements.
 template <typename See>
-void compare(const ParticleFilterParts& parts, std::size_t particles, const See& see) {
+void compare(const ParticleFilterComponents& components, std::size_t particles, const See& see) {
   const Walk walk;
   const RandomStream world(7, "test/walk"), draws(7, "test/filter");
   std::vector<double> states, log_weights(particles, 0.0);
@@ -76,11 +76,11 @@ void compare(const ParticleFilterParts& parts, std::size_t particles, const See&
     const double z = truth + walk.r * world.normal(k + 1, 1);
     WalkProblem problem(walk, z, states);
     RandomSequence random(draws, k);
-    advance_particles(problem, parts, random, log_weights);
+    propagate_and_weight(problem, components, random, log_weights);
     const std::vector<double> weights = normalized_weights(log_weights);
     exact = kalman(walk, exact, z);
     see(static_cast<int>(k), exact, moments_of(states, weights), effective_sample_size(weights));
-    renew_particles(problem, parts, weights, random, log_weights);
+    resample_if_depleted(problem, components, weights, random, log_weights);
   }
 }
 
@@ -88,7 +88,7 @@ void compare(const ParticleFilterParts& parts, std::size_t particles, const See&
 // it is multiplied by (a (1 - gain))^2 < 1 / 4 in each step, and resampling adds P / N.
 TEST(ParticleFilter, FiveThousandParticlesAgreeWithTheKalmanFilter) {
   for (const char* resampler : {"multinomial", "systematic", "residual"}) {
-    compare(make_parts({.resampler = resampler}), 5000, [&](int step, const Gaussian& exact, const Gaussian& particles, double n) {
+    compare(make_components({.resampler = resampler}), 5000, [&](int step, const Gaussian& exact, const Gaussian& particles, double n) {
       EXPECT_NEAR(particles.mean, exact.mean, 4.0 * std::sqrt(2.0 * exact.variance / n)) << resampler << ", step " << step;
       EXPECT_NEAR(particles.variance, exact.variance, 4.0 * exact.variance * std::sqrt(2.0 * 2.0 / n)) << resampler << ", step " << step;
     });
@@ -97,10 +97,10 @@ TEST(ParticleFilter, FiveThousandParticlesAgreeWithTheKalmanFilter) {
 
 // What a swarm does to the distribution is not undone: the same particles, moved, are narrower than the truth.
 TEST(ParticleFilter, ASwarmMakesItOverconfidentByHalfTheVariance) {
-  ParticleFilterParts parts;
-  parts.optimizer = std::make_shared<WhaleOptimizer>(5);
+  ParticleFilterComponents components;
+  components.optimizer = std::make_shared<WhaleOptimizer>(5);
   double exact_sum = 0.0, sum = 0.0;
-  compare(parts, 200, [&](int, const Gaussian& exact, const Gaussian& particles, double) {
+  compare(components, 200, [&](int, const Gaussian& exact, const Gaussian& particles, double) {
     exact_sum += exact.variance;
     sum += particles.variance;
   });
@@ -112,7 +112,7 @@ TEST(AdvanceParticles, AddsTheLogLikelihoodToTheLogWeight) {
   std::vector<double> states = {0.0, 1.0}, log_weights = {-1.0, -2.0};
   WalkProblem problem({.a = 1.0, .b = 0.0, .q = 0.0, .r = 1.0}, 1.0, states);
   RandomSequence random(RandomStream(1, "test/filter"), 0);
-  advance_particles(problem, {}, random, log_weights);
+  propagate_and_weight(problem, {}, random, log_weights);
   EXPECT_EQ(log_weights, (std::vector<double>{-1.5, -2.0}));
   EXPECT_EQ(states, (std::vector<double>{0.0, 1.0}));
 }
@@ -127,9 +127,9 @@ Renewal renew(std::vector<double> log_weights, double threshold) {
   std::vector<double> states = {0.0, 1.0, 2.0, 3.0};
   WalkProblem problem({}, 0.0, states);
   RandomSequence random(RandomStream(1, "test/filter"), 0);
-  ParticleFilterParts parts;
-  parts.resample_threshold = threshold;
-  const bool is_renewed = renew_particles(problem, parts, normalized_weights(log_weights), random, log_weights);
+  ParticleFilterComponents components;
+  components.resample_threshold = threshold;
+  const bool is_renewed = resample_if_depleted(problem, components, normalized_weights(log_weights), random, log_weights);
   return {is_renewed, problem.num_renewals, states, log_weights};
 }
 

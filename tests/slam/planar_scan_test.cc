@@ -38,10 +38,10 @@ TEST(PlanarScan, EndsOfBeamsLieInTheBodysFrame) {
 // The body goes 0.4 m ahead and turns by 0.2 rad: half of it until the second beam of three.
 TEST(PlanarScan, BeamsAreSeenFromWhereTheFirstOneWasFired) {
   RecordedScan recorded = make_scan({1.0F, 2.0F, 3.0F});
-  recorded.T_first_last = {0.4, 0.0, 0.2};
+  recorded.T_begin_end = {0.4, 0.0, 0.2};
   const LevelScan scan = planar_scan(recorded, {});
   EXPECT_THAT(scan.beams[0].end_m, test::VectorNear(Eigen::Vector2f(1.5F, 0.0F), 1e-6));
-  const Eigen::Vector2d second = Pose2{0.2, 0.0, 0.1} * Eigen::Vector2d(0.5, 2.0), third = recorded.T_first_last * Eigen::Vector2d(-2.5, 0.0);
+  const Eigen::Vector2d second = Pose2{0.2, 0.0, 0.1} * Eigen::Vector2d(0.5, 2.0), third = recorded.T_begin_end * Eigen::Vector2d(-2.5, 0.0);
   EXPECT_THAT(scan.beams[1].end_m, test::VectorNear(Eigen::Vector2f(second.cast<float>()), 1e-6));
   EXPECT_THAT(scan.beams[2].end_m, test::VectorNear(Eigen::Vector2f(third.cast<float>()), 1e-6));
 }

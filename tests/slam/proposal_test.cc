@@ -29,21 +29,21 @@ GridMap make_map() {
   return map;
 }
 
-std::vector<MatchPoint> look() { return select_match_points(make_room().scan(kTruth, {}), 0.08, 800); }
+std::vector<MatchPoint> look() { return downsample_scan(make_room().scan(kTruth, {}), 0.08, 800); }
 
 PoseGaussian around(const Pose2& mean) {
   return {.mean = mean, .covariance = Eigen::Vector3d(0.01, 0.01, 0.0025).asDiagonal()};
 }
 
 Proposal propose(const PoseGaussian& prediction, double gain) {
-  return propose_from_scan(make_map(), look(), prediction.mean, prediction, gain, {});
+  return laplace_proposal(make_map(), look(), prediction.mean, prediction, gain, {});
 }
 
 TEST(ProposeFromScan, GoesToTheMatchAndIsSurerThanOdometry) {
   const PoseGaussian prediction = around({kTruth.x + 0.05, kTruth.y - 0.03, kTruth.yaw + 0.02});
   const Proposal proposal = propose(prediction, 0.02);
   EXPECT_THAT(proposal.posterior.mean, Pose2Near(kTruth, 0.005, 0.002));
-  EXPECT_GT(proposal.matched_share, 0.9);
+  EXPECT_GT(proposal.inlier_ratio, 0.9);
   for (int i = 0; i < 3; ++i)
     EXPECT_LT(proposal.posterior.covariance(i, i), 0.1 * prediction.covariance(i, i)) << i;
 }
@@ -61,17 +61,17 @@ TEST(ProposeFromScan, InformationGrowsInProportionToTheGain) {
 TEST(ProposeFromScan, WithoutAMapStaysWithOdometry) {
   const PoseGaussian prediction = around({0.5, 0.0, 0.0});
   const Proposal proposal =
-      propose_from_scan(GridMap(0.05, 100.0), look(), prediction.mean, prediction, 0.02, {});
+      laplace_proposal(GridMap(0.05, 100.0), look(), prediction.mean, prediction, 0.02, {});
   EXPECT_THAT(proposal.posterior.mean, Pose2Near(prediction.mean, 0.0, 0.0));
   EXPECT_EQ(proposal.posterior.covariance, prediction.covariance);
-  EXPECT_EQ(proposal.log_weight_change, 0.0);
-  EXPECT_EQ(proposal.matched_share, 0.0);
+  EXPECT_EQ(proposal.log_weight_increment, 0.0);
+  EXPECT_EQ(proposal.inlier_ratio, 0.0);
 }
 
 // Two predictions, one right and one 10 cm (one standard deviation) off: same match, weight lower by 1/2.
 TEST(ProposeFromScan, OneStandardDeviationOffCostsHalfANat) {
-  const double right = propose(around(kTruth), 0.02).log_weight_change;
-  const double off = propose(around({kTruth.x + 0.1, kTruth.y, kTruth.yaw}), 0.02).log_weight_change;
+  const double right = propose(around(kTruth), 0.02).log_weight_increment;
+  const double off = propose(around({kTruth.x + 0.1, kTruth.y, kTruth.yaw}), 0.02).log_weight_increment;
   EXPECT_NEAR(right - off, 0.5, 0.05);
 }
 

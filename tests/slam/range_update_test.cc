@@ -17,7 +17,7 @@ PoseGaussian belief(const Pose2& mean, double std_m, double std_rad) {
 }
 
 /// What would be read at a pose, without noise.
-RangeSighting sighting_at(const Pose2& T_map_body, const Pose2& T_odom_body) {
+RangeMeasurement sighting_at(const Pose2& T_map_body, const Pose2& T_odom_body) {
   return {.anchor = kAnchor,
           .range_m = predict_uwb_range(kAnchor, T_map_body, kAntenna, {}).range_m,
           .T_odom_body = T_odom_body,
@@ -26,15 +26,15 @@ RangeSighting sighting_at(const Pose2& T_map_body, const Pose2& T_odom_body) {
 
 TEST(RangeUpdate, TheGradientIsThatOfFiniteDifferences) {
   const Pose2 T_odom_then{1.0, 2.0, 0.3}, T_odom_now{2.0, 1.5, 0.9};
-  const RangeSighting sighting = sighting_at({3.0, 1.0, 0.5}, T_odom_then);
+  const RangeMeasurement measurement = sighting_at({3.0, 1.0, 0.5}, T_odom_then);
   const PoseGaussian now = belief({4.0, 0.5, 1.1}, 0.1, 0.05);
-  const RangeInnovation innovation = range_innovation(now, T_odom_now, sighting, {});
+  const RangeInnovation innovation = range_innovation(now, T_odom_now, measurement, {});
   constexpr double kStep = 1e-6;
   for (int axis = 0; axis < 3; ++axis) {
     PoseGaussian moved = now;
-    moved.mean = shifted(now.mean, kStep * Eigen::Vector3d::Unit(axis));
-    const double change = innovation.excess_m - range_innovation(moved, T_odom_now, sighting, {}).excess_m;
-    EXPECT_NEAR(innovation.by_pose[axis], change / kStep, 1e-4) << axis;
+    moved.mean = perturbed(now.mean, kStep * Eigen::Vector3d::Unit(axis));
+    const double change = innovation.innovation_m - range_innovation(moved, T_odom_now, measurement, {}).innovation_m;
+    EXPECT_NEAR(innovation.H_pose[axis], change / kStep, 1e-4) << axis;
   }
 }
 
@@ -57,11 +57,11 @@ TEST(RangeUpdate, InnovationsOf500RangesAreAsLargeAsTheirVariancesSay) {
   constexpr int kCount = 500;
   for (std::uint64_t i = 0; i < kCount; ++i) {
     const Pose2 truth{1.0, -2.0, 0.4};
-    PoseGaussian now = belief(shifted(truth, {0.2 * stream.normal(i, 0), 0.2 * stream.normal(i, 1), 0.02 * stream.normal(i, 2)}), 0.2, 0.02);
-    RangeSighting sighting = sighting_at(truth, {});
-    sighting.range_m += 0.15 * stream.normal(i, 3);
-    const RangeInnovation innovation = range_innovation(now, {}, sighting, {.range_std_m = 0.15});
-    sum += innovation.excess_m * innovation.excess_m / innovation.variance_m2;
+    PoseGaussian now = belief(perturbed(truth, {0.2 * stream.normal(i, 0), 0.2 * stream.normal(i, 1), 0.02 * stream.normal(i, 2)}), 0.2, 0.02);
+    RangeMeasurement measurement = sighting_at(truth, {});
+    measurement.range_m += 0.15 * stream.normal(i, 3);
+    const RangeInnovation innovation = range_innovation(now, {}, measurement, {.range_std_m = 0.15});
+    sum += innovation.innovation_m * innovation.innovation_m / innovation.variance_m2;
   }
   EXPECT_NEAR(sum / kCount, 1.0, 2.58 * std::sqrt(2.0 / kCount));  // 99 % of chi-square's mean
 }
@@ -69,7 +69,7 @@ TEST(RangeUpdate, InnovationsOf500RangesAreAsLargeAsTheirVariancesSay) {
 TEST(RangeUpdate, ALongRangeIsDoubtedSoonerThanAShortOne) {
   const RangeUpdateSettings settings{.range_std_m = 0.1};
   const auto verdict = [&](double deviations) {
-    return is_plausible({.excess_m = 0.1 * deviations, .variance_m2 = 0.01}, settings);
+    return passes_gate({.innovation_m = 0.1 * deviations, .variance_m2 = 0.01}, settings);
   };
   EXPECT_TRUE(verdict(1.9));
   EXPECT_FALSE(verdict(2.1));

@@ -22,8 +22,8 @@ RandomSequence sequence(std::uint64_t tick) { return {RandomStream(5, "test/resa
 std::vector<double> children_of(const std::vector<Offspring>& offspring, std::size_t parents) {
   std::vector<double> children(parents);
   for (const Offspring& child : offspring) {
-    children[child.parent] += 1.0 - child.share;
-    children[child.toward] += child.share;
+    children[child.parent] += 1.0 - child.attraction;
+    children[child.attractor] += child.attraction;
   }
   return children;
 }
@@ -54,18 +54,18 @@ double chi_squared(const Resampler& resample) {
 std::vector<Offspring> stepwise(const std::vector<double>& weights, RandomSequence& random) { return resample_stepwise(weights, random); }
 
 TEST(ResampleMultinomially, MeanOfTwentyThousandDrawsIsNW) {
-  EXPECT_LT(chi_squared(resample_multinomially), kChiSquared7);
-  EXPECT_GT(chi_squared(resample_multinomially), 0.60);  // 0.1 %: it is drawn, not dealt out
+  EXPECT_LT(chi_squared(resample_multinomial), kChiSquared7);
+  EXPECT_GT(chi_squared(resample_multinomial), 0.60);  // 0.1 %: it is drawn, not dealt out
 }
 
-TEST(ResampleEvenly, MeanOfTwentyThousandDrawsIsNW) { EXPECT_LT(chi_squared(resample_evenly), kChiSquared7); }
+TEST(ResampleEvenly, MeanOfTwentyThousandDrawsIsNW) { EXPECT_LT(chi_squared(resample_systematic), kChiSquared7); }
 
-TEST(ResampleByResiduals, MeanOfTwentyThousandDrawsIsNW) { EXPECT_LT(chi_squared(resample_by_residuals), kChiSquared7); }
+TEST(ResampleByResiduals, MeanOfTwentyThousandDrawsIsNW) { EXPECT_LT(chi_squared(resample_residual), kChiSquared7); }
 
 // Each unbiased one to four standard errors, parent by parent. Evenly, a parent's number is floor or ceil of N w: variance f (1 - f) with f = N w's
 // fraction. By residuals, R = 4 are drawn with probability f / R each: variance f (1 - f / R).
 TEST(ResampleEvenly, EveryParentsMeanIsNWToFourStandardErrors) {
-  const std::vector<double> mean = mean_children(resample_evenly);
+  const std::vector<double> mean = mean_children(resample_systematic);
   for (std::size_t i = 0; i < mean.size(); ++i) {
     const double expected = 8.0 * kWeights[i], f = expected - std::floor(expected);
     EXPECT_NEAR(mean[i], expected, 4.0 * std::sqrt(f * (1.0 - f) / kDraws)) << i;
@@ -73,14 +73,14 @@ TEST(ResampleEvenly, EveryParentsMeanIsNWToFourStandardErrors) {
 }
 
 TEST(ResampleByResiduals, EveryParentsMeanIsNWToFourStandardErrors) {
-  const std::vector<double> mean = mean_children(resample_by_residuals);
+  const std::vector<double> mean = mean_children(resample_residual);
   for (std::size_t i = 0; i < mean.size(); ++i) {
     const double expected = 8.0 * kWeights[i], f = expected - std::floor(expected);
     EXPECT_NEAR(mean[i], expected, 4.0 * std::sqrt(f * (1.0 - f / 4.0) / kDraws)) << i;
   }
 }
 
-TEST(DrawLowWeightsUp, IsBiasedHundredsOfTimesBeyondTheQuantile) { EXPECT_GT(chi_squared(draw_low_weights_up), 250.0 * kChiSquared7); }
+TEST(DrawLowWeightsUp, IsBiasedHundredsOfTimesBeyondTheQuantile) { EXPECT_GT(chi_squared(optimize_low_weights), 250.0 * kChiSquared7); }
 
 TEST(ResampleStepwise, IsBiasedHundredsOfTimesBeyondTheQuantile) { EXPECT_GT(chi_squared(stepwise), 250.0 * kChiSquared7); }
 
@@ -88,7 +88,7 @@ TEST(ResampleStepwise, IsBiasedHundredsOfTimesBeyondTheQuantile) { EXPECT_GT(chi
 TEST(ResampleByResiduals, FloorOfNWChildrenAreCertain) {
   for (std::uint64_t tick = 0; tick < 200; ++tick) {
     RandomSequence random = sequence(tick);
-    const std::vector<Offspring> offspring = resample_by_residuals(kWeights, random);
+    const std::vector<Offspring> offspring = resample_residual(kWeights, random);
     const std::vector<double> children = children_of(offspring, kWeights.size());
     EXPECT_EQ(offspring.size(), kWeights.size());
     EXPECT_GE(children[1], 2.0);
@@ -99,7 +99,7 @@ TEST(ResampleByResiduals, FloorOfNWChildrenAreCertain) {
 
 TEST(Resamplers, GiveAsManyAsThereWereAndNothingToAWeightOfZero) {
   const std::vector<double> weights = {0.0, 0.5, 0.0, 0.3, 0.2};
-  for (const Resampler& resample : {Resampler(resample_multinomially), Resampler(resample_evenly), Resampler(resample_by_residuals)}) {
+  for (const Resampler& resample : {Resampler(resample_multinomial), Resampler(resample_systematic), Resampler(resample_residual)}) {
     for (std::uint64_t tick = 0; tick < 100; ++tick) {
       RandomSequence random = sequence(tick);
       const std::vector<Offspring> offspring = resample(weights, random);
@@ -111,12 +111,12 @@ TEST(Resamplers, GiveAsManyAsThereWereAndNothingToAWeightOfZero) {
 
 TEST(Resamplers, GiveASingleParticleItself) {
   for (const Resampler& resample :
-       {Resampler(resample_multinomially), Resampler(resample_evenly), Resampler(resample_by_residuals), Resampler(draw_low_weights_up), Resampler(stepwise)}) {
+       {Resampler(resample_multinomial), Resampler(resample_systematic), Resampler(resample_residual), Resampler(optimize_low_weights), Resampler(stepwise)}) {
     RandomSequence random = sequence(0);
     const std::vector<Offspring> offspring = resample({1.0}, random);
     ASSERT_EQ(offspring.size(), 1U);
     EXPECT_EQ(offspring[0].parent, 0U);
-    EXPECT_EQ(offspring[0].share, 0.0);
+    EXPECT_EQ(offspring[0].attraction, 0.0);
     EXPECT_EQ(offspring[0].mutation, 0.0);
   }
 }
@@ -128,16 +128,16 @@ TEST(DrawLowWeightsUp, KeepsTheFiveHeaviestAndDrawsTheRestTowardsThem) {
   for (std::uint64_t tick = 0; tick < 100; ++tick) {
     RandomSequence random = sequence(tick);
     std::set<std::size_t> parents;
-    for (const Offspring& child : draw_low_weights_up(kWeights, random)) {
+    for (const Offspring& child : optimize_low_weights(kWeights, random)) {
       parents.insert(child.parent);
       if (heaviest.contains(child.parent)) {
-        EXPECT_EQ(child.share, 0.0);
+        EXPECT_EQ(child.attraction, 0.0);
         continue;
       }
-      EXPECT_GT(child.share, 0.0);
-      EXPECT_LT(child.share, 1.0);
-      EXPECT_TRUE(heaviest.contains(child.toward)) << child.toward;
-      towards.insert(child.toward);
+      EXPECT_GT(child.attraction, 0.0);
+      EXPECT_LT(child.attraction, 1.0);
+      EXPECT_TRUE(heaviest.contains(child.attractor)) << child.attractor;
+      towards.insert(child.attractor);
     }
     EXPECT_EQ(parents.size(), kWeights.size());
   }
@@ -147,7 +147,7 @@ TEST(DrawLowWeightsUp, KeepsTheFiveHeaviestAndDrawsTheRestTowardsThem) {
 // Three light ones give half of themselves to five heavy ones: 1 / 2 is left of each, and a heavy one has 1 + 3 / 10. Standard error of the latter under
 // sqrt(3 / 5 / kDraws), since a share is under 1.
 TEST(DrawLowWeightsUp, CountsTheFiveHeaviestAlike) {
-  const std::vector<double> mean = mean_children(draw_low_weights_up);
+  const std::vector<double> mean = mean_children(optimize_low_weights);
   for (const std::size_t heavy : {1U, 3U, 5U, 7U, 2U}) EXPECT_NEAR(mean[heavy], 1.3, 4.0 * std::sqrt(0.6 / kDraws)) << heavy;
   for (const std::size_t light : {0U, 4U, 6U}) EXPECT_NEAR(mean[light], 0.5, 4.0 * std::sqrt(1.0 / 12.0 / kDraws)) << light;
 }
@@ -155,8 +155,8 @@ TEST(DrawLowWeightsUp, CountsTheFiveHeaviestAlike) {
 // "Largest integer below": four equal weights have N_eff = 4, so M = 3.
 TEST(DrawLowWeightsUp, OfFourEqualWeightsKeepsThree) {
   RandomSequence random = sequence(0);
-  const std::vector<Offspring> offspring = draw_low_weights_up({0.25, 0.25, 0.25, 0.25}, random);
-  EXPECT_EQ(std::count_if(offspring.begin(), offspring.end(), [](const Offspring& child) { return child.share == 0.0; }), 3);
+  const std::vector<Offspring> offspring = optimize_low_weights({0.25, 0.25, 0.25, 0.25}, random);
+  EXPECT_EQ(std::count_if(offspring.begin(), offspring.end(), [](const Offspring& child) { return child.attraction == 0.0; }), 3);
 }
 
 // With beta = 0.8, from the heaviest on:
@@ -175,7 +175,7 @@ TEST(ResampleStepwise, HandExampleOfFiveKeepsTwoTwiceAndShakesTheHeaviest) {
   const std::vector<std::size_t> parents = {3, 3, 1, 1, 3};
   for (std::size_t i = 0; i < 5; ++i) {
     EXPECT_EQ(offspring[i].parent, parents[i]) << i;
-    EXPECT_EQ(offspring[i].share, 0.0) << i;
+    EXPECT_EQ(offspring[i].attraction, 0.0) << i;
     EXPECT_EQ(offspring[i].mutation, i < 4 ? 0.0 : 0.01 * first_normal) << i;
   }
 }

@@ -45,7 +45,7 @@ GridMap make_map(const RoomWorld& room) {
 std::vector<MatchPoint> look(const RoomWorld& room, const Pose2& T_map_body) {
   const ScanMatcherSettings settings;
   const LevelScan scan = room.scan(T_map_body, Time{}, kNoisyLidar, RandomStream(2, "test/look"), 0);
-  return select_match_points(scan, settings.point_spacing_m, settings.max_points);
+  return downsample_scan(scan, settings.point_spacing_m, settings.max_points);
 }
 
 const Pose2 kTruth{0.47, 0.33, 0.41};
@@ -60,7 +60,7 @@ TEST(MatchScan, RecoversTenCentimetresAndThreeDegreesToFiveMillimetresAndATenthO
     EXPECT_THAT(match->T_map_body, Pose2Near(kTruth, 0.005, 0.1 * kDegree));
     EXPECT_TRUE(match->converged);
     EXPECT_LE(match->iterations, 8);
-    EXPECT_GT(match->matched_share, 0.9);
+    EXPECT_GT(match->inlier_ratio, 0.9);
   }
 }
 
@@ -75,7 +75,7 @@ TEST(MatchScan, SaysHowSureItIsToAFactorOfTwo) {
   constexpr int kLooks = 40;
   for (std::uint64_t i = 0; i < kLooks; ++i) {
     const LevelScan scan = room.scan(kTruth, Time{}, kNoisyLidar, RandomStream(3, "test/look"), i);
-    const auto points = select_match_points(scan, settings.point_spacing_m, settings.max_points);
+    const auto points = downsample_scan(scan, settings.point_spacing_m, settings.max_points);
     const auto match = match_scan(map, points, kTruth, std::nullopt, settings);
     ASSERT_TRUE(match);
     const Eigen::Vector3d error = match->T_map_body.vector() - kTruth.vector();
@@ -117,7 +117,7 @@ TEST(MatchScan, WithoutMapOrPointsThereIsNoMatch) {
 TEST(MatchScan, FarOffThereIsNoMatchRatherThanAWrongOne) {
   const RoomWorld room = make_room();
   ScanMatcherSettings settings;
-  settings.min_matched_share = 0.9;
+  settings.min_inlier_ratio = 0.9;
   EXPECT_FALSE(match_scan(make_map(room), look(room, kTruth),
                           {kTruth.x + 0.7, kTruth.y - 0.6, kTruth.yaw + 0.5}, std::nullopt, settings));
 }
@@ -130,7 +130,7 @@ TEST(MatchScan, AThirdOfThePointsOnAPersonMovesItByLessThanFiveMillimetres) {
   const auto match =
       match_scan(map, look(crowded, kTruth), {kTruth.x + 0.05, kTruth.y, kTruth.yaw}, std::nullopt, {});
   ASSERT_TRUE(match);
-  EXPECT_LT(match->matched_share, 0.95);
+  EXPECT_LT(match->inlier_ratio, 0.95);
   EXPECT_THAT(match->T_map_body, Pose2Near(kTruth, 0.005, 0.1 * kDegree));
 }
 

@@ -34,10 +34,10 @@ TEST(SurfacePoints, ASingleHitIsNoSurface) {
 
 TEST(FacingsOf, AWallFacesThoseWhoHaveSeenIt) {
   const GridMap map = wall_from_below();
-  const std::vector<Eigen::Vector2d> points = surface_points(map), facings = facings_of(points, map, 0.3);
+  const std::vector<Eigen::Vector2d> points = surface_points(map), free_space_normals = estimate_free_space_normals(points, map, 0.3);
   for (std::size_t i = 3; i + 3 < points.size(); ++i) {
-    EXPECT_NEAR(facings[i].norm(), 1.0, 1e-9);
-    EXPECT_LT(facings[i].y(), -0.99) << points[i].transpose();
+    EXPECT_NEAR(free_space_normals[i].norm(), 1.0, 1e-9);
+    EXPECT_LT(free_space_normals[i].y(), -0.99) << points[i].transpose();
   }
 }
 
@@ -51,13 +51,13 @@ TEST(FacingsOf, APostSeenFromAllAroundFacesNobody) {
   }
   const std::vector<Eigen::Vector2d> points = surface_points(map);
   ASSERT_EQ(points.size(), 1U);
-  EXPECT_EQ(facings_of(points, map, 0.3)[0], Eigen::Vector2d(0.0, 0.0));
+  EXPECT_EQ(estimate_free_space_normals(points, map, 0.3)[0], Eigen::Vector2d(0.0, 0.0));
 }
 
 TEST(FacingsOf, WhereNothingIsKnownToBeFreeNobodyKnows) {
   GridMap map(0.05, 40.0);
   map.add_hit({1.0, 1.0});
-  EXPECT_EQ(facings_of({{1.0, 1.0}}, map, 0.3)[0], Eigen::Vector2d(0.0, 0.0));
+  EXPECT_EQ(estimate_free_space_normals({{1.0, 1.0}}, map, 0.3)[0], Eigen::Vector2d(0.0, 0.0));
 }
 
 }  // namespace

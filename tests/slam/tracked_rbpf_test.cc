@@ -34,8 +34,8 @@ double worst_error_m(const std::vector<Pose2>& path) {
   return worst;
 }
 
-TEST(TrackedRbpf, FollowsTenMetresToThreeCentimetresAndKeepsAPoseForEveryScan) {
-  TrackedRbpf rbpf({}, 1);
+TEST(ScanOdometryRbpf, FollowsTenMetresToThreeCentimetresAndKeepsAPoseForEveryScan) {
+  ScanOdometryRbpf rbpf({}, 1);
   map_drive(rbpf);
   EXPECT_EQ(rbpf.path().size(), short_drive().size());
   EXPECT_LT(worst_error_m(rbpf.path()), 0.03);
@@ -43,16 +43,16 @@ TEST(TrackedRbpf, FollowsTenMetresToThreeCentimetresAndKeepsAPoseForEveryScan) {
 }
 
 // With `odometry: given` the filter sees the odometry itself: no matching from scan to scan comes before.
-TEST(TrackedRbpf, WithGivenOdometryIsTheFilterAlone) {
-  TrackedRbpfSettings settings{.odometry = "given", .tracking = {}};
-  TrackedRbpf rbpf(settings, 1);
-  FilteredPath filter(settings.filter, 1);
+TEST(ScanOdometryRbpf, WithGivenOdometryIsTheFilterAlone) {
+  ScanOdometryRbpfSettings settings{.odometry = "given", .tracking = {}};
+  ScanOdometryRbpf rbpf(settings, 1);
+  TrajectoryRbpf filter(settings.filter, 1);
   map_drive(rbpf);
   map_drive(filter);
   ASSERT_EQ(rbpf.path().size(), filter.path().size());
   EXPECT_EQ(rbpf.path().back().vector(), filter.path().back().vector());
   settings.odometry = "wheels";
-  EXPECT_THROW(TrackedRbpf(settings, 1), InputError);
+  EXPECT_THROW(ScanOdometryRbpf(settings, 1), InputError);
 }
 
 TEST(MakeMapper, EveryMethodFollowsTenMetresToFourCentimetres) {
@@ -74,10 +74,10 @@ TEST(MakeMapper, AMethodThatIsNotThereIsRefused) {
 }
 
 // As from an old parent: released in a loop, not by a hundred thousand calls within each other.
-TEST(PathStep, AWayOfAMillionStepsIsLetGo) {
-  std::shared_ptr<PathStep> path;
-  for (int i = 0; i < 1'000'000; ++i) path = std::make_shared<PathStep>(Pose2{}, path);
-  const std::shared_ptr<PathStep> shared = path->before->before;
+TEST(TrajectoryNode, AWayOfAMillionStepsIsLetGo) {
+  std::shared_ptr<TrajectoryNode> path;
+  for (int i = 0; i < 1'000'000; ++i) path = std::make_shared<TrajectoryNode>(Pose2{}, path);
+  const std::shared_ptr<TrajectoryNode> shared = path->before->before;
   path.reset();
   EXPECT_EQ(shared.use_count(), 1);
 }

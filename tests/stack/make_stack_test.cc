@@ -52,7 +52,7 @@ TEST(MakeStack, AQuadrupedMeasuresGasWhileItMaps) {
                                      EventKind::kGasAlarm, EventKind::kMissionCompleted));
   EXPECT_TRUE(stack.mission_is_over());
   EXPECT_GE(all_of<MapUpdate>(messages).size(), 1U);
-  EXPECT_TRUE(all_of<LocalizationTrust>(messages).empty());
+  EXPECT_TRUE(all_of<LocalizationConfidence>(messages).empty());
   for (const PoseEstimate& pose : all_of<PoseEstimate>(messages)) EXPECT_LT(pose.T_map_body.position().norm(), 0.05);
 }
 
@@ -64,8 +64,8 @@ TEST(MakeStack, AQuadrupedDrivesToMarkedGoalsOnAKnownMap) {
   EXPECT_THAT(kinds_of(messages), ::testing::ElementsAre(EventKind::kNavigationStarted, EventKind::kGoalReached,
                                                          EventKind::kMissionCompleted));
   EXPECT_TRUE(all_of<MapUpdate>(messages).empty());  // the map is known
-  ASSERT_FALSE(all_of<LocalizationTrust>(messages).empty());
-  EXPECT_FALSE(all_of<LocalizationTrust>(messages).back().is_lost);
+  ASSERT_FALSE(all_of<LocalizationConfidence>(messages).empty());
+  EXPECT_FALSE(all_of<LocalizationConfidence>(messages).back().is_lost);
   EXPECT_LT(all_of<PoseEstimate>(messages).back().T_map_body.position().norm(), 0.05);
 }
 
@@ -75,7 +75,7 @@ TEST(MakeStack, AGasPatrolOnAKnownMapUsesThatMap) {
       make_stack(quick_gas_settings(), robot, route_with_a_station(), {.map = map_of_small_room(), .seed = 1});
   const std::vector<StackMessage> messages = stand(stack, robot, 8.0);
   EXPECT_TRUE(stack.mission_is_over());
-  EXPECT_FALSE(all_of<LocalizationTrust>(messages).empty());
+  EXPECT_FALSE(all_of<LocalizationConfidence>(messages).empty());
   EXPECT_EQ(stack.final_map({}).map.values(), map_of_small_room().values());
 }
 

@@ -40,7 +40,7 @@ Stack stack_of(const RobotDescription& robot, std::unique_ptr<Mission> mission, 
                 .motion = MotionExecutor(settings, robot, {}, 1),
                 .mission = std::move(mission),
                 .instruments = InstrumentSet({}, 1.0),
-                .sensor_watch = SensorWatch(settings.sensor_watch),
+                .sensor_watch = SensorMonitor(settings.sensor_watch),
                 .dock = std::nullopt});
 }
 

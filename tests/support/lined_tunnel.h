@@ -28,7 +28,7 @@ struct LinedTunnel {
   TunnelLining lining{.T_route_start = {},
                       .axis = {{80.0, 0.0}, {90.0, 1.0 / 400.0}},
                       .crown_radius_m = 5.5,
-                      .crown_centre_m = 2.5,
+                      .crown_center_m = 2.5,
                       .side_radius_m = 8.0,
                       .first_ring_m = 0.0,
                       .ring_length_m = 2.0,
@@ -105,9 +105,9 @@ struct LinedTunnel {
 
   /// How far inside the lining a point is, radially.
   double inside_m(const Eigen::Vector3d& p) const {
-    const TunnelPlace place = lining.place_of(p);
+    const TunnelCoordinates place = lining.to_tunnel_coordinates(p);
     const double clock_deg = lining.clock_deg(place);
-    return lining.radius_at(clock_deg) - inward_m(lining.ring_at(place.chainage_m), clock_deg) - std::hypot(place.left_m, place.height_m - lining.crown_centre_m);
+    return lining.radius_at(clock_deg) - inward_m(lining.ring_at(place.chainage_m), clock_deg) - std::hypot(place.left_m, place.height_m - lining.crown_center_m);
   }
   /// In steps of about the way to the wall, then halved about it.
   double lining_range_m(const Eigen::Vector3d& from, const Eigen::Vector3d& towards, double limit_m) const {

@@ -37,13 +37,13 @@ inline LiningStation scan_twice(const LinedTunnel& before, const LinedTunnel& af
   LiningStation station;
   const Pose3 T_map_route{{1.0, 2.0, -0.3}, quaternion_from_yaw(0.4)};
   station.design_in_map = before.lining;
-  station.design_in_map.T_route_start = to_planar(T_map_route) * before.lining.T_route_start;
+  station.design_in_map.T_route_start = to_pose2(T_map_route) * before.lining.T_route_start;
   const Pose3 T_map_first = T_map_route * T_route_first;
   const Pose3 T_map_surveyed{T_map_first.position + Eigen::Vector3d(0.1 * survey[0], 0.1 * survey[1], 0.02), quaternion_from_yaw(0.005 * survey[2]) * T_map_first.rotation};
   station.reference = inspect::make_reference(first, T_map_surveyed);
   station.scan = after.scan(T_route_second, {.step_deg = step_deg, .range_offset_m = 5e-4 * place[3]}, 2 * seed + 1);
   station.T_map_scanner = T_map_surveyed * T_route_first.inverse() * T_route_second;
-  station.T_map_scanner_guess = held_level({station.T_map_scanner.position + Eigen::Vector3d(0.1 * guess[0], 0.1 * guess[1], 0.03 * guess[2]),
+  station.T_map_scanner_guess = remove_tilt({station.T_map_scanner.position + Eigen::Vector3d(0.1 * guess[0], 0.1 * guess[1], 0.03 * guess[2]),
                                             quaternion_from_yaw(kDegree * guess[3]) * station.T_map_scanner.rotation});
   return station;
 }

@@ -36,7 +36,7 @@ WalkingRobot::WalkingRobot(AssembledModel model, std::uint64_t seed, const Locom
     : robot_(io::load_robot_description(kRobotUrdf)),
       model_(std::move(model)),
       data_(make_data(*model_.physics)),
-      nearby_(*model_.physics),
+      culler_(*model_.physics),
       imu_sensor_({}, *model_.physics, seed),
       encoders_({}, *model_.physics, robot_.joint_names),
       foot_sensor_({}, *model_.physics, robot_.legs, seed),
@@ -60,7 +60,7 @@ void WalkingRobot::drive(const VelocityCommand& command) {
 }
 
 void WalkingRobot::advance() {
-  nearby_.update(*data_);
+  culler_.update(*data_);
   mj_Euler(model_.physics.get(), data_.get());
   mj_forward(model_.physics.get(), data_.get());
   ++tick_;
@@ -69,7 +69,7 @@ void WalkingRobot::advance() {
 WalkReport WalkingRobot::walk(double vx_mps, double vy_mps, double yaw_rate_radps, double duration_s) {
   const VelocityCommand command{
       .stamp = {}, .vx_mps = vx_mps, .vy_mps = vy_mps, .yaw_rate_radps = yaw_rate_radps};
-  const Pose2 start = to_planar(T_world_body());
+  const Pose2 start = to_pose2(T_world_body());
   const auto ticks = static_cast<int>(std::lround(duration_s / model_.physics->opt.timestep));
   WalkReport report;
   report.min_height_m = T_world_body().position.z();
@@ -83,7 +83,7 @@ WalkReport WalkingRobot::walk(double vx_mps, double vy_mps, double yaw_rate_radp
     const Eigen::Vector3d velocity = velocity_mps();
     forward.add(velocity.x());
     sideways.add(velocity.y());
-    const double yaw = yaw_of(pose.rotation);
+    const double yaw = to_yaw(pose.rotation);
     report.moved.yaw += wrap_angle(yaw - last_yaw);
     last_yaw = yaw;
     roll.add(std::atan2(R(2, 1), R(2, 2)));
@@ -103,7 +103,7 @@ WalkReport WalkingRobot::walk(double vx_mps, double vy_mps, double yaw_rate_radp
     }
   }
   const double yaw_moved = report.moved.yaw;
-  report.moved = start.inverse() * to_planar(T_world_body());
+  report.moved = start.inverse() * to_pose2(T_world_body());
   report.moved.yaw = yaw_moved;
   report.mean_forward_mps = forward.mean();
   report.mean_sideways_mps = sideways.mean();
@@ -124,7 +124,7 @@ Pose3 WalkingRobot::T_world_body() const {
 
 Eigen::Vector3d WalkingRobot::velocity_mps() const {
   const Eigen::Vector3d in_world(data_->qvel[0], data_->qvel[1], data_->qvel[2]);
-  return quaternion_from_yaw(-yaw_of(T_world_body().rotation)) * in_world;
+  return quaternion_from_yaw(-to_yaw(T_world_body().rotation)) * in_world;
 }
 
 /// Speed along the ground of the foot's material point that touches it.

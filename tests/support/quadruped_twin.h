@@ -80,7 +80,7 @@ class WalkingRobot {
   RobotDescription robot_;
   AssembledModel model_;
   DataPtr data_;
-  NearbyScenery nearby_;
+  CollisionCuller culler_;
   ImuSensor imu_sensor_;
   JointEncoders encoders_;
   FootContactSensor foot_sensor_;

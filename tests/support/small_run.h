@@ -17,9 +17,9 @@ inline app::RunContents small_run() {
   for (int i = 0; i <= 100; ++i) {
     const Time stamp = std::chrono::milliseconds(100 * i);
     const double x_m = 0.1 * i;
-    run.record.T_world_body.push_back({stamp, to_spatial({5.0 + x_m, 6.0, 0.0})});
-    run.record.T_odom_body.push_back({stamp, to_spatial({1.05 * x_m, 0.0, 0.0})});
-    run.record.T_map_body.push_back({stamp, to_spatial({x_m, 0.1, 0.0})});
+    run.record.T_world_body.push_back({stamp, to_pose3({5.0 + x_m, 6.0, 0.0})});
+    run.record.T_odom_body.push_back({stamp, to_pose3({1.05 * x_m, 0.0, 0.0})});
+    run.record.T_map_body.push_back({stamp, to_pose3({x_m, 0.1, 0.0})});
     run.record.covariances.push_back(Eigen::Vector3d(0.0009, 0.0016, 0.0001).asDiagonal());
   }
   run.record.is_complete = true;

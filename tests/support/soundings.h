@@ -19,16 +19,16 @@ inline AntennaGeometry antenna_mount() {
 }
 
 /// Soundings of rock and, if it has a radius, a body in the direction `towards` from the coil, with independent normal errors of 1 % and 3 nT/s at 1 ms.
-inline std::vector<inspect::AimedSounding> make_soundings(double rock_spm, const ConductiveSphere& body, const Eigen::Vector3d& towards,
+inline std::vector<inspect::OrientedSounding> make_soundings(double rock_spm, const ConductiveSphere& body, const Eigen::Vector3d& towards,
                                                           const std::vector<inspect::AntennaPose>& poses, std::uint64_t seed) {
-  TemWindow window;
+  TemGateLayout window;
   for (double gate_s = 2e-6; gate_s <= 3e-4; gate_s *= std::pow(10.0, 0.1)) window.gate_s.push_back(gate_s);
   const TemGates gates(window);
-  const Eigen::VectorXd rock = gated_rock(gates, rock_spm);
-  GatedSphere sphere{.axial = Eigen::VectorXd::Zero(rock.size()), .transverse = Eigen::VectorXd::Zero(rock.size())};
-  if (body.radius_m > 0.0) sphere = gated_sphere(gates, rock_spm, body);
+  const Eigen::VectorXd rock = gated_whole_space_response(gates, rock_spm);
+  GatedSphereResponse sphere{.axial = Eigen::VectorXd::Zero(rock.size()), .transverse = Eigen::VectorXd::Zero(rock.size())};
+  if (body.radius_m > 0.0) sphere = gated_sphere_response(gates, rock_spm, body);
   const RandomStream noise(seed, "test/soundings");
-  std::vector<inspect::AimedSounding> soundings;
+  std::vector<inspect::OrientedSounding> soundings;
   for (const inspect::AntennaPose& pose : poses) {
     const Eigen::Vector3d axis = quaternion_from_rpy(0.0, pose.pitch_rad, pose.yaw_rad) * Eigen::Vector3d::UnitX();
     const double cosine = axis.dot(towards);

@@ -27,7 +27,7 @@ Eigen::Vector3d draw_vector(const RandomStream& stream, std::uint64_t tick, std:
                                stream.normal(tick, first_index + 2));
 }
 
-double quantised(double value, double resolution) {
+double quantized(double value, double resolution) {
   return resolution > 0.0 ? resolution * std::round(value / resolution) : value;
 }
 
@@ -52,7 +52,7 @@ BeltProgram stand_then_drive(const Belts& belts) {
 BeltProgram stand_then_weave() {
   return [](double time_s, const Pose3& T_world_body) -> Belts {
     if (time_s < kStand_s) return {};
-    const Pose2 body = to_planar(T_world_body);
+    const Pose2 body = to_pose2(T_world_body);
     const double wave = 2.0 * std::numbers::pi / 60.0;
     const double slope = std::atan(1.5 * wave * std::cos(wave * body.x));
     const double turn = 0.5 * wrap_angle(slope - body.yaw) + 0.3 * (1.5 * std::sin(wave * body.x) - body.y);
@@ -138,24 +138,24 @@ void TrackedDrive::step() {
 void TrackedDrive::run_belts(double dt_s) {
   const Belts asked = program_(to_seconds(now()), T_world_body_);
   const double most = settings_.max_belt_acceleration_mps2 * dt_s;
-  belts_.left_mps = towards(belts_.left_mps, asked.left_mps, most);
-  belts_.right_mps = towards(belts_.right_mps, asked.right_mps, most);
-  belt_way_m_ += dt_s * Eigen::Vector2d(belts_.left_mps, belts_.right_mps);
+  contact_.left_mps = towards(contact_.left_mps, asked.left_mps, most);
+  contact_.right_mps = towards(contact_.right_mps, asked.right_mps, most);
+  belt_way_m_ += dt_s * Eigen::Vector2d(contact_.left_mps, contact_.right_mps);
 }
 
 void TrackedDrive::slip_and_turn(double dt_s) {
   const double tilt = (T_world_body_.rotation * Eigen::Vector3d::UnitZ()).head<2>().norm();
   const double slip_std = std::hypot(settings_.slip, settings_.slip_per_radps * yaw_rate_radps_, settings_.slip_per_tilt * tilt);
-  slip_left_.go(std::abs(belts_.left_mps) * dt_s / settings_.slip_length_m, slip_std, draw(0));
-  slip_right_.go(std::abs(belts_.right_mps) * dt_s / settings_.slip_length_m, slip_std, draw(1));
+  slip_left_.go(std::abs(contact_.left_mps) * dt_s / settings_.slip_length_m, slip_std, draw(0));
+  slip_right_.go(std::abs(contact_.right_mps) * dt_s / settings_.slip_length_m, slip_std, draw(1));
   crab_.go(std::abs(ahead_mps_) * dt_s / settings_.slip_length_m, settings_.crab, draw(5));
   const double turned = std::abs(yaw_rate_radps_) * dt_s / settings_.turn_length_rad;
   turn_ratio_.go(turned, settings_.turn_ratio_std, draw(2));
   turn_x_.go(turned, settings_.turn_centre_x_m, draw(3));
   turn_y_.go(turned, settings_.turn_centre_y_m, draw(4));
 
-  const double left = (1.0 - scale_ - slip_left_.value) * belts_.left_mps;
-  const double right = (1.0 - scale_ - slip_right_.value) * belts_.right_mps;
+  const double left = (1.0 - scale_ - slip_left_.value) * contact_.left_mps;
+  const double right = (1.0 - scale_ - slip_right_.value) * contact_.right_mps;
   const double distance = robot_.tracks->gauge_m * (settings_.turn_ratio + turn_ratio_.value);
   const double yaw_rate = (right - left) / distance;
   const double ahead = 0.5 * (left + right) + turn_y_.value * yaw_rate;
@@ -189,22 +189,22 @@ void TrackedDrive::measure_imu(const Eigen::Vector3d& omega_body, const Eigen::V
   const double root_s = std::sqrt(settings_.imu_period_s);
   gyro_bias_ += draw_vector(imu_noise_, tick, 0, settings_.gyro_bias_walk_radps2_rthz * root_s);
   accel_bias_ += draw_vector(imu_noise_, tick, 3, settings_.accel_bias_walk_mps3_rthz * root_s);
-  const double vibration = settings_.vibration_mps2_rthz / root_s * std::abs(0.5 * (belts_.left_mps + belts_.right_mps));
+  const double vibration = settings_.vibration_mps2_rthz / root_s * std::abs(0.5 * (contact_.left_mps + contact_.right_mps));
   Eigen::Vector3d rate = gyro_distortion_ * omega_body + gyro_bias_ + draw_vector(imu_noise_, tick, 6, settings_.gyro_noise_radps);
   Eigen::Vector3d force = accel_distortion_ * force_body + accel_bias_ +
                           draw_vector(imu_noise_, tick, 9, std::hypot(settings_.accel_noise_mps2, vibration));
   for (int axis = 0; axis < 3; ++axis) {
-    rate[axis] = quantised(rate[axis], settings_.gyro_resolution_radps);
-    force[axis] = quantised(force[axis], settings_.accel_resolution_mps2);
+    rate[axis] = quantized(rate[axis], settings_.gyro_resolution_radps);
+    force[axis] = quantized(force[axis], settings_.accel_resolution_mps2);
   }
   imu_ = {.stamp = now(), .angular_velocity_radps = rate, .linear_acceleration_mps2 = force};
 }
 
 TrackTicks TrackedDrive::ticks() const {
-  const double metres_per_tick = 2.0 * std::numbers::pi * robot_.tracks->sprocket_radius_m / settings_.ticks_per_sprocket_turn;
+  const double meters_per_tick = 2.0 * std::numbers::pi * robot_.tracks->sprocket_radius_m / settings_.ticks_per_sprocket_turn;
   return {.stamp = now(),
-          .left = static_cast<std::int64_t>(std::floor(belt_way_m_.x() / metres_per_tick)),
-          .right = static_cast<std::int64_t>(std::floor(belt_way_m_.y() / metres_per_tick))};
+          .left = static_cast<std::int64_t>(std::floor(belt_way_m_.x() / meters_per_tick)),
+          .right = static_cast<std::int64_t>(std::floor(belt_way_m_.y() / meters_per_tick))};
 }
 
 }  // namespace patrol::test

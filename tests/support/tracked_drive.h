@@ -109,7 +109,7 @@ class TrackedDrive {
   std::int64_t steps_per_ticks_;
 
   std::int64_t imu_steps_ = 0;
-  Belts belts_;                                                ///< as they run
+  Belts contact_;                                                ///< as they run
   Eigen::Vector2d belt_way_m_ = Eigen::Vector2d::Zero();  ///< left, right
   double scale_;
   Wanderer slip_left_, slip_right_, crab_, turn_ratio_, turn_x_, turn_y_;

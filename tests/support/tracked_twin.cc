@@ -14,7 +14,7 @@ AssembledModel assemble_tracked(const std::string& world, const Pose2& T_world_s
   return assemble_model(file.path(), kTrackedUrdf, T_world_start);
 }
 
-double tilt_of(const Pose3& pose) { return std::acos(std::min(1.0, pose.rotation.toRotationMatrix()(2, 2))); }
+double tilt_from_gravity(const Pose3& pose) { return std::acos(std::min(1.0, pose.rotation.toRotationMatrix()(2, 2))); }
 
 }  // namespace
 
@@ -29,7 +29,7 @@ TrackedRobot::TrackedRobot(const std::string& world, const Pose2& T_world_start,
       hall_(hall_settings_, *model_.physics, robot_.joint_names, seed),
       drive_(robot_, settings, hall_settings_.ticks_per_rad(), *model_.physics),
       body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)) {
-  if (uses_nearby_scenery) nearby_.emplace(*model_.physics);
+  if (uses_nearby_scenery) culler_.emplace(*model_.physics);
   std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
   mj_forward(model_.physics.get(), data_.get());
   stand(1.0);
@@ -44,7 +44,7 @@ void TrackedRobot::command_drive(const VelocityCommand& command) {
 
 void TrackedRobot::advance() {
   mj_Euler(model_.physics.get(), data_.get());
-  if (nearby_) nearby_->update(*data_);
+  if (culler_) culler_->update(*data_);
   mj_forward(model_.physics.get(), data_.get());
   ++tick_;
 }
@@ -55,18 +55,18 @@ DriveReport TrackedRobot::drive(double vx_mps, double yaw_rate_radps, double dur
   const TrackTicks ticks_at_start = ticks_;
   const auto ticks = static_cast<int>(std::lround(duration_s / model_.physics->opt.timestep));
   DriveReport report;
-  double last_yaw = yaw_of(start.rotation), turned = 0.0;
+  double last_yaw = to_yaw(start.rotation), turned = 0.0;
   for (int tick = 0; tick < ticks; ++tick) {
     step(command);
     const Pose3 pose = T_world_body();
-    turned += wrap_angle(yaw_of(pose.rotation) - last_yaw);
-    last_yaw = yaw_of(pose.rotation);
-    report.max_tilt_rad = std::max(report.max_tilt_rad, tilt_of(pose));
+    turned += wrap_angle(to_yaw(pose.rotation) - last_yaw);
+    last_yaw = to_yaw(pose.rotation);
+    report.max_tilt_rad = std::max(report.max_tilt_rad, tilt_from_gravity(pose));
     report.mean_left_nm += data_->ctrl[0] / ticks;
     report.mean_right_nm += data_->ctrl[1] / ticks;
     report.mean_contacts += static_cast<double>(data_->ncon) / ticks;
   }
-  report.moved = to_planar(start).inverse() * to_planar(T_world_body());
+  report.moved = to_pose2(start).inverse() * to_pose2(T_world_body());
   report.moved.yaw = turned;
   report.climbed_m = T_world_body().position.z() - start.position.z();
   const double m_per_tick = robot_.tracks->sprocket_radius_m / hall_settings_.ticks_per_rad();

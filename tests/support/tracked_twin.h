@@ -66,7 +66,7 @@ class TrackedRobot {
   RobotDescription robot_;
   AssembledModel model_;
   DataPtr data_;
-  std::optional<NearbyScenery> nearby_;
+  std::optional<CollisionCuller> culler_;
   HallSettings hall_settings_;
   ImuSensor imu_sensor_;
   HallSensors hall_;

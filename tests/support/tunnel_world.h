@@ -123,7 +123,7 @@ class TunnelDrive {
   LevelScan scan_of(const RoomWorld& world) const { return world.scan(T_map_body_, stamp_, kTunnelLidar, lidar_noise_, tick_); }
   std::vector<UwbRange> ranges() const {
     std::vector<UwbRange> heard;
-    const Eigen::Vector3d antenna = to_spatial(T_map_body_) * T_body_uwb_.position;
+    const Eigen::Vector3d antenna = to_pose3(T_map_body_) * T_body_uwb_.position;
     for (const UwbAnchor& anchor : anchors_) {
       const double way = (anchor.p_m - antenna).norm();
       if (way > settings_.range_reach_m) continue;

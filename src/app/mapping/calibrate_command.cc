@@ -29,7 +29,7 @@ struct LogCalibrationSettings {
   int passes = 2;  ///< passes over the log; each uses the calibration of the one before
   io::ScanLogOptions log;
   slam::PlanarScanSettings scan;
-  slam::MotionPairSettings stretches;
+  slam::MotionSegmentSettings stretches;
   slam::CalibratorSettings calibrator;
 
   template <typename Self, typename Visitor>
@@ -46,7 +46,7 @@ struct LogCalibrationSettings {
 struct CalibratedLog {
   io::ScanLogSummary summary;
   Pose2 T_body_lidar;  ///< lidar pose of the log's first scan
-  std::vector<slam::MotionPair> pairs;
+  std::vector<slam::MotionSegment> pairs;
   slam::CalibrationResult result;
 };
 
@@ -55,7 +55,7 @@ std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, c
   const InterruptGuard guard;
   ProgressBar bar;
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(file, settings.log);
-  slam::MotionPairs pairs(settings.stretches, settings.scan, known);
+  slam::MotionSegmenter pairs(settings.stretches, settings.scan, known);
   std::optional<Pose2> T_body_lidar;
   const bool is_whole = read_scans(*log, name, guard, bar, [&](const RecordedScan& recorded) {
     if (!T_body_lidar) T_body_lidar = recorded.T_body_lidar;
@@ -77,7 +77,7 @@ io::Table stretch_table(const CalibratedLog& log) {
                   .columns = {"begin_s", "end_s", "odometry_x_m", "odometry_y_m", "odometry_yaw_rad", "lidar_x_m", "lidar_y_m", "lidar_yaw_rad", "error_std"},
                   .rows = {}};
   for (std::size_t k = 0; k < log.pairs.size(); ++k) {
-    const slam::MotionPair& pair = log.pairs[k];
+    const slam::MotionSegment& pair = log.pairs[k];
     const Pose2 lidar = pair.lidar();
     table.rows.push_back({to_seconds(pair.begin), to_seconds(pair.end), pair.odometry.x, pair.odometry.y, pair.odometry.yaw, lidar.x, lidar.y, lidar.yaw, log.result.errors[k]});
   }
@@ -88,7 +88,7 @@ io::Metrics metrics_of(const CalibratedLog& log) {
   io::Metrics metrics;
   const slam::CalibrationResult& result = log.result;
   metrics["log"] = {{"scans", log.summary.num_scans}};
-  metrics["stretches"] = {{"count", result.num_stretches}, {"rejected", result.num_rejected}, {"move_noise", result.move_noise}, {"turn_noise", result.turn_noise}};
+  metrics["stretches"] = {{"count", result.num_segments}, {"rejected", result.num_rejected}, {"move_noise", result.translation_noise_scale}, {"turn_noise", result.rotation_noise_scale}};
   metrics["converged"] = result.converged;
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     const slam::CalibratedParameter& parameter = result.parameters[i];
@@ -127,7 +127,7 @@ std::string table_text(const slam::CalibrationResult& result) {
 ExitCode calibrate_command(const CalibrateOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.skip_bad_lines) overrides.push_back("log.skip_bad_lines=true");
-  const auto settings = io::settings_of<LogCalibrationSettings>(overrides);
+  const auto settings = io::parse_settings<LogCalibrationSettings>(overrides);
   std::optional<CalibratedLog> log;
   for (int pass = 1; pass <= settings.passes; ++pass) {
     const slam::Calibration known = log ? log->result.calibration() : slam::Calibration{};
@@ -146,7 +146,7 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
   io::save_settings(options.out / "settings.yaml", settings);
   complete_output(options.out);
 
-  fmt::print("{}{} stretches of the way, {} of them rejected (odometry slipped or lied, or the match was wrong){}\n{}{}\n", io::to_text(log->summary), result.num_stretches,
+  fmt::print("{}{} stretches of the way, {} of them rejected (odometry slipped or lied, or the match was wrong){}\n{}{}\n", io::to_text(log->summary), result.num_segments,
              result.num_rejected, result.converged ? "" : "; not converged", table_text(result), (options.out / "calibration.yaml").string());
   return result.converged ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }

@@ -19,7 +19,7 @@ render::MapBlock map_block(const MappingContents& contents) {
     shown.extend(way.back());
   }
   const render::MapLayers layers{.built = contents.map, .T_world_map = {}, .truth = {}, .error_m = {}};
-  return {.picture = render::map_picture(layers, shown), .paths = {{"estimated path", render::Ink::kEstimate, {std::move(way)}}}, .marks = {}};
+  return {.picture = render::map_picture(layers, shown), .paths = {{"estimated path", render::SeriesColor::kEstimate, {std::move(way)}}}, .marks = {}};
 }
 
 /// Plot of one cost column, by its name, over the scans.
@@ -28,7 +28,7 @@ render::LinePlot plot_of(const MappingContents& contents, const std::string& col
     return static_cast<std::size_t>(std::ranges::find(contents.cost.columns, name) - contents.cost.columns.begin());
   };
   const std::size_t scans = index_of("scans"), value = index_of(column);
-  render::Curve curve{.name = title, .ink = render::Ink::kEstimate, .is_dashed = false, .points = {}};
+  render::Curve curve{.name = title, .ink = render::SeriesColor::kEstimate, .is_dashed = false, .points = {}};
   for (const auto& row : contents.cost.rows) curve.points.emplace_back(std::get<double>(row[scans]), std::get<double>(row[value]));
   const double last = curve.points.empty() ? 1.0 : curve.points.back().x();
   return {.title = title, .unit = unit, .axis = {.label = "scans", .max = last}, .max = {}, .curves = {std::move(curve)}, .marks = {}, .spans = {}};
@@ -38,7 +38,7 @@ render::LinePlot plot_of(const MappingContents& contents, const std::string& col
 
 render::Page mapping_page(const MappingContents& contents) {
   const io::Metrics &log = contents.metrics["log"], &graph = contents.metrics["graph"], &performance = contents.metrics["performance"];
-  const render::KeyFigures figures{.figures = {{.label = "scans", .value = fmt::format("{}", log["scans"].get<std::size_t>()), .unit = "", .note = fmt::format("{:.0f} s", log["duration_s"].get<double>())},
+  const render::KeyMetrics figures{.figures = {{.label = "scans", .value = fmt::format("{}", log["scans"].get<std::size_t>()), .unit = "", .note = fmt::format("{:.0f} s", log["duration_s"].get<double>())},
                                                {.label = "way", .value = fmt::format("{:.0f}", contents.metrics["path"]["way_m"].get<double>()), .unit = "m",
                                                 .note = fmt::format("by odometry {:.0f} m", log["odometry_way_m"].get<double>())},
                                                {.label = "edges to other submaps", .value = fmt::format("{}", graph["cross_submap_edges"].get<std::size_t>()), .unit = "",
@@ -52,7 +52,7 @@ render::Page mapping_page(const MappingContents& contents) {
           .sections = {{"", {figures}},
                        {"Map", {map_block(contents)}},
                        {"What scans cost as the map grew", {plot_of(contents, "ms_per_scan", "Processor time of a scan", "ms"), plot_of(contents, "peak_memory_mb", "Peak memory", "MB")}}},
-          .colophon = "Made by patrol slam; every setting stands in settings.yaml."};
+          .footer = "Made by patrol slam; every setting stands in settings.yaml."};
 }
 
 }  // namespace patrol::app

@@ -60,7 +60,7 @@ class CostTable {
 
   void add(std::size_t num_scans, double way_m) {
     if (num_scans % kScans != 0) return;
-    const double now_s = thread_seconds();
+    const double now_s = thread_cpu_time_s();
     table_.rows.push_back({static_cast<double>(num_scans), way_m, 1e3 * (now_s - last_s_) / kScans, peak_memory_mb()});
     last_s_ = now_s;
   }
@@ -68,7 +68,7 @@ class CostTable {
 
  private:
   io::Table table_{.name = "performance", .columns = {"scans", "way_m", "ms_per_scan", "peak_memory_mb"}, .rows = {}};
-  double last_s_ = thread_seconds();
+  double last_s_ = thread_cpu_time_s();
 };
 
 /// Data of the log in addition to the mapper's.
@@ -106,7 +106,7 @@ bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::st
 /// Trajectory with one pose per scan, in the log's order; duplicate stamps are kept.
 Trajectory trajectory_of(const std::vector<Time>& stamps, const std::vector<Pose2>& poses) {
   Trajectory trajectory;
-  for (std::size_t i = 0; i < stamps.size(); ++i) trajectory.push_back({stamps[i], to_spatial(poses[i])});
+  for (std::size_t i = 0; i < stamps.size(); ++i) trajectory.push_back({stamps[i], to_pose3(poses[i])});
   return trajectory;
 }
 
@@ -129,11 +129,11 @@ ExitCode slam_command(const SlamOptions& options) {
   if (options.skip_bad_lines) overrides.push_back("log.skip_bad_lines=true");
   LogMappingSettings settings;
   if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
-  io::SettingsReader::read_section("--set", io::document_of(overrides), "", settings);
+  io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
   const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbours_for(settings.slam.method, find_data_root("")), settings.seed);
 
-  const double wall_s = wall_seconds(), thread_s = thread_seconds();
+  const double wall_s = wall_seconds(), thread_s = thread_cpu_time_s();
   MappedLog mapped;
   const bool is_whole = map_log(*log, settings, options.log.filename().string(), *mapper, mapped);
   const OutputLock lock = begin_output(options.out, kMapping);  // not earlier: a damaged log must leave no output
@@ -152,7 +152,7 @@ ExitCode slam_command(const SlamOptions& options) {
   io::save_csv(options.out / "performance.csv", mapped.cost.table());
   io::Metrics metrics = metrics_of(log->summary(), mapped, estimate, graph);
   const double took_s = wall_seconds() - wall_s;
-  metrics["performance"] = {{"wall_s", took_s}, {"processor_s", thread_seconds() - thread_s}, {"real_time_factor", mapped.duration_s() / std::max(1e-9, took_s)}, {"peak_memory_mb", peak_memory_mb()}};
+  metrics["performance"] = {{"wall_s", took_s}, {"processor_s", thread_cpu_time_s() - thread_s}, {"real_time_factor", mapped.duration_s() / std::max(1e-9, took_s)}, {"peak_memory_mb", peak_memory_mb()}};
   io::save_metrics(options.out / "metrics.json", metrics);
   const MappingContents contents{.log = options.log.filename().string(), .method = settings.slam.method, .map = map, .estimate = estimate, .cost = mapped.cost.table(), .metrics = metrics};
   io::save_text(options.out / "report.html", render::to_html(mapping_page(contents)));

@@ -13,11 +13,11 @@ ExitCode solve_command(const SolveOptions& options) {
   }
   PoseGraph graph = io::load_g2o(options.graph);
   slam::PoseGraphSolverSettings settings{.max_iterations = 200};
-  settings.doubts_loops = options.doubts_loops;
+  settings.robust_loop_closures = options.robust_loop_closures;
   const slam::PoseGraphSolution solution = slam::solve(graph, settings);
   io::save_g2o(options.out, graph);
   fmt::print("{} nodes, {} edges{}\nsum of squared errors {:.2f} -> {:.2f} in {} iterations{}\n{}\n", graph.T_map_node.size(), graph.edges.size(),
-             options.doubts_loops ? ", loops doubted" : "", 2.0 * solution.initial_cost, 2.0 * solution.final_cost, solution.iterations,
+             options.robust_loop_closures ? ", loops doubted" : "", 2.0 * solution.initial_cost, 2.0 * solution.final_cost, solution.iterations,
              solution.converged ? "" : ", not converged", options.out.string());
   return solution.converged ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }

@@ -13,11 +13,11 @@
 namespace patrol::app {
 
 std::optional<SubmapTrack> build_submaps(const std::filesystem::path& run, const slam::PlanarScanSettings& scan, const slam::SubmapRbpfSettings& settings,
-                                         const BoostedStumps& neighbours, std::uint64_t seed, ProgressBar& bar, const InterruptGuard& guard) {
+                                         const BoostedStumps& neighbors, std::uint64_t seed, ProgressBar& bar, const InterruptGuard& guard) {
   const RunDirectory directory = open_run_directory(run);
   const Trajectory T_world_body = io::load_tum(directory.truth());
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(directory.log(), {});
-  SubmapTrack track{.slam = slam::SubmapRbpf(settings, neighbours, seed)};
+  SubmapTrack track{.slam = slam::SubmapRbpf(settings, neighbors, seed)};
   while (const std::optional<RecordedScan> recorded = log->next()) {
     if (guard.is_interrupted()) return std::nullopt;
     track.slam.update(slam::planar_scan(*recorded, scan), recorded->T_odom_body);
@@ -28,7 +28,7 @@ std::optional<SubmapTrack> build_submaps(const std::filesystem::path& run, const
   for (const std::size_t first : track.slam.first_scans()) {
     const std::optional<Pose3> pose = pose_at(T_world_body, track.stamps[first]);
     if (!pose) throw InputError(fmt::format("{}: ends before the log's scans do, or begins after them", directory.truth().string()));
-    track.T_world_submap.push_back(to_planar(*pose));
+    track.T_world_submap.push_back(to_pose2(*pose));
   }
   return track;
 }

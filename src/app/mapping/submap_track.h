@@ -22,6 +22,6 @@ struct SubmapTrack {
 /// Builds the submaps of a run directory. None if interrupted. Throws InputError if there is no log, or the ground
 /// truth does not cover all scans.
 std::optional<SubmapTrack> build_submaps(const std::filesystem::path& run, const slam::PlanarScanSettings& scan, const slam::SubmapRbpfSettings& settings,
-                                         const BoostedStumps& neighbours, std::uint64_t seed, ProgressBar& bar, const InterruptGuard& guard);
+                                         const BoostedStumps& neighbors, std::uint64_t seed, ProgressBar& bar, const InterruptGuard& guard);
 
 }  // namespace patrol::app

@@ -21,7 +21,7 @@ struct TrainingSettings {
   std::uint64_t seed = 1;
   slam::PlanarScanSettings scan;
   slam::SubmapRbpfSettings submap_rbpf;
-  slam::NeighbourExampleSettings examples;
+  slam::NeighborExampleSettings examples;
   slam::AdaBoostSettings boosting;
 
   template <typename Self, typename Visitor>
@@ -35,16 +35,16 @@ struct TrainingSettings {
 };
 
 /// Labeled pairs of submaps from the runs; none if interrupted.
-std::optional<slam::LabelledFeatures> examples_of(const std::vector<std::filesystem::path>& runs, const TrainingSettings& settings, const InterruptGuard& guard) {
+std::optional<slam::LabeledFeatures> examples_of(const std::vector<std::filesystem::path>& runs, const TrainingSettings& settings, const InterruptGuard& guard) {
   slam::SubmapRbpfSettings apart = settings.submap_rbpf;
   apart.max_candidates = 0;  // no submap constraints: the classifier does not exist yet
-  slam::LabelledFeatures examples{.names = slam::pair_feature_names(), .examples = {}, .labels = {}};
+  slam::LabeledFeatures examples{.names = slam::pair_feature_names(), .examples = {}, .labels = {}};
   ProgressBar bar;
   for (const std::filesystem::path& run : runs) {
     const std::optional<SubmapTrack> track = build_submaps(run, settings.scan, apart, {}, settings.seed, bar, guard);
     if (!track) return std::nullopt;
     const std::size_t before = examples.labels.size();
-    slam::add_neighbour_examples(track->slam, track->T_world_submap, settings.submap_rbpf.surfaces, settings.examples, settings.seed + before, examples);
+    slam::add_neighbor_examples(track->slam, track->T_world_submap, settings.submap_rbpf.surfaces, settings.examples, settings.seed + before, examples);
     const auto joinable = std::count(examples.labels.begin() + static_cast<std::ptrdiff_t>(before), examples.labels.end(), 1);
     bar.say(fmt::format("{}: {} submaps, {} examples, {} of them neighbours", run.string(), track->T_world_submap.size(), examples.labels.size() - before, joinable));
   }
@@ -55,7 +55,7 @@ struct Recognised {
   double precision = 0.0, recall = 0.0;
 };
 
-Recognised recognised_at(double min_margin, const BoostedStumps& model, const slam::LabelledFeatures& examples) {
+Recognised recognised_at(double min_margin, const BoostedStumps& model, const slam::LabeledFeatures& examples) {
   int right = 0, wrong = 0, missed = 0;
   for (std::size_t i = 0; i < examples.labels.size(); ++i) {
     const bool is_taken = model.margin(examples.examples[i]) > min_margin, is_neighbour = examples.labels[i] > 0;
@@ -67,7 +67,7 @@ Recognised recognised_at(double min_margin, const BoostedStumps& model, const sl
   return {.precision = share(right, wrong), .recall = share(right, missed)};
 }
 
-void print_recognition(const char* of, const BoostedStumps& model, const slam::LabelledFeatures& examples) {
+void print_recognition(const char* of, const BoostedStumps& model, const slam::LabeledFeatures& examples) {
   fmt::print("{}, {} examples:\n  margin above   precision   recall\n", of, examples.labels.size());
   for (const double margin : {0.0, 0.1, 0.2, 0.3, 0.4}) {
     const Recognised recognised = recognised_at(margin, model, examples);
@@ -78,10 +78,10 @@ void print_recognition(const char* of, const BoostedStumps& model, const slam::L
 }  // namespace
 
 ExitCode train_command(const TrainOptions& options) {
-  const auto settings = io::settings_of<TrainingSettings>(options.overrides);
+  const auto settings = io::parse_settings<TrainingSettings>(options.overrides);
   const InterruptGuard guard;
-  const std::optional<slam::LabelledFeatures> training = examples_of(options.runs, settings, guard);
-  const std::optional<slam::LabelledFeatures> held_out = training ? examples_of(options.held_out, settings, guard) : std::nullopt;
+  const std::optional<slam::LabeledFeatures> training = examples_of(options.runs, settings, guard);
+  const std::optional<slam::LabeledFeatures> held_out = training ? examples_of(options.held_out, settings, guard) : std::nullopt;
   if (!training || !held_out) {
     fmt::print(stderr, "patrol: interrupted; nothing is written\n");
     return ExitCode::kProgramFailed;

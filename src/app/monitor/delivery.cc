@@ -18,7 +18,7 @@ namespace {
 std::chrono::milliseconds milliseconds(double seconds) { return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds)); }
 
 /// Error message of a response, one line.
-std::string error_of(const monitor::HttpAnswer& answer) {
+std::string error_of(const monitor::HttpClientResponse& answer) {
   const auto json = nlohmann::json::parse(answer.body, nullptr, false);
   const bool says_why = json.is_object() && json.contains("error") && json["error"].is_string();
   return fmt::format("{} {}", answer.status, says_why ? json["error"].get<std::string>() : "");
@@ -27,7 +27,7 @@ std::string error_of(const monitor::HttpAnswer& answer) {
 }  // namespace
 
 Platform platform_from(const std::string& address, const std::optional<std::filesystem::path>& token_file) {
-  Platform platform{.url = monitor::url_from(address), .token = {}};
+  Platform platform{.url = monitor::parse_url(address), .token = {}};
   if (token_file) {
     platform.token = monitor::load_token(*token_file);
   } else if (const char* token = std::getenv("PATROL_TOKEN"); token != nullptr) {

@@ -21,7 +21,7 @@ std::string token_for(const MonitorOptions& options) {
     monitor::check_token("PATROL_TOKEN", token);
     return token;
   }
-  return monitor::token_of_folder(options.data);
+  return monitor::load_or_create_token(options.data);
 }
 
 /// Accepted host names from the options, including the host to listen on.
@@ -34,7 +34,7 @@ monitor::HostNames hosts_of(const MonitorOptions& options) {
 }  // namespace
 
 ExitCode monitor_command(const MonitorOptions& options) {
-  monitor::survive_lost_output();
+  monitor::ignore_lost_output();
   monitor::LineLog log(STDERR_FILENO);
   const auto log_line = [&log](const std::string& text) { log.write_with_time(text); };
   monitor::Store store(options.data);

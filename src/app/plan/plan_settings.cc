@@ -76,7 +76,7 @@ PlanSetup load_plan_setup(const PlanOptions& options) {
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
   if (options.smooth) overrides.push_back("smooth=true");
   if (options.speed_mps) overrides.push_back(fmt::format("speed_mps={}", *options.speed_mps));
-  io::SettingsReader::read_section("--set", io::document_of(overrides), "", settings);
+  io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
   settings.costmap.crosses_unknown = settings.unknown == "free";
   plan::make_route_planner(settings.planner, settings.routes, settings.seed);  // throws for an unknown planner
   if (settings.smooth && settings.planner == "any_angle_optimum") {

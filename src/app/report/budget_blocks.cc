@@ -26,7 +26,7 @@ class Waterfall {
         fmt::format("{:+.3g} {}", -unit_.factor * share.center, unit_.name));
     level_ = next;
   }
-  render::SpanChart chart() && { return std::move(chart_); }
+  render::WaterfallChart chart() && { return std::move(chart_); }
 
  private:
   void add(const std::string& label, double from, double to, const score::Interval& about, Tone tone, const std::string& text) {
@@ -41,7 +41,7 @@ class Waterfall {
 
   Unit unit_;
   double level_;
-  render::SpanChart chart_;
+  render::WaterfallChart chart_;
 };
 
 bool is_whole(const Budget& budget) { return budget.as_it_is && budget.ideal && budget.sum && budget.interaction; }

@@ -47,10 +47,10 @@ std::vector<std::string> short_names(const SweepManifest& manifest) {
 
 std::vector<render::Block> comparison_blocks(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, const std::string& metric) {
   const Unit unit = unit_of(metric);
-  const auto figures = figures_of(manifest, rows, metric);
+  const auto figures = flatten_metrics(manifest, rows, metric);
   const std::vector<std::string> names = short_names(manifest);
   render::BoxPlot boxes{.caption = "Every run, median and quartiles", .unit = unit.name, .boxes = {}};
-  render::SpanChart differences{.caption = fmt::format("Difference from {}, paired by seed, {:g} % intervals", names.front(), 100.0 * level_of(manifest)),
+  render::WaterfallChart differences{.caption = fmt::format("Difference from {}, paired by seed, {:g} % intervals", names.front(), 100.0 * level_of(manifest)),
                                 .unit = unit.name,
                                 .spans = {}};
   render::TableBlock table{.caption = "",
@@ -85,7 +85,7 @@ std::vector<render::Block> comparison_blocks(const SweepManifest& manifest, cons
   return blocks;
 }
 
-render::FoldedTables run_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
+render::CollapsibleTables run_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
   const std::vector<std::string> names = short_names(manifest);
   render::TableBlock table{.caption = "", .columns = {{"variant"}, {"seed", true}, {"end"}, {"exit code", true}, {"why"}}, .rows = {}};
   std::vector<std::size_t> order = progress.counted;

@@ -13,6 +13,6 @@ std::vector<std::string> short_names(const SweepManifest& manifest);
 std::vector<render::Block> comparison_blocks(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, const std::string& metric);
 
 /// Table of how each run ended, incomplete runs first.
-render::FoldedTables run_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress);
+render::CollapsibleTables run_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress);
 
 }  // namespace patrol::app

@@ -10,16 +10,16 @@ namespace patrol::app {
 namespace {
 
 using render::Curve;
-using render::Ink;
+using render::SeriesColor;
 using render::LinePlot;
 
-Curve position_curve(const std::string& name, Ink ink, const std::vector<score::MatchedPose>& poses) {
+Curve position_curve(const std::string& name, SeriesColor ink, const std::vector<score::MatchedPose>& poses) {
   Curve curve{.name = name, .ink = ink, .points = {}};
   for (const score::MatchedPose& pose : poses) curve.points.emplace_back(to_seconds(pose.stamp), pose.position_error_m());
   return curve;
 }
 
-Curve heading_curve(const std::string& name, Ink ink, const std::vector<score::MatchedPose>& poses) {
+Curve heading_curve(const std::string& name, SeriesColor ink, const std::vector<score::MatchedPose>& poses) {
   Curve curve{.name = name, .ink = ink, .points = {}};
   for (const score::MatchedPose& pose : poses) curve.points.emplace_back(to_seconds(pose.stamp), kDegPerRad * std::abs(pose.heading_error_rad()));
   return curve;
@@ -29,7 +29,7 @@ Curve heading_curve(const std::string& name, Ink ink, const std::vector<score::M
 /// (2 DRMS), which contains 95 to 98 % of Gaussian errors.
 template <typename Deviation>
 Curve bound_curve(const std::string& name, const RunRecord& record, const Deviation& deviation) {
-  Curve curve{.name = name, .ink = Ink::kBound, .is_dashed = true, .points = {}};
+  Curve curve{.name = name, .ink = SeriesColor::kBound, .is_dashed = true, .points = {}};
   for (std::size_t i = 0; i < record.covariances.size(); ++i) {
     curve.points.emplace_back(to_seconds(record.T_map_body[i].stamp), 2.0 * deviation(record.covariances[i]));
   }
@@ -41,7 +41,7 @@ class Plots {
  public:
   explicit Plots(const RunContents& run) : axis_{.label = "time, s", .max = run.end_s()}, marks_(marks_of(run)), spans_(spans_of(run)) {}
 
-  render::LanePlot lanes(const RunContents& run) const {
+  render::EventTimeline lanes(const RunContents& run) const {
     return {.title = "Events", .axis = axis_, .lanes = lanes_of(run), .spans = spans_};
   }
   LinePlot lines(const std::string& title, const std::string& unit, std::vector<Curve> curves) const {
@@ -54,21 +54,21 @@ class Plots {
   std::vector<render::PlotSpan> spans_;
 };
 
-LinePlot trust_plot(const Plots& plots, const std::vector<LocalizationTrust>& trusts) {
-  Curve trust{.name = "0 lost, 1 sure", .ink = Ink::kTrust, .points = {}};
-  for (const LocalizationTrust& one : trusts) trust.points.emplace_back(to_seconds(one.stamp), one.trust);
-  LinePlot plot = plots.lines("Localisation's trust in itself", "", {trust});
+LinePlot trust_plot(const Plots& plots, const std::vector<LocalizationConfidence>& trusts) {
+  Curve confidence{.name = "0 lost, 1 sure", .ink = SeriesColor::kTrust, .points = {}};
+  for (const LocalizationConfidence& one : trusts) confidence.points.emplace_back(to_seconds(one.stamp), one.confidence);
+  LinePlot plot = plots.lines("Localisation's trust in itself", "", {confidence});
   plot.max = 1.05;
   return plot;
 }
 
 LinePlot unaided_plot(const Plots& plots, const RunContents& run) {
   const RunRecord& record = run.record;
-  const Pose2 T_world_odom = score::join_at_start(record.T_odom_body, record.T_world_body);
-  std::vector<Curve> curves = {position_curve("odometry", Ink::kOdometry, score::match_poses(record.T_odom_body, T_world_odom, record.T_world_body))};
+  const Pose2 T_world_odom = score::align_at_start(record.T_odom_body, record.T_world_body);
+  std::vector<Curve> curves = {position_curve("odometry", SeriesColor::kOdometry, score::pair_poses(record.T_odom_body, T_world_odom, record.T_world_body))};
   if (!record.T_map_body_by_ranges.empty()) {
-    curves.push_back(position_curve("odometry and UWB ranges", Ink::kRanges,
-                                    score::match_poses(record.T_map_body_by_ranges, run.T_world_map, record.T_world_body)));
+    curves.push_back(position_curve("odometry and UWB ranges", SeriesColor::kRanges,
+                                    score::pair_poses(record.T_map_body_by_ranges, run.T_world_map, record.T_world_body)));
   }
   return plots.lines("Without map and lidar", "m", std::move(curves));
 }
@@ -81,12 +81,12 @@ std::vector<render::Block> error_blocks(const RunContents& run) {
   std::vector<render::Block> blocks;
   if (!record.events.empty() || !record.collisions.empty()) blocks.emplace_back(plots.lanes(run));
   if (!overlap(record.T_map_body, record.T_world_body) || !overlap(record.T_odom_body, record.T_world_body)) return blocks;
-  const std::vector<score::MatchedPose> estimate = score::match_poses(record.T_map_body, run.T_world_map, record.T_world_body);
+  const std::vector<score::MatchedPose> estimate = score::pair_poses(record.T_map_body, run.T_world_map, record.T_world_body);
   const auto position_std_m = [](const Eigen::Matrix3d& covariance) { return std::sqrt(covariance(0, 0) + covariance(1, 1)); };
   const auto heading_std_deg = [](const Eigen::Matrix3d& covariance) { return kDegPerRad * std::sqrt(covariance(2, 2)); };
-  blocks.emplace_back(plots.lines("Position error", "m", {position_curve("estimate", Ink::kEstimate, estimate), bound_curve("its own 2σ", record, position_std_m)}));
+  blocks.emplace_back(plots.lines("Position error", "m", {position_curve("estimate", SeriesColor::kEstimate, estimate), bound_curve("its own 2σ", record, position_std_m)}));
   blocks.emplace_back(unaided_plot(plots, run));
-  blocks.emplace_back(plots.lines("Heading error", "°", {heading_curve("estimate", Ink::kEstimate, estimate), bound_curve("its own 2σ", record, heading_std_deg)}));
+  blocks.emplace_back(plots.lines("Heading error", "°", {heading_curve("estimate", SeriesColor::kEstimate, estimate), bound_curve("its own 2σ", record, heading_std_deg)}));
   if (!record.trusts.empty()) blocks.emplace_back(trust_plot(plots, record.trusts));
   render::TextBlock note;
   note.text = "Map and world are joined at the start; nothing is fitted afterwards. 2σ: of the position, twice the root of the sum of both variances. "

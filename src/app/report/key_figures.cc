@@ -8,7 +8,7 @@
 namespace patrol::app {
 namespace {
 
-using render::KeyFigure;
+using render::KeyMetric;
 
 class Figures {
  public:
@@ -18,7 +18,7 @@ class Figures {
   void add(const std::string& label, const Quantity& quantity, const std::string& note) {
     figures_.push_back({label, quantity.value, quantity.unit, note});
   }
-  std::vector<KeyFigure> take() { return std::move(figures_); }
+  std::vector<KeyMetric> take() { return std::move(figures_); }
 
   /// Adds the number of a list's entries for which `holds` is true.
   template <typename Holds>
@@ -31,7 +31,7 @@ class Figures {
 
  private:
   const io::Metrics& metrics_;
-  std::vector<KeyFigure> figures_;
+  std::vector<KeyMetric> figures_;
 };
 
 void add_accuracy(Figures& figures) {
@@ -76,7 +76,7 @@ void add_mission(Figures& figures) {
 
 }  // namespace
 
-render::KeyFigures key_figures(const io::Metrics& metrics) {
+render::KeyMetrics key_figures(const io::Metrics& metrics) {
   Figures figures(metrics);
   add_accuracy(figures);
   add_places(figures);

@@ -59,9 +59,9 @@ bool is_list(const io::Metrics& metrics, const char* key) { return metrics.conta
 
 }  // namespace
 
-render::FoldedTables all_metrics(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks) {
+render::CollapsibleTables all_metrics(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks) {
   const std::vector<MetricLine> lines = metric_lines(metrics);
-  render::FoldedTables folded{.summary = fmt::format("All {} figures", lines.size()), .tables = {}};
+  render::CollapsibleTables folded{.summary = fmt::format("All {} figures", lines.size()), .tables = {}};
   for (const MetricLine& line : lines) {
     const std::size_t dot = line.path.find('.');
     const std::string group = line.path.substr(0, dot);

@@ -8,10 +8,10 @@
 namespace patrol::app {
 
 /// Main metrics; those that the run did not measure are omitted.
-render::KeyFigures key_figures(const io::Metrics& metrics);
+render::KeyMetrics key_figures(const io::Metrics& metrics);
 
 /// Every metric, one table per group.
-render::FoldedTables all_metrics(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks);
+render::CollapsibleTables all_metrics(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks);
 
 /// Blocks of stations, goals, inspection and performance; each is empty without metrics.
 std::vector<render::Block> station_blocks(const io::Metrics& metrics);

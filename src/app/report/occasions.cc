@@ -10,47 +10,47 @@
 namespace patrol::app {
 namespace {
 
-using render::Ink;
+using render::SeriesColor;
 using render::PlotMark;
 
 const std::string kLostText = "The robot says that it is lost.";
 
 /// Whether the marks of this lane are also shown in error curves.
-bool is_for_curves(const render::LanePlot::Lane& lane) {
-  return lane.marks.front().ink == Ink::kAlarm || lane.name == name_of(EventKind::kRecovery) || lane.name == name_of(EventKind::kRelocalized);
+bool is_for_curves(const render::EventTimeline::Lane& lane) {
+  return lane.marks.front().ink == SeriesColor::kAlarm || lane.name == name_of(EventKind::kRecovery) || lane.name == name_of(EventKind::kRelocalized);
 }
 
-render::LanePlot::Lane& lane_named(std::vector<render::LanePlot::Lane>& lanes, const std::string& name) {
+render::EventTimeline::Lane& lane_named(std::vector<render::EventTimeline::Lane>& lanes, const std::string& name) {
   const auto found = std::find_if(lanes.begin(), lanes.end(), [&](const auto& lane) { return lane.name == name; });
   if (found != lanes.end()) return *found;
-  return lanes.emplace_back(render::LanePlot::Lane{.name = name, .marks = {}});
+  return lanes.emplace_back(render::EventTimeline::Lane{.name = name, .marks = {}});
 }
 
 std::string text_of(const Event& event) { return event.text.empty() ? kind_text(event) : event.text; }
 
 }  // namespace
 
-std::vector<render::LanePlot::Lane> lanes_of(const RunContents& run) {
-  std::vector<render::LanePlot::Lane> lanes;
-  const auto add = [&](const std::string& lane, Ink ink, double at_s, const std::string& text) {
+std::vector<render::EventTimeline::Lane> lanes_of(const RunContents& run) {
+  std::vector<render::EventTimeline::Lane> lanes;
+  const auto add = [&](const std::string& lane, SeriesColor ink, double at_s, const std::string& text) {
     lane_named(lanes, lane).marks.push_back({.x = at_s, .text = text, .ink = ink});
   };
   for (const Event& event : run.record.events) {
-    add(kind_text(event), is_failure(event.kind) ? Ink::kAlarm : Ink::kEvent, to_seconds(event.stamp), text_of(event));
+    add(kind_text(event), is_failure(event.kind) ? SeriesColor::kAlarm : SeriesColor::kEvent, to_seconds(event.stamp), text_of(event));
   }
   for (const Collision& collision : run.record.collisions) {
-    add("collision", Ink::kAlarm, to_seconds(collision.stamp), fmt::format("{} touched {}.", collision.first, collision.second));
+    add("collision", SeriesColor::kAlarm, to_seconds(collision.stamp), fmt::format("{} touched {}.", collision.first, collision.second));
   }
   for (const KidnapSettings& kidnap : run.scenario.kidnaps) {
-    if (!is_executed(kidnap, run.record.T_world_body)) continue;
-    add("kidnap", Ink::kAlarm, kidnap.at_s, fmt::format("The robot is lifted to ({:.1f}, {:.1f}) m.", kidnap.x_m, kidnap.y_m));
+    if (!was_triggered(kidnap, run.record.T_world_body)) continue;
+    add("kidnap", SeriesColor::kAlarm, kidnap.at_s, fmt::format("The robot is lifted to ({:.1f}, {:.1f}) m.", kidnap.x_m, kidnap.y_m));
   }
   return lanes;
 }
 
 std::vector<PlotMark> marks_of(const RunContents& run) {
   std::vector<PlotMark> marks;
-  for (const render::LanePlot::Lane& lane : lanes_of(run)) {
+  for (const render::EventTimeline::Lane& lane : lanes_of(run)) {
     if (is_for_curves(lane)) marks.insert(marks.end(), lane.marks.begin(), lane.marks.end());
   }
   return marks;
@@ -62,7 +62,7 @@ std::vector<render::PlotSpan> spans_of(const RunContents& run) {
     const double end_s = std::min(fault.start_s + fault.duration_s, run.end_s());
     if (fault.start_s < end_s) spans.push_back({.from = fault.start_s, .to = end_s, .text = name_of(fault)});
   }
-  const std::vector<LocalizationTrust>& trusts = run.record.trusts;
+  const std::vector<LocalizationConfidence>& trusts = run.record.trusts;
   for (std::size_t i = 0; i + 1 < trusts.size(); ++i) {
     if (!trusts[i].is_lost) continue;
     const std::size_t first = i;
@@ -72,7 +72,7 @@ std::vector<render::PlotSpan> spans_of(const RunContents& run) {
   return spans;
 }
 
-render::FoldedTables event_table(const RunContents& run) {
+render::CollapsibleTables event_table(const RunContents& run) {
   render::TableBlock table{.caption = "", .columns = {{"s", true}, {"event"}, {"about"}, {"text"}}, .rows = {}};
   for (const Event& event : run.record.events) {
     const render::Tone tone = is_failure(event.kind) ? render::Tone::kBad : render::Tone::kPlain;

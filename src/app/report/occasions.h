@@ -9,7 +9,7 @@
 namespace patrol::app {
 
 /// One lane per kind of event, in the order of first occurrence; then collisions and kidnaps.
-std::vector<render::LanePlot::Lane> lanes_of(const RunContents& run);
+std::vector<render::EventTimeline::Lane> lanes_of(const RunContents& run);
 
 /// Marks for error curves, from some of the lanes: failures, recoveries and relocalizations.
 std::vector<render::PlotMark> marks_of(const RunContents& run);
@@ -18,6 +18,6 @@ std::vector<render::PlotMark> marks_of(const RunContents& run);
 std::vector<render::PlotSpan> spans_of(const RunContents& run);
 
 /// Table of all events, folded.
-render::FoldedTables event_table(const RunContents& run);
+render::CollapsibleTables event_table(const RunContents& run);
 
 }  // namespace patrol::app

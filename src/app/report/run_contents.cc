@@ -35,7 +35,7 @@ Pose2 map_in_world(const RunContents& run) {
   const auto x_m = figure("x_m"), y_m = figure("y_m"), yaw_rad = figure("yaw_rad");
   if (x_m && y_m && yaw_rad) return {*x_m, *y_m, *yaw_rad};
   if (!overlap(run.record.T_map_body, run.record.T_world_body)) return {};
-  return score::join_at_start(run.record.T_map_body, run.record.T_world_body);
+  return score::align_at_start(run.record.T_map_body, run.record.T_world_body);
 }
 
 }  // namespace

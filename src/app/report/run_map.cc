@@ -9,7 +9,7 @@
 namespace patrol::app {
 namespace {
 
-using render::Ink;
+using render::SeriesColor;
 using render::MapMark;
 
 /// Divides a trajectory into polylines at jumps of the robot or of its estimate.
@@ -17,7 +17,7 @@ std::vector<std::vector<Eigen::Vector2d>> pieces_of(const Trajectory& T_frame_bo
   constexpr double kJump_m = 0.5;  // between poses at most 0.1 s apart
   std::vector<std::vector<Eigen::Vector2d>> pieces;
   for (const StampedPose& entry : T_frame_body) {
-    const Eigen::Vector2d p_world = T_world_frame * to_planar(entry.pose).position();
+    const Eigen::Vector2d p_world = T_world_frame * to_pose2(entry.pose).position();
     if (pieces.empty() || (p_world - pieces.back().back()).norm() > kJump_m) pieces.emplace_back();
     pieces.back().push_back(p_world);
   }
@@ -37,9 +37,9 @@ Eigen::AlignedBox2d extent_of(const std::vector<render::MapPath>& paths) {
 /// Marks on the map; marks that would overlap share a label.
 class Marks {
  public:
-  void add(const std::string& label, Ink ink, const Eigen::Vector2d& p_world) {
+  void add(const std::string& label, SeriesColor ink, const Eigen::Vector2d& p_world) {
     constexpr double kShared_m = 1.5;
-    if (!num_by_label_.emplace(label, 0).second && ink != Ink::kAlarm) return;  // goals are reached repeatedly
+    if (!num_by_label_.emplace(label, 0).second && ink != SeriesColor::kAlarm) return;  // goals are reached repeatedly
     const auto near = std::find_if(marks_.begin(), marks_.end(), [&](const MapMark& mark) { return mark.ink == ink && (mark.p_m - p_world).norm() < kShared_m; });
     if (near == marks_.end()) marks_.push_back({.label = label, .ink = ink, .p_m = p_world});
     else if (near->label.find(label) == std::string::npos) near->label += ", " + label;
@@ -55,20 +55,20 @@ std::vector<MapMark> marks_on_map(const RunContents& run) {
   Marks marks;
   const auto truth_at = [&](Time stamp) {
     const std::optional<Pose3> truth = pose_at(run.record.T_world_body, stamp);
-    return truth ? to_planar(*truth).position() : to_planar(run.record.T_world_body.back().pose).position();
+    return truth ? to_pose2(*truth).position() : to_pose2(run.record.T_world_body.back().pose).position();
   };
-  marks.add("start", Ink::kEvent, to_planar(run.record.T_world_body.front().pose).position());
+  marks.add("start", SeriesColor::kEvent, to_pose2(run.record.T_world_body.front().pose).position());
   for (const Event& event : run.record.events) {
     const EventKind kind = event.kind;
-    if (kind == EventKind::kStationReached || kind == EventKind::kGoalMarked || kind == EventKind::kGoalReached) marks.add(event.subject, Ink::kEvent, truth_at(event.stamp));
-    if (kind == EventKind::kDocked) marks.add("dock", Ink::kEvent, truth_at(event.stamp));
-    if (class_of(kind) == EventClass::kHazard) marks.add(kind == EventKind::kGasAlarm ? "alarm" : event.subject, Ink::kAlarm, run.T_world_map * event.p_map_target);
-    if (class_of(kind) == EventClass::kTaskFailed) marks.add(event.subject + " failed", Ink::kAlarm, truth_at(event.stamp));
-    if (kind == EventKind::kFall) marks.add("fall", Ink::kAlarm, truth_at(event.stamp));
+    if (kind == EventKind::kStationReached || kind == EventKind::kGoalMarked || kind == EventKind::kGoalReached) marks.add(event.subject, SeriesColor::kEvent, truth_at(event.stamp));
+    if (kind == EventKind::kDocked) marks.add("dock", SeriesColor::kEvent, truth_at(event.stamp));
+    if (class_of(kind) == EventClass::kHazard) marks.add(kind == EventKind::kGasAlarm ? "alarm" : event.subject, SeriesColor::kAlarm, run.T_world_map * event.p_map_target);
+    if (class_of(kind) == EventClass::kTaskFailed) marks.add(event.subject + " failed", SeriesColor::kAlarm, truth_at(event.stamp));
+    if (kind == EventKind::kFall) marks.add("fall", SeriesColor::kAlarm, truth_at(event.stamp));
   }
-  for (const Collision& collision : run.record.collisions) marks.add("collision", Ink::kAlarm, truth_at(collision.stamp));
+  for (const Collision& collision : run.record.collisions) marks.add("collision", SeriesColor::kAlarm, truth_at(collision.stamp));
   for (const KidnapSettings& kidnap : run.scenario.kidnaps) {
-    if (is_executed(kidnap, run.record.T_world_body)) marks.add("put here", Ink::kAlarm, {kidnap.x_m, kidnap.y_m});
+    if (was_triggered(kidnap, run.record.T_world_body)) marks.add("put here", SeriesColor::kAlarm, {kidnap.x_m, kidnap.y_m});
   }
   return marks.take();
 }
@@ -79,8 +79,8 @@ std::vector<render::Block> map_blocks(const RunContents& run) {
   const RunRecord& record = run.record;
   if (record.map.values().empty()) return {};
   const render::MapLayers layers{.built = record.map, .T_world_map = run.T_world_map, .truth = run.truth_map, .error_m = run.map_errors_m};
-  const std::vector<render::MapPath> paths = {{"true path", Ink::kTruth, pieces_of(record.T_world_body, {})},
-                                              {"estimated path", Ink::kEstimate, pieces_of(record.T_map_body, run.T_world_map)}};
+  const std::vector<render::MapPath> paths = {{"true path", SeriesColor::kTruth, pieces_of(record.T_world_body, {})},
+                                              {"estimated path", SeriesColor::kEstimate, pieces_of(record.T_map_body, run.T_world_map)}};
   const render::MapBlock map{.picture = render::map_picture(layers, extent_of(paths)), .paths = paths, .marks = marks_on_map(run)};
   std::string note = "World frame, x to the right, y up; paths to a centimetre.";
   if (run.truth_map) note += " True surfaces: those that could be seen on this run, at the lidar's height; errors are to any surface.";

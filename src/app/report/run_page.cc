@@ -63,7 +63,7 @@ render::Page run_page(const RunContents& run, const std::filesystem::path& page_
                     .title = fmt::format("{} in the {}, seed {}", run.name, run.scenario.world, run.scenario.seed),
                     .facts = facts_of(run),
                     .sections = {{.title = "", .blocks = {verdict_of(run)}}},
-                    .colophon = fmt::format("Made by patrol report {} from the run's directory alone. Its scenario.yaml: {}.", PATROL_VERSION, run.made_by)};
+                    .footer = fmt::format("Made by patrol report {} from the run's directory alone. Its scenario.yaml: {}.", PATROL_VERSION, run.made_by)};
   const auto add = [&](const std::string& title, Blocks blocks) {
     if (!blocks.empty()) page.sections.push_back({title, std::move(blocks)});
   };

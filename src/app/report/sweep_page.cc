@@ -113,7 +113,7 @@ render::Page sweep_page(const SweepManifest& manifest, const SweepRows& rows, co
                               {"seeds", manifest.seeds.size() == 1 ? std::to_string(manifest.seeds.front()) : fmt::format("{} … {}", manifest.seeds.front(), manifest.seeds.back())},
                               {"runs", std::to_string(progress.counted.size())}},
                     .sections = {},
-                    .colophon = fmt::format("Made by patrol report {} from sweep.json and the results in runs/.", PATROL_VERSION)};
+                    .footer = fmt::format("Made by patrol report {} from sweep.json and the results in runs/.", PATROL_VERSION)};
   if (!manifest.overrides.empty()) page.facts.emplace_back("set in every run", fmt::format("{}", fmt::join(manifest.overrides, ", ")));
   switch (manifest.kind) {
     case SweepKind::kSweep:

@@ -23,8 +23,8 @@ render::TableBlock scenario_table(const std::vector<TestedScenario>& tested, boo
 }
 
 /// Tables of the scenarios with expectations.
-render::FoldedTables expectation_tables(const std::vector<TestedScenario>& tested) {
-  render::FoldedTables folded{.summary = "What was expected, and what was measured", .tables = {}};
+render::CollapsibleTables expectation_tables(const std::vector<TestedScenario>& tested) {
+  render::CollapsibleTables folded{.summary = "What was expected, and what was measured", .tables = {}};
   for (const TestedScenario& one : tested) {
     if (one.verdict->checks.empty()) continue;
     render::TableBlock table{.caption = one.name, .columns = {{"metric"}, {"wanted", true}, {"got", true}, {""}}, .rows = {}};
@@ -49,9 +49,9 @@ render::Page test_page(const std::vector<TestedScenario>& tested) {
                     .title = fmt::format("{} scenarios", tested.size()),
                     .facts = {{"patrol", PATROL_VERSION}},
                     .sections = {{.title = "", .blocks = {verdict}}},
-                    .colophon = "Made by patrol test. The same verdicts stand in junit.xml, and every figure in tests.csv."};
+                    .footer = "Made by patrol test. The same verdicts stand in junit.xml, and every figure in tests.csv."};
   if (num_passed > 0) page.sections.push_back({"Passed", {scenario_table(tested, true)}});
-  if (const render::FoldedTables folded = expectation_tables(tested); !folded.tables.empty()) page.sections.push_back({"Expectations", {folded}});
+  if (const render::CollapsibleTables folded = expectation_tables(tested); !folded.tables.empty()) page.sections.push_back({"Expectations", {folded}});
   return page;
 }
 

@@ -23,7 +23,7 @@ std::string early_end(const RunContents& run) {
   return end == nullptr || end->result == io::JunitResult::kPassed ? "" : end->message;
 }
 
-render::TableCell executed_cell(bool is_executed) { return is_executed ? render::TableCell{"executed", Tone::kGood} : render::TableCell{"NOT EXECUTED", Tone::kWarning}; }
+render::TableCell executed_cell(bool was_triggered) { return was_triggered ? render::TableCell{"executed", Tone::kGood} : render::TableCell{"NOT EXECUTED", Tone::kWarning}; }
 
 std::vector<render::TableCell> expectation_row(const CheckedExpectation& check, bool is_complete) {
   const render::TableCell judged = check.is_met ? render::TableCell{"met", Tone::kGood} : render::TableCell{"MISSED", Tone::kBad};
@@ -41,7 +41,7 @@ std::vector<render::TableCell> kidnap_row(const RunContents& run, const KidnapSe
   return {{name_of(kidnap)},
           {fmt::format("to ({}, {}) m", kidnap.x_m, kidnap.y_m)},
           {},
-          executed_cell(is_executed(kidnap, run.record.T_world_body))};
+          executed_cell(was_triggered(kidnap, run.record.T_world_body))};
 }
 
 std::string missed_text(const std::vector<CheckedExpectation>& checks) {
@@ -75,7 +75,7 @@ void add_unexecuted(render::VerdictBlock& verdict) {
 
 }  // namespace
 
-bool is_executed(const KidnapSettings& kidnap, const Trajectory& T_world_body) {
+bool was_triggered(const KidnapSettings& kidnap, const Trajectory& T_world_body) {
   constexpr double kNear_m = 0.5;             // the robot may fall or roll a little
   constexpr Time kAfter = std::chrono::milliseconds(50);  // a few samples of the ground truth
   const std::optional<Pose3> truth = pose_at(T_world_body, from_seconds(kidnap.at_s) + kAfter);

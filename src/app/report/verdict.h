@@ -10,6 +10,6 @@ namespace patrol::app {
 render::VerdictBlock verdict_of(const RunContents& run);
 
 /// Whether the ground truth in the log has the robot at the kidnap's position.
-bool is_executed(const KidnapSettings& kidnap, const Trajectory& T_world_body);
+bool was_triggered(const KidnapSettings& kidnap, const Trajectory& T_world_body);
 
 }  // namespace patrol::app

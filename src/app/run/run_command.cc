@@ -121,7 +121,7 @@ ExitCode run_command(const RunOptions& options) {
 
   fmt::print("{}\n", score_table(verdict->metrics, verdict->checks));
   if (const std::string goals = goal_table(verdict->metrics); !goals.empty()) fmt::print("{}\n", goals);
-  for (const DeclaredEvent& event : verdict->events) fmt::print("{}: {}\n", event.what, event.is_executed ? "executed" : "NOT EXECUTED");
+  for (const DeclaredEvent& event : verdict->events) fmt::print("{}: {}\n", event.what, event.was_triggered ? "executed" : "NOT EXECUTED");
   fmt::print("run directory: {}\n", root.string());
   return verdict->code();
 }

@@ -28,8 +28,8 @@ io::JunitCase event_case(const std::string& name, const DeclaredEvent& event) {
   return {.class_name = name,
           .name = event.what,
           .time_s = 0.0,
-          .result = event.is_executed ? io::JunitResult::kPassed : io::JunitResult::kSkipped,
-          .message = event.is_executed ? "" : "NOT EXECUTED",
+          .result = event.was_triggered ? io::JunitResult::kPassed : io::JunitResult::kSkipped,
+          .message = event.was_triggered ? "" : "NOT EXECUTED",
           .details = ""};
 }
 

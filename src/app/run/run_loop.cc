@@ -36,7 +36,7 @@ concept InstrumentOrder = std::is_constructible_v<InstrumentCommand, Message>;
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& files) {
+sim::SimulatorSettings simulator_settings(const Scenario& scenario, const ScenarioFiles& files) {
   return {.world_xml = files.world_xml.string(),
           .robot_urdf = files.robot_urdf.string(),
           .T_world_start = start_in_world(scenario, files),
@@ -45,11 +45,11 @@ sim::TwinSettings twin_settings(const Scenario& scenario, const ScenarioFiles& f
           .track_drive = scenario.track_drive,
           .props = props_of(scenario),
           .lining = files.route.lining,  // site is world
-          .lining_moves = scenario.lining,
+          .lining_deformations = scenario.lining,
           .actors = scenario.actors,
           .leaks = scenario.leaks,
           .wind = scenario.wind,
-          .underground = {.rock = scenario.rock, .water = scenario.water},
+          .subsurface = {.rock = scenario.rock, .water = scenario.water},
           .faults = scenario.faults,
           .drive = files.drive,
           .driver = scenario.remote.driver,
@@ -71,15 +71,15 @@ Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files) {
                                     to_rad(scenario.start.turn_deg)};
 }
 
-std::vector<sim::PropSettings> props_of(const Scenario& scenario) {
-  std::vector<sim::PropSettings> props = scenario.props;
-  const std::vector<sim::PropSettings> scattered = sim::scatter_low_obstacles(scenario.low_obstacles, scenario.seed);
+std::vector<sim::StaticObstacleSettings> props_of(const Scenario& scenario) {
+  std::vector<sim::StaticObstacleSettings> props = scenario.props;
+  const std::vector<sim::StaticObstacleSettings> scattered = sim::scatter_low_obstacles(scenario.low_obstacles, scenario.seed);
   props.insert(props.end(), scattered.begin(), scattered.end());
   return props;
 }
 
-sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files) {
-  return sim::Twin(twin_settings(scenario, files), files.robot, scenario.seed, render::make_depth_renderer);
+sim::Simulator make_twin(const Scenario& scenario, const ScenarioFiles& files) {
+  return sim::Simulator(simulator_settings(scenario, files), files.robot, scenario.seed, render::make_depth_renderer);
 }
 
 stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
@@ -88,18 +88,18 @@ stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
                             .goals = files.goals,
                             .references = references_of(files),
                             .neighbor_model = files.neighbor_model,
-                            .has_remote = files.has_remote(),
+                            .has_teleop = files.has_teleop(),
                             .map_period_s = scenario.log.map_period_s,
                             .seed = scenario.seed});
 }
 
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin, stack::Stack& stack,
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& twin, stack::Stack& stack,
                     const std::filesystem::path& log_mcap, RunObserver& observer) {
   const auto wall_start = std::chrono::steady_clock::now();
   const double cpu_start = cpu_seconds();
 
   io::RunLogWriter log(log_mcap, files.robot);
-  PartClock clock;
+  StageProfiler clock;
 
   Schedule truth_due(scenario.log.truth_rate_hz), state_due(scenario.log.state_rate_hz);
   Schedule progress_due(2.0);
@@ -112,7 +112,7 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
 
   const auto write_stack_messages = [&](Time now) {
     for (const stack::StackMessage& message : stack.take_messages()) {
-      const auto lap = clock.lap("log");
+      const auto timer = clock.time_stage("log");
       std::visit(Overloaded{[&](const auto& content) { log.write(now, content); },
                             [&]<InstrumentOrder Command>(const Command& order) {
                               log.write(now, order);
@@ -128,7 +128,7 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
     const Time now = twin.now();
     for (const SensorMessage& message : twin.take_messages()) {
       {
-        const auto lap = clock.lap("log");
+        const auto timer = clock.time_stage("log");
         log.write(now, message);
       }
       stack.handle(message);
@@ -144,7 +144,7 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
     const auto is_kidnapped = [&](const KidnapSettings& kidnap) { return from_seconds(kidnap.at_s) <= now; };
     while (outcome.num_kidnaps < kidnaps.size() && is_kidnapped(kidnaps[outcome.num_kidnaps])) {
       const KidnapSettings& kidnap = kidnaps[outcome.num_kidnaps++];
-      twin.put_at({kidnap.x_m, kidnap.y_m, to_rad(kidnap.heading_deg)});
+      twin.teleport({kidnap.x_m, kidnap.y_m, to_rad(kidnap.heading_deg)});
     }
     const GroundTruth truth = twin.truth();
     for (const Collision& collision : twin.take_collisions()) log.write(now, collision);
@@ -173,7 +173,7 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::T
   outcome.faults = twin.sensors().faults();
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
   outcome.cpu_s = cpu_seconds() - cpu_start;
-  for (const PartClock* part : {&twin.clock(), &stack.clock(), &std::as_const(clock)}) {
+  for (const StageProfiler* part : {&twin.clock(), &stack.clock(), &std::as_const(clock)}) {
     for (const auto& [name, seconds] : part->seconds()) outcome.seconds_by_part[name] += seconds;
   }
   // Expensive sensors are stages of their own.

@@ -21,7 +21,7 @@ struct RunOutcome {
   double wall_s = 0.0;
   double cpu_s = 0.0;
   std::map<std::string, double> seconds_by_part;     ///< wall time by stage
-  std::vector<sim::FaultReport> faults;
+  std::vector<sim::FaultStatus> faults;
   std::size_t num_kidnaps = 0;                       ///< number of declared kidnaps, in order, that were executed
 };
 
@@ -47,15 +47,15 @@ class Unobserved final : public RunObserver {
 Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files);
 
 /// Static obstacles of the scenario: the listed ones and the randomly scattered ones.
-std::vector<sim::PropSettings> props_of(const Scenario& scenario);
+std::vector<sim::StaticObstacleSettings> props_of(const Scenario& scenario);
 
 /// Creates the simulator. Throws InputError if the settings of the scenario are inconsistent.
-sim::Twin make_twin(const Scenario& scenario, const ScenarioFiles& files);
+sim::Simulator make_twin(const Scenario& scenario, const ScenarioFiles& files);
 /// Creates the stack. Throws InputError if the settings of the scenario are inconsistent.
 stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files);
 
 /// Runs simulator and stack in a closed loop until the mission ends, and writes everything to `log_mcap`.
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Twin& twin, stack::Stack& stack,
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& twin, stack::Stack& stack,
                     const std::filesystem::path& log_mcap, RunObserver& observer);
 
 }  // namespace patrol::app

@@ -33,7 +33,7 @@ io::Metrics performance_of(const RunOutcome& outcome) {
 std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name, const std::filesystem::path& data_root,
                                   const std::filesystem::path& root, RunObserver& observer) {
   const ScenarioFiles files = load_scenario_files(scenario, data_root);
-  sim::Twin twin = make_twin(scenario, files);  // these throw InputError before anything is written
+  sim::Simulator twin = make_twin(scenario, files);  // these throw InputError before anything is written
   stack::Stack stack = make_stack(scenario, files);
   const RunDirectory directory = begin_run_directory(root);
   io::save_junit(directory.junit(), {unfinished_suite(name, junit_properties(scenario))});

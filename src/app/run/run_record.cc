@@ -18,11 +18,11 @@ void append(Trajectory& trajectory, Time stamp, const Pose3& pose) {
 RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   RunRecord record;
   io::LogHandlers handlers;
-  handlers.on<RangePoseEstimate>([&](Time, const RangePoseEstimate& pose) {
-    append(record.T_map_body_by_ranges, pose.stamp, to_spatial(pose.T_map_body));
+  handlers.on<UwbPoseEstimate>([&](Time, const UwbPoseEstimate& pose) {
+    append(record.T_map_body_by_ranges, pose.stamp, to_pose3(pose.T_map_body));
   });
   handlers.on<PoseEstimate>([&](Time, const PoseEstimate& pose) {
-    append(record.T_map_body, pose.stamp, to_spatial(pose.T_map_body));
+    append(record.T_map_body, pose.stamp, to_pose3(pose.T_map_body));
     if (record.covariances.size() < record.T_map_body.size()) record.covariances.push_back(pose.covariance);
   });
   handlers.on<OdometryEstimate>([&](Time, const OdometryEstimate& odometry) {
@@ -32,8 +32,8 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   handlers.on<Event>([&](Time, const Event& event) { record.events.push_back(event); });
   handlers.on<Path>([&](Time, const Path&) { ++record.num_paths; });
   handlers.on<Collision>([&](Time, const Collision& collision) { record.collisions.push_back(collision); });
-  handlers.on<LocalizationTrust>([&](Time, const LocalizationTrust& trust) { record.trusts.push_back(trust); });
-  handlers.on<RemoteCommand>([&](Time, const RemoteCommand& command) { record.remote.push_back(command); });
+  handlers.on<LocalizationConfidence>([&](Time, const LocalizationConfidence& confidence) { record.trusts.push_back(confidence); });
+  handlers.on<TeleopCommand>([&](Time, const TeleopCommand& command) { record.remote.push_back(command); });
   handlers.on<LiningResult>([&](Time, const LiningResult& result) { record.linings.push_back(result); });
   handlers.on<WaterResult>([&](Time, const WaterResult& result) { record.waters.push_back(result); });
   handlers.on<MapUpdate>([&](Time, const MapUpdate& update) { record.map = update.map; });

@@ -7,11 +7,11 @@ namespace {
 
 std::vector<DeclaredEvent> events_of(const RunOutcome& outcome, const std::vector<KidnapSettings>& kidnaps) {
   std::vector<DeclaredEvent> events;
-  for (const sim::FaultReport& report : outcome.faults) {
-    events.push_back({.what = name_of(report.fault), .is_executed = report.is_executed});
+  for (const sim::FaultStatus& report : outcome.faults) {
+    events.push_back({.what = name_of(report.fault), .was_triggered = report.was_triggered});
   }
   for (std::size_t i = 0; i < kidnaps.size(); ++i) {
-    events.push_back({.what = name_of(kidnaps[i]), .is_executed = i < outcome.num_kidnaps});
+    events.push_back({.what = name_of(kidnaps[i]), .was_triggered = i < outcome.num_kidnaps});
   }
   return events;
 }
@@ -61,7 +61,7 @@ io::Metrics to_json(const RunVerdict& verdict) {
                                     {"is_met", check.is_met}});
   }
   for (const DeclaredEvent& event : verdict.events) {
-    json["events"].push_back({{"what", event.what}, {"is_executed", event.is_executed}});
+    json["events"].push_back({{"what", event.what}, {"is_executed", event.was_triggered}});
   }
   return json;
 }
@@ -80,7 +80,7 @@ RunVerdict verdict_from_json(const io::Metrics& json) {
                               .is_met = check.at("is_met")});
   }
   for (const io::Metrics& event : json.at("events")) {
-    verdict.events.push_back({.what = event.at("what"), .is_executed = event.at("is_executed")});
+    verdict.events.push_back({.what = event.at("what"), .was_triggered = event.at("is_executed")});
   }
   return verdict;
 }

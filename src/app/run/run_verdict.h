@@ -17,7 +17,7 @@ namespace patrol::app {
 /// Event declared by a scenario: a fault or a kidnap.
 struct DeclaredEvent {
   std::string what;          ///< "fault imu freeze at 12 s"
-  bool is_executed = false;
+  bool was_triggered = false;
 };
 
 /// Status of a completed run.

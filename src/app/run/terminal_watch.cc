@@ -52,7 +52,7 @@ void TerminalWatch::see(const stack::StackMessage& message) {
                  },
                  [&](const MapUpdate& update) { run_.map = update.map; },
                  [&](const Path& path) { run_.path = path.T_map_body; },
-                 [&](const LocalizationTrust& trust) { run_.trust = trust; },
+                 [&](const LocalizationConfidence& confidence) { run_.confidence = confidence; },
                  [&](const VelocityCommand& command) { run_.command = command; },
                  [&](const Event& event) {
                    run_.events.push_back(event);
@@ -63,7 +63,7 @@ void TerminalWatch::see(const stack::StackMessage& message) {
              message);
 }
 
-void TerminalWatch::see(const GroundTruth& truth) { T_world_body_ = to_planar(truth.T_world_body); }
+void TerminalWatch::see(const GroundTruth& truth) { T_world_body_ = to_pose2(truth.T_world_body); }
 
 bool TerminalWatch::go_on(Time now, double distance_m) {
   const auto wall = std::chrono::steady_clock::now();

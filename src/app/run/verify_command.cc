@@ -17,7 +17,7 @@ ExitCode verify_command(const std::filesystem::path& run) {
   const TemporaryFolder again("verify");
   const std::filesystem::path log = again.path() / "log.mcap";
   fmt::print(stderr, "verify: running {} again, seed {}\n", directory.scenario().string(), scenario.seed);
-  sim::Twin twin = make_twin(scenario, files);
+  sim::Simulator twin = make_twin(scenario, files);
   stack::Stack stack = make_stack(scenario, files);
   Unobserved nobody;
   run_loop(scenario, files, twin, stack, log, nobody);

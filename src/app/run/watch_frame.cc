@@ -127,7 +127,7 @@ std::string figures_text(const WatchedRun& run) {
     text += fmt::format("   error {:.3f} m {:.2f}°   its own 2σ {:.3f} m", error.position().norm(), to_deg(std::abs(error.yaw)),
                         2.0 * std::sqrt(covariance(0, 0) + covariance(1, 1)));
   }
-  if (run.trust) text += fmt::format("   trust {:.2f}{}", run.trust->trust, run.trust->is_lost ? " LOST" : "");
+  if (run.confidence) text += fmt::format("   trust {:.2f}{}", run.confidence->confidence, run.confidence->is_lost ? " LOST" : "");
   return text;
 }
 

@@ -21,7 +21,7 @@ struct WatchedRun {
   std::optional<Pose2> truth;
   std::vector<Pose2> path;              ///< planned path
   std::vector<Eigen::Vector2d> driven_m;  ///< trajectory, by the robot's own estimate
-  std::optional<LocalizationTrust> trust;
+  std::optional<LocalizationConfidence> confidence;
   VelocityCommand command;
   std::deque<Event> events;             ///< newest last
 };

@@ -9,7 +9,7 @@
 namespace patrol::app {
 namespace {
 
-std::string rule_of(const io::Expectation& expectation) {
+std::string describe_limits(const io::Expectation& expectation) {
   if (expectation.is_boolean) return expectation.min > 0.5 ? "true" : "false";
   const bool has_min = std::isfinite(expectation.min), has_max = std::isfinite(expectation.max);
   if (has_min && has_max && expectation.min == expectation.max) return fmt::format("= {}", expectation.min);
@@ -22,7 +22,7 @@ std::string rule_of(const io::Expectation& expectation) {
 std::vector<CheckedExpectation> check_expectations(const io::Expectations& expectations, const io::Metrics& metrics) {
   std::vector<CheckedExpectation> checks;
   for (const auto& [metric, expectation] : expectations) {
-    CheckedExpectation check{.metric = metric, .wanted = rule_of(expectation), .got = "not measured"};
+    CheckedExpectation check{.metric = metric, .wanted = describe_limits(expectation), .got = "not measured"};
     if (const std::optional<double> value = io::metric_at(metrics, metric)) {
       check.is_measured = true;
       check.got = expectation.is_boolean ? (*value > 0.5 ? "true" : "false") : fmt::format("{:.4g}", *value);

@@ -19,7 +19,7 @@ constexpr double kLocalizabilityCell_m = 0.05;
 
 LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFiles& files, double step_m) {
   const WorldSurfaces world = world_surfaces(files, kLocalizabilityCell_m);
-  LocalizabilityMap map{.surfaces = world.surfaces, .step_m = step_m, .places = {}};
+  LocalizabilityMap map{.surfaces = world.surfaces, .step_m = step_m, .positions = {}};
   const score::DistanceField clearance(score::occupied_cells(map.surfaces));
   const LocalizabilityOracle oracle(*world.world, scenario.sensors.lidar, world.lidar_height_m);
   const Eigen::Vector2d start = files.T_site_start.position();
@@ -33,12 +33,12 @@ LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFil
   for (std::deque<std::pair<int, int>> open = {{0, 0}}; !open.empty(); open.pop_front()) {
     const auto [i, j] = open.front();
     if (!can_stand(place_at({i, j}))) continue;
-    map.places.push_back({.p_world_m = place_at({i, j}), .truth = oracle.at(place_at({i, j}))});
+    map.positions.push_back({.p_world_m = place_at({i, j}), .truth = oracle.at(place_at({i, j}))});
     for (const auto& next : {std::pair(i + 1, j), std::pair(i - 1, j), std::pair(i, j + 1), std::pair(i, j - 1)}) {
       if (seen.insert(next).second) open.push_back(next);
     }
   }
-  if (map.places.empty()) throw InputError("the start lies nearer than 0.4 m to a surface: there is no place to look from");
+  if (map.positions.empty()) throw InputError("the start lies nearer than 0.4 m to a surface: there is no place to look from");
   return map;
 }
 

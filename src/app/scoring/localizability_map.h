@@ -17,7 +17,7 @@ struct LocalizablePlace {
 struct LocalizabilityMap {
   OccupancyGrid surfaces;  ///< in world, at the lidar's height
   double step_m = 0.5;     ///< grid spacing of the positions
-  std::vector<LocalizablePlace> places;
+  std::vector<LocalizablePlace> positions;
 };
 
 /// Computes localizability at every reachable position on a grid of `step_m` that contains the surveyed start.

@@ -8,16 +8,16 @@
 namespace patrol::app {
 namespace {
 
-std::vector<score::TrueLeak> true_leaks(const Scenario& scenario, const mjModel& world) {
-  std::vector<score::TrueLeak> leaks;
+std::vector<score::LeakGroundTruth> true_leaks(const Scenario& scenario, const mjModel& world) {
+  std::vector<score::LeakGroundTruth> leaks;
   for (const sim::LeakSettings& leak : scenario.leaks) {
     leaks.push_back({.name = leak.at, .p_world_m = sim::leak_source(world, leak).head<2>()});
   }
   return leaks;
 }
 
-std::vector<score::TrueWater> true_waters(const Scenario& scenario) {
-  std::vector<score::TrueWater> bodies;
+std::vector<score::WaterGroundTruth> true_waters(const Scenario& scenario) {
+  std::vector<score::WaterGroundTruth> bodies;
   for (const sim::WaterBodySettings& body : scenario.water) {
     bodies.push_back({.p_world_m = {body.x_m, body.y_m, body.z_m}, .radius_m = body.radius_m});
   }
@@ -42,7 +42,7 @@ score::RunReferences run_references(const Scenario& scenario, const ScenarioFile
                                   .localizability = [oracle](const Eigen::Vector2d& p_world_m) { return oracle->at(p_world_m); }};
   if (files.map) references.T_world_map = files.T_site_start;
   if (files.route.lining) {
-    references.lining = score::TrueLining{.design = *files.route.lining,
+    references.lining = score::LiningGroundTruth{.design = *files.route.lining,
                          .invert_m = 0.0,
                          .inward_m = [moves = scenario.lining](int ring, double clock_deg) { return sim::inward_m(moves, ring, clock_deg); }};
   }

@@ -18,11 +18,11 @@ std::optional<std::string> station_of(const PanoramicScan& scan, const RunRecord
   return taken == record.events.end() ? std::nullopt : std::optional(taken->subject);
 }
 
-std::optional<stack::StandingPlace> place_of(const PanoramicScan& scan, const std::string& station, const RunRecord& record, double height_m) {
+std::optional<stack::StationPose> to_tunnel_coordinates(const PanoramicScan& scan, const std::string& station, const RunRecord& record, double height_m) {
   const std::optional<Pose3> T_map_body = pose_at(record.T_map_body, scan.stamp), T_odom_body = pose_at(record.T_odom_body, scan.stamp);
   if (!T_map_body || !T_odom_body) return std::nullopt;
-  const Eigen::Quaterniond tilt = quaternion_from_yaw(-yaw_of(T_odom_body->rotation)) * T_odom_body->rotation;
-  stack::StandingPlace place{.T_level_body = {{0.0, 0.0, height_m}, tilt}, .T_map_body = to_planar(*T_map_body)};
+  const Eigen::Quaterniond tilt = quaternion_from_yaw(-to_yaw(T_odom_body->rotation)) * T_odom_body->rotation;
+  stack::StationPose place{.T_level_body = {{0.0, 0.0, height_m}, tilt}, .T_map_body = to_pose2(*T_map_body)};
   const auto result = std::find_if(record.linings.begin(), record.linings.end(), [&](const LiningResult& lining) {
     return lining.station == station && lining.stamp >= scan.stamp && lining.is_registered;
   });
@@ -39,7 +39,7 @@ std::vector<io::StationScan> station_scans(const std::filesystem::path& log_mcap
   handlers.on<PanoramicScan>([&](Time, const PanoramicScan& scan) {
     const std::optional<std::string> station = station_of(scan, record);
     if (!station || std::any_of(scans.begin(), scans.end(), [&](const io::StationScan& known) { return known.station == *station; })) return;
-    const auto place = place_of(scan, *station, record, files.robot.tracks ? files.robot.tracks->body_height_m : 0.0);
+    const auto place = to_tunnel_coordinates(scan, *station, record, files.robot.tracks ? files.robot.tracks->body_height_m : 0.0);
     if (!place) return;
     const Pose3 T_map_scanner = place->T_map_scanner(files.robot.T_body("scanner"));
     scans.push_back({.station = *station, .T_map_scanner = T_map_scanner,

@@ -21,13 +21,13 @@ void save_trajectories(const RunDirectory& directory, const RunRecord& record) {
 /// Saves the commands of a teleoperated drive, for repetition, and the goals that were saved.
 void save_drive(const RunDirectory& directory, const Scenario& scenario, const RunRecord& record) {
   if (record.remote.empty()) return;
-  io::save_remote(directory.remote(), record.remote);
-  std::vector<MarkedGoal> goals;
+  io::save_teleop(directory.remote(), record.remote);
+  std::vector<SavedGoal> goals;
   for (const Event& event : record.events) {
     if (event.kind != EventKind::kGoalMarked) continue;
     goals.push_back({.number = static_cast<int>(goals.size()) + 1,
                      .T_map_body = event.T_map_body,
-                     .type = scenario.stack.tour.type_of_mark(goals.size())});
+                     .type = scenario.stack.tour.goal_type(goals.size())});
   }
   if (!goals.empty()) io::save_nav(directory.nav(), goals);
 }
@@ -39,10 +39,10 @@ void save_localizability(const std::filesystem::path& file_csv, const std::vecto
                   .rows = {}};
   for (const score::TrackedLocalizability& at : track) {
     const score::LocalizabilitySample& sample = at.sample;
-    const double claimed_deg = kDegPerRad * std::remainder(sample.claimed_direction_rad, std::numbers::pi);
-    table.rows.push_back({to_seconds(at.stamp), at.p_world_m.x(), at.p_world_m.y(), sample.truth.weak_std_m,
-                          kDegPerRad * sample.truth.weak_direction_rad, sample.truth.strong_std_m, sample.claimed_std_m, claimed_deg,
-                          sample.trust ? io::TableValue{*sample.trust} : io::TableValue{}});
+    const double claimed_deg = kDegPerRad * std::remainder(sample.reported_direction_rad, std::numbers::pi);
+    table.rows.push_back({to_seconds(at.stamp), at.p_world_m.x(), at.p_world_m.y(), sample.truth.max_std_m,
+                          kDegPerRad * sample.truth.max_std_direction_rad, sample.truth.min_std_m, sample.reported_std_m, claimed_deg,
+                          sample.confidence ? io::TableValue{*sample.confidence} : io::TableValue{}});
   }
   io::save_csv(file_csv, table);
 }
@@ -55,7 +55,7 @@ void save_scored_run(const RunDirectory& directory, const ScoredRun& run, const 
   save_drive(directory, scenario, run.record);
   if (!run.scans.empty()) io::save_station_scans(directory.scans(), run.scans);
   io::save_map(directory.map(), run.record.map);
-  io::save_map(directory.truth_map(), score::seeable_part(run.truth->reference));
+  io::save_map(directory.truth_map(), score::observable_part(run.truth->reference));
   io::save_map_errors(directory.map_errors(), run.score.estimate->map.cells_m);
   save_localizability(directory.localizability(), run.score.estimate->localizability);
 }

@@ -70,7 +70,7 @@ io::Metrics to_json(const std::vector<score::StationError>& errors) {
     const auto if_reached = [&](double value) { return error.is_reached ? io::Metrics(value) : io::Metrics(); };
     station["position_error_m"] = if_reached(error.position_error_m);
     station["heading_error_deg"] = if_reached(error.heading_error_deg);
-    station["stand_error_m"] = if_reached(error.stand_error_m);
+    station["stand_error_m"] = if_reached(error.goal_position_error_m);
     station["map_error_m"] = error.map_error_m ? io::Metrics(*error.map_error_m) : io::Metrics();
     list.push_back(station);
   }
@@ -83,7 +83,7 @@ io::Metrics to_json(const score::InspectionScore& score) {
   metrics["leaks_found"] = score.leaks_found;
   metrics["false_alarms"] = score.false_alarms;
   metrics["findings"] = io::Metrics::array();
-  for (const score::Finding& finding : score.findings) {
+  for (const score::ScoredAlarm& finding : score.findings) {
     io::Metrics entry;
     entry["station"] = finding.station;
     entry["column_ppm_m"] = finding.column_ppm_m;
@@ -109,10 +109,10 @@ io::Metrics to_json(const score::GoalError& error) {
 io::Metrics to_json(const score::LocalizationScore& score) {
   io::Metrics metrics;
   metrics["max_error_m"] = score.max_error_m;
-  metrics["min_trust"] = score.min_trust;
-  metrics["doubted_s"] = optional_json(score.doubted_s);
-  metrics["strayed_s"] = optional_json(score.strayed_s);
-  metrics["doubted_before_straying"] = score.strayed_s ? io::Metrics(score.doubted_s && *score.doubted_s < *score.strayed_s) : io::Metrics();
+  metrics["min_trust"] = score.min_confidence;
+  metrics["doubted_s"] = optional_json(score.low_confidence_at_s);
+  metrics["strayed_s"] = optional_json(score.error_exceeded_at_s);
+  metrics["doubted_before_straying"] = score.error_exceeded_at_s ? io::Metrics(score.low_confidence_at_s && *score.low_confidence_at_s < *score.error_exceeded_at_s) : io::Metrics();
   metrics["lost_s"] = score.lost_s;
   return metrics;
 }
@@ -120,22 +120,22 @@ io::Metrics to_json(const score::LocalizationScore& score) {
 io::Metrics to_json(const score::LocalizabilityScore& score) {
   io::Metrics metrics;
   metrics["poses"] = score.num_poses;
-  metrics["weak_std_median_m"] = score.weak_std_median_m;
-  metrics["weak_std_max_m"] = score.weak_std_max_m;
-  metrics["degenerate_share"] = score.degenerate_share;
+  metrics["weak_std_median_m"] = score.max_std_median_m;
+  metrics["weak_std_max_m"] = score.max_std_max_m;
+  metrics["degenerate_share"] = score.degenerate_fraction;
   metrics["covariance_rank_correlation"] = optional_json(score.covariance_rank_correlation);
   metrics["covariance_detection"] = optional_json(score.covariance_detection);
-  metrics["trust_rank_correlation"] = optional_json(score.trust_rank_correlation);
-  metrics["trust_detection"] = optional_json(score.trust_detection);
-  metrics["weak_direction_error_deg"] = optional_json(score.weak_direction_error_deg);
+  metrics["trust_rank_correlation"] = optional_json(score.confidence_rank_correlation);
+  metrics["trust_detection"] = optional_json(score.confidence_detection);
+  metrics["weak_direction_error_deg"] = optional_json(score.max_std_direction_error_deg);
   return metrics;
 }
 
 io::Metrics to_json(const score::RelocalizationScore& score) {
   io::Metrics metrics;
   metrics["at_s"] = score.at_s;
-  metrics["moved_m"] = score.moved_m;
-  metrics["said_lost_s"] = optional_json(score.said_lost_s);
+  metrics["moved_m"] = score.displacement_m;
+  metrics["said_lost_s"] = optional_json(score.time_to_detect_s);
   metrics["relocalized_s"] = optional_json(score.relocalized_s);
   return metrics;
 }
@@ -150,7 +150,7 @@ io::Metrics to_json(const score::LiningScore& score) {
   metrics["false_findings"] = score.false_findings;
   metrics["max_error_mm"] = if_found(score.found > 0, 1e3 * score.max_error_m);
   metrics["max_peak_error_mm"] = if_found(score.found > 0, 1e3 * score.max_peak_error_m);
-  metrics["max_place_error_m"] = if_found(score.found > 0, score.max_place_error_m);
+  metrics["max_place_error_m"] = if_found(score.found > 0, score.max_position_error_m);
   metrics["cells"] = score.cells;
   metrics["cell_rmse_mm"] = if_found(score.cells > 0, 1e3 * score.cell_rmse_m);
   metrics["cell_coverage_95"] = if_found(score.cells > 0, score.cell_coverage_95);
@@ -185,9 +185,9 @@ io::Metrics to_json(const score::WaterScore& score) {
                                    {"position_error_m", if_found(is_true, finding.position_error_m)},
                                    {"ahead_error_m", if_found(is_true, finding.ahead_error_m)},
                                    {"radius_error_m", if_found(is_true, finding.radius_error_m)},
-                                   {"distance_holds", is_true ? io::Metrics(finding.distance_holds) : io::Metrics()},
-                                   {"position_holds", is_true ? io::Metrics(finding.position_holds) : io::Metrics()},
-                                   {"radius_holds", is_true ? io::Metrics(finding.radius_holds) : io::Metrics()}});
+                                   {"distance_holds", is_true ? io::Metrics(finding.distance_in_interval) : io::Metrics()},
+                                   {"position_holds", is_true ? io::Metrics(finding.position_in_ellipsoid) : io::Metrics()},
+                                   {"radius_holds", is_true ? io::Metrics(finding.radius_in_interval) : io::Metrics()}});
   }
   metrics["position_error_m"] = if_found(score.found > 0, worst_m);
   return metrics;

@@ -17,7 +17,7 @@ ScoredRun score_run(const std::filesystem::path& log_mcap, const Scenario& scena
 }
 
 io::Metrics score_trajectories(const Trajectory& estimate, const Trajectory& reference) {
-  const Pose2 T_reference_estimate = score::join_at_start(estimate, reference);
+  const Pose2 T_reference_estimate = score::align_at_start(estimate, reference);
   io::Metrics metrics;
   metrics["pose"] = to_json(score::trajectory_error(estimate, T_reference_estimate, reference));
   metrics["pose"]["aligned"] = to_json(score::aligned_error(estimate, reference));

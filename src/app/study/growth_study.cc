@@ -17,7 +17,7 @@
 namespace patrol::app {
 namespace {
 
-using render::Ink;
+using render::SeriesColor;
 using slam::GrowthModel;
 
 constexpr double kNoGrowthFigure = std::numeric_limits<double>::quiet_NaN();
@@ -32,14 +32,14 @@ struct GrowthMethod {
 
 GrowthMethod particle_filter(const std::string& name, int particles, const slam::ParticleFilterSettings& settings, std::optional<double> published = {}) {
   return {.name = name, .particles = particles, .published = {published}, .make = [=](const GrowthModel& model, std::uint64_t seed) {
-            return std::make_unique<slam::GrowthFilter>(particles, model, slam::make_parts(settings), seed);
+            return std::make_unique<slam::GrowthFilter>(particles, model, slam::make_components(settings), seed);
           }};
 }
 
 /// Settings of the publication with unbiased resampling at every step (gamma = 1). One generation per step has about
 /// the computation time that the publication states.
 slam::ParticleFilterSettings of_the_paper(const std::string& optimizer) {
-  slam::ParticleFilterSettings settings = slam::ifa_settings_of_paper();
+  slam::ParticleFilterSettings settings = slam::published_ifa_settings();
   settings.optimizer = optimizer;
   settings.resampler = "systematic";
   return settings;
@@ -49,7 +49,7 @@ std::vector<GrowthMethod> methods_of(int particles, const std::array<double, 4>&
   return {particle_filter("PF", particles, of_the_paper("none"), published[0]),
           particle_filter("BA", particles, of_the_paper("ba"), published[1]),
           particle_filter("FA", particles, of_the_paper("fa"), published[2]),
-          particle_filter("IFA", particles, slam::ifa_settings_of_paper(), published[3]),
+          particle_filter("IFA", particles, slam::published_ifa_settings(), published[3]),
           particle_filter("IFA, unbiased resampling", particles, of_the_paper("ifa")),
           {.name = "quasi-Monte Carlo (ours)", .particles = particles, .make = [=](const GrowthModel& model, std::uint64_t seed) {
              return std::make_unique<slam::QuasiFilter>(slam::QuasiFilterSettings{.particles = particles}, model, seed);
@@ -70,7 +70,7 @@ std::vector<GrowthTrial> growth_trials() {
   for (const auto& [particles, published] : table_1) {
     for (const GrowthMethod& method : methods_of(particles, published)) trials[0].methods.push_back(method);
   }
-  trials[1].methods = {particle_filter("PF", 100, of_the_paper("none")), particle_filter("IFA", 100, slam::ifa_settings_of_paper())};
+  trials[1].methods = {particle_filter("PF", 100, of_the_paper("none")), particle_filter("IFA", 100, slam::published_ifa_settings())};
   return trials;
 }
 
@@ -81,13 +81,13 @@ struct GrowthTrack {
 
 GrowthTrack follow(slam::UnivariateFilter& filter, const slam::GrowthRun& run) {
   GrowthTrack track;
-  const double start_s = thread_seconds();
+  const double start_s = thread_cpu_time_s();
   for (const double observation : run.observations) track.estimates.push_back(filter.step(observation));
-  track.seconds = thread_seconds() - start_s;
+  track.seconds = thread_cpu_time_s() - start_s;
   return track;
 }
 
-std::vector<double> figures_of(const GrowthMethod& method, const GrowthTrack& track, const slam::GrowthRun& run) {
+std::vector<double> flatten_metrics(const GrowthMethod& method, const GrowthTrack& track, const slam::GrowthRun& run) {
   double squares = 0.0, nees = 0.0, num_effective = 0.0;
   for (std::size_t t = 0; t < run.states.size(); ++t) {
     const slam::UnivariateEstimate& estimate = track.estimates[t];
@@ -106,7 +106,7 @@ StudySample run_growth_trials(const std::vector<GrowthTrial>& trials, std::uint6
     const slam::GrowthRun run = trial.model.simulate(seed);
     for (const GrowthMethod& method : trial.methods) {
       const auto filter = method.make(trial.model, seed);
-      sample.push_back(figures_of(method, follow(*filter, run), run));
+      sample.push_back(flatten_metrics(method, follow(*filter, run), run));
     }
   }
   return sample;
@@ -125,7 +125,7 @@ std::vector<StudyVariant> growth_variants(const std::vector<GrowthTrial>& trials
   return variants;
 }
 
-render::Curve curve_of(const std::string& name, Ink ink, const std::vector<double>& values) {
+render::Curve curve_of(const std::string& name, SeriesColor ink, const std::vector<double>& values) {
   render::Curve curve{.name = name, .ink = ink, .is_dashed = false, .points = {}};
   for (std::size_t t = 0; t < values.size(); ++t) curve.points.emplace_back(static_cast<double>(t + 1), values[t]);
   return curve;
@@ -134,13 +134,13 @@ render::Curve curve_of(const std::string& name, Ink ink, const std::vector<doubl
 /// Figures 1 to 4: states and errors over time, and the particles at step 25; N = 100.
 std::vector<render::Section> illustrate_growth(const GrowthTrial& trial, std::uint64_t seed) {
   constexpr int kParticles = 100, kShownStep = 25;
-  constexpr std::array kInks = {Ink::kOdometry, Ink::kRanges, Ink::kTrust, Ink::kAlarm, Ink::kEvent, Ink::kEstimate};
+  constexpr std::array kInks = {SeriesColor::kOdometry, SeriesColor::kRanges, SeriesColor::kTrust, SeriesColor::kAlarm, SeriesColor::kEvent, SeriesColor::kEstimate};
   const slam::GrowthRun run = trial.model.simulate(seed);
   const render::PlotAxis axis = {.label = "step", .max = static_cast<double>(run.states.size())};
   render::LinePlot states{.title = fmt::format("State, seed {}, N = {}", seed, kParticles), .unit = "", .axis = axis, .max = {}, .curves = {}, .marks = {}, .spans = {}};
   render::LinePlot errors{.title = "Size of the error", .unit = "", .axis = axis, .max = {}, .curves = {}, .marks = {}, .spans = {}};
   render::BoxPlot spread{.caption = fmt::format("Particles at step {}; the true state is {:.2f}", kShownStep, run.states[kShownStep - 1]), .unit = "", .boxes = {}};
-  states.curves.push_back(curve_of("true state", Ink::kTruth, run.states));
+  states.curves.push_back(curve_of("true state", SeriesColor::kTruth, run.states));
   std::size_t num_shown = 0;
   for (const GrowthMethod& method : trial.methods) {
     if (method.particles != kParticles && method.particles != 0) continue;
@@ -153,7 +153,7 @@ std::vector<render::Section> illustrate_growth(const GrowthTrial& trial, std::ui
       if (const auto* growth = dynamic_cast<const slam::GrowthFilter*>(filter.get())) particles = growth->states();
       if (const auto* quasi = dynamic_cast<const slam::QuasiFilter*>(filter.get())) particles = quasi->states();
     }
-    const Ink ink = method.particles == 0 ? Ink::kBound : kInks[num_shown++ % kInks.size()];
+    const SeriesColor ink = method.particles == 0 ? SeriesColor::kBound : kInks[num_shown++ % kInks.size()];
     states.curves.push_back(curve_of(method.name, ink, means));
     errors.curves.push_back(curve_of(method.name, ink, sizes));
     if (!particles.empty()) spread.boxes.push_back(box_of(method.name, particles, {}));

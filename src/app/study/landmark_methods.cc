@@ -11,7 +11,7 @@ namespace {
 
 LandmarkMethod particle_method(const std::string& name, const slam::FastSlamSettings& settings, const slam::ParticleFilterSettings& filter) {
   return {.name = name, .particles = settings.particles, .make = [=](const LandmarkWorld& world, std::uint64_t seed) {
-            return std::make_unique<slam::FastSlam>(settings, world.motion, world.noise, slam::make_parts(filter), seed);
+            return std::make_unique<slam::FastSlam>(settings, world.motion, world.noise, slam::make_components(filter), seed);
           }};
 }
 
@@ -28,16 +28,16 @@ LandmarkMethod fast_slam_1(int particles, double noise_scale) {
   return particle_method(name, {.particles = particles, .noise_scale = noise_scale}, {});
 }
 
-LandmarkMethod fast_slam_2(int particles) { return particle_method("FastSLAM 2", {.particles = particles, .draws_from_observation = true}, {}); }
+LandmarkMethod fast_slam_2(int particles) { return particle_method("FastSLAM 2", {.particles = particles, .use_optimal_proposal = true}, {}); }
 
 LandmarkMethod swarm_slam(const std::string& optimizer, int particles) {
   std::string name;
   for (const char c : optimizer) name += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return particle_method(name, {.particles = particles}, slam::settings_of_paper(optimizer));
+  return particle_method(name, {.particles = particles}, slam::published_settings(optimizer));
 }
 
 LandmarkMethod learning_sand_cats(int particles) {
-  return particle_method("ISCSO+", {.particles = particles, .bias = {.std = 0.2}, .prior_share = 0.05}, {.optimizer = "iscso"});
+  return particle_method("ISCSO+", {.particles = particles, .bias = {.std = 0.2}, .prior_weight = 0.05}, {.optimizer = "iscso"});
 }
 
 LandmarkMethod ekf_slam() { return gaussian_method("EKF-SLAM", {.bias = {.std = 0.0}, .is_invariant = false}); }

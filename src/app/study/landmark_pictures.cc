@@ -10,7 +10,7 @@
 namespace patrol::app {
 namespace {
 
-using render::Ink;
+using render::SeriesColor;
 
 std::string label_of(const LandmarkMethod& method) { return method.particles > 0 ? fmt::format("{} ({})", method.name, method.particles) : method.name; }
 
@@ -20,7 +20,7 @@ std::vector<Eigen::Vector2d> positions(const std::vector<Pose2>& poses) {
   return positions;
 }
 
-render::Curve error_curve(const LandmarkMethod& method, const LandmarkTrack& track, const LandmarkRun& run, double step_s, Ink ink) {
+render::Curve error_curve(const LandmarkMethod& method, const LandmarkTrack& track, const LandmarkRun& run, double step_s, SeriesColor ink) {
   render::Curve curve{.name = label_of(method), .ink = ink, .is_dashed = false, .points = {}};
   for (std::size_t k = 0; k < run.truth.size(); ++k) {
     const double error_m = (track.estimates[k].T_map_body.position() - run.truth[k].position()).norm();
@@ -30,15 +30,15 @@ render::Curve error_curve(const LandmarkMethod& method, const LandmarkTrack& tra
 }
 
 render::MapBlock map_of(const LandmarkWorld& world, const LandmarkRun& run, const LandmarkTrack& track) {
-  const std::vector<render::MapPath> paths = {{"true path", Ink::kTruth, {positions(run.truth)}}, {"estimated path", Ink::kEstimate, {positions(track.poses())}}};
+  const std::vector<render::MapPath> paths = {{"true path", SeriesColor::kTruth, {positions(run.truth)}}, {"estimated path", SeriesColor::kEstimate, {positions(track.poses())}}};
   std::vector<render::MapMark> marks;
   Eigen::AlignedBox2d shown;
   for (const Eigen::Vector2d& p_m : world.landmarks_m) {
-    marks.push_back({.label = "", .ink = Ink::kTruth, .p_m = p_m});
+    marks.push_back({.label = "", .ink = SeriesColor::kTruth, .p_m = p_m});
     shown.extend(p_m);
   }
   for (const auto& p_m : track.landmarks) {
-    if (p_m) marks.push_back({.label = "", .ink = Ink::kEstimate, .p_m = *p_m});
+    if (p_m) marks.push_back({.label = "", .ink = SeriesColor::kEstimate, .p_m = *p_m});
   }
   for (const render::MapPath& path : paths) {
     for (const Eigen::Vector2d& p_m : path.pieces_m.front()) shown.extend(p_m);
@@ -49,7 +49,7 @@ render::MapBlock map_of(const LandmarkWorld& world, const LandmarkRun& run, cons
 }  // namespace
 
 std::vector<render::Section> landmark_sections(const LandmarkWorld& world, const std::vector<LandmarkMethod>& methods, std::uint64_t seed) {
-  constexpr std::array kInks = {Ink::kOdometry, Ink::kRanges, Ink::kTrust, Ink::kEvent, Ink::kAlarm, Ink::kBound};
+  constexpr std::array kInks = {SeriesColor::kOdometry, SeriesColor::kRanges, SeriesColor::kTrust, SeriesColor::kEvent, SeriesColor::kAlarm, SeriesColor::kBound};
   constexpr std::size_t kMaps = 4;
   const LandmarkRun run = simulate(world, seed);
   const double end_s = world.motion.step_s * static_cast<double>(run.truth.size());
@@ -62,7 +62,7 @@ std::vector<render::Section> landmark_sections(const LandmarkWorld& world, const
     if (methods[i].particles != particles && !is_last) continue;
     const LandmarkTrack track = follow(methods[i], world, run, seed);
     if (errors.curves.size() < kInks.size() || is_last) {
-      errors.curves.push_back(error_curve(methods[i], track, run, world.motion.step_s, is_last ? Ink::kEstimate : kInks[errors.curves.size()]));
+      errors.curves.push_back(error_curve(methods[i], track, run, world.motion.step_s, is_last ? SeriesColor::kEstimate : kInks[errors.curves.size()]));
     }
     if (i < kMaps || is_last) maps.push_back({label_of(methods[i]), {map_of(world, run, track)}});
   }

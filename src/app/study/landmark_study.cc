@@ -48,7 +48,7 @@ double position_rmse_m(const std::vector<Pose2>& poses, const std::vector<Pose2>
 }
 
 /// Metrics of a method on a run.
-std::vector<double> figures_of(const LandmarkTrack& track, bool has_particles, const LandmarkWorld& world, const LandmarkRun& run) {
+std::vector<double> flatten_metrics(const LandmarkTrack& track, bool has_particles, const LandmarkWorld& world, const LandmarkRun& run) {
   double nees = 0.0, num_effective = 0.0;
   for (std::size_t k = 0; k < run.truth.size(); ++k) {
     const Eigen::Vector2d error = track.estimates[k].T_map_body.position() - run.truth[k].position();
@@ -63,10 +63,10 @@ std::vector<double> figures_of(const LandmarkTrack& track, bool has_particles, c
 }
 
 std::vector<double> batch_figures(const LandmarkWorld& world, const LandmarkRun& run, const LandmarkTrack& guess) {
-  const double start_s = thread_seconds();
+  const double start_s = thread_cpu_time_s();
   const slam::BatchSolution batch =
-      slam::solve_batch(world.motion, world.noise, run.odometry, run.seen, {.T_map_body = guess.poses(), .landmarks = guess.landmarks});
-  return {position_rmse_m(batch.T_map_body, run.truth), landmark_rmse_m(batch.landmarks, world), kNoLandmarkFigure, kNoLandmarkFigure, thread_seconds() - start_s};
+      slam::solve_batch(world.motion, world.noise, run.odometry, run.observations, {.T_map_body = guess.poses(), .landmarks = guess.landmarks});
+  return {position_rmse_m(batch.T_map_body, run.truth), landmark_rmse_m(batch.landmarks, world), kNoLandmarkFigure, kNoLandmarkFigure, thread_cpu_time_s() - start_s};
 }
 
 /// [method's name, particles], published position and landmark errors.
@@ -106,7 +106,7 @@ StudySample run_trials(const std::vector<LandmarkTrial>& trials, std::uint64_t s
     LandmarkTrack track;
     for (const LandmarkMethod& method : trial.methods) {
       track = follow(method, trial.world, run, seed);
-      sample.push_back(figures_of(track, method.particles > 0, trial.world, run));
+      sample.push_back(flatten_metrics(track, method.particles > 0, trial.world, run));
     }
     sample.push_back(batch_figures(trial.world, run, track));
   }

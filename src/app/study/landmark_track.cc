@@ -13,10 +13,10 @@ std::vector<Pose2> LandmarkTrack::poses() const {
 LandmarkTrack follow(const LandmarkMethod& method, const LandmarkWorld& world, const LandmarkRun& run, std::uint64_t seed) {
   const std::unique_ptr<slam::LandmarkSlam> slam = method.make(world, seed);
   LandmarkTrack track;
-  const double start_s = thread_seconds();
-  for (std::size_t k = 0; k < run.odometry.size(); ++k) track.estimates.push_back(slam->step(run.odometry[k], run.seen[k]));
+  const double start_s = thread_cpu_time_s();
+  for (std::size_t k = 0; k < run.odometry.size(); ++k) track.estimates.push_back(slam->step(run.odometry[k], run.observations[k]));
   track.landmarks = slam->landmarks();
-  track.seconds = thread_seconds() - start_s;
+  track.seconds = thread_cpu_time_s() - start_s;
   return track;
 }
 

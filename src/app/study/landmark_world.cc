@@ -118,7 +118,7 @@ LandmarkWorld campus_world(bool is_biased, double speed_mps, int num_steps) {
   world.name = is_biased ? "biased odometry" : "matched odometry";
   constexpr int kParts = 8;
   const Eigen::Vector2d fine_std(0.5, 5.0 * kDegree);  // standard deviation of the mean over the parts of a step
-  world.motion = {.steering = slam::Steering::kAckermann, .wheelbase_m = kWheelbase_m, .step_s = kFine_s * kParts, .parts = kParts,
+  world.motion = {.steering = slam::Steering::kAckermann, .wheelbase_m = kWheelbase_m, .step_s = kFine_s * kParts, .substeps = kParts,
                   .std = fine_std / std::sqrt(static_cast<double>(kParts))};
   if (is_biased) world.odometry_bias = {0.3, 2.0 * kDegree};
   world.noise = {.range_std_m = 0.3, .bearing_std_rad = 1.0 * kDegree};
@@ -135,29 +135,29 @@ LandmarkWorld campus_world(bool is_biased, double speed_mps, int num_steps) {
 
 LandmarkRun simulate(const LandmarkWorld& world, std::uint64_t seed) {
   const RandomStream odometry(seed, "study/odometry"), sights(seed, "study/sights");
-  const auto parts = static_cast<std::size_t>(world.motion.parts);
+  const auto substeps = static_cast<std::size_t>(world.motion.substeps);
   slam::ControlMotion part = world.motion;
-  part.step_s /= world.motion.parts;
-  part.parts = 1;
+  part.step_s /= world.motion.substeps;
+  part.substeps = 1;
   LandmarkRun run;
   Pose2 T_map_body;
-  for (std::size_t k = 0; k < world.controls.size() / parts; ++k) {
+  for (std::size_t k = 0; k < world.controls.size() / substeps; ++k) {
     slam::Control mean = slam::Control::Zero();
-    for (std::size_t i = k * parts; i < (k + 1) * parts; ++i) {
+    for (std::size_t i = k * substeps; i < (k + 1) * substeps; ++i) {
       T_map_body = part.move(T_map_body, world.controls[i]);
-      mean += world.controls[i] / static_cast<double>(parts);
+      mean += world.controls[i] / static_cast<double>(substeps);
     }
     run.truth.push_back(T_map_body);
     const auto unit = odometry.normals(k);
     run.odometry.push_back(mean + world.odometry_bias + world.motion.std.cwiseProduct(Eigen::Vector2d(unit[0], unit[1])));
-    std::vector<slam::RangeBearing>& seen = run.seen.emplace_back();
+    std::vector<slam::RangeBearing>& observations = run.observations.emplace_back();
     for (std::size_t i = 0; i < world.landmarks_m.size(); ++i) {
-      const slam::PredictedSight sight = slam::predict_sight(T_map_body, world.landmarks_m[i]);
-      if (sight.sight.x() > world.max_range_m || std::abs(sight.sight.y()) > 0.5 * world.field_of_view_rad) continue;
+      const slam::PredictedObservation observation = slam::predict_observation(T_map_body, world.landmarks_m[i]);
+      if (observation.observation.x() > world.max_range_m || std::abs(observation.observation.y()) > 0.5 * world.field_of_view_rad) continue;
       const auto noise = sights.normals(k, i);
-      seen.push_back({.landmark = static_cast<int>(i),
-                      .range_m = sight.sight.x() + world.noise.range_std_m * noise[0],
-                      .bearing_rad = wrap_angle(sight.sight.y() + world.noise.bearing_std_rad * noise[1])});
+      observations.push_back({.landmark = static_cast<int>(i),
+                      .range_m = observation.observation.x() + world.noise.range_std_m * noise[0],
+                      .bearing_rad = wrap_angle(observation.observation.y() + world.noise.bearing_std_rad * noise[1])});
     }
   }
   return run;

@@ -27,7 +27,7 @@ struct LandmarkWorld {
 /// Measurements of one run with the ground truth.
 struct LandmarkRun {
   std::vector<slam::Control> odometry;                  ///< [step]
-  std::vector<std::vector<slam::RangeBearing>> seen;    ///< [step][observation]
+  std::vector<std::vector<slam::RangeBearing>> observations;    ///< [step][observation]
   std::vector<Pose2> truth;                             ///< [step], after its motion
 };
 

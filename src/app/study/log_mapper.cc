@@ -14,7 +14,7 @@ LogMapper::LogMapper(const stack::StackSettings& settings, const RobotDescriptio
 void LogMapper::map(const std::filesystem::path& log_mcap) {
   io::LogHandlers handlers;
   handlers.on<Imu>([&](Time, const Imu& imu) { pipeline_.add(imu, output_); });
-  handlers.on<JointState>([&](Time, const JointState& joints) { pipeline_.add(joints, output_); });
+  handlers.on<JointState>([&](Time, const JointState& constraints) { pipeline_.add(constraints, output_); });
   handlers.on<FootContacts>([&](Time, const FootContacts& contacts) { pipeline_.add(contacts, output_); });
   handlers.on<TrackTicks>([&](Time, const TrackTicks& ticks) { pipeline_.add(ticks, output_); });
   handlers.on<LaserScan>([&](Time, const LaserScan& scan) { handle(scan); });
@@ -26,10 +26,10 @@ void LogMapper::handle(const LaserScan& raw) {
   pipeline_.update_odometry();
   const std::optional<LevelScan> scan = pipeline_.level(raw, output_);
   if (!scan) return;
-  const double start_s = thread_seconds();
+  const double start_s = thread_cpu_time_s();
   const stack::ScanPose pose = pipeline_.localize(*scan, output_);
-  seconds_ += thread_seconds() - start_s;
-  T_map_body_.push_back({.stamp = scan->stamp, .pose = to_spatial(pose.T_map_body)});
+  seconds_ += thread_cpu_time_s() - start_s;
+  T_map_body_.push_back({.stamp = scan->stamp, .pose = to_pose3(pose.T_map_body)});
   output_.take_messages();
 }
 

@@ -24,7 +24,7 @@ std::vector<Pose2> true_poses(const Trajectory& T_world_body, const std::vector<
   for (const std::size_t scan : scans) {
     const std::optional<Pose3> pose = pose_at(T_world_body, stamps[scan]);
     if (!pose) throw InputError(fmt::format("the truth does not reach to the scan at {:.3f} s", to_seconds(stamps[scan])));
-    poses.push_back(to_planar(*pose));
+    poses.push_back(to_pose2(*pose));
   }
   return poses;
 }
@@ -34,28 +34,28 @@ std::vector<Pose2> true_poses(const Trajectory& T_world_body, const std::vector<
 MappedRun map_log_of(const StudyRun& run, const std::string& method) {
   slam::MapperSettings settings;
   settings.method = method;
-  const BoostedStumps neighbours = neighbours_for(method, find_data_root(""));
+  const BoostedStumps neighbors = neighbours_for(method, find_data_root(""));
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(run.log, {});
   MappedRun mapped;
   std::vector<Time> stamps;
   const double before_mb = heap_mb();
   const auto look = [&] { mapped.memory_mb = std::max(mapped.memory_mb, heap_mb() - before_mb); };
-  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings, neighbours, run.scenario.seed);
+  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings, neighbors, run.scenario.seed);
   while (const std::optional<RecordedScan> recorded = log->next()) {
-    const double start_s = thread_seconds();
+    const double start_s = thread_cpu_time_s();
     mapper->update(slam::planar_scan(*recorded, {}), recorded->T_odom_body);
-    mapped.seconds += thread_seconds() - start_s;
+    mapped.seconds += thread_cpu_time_s() - start_s;
     stamps.push_back(recorded->scan.stamp);
     if (stamps.size() % kScansBetweenLooks == 0) look();
   }
-  const double start_s = thread_seconds();
+  const double start_s = thread_cpu_time_s();
   mapper->finish();
   mapped.map = mapper->map();
-  mapped.seconds += thread_seconds() - start_s;
+  mapped.seconds += thread_cpu_time_s() - start_s;
   look();
   const std::vector<Pose2> path = mapper->path();
-  for (std::size_t i = 0; i < path.size(); ++i) mapped.T_map_body.push_back({stamps[i], to_spatial(path[i])});
-  mapped.loops = judge_loops(mapper->graph(), true_poses(run.record.T_world_body, stamps, mapper->node_scans()));
+  for (std::size_t i = 0; i < path.size(); ++i) mapped.T_map_body.push_back({stamps[i], to_pose3(path[i])});
+  mapped.loops = judge_loops(mapper->graph(), true_poses(run.record.T_world_body, stamps, mapper->node_scan_indices()));
   return mapped;
 }
 

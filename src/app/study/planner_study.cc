@@ -15,7 +15,7 @@
 namespace patrol::app {
 namespace {
 
-using render::Ink;
+using render::SeriesColor;
 
 constexpr double kNoPlannerFigure = std::numeric_limits<double>::quiet_NaN();
 constexpr int kMaxStepsMillions = 50;  // of ants, particles and episodes, per planning
@@ -42,21 +42,21 @@ struct PlannerMethod {
   const char* title;
   const char* name;  ///< name of the planner
   bool iterates;
-  Ink ink;
+  SeriesColor ink;
   bool tightens = true;  ///< improved colony only: extension
 };
 
 /// Methods; all others are compared with the first. The last two are lower bounds, over eight neighbors and over all
 /// paths.
-constexpr std::array<PlannerMethod, 9> kPlannerMethods = {{{"improved ants (ours)", "ant_colony", true, Ink::kEstimate},
-                                                    {"paper 003's ants", "ant_colony", true, Ink::kEvent, false},
-                                                    {"plain ants", "plain_ant_colony", true, Ink::kOdometry},
-                                                    {"two swarms", "two_swarms", true, Ink::kRanges},
-                                                    {"Q-learning", "q_learning", true, Ink::kAlarm},
-                                                    {"Theta*", "theta_star", false, Ink::kEvent},
-                                                    {"Dijkstra", "dijkstra", false, Ink::kTrust},
-                                                    {"A*", "astar", false, Ink::kTruth},
-                                                    {"any-angle optimum", "any_angle_optimum", false, Ink::kBound}}};
+constexpr std::array<PlannerMethod, 9> kPlannerMethods = {{{"improved ants (ours)", "ant_colony", true, SeriesColor::kEstimate},
+                                                    {"paper 003's ants", "ant_colony", true, SeriesColor::kEvent, false},
+                                                    {"plain ants", "plain_ant_colony", true, SeriesColor::kOdometry},
+                                                    {"two swarms", "two_swarms", true, SeriesColor::kRanges},
+                                                    {"Q-learning", "q_learning", true, SeriesColor::kAlarm},
+                                                    {"Theta*", "theta_star", false, SeriesColor::kEvent},
+                                                    {"Dijkstra", "dijkstra", false, SeriesColor::kTrust},
+                                                    {"A*", "astar", false, SeriesColor::kTruth},
+                                                    {"any-angle optimum", "any_angle_optimum", false, SeriesColor::kBound}}};
 constexpr std::size_t kAstar = 7, kOptimum = 8;
 
 const std::vector<StudyFigure> kPlannerFigures = {{.name = "longer than A*", .unit = "%", .is_compared = true},
@@ -78,9 +78,9 @@ Planned plan_by(const PlannerMethod& method, const PlannerProblem& problem, std:
   settings.improved_colony.tightens = method.tightens;
   settings.ant_colony.threads = 1;  // seeds run in parallel
   const auto planner = plan::make_route_planner(method.name, settings, seed);
-  const double start_s = thread_seconds();
+  const double start_s = thread_cpu_time_s();
   Planned planned{.route = planner->plan(problem.costs, problem.start, problem.goal)};
-  planned.seconds = thread_seconds() - start_s;
+  planned.seconds = thread_cpu_time_s() - start_s;
   return planned;
 }
 
@@ -92,7 +92,7 @@ double iterations_to_length(const std::vector<double>& history, double length) {
   return kNoPlannerFigure;
 }
 
-std::vector<std::vector<double>> figures_of(const std::array<Planned, kPlannerMethods.size()>& all) {
+std::vector<std::vector<double>> flatten_metrics(const std::array<Planned, kPlannerMethods.size()>& all) {
   std::vector<std::vector<double>> figures;
   const double astar = all[kAstar].route.length, optimum = all[kOptimum].route.length;
   for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) {
@@ -119,7 +119,7 @@ std::array<Planned, kPlannerMethods.size()> plan_all(const PlannerProblem& probl
 StudySample run_planners(const std::vector<PlannerWorld>& worlds, std::uint64_t seed) {
   StudySample sample;
   for (const PlannerWorld& world : worlds) {
-    for (std::vector<double>& figures : figures_of(plan_all(world.problem(seed), seed))) sample.push_back(std::move(figures));
+    for (std::vector<double>& figures : flatten_metrics(plan_all(world.problem(seed), seed))) sample.push_back(std::move(figures));
   }
   return sample;
 }
@@ -157,7 +157,7 @@ render::MapBlock routes_on(const PlannerProblem& problem, const std::array<Plann
     block.paths.push_back({kPlannerMethods[m].title, kPlannerMethods[m].ink, {plan::to_metres(grid, all[m].route.points)}});
   }
   for (const auto& [label, cell] : {std::pair("start", problem.start), std::pair("goal", problem.goal)}) {
-    block.marks.push_back({.label = label, .ink = Ink::kTruth, .p_m = grid.center_of(cell)});
+    block.marks.push_back({.label = label, .ink = SeriesColor::kTruth, .p_m = grid.center_of(cell)});
   }
   return block;
 }

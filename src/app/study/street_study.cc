@@ -62,8 +62,8 @@ Mapped map_by(const GridMethod& method, const StudyRun& patrol) {
   return {.T_map_body = mapper.T_map_body(), .map = mapper.map(), .seconds = mapper.seconds(), .memory_mb = heap_mb() - before_mb};
 }
 
-std::vector<double> figures_of(const Mapped& mapped, const StudyRun& patrol) {
-  const Pose2 T_world_map = score::join_at_start(mapped.T_map_body, patrol.record.T_world_body);
+std::vector<double> flatten_metrics(const Mapped& mapped, const StudyRun& patrol) {
+  const Pose2 T_world_map = score::align_at_start(mapped.T_map_body, patrol.record.T_world_body);
   std::vector<double> figures;
   for (const score::StationError& station : score::station_errors(patrol.files.route, patrol.record.events, T_world_map, patrol.record.T_world_body, mapped.map, patrol.truth.reference)) {
     figures.push_back(station.map_error_m.value_or(kNoStreetFigure));
@@ -80,7 +80,7 @@ StudySample run_street(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun patrol = run_for_study(kScenario, {}, seed, folder.path());
   StudySample sample;
-  for (const GridMethod& method : kStreetMethods) sample.push_back(figures_of(map_by(method, patrol), patrol));
+  for (const GridMethod& method : kStreetMethods) sample.push_back(flatten_metrics(map_by(method, patrol), patrol));
   return sample;
 }
 

@@ -195,7 +195,7 @@ render::Page study_page(const Study& study, const std::vector<std::uint64_t>& se
                     .title = study.title,
                     .facts = {{"after", study.source}, {"seeds", fmt::format("{} … {}", seeds.front(), seeds.back())}},
                     .sections = {},
-                    .colophon = fmt::format("Made by patrol study {} {}.", study.name, PATROL_VERSION)};
+                    .footer = fmt::format("Made by patrol study {} {}.", study.name, PATROL_VERSION)};
   page.sections.push_back({"", {render::TextBlock{study.conditions}}});
   for (const std::string& world : worlds_of(study)) {
     render::Section section{world, {}};

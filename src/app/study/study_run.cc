@@ -13,7 +13,7 @@ namespace {
 
 std::vector<Eigen::Vector2d> positions_of(const Trajectory& trajectory, const Pose2& T_world_frame) {
   std::vector<Eigen::Vector2d> positions;
-  for (const StampedPose& entry : trajectory) positions.push_back(T_world_frame * to_planar(entry.pose).position());
+  for (const StampedPose& entry : trajectory) positions.push_back(T_world_frame * to_pose2(entry.pose).position());
   return positions;
 }
 
@@ -34,12 +34,12 @@ StudyRun run_for_study(const std::string& scenario, const std::vector<std::strin
 }
 
 render::MapBlock mapped_block(const OccupancyGrid& map, const Trajectory& T_map_body, const StudyRun& run) {
-  const Pose2 T_world_map = score::join_at_start(T_map_body, run.record.T_world_body);
-  const std::vector<render::MapPath> paths = {{"true path", render::Ink::kTruth, {positions_of(run.record.T_world_body, {})}},
-                                              {"estimated path", render::Ink::kEstimate, {positions_of(T_map_body, T_world_map)}}};
+  const Pose2 T_world_map = score::align_at_start(T_map_body, run.record.T_world_body);
+  const std::vector<render::MapPath> paths = {{"true path", render::SeriesColor::kTruth, {positions_of(run.record.T_world_body, {})}},
+                                              {"estimated path", render::SeriesColor::kEstimate, {positions_of(T_map_body, T_world_map)}}};
   Eigen::AlignedBox2d shown;
   for (const Eigen::Vector2d& p_m : paths.front().pieces_m.front()) shown.extend(p_m);
-  const render::MapLayers layers{.built = map, .T_world_map = T_world_map, .truth = score::seeable_part(run.truth.reference),
+  const render::MapLayers layers{.built = map, .T_world_map = T_world_map, .truth = score::observable_part(run.truth.reference),
                                  .error_m = score::map_error(map, T_world_map, run.truth.reference).cells_m};
   return {.picture = render::map_picture(layers, shown), .paths = paths, .marks = {}};
 }

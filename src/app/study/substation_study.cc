@@ -22,15 +22,15 @@ struct LogMethod {
   std::string name;
   std::string method;  ///< slam.method
   std::vector<std::optional<double>> published{};
-  render::Ink ink = render::Ink::kEstimate;
+  render::SeriesColor ink = render::SeriesColor::kEstimate;
 };
 
 constexpr double kMinute_s = 60.0, kGigabyte_mb = 1000.0;
 
 const std::vector<LogMethod> kSubstationMethods = {
-    {.name = "improved RBPF (submap_rbpf)", .method = "submap_rbpf", .published = {0.1522, std::log10(0.1522), 0.0707, {}, {}, {}, {}, {}, 43.93 * kMinute_s, 0.9 * kGigabyte_mb}, .ink = render::Ink::kEstimate},
-    {.name = "Cartographer's class (graph)", .method = "graph", .published = {0.3491, std::log10(0.3491), {}, {}, {}, {}, {}, {}, 51.35 * kMinute_s, 1.3 * kGigabyte_mb}, .ink = render::Ink::kRanges},
-    {.name = "plain RBPF (rbpf)", .method = "rbpf", .published = {2.7605, std::log10(2.7605), {}, {}, {}, {}, {}, {}, 21.01 * kMinute_s, 1.4 * kGigabyte_mb}, .ink = render::Ink::kOdometry}};
+    {.name = "improved RBPF (submap_rbpf)", .method = "submap_rbpf", .published = {0.1522, std::log10(0.1522), 0.0707, {}, {}, {}, {}, {}, 43.93 * kMinute_s, 0.9 * kGigabyte_mb}, .ink = render::SeriesColor::kEstimate},
+    {.name = "Cartographer's class (graph)", .method = "graph", .published = {0.3491, std::log10(0.3491), {}, {}, {}, {}, {}, {}, 51.35 * kMinute_s, 1.3 * kGigabyte_mb}, .ink = render::SeriesColor::kRanges},
+    {.name = "plain RBPF (rbpf)", .method = "rbpf", .published = {2.7605, std::log10(2.7605), {}, {}, {}, {}, {}, {}, 21.01 * kMinute_s, 1.4 * kGigabyte_mb}, .ink = render::SeriesColor::kOdometry}};
 
 const std::vector<StudyFigure> kSubstationFigures = {{.name = "map to nearest surface", .unit = "m", .is_compared = true},
                                            {.name = "its logarithm to base 10", .unit = "", .is_compared = true},
@@ -48,8 +48,8 @@ StudyRun drive(const char* scenario, std::uint64_t seed, const TemporaryFolder& 
 constexpr const char* kPatrol = "worlds/substation/scenarios/mapping.yaml";
 constexpr const char* kRow = "worlds/substation/scenarios/row.yaml";
 
-std::vector<double> figures_of(const MappedRun& mapped, const StudyRun& run) {
-  const Pose2 T_world_map = score::join_at_start(mapped.T_map_body, run.record.T_world_body);
+std::vector<double> flatten_metrics(const MappedRun& mapped, const StudyRun& run) {
+  const Pose2 T_world_map = score::align_at_start(mapped.T_map_body, run.record.T_world_body);
   const score::MapError error = score::map_error(mapped.map, T_world_map, run.truth.reference);
   return {error.nearest_mean_m,
           std::log10(error.nearest_mean_m),
@@ -67,13 +67,13 @@ StudySample map_patrol(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun run = drive(kPatrol, seed, folder);
   StudySample sample;
-  for (const LogMethod& method : kSubstationMethods) sample.push_back(figures_of(map_log_of(run, method.method), run));
+  for (const LogMethod& method : kSubstationMethods) sample.push_back(flatten_metrics(map_log_of(run, method.method), run));
   return sample;
 }
 
 /// Distances of all map points to the nearest surface of the reference map, ascending.
 std::vector<double> sorted_errors_m(const MappedRun& mapped, const StudyRun& run) {
-  const Pose2 T_world_map = score::join_at_start(mapped.T_map_body, run.record.T_world_body);
+  const Pose2 T_world_map = score::align_at_start(mapped.T_map_body, run.record.T_world_body);
   const Grid<float> cells = score::map_error(mapped.map, T_world_map, run.truth.reference).cells_m;
   std::vector<double> errors;
   for (const float error : cells.values()) {
@@ -119,7 +119,7 @@ StudySample map_row(std::uint64_t seed) {
   StudySample sample;
   for (const LogMethod& method : kSubstationMethods) {
     const MappedRun mapped = map_log_of(run, method.method);
-    const Pose2 T_world_map = score::join_at_start(mapped.T_map_body, run.record.T_world_body);
+    const Pose2 T_world_map = score::align_at_start(mapped.T_map_body, run.record.T_world_body);
     sample.push_back({static_cast<double>(mapped.loops.wrong), static_cast<double>(mapped.loops.right),
                       score::trajectory_error(mapped.T_map_body, T_world_map, run.record.T_world_body).ate_rmse_m});
   }

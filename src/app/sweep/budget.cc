@@ -68,7 +68,7 @@ std::vector<Budget> make_budgets(const SweepManifest& manifest, const SweepRows&
 }
 
 Budget make_budget(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric) {
-  const SeedFigures figures = figures_of(manifest, rows, metric);
+  const SeedFigures figures = flatten_metrics(manifest, rows, metric);
   Budget budget{.metric = metric,
                 .as_it_is = score::mean_interval(column(figures, 0)),
                 .ideal = score::mean_interval(column(figures, manifest.variants.size() - 1)),

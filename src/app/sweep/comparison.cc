@@ -37,7 +37,7 @@ void add_needed(const SweepManifest& manifest, const SweepRows& rows, const std:
 
 std::vector<VariantFigure> compare(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric,
                                    std::size_t num_seeds, double level) {
-  const auto figures = figures_of(manifest, rows, metric);
+  const auto figures = flatten_metrics(manifest, rows, metric);
   std::vector<VariantFigure> compared;
   for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
     std::vector<double> values, differences;

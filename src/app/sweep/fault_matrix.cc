@@ -16,11 +16,11 @@ constexpr double kClockOffset_s = 0.2;
 
 /// Whether the scenario triggers readings of a sensor.
 bool is_triggered(SensorTrigger trigger, const ScenarioFiles& files) {
-  const auto is_scanned = [](const MarkedGoal& goal) { return goal.type == GoalType::kScan; };
+  const auto is_scanned = [](const SavedGoal& goal) { return goal.type == GoalType::kScan; };
   switch (trigger) {
     case SensorTrigger::kPeriodic: return true;
     case SensorTrigger::kScanStation: return std::any_of(files.goals.begin(), files.goals.end(), is_scanned);
-    case SensorTrigger::kTeleoperation: return files.has_remote();
+    case SensorTrigger::kTeleoperation: return files.has_teleop();
   }
   return true;
 }
@@ -28,7 +28,7 @@ bool is_triggered(SensorTrigger trigger, const ScenarioFiles& files) {
 template <IsSensorMessage Message>
 bool is_in_matrix(const Scenario& scenario, const ScenarioFiles& files) {
   constexpr SensorInfo kInfo = SensorTraits<Message>::kInfo;
-  return *kInfo.not_in_fault_matrix == '\0' && sim::is_enabled<Message>(scenario.sensors) && is_fitted<Message>(files.robot) &&
+  return *kInfo.fault_matrix_exclusion_reason == '\0' && sim::is_enabled<Message>(scenario.sensors) && is_fitted<Message>(files.robot) &&
          is_triggered(kInfo.trigger, files);
 }
 

@@ -9,9 +9,9 @@ namespace patrol::app {
 namespace {
 
 /// Whether the single declared fault of a run was executed; none without a fault.
-std::optional<bool> is_executed(const RunVerdict& verdict) {
+std::optional<bool> was_triggered(const RunVerdict& verdict) {
   if (verdict.events.empty()) return std::nullopt;
-  return verdict.events.front().is_executed;
+  return verdict.events.front().was_triggered;
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ std::vector<FaultRow> fault_rows(const SweepManifest& manifest, const SweepRows&
     FaultRow& row = faults.emplace_back(FaultRow{.name = manifest.variants[run.variant].name,
                                                  .fault = fault_of(manifest.variants[run.variant].name),
                                                  .seed = run.seed,
-                                                 .is_executed = is_executed(verdict),
+                                                 .was_triggered = was_triggered(verdict),
                                                  .outcome = outcome_of(verdict),
                                                  .num_noticed = io::metric_at(verdict.metrics, "mission.sensor_faults_noticed"),
                                                  .end = std::string(name_of(verdict.end)),
@@ -50,8 +50,8 @@ std::vector<FaultRow> fault_rows(const SweepManifest& manifest, const SweepRows&
 }
 
 std::string executed_text(const FaultRow& row) {
-  if (!row.is_executed) return "";
-  return *row.is_executed ? "executed" : "NOT EXECUTED";
+  if (!row.was_triggered) return "";
+  return *row.was_triggered ? "executed" : "NOT EXECUTED";
 }
 
 std::string faults_summary(const std::vector<FaultRow>& rows) {

@@ -38,13 +38,13 @@ struct FaultRow {
   std::string name;     ///< name of the variant
   FaultVariant fault;
   std::uint64_t seed = 1;
-  std::optional<bool> is_executed;  ///< empty for the run without a fault
+  std::optional<bool> was_triggered;  ///< empty for the run without a fault
   FaultOutcome outcome = FaultOutcome::kNoResult;
   std::optional<double> num_noticed;  ///< number of events in which the robot reported a faulty sensor
   std::string end, message;
   std::vector<std::optional<double>> figures, without;  ///< [metric], this run and the run without fault of this seed
 
-  bool is_not_executed() const { return is_executed.has_value() && !*is_executed; }
+  bool is_not_executed() const { return was_triggered.has_value() && !*was_triggered; }
 };
 
 std::vector<FaultRow> fault_rows(const SweepManifest& manifest, const SweepRows& rows);

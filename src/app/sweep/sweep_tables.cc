@@ -27,7 +27,7 @@ std::vector<std::string> paths_of(const SweepRows& rows, const std::vector<std::
   std::vector<std::string> paths;
   std::set<std::string> seen;
   for (const std::size_t i : counted) {
-    for (const auto& [path, value] : io::figures_of(rows[i]->metrics)) {
+    for (const auto& [path, value] : io::flatten_metrics(rows[i]->metrics)) {
       if (!is_of_the_clock(path) && seen.insert(path).second) paths.push_back(path);
     }
   }
@@ -71,7 +71,7 @@ io::Table runs_table(const SweepManifest& manifest, const SweepRows& rows, const
     row.push_back(static_cast<std::int64_t>(result.code()));
     row.emplace_back(result.message);
     std::map<std::string, double> figures;
-    for (const auto& [path, value] : io::figures_of(result.metrics)) figures[path] = value;
+    for (const auto& [path, value] : io::flatten_metrics(result.metrics)) figures[path] = value;
     for (const std::string& path : paths) {
       const auto figure = figures.find(path);
       row.push_back(figure == figures.end() ? io::TableValue{} : number(figure->second));

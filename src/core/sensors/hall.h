@@ -54,7 +54,7 @@ struct SensorTraits<TrackTicks> {
                                       .summary = "Hall counters of the drive motors",
                                       .timeout = SensorTimeout::kMotion,
                                       .freeze_check = FreezeCheck::kCommand,
-                                      .is_needed_to_drive = true,
+                                      .is_required_to_drive = true,
                                       .is_read_by_firmware = true,
                                       .fault = {.unit = "counts", .drift_per_s = 50.0, .spike = 500.0}};
 

@@ -46,7 +46,7 @@ struct SensorTraits<JointState> {
                                       .summary = "joint encoders of the legs",
                                       .timeout = SensorTimeout::kMotion,
                                       .freeze_check = FreezeCheck::kCommand,
-                                      .is_needed_to_drive = true,
+                                      .is_required_to_drive = true,
                                       .is_read_by_firmware = true,
                                       .fault = {.unit = "rad", .drift_per_s = 0.01, .spike = 0.3}};
 

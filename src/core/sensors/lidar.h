@@ -94,7 +94,7 @@ struct SensorTraits<LaserScan> {
                                       .summary = "2D lidar",
                                       .timeout = SensorTimeout::kLidar,
                                       .freeze_check = FreezeCheck::kOdometry,
-                                      .is_needed_to_drive = true,
+                                      .is_required_to_drive = true,
                                       .fault = {.unit = "m", .drift_per_s = 0.02, .spike = 1.0}};
 
   static void add_to_reading(LaserScan& scan, double offset_m) {

@@ -11,7 +11,7 @@ struct RecordedScan {
   Pose2 T_odom_body;
   Pose2 T_body_lidar;
   /// Odometry motion of the body from the first to the last beam; identity if the log has no beam times.
-  Pose2 T_first_last = {};
+  Pose2 T_begin_end = {};
 };
 
 }  // namespace patrol

@@ -55,7 +55,7 @@ using Sensors = SensorList<  //
     UwbRange,                //
     UltrasonicRange,         //
     DepthImage,              //
-    RemoteCommand,           //
+    TeleopCommand,           //
     PanoramicScan,           //
     AntennaState,            //
     TemSounding,             //

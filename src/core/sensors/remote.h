@@ -6,16 +6,16 @@
 namespace patrol {
 
 /// Command of the teleoperator: velocity and two buttons.
-struct RemoteCommand {
+struct TeleopCommand {
   Time stamp{};
   double vx_mps = 0.0;
   double yaw_rate_radps = 0.0;
-  bool mark = false;       ///< button to save the current pose as a goal, pressed in this message
+  bool save_goal = false;       ///< button to save the current pose as a goal, pressed in this message
   bool hand_over = false;  ///< button to switch to autonomous mode, pressed in this message
 };
 
 template <>
-struct SensorTraits<RemoteCommand> {
+struct SensorTraits<TeleopCommand> {
   struct Settings {};
   static constexpr SensorInfo kInfo = {.name = "remote",
                                       .topic = "/remote",
@@ -24,7 +24,7 @@ struct SensorTraits<RemoteCommand> {
                                       .trigger = SensorTrigger::kTeleoperation,
                                       .fault = {.unit = "m/s", .drift_per_s = 0.02, .spike = 0.3}};
 
-  static void add_to_reading(RemoteCommand& command, double offset_mps) { command.vx_mps += offset_mps; }
+  static void add_to_reading(TeleopCommand& command, double offset_mps) { command.vx_mps += offset_mps; }
 };
 
 }  // namespace patrol

@@ -38,13 +38,13 @@ struct SensorInfo {
   const char* summary;   ///< line of documentation in `patrol list`
   SensorTimeout timeout = SensorTimeout::kNone;
   FreezeCheck freeze_check = FreezeCheck::kNone;
-  bool is_needed_to_drive = false;     ///< true: the robot stops while the sensor monitor reports a fault of this
+  bool is_required_to_drive = false;     ///< true: the robot stops while the sensor monitor reports a fault of this
                                        ///< sensor
   bool is_read_by_firmware = false;    ///< true: the locomotion firmware reads the sensor at every tick; stepped before
                                        ///< the others
   SensorTrigger trigger = SensorTrigger::kPeriodic;
   FaultMagnitudes fault = {};
-  const char* not_in_fault_matrix = "";  ///< reason for exclusion from the fault matrix; empty: included
+  const char* fault_matrix_exclusion_reason = "";  ///< reason for exclusion from the fault matrix; empty: included
 };
 
 /// Error source of a sensor. The error budget removes it with settings that change nothing else.

@@ -15,12 +15,12 @@
 namespace patrol::inspect {
 namespace {
 
-constexpr int kRounds = 6;               // maximum number of patch associations
+constexpr int kMaxAssociations = 6;               // maximum number of patch associations
 // Convergence limit of a step, and the distance at which its rotation counts.
-constexpr double kSettled_m = 2e-5, kFar_m = 10.0;
-constexpr double kMinReach_m = 0.003;    // minimum cutoff within a cell, because a bulge is not flat
+constexpr double kConverged_m = 2e-5, kFar_m = 10.0;
+constexpr double kMinCutoff_m = 0.003;    // minimum cutoff within a cell, because a bulge is not flat
 constexpr double kPatch_m = 0.5;         // patch size of surfaces other than the lining
-constexpr double kInside_m = 0.1;        // points closer to the design are the lining or flat fixtures on it
+constexpr double kFixtureDistance_m = 0.1;        // points closer to the design are the lining or flat fixtures on it
 constexpr double kPartner_m = 0.15, kFixtureBand_m = 0.03, kFacing = 0.8;
 constexpr int kMinPatchPoints = 5;
 // Normal components along the tunnel up to this value are treated as noise and removed. Otherwise thousands of wall
@@ -49,7 +49,7 @@ Vector7 derivative(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm) {
 }
 
 Patch patch_of(const Samples& samples, int cell, double extra_var_m2) {
-  const RobustMean mean = robust_mean(samples.offsets_m, samples.weights, kMinReach_m);
+  const RobustMean mean = robust_mean(samples.offsets_m, samples.weights, kMinCutoff_m);
   Patch patch{.cell = cell, .offset_m = mean.mean, .var_m2 = mean.var + extra_var_m2, .points = samples.points};
   for (std::size_t i = 0; i < samples.J.size(); ++i) {
     patch.J += mean.weights[i] * samples.J[i];
@@ -73,7 +73,7 @@ class Adjuster {
   Adjuster(const LiningInMap& lining, const LiningGrid& grid, const ReferenceLining& reference, const SurfaceCloud& target_map,
            const SurfaceCloud& source, const Pose3& guess, const LiningSettings& settings)
       : lining_(lining), grid_(grid), reference_(reference), target_(target_map), source_(source), guess_(guess), settings_(settings) {
-    const double heading = lining.design.heading_at(lining.design.place_of(guess.position).chainage_m);
+    const double heading = lining.design.heading_at(lining.design.to_tunnel_coordinates(guess.position).chainage_m);
     axis_map_ = {std::cos(heading), std::sin(heading), 0.0};
   }
 
@@ -81,17 +81,17 @@ class Adjuster {
     std::vector<Samples> cells(static_cast<std::size_t>(grid_.cells()));
     std::map<PatchKey, Samples> others;
     for (std::size_t i = 0; i < source_.points().size(); ++i) {
-      const ThinPoint& thin = source_.points()[i];
-      const Eigen::Vector3d arm = T_map_scanner.rotation * (thin.p - range_offset_m * thin.p.normalized());
+      const DownsampledPoint& sample = source_.points()[i];
+      const Eigen::Vector3d arm = T_map_scanner.rotation * (sample.p - range_offset_m * sample.p.normalized());
       const Eigen::Vector3d p = T_map_scanner.position + arm;
       const LiningPoint point = lining_point(lining_, p);
-      const bool is_near_lining = std::abs(point.inward_m) < kInside_m && std::abs(point.clock_deg) < (grid_.half_sectors + 0.5) * grid_.sector_deg;
+      const bool is_near_lining = std::abs(point.inward_m) < kFixtureDistance_m && std::abs(point.clock_deg) < (grid_.half_sectors + 0.5) * grid_.sector_deg;
       if (is_near_lining) {
         const int cell = grid_.cell_at(point);
         if (cell < 0) continue;
         const auto before_m = reference_.inward_m(point, cell);
         if (!before_m || std::abs(point.inward_m - *before_m) > settings_.band_m) continue;
-        cells[static_cast<std::size_t>(cell)].add(point.inward_m - *before_m, derivative(point.gradient, arm), thin.count);
+        cells[static_cast<std::size_t>(cell)].add(point.inward_m - *before_m, derivative(point.gradient, arm), sample.count);
       } else {
         add_other(i, p, arm, T_map_scanner, others);
       }
@@ -115,11 +115,11 @@ class Adjuster {
         ratios.push_back((patch.offset_m + patch.J.dot(step)) / std::sqrt(patch.var_m2));
         if (patch.cell >= 0) lining_ratios.push_back(ratios.back());
       }
-      state.scale = std::max(1.0, spread_about(lining_ratios, 0.0));
+      state.scale = std::max(1.0, mad_std(lining_ratios, 0.0));
       Matrix7 H = prior.asDiagonal();
       Vector7 b = prior.cwiseProduct(from_guess);
       for (std::size_t i = 0; i < patches.size(); ++i) {
-        state.weights[i] = biweight(ratios[i], kBiweightReach * state.scale);
+        state.weights[i] = biweight(ratios[i], kBiweightCutoff * state.scale);
         const double weight = state.weights[i] / (patches[i].var_m2 * state.scale * state.scale);
         H += weight * patches[i].J * patches[i].J.transpose();
         b += weight * patches[i].offset_m * patches[i].J;
@@ -195,12 +195,12 @@ Adjustment adjust(const LiningInMap& lining, const LiningGrid& grid, const Refer
   const Adjuster adjuster(lining, grid, reference, target_map, source, T_map_scanner_guess, settings);
   Adjustment result;
   result.T_map_scanner = T_map_scanner_start;
-  for (int round = 0;; ++round) {
+  for (int association = 0;; ++association) {
     result.patches = adjuster.patches(result.T_map_scanner, result.range_offset_m);
     const Vector7 step = adjuster.solve(result.patches, result);
     // Leave the loop before the pose changes: the final patches belong to the final pose.
-    if (round == kRounds || step.head<3>().norm() + kFar_m * step.segment<3>(3).norm() + std::abs(step[6]) < kSettled_m) break;
-    result.T_map_scanner = moved(result.T_map_scanner, step.head<6>());
+    if (association == kMaxAssociations || step.head<3>().norm() + kFar_m * step.segment<3>(3).norm() + std::abs(step[6]) < kConverged_m) break;
+    result.T_map_scanner = apply_step(result.T_map_scanner, step.head<6>());
     result.range_offset_m += step[6];
   }
   result.rms_m = rms_of(result);

@@ -54,7 +54,7 @@ struct LiningGrid {
 /// are down-weighted with Tukey's biweight. The chainage remains that of the map, because the section does not
 /// constrain it. Returns nullopt if no crown is found above the scanner, or if fewer than a hundred points are within
 /// 0.1 m of the section: the reference is not a scan of this lining.
-std::optional<LiningInMap> fit_design(const TunnelLining& design_in_map, const std::vector<ThinPoint>& points_map,
+std::optional<LiningInMap> fit_design(const TunnelLining& design_in_map, const std::vector<DownsampledPoint>& points_map,
                                       const Eigen::Vector3d& p_map_scanner, const LiningSettings& settings);
 
 }  // namespace patrol::inspect

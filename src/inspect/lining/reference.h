@@ -16,7 +16,7 @@ struct LiningReference {
 struct ReferenceSettings {
   double spacing_m = 0.1;  ///< averaging distance of the points
   double near_m = 1.5;     ///< points closer to the scanner are excluded as parts of the robot
-  double far_m = 30.0;     ///< points farther away are excluded: too sparse for surfaces
+  double max_range_m = 30.0;     ///< points farther away are excluded: too sparse for surfaces
 };
 
 /// Creates a reference from a scan and its pose.

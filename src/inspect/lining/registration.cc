@@ -60,8 +60,8 @@ struct Pair {
 std::optional<Pair> pair_of(const SurfaceCloud& target, const SurfaceCloud& source, std::size_t i, const Pose3& T_target_source, double distance_m) {
   const Eigen::Vector3d p = T_target_source * source.points()[i].p;
   const auto near = target.nearest(p, 1);
-  const double reach_m = distance_m + kSpacing_m;
-  if (near.count == 0 || near.squared_m2[0] > reach_m * reach_m) return std::nullopt;
+  const double max_pair_distance_m = distance_m + kSpacing_m;
+  if (near.count == 0 || near.squared_m2[0] > max_pair_distance_m * max_pair_distance_m) return std::nullopt;
   const SurfaceCloud::Surface& surface = target.surfaces()[near.index[0]];
   if (std::abs(surface.normal.dot(T_target_source.rotation * source.surfaces()[i].normal)) < kPairCosine) return std::nullopt;
   return Pair{.normal = surface.normal, .arm = p - T_target_source.position, .residual_m = surface.normal.dot(p - surface.mean)};
@@ -69,7 +69,7 @@ std::optional<Pair> pair_of(const SurfaceCloud& target, const SurfaceCloud& sour
 
 }  // namespace
 
-Pose3 moved(const Pose3& T_target_source, const Vector6& step) {
+Pose3 apply_step(const Pose3& T_target_source, const Vector6& step) {
   const Eigen::Vector3d turn = step.tail<3>();
   const double angle = turn.norm();
   const Eigen::Quaterniond rotation = angle > 0.0 ? Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) : Eigen::Quaterniond::Identity();
@@ -99,7 +99,7 @@ Registration register_cloud(const SurfaceCloud& target, const SurfaceCloud& sour
     if (pairs < kMinPairs) return result;
     H.diagonal().array() += 1e-6 * H.trace();
     const Vector6 step = -solve_symmetric(H, b);
-    result.T_target_source = moved(result.T_target_source, step);
+    result.T_target_source = apply_step(result.T_target_source, step);
     // Distant pairs need not converge completely before closer ones are used.
     const double length_m = step.head<3>().norm() + kRegistrationArm_m * step.tail<3>().norm();
     const bool is_last = distance_m <= settings.last_distance_m;
@@ -115,7 +115,7 @@ Registration register_cloud(const SurfaceCloud& target, const SurfaceCloud& sour
     ++kept;
   }
   if (kept > 0) result.rms_m = std::sqrt(squares / static_cast<double>(kept));
-  if (!sample.empty()) result.share = static_cast<double>(kept) / static_cast<double>(sample.size());
+  if (!sample.empty()) result.inlier_ratio = static_cast<double>(kept) / static_cast<double>(sample.size());
   return result;
 }
 

@@ -12,7 +12,7 @@ struct Registration {
   Pose3 T_target_source;
   double rms_m = 0.0;   ///< root mean square distance of the final pairs from the target surfaces
   /// Inlier ratio: fraction of the sampled points with a pair at most `last_distance_m` off its surface.
-  double share = 0.0;
+  double inlier_ratio = 0.0;
   int iterations = 0;
   bool converged = false;
 };
@@ -26,6 +26,6 @@ Registration register_cloud(const SurfaceCloud& target, const SurfaceCloud& sour
 
 /// Applies a small step in target: the first three elements translate, the last three rotate about the origin of the
 /// source.
-Pose3 moved(const Pose3& T_target_source, const Eigen::Matrix<double, 6, 1>& step);
+Pose3 apply_step(const Pose3& T_target_source, const Eigen::Matrix<double, 6, 1>& step);
 
 }  // namespace patrol::inspect

@@ -14,18 +14,18 @@ namespace {
 constexpr std::array kParabola{-3.0 / 35.0, 12.0 / 35.0, 17.0 / 35.0, 12.0 / 35.0, -3.0 / 35.0};
 
 /// Applies the squared patch scale, which the covariance already includes and the patch variances do not.
-double own_var(const Patch& patch, const Adjustment& adjustment) { return patch.var_m2 * adjustment.scale * adjustment.scale; }
+double residual_variance(const Patch& patch, const Adjustment& adjustment) { return patch.var_m2 * adjustment.scale * adjustment.scale; }
 
-double std_of(double own_var_m2, const Vector7& J, const Adjustment& adjustment) {
-  return std::sqrt(own_var_m2 + J.dot(adjustment.covariance * J));
+double std_of(double residual_var_m2, const Vector7& J, const Adjustment& adjustment) {
+  return std::sqrt(residual_var_m2 + J.dot(adjustment.covariance * J));
 }
 
-std::vector<SectorMove> ring_of(const LiningGrid& grid, const Adjustment& adjustment, int ring) {
-  std::vector<SectorMove> sectors(static_cast<std::size_t>(grid.sectors()));
+std::vector<SectorDisplacement> ring_of(const LiningGrid& grid, const Adjustment& adjustment, int ring) {
+  std::vector<SectorDisplacement> sectors(static_cast<std::size_t>(grid.sectors()));
   for (const Patch& patch : adjustment.patches) {
     if (patch.cell < 0 || grid.ring_of(patch.cell) != ring) continue;
     sectors[static_cast<std::size_t>(grid.sector_of(patch.cell))] = {
-        .is_known = true, .inward_m = patch.offset_m, .own_var_m2 = own_var(patch, adjustment), .J = patch.J};
+        .is_observed = true, .inward_m = patch.offset_m, .residual_var_m2 = residual_variance(patch, adjustment), .J = patch.J};
   }
   return sectors;
 }
@@ -42,10 +42,10 @@ struct Line {
 };
 constexpr std::array kChords{Line{"9-3", 270.0, 90.0}, Line{"10-2", 300.0, 60.0}, Line{"12-9", 0.0, 270.0}, Line{"12-3", 0.0, 90.0}};
 
-std::optional<SectorMove> move_at(const LiningGrid& grid, const std::vector<SectorMove>& ring, double clock_deg) {
+std::optional<SectorDisplacement> displacement_at(const LiningGrid& grid, const std::vector<SectorDisplacement>& ring, double clock_deg) {
   const double turned_deg = clock_deg > 180.0 ? clock_deg - 360.0 : clock_deg;
   const int sector = static_cast<int>(std::lround(turned_deg / grid.sector_deg)) + grid.half_sectors;
-  if (sector < 0 || sector >= grid.sectors() || !ring[static_cast<std::size_t>(sector)].is_known) return std::nullopt;
+  if (sector < 0 || sector >= grid.sectors() || !ring[static_cast<std::size_t>(sector)].is_observed) return std::nullopt;
   return ring[static_cast<std::size_t>(sector)];
 }
 
@@ -61,25 +61,25 @@ std::vector<LiningCell> lining_cells(const LiningGrid& grid, const Adjustment& a
     cells.push_back({.ring = grid.ring_of(patch.cell),
                      .clock_deg = grid.clock_deg(grid.sector_of(patch.cell)),
                      .inward_m = patch.offset_m,
-                     .std_m = std_of(own_var(patch, adjustment), patch.J, adjustment),
+                     .std_m = std_of(residual_variance(patch, adjustment), patch.J, adjustment),
                      .points = patch.points});
   }
   return cells;
 }
 
-std::vector<SectorMove> smoothed_ring(const LiningGrid& grid, const Adjustment& adjustment, int ring) {
-  const std::vector<SectorMove> raw = ring_of(grid, adjustment, ring);
-  std::vector<SectorMove> smooth = raw;
+std::vector<SectorDisplacement> smoothed_ring(const LiningGrid& grid, const Adjustment& adjustment, int ring) {
+  const std::vector<SectorDisplacement> raw = ring_of(grid, adjustment, ring);
+  std::vector<SectorDisplacement> smooth = raw;
   for (std::size_t sector = 2; sector + 2 < raw.size(); ++sector) {
-    SectorMove sum{.is_known = true};
+    SectorDisplacement sum{.is_observed = true};
     for (std::size_t k = 0; k < kParabola.size(); ++k) {
-      const SectorMove& part = raw[sector + k - 2];
-      sum.is_known = sum.is_known && part.is_known;
+      const SectorDisplacement& part = raw[sector + k - 2];
+      sum.is_observed = sum.is_observed && part.is_observed;
       sum.inward_m += kParabola[k] * part.inward_m;
-      sum.own_var_m2 += kParabola[k] * kParabola[k] * part.own_var_m2;
+      sum.residual_var_m2 += kParabola[k] * kParabola[k] * part.residual_var_m2;
       sum.J += kParabola[k] * part.J;
     }
-    if (sum.is_known) smooth[sector] = sum;
+    if (sum.is_observed) smooth[sector] = sum;
   }
   return smooth;
 }
@@ -88,11 +88,11 @@ std::vector<RingFinding> ring_findings(const LiningInMap& lining, const LiningGr
   std::vector<RingFinding> findings;
   for (int ring = grid.first_ring; ring < grid.first_ring + grid.rings; ++ring) {
     std::optional<RingFinding> most;
-    const std::vector<SectorMove> sectors = smoothed_ring(grid, adjustment, ring);
+    const std::vector<SectorDisplacement> sectors = smoothed_ring(grid, adjustment, ring);
     for (int sector = 0; sector < grid.sectors(); ++sector) {
-      const SectorMove& move = sectors[static_cast<std::size_t>(sector)];
-      if (!move.is_known || (most && std::abs(move.inward_m) <= std::abs(most->inward_m))) continue;
-      const double std_m = std_of(move.own_var_m2, move.J, adjustment);
+      const SectorDisplacement& move = sectors[static_cast<std::size_t>(sector)];
+      if (!move.is_observed || (most && std::abs(move.inward_m) <= std::abs(most->inward_m))) continue;
+      const double std_m = std_of(move.residual_var_m2, move.J, adjustment);
       const WarningLevel level = level_of(1000.0 * std::abs(move.inward_m), settings);
       if (level == WarningLevel::kNone || std::abs(move.inward_m) < settings.significance * std_m) continue;
       most = RingFinding{.ring = ring, .clock_deg = grid.clock_deg(sector), .inward_m = move.inward_m, .std_m = std_m, .level = level};
@@ -107,22 +107,22 @@ std::vector<RingFinding> ring_findings(const LiningInMap& lining, const LiningGr
 std::vector<ConvergenceLine> convergence_lines(const LiningInMap& lining, const LiningGrid& grid, const Adjustment& adjustment) {
   std::vector<ConvergenceLine> lines;
   for (int ring = grid.first_ring; ring < grid.first_ring + grid.rings; ++ring) {
-    const std::vector<SectorMove> sectors = smoothed_ring(grid, adjustment, ring);
+    const std::vector<SectorDisplacement> sectors = smoothed_ring(grid, adjustment, ring);
     for (const Line& line : kChords) {
-      const auto from = move_at(grid, sectors, line.from_deg), to = move_at(grid, sectors, line.to_deg);
+      const auto from = displacement_at(grid, sectors, line.from_deg), to = displacement_at(grid, sectors, line.to_deg);
       if (!from || !to) continue;
       const Eigen::Vector2d chord = lining.design.radius_at(line.to_deg) * outwards(line.to_deg) - lining.design.radius_at(line.from_deg) * outwards(line.from_deg);
       // An inward displacement of an end is opposite to its outward direction. The chord grows by the separation of its
       // ends.
       const double from_part = chord.normalized().dot(outwards(line.from_deg)), to_part = -chord.normalized().dot(outwards(line.to_deg));
-      const double own_var_m2 = from_part * from_part * from->own_var_m2 + to_part * to_part * to->own_var_m2;
+      const double residual_var_m2 = from_part * from_part * from->residual_var_m2 + to_part * to_part * to->residual_var_m2;
       lines.push_back({.ring = ring,
                        .name = line.name,
                        .change_m = from_part * from->inward_m + to_part * to->inward_m,
-                       .std_m = std_of(own_var_m2, from_part * from->J + to_part * to->J, adjustment)});
+                       .std_m = std_of(residual_var_m2, from_part * from->J + to_part * to->J, adjustment)});
     }
-    if (const auto crown = move_at(grid, sectors, 0.0)) {
-      lines.push_back({.ring = ring, .name = "12-", .change_m = -crown->inward_m, .std_m = std_of(crown->own_var_m2, crown->J, adjustment)});
+    if (const auto crown = displacement_at(grid, sectors, 0.0)) {
+      lines.push_back({.ring = ring, .name = "12-", .change_m = -crown->inward_m, .std_m = std_of(crown->residual_var_m2, crown->J, adjustment)});
     }
   }
   return lines;

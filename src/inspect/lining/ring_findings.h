@@ -15,13 +15,13 @@ std::vector<LiningCell> lining_cells(const LiningGrid& grid, const Adjustment& a
 /// Displacement of a ring in one sector. `smoothed_ring` fits a parabola to five neighbors where all are known
 /// [Savitzky64], which preserves the height of a bulge. Without smoothing, the maximum over the sectors of a ring would
 /// be biased by noise.
-struct SectorMove {
-  bool is_known = false;
+struct SectorDisplacement {
+  bool is_observed = false;
   double inward_m = 0.0;
-  double own_var_m2 = 0.0;            ///< without the registration uncertainty
+  double residual_var_m2 = 0.0;            ///< without the registration uncertainty
   Vector7 J = Vector7::Zero();        ///< derivative with respect to the parameters of the registration
 };
-std::vector<SectorMove> smoothed_ring(const LiningGrid& grid, const Adjustment& adjustment, int ring);
+std::vector<SectorDisplacement> smoothed_ring(const LiningGrid& grid, const Adjustment& adjustment, int ring);
 
 /// Returns the rings with a displacement of at least the notice threshold and at least `significance` standard
 /// deviations.

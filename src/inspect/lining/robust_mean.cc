@@ -13,20 +13,20 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-double spread_about(const std::vector<double>& values, double middle) {
+double mad_std(const std::vector<double>& values, double middle) {
   std::vector<double> distances;
   distances.reserve(values.size());
   for (const double value : values) distances.push_back(std::abs(value - middle));
   return 1.4826 * median_of(std::move(distances));
 }
 
-RobustMean robust_mean(const std::vector<double>& values, const std::vector<double>& weights, double min_reach) {
+RobustMean robust_mean(const std::vector<double>& values, const std::vector<double>& weights, double min_cutoff) {
   RobustMean result{.mean = median_of(values), .weights = std::vector<double>(values.size(), 0.0)};
-  const double reach = std::max(min_reach, kBiweightReach * spread_about(values, result.mean));
+  const double cutoff = std::max(min_cutoff, kBiweightCutoff * mad_std(values, result.mean));
   for (int iteration = 0; iteration < 10; ++iteration) {
     double sum = 0.0, moment = 0.0;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      result.weights[i] = weights[i] * biweight(values[i] - result.mean, reach);
+      result.weights[i] = weights[i] * biweight(values[i] - result.mean, cutoff);
       sum += result.weights[i];
       moment += result.weights[i] * values[i];
     }

@@ -17,13 +17,13 @@
 namespace patrol::inspect {
 namespace {
 
-constexpr double kNearest_m = 0.01, kFarthest_m = 1e4;
+constexpr double kMinRange_m = 0.01, kMaxRange_m = 1e4;
 // Limits on the principal variances of a surface. Smallest over middle: at most kThickness. Middle over largest: at
 // least kNarrowness, because a row of points is not a surface.
 constexpr double kThickness = 0.1, kNarrowness = 0.01;
 
 struct Cloud {
-  std::vector<ThinPoint> points;
+  std::vector<DownsampledPoint> points;
 
   std::size_t kdtree_get_point_count() const { return points.size(); }
   double kdtree_get_pt(std::size_t index, std::size_t axis) const { return points[index].p[static_cast<Eigen::Index>(axis)]; }
@@ -47,7 +47,7 @@ struct Beam {
 
 Beam beam_of(const ScannerPoint& point, std::uint32_t index, double spacing_m) {
   const double across = std::hypot(static_cast<double>(point.x), static_cast<double>(point.y)), range = std::hypot(across, static_cast<double>(point.z));
-  const int octave = std::clamp(static_cast<int>(std::lround(std::log2(std::max(range, kNearest_m)))), -8, 14);
+  const int octave = std::clamp(static_cast<int>(std::lround(std::log2(std::max(range, kMinRange_m)))), -8, 14);
   const double angle = spacing_m / std::exp2(octave);
   const double row = std::floor((std::atan2(static_cast<double>(point.z), across) + 0.5 * std::numbers::pi) / angle);
   const double columns = std::max(1.0, std::ceil(2.0 * std::numbers::pi * std::cos((row + 0.5) * angle - 0.5 * std::numbers::pi) / angle));
@@ -58,15 +58,15 @@ Beam beam_of(const ScannerPoint& point, std::uint32_t index, double spacing_m) {
 
 void check(const ScannerPoint& point) {
   for (const float value : {point.x, point.y, point.z}) {
-    if (!(std::abs(value) <= kFarthest_m)) {
-      throw InputError(fmt::format("a scan's point is ({}, {}, {}): must be finite and within {} m", point.x, point.y, point.z, kFarthest_m));
+    if (!(std::abs(value) <= kMaxRange_m)) {
+      throw InputError(fmt::format("a scan's point is ({}, {}, {}): must be finite and within {} m", point.x, point.y, point.z, kMaxRange_m));
     }
   }
 }
 
 }  // namespace
 
-std::vector<ThinPoint> thin(const std::vector<ScannerPoint>& points, double spacing_m, double near_m) {
+std::vector<DownsampledPoint> downsample(const std::vector<ScannerPoint>& points, double spacing_m, double near_m) {
   std::vector<Beam> beams;
   beams.reserve(points.size());
   for (const ScannerPoint& point : points) {
@@ -75,9 +75,9 @@ std::vector<ThinPoint> thin(const std::vector<ScannerPoint>& points, double spac
     if (static_cast<double>(beam.range_m) >= near_m) beams.push_back(beam);
   }
   std::ranges::sort(beams);
-  std::vector<ThinPoint> thinned;
+  std::vector<DownsampledPoint> downsampled;
   for (std::size_t begin = 0, end = 0; begin < beams.size(); begin = end) {
-    ThinPoint mean;
+    DownsampledPoint mean;
     for (; end < beams.size() && beams[end].cell == beams[begin].cell && beams[end].range_m - beams[begin].range_m <= static_cast<float>(spacing_m); ++end) {
       const ScannerPoint& point = points[beams[end].point];
       mean.p += Eigen::Vector3d(point.x, point.y, point.z);
@@ -86,20 +86,20 @@ std::vector<ThinPoint> thin(const std::vector<ScannerPoint>& points, double spac
     }
     mean.p /= mean.count;
     mean.intensity /= mean.count;
-    thinned.push_back(mean);
+    downsampled.push_back(mean);
   }
-  return thinned;
+  return downsampled;
 }
 
 struct SurfaceCloud::Index {
-  explicit Index(std::vector<ThinPoint> points) : cloud{std::move(points)}, tree(3, cloud) {}
+  explicit Index(std::vector<DownsampledPoint> points) : cloud{std::move(points)}, tree(3, cloud) {}
   Cloud cloud;
   Tree tree;
 };
 
 namespace {
 
-SurfaceCloud::Surface surface_of(const std::vector<ThinPoint>& points, const SurfaceCloud::Neighbours& near) {
+SurfaceCloud::Surface surface_of(const std::vector<DownsampledPoint>& points, const SurfaceCloud::Neighbors& near) {
   SurfaceCloud::Surface surface;
   for (std::size_t i = 0; i < near.count; ++i) surface.mean += points[near.index[i]].p / static_cast<double>(near.count);
   if (near.count < 5) return surface;
@@ -116,20 +116,20 @@ SurfaceCloud::Surface surface_of(const std::vector<ThinPoint>& points, const Sur
 
 }  // namespace
 
-SurfaceCloud::SurfaceCloud(std::vector<ThinPoint> points) : index_(std::make_unique<Index>(std::move(points))) {
+SurfaceCloud::SurfaceCloud(std::vector<DownsampledPoint> points) : index_(std::make_unique<Index>(std::move(points))) {
   surfaces_.reserve(this->points().size());
-  for (const ThinPoint& point : this->points()) surfaces_.push_back(surface_of(this->points(), nearest(point.p, kNeighbours)));
+  for (const DownsampledPoint& point : this->points()) surfaces_.push_back(surface_of(this->points(), nearest(point.p, kNumNeighbors)));
 }
 SurfaceCloud::~SurfaceCloud() = default;
 SurfaceCloud::SurfaceCloud(SurfaceCloud&&) noexcept = default;
 SurfaceCloud& SurfaceCloud::operator=(SurfaceCloud&&) noexcept = default;
 
-const std::vector<ThinPoint>& SurfaceCloud::points() const { return index_->cloud.points; }
+const std::vector<DownsampledPoint>& SurfaceCloud::points() const { return index_->cloud.points; }
 
-SurfaceCloud::Neighbours SurfaceCloud::nearest(const Eigen::Vector3d& p, std::size_t count) const {
-  Neighbours found;
+SurfaceCloud::Neighbors SurfaceCloud::nearest(const Eigen::Vector3d& p, std::size_t count) const {
+  Neighbors found;
   if (points().empty()) return found;
-  found.count = index_->tree.knnSearch(p.data(), std::min(count, kNeighbours), found.index.data(), found.squared_m2.data());
+  found.count = index_->tree.knnSearch(p.data(), std::min(count, kNumNeighbors), found.index.data(), found.squared_m2.data());
   return found;
 }
 

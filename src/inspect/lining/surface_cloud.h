@@ -14,7 +14,7 @@ namespace patrol::inspect {
 
 /// Mean of neighboring beams on one surface. On a curved wall its distance to the wall is at most spacing^2 / (12
 /// radius).
-struct ThinPoint {
+struct DownsampledPoint {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
   double intensity = 0.0;
   int count = 0;  ///< number of averaged scan points
@@ -23,34 +23,34 @@ struct ThinPoint {
 /// Downsamples points, given in the scanner frame, to about the spacing, but never across a range step larger than the
 /// spacing. Points closer than `near_m` are excluded. Throws InputError for points that are not finite or farther than
 /// 10 km.
-std::vector<ThinPoint> thin(const std::vector<ScannerPoint>& points, double spacing_m, double near_m = 0.0);
+std::vector<DownsampledPoint> downsample(const std::vector<ScannerPoint>& points, double spacing_m, double near_m = 0.0);
 
 /// Downsampled points with their local surfaces, in a k-d tree (nanoflann). Ties in distance are resolved
 /// deterministically.
 class SurfaceCloud {
  public:
-  explicit SurfaceCloud(std::vector<ThinPoint> points);
+  explicit SurfaceCloud(std::vector<DownsampledPoint> points);
   ~SurfaceCloud();
   SurfaceCloud(SurfaceCloud&&) noexcept;
   SurfaceCloud& operator=(SurfaceCloud&&) noexcept;
 
-  static constexpr std::size_t kNeighbours = 10;
+  static constexpr std::size_t kNumNeighbors = 10;
   struct Surface {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();    ///< mean of the nearest points
     /// Unit vector of either sign; zero if the points do not form a surface.
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
 
-  const std::vector<ThinPoint>& points() const;
+  const std::vector<DownsampledPoint>& points() const;
   /// [point]: principal plane of the nearest points.
   const std::vector<Surface>& surfaces() const { return surfaces_; }
 
-  struct Neighbours {
+  struct Neighbors {
     std::size_t count = 0;
-    std::array<std::uint32_t, kNeighbours> index{};  ///< by increasing distance
-    std::array<double, kNeighbours> squared_m2{};
+    std::array<std::uint32_t, kNumNeighbors> index{};  ///< by increasing distance
+    std::array<double, kNumNeighbors> squared_m2{};
   };
-  Neighbours nearest(const Eigen::Vector3d& p, std::size_t count) const;
+  Neighbors nearest(const Eigen::Vector3d& p, std::size_t count) const;
 
  private:
   struct Index;

@@ -13,14 +13,14 @@ namespace patrol::inspect {
 namespace {
 
 constexpr std::array kSteelDecay_s = {1e-5, 3e-5, 1e-4, 3e-4};
-constexpr double kSteelTime_s = 1e-5;
+constexpr double kSteelReferenceTime_s = 1e-5;
 
-TemWindow window_of(const SoundingErrorSettings& settings, const std::vector<AimedSounding>& soundings) {
+TemGateLayout gate_layout(const SoundingErrorSettings& settings, const std::vector<OrientedSounding>& soundings) {
   validate(settings, "stack.water.errors");
   if (soundings.empty()) throw InputError("soundings of water: there are none");
   const std::vector<double>& gate_s = soundings.front().sounding.gate_s;
-  for (const AimedSounding& aimed : soundings) {
-    const TemSounding& sounding = aimed.sounding;
+  for (const OrientedSounding& oriented : soundings) {
+    const TemSounding& sounding = oriented.sounding;
     if (sounding.gate_s != gate_s || sounding.rate_tps.size() != gate_s.size() || sounding.std_tps.size() != gate_s.size() ||
         gate_s.size() < 3 || !(sounding.moment_am2 > 0.0)) {
       throw InputError(fmt::format("sounding of water at {:.3f} s: its gates differ from those of the others", to_seconds(sounding.stamp)));
@@ -38,7 +38,7 @@ Eigen::Matrix<double, 6, 1> products(const Eigen::Vector3d& a) {
 /// significant. Errors proportional to the signal must be scaled with this estimate and not with the readings.
 /// Otherwise a gain that shrinks all readings would shrink their errors too and become more likely (Peelle's puzzle
 /// [DAgostini94]). `rate`, `std`: [gate][sounding].
-Eigen::MatrixXd smoothed(const Eigen::MatrixXd& rate, const Eigen::MatrixXd& std, const std::vector<Eigen::Vector3d>& axes) {
+Eigen::MatrixXd fit_quadratic_form(const Eigen::MatrixXd& rate, const Eigen::MatrixXd& std, const std::vector<Eigen::Vector3d>& axes) {
   constexpr Eigen::Index kEnough = 12;
   const Eigen::Index count = rate.cols();
   Eigen::MatrixXd form = Eigen::MatrixXd::Ones(count, count < kEnough ? 1 : 6);
@@ -68,24 +68,24 @@ Eigen::VectorXd log_slopes(const std::vector<double>& gate_s, const Eigen::Vecto
 
 }  // namespace
 
-SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings, const std::vector<AimedSounding>& soundings)
-    : gates_(window_of(settings, soundings)), num_gates_(static_cast<Eigen::Index>(soundings.front().sounding.gate_s.size())) {
+SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings, const std::vector<OrientedSounding>& soundings)
+    : gates_(gate_layout(settings, soundings)), num_gates_(static_cast<Eigen::Index>(soundings.front().sounding.gate_s.size())) {
   const auto count = static_cast<Eigen::Index>(soundings.size());
   const std::vector<double>& gate_s = soundings.front().sounding.gate_s;
   Eigen::MatrixXd rate(num_gates_, count), std(num_gates_, count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const AimedSounding& aimed = soundings[static_cast<std::size_t>(i)];
-    axes_.push_back(quaternion_from_rpy(0.0, aimed.pose.pitch_rad, aimed.pose.yaw_rad) * Eigen::Vector3d::UnitX());
+    const OrientedSounding& oriented = soundings[static_cast<std::size_t>(i)];
+    axes_.push_back(quaternion_from_rpy(0.0, oriented.pose.pitch_rad, oriented.pose.yaw_rad) * Eigen::Vector3d::UnitX());
     for (Eigen::Index gate = 0; gate < num_gates_; ++gate) {
       const auto g = static_cast<std::size_t>(gate);
-      rate(gate, i) = aimed.sounding.rate_tps[g] / aimed.sounding.moment_am2;
-      std(gate, i) = aimed.sounding.std_tps[g] / aimed.sounding.moment_am2;
+      rate(gate, i) = oriented.sounding.rate_tps[g] / oriented.sounding.moment_am2;
+      std(gate, i) = oriented.sounding.std_tps[g] / oriented.sounding.moment_am2;
       if (!std::isfinite(rate(gate, i)) || !(std(gate, i) > 0.0)) {
-        throw InputError(fmt::format("sounding of water at {:.3f} s: gate {} is not a number with an error", to_seconds(aimed.sounding.stamp), gate));
+        throw InputError(fmt::format("sounding of water at {:.3f} s: gate {} is not a number with an error", to_seconds(oriented.sounding.stamp), gate));
       }
     }
   }
-  const Eigen::MatrixXd smooth = smoothed(rate, std, axes_);
+  const Eigen::MatrixXd smooth = fit_quadratic_form(rate, std, axes_);
   const Eigen::VectorXd slopes = log_slopes(gate_s, smooth.rowwise().mean());
   std = (std.array().square() + (settings.model_std * smooth.array()).square()).sqrt();
 
@@ -107,7 +107,7 @@ SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings, co
       Eigen::Index column = 2;
       for (const double decay_s : kSteelDecay_s) {
         const double steel =
-            settings.steel_rate * std::exp((kSteelTime_s - gate_s[static_cast<std::size_t>(gate)]) / decay_s) * inverse_std_[row];
+            settings.steel_rate * std::exp((kSteelReferenceTime_s - gate_s[static_cast<std::size_t>(gate)]) / decay_s) * inverse_std_[row];
         nuisances_(row, column++) = steel;
         nuisances_.block<1, 6>(row, column) = settings.steel_anisotropy * steel * products(axis).transpose();
         column += 6;
@@ -119,26 +119,26 @@ SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings, co
 }
 
 // With residual r and nuisances B, both whitened: r' (I + B B')^-1 r = r'r - (B'r)' (I + B'B)^-1 (B'r).
-double SoundingLikelihood::of_residual(const Eigen::VectorXd& whitened) const {
+double SoundingLikelihood::log_likelihood_residual(const Eigen::VectorXd& whitened) const {
   const Eigen::VectorXd projected = nuisances_.transpose() * whitened;
   return -0.5 * (whitened.squaredNorm() - projected.dot(nuisance_information_.solve(projected)));
 }
 
-double SoundingLikelihood::of_rock(double rock_spm) const {
-  const Eigen::VectorXd rock = gated_rock(gates_, rock_spm);
-  return of_residual(data_ - rock.replicate(static_cast<Eigen::Index>(axes_.size()), 1).cwiseProduct(inverse_std_));
+double SoundingLikelihood::log_likelihood_rock(double rock_spm) const {
+  const Eigen::VectorXd rock = gated_whole_space_response(gates_, rock_spm);
+  return log_likelihood_residual(data_ - rock.replicate(static_cast<Eigen::Index>(axes_.size()), 1).cwiseProduct(inverse_std_));
 }
 
-double SoundingLikelihood::of_body(double rock_spm, const ConductiveSphere& sphere, const Eigen::Vector3d& towards) const {
-  const GatedSphere body = gated_sphere(gates_, rock_spm, sphere);
-  const Eigen::VectorXd across = gated_rock(gates_, rock_spm) + body.transverse, along = body.axial - body.transverse;
+double SoundingLikelihood::log_likelihood_body(double rock_spm, const ConductiveSphere& sphere, const Eigen::Vector3d& direction) const {
+  const GatedSphereResponse body = gated_sphere_response(gates_, rock_spm, sphere);
+  const Eigen::VectorXd across = gated_whole_space_response(gates_, rock_spm) + body.transverse, along = body.axial - body.transverse;
   Eigen::VectorXd whitened = data_;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const Eigen::Index row = static_cast<Eigen::Index>(i) * num_gates_;
-    const double cosine = axes_[i].dot(towards);
+    const double cosine = axes_[i].dot(direction);
     whitened.segment(row, num_gates_) -= (across + cosine * cosine * along).cwiseProduct(inverse_std_.segment(row, num_gates_));
   }
-  return of_residual(whitened);
+  return log_likelihood_residual(whitened);
 }
 
 }  // namespace patrol::inspect

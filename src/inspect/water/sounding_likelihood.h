@@ -18,15 +18,15 @@ namespace patrol::inspect {
 class SoundingLikelihood {
  public:
   /// Prepares the likelihood. Throws InputError if there are no soundings or their gates differ.
-  SoundingLikelihood(const SoundingErrorSettings& settings, const std::vector<AimedSounding>& soundings);
+  SoundingLikelihood(const SoundingErrorSettings& settings, const std::vector<OrientedSounding>& soundings);
 
   /// Return log likelihoods up to a common constant. `towards`: unit vector from the coil to the center of the sphere,
   /// in the frame of yaw and pitch.
-  double of_rock(double rock_spm) const;
-  double of_body(double rock_spm, const ConductiveSphere& sphere, const Eigen::Vector3d& towards) const;
+  double log_likelihood_rock(double rock_spm) const;
+  double log_likelihood_body(double rock_spm, const ConductiveSphere& sphere, const Eigen::Vector3d& direction) const;
 
  private:
-  double of_residual(const Eigen::VectorXd& whitened) const;
+  double log_likelihood_residual(const Eigen::VectorXd& whitened) const;
 
   TemGates gates_;
   Eigen::Index num_gates_;

@@ -26,13 +26,13 @@ using Parameters = Eigen::Matrix<double, 6, 1>;
 struct Body {
   double rock_spm;
   ConductiveSphere sphere;
-  Eigen::Vector3d towards;  ///< unit vector from the coil, in body
+  Eigen::Vector3d direction;  ///< unit vector from the coil, in body
 };
 
 Body body_of(const Parameters& p) {
   return {.rock_spm = std::exp(p[0]),
           .sphere = {.distance_m = std::exp(p[1]), .radius_m = std::exp(p[4]), .conductivity_spm = std::exp(p[5])},
-          .towards = Eigen::Vector3d(1.0, p[2], p[3]).normalized()};
+          .direction = Eigen::Vector3d(1.0, p[2], p[3]).normalized()};
 }
 
 Parameters draw(const WaterPriorSettings& prior, RandomSequence& random) {
@@ -79,7 +79,7 @@ double log_mean_exp(const std::vector<double>& values) {
 }
 
 /// Returns the effective sample size for weights e^(step ln L), as a fraction: (sum w)^2 / (n sum w^2).
-double worth(const std::vector<Particle>& particles, double step) {
+double effective_sample_fraction(const std::vector<Particle>& particles, double step) {
   double top = kNever, sum = 0.0, squares = 0.0;
   for (const Particle& particle : particles) top = std::max(top, particle.log_likelihood);
   for (const Particle& particle : particles) {
@@ -91,12 +91,12 @@ double worth(const std::vector<Particle>& particles, double step) {
 
 /// Returns the next step toward temperature 1, by bisection.
 double next_step(const std::vector<Particle>& particles, double left) {
-  constexpr double kWorth = 0.5;
-  if (worth(particles, left) >= kWorth) return left;
+  constexpr double kMinSampleFraction = 0.5;
+  if (effective_sample_fraction(particles, left) >= kMinSampleFraction) return left;
   double low = 0.0, high = left;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
-    (worth(particles, middle) >= kWorth ? low : high) = middle;
+    (effective_sample_fraction(particles, middle) >= kMinSampleFraction ? low : high) = middle;
   }
   return low;
 }
@@ -105,12 +105,12 @@ double next_step(const std::vector<Particle>& particles, double left) {
 std::vector<Particle> resampled(const std::vector<Particle>& particles, const std::vector<double>& log_weights, double offset) {
   std::vector<Particle> chosen;
   chosen.reserve(particles.size());
-  for (const std::size_t parent : resample_systematic(normalized_weights(log_weights), offset)) chosen.push_back(particles[parent]);
+  for (const std::size_t parent : systematic_parents(normalized_weights(log_weights), offset)) chosen.push_back(particles[parent]);
   return chosen;
 }
 
 /// Returns the Cholesky factor of the covariance of the particles, regularized by a small isotropic part.
-Eigen::Matrix<double, 6, 6> spread_of(const std::vector<Particle>& particles) {
+Eigen::Matrix<double, 6, 6> covariance_factor(const std::vector<Particle>& particles) {
   Parameters mean = Parameters::Zero();
   for (const Particle& particle : particles) mean += particle.p / static_cast<double>(particles.size());
   Eigen::Matrix<double, 6, 6> covariance = 1e-10 * Eigen::Matrix<double, 6, 6>::Identity();
@@ -127,13 +127,13 @@ void move(std::vector<Particle>& particles, double temperature, const WaterSetti
           RandomSequence& random) {
   // Factors on the Cholesky factor; 2.38 / sqrt(6) = 0.97 is optimal for a normal posterior.
   constexpr double kWidths[] = {1.6, 0.8, 0.3};
-  const Eigen::Matrix<double, 6, 6> spread = spread_of(particles);
+  const Eigen::Matrix<double, 6, 6> factor = covariance_factor(particles);
   for (Particle& particle : particles) {
     for (int step = 0; step < settings.moves; ++step) {
       Parameters normals;
       for (double& normal : normals) normal = random.normal();
       const double level = std::log(random.uniform());
-      const Parameters p = particle.p + kWidths[random.index(std::size(kWidths))] * (spread * normals);
+      const Parameters p = particle.p + kWidths[random.index(std::size(kWidths))] * (factor * normals);
       const double prior = log_prior(settings.prior, p);
       if (prior == kNever) continue;
       const double likelihood = log_likelihood(p);
@@ -172,7 +172,7 @@ RockAlone rock_alone(const WaterPriorSettings& prior, const SoundingLikelihood& 
   std::vector<double> rocks_spm, values;
   for (int i = 0; i < kSteps; ++i) {
     rocks_spm.push_back(prior.min_rock_spm * std::pow(prior.max_rock_spm / prior.min_rock_spm, (i + 0.5) / kSteps));
-    values.push_back(likelihood.of_rock(rocks_spm.back()));
+    values.push_back(likelihood.log_likelihood_rock(rocks_spm.back()));
   }
   const double log_evidence = log_mean_exp(values);
   double mean_spm = 0.0;
@@ -189,10 +189,10 @@ struct Interval {
 
 Interval interval_95(std::vector<double> values) {
   std::sort(values.begin(), values.end());
-  const auto at = [&](double share) {
-    const double place = share * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    return std::lerp(values[below], values[std::min(below + 1, values.size() - 1)], place - std::floor(place));
+  const auto at = [&](double quantile) {
+    const double rank = quantile * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(rank);
+    return std::lerp(values[below], values[std::min(below + 1, values.size() - 1)], rank - std::floor(rank));
   };
   return {at(0.025), at(0.975)};
 }
@@ -205,14 +205,14 @@ WarningLevel level_of(const WaterSettings& settings, double nearest_m) {
 /// Computes the body fields of the result from the particles.
 void describe_body(const std::vector<Particle>& particles, const WaterSettings& settings, const AntennaGeometry& antenna, WaterResult& result) {
   const double count = static_cast<double>(particles.size());
-  const Pose3 T_map_level = to_spatial(result.T_map_body);
+  const Pose3 T_map_level = to_pose3(result.T_map_body);
   std::vector<double> distances_m, radii_m, nearest_m;
   Eigen::Vector3d p_coil_mean = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> places;
   result.rock_spm = 0.0;
   for (const Particle& particle : particles) {
     const Body body = body_of(particle.p);
-    places.push_back(body.sphere.distance_m * body.towards);
+    places.push_back(body.sphere.distance_m * body.direction);
     p_coil_mean += places.back() / count;
     distances_m.push_back(body.sphere.distance_m);
     radii_m.push_back(body.sphere.radius_m);
@@ -220,7 +220,7 @@ void describe_body(const std::vector<Particle>& particles, const WaterSettings& 
     result.rock_spm += body.rock_spm / count;
   }
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& place : places) covariance += (place - p_coil_mean) * (place - p_coil_mean).transpose() / count;
+  for (const Eigen::Vector3d& rank : places) covariance += (rank - p_coil_mean) * (rank - p_coil_mean).transpose() / count;
   // The misalignment of the antenna rotates the body position about it.
   const double across_std_m = settings.alignment_std_deg * kDegree * p_coil_mean.norm();
   const Eigen::Vector3d ahead = p_coil_mean.normalized();
@@ -258,7 +258,7 @@ WaterInversion::WaterInversion(const WaterSettings& settings) : settings_(settin
   check(settings.prior);
 }
 
-WaterResult WaterInversion::invert(const std::vector<AimedSounding>& soundings, const AntennaGeometry& antenna, const Pose2& T_map_body,
+WaterResult WaterInversion::invert(const std::vector<OrientedSounding>& soundings, const AntennaGeometry& antenna, const Pose2& T_map_body,
                                    double antenna_error_deg, std::uint64_t seed) const {
   WaterResult result;
   result.T_map_body = T_map_body;
@@ -272,7 +272,7 @@ WaterResult WaterInversion::invert(const std::vector<AimedSounding>& soundings, 
   RandomSequence random(RandomStream(seed, "water/posterior"), 0);
   const auto log_likelihood = [&](const Parameters& p) {
     const Body body = body_of(p);
-    return likelihood.of_body(body.rock_spm, body.sphere, R_mount_body * body.towards);
+    return likelihood.log_likelihood_body(body.rock_spm, body.sphere, R_mount_body * body.direction);
   };
   const RockAlone rock = rock_alone(settings_.prior, likelihood);
   const Posterior posterior = sample(settings_, log_likelihood, random);

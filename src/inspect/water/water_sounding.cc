@@ -12,9 +12,9 @@ namespace patrol::inspect {
 namespace {
 
 /// Returns element `index` of `count` uniform values from -max to max; 0 for a single value.
-double evenly(int index, int count, double max) { return count == 1 ? 0.0 : max * (2.0 * index / (count - 1) - 1.0); }
+double uniform_step(int index, int count, double max) { return count == 1 ? 0.0 : max * (2.0 * index / (count - 1) - 1.0); }
 
-void check_reach(const char* name, double angle_deg, const JointLimit& limit) {
+void check_joint_limit(const char* name, double angle_deg, const JointLimit& limit) {
   if (-angle_deg * kDegree >= limit.lower_rad && angle_deg * kDegree <= limit.upper_rad) return;
   throw InputError(fmt::format("stack.water.sounding.{} = {}: the mount reaches {:.1f} ... {:.1f} deg", name, angle_deg,
                                limit.lower_rad / kDegree, limit.upper_rad / kDegree));
@@ -35,14 +35,14 @@ AntennaPose pose_of(const AntennaState& state) { return {state.yaw_rad, state.pi
 
 std::vector<AntennaPose> antenna_poses(const WaterSoundingSettings& settings, const AntennaGeometry& antenna) {
   validate(settings, "stack.water.sounding");
-  check_reach("max_yaw_deg", settings.max_yaw_deg, antenna.yaw);
-  check_reach("max_pitch_deg", settings.max_pitch_deg, antenna.pitch);
+  check_joint_limit("max_yaw_deg", settings.max_yaw_deg, antenna.yaw);
+  check_joint_limit("max_pitch_deg", settings.max_pitch_deg, antenna.pitch);
   std::vector<AntennaPose> poses;
   for (int row = 0; row < settings.pitches; ++row) {
     for (int step = 0; step < settings.yaws; ++step) {
       const int column = row % 2 == 0 ? step : settings.yaws - 1 - step;
-      poses.push_back({.yaw_rad = kDegree * evenly(column, settings.yaws, settings.max_yaw_deg),
-                       .pitch_rad = kDegree * evenly(row, settings.pitches, settings.max_pitch_deg)});
+      poses.push_back({.yaw_rad = kDegree * uniform_step(column, settings.yaws, settings.max_yaw_deg),
+                       .pitch_rad = kDegree * uniform_step(row, settings.pitches, settings.max_pitch_deg)});
     }
   }
   return poses;
@@ -54,10 +54,10 @@ WaterSounding::WaterSounding(const WaterSoundingSettings& settings, const Antenn
       poses_(antenna_poses(settings, antenna)),
       since_(start) {}
 
-void WaterSounding::see(const AntennaState& state) {
+void WaterSounding::on_antenna_state(const AntennaState& state) {
   if (state_ && state.stamp <= state_->stamp) return;
   constexpr double kStill_rad = 0.15 * kDegree;  // two steps of the encoder
-  const bool is_there = angle_between(pose_of(state), asked_) <= settings_.settled_deg * kDegree;
+  const bool is_there = angle_between(pose_of(state), commanded_) <= settings_.settled_deg * kDegree;
   const bool is_still = state_ && angle_between(pose_of(state), pose_of(*state_)) <= kStill_rad;
   if (!is_there || !is_still) steady_since_.reset();
   else if (!steady_since_) steady_since_ = state_->stamp;
@@ -69,48 +69,48 @@ bool WaterSounding::is_settled(Time now) const {
   return steady_since_ && state_->stamp > since_ && now - std::max(*steady_since_, since_) >= from_seconds(settings_.settle_s);
 }
 
-InstrumentCommand WaterSounding::turn_to(const AntennaPose& pose, Phase phase, Time now) {
-  asked_ = pose;
+InstrumentCommand WaterSounding::command_pose(const AntennaPose& pose, Phase phase, Time now) {
+  commanded_ = pose;
   phase_ = phase;
   since_ = now;
   steady_since_.reset();
   return AntennaCommand{.stamp = now, .yaw_rad = pose.yaw_rad, .pitch_rad = pose.pitch_rad};
 }
 
-std::optional<InstrumentCommand> WaterSounding::go_on(Time now) {
-  if (next_ == poses_.size()) return turn_to(stowed_, Phase::kStowing, now);
-  return turn_to(poses_[next_++], Phase::kTurning, now);
+std::optional<InstrumentCommand> WaterSounding::next_command(Time now) {
+  if (next_ == poses_.size()) return command_pose(stowed_, Phase::kStowing, now);
+  return command_pose(poses_[next_++], Phase::kTurning, now);
 }
 
-std::optional<InstrumentCommand> WaterSounding::leave_out(Time now) {
-  ++left_out_;
-  if (++left_out_in_a_row_ >= settings_.give_up_after) {
-    left_out_ += static_cast<int>(poses_.size() - next_);
+std::optional<InstrumentCommand> WaterSounding::skip_pose(Time now) {
+  ++num_skipped_;
+  if (++num_skipped_in_a_row_ >= settings_.give_up_after) {
+    num_skipped_ += static_cast<int>(poses_.size() - next_);
     next_ = poses_.size();
   }
-  return go_on(now);
+  return next_command(now);
 }
 
 std::optional<InstrumentCommand> WaterSounding::step(Time now, const std::optional<AntennaState>& antenna,
                                                      const std::optional<TemSounding>& sounding) {
-  if (antenna) see(*antenna);
+  if (antenna) on_antenna_state(*antenna);
   if (!has_begun_) {
     has_begun_ = true;
-    return go_on(now);
+    return next_command(now);
   }
   const double waited_s = to_seconds(now - since_);
   switch (phase_) {
     case Phase::kTurning:
-      if (!is_settled(now)) return waited_s > settings_.turn_timeout_s ? leave_out(now) : std::nullopt;
+      if (!is_settled(now)) return waited_s > settings_.turn_timeout_s ? skip_pose(now) : std::nullopt;
       phase_ = Phase::kSounding;
       since_ = now;
       return SoundingCommand{.stamp = now};
     case Phase::kSounding:
-      if (!sounding || sounding->stamp <= since_) return waited_s > settings_.sounding_timeout_s ? leave_out(now) : std::nullopt;
+      if (!sounding || sounding->stamp <= since_) return waited_s > settings_.sounding_timeout_s ? skip_pose(now) : std::nullopt;
       soundings_.push_back({.pose = pose_of(*state_), .sounding = *sounding});
-      sum_squared_error_rad2_ += std::pow(angle_between(asked_, pose_of(*state_)), 2);
-      left_out_in_a_row_ = 0;
-      return go_on(now);
+      sum_squared_error_rad2_ += std::pow(angle_between(commanded_, pose_of(*state_)), 2);
+      num_skipped_in_a_row_ = 0;
+      return next_command(now);
     case Phase::kStowing:
       is_stowed_ = is_settled(now);
       if (is_stowed_ || waited_s > settings_.turn_timeout_s) phase_ = Phase::kOver;

@@ -20,7 +20,7 @@ struct AntennaPose {
 std::vector<AntennaPose> antenna_poses(const WaterSoundingSettings& settings, const AntennaGeometry& antenna);
 
 /// Sounding with the encoder angles of the coil.
-struct AimedSounding {
+struct OrientedSounding {
   AntennaPose pose;
   TemSounding sounding;
 };
@@ -38,20 +38,20 @@ class WaterSounding {
   /// Returns whether the encoders confirm the stowed pose; valid when the sequence is over. If not, the robot should
   /// not drive.
   bool is_stowed() const { return is_stowed_; }
-  const std::vector<AimedSounding>& soundings() const { return soundings_; }
+  const std::vector<OrientedSounding>& soundings() const { return soundings_; }
   int num_poses() const { return static_cast<int>(poses_.size()); }
-  int num_left_out() const { return left_out_; }
+  int num_skipped() const { return num_skipped_; }
   /// Returns the root mean square angle between commanded and measured axes over the soundings.
   double antenna_error_deg() const;
 
  private:
   enum class Phase { kTurning, kSounding, kStowing, kOver };
 
-  void see(const AntennaState& antenna);
+  void on_antenna_state(const AntennaState& antenna);
   bool is_settled(Time now) const;
-  InstrumentCommand turn_to(const AntennaPose& pose, Phase phase, Time now);
-  std::optional<InstrumentCommand> go_on(Time now);
-  std::optional<InstrumentCommand> leave_out(Time now);
+  InstrumentCommand command_pose(const AntennaPose& pose, Phase phase, Time now);
+  std::optional<InstrumentCommand> next_command(Time now);
+  std::optional<InstrumentCommand> skip_pose(Time now);
 
   WaterSoundingSettings settings_;
   AntennaPose stowed_;
@@ -59,13 +59,13 @@ class WaterSounding {
   std::size_t next_ = 0;  ///< index of the next pose
   Phase phase_ = Phase::kTurning;
   bool has_begun_ = false, is_stowed_ = false;
-  AntennaPose asked_;
+  AntennaPose commanded_;
   Time since_;  ///< start of the phase
   std::optional<AntennaState> state_;
   std::optional<Time> steady_since_;
-  std::vector<AimedSounding> soundings_;
+  std::vector<OrientedSounding> soundings_;
   double sum_squared_error_rad2_ = 0.0;
-  int left_out_ = 0, left_out_in_a_row_ = 0;
+  int num_skipped_ = 0, num_skipped_in_a_row_ = 0;
 };
 
 }  // namespace patrol::inspect

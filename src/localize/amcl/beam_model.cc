@@ -21,9 +21,9 @@ std::vector<PolarBeam> polar_beams(const LevelScan& scan, int max_beams) {
   const std::size_t count = std::min(scan.beams.size(), static_cast<std::size_t>(max_beams));
   for (std::size_t i = 0; i < count; ++i) {
     const LevelScan::Beam& beam = scan.beams[i * scan.beams.size() / count];
-    const Eigen::Vector2d way = beam.end_m.cast<double>() - scan.origin_m;
-    if (!way.allFinite()) continue;
-    beams.push_back({std::atan2(way.y(), way.x()), beam.is_hit ? way.norm() : std::numeric_limits<double>::infinity()});
+    const Eigen::Vector2d ray = beam.end_m.cast<double>() - scan.origin_m;
+    if (!ray.allFinite()) continue;
+    beams.push_back({std::atan2(ray.y(), ray.x()), beam.is_hit ? ray.norm() : std::numeric_limits<double>::infinity()});
   }
   return beams;
 }
@@ -33,19 +33,19 @@ double normal_cdf(double ratio) { return 0.5 * std::erfc(-ratio / std::numbers::
 }  // namespace
 
 double beam_log_likelihood(double range_m, double expected_m, const BeamModelSettings& settings) {
-  const double sum = settings.hit_share + settings.short_share + settings.max_share + settings.random_share;
+  const double sum = settings.z_hit + settings.z_short + settings.z_max + settings.z_rand;
   const double max_m = settings.max_range_m;
   if (!(range_m < max_m)) {
     // An expected range beyond the maximum explains a missing return.
-    const double out_of_reach = expected_m < max_m ? 0.0 : settings.hit_share;
-    return std::log((settings.max_share + out_of_reach + settings.random_share / max_m) / sum);
+    const double out_of_reach = expected_m < max_m ? 0.0 : settings.z_hit;
+    return std::log((settings.z_max + out_of_reach + settings.z_rand / max_m) / sum);
   }
   const double sigma = settings.hit_std_m, ratio = (range_m - expected_m) / sigma;
   const double in_range = normal_cdf((max_m - expected_m) / sigma) - normal_cdf(-expected_m / sigma);
   const double hit = std::exp(-0.5 * ratio * ratio) / (sigma * std::sqrt(2.0 * std::numbers::pi) * in_range);
   const double lambda = 1.0 / settings.short_mean_m;
   const double in_front = range_m <= expected_m && expected_m > 0.0 ? lambda * std::exp(-lambda * range_m) / -std::expm1(-lambda * expected_m) : 0.0;
-  return std::log((settings.hit_share * hit + settings.short_share * in_front + settings.random_share / max_m) / sum);
+  return std::log((settings.z_hit * hit + settings.z_short * in_front + settings.z_rand / max_m) / sum);
 }
 
 BeamModel::BeamModel(const BeamModelSettings& settings, const OccupancyGrid& map)
@@ -74,13 +74,13 @@ ScanLikelihoods BeamModel::evaluate(const LevelScan& scan, const std::vector<Pos
 double BeamModel::expected_range_m(const Eigen::Vector2d& p_map_origin, double angle_rad) const {
   const GridGeometry& geometry = distance_m_.geometry();
   const Eigen::Vector2d direction(std::cos(angle_rad), std::sin(angle_rad));
-  const double margin_m = std::numbers::sqrt2 * geometry.resolution_m, least_m = 0.5 * geometry.resolution_m;
-  for (double way_m = 0.0; way_m < settings_.max_range_m;) {
-    const Cell cell = geometry.cell_at(p_map_origin + way_m * direction);
+  const double margin_m = std::numbers::sqrt2 * geometry.resolution_m, min_step_m = 0.5 * geometry.resolution_m;
+  for (double distance_m = 0.0; distance_m < settings_.max_range_m;) {
+    const Cell cell = geometry.cell_at(p_map_origin + distance_m * direction);
     if (!geometry.contains(cell)) return settings_.max_range_m;
     const auto distance = static_cast<double>(distance_m_.at(cell));
-    if (distance == 0.0) return way_m;
-    way_m += std::max(least_m, distance - margin_m);
+    if (distance == 0.0) return distance_m;
+    distance_m += std::max(min_step_m, distance - margin_m);
   }
   return settings_.max_range_m;
 }

@@ -10,18 +10,18 @@ double shortfall(double value, double floor) { return floor > 0.0 ? std::clamp(1
 
 }  // namespace
 
-void FitMonitor::add_scan_likelihood(double likelihood) {
+void DivergenceMonitor::add_scan_likelihood(double likelihood) {
   const bool is_first = slow_ == 0.0;
-  slow_ = is_first ? likelihood : slow_ + settings_.slow_rate * (likelihood - slow_);
-  fast_ = is_first ? likelihood : fast_ + settings_.fast_rate * (likelihood - fast_);
+  slow_ = is_first ? likelihood : slow_ + settings_.alpha_slow * (likelihood - slow_);
+  fast_ = is_first ? likelihood : fast_ + settings_.alpha_fast * (likelihood - fast_);
 }
 
-double FitMonitor::range_trust() const { return 1.0 - shortfall(range_fit_, settings_.min_range_fit); }
+double DivergenceMonitor::range_confidence() const { return 1.0 - shortfall(range_fit_, settings_.min_range_fit); }
 
-double FitMonitor::injection_share() const {
+double DivergenceMonitor::injection_fraction() const {
   const double sudden = slow_ > 0.0 ? shortfall(settings_.fast_over_slow * fast_, slow_) : 0.0;
   const double worst = std::max({sudden, shortfall(scan_fit_, settings_.min_scan_fit), shortfall(range_fit_, settings_.min_range_fit)});
-  return std::min(worst, settings_.max_injection);
+  return std::min(worst, settings_.max_injection_fraction);
 }
 
 }  // namespace patrol::localize

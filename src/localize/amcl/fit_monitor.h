@@ -4,26 +4,26 @@
 
 namespace patrol::localize {
 
-struct FitMonitorSettings {
-  double slow_rate = 0.02;        ///< filter constant of the long-term average of the scan likelihood, per update
-  double fast_rate = 0.2;         ///< filter constant of the short-term average, per update
+struct DivergenceMonitorSettings {
+  double alpha_slow = 0.02;        ///< filter constant of the long-term average of the scan likelihood, per update
+  double alpha_fast = 0.2;         ///< filter constant of the short-term average, per update
   /// Injection begins if the short-term average is below the long-term average divided by this ratio.
   double fast_over_slow = 1.5;
-  double range_rate = 0.1;        ///< filter constant of the average range likelihood, per range
+  double alpha_range = 0.1;        ///< filter constant of the average range likelihood, per range
   /// Inlier ratio of the scan below which particles are injected, regardless of the averages.
   double min_scan_fit = 0.4;
   double min_range_fit = 0.25;    ///< mean range likelihood below which particles are injected
-  double max_injection = 0.5;     ///< maximum fraction of injected particles
+  double max_injection_fraction = 0.5;     ///< maximum fraction of injected particles
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("slow_rate", self.slow_rate, between(1e-4, 1.0));
-    visit("fast_rate", self.fast_rate, between(1e-3, 1.0));
+    visit("slow_rate", self.alpha_slow, between(1e-4, 1.0));
+    visit("fast_rate", self.alpha_fast, between(1e-3, 1.0));
     visit("fast_over_slow", self.fast_over_slow, between(1.0, 10.0));
-    visit("range_rate", self.range_rate, between(1e-3, 1.0));
+    visit("range_rate", self.alpha_range, between(1e-3, 1.0));
     visit("min_scan_fit", self.min_scan_fit, between(0.0, 1.0));
     visit("min_range_fit", self.min_range_fit, between(0.0, 1.0));
-    visit("max_injection", self.max_injection, between(0.0, 1.0));
+    visit("max_injection", self.max_injection_fraction, between(0.0, 1.0));
   }
 };
 
@@ -33,28 +33,28 @@ struct FitMonitorSettings {
 /// injection is max(0, 1 - nu w_fast / w_slow), with nu > 1 against false alarms [Gutmann02]. Extension: two absolute
 /// thresholds, because the long-term average adapts to a poor fit, and because kidnapping along a tunnel is visible in
 /// the ranges only.
-class FitMonitor {
+class DivergenceMonitor {
  public:
-  explicit FitMonitor(const FitMonitorSettings& settings) : settings_(settings) {}
+  explicit DivergenceMonitor(const DivergenceMonitorSettings& settings) : settings_(settings) {}
 
   /// Adds the likelihood of a scan, averaged over the particles, relative to the maximum, 0 ... 1.
   void add_scan_likelihood(double likelihood);
   /// Adds the fraction of a scan on surfaces of the map, 0 ... 1.
-  void add_scan_fit(double share) { scan_fit_ += settings_.fast_rate * (share - scan_fit_); }
+  void add_scan_fit(double share) { scan_fit_ += settings_.alpha_fast * (share - scan_fit_); }
   /// Adds the likelihood of a range relative to the maximum, 0 ... 1.
-  void add_range(double likelihood) { range_fit_ += settings_.range_rate * (likelihood - range_fit_); }
+  void add_range(double likelihood) { range_fit_ += settings_.alpha_range * (likelihood - range_fit_); }
   /// Clears all averages after the pose was set externally.
-  void reset() { *this = FitMonitor(settings_); }
+  void reset() { *this = DivergenceMonitor(settings_); }
 
   double scan_fit() const { return scan_fit_; }
   double range_fit() const { return range_fit_; }
   /// Range factor of the confidence: 1 while the mean range likelihood is sufficient, decreasing to 0 with it.
-  double range_trust() const;
-  /// Fraction of the particles to replace, 0 ... max_injection.
-  double injection_share() const;
+  double range_confidence() const;
+  /// Fraction of the particles to replace, 0 ... max_injection_fraction.
+  double injection_fraction() const;
 
  private:
-  FitMonitorSettings settings_;
+  DivergenceMonitorSettings settings_;
   double slow_ = 0.0, fast_ = 0.0;  ///< 0: no scan yet
   double scan_fit_ = 1.0;
   double range_fit_ = 1.0;

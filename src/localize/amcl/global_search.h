@@ -46,24 +46,24 @@ class GlobalSearch {
     std::vector<double> weights;  ///< sum 1
     double half_step_m = 0.0, half_step_rad = 0.0;  ///< half width of the cell that each candidate represents
   };
-  /// Searches the map. `independent_beams` is the tempering factor: the effective number of independent beams of a
+  /// Searches the map. `effective_beams` is the tempering factor: the effective number of independent beams of a
   /// scan. Returns no candidates if the map has no free cell.
   Candidates find(const LevelScan& scan, const std::vector<AnchoredRange>& ranges, const RangeLikelihoodSettings& range_settings,
-                  double independent_beams, double uniform) const;
+                  double effective_beams, double uniform) const;
 
  private:
-  struct Place {
+  struct CandidatePosition {
     Eigen::Vector2d p_map;
     double log_ranges;
   };
-  std::vector<Place> places_by_range(const std::vector<AnchoredRange>& ranges, const RangeLikelihoodSettings& settings) const;
+  std::vector<CandidatePosition> filter_positions_by_range(const std::vector<AnchoredRange>& ranges, const RangeLikelihoodSettings& settings) const;
 
   GlobalSearchSettings settings_;
   LikelihoodField coarse_, fine_;
-  std::vector<Eigen::Vector2d> free_places_;  ///< free positions of the coarse grid, in map, m
+  std::vector<Eigen::Vector2d> free_positions_;  ///< free positions of the coarse grid, in map, m
 };
 
 /// Samples `count` poses from the candidates, uniform within the cell of each candidate.
-std::vector<Pose2> draw_poses(const GlobalSearch::Candidates& candidates, std::size_t count, const RandomStream& noise, std::uint64_t tick);
+std::vector<Pose2> sample_poses(const GlobalSearch::Candidates& candidates, std::size_t count, const RandomStream& noise, std::uint64_t tick);
 
 }  // namespace patrol::localize

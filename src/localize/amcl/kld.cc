@@ -12,8 +12,8 @@ int kld_particles(std::size_t bins, const KldSettings& settings) {
   if (bins < 2) return settings.min_particles;
   const auto degrees = static_cast<double>(bins - 1);
   const double a = 2.0 / (9.0 * degrees);
-  const double root = 1.0 - a + std::sqrt(a) * settings.quantile;
-  const double wanted = std::ceil(degrees / (2.0 * settings.max_error) * root * root * root);
+  const double root = 1.0 - a + std::sqrt(a) * settings.normal_quantile;
+  const double wanted = std::ceil(degrees / (2.0 * settings.max_kl_divergence) * root * root * root);
   return static_cast<int>(std::clamp(wanted, static_cast<double>(settings.min_particles), static_cast<double>(max_particles)));
 }
 
@@ -27,12 +27,12 @@ std::size_t PoseBins::Hash::operator()(const Key& key) const {
 
 PoseBins::PoseBins(const KldSettings& settings)
     : inverse_bin_m_(1.0 / settings.bin_m),
-      num_turns_(std::max(1, static_cast<int>(std::lround(2.0 * std::numbers::pi / settings.bin_rad)))) {}
+      num_headings_(std::max(1, static_cast<int>(std::lround(2.0 * std::numbers::pi / settings.bin_rad)))) {}
 
 PoseBins::Key PoseBins::key_of(const Pose2& pose) const {
-  const double turned = (wrap_angle(pose.yaw) / std::numbers::pi + 1.0) * 0.5 * num_turns_;
+  const double turned = (wrap_angle(pose.yaw) / std::numbers::pi + 1.0) * 0.5 * num_headings_;
   return {static_cast<int>(std::floor(pose.x * inverse_bin_m_)), static_cast<int>(std::floor(pose.y * inverse_bin_m_)),
-          static_cast<int>(turned) % num_turns_};
+          static_cast<int>(turned) % num_headings_};
 }
 
 std::size_t PoseBins::add(const Pose2& pose) {
@@ -41,7 +41,7 @@ std::size_t PoseBins::add(const Pose2& pose) {
   return bin->second;
 }
 
-std::vector<std::size_t> PoseBins::clumps() const {
+std::vector<std::size_t> PoseBins::clusters() const {
   std::vector<std::size_t> parent(keys_.size());
   std::iota(parent.begin(), parent.end(), std::size_t{0});
   const auto root_of = [&](std::size_t bin) {
@@ -51,7 +51,7 @@ std::vector<std::size_t> PoseBins::clumps() const {
   for (std::size_t bin = 0; bin < keys_.size(); ++bin) {
     for (int step = 0; step < 27; ++step) {
       const Key& key = keys_[bin];
-      const auto found = bins_.find({key.col + step % 3 - 1, key.row + step / 3 % 3 - 1, (key.turn + step / 9 - 1 + num_turns_) % num_turns_});
+      const auto found = bins_.find({key.col + step % 3 - 1, key.row + step / 3 % 3 - 1, (key.turn + step / 9 - 1 + num_headings_) % num_headings_});
       if (found == bins_.end()) continue;
       const std::size_t mine = root_of(bin), other = root_of(found->second);
       parent[std::max(mine, other)] = std::min(mine, other);

@@ -13,9 +13,9 @@ namespace patrol::localize {
 struct KldSettings {
   double bin_m = 0.5;
   double bin_rad = 0.1745;      ///< 10 degrees
-  double max_error = 0.05;      ///< maximum Kullback-Leibler distance between particles and belief
-  /// Upper quantile of the normal distribution for the probability of keeping max_error: 0.99.
-  double quantile = 2.326;
+  double max_kl_divergence = 0.05;      ///< maximum Kullback-Leibler distance between particles and belief
+  /// Upper quantile of the normal distribution for the probability of keeping max_kl_divergence: 0.99.
+  double normal_quantile = 2.326;
   int min_particles = 300;
   int max_particles = 5000;
 
@@ -23,14 +23,14 @@ struct KldSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("bin_m", self.bin_m, between(0.01, 10.0));
     visit("bin_rad", self.bin_rad, between(0.01, 3.2));
-    visit("max_error", self.max_error, between(1e-4, 1.0));
-    visit("quantile", self.quantile, between(0.0, 6.0));
+    visit("max_error", self.max_kl_divergence, between(1e-4, 1.0));
+    visit("quantile", self.normal_quantile, between(0.0, 6.0));
     visit("min_particles", self.min_particles, between(1, 1000000));
     visit("max_particles", self.max_particles, between(1, 1000000));
   }
 };
 
-/// Number of particles that approximates a belief over `bins` bins to `max_error`, within the limits of the settings
+/// Number of particles that approximates a belief over `bins` bins to `max_kl_divergence`, within the limits of the settings
 /// [Fox03, equation 7]. The chi-square quantile is that of Wilson and Hilferty.
 int kld_particles(std::size_t bins, const KldSettings& settings);
 
@@ -45,7 +45,7 @@ class PoseBins {
   std::size_t size() const { return keys_.size(); }
   /// Clusters of adjacent bins, including diagonal neighbors; headings are cyclic. Returns [bin] -> smallest bin index
   /// of its cluster.
-  std::vector<std::size_t> clumps() const;
+  std::vector<std::size_t> clusters() const;
 
  private:
   struct Key {
@@ -58,7 +58,7 @@ class PoseBins {
   Key key_of(const Pose2& pose) const;
 
   double inverse_bin_m_;
-  int num_turns_;  ///< number of heading bins
+  int num_headings_;  ///< number of heading bins
   std::unordered_map<Key, std::size_t, Hash> bins_;
   std::vector<Key> keys_;  ///< [bin]
 };

@@ -11,13 +11,13 @@ namespace {
 
 constexpr std::size_t kBlock = 64;  // number of ends that are rotated before the lookup
 constexpr int kMaxLevel = 255;
-constexpr double kMinStraightness = 0.6;  // below it, the distance to the cells is used
+constexpr double kMinLinearity = 0.6;  // below it, the distance to the cells is used
 
 /// Distance from the center of a cell to the surface, m. Beyond the end of a wall, where its line continues, the
 /// distance to the cells bounds it from below.
 double distance_to_surface(const Eigen::Vector2d& center, double to_cells_m, double resolution_m, const LineField& lines) {
   const SurfaceLine* line = lines.find(center);
-  if (!line || line->straightness < kMinStraightness) return to_cells_m;
+  if (!line || line->linearity < kMinLinearity) return to_cells_m;
   return std::max(std::abs(line->normal_map.dot(center - line->point_map)), to_cells_m - resolution_m);
 }
 
@@ -41,7 +41,7 @@ BeamEnds select_beam_ends(const LevelScan& scan, int max_beams) {
 LikelihoodField::LikelihoodField(const LikelihoodFieldSettings& settings, const OccupancyGrid& map, const LineField& lines)
     : settings_(settings), inverse_resolution_(1.0 / map.geometry().resolution_m) {
   const GridGeometry& geometry = map.geometry();
-  const double random = settings.random_share, sigma = settings.hit_std_m;
+  const double random = settings.z_rand, sigma = settings.hit_std_m;
   level_step_ = -std::log(random) / kMaxLevel;
   corner_m_ = geometry.origin_m - Eigen::Vector2d::Constant(geometry.resolution_m);
   stride_ = static_cast<std::size_t>(geometry.width) + 2;

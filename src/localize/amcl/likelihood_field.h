@@ -16,13 +16,13 @@ namespace patrol::localize {
 struct LikelihoodFieldSettings {
   /// Standard deviation of a beam's end from the nearest surface: range noise, map error and tilt.
   double hit_std_m = 0.1;
-  double random_share = 0.05;   ///< likelihood of an end far from all surfaces relative to one on a surface
+  double z_rand = 0.05;   ///< likelihood of an end far from all surfaces relative to one on a surface
   int max_beams = 180;          ///< maximum number of evaluated beams; the cost is proportional to it
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("hit_std_m", self.hit_std_m, between(0.01, 2.0));
-    visit("random_share", self.random_share, between(1e-4, 0.5));
+    visit("random_share", self.z_rand, between(1e-4, 0.5));
     visit("max_beams", self.max_beams, between(10, 10000));
   }
 };
@@ -43,7 +43,7 @@ BeamEnds select_beam_ends(const LevelScan& scan, int max_beams);
 /// Deviations from [Thrun05]:
 /// - Near surfaces, d is the distance to the line through the cells (line_field.h). Map noise makes walls ragged, and
 ///   hundreds of beams would match that pattern at the same wrong position in every scan.
-/// - The mixture is scaled to 1 at d = 0, with z_rand = `random_share` and z_hit = 1 - z_rand: a constant factor.
+/// - The mixture is scaled to 1 at d = 0, with z_rand = `z_rand` and z_hit = 1 - z_rand: a constant factor.
 /// - Log likelihoods are quantized to 256 levels, 0.012 apart for z_rand = 0.05. The map of a tunnel then fits in the
 ///   processor cache, and integer sums do not depend on their order.
 class LikelihoodField final : public SensorModel {

@@ -29,14 +29,14 @@ slam::GridMap surfaces_of(const OccupancyGrid& map) {
 }  // namespace
 
 LineField::LineField(const OccupancyGrid& map, int radius_cells)
-    : reach_m_(radius_cells * map.geometry().resolution_m), index_(map.geometry(), kNone) {
+    : max_distance_m_(radius_cells * map.geometry().resolution_m), index_(map.geometry(), kNone) {
   const slam::GridMap surfaces = surfaces_of(map);
   for (int row = 0; row < map.geometry().height; ++row) {
     for (int col = 0; col < map.geometry().width; ++col) {
       const std::optional<slam::LocalLine> line = slam::fit_local_line(surfaces, map.geometry().center_of({col, row}), radius_cells);
       if (!line) continue;
       index_.at({col, row}) = static_cast<std::int32_t>(lines_.size());
-      lines_.push_back({line->point_map, line->normal_map, line->roughness_var_m2, line->straightness});
+      lines_.push_back({line->point_map, line->normal_map, line->normal_var_m2, line->linearity});
     }
   }
 }

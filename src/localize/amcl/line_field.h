@@ -13,8 +13,8 @@ namespace patrol::localize {
 struct SurfaceLine {
   Eigen::Vector2d point_map;
   Eigen::Vector2d normal_map;  ///< unit normal, on either side
-  double roughness_var_m2;     ///< variance of the cells across the line
-  double straightness;         ///< linearity: 1 for a straight wall ... 0 if as wide as long
+  double normal_var_m2;     ///< variance of the cells across the line
+  double linearity;         ///< linearity: 1 for a straight wall ... 0 if as wide as long
 };
 
 /// Precomputed local lines of a static map: for every cell near a surface, the line through the surrounding occupied
@@ -28,12 +28,12 @@ class LineField {
   /// Returns null if no surface is nearby.
   const SurfaceLine* find(const Eigen::Vector2d& p_map) const;
   /// Maximum distance of a point from a surface whose line is found, m.
-  double reach_m() const { return reach_m_; }
+  double max_distance_m() const { return max_distance_m_; }
 
  private:
   static constexpr std::int32_t kNone = -1;
 
-  double reach_m_;
+  double max_distance_m_;
   Grid<std::int32_t> index_;  ///< index of each cell's line in lines_
   std::vector<SurfaceLine> lines_;
 };

@@ -18,11 +18,11 @@ namespace patrol::localize {
 namespace {
 
 // Pose resolution of the particles, limited by the likelihood tolerance and their number.
-const Eigen::Vector3d kLeastStd(0.02, 0.02, 0.003);
+const Eigen::Vector3d kMinStd(0.02, 0.02, 0.003);
 constexpr int kLineRadius_cells = 6;
 constexpr int kMinPoints = 10;           // minimum number of scan points for the scan fit
 constexpr double kNear_m = 3.0;  // maximum distance from the pose within which the scan match applies to a particle
-constexpr double kWastefulShare = 0.67;  // resample if fewer than this fraction of the particles suffices
+constexpr double kMaxNeededFraction = 0.67;  // resample if fewer than this fraction of the particles suffices
 constexpr Time kRangesBeforeStart = std::chrono::seconds(2);  // maximum age of ranges used in the first particle update
 
 const OccupancyGrid& checked(const OccupancyGrid& map) {
@@ -62,160 +62,160 @@ MonteCarloLocalizer::MonteCarloLocalizer(const MonteCarloSettings& settings, con
       ranges_(anchors_in_map, T_body_uwb),
       lines_(checked(map), kLineRadius_cells),
       sensor_model_(row_named(kSensorModels, settings.sensor_model, "localization.sensor_model").make(settings, map, lines_)),
-      search_(settings.search, settings.likelihood_field, map, lines_),
+      search_(settings.global_localization, settings.likelihood_field, map, lines_),
       start_noise_(seed, "localize/start"),
       motion_noise_(seed, "localize/motion"),
       resampling_noise_(seed, "localize/resampling"),
       proposal_noise_(seed, "localize/proposal"),
       injection_noise_(seed, "localize/injection"),
-      fit_(settings.fit) {}
+      divergence_monitor_(settings.divergence_monitor) {}
 
-void MonteCarloLocalizer::start_at(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) {
-  start_anywhere();
-  starts_anywhere_ = is_lost_ = false;
-  belief_ = {.mean = T_map_body, .covariance = covariance};
-  belief_.covariance.diagonal() += kLeastStd.cwiseAbs2();
-  clump_weight_ = 1.0;
-  const Eigen::Matrix3d L = cholesky_factor(belief_.covariance);
+void MonteCarloLocalizer::set_initial_pose(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) {
+  start_global_localization();
+  is_globally_started_ = is_lost_ = false;
+  cluster_gaussian_ = {.mean = T_map_body, .covariance = covariance};
+  cluster_gaussian_.covariance.diagonal() += kMinStd.cwiseAbs2();
+  cluster_weight_ = 1.0;
+  const Eigen::Matrix3d L = cholesky_factor(cluster_gaussian_.covariance);
   PoseBins bins(settings_.kld);
   while (cloud_.size() < static_cast<std::size_t>(kld_particles(bins.size(), settings_.kld))) {
     const std::array<double, 4> unit = start_noise_.normals(starts_, cloud_.size());
-    const Pose2 pose = slam::shifted(T_map_body, L * Eigen::Vector3d(unit[0], unit[1], unit[2]));
+    const Pose2 pose = slam::perturbed(T_map_body, L * Eigen::Vector3d(unit[0], unit[1], unit[2]));
     cloud_.add(pose, settings_.odometry.way_scale_std * unit[3]);
     bins.add(pose);
   }
 }
 
-void MonteCarloLocalizer::start_anywhere() {
+void MonteCarloLocalizer::start_global_localization() {
   ++starts_;
-  starts_anywhere_ = is_lost_ = true;
+  is_globally_started_ = is_lost_ = true;
   cloud_ = {};
-  fit_.reset();
+  divergence_monitor_.reset();
   T_odom_last_.reset();
   last_search_.reset();
 }
 
-LocalizationUpdate MonteCarloLocalizer::update(const LevelScan& seen, const Pose2& T_odom_body) {
-  const LevelScan blind{.stamp = seen.stamp, .origin_m = seen.origin_m, .tilt_rad = seen.tilt_rad, .beams = {}};
-  const LevelScan& scan = !is_lost_ && seen.tilt_rad > settings_.max_tilt_rad ? blind : seen;
-  if (starts_anywhere_) start_from(scan, T_odom_body);
+LocalizationUpdate MonteCarloLocalizer::update(const LevelScan& input_scan, const Pose2& T_odom_body) {
+  const LevelScan without_beams{.stamp = input_scan.stamp, .origin_m = input_scan.origin_m, .tilt_rad = input_scan.tilt_rad, .beams = {}};
+  const LevelScan& scan = !is_lost_ && input_scan.tilt_rad > settings_.max_tilt_rad ? without_beams : input_scan;
+  if (is_globally_started_) start_from(scan, T_odom_body);
   const bool is_first = !T_odom_last_;
-  if (is_first) T_odom_last_ = T_odom_body, last_weighing_ = last_scan_ = scan.stamp - kRangesBeforeStart;
+  if (is_first) T_odom_last_ = T_odom_body, last_update_stamp_ = last_scan_ = scan.stamp - kRangesBeforeStart;
   const Pose2 T_before_now = T_odom_last_->inverse() * T_odom_body;
-  const double dt_s = is_first ? 0.0 : to_seconds(scan.stamp - last_weighing_);
+  const double dt_s = is_first ? 0.0 : to_seconds(scan.stamp - last_update_stamp_);
 
-  const slam::PoseGaussian belief = moved(belief_, T_before_now, dt_s, settings_.odometry);
-  judge_ranges(ranges_.taken_after(last_scan_, T_odom_body), belief);
+  const slam::PoseGaussian prediction = predict(cluster_gaussian_, T_before_now, dt_s, settings_.odometry);
+  update_range_fit(ranges_.ranges_since(last_scan_, T_odom_body), prediction);
   last_scan_ = scan.stamp;
   if (!is_first && !is_due(T_before_now, scan.stamp)) {
-    return describe(scan, refine_pose(lines_, scan, belief, belief.mean, settings_.refinement));
+    return describe(scan, refine_pose(lines_, scan, prediction, prediction.mean, settings_.scan_refinement));
   }
 
-  move_particles(cloud_, T_before_now, dt_s, settings_.odometry, motion_noise_, updates_);
-  const RefinedPose refined = weigh(scan, ranges_.taken_after(last_weighing_, T_odom_body));
+  propagate_particles(cloud_, T_before_now, dt_s, settings_.odometry, motion_noise_, updates_);
+  const RefinedPose refined = update_weights(scan, ranges_.ranges_since(last_update_stamp_, T_odom_body));
   LocalizationUpdate update = describe(scan, refined);
-  update.is_weighed = true;
+  update.particles_updated = true;
   update.particles = logged_particles(scan.stamp);
   update.num_injected = resample_and_inject(scan, T_odom_body);
-  if (refined.is_matched && !is_lost_) draw_towards(refined);
+  if (refined.is_matched && !is_lost_) apply_scan_proposal(refined);
   update.num_particles = static_cast<int>(cloud_.size());
   T_odom_last_ = T_odom_body;
-  last_weighing_ = scan.stamp;
+  last_update_stamp_ = scan.stamp;
   ++updates_;
   return update;
 }
 
 void MonteCarloLocalizer::start_from(const LevelScan& scan, const Pose2& T_odom_body) {
   const auto count = static_cast<std::size_t>(std::max(settings_.kld.min_particles, settings_.kld.max_particles));
-  const std::vector<Pose2> poses = draw_poses(search(scan, T_odom_body), count, start_noise_, starts_);
+  const std::vector<Pose2> poses = sample_poses(global_localization(scan, T_odom_body), count, start_noise_, starts_);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     cloud_.add(poses[i], settings_.odometry.way_scale_std * start_noise_.normals(starts_, count + i)[3]);
   }
-  starts_anywhere_ = false;
+  is_globally_started_ = false;
   last_search_ = scan.stamp;
 }
 
 bool MonteCarloLocalizer::is_due(const Pose2& T_before_now, Time stamp) const {
   return T_before_now.position().norm() >= settings_.update_distance_m || std::abs(T_before_now.yaw) >= settings_.update_angle_rad ||
-         (is_lost_ && to_seconds(stamp - last_weighing_) >= settings_.update_period_s);
+         (is_lost_ && to_seconds(stamp - last_update_stamp_) >= settings_.update_period_s);
 }
 
 // The variance of the predicted pose is added to that of the range.
-void MonteCarloLocalizer::judge_ranges(const std::vector<AnchoredRange>& ranges, const slam::PoseGaussian& belief) {
+void MonteCarloLocalizer::update_range_fit(const std::vector<AnchoredRange>& ranges, const slam::PoseGaussian& prediction) {
   for (const AnchoredRange& range : ranges) {
-    const Eigen::Vector2d to_anchor = (range.p_map_anchor.head<2>() - belief.mean.position()).stableNormalized();
-    const double belief_var = to_anchor.dot(belief.covariance.topLeftCorner<2, 2>() * to_anchor);
-    RangeLikelihoodSettings doubtful = settings_.ranges;
-    doubtful.range_std_m = std::sqrt(doubtful.range_std_m * doubtful.range_std_m + belief_var);
-    fit_.add_range(std::exp(range_log_likelihood(range_excess_m(range, belief.mean), doubtful)));
+    const Eigen::Vector2d to_anchor = (range.p_map_anchor.head<2>() - prediction.mean.position()).stableNormalized();
+    const double prediction_var = to_anchor.dot(prediction.covariance.topLeftCorner<2, 2>() * to_anchor);
+    RangeLikelihoodSettings inflated = settings_.ranges;
+    inflated.range_std_m = std::sqrt(inflated.range_std_m * inflated.range_std_m + prediction_var);
+    divergence_monitor_.add_range(std::exp(range_log_likelihood(range_innovation_m(range, prediction.mean), inflated)));
   }
 }
 
 // The pose combines the belief before the scan with the scan, each used once.
-RefinedPose MonteCarloLocalizer::weigh(const LevelScan& scan, const std::vector<AnchoredRange>& ranges) {
+RefinedPose MonteCarloLocalizer::update_weights(const LevelScan& scan, const std::vector<AnchoredRange>& ranges) {
   for (const AnchoredRange& range : ranges) {
     for (std::size_t i = 0; i < cloud_.size(); ++i) {
-      cloud_.log_weights[i] += range_log_likelihood(range_excess_m(range, cloud_.T_map_body[i]), settings_.ranges);
+      cloud_.log_weights[i] += range_log_likelihood(range_innovation_m(range, cloud_.T_map_body[i]), settings_.ranges);
     }
   }
   const std::vector<double> prior_weights = normalized_weights(cloud_.log_weights);
 
   const ScanLikelihoods fits = sensor_model_->evaluate(scan, cloud_.T_map_body);
-  const double gain = std::min(settings_.independent_beams, static_cast<double>(fits.num_beams));
+  const double gain = std::min(settings_.effective_beams, static_cast<double>(fits.num_beams));
   // Differences within the tolerance of map and model do not affect the weights.
-  const double good = *std::max_element(fits.mean_log.begin(), fits.mean_log.end()) - settings_.scan_fit_tol;
+  const double good = *std::max_element(fits.mean_log.begin(), fits.mean_log.end()) - settings_.scan_fit_tolerance;
   double likelihood = 0.0;
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
     cloud_.log_weights[i] += gain * std::min(0.0, fits.mean_log[i] - good);
     likelihood += prior_weights[i] * std::exp(fits.mean_log[i]);
   }
-  if (fits.num_beams > 0) fit_.add_scan_likelihood(likelihood);
+  if (fits.num_beams > 0) divergence_monitor_.add_scan_likelihood(likelihood);
   const std::vector<double> weights = normalized_weights(cloud_.log_weights);
 
-  const std::vector<std::size_t> clumps = clumps_of(cloud_.T_map_body, settings_.kld);
-  const HeaviestClump heaviest = heaviest_clump(clumps, weights);
-  clump_weight_ = heaviest.weight;
-  belief_ = gaussian_of(cloud_.T_map_body, weights, clumps, heaviest.number);
-  slam::PoseGaussian prior = gaussian_of(cloud_.T_map_body, prior_weights, clumps, heaviest.number);
-  if (!prior.covariance.allFinite()) prior = belief_;
-  belief_.covariance.diagonal() += kLeastStd.cwiseAbs2();
-  prior.covariance.diagonal() += kLeastStd.cwiseAbs2();
-  return refine_pose(lines_, scan, prior, belief_.mean, settings_.refinement);
+  const std::vector<std::size_t> clusters = cluster_particles(cloud_.T_map_body, settings_.kld);
+  const DominantCluster dominant = find_dominant_cluster(clusters, weights);
+  cluster_weight_ = dominant.weight;
+  cluster_gaussian_ = cluster_gaussian(cloud_.T_map_body, weights, clusters, dominant.number);
+  slam::PoseGaussian prior = cluster_gaussian(cloud_.T_map_body, prior_weights, clusters, dominant.number);
+  if (!prior.covariance.allFinite()) prior = cluster_gaussian_;
+  cluster_gaussian_.covariance.diagonal() += kMinStd.cwiseAbs2();
+  prior.covariance.diagonal() += kMinStd.cwiseAbs2();
+  return refine_pose(lines_, scan, prior, cluster_gaussian_.mean, settings_.scan_refinement);
 }
 
 int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2& T_odom_body) {
   const bool may_search = !last_search_ || to_seconds(scan.stamp - *last_search_) >= settings_.search_period_s;
-  const double share = may_search ? fit_.injection_share() : 0.0;
+  const double share = may_search ? divergence_monitor_.injection_fraction() : 0.0;
   const std::vector<double> weights = normalized_weights(cloud_.log_weights);
   const auto count = static_cast<double>(cloud_.size());
   const std::size_t needed = particles_needed(weights);
-  const bool is_wasteful = static_cast<double>(needed) < kWastefulShare * count;
+  const bool is_wasteful = static_cast<double>(needed) < kMaxNeededFraction * count;
   if (share > 0.0 || is_wasteful || effective_sample_size(weights) < settings_.resample_threshold * count) resample(weights, needed);
 
   const auto num_injected = static_cast<std::size_t>(share * static_cast<double>(cloud_.size()));
   if (num_injected == 0) return 0;
   last_search_ = scan.stamp;
-  const std::vector<Pose2> poses = draw_poses(search(scan, T_odom_body), num_injected, injection_noise_, updates_);
+  const std::vector<Pose2> poses = sample_poses(global_localization(scan, T_odom_body), num_injected, injection_noise_, updates_);
   for (std::size_t i = 0; i < poses.size(); ++i) cloud_.T_map_body[i * cloud_.size() / poses.size()] = poses[i];
   return static_cast<int>(poses.size());
 }
 
 // Samples the scan proposal for every other particle near the pose. The rest, which depend on odometry and likelihood
 // field only, protect against a converged but wrong match.
-void MonteCarloLocalizer::draw_towards(const RefinedPose& refined) {
-  const ScanProposal proposal(refined, kLeastStd.cwiseAbs2().asDiagonal());
+void MonteCarloLocalizer::apply_scan_proposal(const RefinedPose& refined) {
+  const ScanProposal proposal(refined, kMinStd.cwiseAbs2().asDiagonal());
   for (std::size_t i = 0; i < cloud_.size(); i += 2) {
     Pose2& pose = cloud_.T_map_body[i];
     if ((pose.position() - refined.posterior.mean.position()).norm() > kNear_m) continue;
     const std::array<double, 4> unit = proposal_noise_.normals(updates_, i);
-    pose = proposal.draw(pose, {unit[0], unit[1], unit[2]});
+    pose = proposal.sample(pose, {unit[0], unit[1], unit[2]});
   }
 }
 
 void MonteCarloLocalizer::resample(const std::vector<double>& weights, std::size_t count) {
   ParticleCloud children;
-  for (const std::size_t parent : resample_systematic(weights, resampling_noise_.uniform(updates_), count)) {
-    children.add(cloud_.T_map_body[parent], cloud_.way_scale[parent]);
+  for (const std::size_t parent : systematic_parents(weights, resampling_noise_.uniform(updates_), count)) {
+    children.add(cloud_.T_map_body[parent], cloud_.odometry_scale[parent]);
   }
   cloud_ = std::move(children);
 }
@@ -232,26 +232,26 @@ std::size_t MonteCarloLocalizer::particles_needed(const std::vector<double>& wei
     const auto parent = std::lower_bound(cumulative.begin(), cumulative.end() - 1, pointer) - cumulative.begin();
     bins.add(cloud_.T_map_body[static_cast<std::size_t>(parent)]);
   }
-  const auto least = static_cast<std::size_t>(is_lost_ ? settings_.min_particles_when_lost : 0);
+  const auto least = static_cast<std::size_t>(is_lost_ ? settings_.min_particles_lost : 0);
   return std::max(drawn, least);
 }
 
-GlobalSearch::Candidates MonteCarloLocalizer::search(const LevelScan& scan, const Pose2& T_odom_body) const {
-  const Time since = scan.stamp - from_seconds(settings_.range_memory_s);
-  return search_.find(scan, ranges_.taken_after(since, T_odom_body), settings_.ranges, settings_.independent_beams,
+GlobalSearch::Candidates MonteCarloLocalizer::global_localization(const LevelScan& scan, const Pose2& T_odom_body) const {
+  const Time since = scan.stamp - from_seconds(settings_.range_buffer_s);
+  return search_.find(scan, ranges_.ranges_since(since, T_odom_body), settings_.ranges, settings_.effective_beams,
                       injection_noise_.uniform(updates_, 0));
 }
 
 LocalizationUpdate MonteCarloLocalizer::describe(const LevelScan& scan, const RefinedPose& refined) {
-  if (refined.num_points >= kMinPoints) fit_.add_scan_fit(refined.matched_share);
+  if (refined.num_points >= kMinPoints) divergence_monitor_.add_scan_fit(refined.inlier_ratio);
   LocalizationUpdate update;
   update.estimate = {.stamp = scan.stamp, .T_map_body = refined.posterior.mean, .covariance = refined.posterior.covariance};
-  update.trust = assess_trust(scan.stamp, {.covariance = refined.posterior.covariance, .clump_weight = clump_weight_,
-                                           .scan_fit = fit_.scan_fit(), .range_fit = fit_.range_trust()}, is_lost_, settings_.trust);
+  update.confidence = assess_confidence(scan.stamp, {.covariance = refined.posterior.covariance, .cluster_weight = cluster_weight_,
+                                           .scan_fit = divergence_monitor_.scan_fit(), .range_fit = divergence_monitor_.range_confidence()}, is_lost_, settings_.confidence);
   update.num_particles = static_cast<int>(cloud_.size());
-  update.clump_weight = clump_weight_;
-  update.matched_share = refined.matched_share;
-  is_lost_ = update.trust.is_lost;
+  update.cluster_weight = cluster_weight_;
+  update.inlier_ratio = refined.inlier_ratio;
+  is_lost_ = update.confidence.is_lost;
   return update;
 }
 

@@ -40,17 +40,17 @@ std::span<const NamedFactory<std::unique_ptr<SensorModel>(const MonteCarloSettin
 struct MonteCarloSettings {
   std::string sensor_model = "likelihood_field";
   /// Tempering: effective number of independent beams of a scan, however many are evaluated.
-  double independent_beams = 20.0;
+  double effective_beams = 20.0;
   /// Tolerance of the mean log likelihood per beam for errors of map and model: 3 cm for a standard deviation of 0.1 m.
-  double scan_fit_tol = 0.05;
+  double scan_fit_tolerance = 0.05;
   double update_distance_m = 0.2;      ///< distance traveled between particle updates
   double update_angle_rad = 0.05;      ///< yaw change between particle updates
   double update_period_s = 1.0;        ///< maximum time between particle updates while lost
   double max_tilt_rad = 0.1;  ///< scans tilted by more, for example on a ramp, are not used unless the robot is lost
   /// Resample if the effective sample size is below this fraction of the number of particles.
   double resample_threshold = 0.5;
-  int min_particles_when_lost = 2000;  ///< with few particles, hypotheses would disappear by chance
-  double range_memory_s = 2.0;         ///< maximum age of ranges used in a global search
+  int min_particles_lost = 2000;  ///< with few particles, hypotheses would disappear by chance
+  double range_buffer_s = 2.0;         ///< maximum age of ranges used in a global search
   double search_period_s = 1.0;        ///< minimum time between global searches
   int max_logged_particles = 300;
   OdometryModelSettings odometry;
@@ -58,23 +58,23 @@ struct MonteCarloSettings {
   BeamModelSettings beam;
   KldSettings kld;
   RangeLikelihoodSettings ranges;
-  PoseRefinementSettings refinement;
-  GlobalSearchSettings search;
-  FitMonitorSettings fit;
-  TrustSettings trust;
+  PoseRefinementSettings scan_refinement;
+  GlobalSearchSettings global_localization;
+  DivergenceMonitorSettings divergence_monitor;
+  ConfidenceSettings confidence;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("sensor_model", self.sensor_model, one_of(sensor_models()));
-    visit("independent_beams", self.independent_beams, between(1.0, 10000.0));
-    visit("scan_fit_tol", self.scan_fit_tol, between(0.0, 1.0));
+    visit("independent_beams", self.effective_beams, between(1.0, 10000.0));
+    visit("scan_fit_tol", self.scan_fit_tolerance, between(0.0, 1.0));
     visit("update_distance_m", self.update_distance_m, between(0.0, 10.0));
     visit("update_angle_rad", self.update_angle_rad, between(0.0, 3.2));
     visit("update_period_s", self.update_period_s, between(0.0, 1000.0));
     visit("max_tilt_rad", self.max_tilt_rad, between(0.0, 1.6));
     visit("resample_threshold", self.resample_threshold, between(0.0, 1.0));
-    visit("min_particles_when_lost", self.min_particles_when_lost, between(1, 1000000));
-    visit("range_memory_s", self.range_memory_s, between(0.0, 100.0));
+    visit("min_particles_when_lost", self.min_particles_lost, between(1, 1000000));
+    visit("range_memory_s", self.range_buffer_s, between(0.0, 100.0));
     visit("search_period_s", self.search_period_s, between(0.0, 1000.0));
     visit("max_logged_particles", self.max_logged_particles, between(0, 1000000));
     visit("odometry", self.odometry);
@@ -82,23 +82,23 @@ struct MonteCarloSettings {
     visit("beam", self.beam);
     visit("kld", self.kld);
     visit("ranges", self.ranges);
-    visit("refinement", self.refinement);
-    visit("search", self.search);
-    visit("fit", self.fit);
-    visit("trust", self.trust);
+    visit("refinement", self.scan_refinement);
+    visit("search", self.global_localization);
+    visit("fit", self.divergence_monitor);
+    visit("trust", self.confidence);
   }
 };
 
 struct LocalizationUpdate {
   PoseEstimate estimate;
-  LocalizationTrust trust;
+  LocalizationConfidence confidence;
   /// True: the particles were updated; false: only the pose was predicted and matched to the map.
-  bool is_weighed = false;
+  bool particles_updated = false;
   std::optional<ParticleSet> particles;  ///< regular subset of the updated particles, for the log
   int num_particles = 0;       ///< current number of particles
   int num_injected = 0;        ///< number of particles replaced by samples of a global search
-  double clump_weight = 0.0;   ///< weight of the particle cluster behind the estimate
-  double matched_share = 0.0;  ///< fraction of the scan points on surfaces of the map
+  double cluster_weight = 0.0;   ///< weight of the particle cluster behind the estimate
+  double inlier_ratio = 0.0;  ///< fraction of the scan points on surfaces of the map
 };
 
 /// Adaptive Monte Carlo localization on a known map [Thrun05, chapter 8] with KLD sampling [Fox03]. UWB ranges enter as
@@ -118,49 +118,49 @@ class MonteCarloLocalizer {
                       const Pose3& T_body_uwb, std::uint64_t seed);
 
   /// Sets the initial pose; covariance of x, y, yaw in map.
-  void start_at(const Pose2& T_map_body, const Eigen::Matrix3d& covariance);
+  void set_initial_pose(const Pose2& T_map_body, const Eigen::Matrix3d& covariance);
   /// Starts global localization: the next scan is searched for on the whole map.
-  void start_anywhere();
+  void start_global_localization();
 
   /// Adds a UWB range; `T_odom_body` is the odometry at its stamp. Ranges of unknown anchors and ranges that are not
   /// finite and positive are ignored. The newest range of each anchor is used in the next particle update.
   void add(const UwbRange& range, const Pose3& T_odom_body) { ranges_.add(range, T_odom_body); }
   /// Processes a scan; `T_odom_body` is the odometry at its stamp.
-  LocalizationUpdate update(const LevelScan& seen, const Pose2& T_odom_body);
+  LocalizationUpdate update(const LevelScan& input_scan, const Pose2& T_odom_body);
 
   const ParticleCloud& particles() const { return cloud_; }
 
  private:
   void start_from(const LevelScan& scan, const Pose2& T_odom_body);
   bool is_due(const Pose2& T_before_now, Time stamp) const;
-  void judge_ranges(const std::vector<AnchoredRange>& ranges, const slam::PoseGaussian& belief);
-  RefinedPose weigh(const LevelScan& scan, const std::vector<AnchoredRange>& ranges);
+  void update_range_fit(const std::vector<AnchoredRange>& ranges, const slam::PoseGaussian& prediction);
+  RefinedPose update_weights(const LevelScan& scan, const std::vector<AnchoredRange>& ranges);
   int resample_and_inject(const LevelScan& scan, const Pose2& T_odom_body);
-  void draw_towards(const RefinedPose& refined);
+  void apply_scan_proposal(const RefinedPose& refined);
   void resample(const std::vector<double>& weights, std::size_t count);
   std::size_t particles_needed(const std::vector<double>& weights) const;
-  GlobalSearch::Candidates search(const LevelScan& scan, const Pose2& T_odom_body) const;
+  GlobalSearch::Candidates global_localization(const LevelScan& scan, const Pose2& T_odom_body) const;
   LocalizationUpdate describe(const LevelScan& scan, const RefinedPose& refined);
   ParticleSet logged_particles(Time stamp) const;
 
   MonteCarloSettings settings_;
-  RangeMemory ranges_;
+  RangeBuffer ranges_;
   LineField lines_;
   std::unique_ptr<SensorModel> sensor_model_;
   GlobalSearch search_;
   RandomStream start_noise_, motion_noise_, resampling_noise_, proposal_noise_, injection_noise_;
-  FitMonitor fit_;
+  DivergenceMonitor divergence_monitor_;
 
   ParticleCloud cloud_;
-  bool starts_anywhere_ = true;
+  bool is_globally_started_ = true;
   std::uint64_t starts_ = 0;   ///< number of starts
   std::uint64_t updates_ = 0;  ///< number of particle updates
   /// Gaussian of the dominant cluster at the last particle update, including its scan and ranges
-  slam::PoseGaussian belief_;
-  double clump_weight_ = 0.0;
+  slam::PoseGaussian cluster_gaussian_;
+  double cluster_weight_ = 0.0;
   bool is_lost_ = true;
   std::optional<Pose2> T_odom_last_;  ///< odometry at the last particle update; none before the first
-  Time last_weighing_{};
+  Time last_update_stamp_{};
   Time last_scan_{};
   std::optional<Time> last_search_;
 };

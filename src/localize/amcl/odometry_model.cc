@@ -9,30 +9,30 @@
 
 namespace patrol::localize {
 
-void move_particles(ParticleCloud& cloud, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings,
+void propagate_particles(ParticleCloud& cloud, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings,
                     const RandomStream& noise, std::uint64_t tick) {
   const slam::PoseGaussian step = slam::predict_motion({}, T_before_now, dt_s, settings.noise);
   const Eigen::Matrix3d L = cholesky_factor(step.covariance);
-  const double kept = std::exp(-T_before_now.position().norm() / settings.way_scale_memory_m);
+  const double kept = std::exp(-T_before_now.position().norm() / settings.scale_correlation_length_m);
   const double renewed = settings.way_scale_std * std::sqrt(1.0 - kept * kept);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const std::array<double, 4> unit = noise.normals(tick, i);
-    double& scale = cloud.way_scale[i];
+    double& scale = cloud.odometry_scale[i];
     scale = kept * scale + renewed * unit[3];
     const Eigen::Vector3d error = L * Eigen::Vector3d(unit[0], unit[1], unit[2]);
-    const Pose2 T_drawn{(1.0 + scale) * T_before_now.x + error.x(), (1.0 + scale) * T_before_now.y + error.y(),
+    const Pose2 T_sampled{(1.0 + scale) * T_before_now.x + error.x(), (1.0 + scale) * T_before_now.y + error.y(),
                         T_before_now.yaw + error.z()};
-    cloud.T_map_body[i] = cloud.T_map_body[i] * T_drawn;
+    cloud.T_map_body[i] = cloud.T_map_body[i] * T_sampled;
   }
 }
 
-slam::PoseGaussian moved(const slam::PoseGaussian& before, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings) {
+slam::PoseGaussian predict(const slam::PoseGaussian& before, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings) {
   slam::PoseGaussian now = slam::predict_motion(before.mean, T_before_now, dt_s, settings.noise);
-  const Eigen::Vector2d way = now.mean.position() - before.mean.position();
+  const Eigen::Vector2d increment = now.mean.position() - before.mean.position();
   Eigen::Matrix3d swing = Eigen::Matrix3d::Identity();  // Jacobian: a heading error rotates the increment
-  swing(0, 2) = -way.y(), swing(1, 2) = way.x();
+  swing(0, 2) = -increment.y(), swing(1, 2) = increment.x();
   now.covariance += swing * before.covariance * swing.transpose();
-  now.covariance.topLeftCorner<2, 2>() += settings.way_scale_std * settings.way_scale_std * way * way.transpose();
+  now.covariance.topLeftCorner<2, 2>() += settings.way_scale_std * settings.way_scale_std * increment * increment.transpose();
   return now;
 }
 

@@ -14,13 +14,13 @@ namespace patrol::localize {
 struct OdometryModelSettings {
   /// Standard deviation of the persistent scale error of the distance: track wear, steady slip.
   double way_scale_std = 0.02;
-  double way_scale_memory_m = 50.0;   ///< correlation length of the scale error
+  double scale_correlation_length_m = 50.0;   ///< correlation length of the scale error
   slam::MotionModelSettings noise;    ///< independent error of each step
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("way_scale_std", self.way_scale_std, between(0.0, 0.5));
-    visit("way_scale_memory_m", self.way_scale_memory_m, between(0.1, 1e6));
+    visit("way_scale_memory_m", self.scale_correlation_length_m, between(0.1, 1e6));
     visit("noise", self.noise);
   }
 };
@@ -31,11 +31,11 @@ struct OdometryModelSettings {
 /// featureless corridor the standard deviation must therefore grow with the distance, not with its square root. Each
 /// particle therefore has its own scale error (a Gauss-Markov process over the distance), which ranges and features
 /// also estimate.
-void move_particles(ParticleCloud& cloud, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings,
+void propagate_particles(ParticleCloud& cloud, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings,
                     const RandomStream& noise, std::uint64_t tick);
 
 /// Propagates a normally distributed pose by an odometry increment, with the stationary distribution of the scale
 /// error.
-slam::PoseGaussian moved(const slam::PoseGaussian& before, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings);
+slam::PoseGaussian predict(const slam::PoseGaussian& before, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings);
 
 }  // namespace patrol::localize

@@ -5,28 +5,28 @@
 
 namespace patrol::localize {
 
-std::vector<std::size_t> clumps_of(const std::vector<Pose2>& T_map_body, const KldSettings& settings) {
+std::vector<std::size_t> cluster_particles(const std::vector<Pose2>& T_map_body, const KldSettings& settings) {
   PoseBins bins(settings);
-  std::vector<std::size_t> clumps;
-  clumps.reserve(T_map_body.size());
-  for (const Pose2& pose : T_map_body) clumps.push_back(bins.add(pose));
-  const std::vector<std::size_t> clump_of_bin = bins.clumps();
-  for (std::size_t& clump : clumps) clump = clump_of_bin[clump];
-  return clumps;
+  std::vector<std::size_t> clusters;
+  clusters.reserve(T_map_body.size());
+  for (const Pose2& pose : T_map_body) clusters.push_back(bins.add(pose));
+  const std::vector<std::size_t> cluster_of_bin = bins.clusters();
+  for (std::size_t& cluster : clusters) cluster = cluster_of_bin[cluster];
+  return clusters;
 }
 
-HeaviestClump heaviest_clump(const std::vector<std::size_t>& clumps, const std::vector<double>& weights) {
-  std::vector<double> weight_of(clumps.size(), 0.0);
-  for (std::size_t i = 0; i < clumps.size(); ++i) weight_of[clumps[i]] += weights[i];
-  const auto heaviest = std::max_element(weight_of.begin(), weight_of.end());
-  return {.number = static_cast<std::size_t>(heaviest - weight_of.begin()), .weight = *heaviest};
+DominantCluster find_dominant_cluster(const std::vector<std::size_t>& clusters, const std::vector<double>& weights) {
+  std::vector<double> cluster_weights(clusters.size(), 0.0);
+  for (std::size_t i = 0; i < clusters.size(); ++i) cluster_weights[clusters[i]] += weights[i];
+  const auto dominant = std::max_element(cluster_weights.begin(), cluster_weights.end());
+  return {.number = static_cast<std::size_t>(dominant - cluster_weights.begin()), .weight = *dominant};
 }
 
-slam::PoseGaussian gaussian_of(const std::vector<Pose2>& T_map_body, const std::vector<double>& weights,
-                               const std::vector<std::size_t>& clumps, std::size_t clump) {
+slam::PoseGaussian cluster_gaussian(const std::vector<Pose2>& T_map_body, const std::vector<double>& weights,
+                               const std::vector<std::size_t>& clusters, std::size_t cluster) {
   const auto for_each_member = [&](auto&& visit) {
     for (std::size_t i = 0; i < T_map_body.size(); ++i) {
-      if (clumps[i] == clump) visit(T_map_body[i], weights[i]);
+      if (clusters[i] == cluster) visit(T_map_body[i], weights[i]);
     }
   };
   double sum = 0.0, x = 0.0, y = 0.0, c = 0.0, s = 0.0;
@@ -36,7 +36,7 @@ slam::PoseGaussian gaussian_of(const std::vector<Pose2>& T_map_body, const std::
   });
   slam::PoseGaussian gaussian{.mean = {x / sum, y / sum, std::atan2(s, c)}};
   for_each_member([&](const Pose2& pose, double weight) {
-    const Eigen::Vector3d offset = gaussian.offset_of(pose);
+    const Eigen::Vector3d offset = gaussian.residual_to_mean(pose);
     gaussian.covariance += weight / sum * offset * offset.transpose();
   });
   return gaussian;

@@ -39,9 +39,9 @@ std::vector<Residual> residuals_at(const LineField& lines, const std::vector<sla
     const Eigen::Vector2d& n = line->normal_map;
     const double distance_m = n.dot(p_map - line->point_map);
     const double variance =
-        squared(settings.point_std_m) + squared(settings.point_angle_std_rad * point.range_m) + line->roughness_var_m2;
+        squared(settings.point_std_m) + squared(settings.point_angle_std_rad * point.range_m) + line->normal_var_m2;
     // Cauchy: weight = 1 / (1 + (r / kernel)^2).
-    const double weight = squared(line->straightness) / (variance * (1.0 + squared(distance_m / settings.kernel_m)));
+    const double weight = squared(line->linearity) / (variance * (1.0 + squared(distance_m / settings.kernel_m)));
     residuals.push_back({distance_m, weight, n, n.y() * arm.x() - n.x() * arm.y()});
   }
   return residuals;
@@ -56,23 +56,23 @@ struct NormalEquations {
 Eigen::Vector2d weak_axis(const std::vector<Residual>& residuals) {
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (const Residual& residual : residuals) sum += residual.weight * residual.normal * residual.normal.transpose();
-  return SymmetricAxes::along(symmetric_axes(sum).small_direction_rad());
+  return PrincipalAxes::along(principal_axes(sum).small_direction_rad());
 }
 
 NormalEquations equations_of(const std::vector<Residual>& residuals, const PoseRefinementSettings& settings) {
   NormalEquations sum;
   const Eigen::Vector2d u = weak_axis(residuals), v(-u.y(), u.x());
   for (const Residual& residual : residuals) {
-    const double facing = residual.normal.dot(u);
+    const double incidence_sine = residual.normal.dot(u);
     Eigen::Vector3d J;
-    J << (std::abs(facing) > settings.min_facing ? residual.normal : Eigen::Vector2d(residual.normal.dot(v) * v)), residual.turn;
-    sum.H += settings.likelihood_gain * residual.weight * J * J.transpose();
-    sum.b += settings.likelihood_gain * residual.weight * residual.distance_m * J;
+    J << (std::abs(incidence_sine) > settings.min_incidence_sine ? residual.normal : Eigen::Vector2d(residual.normal.dot(v) * v)), residual.turn;
+    sum.H += settings.likelihood_tempering * residual.weight * J * J.transpose();
+    sum.b += settings.likelihood_tempering * residual.weight * residual.distance_m * J;
   }
   return sum;
 }
 
-double share_within(const std::vector<Residual>& residuals, double tol_m, std::size_t num_points) {
+double fraction_within(const std::vector<Residual>& residuals, double tol_m, std::size_t num_points) {
   const auto count = std::count_if(residuals.begin(), residuals.end(), [&](const Residual& residual) { return std::abs(residual.distance_m) < tol_m; });
   return num_points > 0 ? static_cast<double>(count) / static_cast<double>(num_points) : 0.0;
 }
@@ -82,20 +82,20 @@ double share_within(const std::vector<Residual>& residuals, double tol_m, std::s
 RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const slam::PoseGaussian& prior, const Pose2& T_map_start,
                         const PoseRefinementSettings& settings) {
   RefinedPose refined{.posterior = prior};
-  const std::vector<slam::MatchPoint> points = slam::select_match_points(scan, settings.point_spacing_m, settings.max_points);
+  const std::vector<slam::MatchPoint> points = slam::downsample_scan(scan, settings.point_spacing_m, settings.max_points);
   refined.num_points = static_cast<int>(points.size());
   const Eigen::Matrix3d prior_information = prior.covariance.inverse();
   Pose2 pose = T_map_start;
   NormalEquations sum;
   for (int iteration = 0; iteration < settings.max_iterations; ++iteration) {
     const std::vector<Residual> residuals = residuals_at(lines, points, pose, settings);
-    refined.matched_share = share_within(residuals, 2.0 * settings.kernel_m, points.size());
-    if (refined.matched_share < settings.min_matched_share) return refined;
+    refined.inlier_ratio = fraction_within(residuals, 2.0 * settings.kernel_m, points.size());
+    if (refined.inlier_ratio < settings.min_inlier_ratio) return refined;
 
     sum = equations_of(residuals, settings);
-    const Eigen::Vector3d step = -(sum.H + prior_information).ldlt().solve(sum.b + prior_information * prior.offset_of(pose));
+    const Eigen::Vector3d step = -(sum.H + prior_information).ldlt().solve(sum.b + prior_information * prior.residual_to_mean(pose));
     if (!step.allFinite()) return refined;
-    pose = slam::shifted(pose, step);
+    pose = slam::perturbed(pose, step);
     if (step.head<2>().norm() < kStepTol_m && std::abs(step.z()) < kStepTol_rad) break;
   }
   refined.is_matched = true;
@@ -112,9 +112,9 @@ ScanProposal::ScanProposal(const RefinedPose& refined, const Eigen::Matrix3d& sp
   root_ = Eigen::Matrix3d(0.5 * (covariance + covariance.transpose())).llt().matrixL();
 }
 
-Pose2 ScanProposal::draw(const Pose2& particle, const Eigen::Vector3d& unit) const {
-  const Eigen::Vector3d way = slam::PoseGaussian{.mean = particle}.offset_of(matched_);
-  return slam::shifted(particle, gain_ * way + root_ * unit);
+Pose2 ScanProposal::sample(const Pose2& particle, const Eigen::Vector3d& unit) const {
+  const Eigen::Vector3d offset = slam::PoseGaussian{.mean = particle}.residual_to_mean(matched_);
+  return slam::perturbed(particle, gain_ * offset + root_ * unit);
 }
 
 }  // namespace patrol::localize

@@ -17,13 +17,13 @@ struct PoseRefinementSettings {
   double point_std_m = 0.03;            ///< standard deviation of the range of a point and of the map cells
   double point_angle_std_rad = 0.0015;  ///< standard deviation of the direction of a point
   double kernel_m = 0.08;  ///< scale of the Cauchy kernel; residuals beyond it are down-weighted as outliers
-  double likelihood_gain = 0.1;         ///< tempering factor: fraction of the points with independent errors
+  double likelihood_tempering = 0.1;         ///< tempering factor: fraction of the points with independent errors
   /// A line constrains the weak direction only if the sine of its angle to that direction is larger.
-  double min_facing = 0.15;
+  double min_incidence_sine = 0.15;
   double map_std_m = 0.01;              ///< standard deviation of the map itself, which is not reduced by averaging
   double map_std_rad = 0.001;
   int max_iterations = 8;
-  double min_matched_share = 0.3;       ///< matches with a smaller inlier ratio are rejected
+  double min_inlier_ratio = 0.3;       ///< matches with a smaller inlier ratio are rejected
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -32,12 +32,12 @@ struct PoseRefinementSettings {
     visit("point_std_m", self.point_std_m, between(1e-4, 1.0));
     visit("point_angle_std_rad", self.point_angle_std_rad, between(0.0, 0.1));
     visit("kernel_m", self.kernel_m, between(1e-3, 10.0));
-    visit("likelihood_gain", self.likelihood_gain, between(1e-4, 1.0));
-    visit("min_facing", self.min_facing, between(0.0, 0.9));
+    visit("likelihood_gain", self.likelihood_tempering, between(1e-4, 1.0));
+    visit("min_facing", self.min_incidence_sine, between(0.0, 0.9));
     visit("map_std_m", self.map_std_m, between(0.0, 1.0));
     visit("map_std_rad", self.map_std_rad, between(0.0, 0.1));
     visit("max_iterations", self.max_iterations, between(1, 100));
-    visit("min_matched_share", self.min_matched_share, between(0.0, 1.0));
+    visit("min_matched_share", self.min_inlier_ratio, between(0.0, 1.0));
   }
 };
 
@@ -46,7 +46,7 @@ struct RefinedPose {
   /// Information of the scan alone for x, y, yaw in map, tempered; zero in degenerate directions.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   int num_points = 0;            ///< number of matched scan points
-  double matched_share = 0.0;    ///< inlier ratio: fraction of these within twice the kernel of a surface
+  double inlier_ratio = 0.0;    ///< inlier ratio: fraction of these within twice the kernel of a surface
   bool is_matched = false;       ///< false: the posterior is the prior
 };
 
@@ -70,7 +70,7 @@ class ScanProposal {
   ScanProposal(const RefinedPose& refined, const Eigen::Matrix3d& spread);
 
   /// Samples a pose; `unit` is a standard normal vector.
-  Pose2 draw(const Pose2& particle, const Eigen::Vector3d& unit) const;
+  Pose2 sample(const Pose2& particle, const Eigen::Vector3d& unit) const;
 
  private:
   Pose2 matched_;

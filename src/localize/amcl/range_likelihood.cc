@@ -4,14 +4,14 @@
 
 namespace patrol::localize {
 
-double range_log_likelihood(double excess_m, const RangeLikelihoodSettings& settings) {
-  const double ratio = excess_m / settings.range_std_m;
-  const double plain_share = 1.0 - settings.blocked_share - settings.outlier_share;
-  const double blocked = excess_m > 0.0 ? settings.blocked_share * std::exp(-excess_m / settings.blocked_excess_m) : 0.0;
-  return std::log(plain_share * std::exp(-0.5 * ratio * ratio) + blocked + settings.outlier_share);
+double range_log_likelihood(double innovation_m, const RangeLikelihoodSettings& settings) {
+  const double ratio = innovation_m / settings.range_std_m;
+  const double los_probability = 1.0 - settings.nlos_probability - settings.outlier_probability;
+  const double nlos = innovation_m > 0.0 ? settings.nlos_probability * std::exp(-innovation_m / settings.nlos_bias_m) : 0.0;
+  return std::log(los_probability * std::exp(-0.5 * ratio * ratio) + nlos + settings.outlier_probability);
 }
 
-double range_excess_m(const AnchoredRange& range, const Pose2& T_map_body) {
+double range_innovation_m(const AnchoredRange& range, const Pose2& T_map_body) {
   const Eigen::Vector2d antenna = T_map_body * range.p_body_antenna.head<2>().eval();
   const Eigen::Vector2d across = range.p_map_anchor.head<2>() - antenna;
   const double up = range.p_map_anchor.z() - range.p_body_antenna.z();

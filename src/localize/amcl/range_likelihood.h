@@ -11,23 +11,23 @@ struct RangeLikelihoodSettings {
   /// Standard deviation of a LOS range; larger than that of the radio, because consecutive ranges have correlated
   /// errors.
   double range_std_m = 0.15;
-  double blocked_share = 0.1;     ///< likelihood of a marginal NLOS path relative to that of an exact range
-  double blocked_excess_m = 0.5;  ///< mean NLOS bias
-  double outlier_share = 0.02;    ///< likelihood of any other range
+  double nlos_probability = 0.1;     ///< likelihood of a marginal NLOS path relative to that of an exact range
+  double nlos_bias_m = 0.5;  ///< mean NLOS bias
+  double outlier_probability = 0.02;    ///< likelihood of any other range
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("range_std_m", self.range_std_m, between(0.005, 5.0));
-    visit("blocked_share", self.blocked_share, between(0.0, 0.4));
-    visit("blocked_excess_m", self.blocked_excess_m, between(0.01, 10.0));
-    visit("outlier_share", self.outlier_share, between(1e-6, 0.4));
+    visit("blocked_share", self.nlos_probability, between(0.0, 0.4));
+    visit("blocked_excess_m", self.nlos_bias_m, between(0.01, 10.0));
+    visit("outlier_share", self.outlier_probability, between(1e-6, 0.4));
   }
 };
 
-/// Returns log(likelihood / maximum) of a range with innovation `excess_m`. The mixture has a normal distribution, an
+/// Returns log(likelihood / maximum) of a range with innovation `innovation_m`. The mixture has a normal distribution, an
 /// exponential tail for the positive bias of NLOS paths, and a floor that bounds the influence of outliers. It is the
 /// beam model's mixture [Thrun05, section 6.3] with the short returns replaced by long ones.
-double range_log_likelihood(double excess_m, const RangeLikelihoodSettings& settings);
+double range_log_likelihood(double innovation_m, const RangeLikelihoodSettings& settings);
 
 /// Range with its geometry relative to the current body.
 struct AnchoredRange {
@@ -38,6 +38,6 @@ struct AnchoredRange {
 };
 
 /// Measured range minus the distance from anchor to antenna for the level body at `T_map_body`, m.
-double range_excess_m(const AnchoredRange& range, const Pose2& T_map_body);
+double range_innovation_m(const AnchoredRange& range, const Pose2& T_map_body);
 
 }  // namespace patrol::localize

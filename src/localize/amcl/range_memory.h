@@ -13,18 +13,18 @@
 namespace patrol::localize {
 
 /// Buffer of the newest range of each anchor, with the odometry pose at its time.
-class RangeMemory {
+class RangeBuffer {
  public:
   /// Anchors in map, with heights above the body origin.
-  RangeMemory(const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb);
+  RangeBuffer(const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb);
 
   /// Adds a range. Ranges of unknown anchors and ranges that are not finite and positive are ignored.
   void add(const UwbRange& range, const Pose3& T_odom_body);
   /// Returns the ranges newer than `since` in the body frame at `T_odom_now`, sorted by anchor number.
-  std::vector<AnchoredRange> taken_after(Time since, const Pose2& T_odom_now) const;
+  std::vector<AnchoredRange> ranges_since(Time since, const Pose2& T_odom_now) const;
 
  private:
-  struct Heard {
+  struct BufferedRange {
     Time stamp{};
     Pose2 T_odom_body;
     Eigen::Vector3d p_level_antenna = Eigen::Vector3d::Zero();
@@ -34,7 +34,7 @@ class RangeMemory {
   std::map<int, Eigen::Vector3d> p_map_anchor_;
   Pose3 T_body_uwb_;
   UwbCalibration calibration_;
-  std::map<int, Heard> newest_;
+  std::map<int, BufferedRange> newest_;
 };
 
 }  // namespace patrol::localize

@@ -16,18 +16,18 @@ double ramp(double value, double low, double high) {
 
 }  // namespace
 
-LocalizationTrust assess_trust(Time stamp, const BeliefEvidence& evidence, bool was_lost, const TrustSettings& settings) {
+LocalizationConfidence assess_confidence(Time stamp, const LocalizationEvidence& evidence, bool was_lost, const ConfidenceSettings& settings) {
   if (!evidence.covariance.allFinite()) return {.stamp = stamp, .is_lost = true};
-  const SymmetricAxes axes = symmetric_axes(evidence.covariance.topLeftCorner<2, 2>());
-  LocalizationTrust trust{.stamp = stamp, .weak_std_m = std::sqrt(std::max(0.0, axes.large)), .weak_direction_rad = axes.large_direction_rad};
-  const double narrow = 1.0 - 0.5 * ramp(trust.weak_std_m, settings.sure_std_m, settings.doubtful_std_m) -
-                        0.5 * ramp(trust.weak_std_m, settings.doubtful_std_m, settings.hopeless_std_m);
-  const double decided = ramp(evidence.clump_weight, settings.undecided_weight, settings.decided_weight);
-  const double founded = decided * ramp(evidence.scan_fit, settings.bad_fit, settings.good_fit) * evidence.range_fit;
-  trust.trust = std::clamp(narrow * founded, 0.0, 1.0);
-  const bool is_found = was_lost ? trust.trust > settings.found_above && decided >= 1.0 : trust.trust >= settings.lost_below;
-  trust.is_lost = !is_found;
-  return trust;
+  const PrincipalAxes axes = principal_axes(evidence.covariance.topLeftCorner<2, 2>());
+  LocalizationConfidence confidence{.stamp = stamp, .max_std_m = std::sqrt(std::max(0.0, axes.large)), .max_std_direction_rad = axes.large_direction_rad};
+  const double std_factor = 1.0 - 0.5 * ramp(confidence.max_std_m, settings.std_at_confidence_1_m, settings.std_at_confidence_half_m) -
+                        0.5 * ramp(confidence.max_std_m, settings.std_at_confidence_half_m, settings.std_at_confidence_0_m);
+  const double cluster_factor = ramp(evidence.cluster_weight, settings.zero_confidence_cluster_weight, settings.full_confidence_cluster_weight);
+  const double evidence_factor = cluster_factor * ramp(evidence.scan_fit, settings.zero_confidence_fit, settings.full_confidence_fit) * evidence.range_fit;
+  confidence.confidence = std::clamp(std_factor * evidence_factor, 0.0, 1.0);
+  const bool is_found = was_lost ? confidence.confidence > settings.found_threshold && cluster_factor >= 1.0 : confidence.confidence >= settings.lost_threshold;
+  confidence.is_lost = !is_found;
+  return confidence;
 }
 
 }  // namespace patrol::localize

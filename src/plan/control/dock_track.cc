@@ -30,14 +30,14 @@ void DockTrack::drift(const Pose2& T_odom_body, double time_s) {
   const double way_m = motion.position().norm(), turn_rad = std::abs(motion.yaw);
   const double way_std = settings_.way_std_m_per_m * way_m;
   const double side_std = std::hypot(way_std, settings_.side_std_m_per_rad * turn_rad);
-  const double turn_std = std::hypot(settings_.turn_std_rad_per_rad * turn_rad + settings_.turn_std_rad_per_m * way_m,
+  const double turn_std = std::hypot(settings_.yaw_std_rad_per_rad * turn_rad + settings_.yaw_std_rad_per_m * way_m,
                                      settings_.turn_std_rad_per_sqrt_s * std::sqrt(time_s));
   const Eigen::Vector3d body_std(way_std, side_std, turn_std);
   const Eigen::Matrix3d J = moves_with_body(T_odom_body, *T_odom_docked_);
   covariance_ += J * body_std.cwiseAbs2().asDiagonal() * J.transpose();
 }
 
-void DockTrack::add(const DockSighting& sighting, const Pose2& T_odom_body) {
+void DockTrack::add(const DockDetection& sighting, const Pose2& T_odom_body) {
   if (sighting.stamp <= last_stamp_) return;
   const Pose2 seen = T_odom_body * sighting.T_level_docked;
   const double c = std::cos(T_odom_body.yaw), s = std::sin(T_odom_body.yaw);

@@ -11,8 +11,8 @@ namespace patrol::plan {
 
 struct DockTrackSettings {
   double way_std_m_per_m = 0.03;      ///< odometry drift between two detections
-  double turn_std_rad_per_rad = 0.05;
-  double turn_std_rad_per_m = 0.01;
+  double yaw_std_rad_per_rad = 0.05;
+  double yaw_std_rad_per_m = 0.01;
   double turn_std_rad_per_sqrt_s = 0.003;  ///< drift of the gyro bias, also at rest
   double side_std_m_per_rad = 0.03;   ///< sideways displacement during a skidding turn
   double least_std_m = 0.002;         ///< minimum std of a detection: errors common to one pose
@@ -22,8 +22,8 @@ struct DockTrackSettings {
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("way_std_m_per_m", self.way_std_m_per_m, between(0.0, 1.0));
-    visit("turn_std_rad_per_rad", self.turn_std_rad_per_rad, between(0.0, 1.0));
-    visit("turn_std_rad_per_m", self.turn_std_rad_per_m, between(0.0, 1.0));
+    visit("turn_std_rad_per_rad", self.yaw_std_rad_per_rad, between(0.0, 1.0));
+    visit("turn_std_rad_per_m", self.yaw_std_rad_per_m, between(0.0, 1.0));
     visit("turn_std_rad_per_sqrt_s", self.turn_std_rad_per_sqrt_s, between(0.0, 1.0));
     visit("side_std_m_per_rad", self.side_std_m_per_rad, between(0.0, 1.0));
     visit("least_std_m", self.least_std_m, between(1e-4, 0.1));
@@ -41,7 +41,7 @@ class DockTrack {
 
   void reset();
   /// Fuses a detection. `T_odom_body` is the pose at its stamp. A detection older than the last one is ignored.
-  void add(const DockSighting& sighting, const Pose2& T_odom_body);
+  void add(const DockDetection& sighting, const Pose2& T_odom_body);
 
   std::optional<Pose2> T_odom_docked() const { return T_odom_docked_; }
   const Eigen::Matrix3d& covariance() const { return covariance_; }  ///< covariance of x, y, yaw in odom

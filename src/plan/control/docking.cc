@@ -36,7 +36,7 @@ void Docking::undock(Time now, const Pose2& T_odom_body) {
 
 void Docking::stop() { enter(Phase::kIdle, ""); }
 
-void Docking::add(const DockSighting& sighting, const Pose2& T_odom_body) {
+void Docking::add(const DockDetection& sighting, const Pose2& T_odom_body) {
   if (status() == DockingStatus::kDocking && sighting.stamp >= start_) track_.add(sighting, T_odom_body);
 }
 

@@ -89,7 +89,7 @@ class Docking {
   void stop();
 
   /// Fuses a detection. `T_odom_body` is the pose at its stamp. Ignored unless docking.
-  void add(const DockSighting& sighting, const Pose2& T_odom_body);
+  void add(const DockDetection& sighting, const Pose2& T_odom_body);
   /// Docked pose in the body's gravity-aligned frame, for the detector's next scan; none before the first detection.
   std::optional<Pose2> T_level_docked(const Pose2& T_odom_body) const;
 

@@ -52,8 +52,8 @@ void LowObstacles::forget_old(Time now) {
     if (now > evidence.camera_until) evidence.camera = 0;
     if (now > evidence.sonar_until) evidence.sonar = 0;
     judge(it->first, evidence);
-    const bool says_nothing = evidence.camera == 0 && evidence.sonar == 0 && !is_vetoed(evidence, now);
-    it = says_nothing ? cells_.erase(it) : std::next(it);
+    const bool is_uninformative = evidence.camera == 0 && evidence.sonar == 0 && !is_vetoed(evidence, now);
+    it = is_uninformative ? cells_.erase(it) : std::next(it);
   }
 }
 

@@ -12,7 +12,7 @@ std::string_view name_of(const mjModel& model, int body) { return mj_id2name(&mo
 
 /// Main body of a pedestrian's limb. Pedestrians consist of several mocap bodies: "pedestrian_1",
 /// "pedestrian_1_thigh_left", ...
-int whole_of(const mjModel& model, int part) {
+int main_body(const mjModel& model, int part) {
   const std::string_view name = name_of(model, part);
   for (int body = 0; body < model.nbody; ++body) {
     if (model.body_mocapid[body] >= 0 && name.starts_with(std::string(name_of(model, body)) + "_")) return body;
@@ -29,13 +29,13 @@ ApproachFinder::ApproachFinder(const mjModel& view) : model_(view), data_(sim::m
   for (int geom = 0; geom < view.ngeom; ++geom) {
     const int body = view.geom_bodyid[geom];
     if (robot >= 0 && view.body_rootid[body] == view.body_rootid[robot]) robot_.push_back(geom);
-    if (view.body_mocapid[body] >= 0) actors_.push_back({geom, whole_of(view, body)});
+    if (view.body_mocapid[body] >= 0) actors_.push_back({geom, main_body(view, body)});
   }
 }
 
 std::optional<Approach> ApproachFinder::nearest(const SimState& state) {
   put_state(model_, state, *data_);
-  double nearest_m = kFarthest_m;
+  double nearest_m = kMaxRange_m;
   const Part* who = nullptr;
   for (const Part& part : actors_) {
     for (const int geom : robot_) {

@@ -21,12 +21,12 @@ struct Approach {
 /// simulation.
 class ApproachFinder {
  public:
-  static constexpr double kFarthest_m = 1.5;  ///< actors farther away are ignored
+  static constexpr double kMaxRange_m = 1.5;  ///< actors farther away are ignored
 
   /// `view` must outlive this object.
   explicit ApproachFinder(const mjModel& view);
 
-  /// Returns the nearest actor, none within kFarthest_m. Throws InputError when the state does not belong to this
+  /// Returns the nearest actor, none within kMaxRange_m. Throws InputError when the state does not belong to this
   /// model.
   std::optional<Approach> nearest(const SimState& state);
 

@@ -16,11 +16,11 @@ namespace patrol::render {
 class Film {
  public:
   /// `view` must outlive the film.
-  Film(const mjModel& view, const PaintSettings& settings, double frames_per_second, Director director,
+  Film(const mjModel& view, const FrameSettings& settings, double frames_per_second, Director director,
        const std::filesystem::path& out_mp4);
 
   /// Adds the next snapshot in the order of the run and renders the frames that are due.
-  void shoot(const RunSnapshot& snapshot);
+  void add_snapshot(const RunSnapshot& snapshot);
   /// Waits for the remaining frames and completes the file.
   void finish();
 
@@ -28,12 +28,12 @@ class Film {
   double length_s() const { return num_frames_ / frames_per_second_; }
 
  private:
-  void develop();
+  void encode_oldest_frame();
 
   double frames_per_second_;
   Director director_;
   VideoWriter video_;
-  PaintThread painter_;
+  FrameRenderer painter_;
   std::deque<std::future<Frame>> in_work_;  ///< in the order of the film
   int num_frames_ = 0;
 };

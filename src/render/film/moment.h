@@ -10,7 +10,7 @@
 namespace patrol::render {
 
 /// Kinds of highlights in order of decreasing priority.
-enum class MomentKind {
+enum class HighlightKind {
   kCollision,
   kFall,
   kKidnap,       ///< moved to another pose
@@ -20,7 +20,7 @@ enum class MomentKind {
   kFault,        ///< start of a sensor fault
   kFailure,      ///< failure of a sensor, an inspection, a goal, a station, a docking or the mission
   kNearMiss,
-  kLargestError,
+  kMaxError,
   kCorrection,   ///< jump of the estimate: loop closure or change of hypothesis
   kDocking,
   kGoal,         ///< goal or station reached
@@ -28,9 +28,9 @@ enum class MomentKind {
 };
 
 /// Highlight of a run.
-struct Moment {
+struct Highlight {
   Time at{};
-  MomentKind kind{};
+  HighlightKind kind{};
   std::string title;  ///< short description
   std::optional<Eigen::Vector2d> p_world_subject = {};  ///< position of the highlight, m; none if it is the robot's own
 };

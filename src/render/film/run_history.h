@@ -25,7 +25,7 @@ struct RunHistory {
   Time begin{}, end{};  ///< times of the first and last state
   Trajectory T_world_body;  ///< ground truth
   std::vector<EstimateError> errors;
-  std::vector<Approach> approaches;  ///< to pedestrians and vehicles, within ApproachFinder::kFarthest_m
+  std::vector<Approach> approaches;  ///< to pedestrians and vehicles, within ApproachFinder::kMaxRange_m
   std::vector<Event> events;
   std::vector<Collision> collisions;
 };

@@ -42,23 +42,23 @@ double ShotCamera::choose_bearing(const Pose3& T_world_body) const {
   // between them, on the side of the robot, which is the smaller one.
   static constexpr std::array kBeside_deg = {40.0, -40.0, 75.0, -75.0, 110.0, -110.0, 150.0, -150.0};
   static constexpr std::array kOfTwo_deg = {120.0, -120.0, 145.0, -145.0, 95.0, -95.0, 70.0, -70.0};
-  double ahead_rad = yaw_of(shot_.T_world_body.rotation);
+  double ahead_rad = to_yaw(shot_.T_world_body.rotation);
   if (shot_.p_world_subject) {
     const Eigen::Vector2d to_subject = *shot_.p_world_subject - shot_.T_world_body.position.head<2>();
     ahead_rad = std::atan2(to_subject.y(), to_subject.x());
   }
   const auto& bearings_deg = shot_.p_world_subject ? kOfTwo_deg : kBeside_deg;
-  const auto share_free = [&](const Pose3& at, double bearing_rad) {
+  const auto free_fraction = [&](const Pose3& at, double bearing_rad) {
     const Eigen::Vector3d offset = quaternion_from_yaw(bearing_rad) * offset_m(at.position);
     const double wanted_m = offset.norm() + kClearance_m;
     return free_distance_ ? free_distance_(focus_of(at), offset.normalized(), wanted_m) / wanted_m : 1.0;
   };
-  double best_rad = ahead_rad + bearings_deg[0] * kDegree, best_share = 0.0;
+  double best_rad = ahead_rad + bearings_deg[0] * kDegree, best_fraction = 0.0;
   for (const double bearing_deg : bearings_deg) {
     const double bearing_rad = ahead_rad + bearing_deg * kDegree;
-    const double share = std::min(share_free(shot_.T_world_body, bearing_rad), share_free(T_world_body, bearing_rad));
-    if (share <= best_share) continue;
-    best_share = share;
+    const double share = std::min(free_fraction(shot_.T_world_body, bearing_rad), free_fraction(T_world_body, bearing_rad));
+    if (share <= best_fraction) continue;
+    best_fraction = share;
     best_rad = bearing_rad;
   }
   return best_rad;
@@ -83,15 +83,15 @@ View ShotCamera::follow(const Pose3& T_world_body, const Eigen::Vector2d& p_worl
   focus_m_ += (1.0 - std::exp(-elapsed_s / kFollow_s)) * (focus_of(T_world_body) - focus_m_);
   bearing_rad_ += kSwing_radps * elapsed_s;
   const Eigen::Vector3d offset = quaternion_from_yaw(bearing_rad_) * offset_m(T_world_body.position);
-  double reach = 1.0;
+  double distance_fraction = 1.0;
   if (free_distance_) {
     const double free_m = free_distance_(focus_m_, offset.normalized(), offset.norm() + kClearance_m);
-    reach = std::clamp((free_m - kClearance_m) / offset.norm(), 0.3, 1.0);
+    distance_fraction = std::clamp((free_m - kClearance_m) / offset.norm(), 0.3, 1.0);
   }
-  reach_ = std::min(reach, reach_ + (1.0 - std::exp(-elapsed_s / kReturn_s)) * (reach - reach_));
+  distance_fraction_ = std::min(distance_fraction, distance_fraction_ + (1.0 - std::exp(-elapsed_s / kReturn_s)) * (distance_fraction - distance_fraction_));
   // Aim slightly right of and below the focus: the map inset covers that part of the picture, and the caption.
   const Eigen::Vector3d to_right = Eigen::Vector3d::UnitZ().cross(offset), down = -offset.norm() * Eigen::Vector3d::UnitZ();
-  return look_at(focus_m_ + reach_ * offset, focus_m_ + reach_ * (kAside * to_right + kBelow * down));
+  return look_at(focus_m_ + distance_fraction_ * offset, focus_m_ + distance_fraction_ * (kAside * to_right + kBelow * down));
 }
 
 }  // namespace patrol::render

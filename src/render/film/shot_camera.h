@@ -27,7 +27,7 @@ class ShotCamera {
   FreeDistance free_distance_;
   Eigen::Vector3d focus_m_;  ///< low-pass filtered
   double bearing_rad_;       ///< from the focus to the camera, in world
-  double reach_ = 1.0;       ///< fraction of the full camera distance, low-pass filtered; 1 without obstacles
+  double distance_fraction_ = 1.0;       ///< fraction of the full camera distance, low-pass filtered; 1 without obstacles
   double height_m_ = 10.0;   ///< height of an overhead shot, low-pass filtered
 };
 

@@ -13,25 +13,25 @@ namespace {
 struct Scene {
   TimeSpan span;          ///< run time
   std::vector<std::string> titles;
-  Moment most_notable;
+  Highlight main_highlight;
 };
 
 /// Builds a scene from the highlights [`from`, `to`), which are ordered by time.
-Scene scene_of(std::vector<Moment>::const_iterator from, std::vector<Moment>::const_iterator to, const StorySettings& settings) {
-  constexpr std::size_t kMostTitles = 3;
-  Scene scene{.span = {from->at - from_seconds(settings.lead_s), (to - 1)->at + from_seconds(settings.hold_s)},
+Scene scene_of(std::vector<Highlight>::const_iterator from, std::vector<Highlight>::const_iterator to, const ShotSettings& settings) {
+  constexpr std::size_t kMaxTitles = 3;
+  Scene scene{.span = {from->at - from_seconds(settings.lead_s), (to - 1)->at + from_seconds(settings.lag_s)},
               .titles = {},
-              .most_notable = *std::min_element(from, to, [](const Moment& a, const Moment& b) { return a.kind < b.kind; })};
-  std::vector<Moment> told(from, to);
-  std::ranges::stable_sort(told, {}, &Moment::kind);
-  if (told.size() > kMostTitles) told.resize(kMostTitles);
-  std::ranges::stable_sort(told, {}, &Moment::at);
-  for (const Moment& moment : told) scene.titles.push_back(moment.title);
+              .main_highlight = *std::min_element(from, to, [](const Highlight& a, const Highlight& b) { return a.kind < b.kind; })};
+  std::vector<Highlight> main_highlights(from, to);
+  std::ranges::stable_sort(main_highlights, {}, &Highlight::kind);
+  if (main_highlights.size() > kMaxTitles) main_highlights.resize(kMaxTitles);
+  std::ranges::stable_sort(main_highlights, {}, &Highlight::at);
+  for (const Highlight& moment : main_highlights) scene.titles.push_back(moment.title);
   return scene;
 }
 
 /// Groups the highlights into scenes in order of time. Overlapping scenes are cut at the middle of the overlap.
-std::vector<Scene> scenes_of(const std::vector<Moment>& moments, TimeSpan run, const StorySettings& settings) {
+std::vector<Scene> scenes_of(const std::vector<Highlight>& moments, TimeSpan run, const ShotSettings& settings) {
   std::vector<Scene> scenes;
   for (auto from = moments.begin(), to = from; from != moments.end(); from = to) {
     for (++to; to != moments.end() && to->at - (to - 1)->at < from_seconds(settings.same_scene_s);) ++to;
@@ -46,30 +46,30 @@ std::vector<Scene> scenes_of(const std::vector<Moment>& moments, TimeSpan run, c
   return scenes;
 }
 
-ShotKind shot_kind(const Moment& moment) {
-  if (moment.p_world_subject) return ShotKind::kTwoShot;
+ShotKind shot_kind(const Highlight& moment) {
+  if (moment.p_world_subject) return ShotKind::kTwoSubjects;
   switch (moment.kind) {
-    case MomentKind::kKidnap:
-    case MomentKind::kLost:
-    case MomentKind::kRelocalized:
-    case MomentKind::kCorrection:
+    case HighlightKind::kKidnap:
+    case HighlightKind::kLost:
+    case HighlightKind::kRelocalized:
+    case HighlightKind::kCorrection:
       return ShotKind::kOverhead;
     default:
-      return ShotKind::kBeside;
+      return ShotKind::kClose;
   }
 }
 
 /// Shots of the scenes with the highest priority, in order of time.
-std::vector<Shot> shots_of(std::vector<Scene> scenes, const Trajectory& T_world_body, int most_shots) {
-  const auto kind = [](const Scene& scene) { return scene.most_notable.kind; };
-  std::erase_if(scenes, [&](const Scene& scene) { return kind(scene) == MomentKind::kMission || scene.span.to <= scene.span.from; });
+std::vector<Shot> shots_of(std::vector<Scene> scenes, const Trajectory& T_world_body, int max_shots) {
+  const auto kind = [](const Scene& scene) { return scene.main_highlight.kind; };
+  std::erase_if(scenes, [&](const Scene& scene) { return kind(scene) == HighlightKind::kMission || scene.span.to <= scene.span.from; });
   std::ranges::stable_sort(scenes, {}, kind);
-  if (scenes.size() > static_cast<std::size_t>(most_shots)) scenes.resize(static_cast<std::size_t>(most_shots));
+  if (scenes.size() > static_cast<std::size_t>(max_shots)) scenes.resize(static_cast<std::size_t>(max_shots));
   std::ranges::sort(scenes, {}, [](const Scene& scene) { return scene.span.from; });
   const Pose3 last = T_world_body.empty() ? Pose3{} : T_world_body.back().pose;
   std::vector<Shot> shots;
   for (const Scene& scene : scenes) {
-    const Moment& moment = scene.most_notable;
+    const Highlight& moment = scene.main_highlight;
     shots.push_back({.span = scene.span,
                      .kind = shot_kind(moment),
                      .caption = scene.titles,
@@ -80,13 +80,13 @@ std::vector<Shot> shots_of(std::vector<Scene> scenes, const Trajectory& T_world_
 }
 
 std::vector<Chapter> chapters_of(const std::vector<Scene>& scenes, const SpeedPlan& speed) {
-  constexpr double kShortest_s = 0.2;
+  constexpr double kMinChapter_s = 0.2;
   constexpr const char* kStart = "Start";
   std::vector<Chapter> chapters = {{.begin_s = 0.0, .end_s = speed.length_s(), .title = kStart}};
   for (const Scene& scene : scenes) {
     const double begin_s = speed.film_s(scene.span.from);
     const std::string title = fmt::format("{}", fmt::join(scene.titles, "; "));
-    if (begin_s - chapters.back().begin_s < kShortest_s) {
+    if (begin_s - chapters.back().begin_s < kMinChapter_s) {
       std::string& earlier = chapters.back().title;
       earlier = earlier == kStart ? title : earlier + "; " + title;
       continue;
@@ -99,22 +99,22 @@ std::vector<Chapter> chapters_of(const std::vector<Scene>& scenes, const SpeedPl
 
 }  // namespace
 
-Cut cut_named(const std::string& name) {
-  if (name == "story") return Cut::kStory;
-  if (name == "plain") return Cut::kPlain;
+FilmStyle parse_film_style(const std::string& name) {
+  if (name == "story") return FilmStyle::kHighlights;
+  if (name == "plain") return FilmStyle::kContinuous;
   throw InputError("cut = " + name + ": must be one of story, plain");
 }
 
-ShotPlan plan_shots(const RunHistory& history, const std::vector<Moment>& moments, Cut cut, const SpeedSettings& speed,
-                    const StorySettings& settings) {
+ShotPlan plan_shots(const RunHistory& history, const std::vector<Highlight>& moments, FilmStyle style, const SpeedSettings& speed,
+                    const ShotSettings& settings) {
   const TimeSpan run{history.begin, history.end};
   const std::vector<Scene> scenes = scenes_of(moments, run, settings);
   std::vector<Shot> shots;
-  if (cut == Cut::kStory) shots = shots_of(scenes, history.T_world_body, settings.most_shots);
+  if (style == FilmStyle::kHighlights) shots = shots_of(scenes, history.T_world_body, settings.max_shots);
   std::vector<TimeSpan> slow_spans;
   for (const Shot& shot : shots) slow_spans.push_back(shot.span);
   const SpeedPlan speed_plan(run, slow_spans, speed);
-  return {.cut = cut, .speed = speed_plan, .shots = std::move(shots), .chapters = chapters_of(scenes, speed_plan)};
+  return {.style = style, .speed = speed_plan, .shots = std::move(shots), .chapters = chapters_of(scenes, speed_plan)};
 }
 
 }  // namespace patrol::render

@@ -7,7 +7,7 @@ namespace patrol::render {
 namespace {
 
 /// Sorts the spans, clips them to the run and merges those whose ramps overlap.
-std::vector<TimeSpan> joined(std::vector<TimeSpan> spans, TimeSpan run, Time ramp) {
+std::vector<TimeSpan> merge_spans(std::vector<TimeSpan> spans, TimeSpan run, Time ramp) {
   std::ranges::sort(spans, {}, &TimeSpan::from);
   std::vector<TimeSpan> apart;
   for (TimeSpan span : spans) {
@@ -26,15 +26,15 @@ SpeedPlan::SpeedPlan(TimeSpan run, std::vector<TimeSpan> slow_spans, const Speed
   const double ramp_s = 2.0 * settings.ramp_s / (fast_pace + slow_pace);
   const double begin_s = to_seconds(run.from), end_s = to_seconds(run.to);
   // A ramp cut by the end of the run keeps its slope.
-  const auto pace_beside = [&](double away_s) { return std::max(fast_pace, slow_pace - away_s / ramp_s * (slow_pace - fast_pace)); };
+  const auto ramp_pace = [&](double away_s) { return std::max(fast_pace, slow_pace - away_s / ramp_s * (slow_pace - fast_pace)); };
   const auto add = [&](double run_s, double pace) {
     if (nodes_.empty()) return nodes_.push_back({run_s, pace, 0.0});
     const Node& last = nodes_.back();
     if (run_s > last.run_s) nodes_.push_back({run_s, pace, last.film_s + 0.5 * (last.pace + pace) * (run_s - last.run_s)});
   };
-  const std::vector<TimeSpan> spans = joined(std::move(slow_spans), run, from_seconds(ramp_s));
+  const std::vector<TimeSpan> spans = merge_spans(std::move(slow_spans), run, from_seconds(ramp_s));
   const double first_s = spans.empty() ? end_s : to_seconds(spans.front().from);
-  add(begin_s, spans.empty() ? fast_pace : pace_beside(first_s - begin_s));
+  add(begin_s, spans.empty() ? fast_pace : ramp_pace(first_s - begin_s));
   for (const TimeSpan& span : spans) {
     const double from_s = to_seconds(span.from), to_s = to_seconds(span.to);
     if (from_s - ramp_s > begin_s) add(from_s - ramp_s, fast_pace);
@@ -42,7 +42,7 @@ SpeedPlan::SpeedPlan(TimeSpan run, std::vector<TimeSpan> slow_spans, const Speed
     add(to_s, slow_pace);
     if (to_s + ramp_s < end_s) add(to_s + ramp_s, fast_pace);
   }
-  add(end_s, spans.empty() ? fast_pace : pace_beside(end_s - to_seconds(spans.back().to)));
+  add(end_s, spans.empty() ? fast_pace : ramp_pace(end_s - to_seconds(spans.back().to)));
 }
 
 const SpeedPlan::Node& SpeedPlan::node_before(double Node::*along, double value) const {

@@ -18,9 +18,9 @@ std::string to_html(const VerdictBlock& block) {
                      io::escaped_markup(block.word), io::escaped_markup(block.reason), block.checks.rows.empty() ? "" : to_html(block.checks));
 }
 
-std::string to_html(const KeyFigures& block) {
+std::string to_html(const KeyMetrics& block) {
   std::string html = "<dl class=\"figures\">\n";
-  for (const KeyFigure& figure : block.figures) {
+  for (const KeyMetric& figure : block.figures) {
     html += fmt::format("<div><dt>{}</dt><dd><b>{}</b> <span>{}</span></dd><dd class=\"note\">{}</dd></div>\n", io::escaped_markup(figure.label),
                         io::escaped_markup(figure.value), io::escaped_markup(figure.unit), io::escaped_markup(figure.note));
   }
@@ -29,7 +29,7 @@ std::string to_html(const KeyFigures& block) {
 
 std::string to_html(const VideoBlock& block) {
   const std::string caption = fmt::format("<figcaption>{}</figcaption>", io::escaped_markup(block.caption));
-  const std::string source = block.mp4.empty() ? io::escaped_markup(block.address) : data_uri("video/mp4", block.mp4);
+  const std::string source = block.mp4.empty() ? io::escaped_markup(block.url) : data_uri("video/mp4", block.mp4);
   return fmt::format("<figure class=\"video\"><video controls preload=\"metadata\" src=\"{}\"></video>{}</figure>\n", source, caption);
 }
 
@@ -43,15 +43,15 @@ const char* css_class(Tone tone) {
   }
 }
 
-const char* css_class(Ink ink) {
+const char* css_class(SeriesColor ink) {
   switch (ink) {
-    case Ink::kTruth: return "truth";
-    case Ink::kEstimate: return "estimate";
-    case Ink::kBound: return "bound";
-    case Ink::kOdometry: return "odometry";
-    case Ink::kRanges: return "ranges";
-    case Ink::kTrust: return "trust";
-    case Ink::kAlarm: return "alarm";
+    case SeriesColor::kTruth: return "truth";
+    case SeriesColor::kEstimate: return "estimate";
+    case SeriesColor::kBound: return "bound";
+    case SeriesColor::kOdometry: return "odometry";
+    case SeriesColor::kRanges: return "ranges";
+    case SeriesColor::kTrust: return "trust";
+    case SeriesColor::kAlarm: return "alarm";
     default: return "event";
   }
 }

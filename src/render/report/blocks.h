@@ -18,7 +18,7 @@ namespace patrol::render {
 enum class Tone { kPlain, kGood, kWarning, kBad, kFaint };
 
 /// Meanings of colors in all figures of a page (report.css).
-enum class Ink { kTruth, kEstimate, kBound, kOdometry, kRanges, kTrust, kEvent, kAlarm };
+enum class SeriesColor { kTruth, kEstimate, kBound, kOdometry, kRanges, kTrust, kEvent, kAlarm };
 
 struct TableCell {
   std::string text;
@@ -37,7 +37,7 @@ struct TableBlock {
 };
 
 /// Collapsible tables: closed on screen until opened, open in print.
-struct FoldedTables {
+struct CollapsibleTables {
   std::string summary;
   std::vector<TableBlock> tables;
 };
@@ -54,14 +54,14 @@ struct VerdictBlock {
   TableBlock checks;
 };
 
-struct KeyFigure {
+struct KeyMetric {
   std::string label;
   std::string value;
   std::string unit;
   std::string note;
 };
-struct KeyFigures {
-  std::vector<KeyFigure> figures;
+struct KeyMetrics {
+  std::vector<KeyMetric> figures;
 };
 
 struct Bar {
@@ -97,7 +97,7 @@ struct Span {
   std::string text;  ///< displayed value
 };
 /// Rows of spans on a common scale with a mark at zero.
-struct SpanChart {
+struct WaterfallChart {
   std::string caption;
   std::string unit;
   std::vector<Span> spans;
@@ -105,14 +105,14 @@ struct SpanChart {
 
 struct Curve {
   std::string name;
-  Ink ink = Ink::kEstimate;
+  SeriesColor ink = SeriesColor::kEstimate;
   bool is_dashed = false;
   std::vector<Eigen::Vector2d> points;  ///< increasing x
 };
 struct PlotMark {
   double x = 0.0;
   std::string text;
-  Ink ink = Ink::kEvent;
+  SeriesColor ink = SeriesColor::kEvent;
 };
 struct PlotSpan {
   double from = 0.0, to = 0.0;
@@ -135,7 +135,7 @@ struct LinePlot {
 };
 
 /// Timeline of events with one lane per kind.
-struct LanePlot {
+struct EventTimeline {
   struct Lane {
     std::string name;
     std::vector<PlotMark> marks;
@@ -148,12 +148,12 @@ struct LanePlot {
 
 struct MapPath {
   std::string name;
-  Ink ink = Ink::kEstimate;
+  SeriesColor ink = SeriesColor::kEstimate;
   std::vector<std::vector<Eigen::Vector2d>> pieces_m;  ///< polylines, in the picture's frame
 };
 struct MapMark {
   std::string label;
-  Ink ink = Ink::kEvent;
+  SeriesColor ink = SeriesColor::kEvent;
   Eigen::Vector2d p_m = Eigen::Vector2d::Zero();  ///< position, in the picture's frame
 };
 struct MapBlock {
@@ -165,11 +165,11 @@ struct MapBlock {
 /// MP4 video: embedded bytes, or a URL relative to the page.
 struct VideoBlock {
   std::string mp4;
-  std::string address;
+  std::string url;
   std::string caption;
 };
 
-using Block = std::variant<TextBlock, VerdictBlock, KeyFigures, TableBlock, FoldedTables, BarBlock, BoxPlot, SpanChart, LinePlot, LanePlot,
+using Block = std::variant<TextBlock, VerdictBlock, KeyMetrics, TableBlock, CollapsibleTables, BarBlock, BoxPlot, WaterfallChart, LinePlot, EventTimeline,
                            MapBlock, VideoBlock>;
 
 /// Section of a page. Consecutive line plots form a grid.
@@ -183,7 +183,7 @@ struct Page {
   std::string title;
   std::vector<std::pair<std::string, std::string>> facts;  ///< label and value in the page's header
   std::vector<Section> sections;
-  std::string colophon;  ///< program version and sources of the page
+  std::string footer;  ///< program version and sources of the page
 };
 
 }  // namespace patrol::render

@@ -8,16 +8,16 @@
 
 namespace patrol::render {
 
-std::vector<Eigen::Vector2d> decimated(const std::vector<Eigen::Vector2d>& curve, std::size_t num_stretches) {
-  if (curve.size() <= 2 * num_stretches) return curve;
+std::vector<Eigen::Vector2d> decimate(const std::vector<Eigen::Vector2d>& curve, std::size_t num_segments) {
+  if (curve.size() <= 2 * num_segments) return curve;
   const auto is_lower = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.y() < b.y(); };
   std::vector<Eigen::Vector2d> kept = {curve.front()};
   const auto keep = [&](const Eigen::Vector2d& point) {
     if (point.x() > kept.back().x()) kept.push_back(point);
   };
-  for (std::size_t i = 0; i < num_stretches; ++i) {
-    const auto begin = curve.begin() + static_cast<std::ptrdiff_t>(i * curve.size() / num_stretches);
-    const auto end = curve.begin() + static_cast<std::ptrdiff_t>((i + 1) * curve.size() / num_stretches);
+  for (std::size_t i = 0; i < num_segments; ++i) {
+    const auto begin = curve.begin() + static_cast<std::ptrdiff_t>(i * curve.size() / num_segments);
+    const auto end = curve.begin() + static_cast<std::ptrdiff_t>((i + 1) * curve.size() / num_segments);
     const auto [least, greatest] = std::minmax_element(begin, end, is_lower);
     keep(*std::min(least, greatest));
     keep(*std::max(least, greatest));
@@ -26,7 +26,7 @@ std::vector<Eigen::Vector2d> decimated(const std::vector<Eigen::Vector2d>& curve
   return kept;
 }
 
-std::vector<Eigen::Vector2d> simplified(const std::vector<Eigen::Vector2d>& path, double tolerance) {
+std::vector<Eigen::Vector2d> simplify_path(const std::vector<Eigen::Vector2d>& path, double tolerance) {
   if (path.size() < 3) return path;
   std::vector<bool> is_kept(path.size(), false);
   is_kept.front() = is_kept.back() = true;

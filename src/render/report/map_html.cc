@@ -14,7 +14,7 @@ constexpr int kNumRampColors = 9;
 
 std::string points_of(const std::vector<Eigen::Vector2d>& piece_m, const MapPicture& picture) {
   std::string text;
-  for (const Eigen::Vector2d& p : simplified(piece_m, kPathTolerance_m)) {
+  for (const Eigen::Vector2d& p : simplify_path(piece_m, kPathTolerance_m)) {
     text += fmt::format("{}{:.2f},{:.2f}", text.empty() ? "" : " ", p.x() - picture.low_m.x(), picture.high_m.y() - p.y());
   }
   return text;

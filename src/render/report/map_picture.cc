@@ -72,7 +72,7 @@ class Picture {
 
   /// Draws a value at `p_world` and in the area of the brush. The maximum of several values remains, so that the
   /// largest error is visible.
-  void raise(const Eigen::Vector2d& p_world, std::uint8_t value) {
+  void draw_max(const Eigen::Vector2d& p_world, std::uint8_t value) {
     const int left = static_cast<int>(std::floor((p_world.x() - left_m_) / pixel_m_));
     const int top = static_cast<int>(std::floor((top_m_ - p_world.y()) / pixel_m_));
     for (int row = std::max(top, 0); row < std::min(top + brush_, image_.height); ++row) {
@@ -104,7 +104,7 @@ void for_each_cell(const Grid<Value>& grid, const Use& use) {
 bool is_occupied(const OccupancyGrid& map, Cell cell) { return map.at(cell) >= kOccupiedFrom; }
 
 /// Extends the area to the known cells of the built map and the true surfaces, in world.
-void extend_to_known(Eigen::AlignedBox2d& shown, const MapLayers& layers) {
+void extend_to_map(Eigen::AlignedBox2d& shown, const MapLayers& layers) {
   for_each_cell(layers.built, [&](Cell cell) {
     if (layers.built.at(cell) != kUnknown) shown.extend(layers.T_world_map * layers.built.geometry().center_of(cell));
   });
@@ -133,12 +133,12 @@ void paint(const MapLayers& layers, Picture& picture) {
   });
   if (layers.truth) {
     for_each_cell(*layers.truth, [&](Cell cell) {
-      if (is_occupied(*layers.truth, cell)) picture.raise(layers.truth->geometry().center_of(cell), kTruthPixel);
+      if (is_occupied(*layers.truth, cell)) picture.draw_max(layers.truth->geometry().center_of(cell), kTruthPixel);
     });
   }
   // Draw the cells as well: pixel centers can miss a wall of one cell.
   for_each_cell(layers.built, [&](Cell cell) {
-    if (is_occupied(layers.built, cell)) picture.raise(layers.T_world_map * geometry.center_of(cell), built_pixel(layers, cell));
+    if (is_occupied(layers.built, cell)) picture.draw_max(layers.T_world_map * geometry.center_of(cell), built_pixel(layers, cell));
   });
 }
 
@@ -162,7 +162,7 @@ Color map_error_color(double error_m) {
 MapPicture map_picture(const MapLayers& layers, Eigen::AlignedBox2d shown) {
   constexpr double kMargin_m = 1.0, kMaxPixels = 8e6;
   const Eigen::Array2d kPage_px(1150.0, 750.0);  // size of the figure on the page
-  extend_to_known(shown, layers);
+  extend_to_map(shown, layers);
   if (shown.isEmpty()) shown.extend(Eigen::Vector2d::Zero().eval());
   shown.min().array() -= kMargin_m;
   shown.max().array() += kMargin_m;

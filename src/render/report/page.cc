@@ -77,7 +77,7 @@ std::string to_html(const Page& page) {
       kPolicy, io::escaped_markup(page.title), kPlotStyle, kReportStyle);
   html += header_html(page) + navigation_html(page) + "<main>\n";
   for (const Section& section : page.sections) html += section_html(section);
-  html += fmt::format("</main>\n<footer>{}</footer>\n<noscript><p class=\"note\">The plots need JavaScript.</p></noscript>\n", io::escaped_markup(page.colophon));
+  html += fmt::format("</main>\n<footer>{}</footer>\n<noscript><p class=\"note\">The plots need JavaScript.</p></noscript>\n", io::escaped_markup(page.footer));
   return html + scripts_html() + "</body></html>\n";
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kNumStretches = 600;  // segments of a decimated curve, more than a screen shows
+constexpr std::size_t kNumSegments = 600;  // segments of a decimated curve, more than a screen shows
 constexpr double kLogFrom = 50.0;           // ratio of peak to median above which the axis is logarithmic
 
 /// Rounds to four digits, the resolution of a plot.
@@ -24,7 +24,7 @@ double shortened_x(double x) { return std::round(1e3 * x) / 1e3; }
 
 Json curve_json(const Curve& curve) {
   Json json = {{"name", curve.name}, {"ink", css_class(curve.ink)}, {"dashed", curve.is_dashed}, {"x", Json::array()}, {"y", Json::array()}};
-  for (const Eigen::Vector2d& point : decimated(curve.points, kNumStretches)) {
+  for (const Eigen::Vector2d& point : decimate(curve.points, kNumSegments)) {
     json["x"].push_back(shortened_x(point.x()));
     json["y"].push_back(shortened(point.y()));
   }
@@ -66,12 +66,12 @@ std::string legend_html(const std::vector<Curve>& curves) {
 }
 
 /// Note about decimated curves, empty if all points are drawn.
-std::string thinning_note(const std::vector<Curve>& curves) {
+std::string decimation_note(const std::vector<Curve>& curves) {
   std::size_t most = 0;
   for (const Curve& curve : curves) most = std::max(most, curve.points.size());
-  if (most <= 2 * kNumStretches) return "";
+  if (most <= 2 * kNumSegments) return "";
   return fmt::format("<span class=\"thinned\" title=\"Least and greatest value of each of {} stretches: peaks stay\">min/max of {} samples</span>",
-                     kNumStretches, most);
+                     kNumSegments, most);
 }
 
 std::string plot_html(const char* kind, const std::string& title, const std::string& legend, const Json& data) {
@@ -91,12 +91,12 @@ std::string to_html(const LinePlot& block) {
   data["marks"] = marks_json(block.marks);
   data["spans"] = spans_json(block.spans);
   const std::string title = block.title + (block.unit.empty() ? "" : ", " + block.unit) + (is_log ? " (log)" : "");
-  return plot_html("lines", title, legend_html(block.curves) + thinning_note(block.curves), data);
+  return plot_html("lines", title, legend_html(block.curves) + decimation_note(block.curves), data);
 }
 
-std::string to_html(const LanePlot& block) {
+std::string to_html(const EventTimeline& block) {
   Json data = {{"label", block.axis.label}, {"end", block.axis.max}, {"lanes", Json::array()}};
-  for (const LanePlot::Lane& lane : block.lanes) data["lanes"].push_back({{"name", lane.name}, {"marks", marks_json(lane.marks)}});
+  for (const EventTimeline::Lane& lane : block.lanes) data["lanes"].push_back({{"name", lane.name}, {"marks", marks_json(lane.marks)}});
   data["spans"] = spans_json(block.spans);
   return plot_html("lanes", block.title, "<output></output>", data);
 }

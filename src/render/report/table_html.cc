@@ -108,7 +108,7 @@ std::string to_html(const TableBlock& block) {
   return html + "</tbody></table></div>\n";
 }
 
-std::string to_html(const FoldedTables& block) {
+std::string to_html(const CollapsibleTables& block) {
   std::string html = fmt::format("<details><summary>{}</summary>\n<div class=\"{}\">\n", io::escaped_markup(block.summary),
                                  block.tables.size() > 1 ? "columns" : "single");
   for (const TableBlock& table : block.tables) html += to_html(table);
@@ -127,7 +127,7 @@ std::string to_html(const BarBlock& block) {
   return html + "</tbody></table>\n";
 }
 
-std::string to_html(const SpanChart& block) {
+std::string to_html(const WaterfallChart& block) {
   double least = 0.0, greatest = 0.0;
   for (const Span& span : block.spans) {
     const auto [low, high] = span.interval.value_or(std::pair(span.to, span.to));

@@ -57,7 +57,7 @@ JointTorques QuadrupedController::step(const LegSensors& sensors, const Velocity
   choose_mode(trunk);
   schedule_feet(trunk);
   update_ground(trunk);
-  watch_for_fall(trunk);
+  detect_fall(trunk);
 
   const FootVectors stance = stance_forces(trunk);
   JointTorques torques;
@@ -90,9 +90,9 @@ void QuadrupedController::follow_command(const VelocityCommand& command) {
 
 // Walks while a velocity is requested and for one more period; then stands.
 void QuadrupedController::choose_mode(const TrunkState& trunk) {
-  const bool is_asked = velocity_mps_.norm() > kStandSpeed_mps || std::abs(yaw_rate_radps_) > kStandRate_radps;
-  idle_s_ = is_asked ? 0.0 : idle_s_ + tick_s_;
-  if (is_asked && !is_walking_) {
+  const bool is_moving_commanded = velocity_mps_.norm() > kStandSpeed_mps || std::abs(yaw_rate_radps_) > kStandRate_radps;
+  idle_s_ = is_moving_commanded ? 0.0 : idle_s_ + tick_s_;
+  if (is_moving_commanded && !is_walking_) {
     is_walking_ = true;
     cycle_ = 0.02;  // FL and RR are in stance, FR and RL have half a stance left
     velocity_integral_.setZero();
@@ -102,7 +102,7 @@ void QuadrupedController::choose_mode(const TrunkState& trunk) {
   if (is_walking_ && idle_s_ > gait_.period_s && all_stand && trunk.velocity_mps.head<2>().norm() < 0.12) {
     is_walking_ = false;
     velocity_integral_.setZero();
-    anchor_m_.setZero();
+    standing_offset_m_.setZero();
   }
 }
 
@@ -190,9 +190,9 @@ FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
     velocity_integral_ += tick_s_ * error;
     velocity_integral_ = velocity_integral_.cwiseMax(-0.3).cwiseMin(0.3);
   } else {
-    anchor_m_ -= tick_s_ * velocity;  // returns to the point where the robot came to a stand
-    anchor_m_ = anchor_m_.cwiseMax(-0.02).cwiseMin(0.02);
-    velocity_integral_ = 4.0 * anchor_m_;
+    standing_offset_m_ -= tick_s_ * velocity;  // returns to the point where the robot came to a stand
+    standing_offset_m_ = standing_offset_m_.cwiseMax(-0.02).cwiseMin(0.02);
+    velocity_integral_ = 4.0 * standing_offset_m_;
   }
   const double height_m = -ground_offset_m_;
   Eigen::Vector3d force;
@@ -215,7 +215,7 @@ FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
   return distribute_wrench(force, moment, trunk.foot_m, is_loaded, {});
 }
 
-void QuadrupedController::watch_for_fall(const TrunkState& trunk) {
+void QuadrupedController::detect_fall(const TrunkState& trunk) {
   constexpr double kFallenTilt_rad = M_PI / 3.0, kCollapsed_m = 0.12;
   const bool is_tilted = std::cos(trunk.roll_rad) * std::cos(trunk.pitch_rad) < std::cos(kFallenTilt_rad);
   const bool is_collapsed = -ground_offset_m_ < kCollapsed_m;

@@ -75,7 +75,7 @@ class QuadrupedController {
   Eigen::Vector3d touch_down(const TrunkState& trunk, int leg) const;
   FootVectors stance_forces(const TrunkState& trunk);
   Eigen::Vector3d swing_force(const TrunkState& trunk, int leg) const;
-  void watch_for_fall(const TrunkState& trunk);
+  void detect_fall(const TrunkState& trunk);
 
   RobotDescription robot_;
   LocomotionSettings settings_;
@@ -88,7 +88,7 @@ class QuadrupedController {
   double yaw_rate_radps_ = 0.0;
   double yaw_rad_ = 0.0;
   Eigen::Vector2d velocity_integral_ = Eigen::Vector2d::Zero();  ///< integral of the velocity error, m
-  Eigen::Vector2d anchor_m_ = Eigen::Vector2d::Zero();  ///< displacement since the robot came to a stand
+  Eigen::Vector2d standing_offset_m_ = Eigen::Vector2d::Zero();  ///< displacement since the robot came to a stand
 
   // Gait state.
   bool is_walking_ = false;

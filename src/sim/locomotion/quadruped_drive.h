@@ -11,18 +11,18 @@ namespace patrol::sim {
 class QuadrupedDrive : public Locomotion {
  public:
   QuadrupedDrive(const RobotDescription& robot, const LocomotionSettings& settings)
-      : fresh_(robot, settings), controller_(fresh_) {}
+      : initial_(robot, settings), controller_(initial_) {}
 
   void step(const FirmwareReadings& readings, const VelocityCommand& command, mjModel&, mjData& data) override {
     const JointTorques torques =
         controller_.step({.imu = readings.imu, .joints = readings.joints, .feet = readings.feet}, command);
     std::copy(torques.begin(), torques.end(), data.ctrl);
   }
-  void restart() override { controller_ = fresh_; }
+  void restart() override { controller_ = initial_; }
   bool has_fallen() const override { return controller_.has_fallen(); }
 
  private:
-  QuadrupedController fresh_, controller_;
+  QuadrupedController initial_, controller_;
 };
 
 }  // namespace patrol::sim

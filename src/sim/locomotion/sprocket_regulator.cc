@@ -4,38 +4,38 @@
 
 namespace patrol::sim {
 
-SprocketRegulator::SprocketRegulator(const TrackDriveSettings& settings, const TrackMotor& motor, double ticks_per_rad,
+SprocketSpeedController::SprocketSpeedController(const TrackDriveSettings& settings, const TrackMotor& motor, double ticks_per_rad,
                                      double tick_s)
     : settings_(settings), motor_(motor), ticks_per_rad_(ticks_per_rad), tick_s_(tick_s) {}
 
-double SprocketRegulator::step(double wanted_radps, std::int64_t count) {
+double SprocketSpeedController::step(double requested_radps, std::int64_t count) {
   const double angle_rad = (static_cast<double>(count) + 0.5) / ticks_per_rad_;  // a count represents the center of its
                                                                                  // interval
   observe(angle_rad);
-  behind_rad_ += tick_s_ * wanted_radps - (angle_rad - last_angle_rad_);
-  const double wanted_radps2 = (wanted_radps - last_wanted_radps_) / tick_s_;
+  lag_rad_ += tick_s_ * requested_radps - (angle_rad - last_angle_rad_);
+  const double requested_radps2 = (requested_radps - last_requested_radps_) / tick_s_;
   last_angle_rad_ = angle_rad;
-  last_wanted_radps_ = wanted_radps;
+  last_requested_radps_ = requested_radps;
 
-  const double rest_nm = settings_.proportional_nms * (wanted_radps - speed_radps_) +
-                         settings_.derivative_nms2 * (wanted_radps2 - acceleration_radps2_);
-  const double wanted_nm = rest_nm + settings_.integral_nm * behind_rad_;
-  const double torque_nm = motor_.possible_nm(wanted_nm, speed_radps_);
+  const double rest_nm = settings_.proportional_nms * (requested_radps - speed_radps_) +
+                         settings_.derivative_nms2 * (requested_radps2 - acceleration_radps2_);
+  const double requested_nm = rest_nm + settings_.integral_nm * lag_rad_;
+  const double torque_nm = motor_.feasible_torque_nm(requested_nm, speed_radps_);
   // Anti-windup: the integral never requests more than the motor's torque.
-  const bool grows = (wanted_nm - torque_nm) * behind_rad_ > 0.0;
+  const bool grows = (requested_nm - torque_nm) * lag_rad_ > 0.0;
   if (grows && settings_.integral_nm > 0.0) {
     const double useful_rad = (torque_nm - rest_nm) / settings_.integral_nm;
-    behind_rad_ = std::clamp(useful_rad, std::min(behind_rad_, 0.0), std::max(behind_rad_, 0.0));
+    lag_rad_ = std::clamp(useful_rad, std::min(lag_rad_, 0.0), std::max(lag_rad_, 0.0));
   }
   return torque_nm;
 }
 
-void SprocketRegulator::let_go() {
-  behind_rad_ = 0.0;
-  last_wanted_radps_ = 0.0;
+void SprocketSpeedController::reset() {
+  lag_rad_ = 0.0;
+  last_requested_radps_ = 0.0;
 }
 
-void SprocketRegulator::observe(double angle_rad) {
+void SprocketSpeedController::observe(double angle_rad) {
   if (!has_started_) {
     has_started_ = true;
     angle_rad_ = last_angle_rad_ = angle_rad;

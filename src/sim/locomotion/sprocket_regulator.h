@@ -10,15 +10,15 @@ namespace patrol::sim {
 /// PID speed controller of one sprocket, with Hall counts as its only measurement. The integral of the speed error is
 /// the lag angle, known to one count. A tracking loop on the counter (second-order observer, critically damped)
 /// estimates speed and acceleration.
-class SprocketRegulator {
+class SprocketSpeedController {
  public:
-  SprocketRegulator(const TrackDriveSettings& settings, const TrackMotor& motor, double ticks_per_rad, double tick_s);
+  SprocketSpeedController(const TrackDriveSettings& settings, const TrackMotor& motor, double ticks_per_rad, double tick_s);
 
   /// Returns the torque for one tick, N m at the sprocket, within the limits of the motor.
-  double step(double wanted_radps, std::int64_t count);
+  double step(double requested_radps, std::int64_t count);
 
   /// Resets the lag angle.
-  void let_go();
+  void reset();
 
   double speed_radps() const { return speed_radps_; }
 
@@ -30,8 +30,8 @@ class SprocketRegulator {
   double ticks_per_rad_, tick_s_;
   bool has_started_ = false;
   double angle_rad_ = 0.0, speed_radps_ = 0.0, acceleration_radps2_ = 0.0;  ///< estimates of the observer
-  double last_wanted_radps_ = 0.0;
-  double behind_rad_ = 0.0;
+  double last_requested_radps_ = 0.0;
+  double lag_rad_ = 0.0;
   double last_angle_rad_ = 0.0;  ///< angle of the last count
 };
 

@@ -18,7 +18,7 @@ Eigen::Vector3d across(const mjModel& model, int geom) {
 
 }  // namespace
 
-TrackBelts::TrackBelts(const RobotDescription& robot, double friction, mjModel& physics)
+TrackContact::TrackContact(const RobotDescription& robot, double friction, mjModel& physics)
     : wheel_of_geom_(static_cast<std::size_t>(physics.ngeom), -1) {
   constexpr std::array<std::string_view, 2> kWheelNames = {"left_wheel_", "right_wheel_"};
   for (int geom = 0; geom < physics.ngeom; ++geom) {
@@ -40,7 +40,7 @@ TrackBelts::TrackBelts(const RobotDescription& robot, double friction, mjModel& 
   physics.flg_surfacevel = 1;
 }
 
-void TrackBelts::run(mjModel& physics, const mjData& data) const {
+void TrackContact::run(mjModel& physics, const mjData& data) const {
   for (const Wheel& wheel : wheels_) {
     const int dof = sprocket_dofs_[wheel.side];
     const double sprocket_radps = data.qvel[dof] + physics.opt.timestep * data.qacc[dof];
@@ -49,7 +49,7 @@ void TrackBelts::run(mjModel& physics, const mjData& data) const {
   }
 }
 
-std::array<double, 2> TrackBelts::drag_nm(const mjModel& physics, const mjData& data) const {
+std::array<double, 2> TrackContact::contact_torque_nm(const mjModel& physics, const mjData& data) const {
   std::array<double, 2> drag{};
   for (int i = 0; i < data.ncon; ++i) {
     const mjContact& contact = data.contact[i];

@@ -17,16 +17,16 @@ namespace patrol::sim {
 /// The ground acts on a sprocket by virtual work: contact force times surface velocity per rad/s of the sprocket. The
 /// torque is that of the last physics evaluation, one tick old; the inertia that the sprocket sees through its gear
 /// (robot_model.cc) keeps this stable. Not modeled: track tension and lugs.
-class TrackBelts {
+class TrackContact {
  public:
   /// Sets the friction of the track geoms in `physics`. Throws InputError when the model lacks the robot's tracks.
-  TrackBelts(const RobotDescription& robot, double friction, mjModel& physics);
+  TrackContact(const RobotDescription& robot, double friction, mjModel& physics);
 
   /// Sets the surface velocities to the sprocket speeds at the end of this tick.
   void run(mjModel& physics, const mjData& data) const;
 
   /// Returns the torque of the ground on each sprocket, left and right, N m.
-  std::array<double, 2> drag_nm(const mjModel& physics, const mjData& data) const;
+  std::array<double, 2> contact_torque_nm(const mjModel& physics, const mjData& data) const;
 
   /// Returns the degree of freedom of each sprocket, left and right.
   const std::array<int, 2>& sprocket_dofs() const { return sprocket_dofs_; }

@@ -15,12 +15,12 @@ class TrackDrive : public Locomotion {
   TrackDrive(const RobotDescription& robot, const TrackDriveSettings& settings, double ticks_per_rad, mjModel& physics);
 
   void step(const FirmwareReadings& readings, const VelocityCommand& command, mjModel& physics, mjData& data) override;
-  void restart() override { controller_ = fresh_; }
+  void restart() override { controller_ = initial_; }
   bool has_fallen() const override { return controller_.has_fallen(); }
 
  private:
-  TrackController fresh_, controller_;
-  TrackBelts belts_;
+  TrackController initial_, controller_;
+  TrackContact contact_;
   double brake_torque_nm_;
   std::array<double, 2> gear_friction_nm_;  ///< left, right
   std::array<int, 2> motors_;

@@ -14,11 +14,11 @@ struct TrackMotor {
 
   /// Returns the feasible torque nearest to the requested one. Against its motion the motor brakes with up to the full
   /// current.
-  double possible_nm(double wanted_nm, double speed_radps) const {
-    const bool is_driving = wanted_nm * speed_radps > 0.0;
+  double feasible_torque_nm(double requested_nm, double speed_radps) const {
+    const bool is_driving = requested_nm * speed_radps > 0.0;
     const double line_nm = stall_torque_nm * (1.0 - std::abs(speed_radps) / no_load_radps);
     const double limit_nm = is_driving ? std::clamp(line_nm, 0.0, max_torque_nm) : max_torque_nm;
-    return std::clamp(wanted_nm, -limit_nm, limit_nm);
+    return std::clamp(requested_nm, -limit_nm, limit_nm);
   }
 };
 

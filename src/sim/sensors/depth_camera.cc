@@ -14,14 +14,14 @@ namespace {
 constexpr double kDarkest = 0.02;  // minimum reflectivity of any surface
 
 /// Returns the smaller of both differences, which is the slope of the pixel's own surface also next to an edge.
-double gentler(double before, double here, double after) {
+double smaller_difference(double before, double here, double after) {
   const double left = here - before, right = after - here;
   return std::abs(left) < std::abs(right) ? left : right;
 }
 
 }  // namespace
 
-PinholeLens lens_of(const DepthCameraSettings& settings) {
+PinholeLens make_lens(const DepthCameraSettings& settings) {
   return {.width_px = settings.width_px,
           .height_px = settings.height_px,
           .focal_px = 0.5 * settings.width_px / std::tan(0.5 * settings.fov_deg * kDegree)};
@@ -31,7 +31,7 @@ DepthCamera::DepthCamera(const DepthCameraSettings& settings, const DustSettings
                          std::uint64_t seed)
     : settings_(settings),
       dust_(dust),
-      lens_(lens_of(settings)),
+      lens_(make_lens(settings)),
       imager_(std::move(imager)),
       noise_(seed, "depth_camera/noise"),
       edge_(seed, "depth_camera/edge"),
@@ -40,19 +40,19 @@ DepthCamera::DepthCamera(const DepthCameraSettings& settings, const DustSettings
 }
 
 // The inverse depth of a plane is linear over the image, so slopes and edges are computed from it.
-void DepthCamera::measure_disparity() {
-  inverse_depth_.resize(seen_.depth_m.size());
-  std::transform(seen_.depth_m.begin(), seen_.depth_m.end(), inverse_depth_.begin(),
+void DepthCamera::compute_inverse_depth() {
+  inverse_depth_.resize(ideal_.depth_m.size());
+  std::transform(ideal_.depth_m.begin(), ideal_.depth_m.end(), inverse_depth_.begin(),
                  [](float depth_m) { return std::isfinite(depth_m) ? 1.0 / static_cast<double>(depth_m) : 0.0; });
 }
 
 /// Returns whether a pixel further right occludes the point in the right imager. A pixel is shifted left in that imager
 /// by its disparity, focal length x baseline / depth.
-bool DepthCamera::is_hidden_from_fellow(int u, int v) const {
-  const double pixel_metres = lens_.focal_px * settings_.baseline_m;
-  const auto most = static_cast<int>(pixel_metres / settings_.range_min_m);
-  for (int k = 1; k <= most && u + k < lens_.width_px; ++k) {
-    if (pixel_metres * (inverse_depth(u + k, v) - inverse_depth(u, v)) >= k) return true;
+bool DepthCamera::is_occluded_in_right_imager(int u, int v) const {
+  const double disparity_px_m = lens_.focal_px * settings_.baseline_m;
+  const auto max_shift = static_cast<int>(disparity_px_m / settings_.range_min_m);
+  for (int k = 1; k <= max_shift && u + k < lens_.width_px; ++k) {
+    if (disparity_px_m * (inverse_depth(u + k, v) - inverse_depth(u, v)) >= k) return true;
   }
   return false;
 }
@@ -75,9 +75,9 @@ double DepthCamera::incidence_cosine(int u, int v) const {
   const int up = std::max(v - 1, 0), down = std::min(v + 1, lens_.height_px - 1);
   const Eigen::Vector3d sight((u - lens_.cx_px()) / lens_.focal_px, (v - lens_.cy_px()) / lens_.focal_px, 1.0);
   Eigen::Vector3d n(lens_.focal_px * (left == u || right == u ? inverse_depth(right, v) - inverse_depth(left, v)
-                                                              : gentler(inverse_depth(left, v), here, inverse_depth(right, v))),
+                                                              : smaller_difference(inverse_depth(left, v), here, inverse_depth(right, v))),
                     lens_.focal_px * (up == v || down == v ? inverse_depth(u, down) - inverse_depth(u, up)
-                                                           : gentler(inverse_depth(u, up), here, inverse_depth(u, down))),
+                                                           : smaller_difference(inverse_depth(u, up), here, inverse_depth(u, down))),
                     0.0);
   n.z() = here - n.dot(sight);
   return here / (n.norm() * sight.norm());
@@ -85,18 +85,18 @@ double DepthCamera::incidence_cosine(int u, int v) const {
 
 /// Returns whether enough of the pattern returns and both imagers observe it.
 bool DepthCamera::is_visible(int u, int v) const {
-  if (is_hidden_from_fellow(u, v)) return false;
+  if (is_occluded_in_right_imager(u, v)) return false;
   const double cosine = incidence_cosine(u, v);
   if (cosine < std::cos(settings_.grazing_deg * kDegree)) return false;
-  const double reflectivity = std::max(kDarkest, static_cast<double>(seen_.reflectivity[index_of(u, v)]));
+  const double reflectivity = std::max(kDarkest, static_cast<double>(ideal_.reflectivity[index_of(u, v)]));
   // as in lidar.cc
   const double reach_m = settings_.dark_range_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1);
-  return dust_.clear_distance_m(static_cast<double>(seen_.depth_m[index_of(u, v)])) <= reach_m;
+  return dust_.equivalent_clear_distance_m(static_cast<double>(ideal_.depth_m[index_of(u, v)])) <= reach_m;
 }
 
 DepthImage DepthCamera::take(const mjData& data, const Pose3& T_world_camera, Time now, std::uint64_t tick) {
-  imager_->draw(data, T_world_camera, seen_);
-  measure_disparity();
+  imager_->draw(data, T_world_camera, ideal_);
+  compute_inverse_depth();
   DepthImage image{.stamp = now,
                    .width = lens_.width_px,
                    .height = lens_.height_px,
@@ -104,11 +104,11 @@ DepthImage DepthCamera::take(const mjData& data, const Pose3& T_world_camera, Ti
                    .fy_px = lens_.focal_px,
                    .cx_px = lens_.cx_px(),
                    .cy_px = lens_.cy_px(),
-                   .depth_mm = std::vector<std::uint16_t>(seen_.depth_m.size(), 0)};
+                   .depth_mm = std::vector<std::uint16_t>(ideal_.depth_m.size(), 0)};
   for (int v = 0; v < lens_.height_px; ++v) {
     for (int u = 0; u < lens_.width_px; ++u) {
       const std::size_t pixel = index_of(u, v);
-      const auto true_m = static_cast<double>(seen_.depth_m[pixel]);
+      const auto true_m = static_cast<double>(ideal_.depth_m[pixel]);
       if (!(true_m <= settings_.range_max_m) || !is_visible(u, v)) continue;
       if (dropout_.uniform(tick, pixel) < settings_.dropout) continue;
       if (is_at_edge(u, v) && edge_.uniform(tick, pixel) < settings_.edge_loss) continue;
@@ -132,7 +132,7 @@ class DepthCameraOnBody : public PeriodicSensor {
 
  private:
   void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) override {
-    const auto lap = tick.clock.lap("depth_camera");
+    const auto timer = tick.clock.time_stage("depth_camera");
     readings.emplace_back(camera_.take(tick.data, tick.T_world_body * T_body_camera_, tick.now, index));
   }
 
@@ -151,7 +151,7 @@ std::unique_ptr<Sensor> make_sensor<DepthImage>(const SensorContext& context) {
   if (!context.make_depth_imager) throw InputError("sensors.depth_camera is enabled, but there is no renderer for it here");
   constexpr double kNear_m = 0.05;  // minimum distance; closer surfaces belong to the housing
   return std::make_unique<DepthCameraOnBody>(
-      context, context.make_depth_imager(context.view, lens_of(settings), kNear_m, 1.1 * settings.range_max_m));
+      context, context.make_depth_imager(context.view, make_lens(settings), kNear_m, 1.1 * settings.range_max_m));
 }
 
 }  // namespace patrol::sim

@@ -23,10 +23,10 @@ struct PinholeLens {
   double cy_px() const { return 0.5 * (height_px - 1); }
 };
 
-PinholeLens lens_of(const DepthCameraSettings& settings);
+PinholeLens make_lens(const DepthCameraSettings& settings);
 
 /// Image of an ideal camera; [row][column] from the top left.
-struct SurfaceImage {
+struct IdealDepthImage {
   std::vector<float> depth_m;       ///< depth along the optical axis; +Inf if nothing is in range
   std::vector<float> reflectivity;  ///< reflectivity, 0 ... 1; 0 if nothing is in range
 };
@@ -38,7 +38,7 @@ class DepthImager {
   virtual ~DepthImager() = default;
   /// Renders an ideal image. `data` is of the view model or of the physics model, which have identical bodies.
   /// `T_world_camera` has x along the optical axis and z up in the image.
-  virtual void draw(const mjData& data, const Pose3& T_world_camera, SurfaceImage& image) = 0;
+  virtual void draw(const mjData& data, const Pose3& T_world_camera, IdealDepthImage& image) = 0;
 };
 
 /// Factory of the imager of a view model, which must outlive it, for depths from `near_m` to `far_m`.
@@ -59,8 +59,8 @@ class DepthCamera {
   DepthImage take(const mjData& data, const Pose3& T_world_camera, Time now, std::uint64_t tick);
 
  private:
-  void measure_disparity();
-  bool is_hidden_from_fellow(int u, int v) const;
+  void compute_inverse_depth();
+  bool is_occluded_in_right_imager(int u, int v) const;
   bool is_at_edge(int u, int v) const;
   double incidence_cosine(int u, int v) const;
   bool is_visible(int u, int v) const;
@@ -72,7 +72,7 @@ class DepthCamera {
   PinholeLens lens_;
   std::unique_ptr<DepthImager> imager_;
   RandomStream noise_, edge_, dropout_;
-  SurfaceImage seen_;
+  IdealDepthImage ideal_;
   std::vector<double> inverse_depth_;  ///< [pixel], 1/m; 0 if nothing is in range
 };
 

@@ -28,7 +28,7 @@ bool FaultInjector::apply(Time ready, Time& due, SensorMessage& message) {
   const std::string_view sensor = kSensorInfos[message.index()].name;
   std::optional<SensorMessage>& last_good = last_good_[message.index()];
   bool is_frozen = false;
-  for (FaultReport& report : reports_) {
+  for (FaultStatus& report : reports_) {
     const FaultSettings& fault = report.fault;
     if (fault.sensor != sensor || !fault.is_active(ready)) continue;
     if (!change(report, ready, due, message)) return false;
@@ -39,11 +39,11 @@ bool FaultInjector::apply(Time ready, Time& due, SensorMessage& message) {
 }
 
 /// Applies one active fault. Returns false when the message is lost.
-bool FaultInjector::change(FaultReport& report, Time ready, Time& due, SensorMessage& message) {
+bool FaultInjector::change(FaultStatus& report, Time ready, Time& due, SensorMessage& message) {
   const FaultSettings& fault = report.fault;
   const std::optional<SensorMessage>& last_good = last_good_[message.index()];
   const bool is_spiked = fault.kind == "spikes" && spikes_.uniform(spike_count_++) < kSpikeProbability;
-  report.is_executed |= (fault.kind != "spikes" || is_spiked) && (fault.kind != "freeze" || last_good);
+  report.was_triggered |= (fault.kind != "spikes" || is_spiked) && (fault.kind != "freeze" || last_good);
   if (fault.kind == "silence") return false;
   if (fault.kind == "delay") due += from_seconds(fault.magnitude);
   if (fault.kind == "jitter") due += from_seconds(std::abs(fault.magnitude * jitter_.normal(jitter_count_++)));

@@ -13,9 +13,9 @@
 namespace patrol::sim {
 
 /// Status of a fault declared by a scenario.
-struct FaultReport {
+struct FaultStatus {
   FaultSettings fault;
-  bool is_executed = false;  ///< true: at least one message was changed
+  bool was_triggered = false;  ///< true: at least one message was changed
 };
 
 /// Applies the faults of a scenario to sensor messages.
@@ -26,12 +26,12 @@ class FaultInjector {
   /// Changes a message that is complete at `ready` and due at `due`. Returns false when the message is lost.
   bool apply(Time ready, Time& due, SensorMessage& message);
 
-  const std::vector<FaultReport>& reports() const { return reports_; }
+  const std::vector<FaultStatus>& reports() const { return reports_; }
 
  private:
-  bool change(FaultReport& report, Time ready, Time& due, SensorMessage& message);
+  bool change(FaultStatus& report, Time ready, Time& due, SensorMessage& message);
 
-  std::vector<FaultReport> reports_;
+  std::vector<FaultStatus> reports_;
   /// [sensor], last message before a freeze
   std::array<std::optional<SensorMessage>, std::variant_size_v<SensorMessage>> last_good_;
   RandomStream spikes_, jitter_;

@@ -19,7 +19,7 @@ Gnss::Gnss(const GnssSettings& settings, std::uint64_t seed) : settings_(setting
 }
 
 /// Returns the visible fraction of the sky: free rays to 24 directions, 15 to 75 degrees above the horizon.
-double Gnss::open_sky(const LidarScene& scene, const Eigen::Vector3d& antenna) const {
+double Gnss::open_sky_fraction(const LidarScene& scene, const Eigen::Vector3d& antenna) const {
   constexpr int kAzimuths = 8;
   int open = 0, all = 0;
   for (const double elevation : {15.0 * kDegree, 45.0 * kDegree, 75.0 * kDegree}) {
@@ -33,7 +33,7 @@ double Gnss::open_sky(const LidarScene& scene, const Eigen::Vector3d& antenna) c
 }
 
 GnssFix Gnss::read(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna, Time now, std::uint64_t tick) {
-  const double sky = open_sky(scene, p_world_antenna);
+  const double sky = open_sky_fraction(scene, p_world_antenna);
   const bool is_open = sky >= settings_.fix_sky;
   if (is_open && !was_open_) open_since_ = now + from_seconds(settings_.fix_delay_s);
   was_open_ = is_open;
@@ -41,10 +41,10 @@ GnssFix Gnss::read(const LidarScene& scene, const Eigen::Vector3d& p_world_anten
   GnssFix fix{.stamp = now};
   fix.status = is_open && now >= open_since_ ? GnssStatus::kFix : sky >= settings_.float_sky ? GnssStatus::kFloat : GnssStatus::kNone;
   // Use a Gauss-Markov error, so that averaging helps no more than with a real receiver.
-  const double keep = std::exp(-1.0 / (settings_.rate_hz * settings_.error_time_s));
+  const double correlation = std::exp(-1.0 / (settings_.rate_hz * settings_.error_time_s));
   for (int axis = 0; axis < 3; ++axis) {
     error_[axis] = tick == 0 ? noise_.normal(0, static_cast<std::uint64_t>(axis))
-                             : keep * error_[axis] + std::sqrt(1.0 - keep * keep) * noise_.normal(tick, static_cast<std::uint64_t>(axis));
+                             : correlation * error_[axis] + std::sqrt(1.0 - correlation * correlation) * noise_.normal(tick, static_cast<std::uint64_t>(axis));
   }
   if (fix.status == GnssStatus::kNone) return fix;
   const double std_m = fix.status == GnssStatus::kFix ? settings_.fix_noise_m : settings_.float_noise_m;

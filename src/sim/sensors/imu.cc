@@ -10,7 +10,7 @@
 namespace patrol::sim {
 namespace {
 
-double quantised(double value, double resolution) {
+double quantized(double value, double resolution) {
   return resolution > 0.0 ? resolution * std::round(value / resolution) : value;
 }
 
@@ -55,7 +55,7 @@ Eigen::Vector3d ImuSensor::measure(Triad& triad, const Eigen::Vector3d& truth, s
     const auto index = static_cast<std::uint64_t>(axis);
     triad.bias[axis] += triad.walk_std * triad.walk.normal(tick, index);
     const double value = reading[axis] + triad.bias[axis] + triad.noise_std * triad.noise.normal(tick, index);
-    reading[axis] = std::clamp(quantised(value, triad.resolution), -triad.range, triad.range);
+    reading[axis] = std::clamp(quantized(value, triad.resolution), -triad.range, triad.range);
   }
   return reading;
 }

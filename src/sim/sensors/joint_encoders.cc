@@ -12,7 +12,7 @@ JointEncoders::JointEncoders(const JointEncoderSettings& settings, const mjModel
                              const std::vector<std::string>& joint_names)
     : step_rad_(2.0 * std::numbers::pi / settings.counts_per_turn),
       tick_s_(model.opt.timestep),
-      blend_(tick_s_ / (settings.speed_filter_s + tick_s_)) {
+      filter_gain_(tick_s_ / (settings.speed_filter_s + tick_s_)) {
   validate(settings, "sensors.joint_encoders");
   for (const std::string& name : joint_names) {
     const int joint = mj_name2id(&model, mjOBJ_JOINT, name.c_str());
@@ -34,7 +34,7 @@ JointState JointEncoders::read(const mjData& data, Time now) {
     const double angle = step_rad_ * std::round(data.qpos[qpos_[joint]] / step_rad_);
     const double speed = is_first ? 0.0 : (angle - last_.position_rad[joint]) / tick_s_;
     last_.position_rad[joint] = angle;
-    last_.velocity_radps[joint] += blend_ * (speed - last_.velocity_radps[joint]);
+    last_.velocity_radps[joint] += filter_gain_ * (speed - last_.velocity_radps[joint]);
     last_.effort_nm[joint] = data.qfrc_actuator[dof_[joint]];
   }
   return last_;

@@ -21,7 +21,7 @@ class JointEncoders {
  private:
   double step_rad_;
   double tick_s_;
-  double blend_;
+  double filter_gain_;
   std::vector<int> qpos_, dof_;  ///< indices in MuJoCo's state, [joint]
   JointState last_;
 };

@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Returns separated by more than the length of a 10 ns pulse are distinct; below kLeastJump_m they are one surface.
-constexpr double kPulse_m = 1.5;
-constexpr double kLeastJump_m = 0.1;
+// Returns separated by more than the length of a 10 ns pulse are distinct; below kMinJump_m they are one surface.
+constexpr double kPulseLength_m = 1.5;
+constexpr double kMinJump_m = 0.1;
 
 /// Interpolates like `interpolate`. For poses as close as those of two ticks it uses the chord instead of the arc
 /// (error below 1e-7 rad).
@@ -37,7 +37,7 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3
       mask_(kRayEverything & ~static_cast<std::uint32_t>(own_housing)),
       dust_(dust),
       surfaces_(surface_optics(scene.model())),
-      false_echoes_per_m_(settings.rain_rate + dust.echo_share * dust.extinction_per_m()),
+      false_return_rate_per_m_(settings.rain_rate + dust.echo_share * dust.extinction_per_m()),
       range_noise_(seed, name + "/range"),
       angle_noise_(seed, name + "/angle"),
       dropout_(seed, name + "/dropout"),
@@ -91,7 +91,7 @@ void Lidar::advance(Time from, Time to, const Pose3& T_world_body_from, const Po
   for (Time instant = instant_of(next_beam_); instant <= to; instant = instant_of(next_beam_)) {
     const double fraction = to_seconds(instant - from) / to_seconds(to - from);
     Pose3 T_world_lidar = move_between(T_world_body_from, T_world_body_to, fraction) * T_body_lidar_;
-    if (settings_.stabilized) T_world_lidar = held_level(T_world_lidar);
+    if (settings_.stabilized) T_world_lidar = remove_tilt(T_world_lidar);
     const bool is_last = next_beam_ % settings_.beams == settings_.beams - 1;
     if (settings_.motion_distortion) {
       fire(next_beam_, T_world_lidar);
@@ -146,14 +146,14 @@ Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose
     aimed += turn * Eigen::Vector3d(-direction.y(), direction.x(), 0.0);
     aimed.normalize();
   }
-  Return got = look(T_world_lidar, aimed);
+  Return got = trace(T_world_lidar, aimed);
   const double jump_m = std::abs(got.range_m - std::exchange(last_range_m, got.range_m));
-  if (jump_m > kLeastJump_m && jump_m < kPulse_m && settings_.beam_width_deg > 0.0) {
-    got = mix_over_width(T_world_lidar, aimed, got);
+  if (jump_m > kMinJump_m && jump_m < kPulseLength_m && settings_.beam_width_deg > 0.0) {
+    got = mixed_pixel_return(T_world_lidar, aimed, got);
   }
-  if (false_echoes_per_m_ > 0.0) {
+  if (false_return_rate_per_m_ > 0.0) {
     const double path_m = std::min(got.range_m, settings_.range_max_m);
-    if (rain_.uniform(tick, index) < 1.0 - std::exp(-false_echoes_per_m_ * path_m)) {
+    if (rain_.uniform(tick, index) < 1.0 - std::exp(-false_return_rate_per_m_ * path_m)) {
       got = {path_m * rain_range_.uniform(tick, index), 5.0};
     }
   }
@@ -170,14 +170,14 @@ Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose
 }
 
 /// Returns the reading of an ideal ray without width.
-Lidar::Return Lidar::look(const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const {
+Lidar::Return Lidar::trace(const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const {
   const Eigen::Vector3d ray = T_world_lidar.rotation * direction;
   const std::optional<RayHit> hit = scene_.cast(T_world_lidar.position, ray, settings_.range_max_m, mask_);
-  return hit ? echo(*hit, ray, hit->distance_m) : Return{kInfinity, 0.0};
+  return hit ? to_return(*hit, ray, hit->distance_m) : Return{kInfinity, 0.0};
 }
 
 /// Returns the mean over the beam width, weighted by the returned light, of surfaces within one pulse length only.
-Lidar::Return Lidar::mix_over_width(const Pose3& T_world_lidar, const Eigen::Vector3d& direction,
+Lidar::Return Lidar::mixed_pixel_return(const Pose3& T_world_lidar, const Eigen::Vector3d& direction,
                                     const Return& middle) const {
   constexpr int kRays = 4;
   const Eigen::Vector3d sideways =
@@ -185,8 +185,8 @@ Lidar::Return Lidar::mix_over_width(const Pose3& T_world_lidar, const Eigen::Vec
   double light = 0.0, light_range = 0.0, light_intensity = 0.0;
   for (int i = 0; i < kRays; ++i) {
     const double share = (i + 0.5) / kRays - 0.5;
-    const Return part = look(T_world_lidar, (direction + share * sideways).normalized());
-    if (!(std::abs(part.range_m - middle.range_m) < kPulse_m)) continue;
+    const Return part = trace(T_world_lidar, (direction + share * sideways).normalized());
+    if (!(std::abs(part.range_m - middle.range_m) < kPulseLength_m)) continue;
     const double returned = part.intensity / (part.range_m * part.range_m);
     light += returned;
     light_range += returned * part.range_m;
@@ -196,16 +196,16 @@ Lidar::Return Lidar::mix_over_width(const Pose3& T_world_lidar, const Eigen::Vec
 }
 
 /// Returns the reading of a surface. Glass off its normal, grazing incidence, and dark distant surfaces return nothing.
-Lidar::Return Lidar::echo(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const {
+Lidar::Return Lidar::to_return(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const {
   const double cosine = std::abs(hit.normal.dot(direction));
   const SurfaceOptics& surface = surfaces_[static_cast<std::size_t>(hit.geom)];
-  if (surface.lets_through(cosine)) return {kInfinity, 0.0};
+  if (surface.is_transparent_at(cosine)) return {kInfinity, 0.0};
   if (cosine < std::cos(settings_.grazing_deg * kDegree)) return {kInfinity, 0.0};
   // The returned light falls with the square of the range. range_max_m is reached on white, dark_range_m on 10 %.
   const double reflectivity = std::max(0.02, static_cast<double>(surface.reflectivity));
   const double reach_m = std::min(settings_.range_max_m,
                                   settings_.dark_range_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1));
-  if (settings_.dark_range_m > 0.0 && dust_.clear_distance_m(range_m) > reach_m) return {kInfinity, 0.0};
+  if (settings_.dark_range_m > 0.0 && dust_.equivalent_clear_distance_m(range_m) > reach_m) return {kInfinity, 0.0};
   return {range_m, 255.0 * std::min(1.0, reflectivity * cosine)};
 }
 
@@ -218,7 +218,7 @@ class LidarOnBody : public Sensor {
 
   void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
     if (tick.is_first()) return;
-    const auto lap = tick.clock.lap("lidar");
+    const auto timer = tick.clock.time_stage("lidar");
     lidar_.advance(tick.last, tick.now, tick.T_world_body_last, tick.T_world_body);
     for (LaserScan& scan : lidar_.take_scans()) readings.emplace_back(std::move(scan));
     for (PointCloud& cloud : lidar_.take_clouds()) readings.emplace_back(std::move(cloud));

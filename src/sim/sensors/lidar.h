@@ -44,10 +44,10 @@ class Lidar {
   void fire(std::int64_t beam, const Pose3& T_world_lidar);
   Return measure(std::uint64_t tick, std::uint64_t index, const Pose3& T_world_lidar,
                  const Eigen::Vector3d& direction, double& last_range_m) const;
-  Return look(const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const;
-  Return mix_over_width(const Pose3& T_world_lidar, const Eigen::Vector3d& direction,
+  Return trace(const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const;
+  Return mixed_pixel_return(const Pose3& T_world_lidar, const Eigen::Vector3d& direction,
                         const Return& middle) const;
-  Return echo(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const;
+  Return to_return(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const;
   void begin_revolution();
 
   LidarSettings settings_;
@@ -56,7 +56,7 @@ class Lidar {
   std::uint32_t mask_;
   DustSettings dust_;
   std::vector<SurfaceOptics> surfaces_;  ///< [geom] of the view model
-  double false_echoes_per_m_;  ///< rate of false returns from rain and dust
+  double false_return_rate_per_m_;  ///< rate of false returns from rain and dust
   RandomStream range_noise_, angle_noise_, dropout_, rain_, rain_range_;
   std::int64_t next_beam_ = 0;              ///< number of the next beam since the start
   std::vector<Eigen::Vector2d> azimuth_;    ///< [beam], cosine and sine of the azimuth

@@ -3,9 +3,9 @@
 /// Sensors that are modeled by other components and reach the stack through SensorSuite::add.
 namespace patrol::sim {
 
-/// RemoteOperator models the teleoperation commands.
+/// TeleopOperator models the teleoperation commands.
 template <>
-std::unique_ptr<Sensor> make_sensor<RemoteCommand>(const SensorContext&) {
+std::unique_ptr<Sensor> make_sensor<TeleopCommand>(const SensorContext&) {
   return nullptr;
 }
 

@@ -19,10 +19,10 @@ constexpr double kNoReturn = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kMask = kRayEverything & ~static_cast<std::uint32_t>(kRayScanner);
 
 /// Returns the range curvature above which neighboring beams are at an edge.
-double least_bend_m(double range_m) { return std::max(0.01, 0.003 * range_m); }
+double min_edge_curvature_m(double range_m) { return std::max(0.01, 0.003 * range_m); }
 
 /// Returns the deviation of the middle of three ranges from the mean of the others; 0 if one of them has no return.
-double bend_m(double before_m, double range_m, double after_m) {
+double range_curvature_m(double before_m, double range_m, double after_m) {
   const double bend = std::abs(range_m - 0.5 * (before_m + after_m));
   return std::isfinite(bend) ? bend : 0.0;
 }
@@ -70,12 +70,12 @@ void PanoramicScanner::begin(Time now, const Pose3& T_world_body) {
   scan_ = Scan{.start = now,
                .number = number,
                .R_level_scanner = quaternion_from_rpy(std_rad * tilt[0], std_rad * tilt[1], 0.0) *
-                                  quaternion_from_yaw(-yaw_of(R_world_scanner)) * R_world_scanner,
+                                  quaternion_from_yaw(-to_yaw(R_world_scanner)) * R_world_scanner,
                .range_offset_m = settings_.range_offset_std_m * range_offset_.normal(number),
                .before_m = {},
                .points = {}};
-  const std::vector<double> nothing(elevation_.size(), kNoReturn);
-  scan_->before_m = {{{nothing, nothing}, {nothing, nothing}}};
+  const std::vector<double> no_returns(elevation_.size(), kNoReturn);
+  scan_->before_m = {{{no_returns, no_returns}, {no_returns, no_returns}}};
   scan_->points.reserve(2 * azimuth_.size() * elevation_.size());
 }
 
@@ -113,53 +113,53 @@ void PanoramicScanner::fire_column(int column, const Pose3& T_world_scanner) {
   const std::size_t rows = elevation_.size();
   const auto beam = [&](std::size_t row) { return static_cast<std::uint64_t>(column) * rows + row; };
   std::vector<Eigen::Vector3d> aimed(rows);
-  std::vector<Echo> seen(rows);
+  std::vector<Return> seen(rows);
   const double angle_std_rad = settings_.angle_noise_deg * kDegree;
   for (std::size_t row = 0; row < rows; ++row) {
     const auto error = angle_noise_.normals(scan_->number, beam(row));
     aimed[row] = direction(column, row, angle_std_rad * error[0], angle_std_rad * error[1]);
-    seen[row] = look(T_world_scanner, aimed[row]);
+    seen[row] = trace(T_world_scanner, aimed[row]);
   }
   auto& [one_ago, two_ago] = scan_->before_m[static_cast<std::size_t>(column) < azimuth_.size() ? 0 : 1];
   for (std::size_t row = 0; row < rows; ++row) {
     const double range_m = seen[row].range_m;
-    const double upwards = row == 0 || row + 1 == rows ? 0.0 : bend_m(seen[row - 1].range_m, range_m, seen[row + 1].range_m);
-    const double sideways = 2.0 * bend_m(range_m, one_ago[row], two_ago[row]);
+    const double upwards = row == 0 || row + 1 == rows ? 0.0 : range_curvature_m(seen[row - 1].range_m, range_m, seen[row + 1].range_m);
+    const double sideways = 2.0 * range_curvature_m(range_m, one_ago[row], two_ago[row]);
     two_ago[row] = std::exchange(one_ago[row], range_m);
-    const bool is_at_edge = settings_.beam_spread_rad > 0.0 && std::max(upwards, sideways) > least_bend_m(range_m);
-    const Echo echo = is_at_edge ? mix_over_width(T_world_scanner, aimed[row], range_m) : seen[row];
-    if (echo.range_m > settings_.range_max_m || echo.range_m < settings_.range_min_m) continue;
+    const bool is_at_edge = settings_.beam_spread_rad > 0.0 && std::max(upwards, sideways) > min_edge_curvature_m(range_m);
+    const Return beam_return = is_at_edge ? mixed_pixel_return(T_world_scanner, aimed[row], range_m) : seen[row];
+    if (beam_return.range_m > settings_.range_max_m || beam_return.range_m < settings_.range_min_m) continue;
     if (settings_.dropout > 0.0 && dropout_.uniform(scan_->number, beam(row)) < settings_.dropout) continue;
-    const double measured_m = echo.range_m + scan_->range_offset_m + range_std_m(echo) * range_noise_.normal(scan_->number, beam(row));
+    const double measured_m = beam_return.range_m + scan_->range_offset_m + range_std_m(beam_return) * range_noise_.normal(scan_->number, beam(row));
     const Eigen::Vector3f point = (scan_->R_level_scanner * (measured_m * direction(column, row, 0.0, 0.0))).cast<float>();
-    scan_->points.push_back({.x = point.x(), .y = point.y(), .z = point.z(), .intensity = static_cast<float>(255.0 * std::min(1.0, echo.light))});
+    scan_->points.push_back({.x = point.x(), .y = point.y(), .z = point.z(), .intensity = static_cast<float>(255.0 * std::min(1.0, beam_return.light))});
   }
 }
 
 /// Returns the reading of an ideal ray without width. Glass, grazing incidence, and dark distant surfaces return
 /// nothing.
-PanoramicScanner::Echo PanoramicScanner::look(const Pose3& T_world_scanner, const Eigen::Vector3d& direction) const {
+PanoramicScanner::Return PanoramicScanner::trace(const Pose3& T_world_scanner, const Eigen::Vector3d& direction) const {
   const Eigen::Vector3d ray = T_world_scanner.rotation * direction;
   const std::optional<RayHit> hit = scene_.cast(T_world_scanner.position, ray, settings_.range_max_m, kMask);
   if (!hit) return {kNoReturn, 0.0};
   const double cosine = std::abs(hit->normal.dot(ray));
   const SurfaceOptics& surface = surfaces_[static_cast<std::size_t>(hit->geom)];
-  if (surface.lets_through(cosine) || cosine < std::cos(settings_.grazing_deg * kDegree)) return {kNoReturn, 0.0};
+  if (surface.is_transparent_at(cosine) || cosine < std::cos(settings_.grazing_deg * kDegree)) return {kNoReturn, 0.0};
   constexpr double kBlack = 0.02;
   const double light = std::max(kBlack, static_cast<double>(surface.reflectivity)) * cosine;
   const double reach_m = settings_.black_range_m * std::sqrt(light / kBlack);
-  if (dust_.clear_distance_m(hit->distance_m) > reach_m) return {kNoReturn, 0.0};
+  if (dust_.equivalent_clear_distance_m(hit->distance_m) > reach_m) return {kNoReturn, 0.0};
   return {hit->distance_m, light};
 }
 
 /// Returns the mean over the beam width at this range, weighted by the returned light.
-PanoramicScanner::Echo PanoramicScanner::mix_over_width(const Pose3& T_world_scanner, const Eigen::Vector3d& direction, double range_m) const {
+PanoramicScanner::Return PanoramicScanner::mixed_pixel_return(const Pose3& T_world_scanner, const Eigen::Vector3d& direction, double range_m) const {
   const double quarter_rad = (0.5 * settings_.beam_exit_m + settings_.beam_spread_rad * range_m) / (2.0 * range_m);
   const Eigen::Vector3d aside = direction.unitOrthogonal(), across = direction.cross(aside);
   double returned = 0.0, range_sum = 0.0, light_sum = 0.0;
   for (const double i : {-1.0, 1.0}) {
     for (const double j : {-1.0, 1.0}) {
-      const Echo part = look(T_world_scanner, (direction + quarter_rad * (i * aside + j * across)).normalized());
+      const Return part = trace(T_world_scanner, (direction + quarter_rad * (i * aside + j * across)).normalized());
       if (!std::isfinite(part.range_m)) continue;
       const double share = part.light / (part.range_m * part.range_m);
       returned += share;
@@ -167,12 +167,12 @@ PanoramicScanner::Echo PanoramicScanner::mix_over_width(const Pose3& T_world_sca
       light_sum += 0.25 * part.light;
     }
   }
-  return returned > 0.0 ? Echo{range_sum / returned, light_sum} : Echo{kNoReturn, 0.0};
+  return returned > 0.0 ? Return{range_sum / returned, light_sum} : Return{kNoReturn, 0.0};
 }
 
-double PanoramicScanner::range_std_m(const Echo& echo) const {
-  const double grey_m = settings_.grey_noise_m * std::sqrt(dust_.clear_distance_m(echo.range_m) / 10.0) * 0.1 / echo.light;
-  return std::hypot(settings_.range_noise_m, grey_m);
+double PanoramicScanner::range_std_m(const Return& beam_return) const {
+  const double gray_m = settings_.grey_noise_m * std::sqrt(dust_.equivalent_clear_distance_m(beam_return.range_m) / 10.0) * 0.1 / beam_return.light;
+  return std::hypot(settings_.range_noise_m, gray_m);
 }
 
 namespace {
@@ -184,7 +184,7 @@ class ScannerOnBody : public Sensor {
 
   void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
     if (!scanner_.is_busy()) return;
-    const auto lap = tick.clock.lap("scanner");
+    const auto timer = tick.clock.time_stage("scanner");
     scanner_.advance(tick.last, tick.now, tick.T_world_body_last, tick.T_world_body);
     for (PanoramicScan& scan : scanner_.take_scans()) readings.emplace_back(std::move(scan));
   }

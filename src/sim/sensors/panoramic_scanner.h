@@ -52,7 +52,7 @@ class PanoramicScanner {
 
  private:
   /// Return of one beam.
-  struct Echo {
+  struct Return {
     double range_m;  ///< +Inf: no return
     double light;    ///< reflectivity times cosine
   };
@@ -69,9 +69,9 @@ class PanoramicScanner {
   Time instant_of(int pair) const;
   void fire_column(int column, const Pose3& T_world_scanner);
   Eigen::Vector3d direction(int column, std::size_t row, double azimuth_error_rad, double elevation_error_rad) const;
-  Echo look(const Pose3& T_world_scanner, const Eigen::Vector3d& direction) const;
-  Echo mix_over_width(const Pose3& T_world_scanner, const Eigen::Vector3d& direction, double range_m) const;
-  double range_std_m(const Echo& echo) const;
+  Return trace(const Pose3& T_world_scanner, const Eigen::Vector3d& direction) const;
+  Return mixed_pixel_return(const Pose3& T_world_scanner, const Eigen::Vector3d& direction, double range_m) const;
+  double range_std_m(const Return& echo) const;
 
   PanoramicScannerSettings settings_;
   const LidarScene& scene_;

@@ -26,7 +26,7 @@ struct SensorContext {
   const mjModel& view;
   const LidarScene& scene;
   const GasPlume& plume;
-  const Underground& underground;
+  const Subsurface& subsurface;
   const DepthImagerFactory& make_depth_imager;
   std::uint64_t seed;
 };
@@ -49,7 +49,7 @@ struct SensorTick {
   Time last;                 ///< instant of the previous tick; `now` at the first one
   Pose3 T_world_body_last;  ///< body pose at `last`
   NewestReadings& newest;
-  PartClock& clock;  ///< timer of sensors that report their computing time separately
+  StageProfiler& clock;  ///< timer of sensors that report their computing time separately
 
   bool is_first() const { return count == 0; }
 };

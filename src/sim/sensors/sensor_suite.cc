@@ -15,7 +15,7 @@ Pose3 body_pose(const mjData& data, int body) {
 
 SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
                          const mjModel& view, const GasPlume& plume, const std::vector<FaultSettings>& faults,
-                         std::uint64_t seed, const DepthImagerFactory& make_depth_imager, const Underground& underground)
+                         std::uint64_t seed, const DepthImagerFactory& make_depth_imager, const Subsurface& subsurface)
     : settings_(settings), body_(mj_name2id(&physics, mjOBJ_BODY, frame_id::kBody)), scene_(view), faults_(faults, seed) {
   validate(settings.dust, "sensors.dust");
   const SensorContext context{.settings = settings_,
@@ -24,7 +24,7 @@ SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescrip
                               .view = view,
                               .scene = scene_,
                               .plume = plume,
-                              .underground = underground,
+                              .subsurface = subsurface,
                               .make_depth_imager = make_depth_imager,
                               .seed = seed};
   for (const bool are_read_by_firmware : {true, false}) add_sensors(context, are_read_by_firmware);
@@ -41,7 +41,7 @@ void SensorSuite::add_sensors(const SensorContext& context, bool are_read_by_fir
 void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
   const Pose3 T_world_body = body_pose(data, body_);
   {
-    const auto lap = clock_.lap("lidar");
+    const auto timer = clock_.time_stage("lidar");
     scene_.update(data);
   }
   const BodyState last = last_body_.value_or(BodyState{now, T_world_body});

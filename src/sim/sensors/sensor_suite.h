@@ -30,7 +30,7 @@ class SensorSuite {
   /// `make_depth_imager`.
   SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
               const mjModel& view, const GasPlume& plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
-              const DepthImagerFactory& make_depth_imager = {}, const Underground& underground = {});
+              const DepthImagerFactory& make_depth_imager = {}, const Subsurface& subsurface = {});
 
   /// Steps all sensors. Called once per tick, with kinematics and accelerations of `now` in `data`.
   void step(const mjModel& physics, mjData& data, Time now);
@@ -53,9 +53,9 @@ class SensorSuite {
   /// Returns the readings of this tick for the firmware.
   const NewestReadings& newest() const { return newest_; }
 
-  const std::vector<FaultReport>& faults() const { return faults_.reports(); }
+  const std::vector<FaultStatus>& faults() const { return faults_.reports(); }
   /// Returns the computing time of the sensors that report it separately: "lidar", "depth_camera", "scanner".
-  const PartClock& clock() const { return clock_; }
+  const StageProfiler& clock() const { return clock_; }
 
  private:
   struct Entry {
@@ -78,7 +78,7 @@ class SensorSuite {
   FaultInjector faults_;
   DeliveryQueue queue_;
   NewestReadings newest_;
-  PartClock clock_;
+  StageProfiler clock_;
   std::uint64_t tick_ = 0;
   std::optional<BodyState> last_body_;
   std::vector<SensorMessage> readings_;  ///< readings of one sensor in one step

@@ -13,7 +13,7 @@ struct SurfaceOptics {
 
   /// Returns whether the beam passes through: glass returns it only within 5 degrees of its normal. `cosine` is that of
   /// the angle of incidence.
-  bool lets_through(double cosine) const { return is_glass && cosine < 0.996; }
+  bool is_transparent_at(double cosine) const { return is_glass && cosine < 0.996; }
 };
 
 /// Returns the optical properties, [geom] of the view model.

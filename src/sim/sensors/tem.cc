@@ -11,9 +11,9 @@
 namespace patrol::sim {
 namespace {
 
-TemWindow reported_window(const TemSettings& settings) {
+TemGateLayout reported_window(const TemSettings& settings) {
   validate(settings, "sensors.tem");
-  TemWindow window{.gate_s = {}, .ramp_s = settings.ramp_s, .gate_width = settings.gate_width};
+  TemGateLayout window{.gate_s = {}, .ramp_s = settings.ramp_s, .gate_width = settings.gate_width};
   const double step = std::pow(10.0, 1.0 / settings.gates_per_decade);
   for (double gate_s = settings.first_gate_s; gate_s <= settings.last_gate_s; gate_s *= step) window.gate_s.push_back(gate_s);
   if (window.gate_s.size() < 3) {
@@ -22,7 +22,7 @@ TemWindow reported_window(const TemSettings& settings) {
   return window;
 }
 
-TemWindow shifted(TemWindow window, double shift_s) {
+TemGateLayout shift(TemGateLayout window, double shift_s) {
   for (double& gate_s : window.gate_s) gate_s += shift_s;
   return window;
 }
@@ -48,7 +48,7 @@ Tem::Tem(const TemSettings& settings, const RockSettings& rock, const std::vecto
       rock_(rock),
       bodies_(bodies),
       window_(reported_window(settings)),
-      gates_(shifted(window_, settings.time_shift_std_s * RandomStream(seed, "tem/time_shift").normal(0))),
+      gates_(shift(window_, settings.time_shift_std_s * RandomStream(seed, "tem/time_shift").normal(0))),
       gain_(1.0 + settings.gain_std * RandomStream(seed, "tem/gain").normal(0)),
       noise_(seed, "tem/noise"),
       relative_noise_(seed, "tem/relative_noise"),
@@ -84,15 +84,15 @@ std::optional<TemSounding> Tem::step(const Pose3& T_world_tem, Time now) {
 }
 
 TemSounding Tem::sound(const Eigen::Vector3d& p_world, const Eigen::Matrix3d& axes, std::uint64_t count, Time end) const {
-  Eigen::VectorXd rate = gated_rock(gates_, rock_.conductivity_spm);
+  Eigen::VectorXd rate = gated_whole_space_response(gates_, rock_.conductivity_spm);
   for (const WaterBodySettings& body : bodies_) {
-    const Eigen::Vector3d way = Eigen::Vector3d(body.x_m, body.y_m, body.z_m) - p_world;
-    const ConductiveSphere sphere{.distance_m = way.norm(), .radius_m = body.radius_m, .conductivity_spm = body.conductivity_spm};
+    const Eigen::Vector3d offset = Eigen::Vector3d(body.x_m, body.y_m, body.z_m) - p_world;
+    const ConductiveSphere sphere{.distance_m = offset.norm(), .radius_m = body.radius_m, .conductivity_spm = body.conductivity_spm};
     if (sphere.distance_m <= 1.02 * sphere.radius_m) {
       throw InputError(fmt::format("water: the body at ({}, {}, {}) reaches the antenna", body.x_m, body.y_m, body.z_m));
     }
-    const GatedSphere decay = gated_sphere(gates_, rock_.conductivity_spm, sphere);
-    const double cos_squared = way.dot(axes * way) / way.squaredNorm();
+    const GatedSphereResponse decay = gated_sphere_response(gates_, rock_.conductivity_spm, sphere);
+    const double cos_squared = offset.dot(axes * offset) / offset.squaredNorm();
     rate += decay.transverse + cos_squared * (decay.axial - decay.transverse);
   }
   const double steel = steel_rate_ * (1.0 + steel_form_.cwiseProduct(axes).sum());
@@ -116,7 +116,7 @@ class TemOnMount : public Sensor {
  public:
   explicit TemOnMount(const SensorContext& context)
       : coil_(mj_name2id(&context.physics, mjOBJ_BODY, "tem")),
-        tem_(context.settings.tem, context.underground.rock, context.underground.water, context.seed) {}
+        tem_(context.settings.tem, context.subsurface.rock, context.subsurface.water, context.seed) {}
 
   void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
     if (!tem_.is_sounding()) return;

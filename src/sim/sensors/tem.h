@@ -42,7 +42,7 @@ class Tem {
   TemSettings settings_;
   RockSettings rock_;
   std::vector<WaterBodySettings> bodies_;
-  TemWindow window_;  ///< reported gates
+  TemGateLayout window_;  ///< reported gates
   TemGates gates_;    ///< actual gates, with the time shift
   double gain_ = 1.0, steel_rate_ = 0.0;
   Eigen::Matrix3d steel_form_ = Eigen::Matrix3d::Zero();

@@ -46,7 +46,7 @@ std::vector<Eigen::Vector3d> cone(double full_angle_rad) {
   return rays;
 }
 
-bool names_one_of(const char* name, const std::vector<std::string>& words) {
+bool contains_any_of(const char* name, const std::vector<std::string>& words) {
   if (name == nullptr) return false;
   return std::any_of(words.begin(), words.end(), [text = std::string_view(name)](const std::string& word) {
     return !word.empty() && text.find(word) != std::string_view::npos;
@@ -56,8 +56,8 @@ bool names_one_of(const char* name, const std::vector<std::string>& words) {
 bool is_rough(const mjModel& model, int geom, const std::vector<std::string>& words) {
   if (model.geom_type[geom] == mjGEOM_HFIELD) return true;
   const int material = model.geom_matid[geom];
-  return names_one_of(mj_id2name(&model, mjOBJ_GEOM, geom), words) ||
-         (material >= 0 && names_one_of(mj_id2name(&model, mjOBJ_MATERIAL, material), words));
+  return contains_any_of(mj_id2name(&model, mjOBJ_GEOM, geom), words) ||
+         (material >= 0 && contains_any_of(mj_id2name(&model, mjOBJ_MATERIAL, material), words));
 }
 
 }  // namespace
@@ -88,7 +88,7 @@ double UltrasonicRing::strength(int geom, double cosine) const {
   return cosine >= std::cos(settings_.smooth_deg * kDegree) ? 1.0 : 0.0;
 }
 
-UltrasonicRing::Echo UltrasonicRing::listen(const Pose3& T_world_transducer, double turn_rad) const {
+UltrasonicRing::Echo UltrasonicRing::trace_ping(const Pose3& T_world_transducer, double turn_rad) const {
   struct Part {
     RayHit hit;
     double strength;
@@ -121,15 +121,15 @@ UltrasonicRing::Echo UltrasonicRing::listen(const Pose3& T_world_transducer, dou
 
 /// Returns the range at which a transducer reports the echo of another's ping: half the path length. +Inf beyond twice
 /// the cone, or when the surface reflects the sound elsewhere.
-double UltrasonicRing::heard_of_other_m(const Echo& echo, const Pose3& T_world_other, const Pose3& T_world_transducer) const {
+double UltrasonicRing::crosstalk_range_m(const Echo& echo, const Pose3& T_world_other, const Pose3& T_world_transducer) const {
   if (!std::isfinite(echo.distance_m)) return kNoEcho;
-  const Eigen::Vector3d way = T_world_transducer.position - echo.p_world;
+  const Eigen::Vector3d offset = T_world_transducer.position - echo.p_world;
   const Eigen::Vector3d axis = T_world_transducer.rotation * Eigen::Vector3d::UnitX();
-  const double off_axis = std::acos(std::clamp(-way.normalized().dot(axis), -1.0, 1.0));
+  const double off_axis = std::acos(std::clamp(-offset.normalized().dot(axis), -1.0, 1.0));
   if (off_axis > settings_.fov_deg * kDegree) return kNoEcho;
-  const Eigen::Vector3d middle = (way.normalized() + (T_world_other.position - echo.p_world).normalized()).normalized();
+  const Eigen::Vector3d middle = (offset.normalized() + (T_world_other.position - echo.p_world).normalized()).normalized();
   if (strength(echo.geom, std::abs(middle.dot(echo.normal))) <= 0.0) return kNoEcho;
-  return 0.5 * (echo.distance_m + way.norm());
+  return 0.5 * (echo.distance_m + offset.norm());
 }
 
 float UltrasonicRing::reading(double distance_m, std::uint64_t tick, std::uint64_t transducer) const {
@@ -150,22 +150,22 @@ std::vector<UltrasonicRange> UltrasonicRing::ping(const Pose3& T_world_body, Tim
   for (std::size_t i = tick % slots; i < num_transducers(); i += slots) {
     fired.push_back(i);
     frames.push_back(T_world_body * T_body_transducer_[i]);
-    echoes.push_back(listen(frames.back(), 2.0 * std::numbers::pi * turn_.uniform(tick, i)));
+    echoes.push_back(trace_ping(frames.back(), 2.0 * std::numbers::pi * turn_.uniform(tick, i)));
   }
   std::vector<UltrasonicRange> ranges;
-  for (std::size_t mine = 0; mine < fired.size(); ++mine) {
-    double distance_m = echoes[mine].distance_m;
+  for (std::size_t receiver = 0; receiver < fired.size(); ++receiver) {
+    double distance_m = echoes[receiver].distance_m;
     for (std::size_t other = 0; other < fired.size(); ++other) {
-      if (other == mine) continue;
-      if (crosstalk_.uniform(tick, fired[mine] * num_transducers() + fired[other]) >= settings_.crosstalk) continue;
-      distance_m = std::min(distance_m, heard_of_other_m(echoes[other], frames[other], frames[mine]));
+      if (other == receiver) continue;
+      if (crosstalk_.uniform(tick, fired[receiver] * num_transducers() + fired[other]) >= settings_.crosstalk) continue;
+      distance_m = std::min(distance_m, crosstalk_range_m(echoes[other], frames[other], frames[receiver]));
     }
     ranges.push_back({.stamp = now,
-                      .transducer = static_cast<int>(fired[mine]),
+                      .transducer = static_cast<int>(fired[receiver]),
                       .field_of_view_rad = settings_.fov_deg * kDegree,
                       .range_min_m = settings_.range_min_m,
                       .range_max_m = settings_.range_max_m,
-                      .range_m = reading(distance_m, tick, fired[mine])});
+                      .range_m = reading(distance_m, tick, fired[receiver])});
   }
   return ranges;
 }

@@ -43,9 +43,9 @@ class UltrasonicRing {
     int geom = -1;
   };
 
-  Echo listen(const Pose3& T_world_transducer, double turn_rad) const;
+  Echo trace_ping(const Pose3& T_world_transducer, double turn_rad) const;
   double strength(int geom, double cosine) const;
-  double heard_of_other_m(const Echo& echo, const Pose3& T_world_other, const Pose3& T_world_transducer) const;
+  double crosstalk_range_m(const Echo& echo, const Pose3& T_world_other, const Pose3& T_world_transducer) const;
   float reading(double distance_m, std::uint64_t tick, std::uint64_t transducer) const;
 
   UltrasonicSettings settings_;

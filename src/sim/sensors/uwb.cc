@@ -27,9 +27,9 @@ std::optional<int> anchor_number(const char* site) {
 }
 
 bool is_free(const LidarScene& scene, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  const Eigen::Vector3d way = to - from;
-  const double length_m = way.norm();
-  return length_m <= 0.0 || !scene.cast(from, way / length_m, length_m, kRayEverything);
+  const Eigen::Vector3d offset = to - from;
+  const double length_m = offset.norm();
+  return length_m <= 0.0 || !scene.cast(from, offset / length_m, length_m, kRayEverything);
 }
 
 }  // namespace
@@ -58,14 +58,14 @@ double uwb_range_bias_m(double distance_m) {
   return kBias_m[above] + (row - static_cast<double>(above)) * (kBias_m[above + 1] - kBias_m[above]);
 }
 
-bool is_uwb_path_blocked(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna,
+bool is_uwb_path_nlos(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna,
                          const Eigen::Vector3d& p_world_anchor) {
   constexpr double kHousing_m = 0.1;     // radius of the housings of antenna and anchor; objects inside are ignored
   constexpr double kPathRadius_m = 0.1;  // radius of the bundle halfway; thinner objects are passed by diffraction
   constexpr int kLines = 6;              // lines around the direct one
-  const Eigen::Vector3d way = p_world_anchor - p_world_antenna;
-  if (way.norm() <= 2.0 * kHousing_m) return false;
-  const Eigen::Vector3d along = way.normalized();
+  const Eigen::Vector3d offset = p_world_anchor - p_world_antenna;
+  if (offset.norm() <= 2.0 * kHousing_m) return false;
+  const Eigen::Vector3d along = offset.normalized();
   const Eigen::Vector3d start = p_world_antenna + kHousing_m * along, end = p_world_anchor - kHousing_m * along;
   const Eigen::Vector3d middle = 0.5 * (start + end);
   const Eigen::Vector3d across = along.unitOrthogonal(), other = along.cross(across);
@@ -83,13 +83,13 @@ Uwb::Uwb(const UwbSettings& settings, const mjModel& view, std::uint64_t seed)
       anchors_(uwb_anchors(view)),
       noise_(seed, "uwb/noise"),
       loss_(seed, "uwb/loss"),
-      blocked_loss_(seed, "uwb/blocked_loss"),
-      excess_(seed, "uwb/excess") {
+      nlos_loss_(seed, "uwb/blocked_loss"),
+      nlos_bias_(seed, "uwb/excess") {
   validate(settings, "sensors.uwb");
   if (anchors_.empty()) throw InputError("sensors.uwb is enabled, but the world has no site named uwb_anchor_<number>");
 }
 
-const UwbAnchor* Uwb::next_in_reach(const Eigen::Vector3d& p_world_antenna) {
+const UwbAnchor* Uwb::next_in_range(const Eigen::Vector3d& p_world_antenna) {
   for (std::size_t asked = 0; asked < anchors_.size(); ++asked) {
     const UwbAnchor& anchor = anchors_[turn_];
     turn_ = (turn_ + 1) % anchors_.size();
@@ -100,7 +100,7 @@ const UwbAnchor* Uwb::next_in_reach(const Eigen::Vector3d& p_world_antenna) {
 
 std::optional<UwbRange> Uwb::read(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna, Time now,
                                   std::uint64_t tick) {
-  const UwbAnchor* anchor = next_in_reach(p_world_antenna);
+  const UwbAnchor* anchor = next_in_range(p_world_antenna);
   if (anchor == nullptr) return std::nullopt;
   const auto index = static_cast<std::uint64_t>(anchor->number);
   const double distance_m = (anchor->p_world - p_world_antenna).norm();
@@ -110,9 +110,9 @@ std::optional<UwbRange> Uwb::read(const LidarScene& scene, const Eigen::Vector3d
 
   UwbRange range{.stamp = now, .anchor = anchor->number};
   range.range_m = distance_m + settings_.bias_scale * uwb_range_bias_m(distance_m) + settings_.range_noise_m * noise_.normal(tick, index);
-  if (is_uwb_path_blocked(scene, p_world_antenna, anchor->p_world)) {
-    if (blocked_loss_.uniform(tick, index) < settings_.blocked_loss) return std::nullopt;
-    range.range_m -= settings_.blocked_excess_m * std::log(excess_.uniform(tick, index));
+  if (is_uwb_path_nlos(scene, p_world_antenna, anchor->p_world)) {
+    if (nlos_loss_.uniform(tick, index) < settings_.blocked_loss) return std::nullopt;
+    range.range_m -= settings_.blocked_excess_m * std::log(nlos_bias_.uniform(tick, index));
   }
   range.range_m = std::max(range.range_m, 0.0);
   return range;

@@ -45,16 +45,16 @@ class Uwb {
   const std::vector<UwbAnchor>& anchors() const { return anchors_; }
 
  private:
-  const UwbAnchor* next_in_reach(const Eigen::Vector3d& p_world_antenna);
+  const UwbAnchor* next_in_range(const Eigen::Vector3d& p_world_antenna);
 
   UwbSettings settings_;
   std::vector<UwbAnchor> anchors_;
-  RandomStream noise_, loss_, blocked_loss_, excess_;
+  RandomStream noise_, loss_, nlos_loss_, nlos_bias_;
   std::size_t turn_ = 0;  ///< index of the next anchor to poll
 };
 
 /// Returns whether the path between antenna and anchor is non-line-of-sight.
-bool is_uwb_path_blocked(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna,
+bool is_uwb_path_nlos(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna,
                          const Eigen::Vector3d& p_world_anchor);
 
 }  // namespace patrol::sim

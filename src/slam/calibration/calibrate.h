@@ -12,35 +12,35 @@
 namespace patrol::slam {
 
 struct CalibratorSettings {
-  int min_stretches = 20;  ///< minimum number of segments
+  int min_segments = 20;  ///< minimum number of segments
   /// Odometry noise model of a segment. Its scale is estimated from the log.
-  MotionModelSettings odometry{.along_std_m_per_m = 0.02,
-                               .across_std_m_per_m = 0.02,
-                               .turn_std_rad_per_rad = 0.03,
-                               .turn_std_rad_per_m = 0.01,
-                               .turn_std_rad_per_s = 0.0,
+  MotionModelSettings odometry{.longitudinal_std_m_per_m = 0.02,
+                               .lateral_std_m_per_m = 0.02,
+                               .yaw_std_rad_per_rad = 0.03,
+                               .yaw_std_rad_per_m = 0.01,
+                               .yaw_std_rad_per_s = 0.0,
                                .min_std_m = 0.003,
                                .min_std_rad = 0.002};
-  double outlier_std = 5.0;  ///< segments with larger errors, in standard deviations, are outliers of odometry
+  double outlier_sigma = 5.0;  ///< segments with larger errors, in standard deviations, are outliers of odometry
   int max_iterations = 100;
   // Parameters with a larger standard deviation are not estimated.
   double max_std_lidar_m = 0.05;
   double max_std_lidar_rad = 0.02;
   double max_std_distance_scale = 0.02;
-  double max_std_turn_scale = 0.05;
-  double max_std_steering_rad_per_m = 0.01;
+  double max_std_rotation_scale = 0.05;
+  double max_std_steering_bias_rad_per_m = 0.01;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("min_stretches", self.min_stretches, between(6, 1e6));
+    visit("min_stretches", self.min_segments, between(6, 1e6));
     visit("odometry", self.odometry);
-    visit("outlier_std", self.outlier_std, between(3.0, 100.0));
+    visit("outlier_std", self.outlier_sigma, between(3.0, 100.0));
     visit("max_iterations", self.max_iterations, between(1, 10000));
     visit("max_std_lidar_m", self.max_std_lidar_m, at_least(0.0));
     visit("max_std_lidar_rad", self.max_std_lidar_rad, at_least(0.0));
     visit("max_std_distance_scale", self.max_std_distance_scale, at_least(0.0));
-    visit("max_std_turn_scale", self.max_std_turn_scale, at_least(0.0));
-    visit("max_std_steering_rad_per_m", self.max_std_steering_rad_per_m, at_least(0.0));
+    visit("max_std_turn_scale", self.max_std_rotation_scale, at_least(0.0));
+    visit("max_std_steering_rad_per_m", self.max_std_steering_bias_rad_per_m, at_least(0.0));
   }
 };
 
@@ -59,11 +59,11 @@ struct CalibrationResult {
   std::array<CalibratedParameter, 6> parameters;
   /// Covariance of the observable parameters; zero elsewhere.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  int num_stretches = 0;
+  int num_segments = 0;
   int num_rejected = 0;          ///< number of rejected segments: odometry outliers or wrong matches
   std::vector<double> errors;    ///< [segment], standard deviations
-  double move_noise = 0.0;       ///< scale of the translational odometry noise relative to CalibratorSettings::odometry
-  double turn_noise = 0.0;
+  double translation_noise_scale = 0.0;       ///< scale of the translational odometry noise relative to CalibratorSettings::odometry
+  double rotation_noise_scale = 0.0;
   int iterations = 0;
   bool converged = false;
 
@@ -91,7 +91,7 @@ struct CalibrationResult {
 /// Not estimated: the scale of the lidar, which is the reference for the odometry, and the offset between the two
 /// clocks. At constant speed, scans stamped late by dt are equivalent to a lidar mounted speed * dt farther back.
 ///
-/// Throws InputError for fewer than `min_stretches` segments.
-CalibrationResult calibrate(const std::vector<MotionPair>& pairs, const Pose2& T_body_lidar_before, const CalibratorSettings& settings);
+/// Throws InputError for fewer than `min_segments` segments.
+CalibrationResult calibrate(const std::vector<MotionSegment>& pairs, const Pose2& T_body_lidar_before, const CalibratorSettings& settings);
 
 }  // namespace patrol::slam

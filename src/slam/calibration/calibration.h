@@ -12,7 +12,7 @@ namespace patrol::slam {
 /// For an odometry increment from scan to scan, m is its translation in the frame of its mean heading, so that the
 /// chord of an arc lies along x. The increment becomes
 ///
-///   translation  distance_scale * m      rotation  turn_scale * turn + steering_rad_per_m * m_x
+///   translation  distance_scale * m      rotation  rotation_scale * turn + steering_bias_rad_per_m * m_x
 ///
 /// These are the three parameters of a differential drive with wrong wheel radii and wheel base [Censi13, eq. 1].
 /// Deviation from [Censi13]: the translation of unequal wheels during a turn in place is omitted. It cannot be
@@ -20,26 +20,26 @@ namespace patrol::slam {
 /// reports. On a tracked vehicle, which turns about its instantaneous center of rotation, that point differs slightly
 /// from the body origin.
 struct Calibration {
-  bool places_lidar = false;        ///< true: the following lidar pose replaces that of the log
+  bool override_lidar_pose = false;        ///< true: the following lidar pose replaces that of the log
   double lidar_x_m = 0.0;           ///< lidar pose in body
   double lidar_y_m = 0.0;
   double lidar_yaw_rad = 0.0;
   double distance_scale = 1.0;      ///< true distance / odometry distance
-  double turn_scale = 1.0;          ///< true yaw change / odometry yaw change
-  double steering_rad_per_m = 0.0;  ///< unmeasured yaw change to the left per meter of odometry
+  double rotation_scale = 1.0;          ///< true yaw change / odometry yaw change
+  double steering_bias_rad_per_m = 0.0;  ///< unmeasured yaw change to the left per meter of odometry
 
   Pose2 T_body_lidar() const { return {lidar_x_m, lidar_y_m, lidar_yaw_rad}; }
-  bool changes_odometry() const { return distance_scale != 1.0 || turn_scale != 1.0 || steering_rad_per_m != 0.0; }
+  bool changes_odometry() const { return distance_scale != 1.0 || rotation_scale != 1.0 || steering_bias_rad_per_m != 0.0; }
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("places_lidar", self.places_lidar);
+    visit("places_lidar", self.override_lidar_pose);
     visit("lidar_x_m", self.lidar_x_m, between(-100.0, 100.0));
     visit("lidar_y_m", self.lidar_y_m, between(-100.0, 100.0));
     visit("lidar_yaw_rad", self.lidar_yaw_rad, between(-7.0, 7.0));
     visit("distance_scale", self.distance_scale, between(0.01, 100.0));
-    visit("turn_scale", self.turn_scale, between(0.01, 100.0));
-    visit("steering_rad_per_m", self.steering_rad_per_m, between(-10.0, 10.0));
+    visit("turn_scale", self.rotation_scale, between(0.01, 100.0));
+    visit("steering_rad_per_m", self.steering_bias_rad_per_m, between(-10.0, 10.0));
   }
 };
 

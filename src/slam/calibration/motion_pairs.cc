@@ -8,11 +8,11 @@ namespace patrol::slam {
 namespace {
 
 /// Covariance of a match alone, in local: 10 m and 10 rad along directions without information.
-Eigen::Matrix3d match_covariance(const TrackedScan& tracked, const MotionPairSettings& settings) {
+Eigen::Matrix3d match_covariance(const TrackedScan& tracked, const MotionSegmentSettings& settings) {
   const auto square = [](double value) { return value * value; };
   const Eigen::Matrix3d loose = Eigen::Vector3d(1e-2, 1e-2, 1e-2).asDiagonal();
   const Eigen::Matrix3d systematic = Eigen::Vector3d(square(settings.match_std_m), square(settings.match_std_m), square(settings.match_std_rad)).asDiagonal();
-  return (settings.tracking.likelihood_gain * tracked.match_information + loose).inverse() + systematic;
+  return (settings.tracking.likelihood_tempering * tracked.match_information + loose).inverse() + systematic;
 }
 
 /// Covariance of b in the frame of a, for independent estimates of a and b in local.
@@ -28,30 +28,30 @@ Eigen::Matrix3d relative_covariance(const Pose2& T_local_a, const Eigen::Matrix3
 
 }  // namespace
 
-MotionPairs::MotionPairs(const MotionPairSettings& settings, const PlanarScanSettings& scan, const Calibration& known)
-    : settings_(settings), scan_(scan), known_(known), tracker_(settings.tracking) {}
+MotionSegmenter::MotionSegmenter(const MotionSegmentSettings& settings, const PlanarScanSettings& scan, const Calibration& prior)
+    : settings_(settings), scan_(scan), prior_(prior), tracker_(settings.tracking) {}
 
-void MotionPairs::begin(const Place& place) {
-  begin_ = place;
+void MotionSegmenter::begin(const ScanPose& scan_pose) {
+  begin_ = scan_pose;
   lidar_steps_.clear();
 }
 
-void MotionPairs::add(const RecordedScan& recorded) {
+void MotionSegmenter::add(const RecordedScan& recorded) {
   RecordedScan guess = recorded;
-  known_.correct(guess);
+  prior_.correct(guess);
   const Pose2 T_odom_lidar = guess.T_odom_body * guess.T_body_lidar;
-  guess.T_first_last = guess.T_body_lidar.inverse() * guess.T_first_last * guess.T_body_lidar;
+  guess.T_begin_end = guess.T_body_lidar.inverse() * guess.T_begin_end * guess.T_body_lidar;
   guess.T_body_lidar = {};
   const TrackedScan tracked = tracker_.update(planar_scan(guess, scan_), T_odom_lidar);
   lidar_steps_.push_back(T_local_last_.inverse() * tracked.T_local_body);
   T_local_last_ = tracked.T_local_body;
-  if (!(tracked.matched_share > 0.0)) return;  // both ends of a segment must be matched
+  if (!(tracked.inlier_ratio > 0.0)) return;  // both ends of a segment must be matched
 
-  const Place now{.stamp = recorded.scan.stamp, .T_odom_body = recorded.T_odom_body, .T_local_lidar = tracked.T_local_body, .covariance = match_covariance(tracked, settings_)};
+  const ScanPose now{.stamp = recorded.scan.stamp, .T_odom_body = recorded.T_odom_body, .T_local_lidar = tracked.T_local_body, .covariance = match_covariance(tracked, settings_)};
   if (!begin_) return begin(now);
   const Pose2 odometry = begin_->T_odom_body.inverse() * now.T_odom_body, lidar = begin_->T_local_lidar.inverse() * now.T_local_lidar;
-  const double way_m = std::max(odometry.position().norm(), lidar.position().norm()), turn_rad = std::max(std::abs(odometry.yaw), std::abs(lidar.yaw));
-  if (way_m < settings_.stretch_m && turn_rad < settings_.stretch_rad) return;
+  const double distance_m = std::max(odometry.position().norm(), lidar.position().norm()), turn_rad = std::max(std::abs(odometry.yaw), std::abs(lidar.yaw));
+  if (distance_m < settings_.length_m && turn_rad < settings_.rotation_rad) return;
   pairs_.push_back({.begin = begin_->stamp,
                     .end = now.stamp,
                     .lidar_steps = std::move(lidar_steps_),

@@ -14,7 +14,7 @@
 namespace patrol::slam {
 
 /// Segment of the trajectory with its lidar and odometry motion.
-struct MotionPair {
+struct MotionSegment {
   Time begin{}, end{};
   std::vector<Pose2> lidar_steps;  ///< motion of the lidar from scan to scan, as matched
   Pose2 odometry;                  ///< recorded motion of the body from the first scan to the last
@@ -28,9 +28,9 @@ struct MotionPair {
   }
 };
 
-struct MotionPairSettings {
-  double stretch_m = 0.5;      ///< a segment ends when lidar or odometry has moved by this distance
-  double stretch_rad = 0.35;   ///< or rotated by this angle
+struct MotionSegmentSettings {
+  double length_m = 0.5;      ///< a segment ends when lidar or odometry has moved by this distance
+  double rotation_rad = 0.35;   ///< or rotated by this angle
   /// Standard deviation of the systematic error of a match, independent of the number of points.
   double match_std_m = 0.002;
   double match_std_rad = 0.0005;
@@ -38,8 +38,8 @@ struct MotionPairSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("stretch_m", self.stretch_m, between(0.01, 100.0));
-    visit("stretch_rad", self.stretch_rad, between(0.01, 3.0));
+    visit("stretch_m", self.length_m, between(0.01, 100.0));
+    visit("stretch_rad", self.rotation_rad, between(0.01, 3.0));
     visit("match_std_m", self.match_std_m, between(1e-5, 1.0));
     visit("match_std_rad", self.match_std_rad, between(1e-6, 1.0));
     visit("tracking", self.tracking);
@@ -49,31 +49,31 @@ struct MotionPairSettings {
 /// Divides a log into segments. The lidar is tracked in its own frame by scan matching (scan_tracker.h), with odometry
 /// as initial guess, corrected by the prior calibration `known`. The covariance of a segment includes the matches only.
 /// Along a featureless corridor it is large, so that the odometry that the tracker follows there has no weight.
-class MotionPairs {
+class MotionSegmenter {
  public:
-  MotionPairs(const MotionPairSettings& settings, const PlanarScanSettings& scan, const Calibration& known);
+  MotionSegmenter(const MotionSegmentSettings& settings, const PlanarScanSettings& scan, const Calibration& prior);
 
   void add(const RecordedScan& recorded);
 
-  const std::vector<MotionPair>& pairs() const { return pairs_; }
+  const std::vector<MotionSegment>& pairs() const { return pairs_; }
 
  private:
-  struct Place {
+  struct ScanPose {
     Time stamp{};
     Pose2 T_odom_body;
     Pose2 T_local_lidar;
     Eigen::Matrix3d covariance;  ///< covariance of T_local_lidar, in local
   };
-  void begin(const Place& place);
+  void begin(const ScanPose& scan_pose);
 
-  MotionPairSettings settings_;
+  MotionSegmentSettings settings_;
   PlanarScanSettings scan_;
-  CalibratedScans known_;
+  CalibratedScans prior_;
   ScanTracker tracker_;
-  std::optional<Place> begin_;
+  std::optional<ScanPose> begin_;
   Pose2 T_local_last_;
   std::vector<Pose2> lidar_steps_;
-  std::vector<MotionPair> pairs_;
+  std::vector<MotionSegment> pairs_;
 };
 
 }  // namespace patrol::slam

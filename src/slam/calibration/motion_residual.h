@@ -7,7 +7,7 @@
 
 namespace patrol::slam {
 
-/// Parameter vector: lidar_x_m, lidar_y_m, lidar_yaw_rad, distance_scale, turn_scale, steering_rad_per_m of a
+/// Parameter vector: lidar_x_m, lidar_y_m, lidar_yaw_rad, distance_scale, rotation_scale, steering_bias_rad_per_m of a
 /// Calibration.
 using CalibrationVector = Eigen::Matrix<double, 6, 1>;
 
@@ -19,14 +19,14 @@ struct MotionResidual {
   /// Covariances of the error; the odometry covariance before scaling.
   Eigen::Matrix3d lidar_covariance, odometry_covariance;
 
-  Eigen::Matrix3d covariance(double move_noise, double turn_noise) const {
-    const Eigen::Vector3d noise(move_noise, move_noise, turn_noise);
+  Eigen::Matrix3d covariance(double translation_noise_scale, double rotation_noise_scale) const {
+    const Eigen::Vector3d noise(translation_noise_scale, translation_noise_scale, rotation_noise_scale);
     return lidar_covariance + noise.asDiagonal() * odometry_covariance * noise.asDiagonal();
   }
 };
 
 /// Predicts the odometry of a segment from the lidar motion. X L X^-1 is the body motion, with L the lidar motion and X
 /// the lidar pose. The inverse of the odometry correction is applied step by step. `odometry` is the noise model.
-MotionResidual motion_residual(const MotionPair& pair, const CalibrationVector& parameters, const MotionModelSettings& odometry);
+MotionResidual motion_residual(const MotionSegment& pair, const CalibrationVector& parameters, const MotionModelSettings& odometry);
 
 }  // namespace patrol::slam

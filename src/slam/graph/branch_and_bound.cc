@@ -8,14 +8,14 @@ namespace patrol::slam {
 namespace {
 
 /// Rotated points in cells of the finest level.
-struct TurnedPoints {
+struct RotatedPoints {
   double yaw_rad = 0.0;
   std::vector<Cell> cells;
 };
 
 /// Square of 2^level x 2^level translations, in cells from the lower left corner of the window.
 struct Candidate {
-  int turn = 0;
+  int rotation = 0;
   int col = 0, row = 0;
   int bound = 0;  ///< upper bound of the sum of point values
 };
@@ -28,38 +28,38 @@ class Search {
     double far_m = cell_m_;
     for (const Eigen::Vector2d& point : points) far_m = std::max(far_m, point.norm());
     const double step_rad = cell_m_ / far_m;
-    const int turns = static_cast<int>(std::ceil(window.half_angle_rad / step_rad));
+    const int num_rotations = static_cast<int>(std::ceil(window.half_angle_rad / step_rad));
     num_steps_ = 2 * static_cast<int>(std::ceil(window.half_width_m / cell_m_)) + 1;
     corner_m_ = window.T_map_center.position() - Eigen::Vector2d::Constant(0.5 * (num_steps_ - 1) * cell_m_);
-    for (int turn = -turns; turn <= turns; ++turn) {
-      TurnedPoints turned{.yaw_rad = wrap_angle(window.T_map_center.yaw + turn * step_rad), .cells = {}};
-      const Eigen::Matrix2d R = Eigen::Rotation2Dd(turned.yaw_rad).toRotationMatrix();
+    for (int rotation = -num_rotations; rotation <= num_rotations; ++rotation) {
+      RotatedPoints rotated{.yaw_rad = wrap_angle(window.T_map_center.yaw + rotation * step_rad), .cells = {}};
+      const Eigen::Matrix2d R = Eigen::Rotation2Dd(rotated.yaw_rad).toRotationMatrix();
       for (const Eigen::Vector2d& point : points) {
         const Eigen::Vector2d cell = (R * point + corner_m_) / cell_m_;
-        turned.cells.push_back({static_cast<int>(std::floor(cell.x())), static_cast<int>(std::floor(cell.y()))});
+        rotated.cells.push_back({static_cast<int>(std::floor(cell.x())), static_cast<int>(std::floor(cell.y()))});
       }
-      turned_.push_back(std::move(turned));
+      rotated_.push_back(std::move(rotated));
     }
   }
 
   std::optional<SearchResult> run() {
     const int top = map_.num_levels() - 1, step = 1 << top;
     std::vector<Candidate> candidates;
-    for (int turn = 0; turn < static_cast<int>(turned_.size()); ++turn) {
+    for (int rotation = 0; rotation < static_cast<int>(rotated_.size()); ++rotation) {
       for (int row = 0; row < num_steps_; row += step) {
-        for (int col = 0; col < num_steps_; col += step) add(turn, col, row, top, candidates);
+        for (int col = 0; col < num_steps_; col += step) add(rotation, col, row, top, candidates);
       }
     }
     descend(candidates, top);
     if (!best_) return std::nullopt;
-    return SearchResult{.T_map_points = pose_of(*best_), .score = best_sum_ / (static_cast<double>(LikelihoodPyramid::kOnSurface) * static_cast<double>(turned_[0].cells.size()))};
+    return SearchResult{.T_map_points = pose_of(*best_), .score = best_sum_ / (static_cast<double>(LikelihoodPyramid::kOnSurface) * static_cast<double>(rotated_[0].cells.size()))};
   }
 
  private:
-  void add(int turn, int col, int row, int level, std::vector<Candidate>& candidates) const {
+  void add(int rotation, int col, int row, int level, std::vector<Candidate>& candidates) const {
     int sum = 0;
-    for (const Cell& cell : turned_[static_cast<std::size_t>(turn)].cells) sum += map_.value(level, cell.col + col, cell.row + row);
-    if (sum > best_sum_) candidates.push_back({turn, col, row, sum});
+    for (const Cell& cell : rotated_[static_cast<std::size_t>(rotation)].cells) sum += map_.value(level, cell.col + col, cell.row + row);
+    if (sum > best_sum_) candidates.push_back({rotation, col, row, sum});
   }
 
   void descend(std::vector<Candidate>& candidates, int level) {
@@ -76,7 +76,7 @@ class Search {
       std::vector<Candidate> children;
       for (const int row : {candidate.row, candidate.row + half}) {
         for (const int col : {candidate.col, candidate.col + half}) {
-          if (row < num_steps_ && col < num_steps_) add(candidate.turn, col, row, level - 1, children);
+          if (row < num_steps_ && col < num_steps_) add(candidate.rotation, col, row, level - 1, children);
         }
       }
       descend(children, level - 1);
@@ -84,7 +84,7 @@ class Search {
   }
 
   Pose2 pose_of(const Candidate& candidate) const {
-    return {corner_m_.x() + candidate.col * cell_m_, corner_m_.y() + candidate.row * cell_m_, turned_[static_cast<std::size_t>(candidate.turn)].yaw_rad};
+    return {corner_m_.x() + candidate.col * cell_m_, corner_m_.y() + candidate.row * cell_m_, rotated_[static_cast<std::size_t>(candidate.rotation)].yaw_rad};
   }
 
   /// Returns whether all translations of the candidate are excluded.
@@ -103,7 +103,7 @@ class Search {
   double cell_m_;
   int num_steps_ = 1;
   Eigen::Vector2d corner_m_;
-  std::vector<TurnedPoints> turned_;
+  std::vector<RotatedPoints> rotated_;
   std::optional<Candidate> best_;
 };
 

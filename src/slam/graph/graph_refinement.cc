@@ -10,7 +10,7 @@ namespace patrol::slam {
 void GraphSlam::finish() {
   while (finished_submaps_ < static_cast<int>(submaps_.size())) close_loops(finished_submaps_++);
   const std::size_t num_edges = graph_.edges.size();
-  for (int round = 0; round < settings_.refinement_rounds; ++round) {
+  for (int round = 0; round < settings_.refinement_iterations; ++round) {
     graph_.edges.resize(num_edges);
     cache_.clear();
     refine();
@@ -21,47 +21,47 @@ void GraphSlam::finish() {
 
 // Returns [submap]: the keyframes within the search radius that are not part of the submap.
 std::vector<std::vector<int>> GraphSlam::keyframes_around_submaps() const {
-  std::vector<Eigen::Vector2d> middles;
-  for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) middles.push_back(middle_of(s));
-  std::vector<std::vector<int>> keyframes_of(submaps_.size());
+  std::vector<Eigen::Vector2d> centers;
+  for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) centers.push_back(submap_center(s));
+  std::vector<std::vector<int>> keyframes_by_submap(submaps_.size());
   for (int k = 0; k < static_cast<int>(keyframes_.size()); ++k) {
     std::vector<std::pair<double, int>> near;
     for (std::size_t s = 0; s < submaps_.size(); ++s) {
       if (k >= submaps_[s].first && k <= submaps_[s].last) continue;
-      const double distance_m = (middles[s] - graph_.T_map_node[static_cast<std::size_t>(k)].position()).norm();
+      const double distance_m = (centers[s] - graph_.T_map_node[static_cast<std::size_t>(k)].position()).norm();
       if (distance_m < settings_.max_loop_distance_m) near.push_back({distance_m, static_cast<int>(s)});
     }
-    for (const int s : nearest(near, settings_.max_refinement_submaps)) keyframes_of[static_cast<std::size_t>(s)].push_back(k);
+    for (const int s : nearest(near, settings_.max_refinement_submaps)) keyframes_by_submap[static_cast<std::size_t>(s)].push_back(k);
   }
-  return keyframes_of;
+  return keyframes_by_submap;
 }
 
 // Iterates over submaps, so that each is rendered once.
 void GraphSlam::refine() {
-  const std::vector<std::vector<int>> keyframes_of = keyframes_around_submaps();
+  const std::vector<std::vector<int>> keyframes_by_submap = keyframes_around_submaps();
   for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) {
-    if (keyframes_of[static_cast<std::size_t>(s)].empty()) continue;
-    const std::shared_ptr<const DrawnSubmap> submap = drawn(s);
+    if (keyframes_by_submap[static_cast<std::size_t>(s)].empty()) continue;
+    const std::shared_ptr<const RenderedSubmap> submap = rendered(s);
     const Pose2 T_submap_map = T_map_submap(s).inverse();
-    for (const int k : keyframes_of[static_cast<std::size_t>(s)]) {
+    for (const int k : keyframes_by_submap[static_cast<std::size_t>(s)]) {
       const Pose2 T_submap_node = T_submap_map * graph_.T_map_node[static_cast<std::size_t>(k)];
       const std::optional<MatchResult> match = refined(*submap, keyframes_[static_cast<std::size_t>(k)], T_submap_node);
       if (!match) continue;
       graph_.edges.push_back({.from = submaps_[static_cast<std::size_t>(s)].first,
                               .to = k,
                               .T_from_to = match->T_map_body,
-                              .information = weight_of(match->information),
+                              .information = match_edge_information(match->information),
                               .kind = PoseGraphEdge::Kind::kLoop});
     }
   }
 }
 
 // Matches a keyframe with a submap from a good initial pose.
-std::optional<MatchResult> GraphSlam::refined(const DrawnSubmap& submap, const Keyframe& keyframe, const Pose2& T_submap_body) const {
+std::optional<MatchResult> GraphSlam::refined(const RenderedSubmap& submap, const Keyframe& keyframe, const Pose2& T_submap_body) const {
   const ScanMatcherSettings& matching = settings_.tracking.matching;
-  const std::vector<MatchPoint> points = select_match_points(keyframe.scan, matching.point_spacing_m, matching.max_points);
-  const std::optional<MatchResult> match = match_scan(submap.map(), points, T_submap_body, start_of_match(T_submap_body), matching);
-  if (!match || match->matched_share < settings_.min_refinement_share) return std::nullopt;
+  const std::vector<MatchPoint> points = downsample_scan(keyframe.scan, matching.point_spacing_m, matching.max_points);
+  const std::optional<MatchResult> match = match_scan(submap.map(), points, T_submap_body, match_prior(T_submap_body), matching);
+  if (!match || match->inlier_ratio < settings_.min_refinement_inlier_ratio) return std::nullopt;
   const Pose2 moved = T_submap_body.inverse() * match->T_map_body;
   if (moved.position().norm() > settings_.max_refinement_m || std::abs(moved.yaw) > settings_.max_refinement_rad) return std::nullopt;
   return match;

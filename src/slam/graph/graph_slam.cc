@@ -13,7 +13,7 @@
 
 namespace patrol::slam {
 
-void LoopCounts::add(MatchFailure failure) {
+void LoopClosureStatistics::add(MatchFailure failure) {
   ++searched;
   switch (failure) {
     case MatchFailure::kNone: ++closed; break;
@@ -26,25 +26,25 @@ void LoopCounts::add(MatchFailure failure) {
 
 GraphSlam::GraphSlam(const GraphSlamSettings& settings)
     : settings_(settings),
-      drawing_{.resolution_m = settings.tracking.resolution_m, .max_extent_m = settings.tracking.max_extent_m, .integration = settings.tracking.integration},
+      rendering_{.resolution_m = settings.tracking.resolution_m, .max_extent_m = settings.tracking.max_extent_m, .integration = settings.tracking.integration},
       tracker_(settings.tracking),
       cache_(static_cast<std::size_t>(settings.cached_submaps)),
-      live_map_(drawing_),
+      incremental_map_(rendering_),
       ranges_(settings.ranges) {
   validate(settings, "slam");
 }
 
-SlamUpdate GraphSlam::update(const LevelScan& seen, const Pose2& T_odom_body) {
-  const LevelScan blind{.stamp = seen.stamp, .beams = {}};
-  const LevelScan& scan = seen.tilt_rad <= settings_.max_tilt_rad ? seen : blind;
+SlamUpdate GraphSlam::update(const LevelScan& input_scan, const Pose2& T_odom_body) {
+  const LevelScan without_beams{.stamp = input_scan.stamp, .beams = {}};
+  const LevelScan& scan = input_scan.tilt_rad <= settings_.max_tilt_rad ? input_scan : without_beams;
   const TrackedScan tracked = tracker_.update(scan, T_odom_body);
   if (tracked.is_keyframe) add_keyframe(scan, tracked);
-  believe(tracked, scan.stamp);
-  accept_ranges(tracked, T_odom_body);
-  if (tracked.is_keyframe && !ranges_.ranges().empty() && ranges_.ranges().back().node >= laid_until_ + settings_.range_keyframes) lay_by_ranges(tracked.submap);
+  update_estimate(tracked, scan.stamp);
+  gate_ranges(tracked, T_odom_body);
+  if (tracked.is_keyframe && !ranges_.ranges().empty() && ranges_.ranges().back().node >= smoothed_until_ + settings_.range_smoothing_period_keyframes) smooth_with_ranges(tracked.submap);
   path_.push_back({static_cast<int>(keyframes_.size()) - 1, tracked.T_local_body});
   now_.mean = T_map_body(tracked.T_local_body);
-  return {.T_map_body = now_.mean, .covariance = now_.covariance, .is_keyframe = tracked.is_keyframe, .match_score = tracked.matched_share};
+  return {.T_map_body = now_.mean, .covariance = now_.covariance, .is_keyframe = tracked.is_keyframe, .match_score = tracked.inlier_ratio};
 }
 
 Pose2 GraphSlam::T_map_body(const Pose2& T_local_body) const { return graph_.T_map_node.back() * (keyframes_.back().T_local_body.inverse() * T_local_body); }
@@ -59,7 +59,7 @@ void GraphSlam::add_keyframe(const LevelScan& scan, const TrackedScan& tracked) 
     graph_.T_map_node.push_back(graph_.T_map_node.back() * T_before_node);
     const PoseGaussian motion = predict_motion({}, T_before_node, to_seconds(scan.stamp - before.scan.stamp), settings_.tracking.motion);
     graph_.edges.push_back({.from = node - 1, .to = node, .T_from_to = T_before_node, .information = motion.covariance.inverse(), .kind = PoseGraphEdge::Kind::kOdometry});
-    if (tracked.matched_share > 0.0) add_match_edge(tracked);
+    if (tracked.inlier_ratio > 0.0) add_match_edge(tracked);
   }
   keyframes_.push_back({scan, tracked.T_local_body});
   if (tracked.is_submap_start) submaps_.push_back({.first = node, .last = node});
@@ -74,56 +74,56 @@ void GraphSlam::add_match_edge(const TrackedScan& tracked) {
   graph_.edges.push_back({.from = first,
                           .to = node,
                           .T_from_to = T_local_first.inverse() * tracked.T_local_body,
-                          .information = weight_of(turned(tracked.match_information, -T_local_first.yaw)),
+                          .information = match_edge_information(rotate_covariance(tracked.match_information, -T_local_first.yaw)),
                           .kind = PoseGraphEdge::Kind::kMatch});
 }
 
-Eigen::Matrix3d GraphSlam::weight_of(const Eigen::Matrix3d& match_information) const {
-  return edge_information(known_by(match_information), settings_.edge_std_m, settings_.edge_std_rad);
+Eigen::Matrix3d GraphSlam::match_edge_information(const Eigen::Matrix3d& match_information) const {
+  return edge_information(observable_information(match_information), settings_.edge_std_m, settings_.edge_std_rad);
 }
 
 // Information along a degenerate direction is noise: project it out.
-Eigen::Matrix3d GraphSlam::known_by(const Eigen::Matrix3d& match_information) const {
-  const std::optional<Eigen::Vector2d> open = open_direction(match_information, settings_.open_share);
-  return settings_.tracking.likelihood_gain * (open ? without_direction(match_information, *open) : match_information);
+Eigen::Matrix3d GraphSlam::observable_information(const Eigen::Matrix3d& match_information) const {
+  const std::optional<Eigen::Vector2d> degenerate = degenerate_direction(match_information, settings_.min_eigenvalue_ratio);
+  return settings_.tracking.likelihood_tempering * (degenerate ? project_out(match_information, *degenerate) : match_information);
 }
 
 // Propagates the covariance with odometry and updates it with the match.
-void GraphSlam::believe(const TrackedScan& tracked, Time stamp) {
+void GraphSlam::update_estimate(const TrackedScan& tracked, Time stamp) {
   const Pose2 T_local_last = path_.empty() ? tracked.T_local_body : path_.back().T_local_body, T_map_now = T_map_body(tracked.T_local_body);
   if (!path_.empty()) {
     const Eigen::Matrix3d step = predict_motion({}, T_local_last.inverse() * tracked.T_local_body, std::max(0.0, to_seconds(stamp - stamp_)), settings_.tracking.motion).covariance;
-    now_.covariance = carried_on(now_, T_map_now, step);
-    const Eigen::Matrix3d match = turned(known_by(tracked.match_information), T_map_now.yaw - tracked.T_local_body.yaw);
+    now_.covariance = compose_covariance(now_, T_map_now, step);
+    const Eigen::Matrix3d match = rotate_covariance(observable_information(tracked.match_information), T_map_now.yaw - tracked.T_local_body.yaw);
     now_.covariance = (now_.covariance.inverse() + match).inverse();
   }
   now_.mean = T_map_now;
   stamp_ = stamp;
 }
 
-void GraphSlam::accept_ranges(const TrackedScan& tracked, const Pose2& T_odom_body) {
-  std::vector<RangeSighting> sightings;
-  sightings.swap(new_ranges_);
-  const bool is_matched = tracked.matched_share > 0.0;
-  const std::optional<Eigen::Vector2d> open = open_direction(turned(tracked.match_information, now_.mean.yaw - tracked.T_local_body.yaw), settings_.open_share);
-  if (!settings_.ranges.enabled || (is_matched && !open)) return;
+void GraphSlam::gate_ranges(const TrackedScan& tracked, const Pose2& T_odom_body) {
+  std::vector<RangeMeasurement> measurements;
+  measurements.swap(new_ranges_);
+  const bool is_matched = tracked.inlier_ratio > 0.0;
+  const std::optional<Eigen::Vector2d> degenerate = degenerate_direction(rotate_covariance(tracked.match_information, now_.mean.yaw - tracked.T_local_body.yaw), settings_.min_eigenvalue_ratio);
+  if (!settings_.ranges.enabled || (is_matched && !degenerate)) return;
   const Pose2 T_node_body = keyframes_.back().T_local_body.inverse() * tracked.T_local_body;
-  for (const RangeSighting& sighting : sightings) {
-    if (!is_plausible(range_innovation(now_, T_odom_body, sighting, settings_.ranges), settings_.ranges)) continue;
-    ranges_.add(static_cast<int>(keyframes_.size()) - 1, graph_.T_map_node.back(), T_node_body * (T_odom_body.inverse() * sighting.T_odom_body), sighting, open);
+  for (const RangeMeasurement& measurement : measurements) {
+    if (!passes_gate(range_innovation(now_, T_odom_body, measurement, settings_.ranges), settings_.ranges)) continue;
+    ranges_.add(static_cast<int>(keyframes_.size()) - 1, graph_.T_map_node.back(), T_node_body * (T_odom_body.inverse() * measurement.T_odom_body), measurement, degenerate);
     PoseGaussian updated = now_;
-    update_with_ranges({sighting}, T_odom_body, settings_.ranges, updated);
+    update_with_ranges({measurement}, T_odom_body, settings_.ranges, updated);
     now_.covariance = updated.covariance;
   }
 }
 
 // Fixed-lag smoothing: free nodes begin at the submap before the matched one.
-void GraphSlam::lay_by_ranges(int submap) {
+void GraphSlam::smooth_with_ranges(int submap) {
   solve(graph_, settings_.solver, ranges_, std::max(1, submaps_[static_cast<std::size_t>(std::max(0, submap - 1))].first));
-  laid_until_ = static_cast<int>(keyframes_.size()) - 1;
+  smoothed_until_ = static_cast<int>(keyframes_.size()) - 1;
 }
 
-Eigen::Vector2d GraphSlam::middle_of(int submap) const {
+Eigen::Vector2d GraphSlam::submap_center(int submap) const {
   const Submap& range = submaps_[static_cast<std::size_t>(submap)];
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (int k = range.first; k <= range.last; ++k) sum += graph_.T_map_node[static_cast<std::size_t>(k)].position();
@@ -131,19 +131,19 @@ Eigen::Vector2d GraphSlam::middle_of(int submap) const {
 }
 
 // Uses the drift between consecutive submaps and the loop closures.
-std::vector<PoseGaussian> GraphSlam::positions_around(int submap) const {
+std::vector<PoseGaussian> GraphSlam::relative_pose_distributions(int submap) const {
   std::vector<Pose2> T_map_submaps;
   for (int s = 0; s < finished_submaps_; ++s) T_map_submaps.push_back(T_map_submap(s));
-  std::vector<UncertainWay> ways;
-  for (int s = 0; s + 1 < finished_submaps_; ++s) ways.push_back({.from = s, .to = s + 1, .covariance = drift_after(s)});
+  std::vector<CovarianceEdge> covariance_edges;
+  for (int s = 0; s + 1 < finished_submaps_; ++s) covariance_edges.push_back({.from = s, .to = s + 1, .covariance = odometry_drift_covariance(s)});
   for (const LoopEdge& loop : loops_) {
-    ways.push_back({.from = loop.target, .to = loop.source, .covariance = graph_.edges[static_cast<std::size_t>(loop.edge)].information.inverse()});
+    covariance_edges.push_back({.from = loop.target, .to = loop.source, .covariance = graph_.edges[static_cast<std::size_t>(loop.edge)].information.inverse()});
   }
-  return positions_from(submap, T_map_submaps, ways);
+  return shortest_path_distributions(submap, T_map_submaps, covariance_edges);
 }
 
 // Covariance of the next submap's pose in this submap's frame.
-Eigen::Matrix3d GraphSlam::drift_after(int submap) const {
+Eigen::Matrix3d GraphSlam::odometry_drift_covariance(int submap) const {
   double length_m = 0.0, turn_rad = 0.0;
   for (int k = submaps_[static_cast<std::size_t>(submap)].first; k < submaps_[static_cast<std::size_t>(submap) + 1].first; ++k) {
     const Pose2 step = keyframes_[static_cast<std::size_t>(k)].T_local_body.inverse() * keyframes_[static_cast<std::size_t>(k) + 1].T_local_body;
@@ -156,45 +156,45 @@ Eigen::Matrix3d GraphSlam::drift_after(int submap) const {
 
 // Returns older submaps within the search radius, which includes the drift, nearest first.
 std::vector<int> GraphSlam::submaps_near(int source, const std::vector<PoseGaussian>& around) const {
-  const Eigen::Vector2d middle = middle_of(source);
+  const Eigen::Vector2d center = submap_center(source);
   std::vector<std::pair<double, int>> near;  // sorted by distance
   for (int target = 0; target < source; ++target) {
     // overlapping submaps
     if (submaps_[static_cast<std::size_t>(target)].last >= submaps_[static_cast<std::size_t>(source)].first) continue;
     const Eigen::Matrix3d& covariance = around[static_cast<std::size_t>(target)].covariance;
-    const double reach_m = settings_.max_loop_distance_m + 2.0 * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
-    const double distance_m = (middle_of(target) - middle).norm();
-    if (distance_m < reach_m) near.push_back({distance_m, target});
+    const double search_radius_m = settings_.max_loop_distance_m + 2.0 * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
+    const double distance_m = (submap_center(target) - center).norm();
+    if (distance_m < search_radius_m) near.push_back({distance_m, target});
   }
   return nearest(near, settings_.max_loop_candidates);
 }
 
 void GraphSlam::close_loops(int source) {
-  const std::vector<PoseGaussian> around = positions_around(source);
+  const std::vector<PoseGaussian> around = relative_pose_distributions(source);
   bool has_closed = false;
   for (const int target : submaps_near(source, around)) {
-    const PoseGaussian prediction = inverse_of(around[static_cast<std::size_t>(target)]);  // pose of source in target
-    const SubmapMatchResult result = match_submaps(*drawn(target), *drawn(source), prediction, settings_.loops, settings_.tracking.matching);
-    loop_counts_.add(result.failure);
+    const PoseGaussian prediction = invert(around[static_cast<std::size_t>(target)]);  // pose of source in target
+    const SubmapMatchResult result = match_submaps(*rendered(target), *rendered(source), prediction, settings_.loops, settings_.tracking.matching);
+    loop_closure_statistics_.add(result.failure);
     if (!result.match) continue;
     has_closed = true;
     loops_.push_back({.target = target, .source = source, .edge = static_cast<int>(graph_.edges.size())});
     graph_.edges.push_back({.from = submaps_[static_cast<std::size_t>(target)].first,
                             .to = submaps_[static_cast<std::size_t>(source)].first,
                             .T_from_to = result.match->T_target_source,
-                            .information = weight_of(result.match->information),
+                            .information = match_edge_information(result.match->information),
                             .kind = PoseGraphEdge::Kind::kLoop});
   }
   if (has_closed) solve(graph_, settings_.solver, ranges_);
 }
 
-std::shared_ptr<const DrawnSubmap> GraphSlam::drawn(int submap) {
+std::shared_ptr<const RenderedSubmap> GraphSlam::rendered(int submap) {
   return cache_.get(submap, [&] {
-    return std::make_shared<const DrawnSubmap>(submaps_[static_cast<std::size_t>(submap)], keyframes_, graph_.T_map_node, drawing_);
+    return std::make_shared<const RenderedSubmap>(submaps_[static_cast<std::size_t>(submap)], keyframes_, graph_.T_map_node, rendering_);
   });
 }
 
-std::vector<std::size_t> GraphSlam::node_scans() const {
+std::vector<std::size_t> GraphSlam::node_scan_indices() const {
   std::vector<std::size_t> scans;
   for (std::size_t i = 0; i < path_.size(); ++i) {
     if (path_[i].keyframe == static_cast<int>(scans.size())) scans.push_back(i);
@@ -226,8 +226,8 @@ std::vector<Pose2> GraphSlam::path() const {
 }
 
 OccupancyGrid GraphSlam::map() {
-  const GridMap& map = live_map_.draw(keyframes_, graph_.T_map_node, is_finished_ ? 0.0 : settings_.redraw_shift_m);
-  return render_map(map, settings_.min_hits_occupied, settings_.min_hit_share_occupied);
+  const GridMap& map = incremental_map_.render(keyframes_, graph_.T_map_node, is_finished_ ? 0.0 : settings_.map_update_threshold_m);
+  return render_map(map, settings_.min_hits_occupied, settings_.min_occupied_hit_ratio);
 }
 
 }  // namespace patrol::slam

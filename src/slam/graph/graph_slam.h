@@ -32,21 +32,21 @@ struct GraphSlamSettings {
   /// Standard deviation of the systematic error of a match, independent of the number of points.
   double edge_std_m = 0.01;
   double edge_std_rad = 0.001;
-  double open_share = 0.02;  ///< a direction is degenerate if its information is below this fraction of the largest
+  double min_eigenvalue_ratio = 0.02;  ///< a direction is degenerate if its information is below this fraction of the largest
   /// Final optimization: number of passes that match every keyframe with the submaps around it.
-  int refinement_rounds = 2;
+  int refinement_iterations = 2;
   int max_refinement_submaps = 3;    ///< maximum number of submaps matched with each keyframe
-  double min_refinement_share = 0.6; ///< minimum inlier ratio of a keyframe in a submap
+  double min_refinement_inlier_ratio = 0.6; ///< minimum inlier ratio of a keyframe in a submap
   double max_refinement_m = 0.3;     ///< matches that move a keyframe farther are rejected
   double max_refinement_rad = 0.1;
   int cached_submaps = 16;           ///< maximum number of rendered submaps in the cache
   int min_hits_occupied = 2;
-  double min_hit_share_occupied = 0.3;
+  double min_occupied_hit_ratio = 0.3;
   // Online only.
   double max_tilt_rad = 1.6;  ///< scans tilted by more are not used, for example on a ramp between inclined walls
-  double redraw_shift_m = 0.03;      ///< the map is rendered again if a keyframe or its view at 10 m has moved by more
+  double map_update_threshold_m = 0.03;      ///< the map is rendered again if a keyframe or its view at 10 m has moved by more
   RangeUpdateSettings ranges;
-  int range_keyframes = 4;           ///< run the fixed-lag smoothing with UWB ranges every N keyframes
+  int range_smoothing_period_keyframes = 4;           ///< run the fixed-lag smoothing with UWB ranges every N keyframes
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -60,24 +60,24 @@ struct GraphSlamSettings {
     visit("solver", self.solver);
     visit("edge_std_m", self.edge_std_m, between(1e-5, 1.0));
     visit("edge_std_rad", self.edge_std_rad, between(1e-6, 1.0));
-    visit("open_share", self.open_share, between(0.0, 1.0));
-    visit("refinement_rounds", self.refinement_rounds, between(0, 100));
+    visit("open_share", self.min_eigenvalue_ratio, between(0.0, 1.0));
+    visit("refinement_rounds", self.refinement_iterations, between(0, 100));
     visit("max_refinement_submaps", self.max_refinement_submaps, between(1, 100));
-    visit("min_refinement_share", self.min_refinement_share, between(0.0, 1.0));
+    visit("min_refinement_share", self.min_refinement_inlier_ratio, between(0.0, 1.0));
     visit("max_refinement_m", self.max_refinement_m, at_least(0.0));
     visit("max_refinement_rad", self.max_refinement_rad, at_least(0.0));
     visit("cached_submaps", self.cached_submaps, between(1, 10000));
     visit("min_hits_occupied", self.min_hits_occupied, between(1, 1000));
-    visit("min_hit_share_occupied", self.min_hit_share_occupied, between(0.0, 1.0));
+    visit("min_hit_share_occupied", self.min_occupied_hit_ratio, between(0.0, 1.0));
     visit("max_tilt_rad", self.max_tilt_rad, between(0.0, 1.6));
-    visit("redraw_shift_m", self.redraw_shift_m, at_least(0.0));
+    visit("redraw_shift_m", self.map_update_threshold_m, at_least(0.0));
     visit("ranges", self.ranges);
-    visit("range_keyframes", self.range_keyframes, between(1, 1000));
+    visit("range_keyframes", self.range_smoothing_period_keyframes, between(1, 1000));
   }
 };
 
 /// Numbers of loop closure searches by result.
-struct LoopCounts {
+struct LoopClosureStatistics {
   int searched = 0, closed = 0, not_found = 0, ambiguous = 0, no_overlap = 0, mismatched = 0;
 
   void add(MatchFailure failure);
@@ -104,7 +104,7 @@ class GraphSlam {
 
   /// Adds a UWB range measured before the next scan. It is rejected if NLOS (range_update.h), and unused if the scan
   /// constrains both directions.
-  void add(const RangeSighting& sighting) { new_ranges_.push_back(sighting); }
+  void add(const RangeMeasurement& measurement) { new_ranges_.push_back(measurement); }
   /// Processes a scan; `T_odom_body` is the odometry at its stamp. The covariance is that of the pose in a map without
   /// errors.
   SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
@@ -115,8 +115,8 @@ class GraphSlam {
   std::vector<Pose2> path() const;
   const PoseGraph& graph() const { return graph_; }
   /// Scan index of each keyframe, [keyframe].
-  std::vector<std::size_t> node_scans() const;
-  const LoopCounts& loop_counts() const { return loop_counts_; }
+  std::vector<std::size_t> node_scan_indices() const;
+  const LoopClosureStatistics& loop_closure_statistics() const { return loop_closure_statistics_; }
   OccupancyGrid map();
 
  private:
@@ -134,24 +134,24 @@ class GraphSlam {
   void add_keyframe(const LevelScan& scan, const TrackedScan& tracked);
   void add_match_edge(const TrackedScan& tracked);
   Pose2 T_map_body(const Pose2& T_local_body) const;
-  void believe(const TrackedScan& tracked, Time stamp);
-  void accept_ranges(const TrackedScan& tracked, const Pose2& T_odom_body);
-  void lay_by_ranges(int submap);
+  void update_estimate(const TrackedScan& tracked, Time stamp);
+  void gate_ranges(const TrackedScan& tracked, const Pose2& T_odom_body);
+  void smooth_with_ranges(int submap);
   void close_loops(int submap);
-  std::vector<PoseGaussian> positions_around(int submap) const;
-  Eigen::Matrix3d drift_after(int submap) const;
-  std::shared_ptr<const DrawnSubmap> drawn(int submap);
+  std::vector<PoseGaussian> relative_pose_distributions(int submap) const;
+  Eigen::Matrix3d odometry_drift_covariance(int submap) const;
+  std::shared_ptr<const RenderedSubmap> rendered(int submap);
   std::vector<int> submaps_near(int source, const std::vector<PoseGaussian>& around) const;
   std::vector<std::vector<int>> keyframes_around_submaps() const;
   void refine();
-  std::optional<MatchResult> refined(const DrawnSubmap& submap, const Keyframe& keyframe, const Pose2& T_submap_body) const;
-  Eigen::Matrix3d known_by(const Eigen::Matrix3d& match_information) const;
-  Eigen::Matrix3d weight_of(const Eigen::Matrix3d& match_information) const;
+  std::optional<MatchResult> refined(const RenderedSubmap& submap, const Keyframe& keyframe, const Pose2& T_submap_body) const;
+  Eigen::Matrix3d observable_information(const Eigen::Matrix3d& match_information) const;
+  Eigen::Matrix3d match_edge_information(const Eigen::Matrix3d& match_information) const;
   Pose2 T_map_submap(int submap) const { return graph_.T_map_node[static_cast<std::size_t>(submaps_[static_cast<std::size_t>(submap)].first)]; }
-  Eigen::Vector2d middle_of(int submap) const;
+  Eigen::Vector2d submap_center(int submap) const;
 
   GraphSlamSettings settings_;
-  MapDrawing drawing_;
+  MapRenderingSettings rendering_;
   ScanTracker tracker_;
   std::vector<Keyframe> keyframes_;
   std::vector<TrackedPose> path_;
@@ -160,14 +160,14 @@ class GraphSlam {
   PoseGraph graph_;
   SubmapCache cache_;
   std::vector<LoopEdge> loops_;
-  LoopCounts loop_counts_;
-  LiveMap live_map_;
+  LoopClosureStatistics loop_closure_statistics_;
+  IncrementalMap incremental_map_;
   bool is_finished_ = false;
   PoseGaussian now_;  ///< current pose in map
   Time stamp_{};
-  std::vector<RangeSighting> new_ranges_;  ///< not yet gated
-  NodeRanges ranges_;
-  int laid_until_ = 0;  ///< newest node moved by the ranges
+  std::vector<RangeMeasurement> new_ranges_;  ///< not yet gated
+  RangeFactors ranges_;
+  int smoothed_until_ = 0;  ///< newest node moved by the ranges
 };
 
 }  // namespace patrol::slam

@@ -7,7 +7,7 @@
 namespace patrol::slam {
 namespace {
 
-constexpr int kReach = 2;  ///< radius in cells around a surface with nonzero likelihood
+constexpr int kMargin_cells = 2;  ///< radius in cells around a surface with nonzero likelihood
 
 /// Value at a squared distance, in cells, from a surface.
 int near_surface(int squared_distance) { return static_cast<int>(std::lround(LikelihoodPyramid::kOnSurface * std::exp(-0.5 * squared_distance))); }
@@ -15,7 +15,7 @@ int near_surface(int squared_distance) { return static_cast<int>(std::lround(Lik
 }  // namespace
 
 LikelihoodPyramid::LikelihoodPyramid(const GridMap& map, double resolution_m, int num_levels) : resolution_m_(resolution_m) {
-  levels_.push_back(draw_finest(map));
+  levels_.push_back(rasterize_finest(map));
   for (int l = 1; l < num_levels; ++l) levels_.push_back(halved(levels_.back(), l == 1));
 }
 
@@ -23,9 +23,9 @@ Cell LikelihoodPyramid::cell_of(const Eigen::Vector2d& p_map) const {
   return {static_cast<int>(std::floor(p_map.x() / resolution_m_)), static_cast<int>(std::floor(p_map.y() / resolution_m_))};
 }
 
-// Returns an empty level that covers all tiles, plus a margin of `kReach` cells. Mean hits are up to half a map cell
+// Returns an empty level that covers all tiles, plus a margin of `kMargin_cells` cells. Mean hits are up to half a map cell
 // from the cell centers, and slightly more after rounding to float. The extent of the centers alone would be too small.
-LikelihoodPyramid::Level LikelihoodPyramid::extent_of(const GridMap& map) const {
+LikelihoodPyramid::Level LikelihoodPyramid::empty_level(const GridMap& map) const {
   constexpr int kMax = std::numeric_limits<int>::max();
   int low_col = kMax, low_row = kMax, high_col = -kMax, high_row = -kMax;
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(map.resolution_m());
@@ -37,21 +37,21 @@ LikelihoodPyramid::Level LikelihoodPyramid::extent_of(const GridMap& map) const 
   });
   Level level;
   if (low_col <= high_col) {
-    level.first_col = low_col - kReach, level.first_row = low_row - kReach;
-    level.width = high_col - low_col + 1 + 2 * kReach, level.height = high_row - low_row + 1 + 2 * kReach;
+    level.first_col = low_col - kMargin_cells, level.first_row = low_row - kMargin_cells;
+    level.width = high_col - low_col + 1 + 2 * kMargin_cells, level.height = high_row - low_row + 1 + 2 * kMargin_cells;
   }
   level.clear();
   return level;
 }
 
-LikelihoodPyramid::Level LikelihoodPyramid::draw_finest(const GridMap& map) const {
-  Level finest = extent_of(map);
+LikelihoodPyramid::Level LikelihoodPyramid::rasterize_finest(const GridMap& map) const {
+  Level finest = empty_level(map);
   std::vector<Cell> surfaces;
   map.for_each_tile([&](Cell first, const GridTile& tile) {
     for (int row = 0; row < GridTile::kSize; ++row) {
       for (int col = 0; col < GridTile::kSize; ++col) {
         const GridCell& cell = tile.at(col, row);
-        if (!cell.is_known()) continue;
+        if (!cell.is_observed()) continue;
         const Eigen::Vector2d center = map.center_of({first.col + col, first.row + row});
         if (cell.is_surface()) {
           surfaces.push_back(cell_of(center + Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m)));
@@ -62,8 +62,8 @@ LikelihoodPyramid::Level LikelihoodPyramid::draw_finest(const GridMap& map) cons
     }
   });
   for (const Cell& surface : surfaces) {
-    for (int row = -kReach; row <= kReach; ++row) {
-      for (int col = -kReach; col <= kReach; ++col) {
+    for (int row = -kMargin_cells; row <= kMargin_cells; ++row) {
+      for (int col = -kMargin_cells; col <= kMargin_cells; ++col) {
         std::int8_t& value = finest.at(surface.col + col, surface.row + row);
         value = std::max(value, static_cast<std::int8_t>(near_surface(col * col + row * row)));
       }
@@ -74,12 +74,12 @@ LikelihoodPyramid::Level LikelihoodPyramid::draw_finest(const GridMap& map) cons
 
 // A cell and its neighbors cover 4 x 4 cells of the level below. Above the finest level each of those already covers 2
 // x 2, so every second one suffices.
-LikelihoodPyramid::Level LikelihoodPyramid::halved(const Level& fine, bool is_of_finest) {
+LikelihoodPyramid::Level LikelihoodPyramid::halved(const Level& fine, bool is_from_finest) {
   Level coarse;
   coarse.first_col = (fine.first_col >> 1) - 1, coarse.first_row = (fine.first_row >> 1) - 1;
   coarse.width = ((fine.first_col + fine.width) >> 1) + 1 - coarse.first_col, coarse.height = ((fine.first_row + fine.height) >> 1) + 1 - coarse.first_row;
   coarse.clear();
-  const int step = is_of_finest ? 1 : 2;
+  const int step = is_from_finest ? 1 : 2;
   for (int row = coarse.first_row; row < coarse.first_row + coarse.height; ++row) {
     for (int col = coarse.first_col; col < coarse.first_col + coarse.width; ++col) {
       int highest = std::numeric_limits<std::int8_t>::min();

@@ -45,9 +45,9 @@ class LikelihoodPyramid {
   };
 
   Cell cell_of(const Eigen::Vector2d& p_map) const;
-  Level extent_of(const GridMap& map) const;
-  Level draw_finest(const GridMap& map) const;
-  static Level halved(const Level& fine, bool is_of_finest);
+  Level empty_level(const GridMap& map) const;
+  Level rasterize_finest(const GridMap& map) const;
+  static Level halved(const Level& fine, bool is_from_finest);
 
   double resolution_m_;
   std::vector<Level> levels_;

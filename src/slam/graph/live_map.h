@@ -9,18 +9,18 @@ namespace patrol::slam {
 
 /// Map of all keyframes for online use: new keyframes are integrated once, and the whole map is rendered again if
 /// earlier ones have moved.
-class LiveMap {
+class IncrementalMap {
  public:
-  explicit LiveMap(const MapDrawing& drawing) : drawing_(drawing), map_(drawing.resolution_m, drawing.max_extent_m) {}
+  explicit IncrementalMap(const MapRenderingSettings& rendering) : rendering_(rendering), map_(rendering.resolution_m, rendering.max_extent_m) {}
 
-  /// Returns the map of all keyframes. It is rendered again if a keyframe has moved by more than `max_shift_m`, which
+  /// Returns the map of all keyframes. It is rendered again if a keyframe has moved by more than `max_displacement_m`, which
   /// includes the effect of its yaw at 10 m.
-  const GridMap& draw(const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, double max_shift_m);
+  const GridMap& render(const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, double max_displacement_m);
 
  private:
-  MapDrawing drawing_;
+  MapRenderingSettings rendering_;
   GridMap map_;
-  std::vector<Pose2> written_at_;  ///< [keyframe], pose at integration
+  std::vector<Pose2> T_map_integrated_;  ///< [keyframe], pose at integration
 };
 
 }  // namespace patrol::slam

@@ -44,32 +44,32 @@ class EdgeCost : public ceres::SizedCostFunction<3, 3, 3> {
 /// Residual of a range: (predicted range - range) / standard deviation.
 class RangeCost : public ceres::SizedCostFunction<1, 3> {
  public:
-  RangeCost(const NodeRange& range, double std_m, const UwbCalibration& calibration) : range_(range), std_m_(std_m), calibration_(calibration) {}
+  RangeCost(const RangeFactor& range, double std_m, const UwbCalibration& calibration) : range_(range), std_m_(std_m), calibration_(calibration) {}
 
   bool Evaluate(const double* const* poses, double* residuals, double** jacobians) const override {
-    const Pose2 T_map_judged = range_.T_map_judged({poses[0][0], poses[0][1], poses[0][2]});
-    const PredictedRange predicted = predict_uwb_range(range_.anchor, T_map_judged, range_.p_level_antenna, calibration_);
+    const Pose2 T_map_constrained = range_.T_map_constrained({poses[0][0], poses[0][1], poses[0][2]});
+    const PredictedRange predicted = predict_uwb_range(range_.anchor, T_map_constrained, range_.p_level_antenna, calibration_);
     residuals[0] = (predicted.range_m - range_.range_m) / std_m_;
     if (!jacobians || !jacobians[0]) return true;
-    Eigen::Vector3d by_pose = predicted.by_pose;
-    if (range_.direction) by_pose << range_.direction->dot(predicted.by_pose.head<2>()) * *range_.direction, 0.0;
-    Eigen::Map<Eigen::Vector3d>(jacobians[0]).noalias() = by_pose / std_m_;
+    Eigen::Vector3d H_pose = predicted.H_pose;
+    if (range_.direction) H_pose << range_.direction->dot(predicted.H_pose.head<2>()) * *range_.direction, 0.0;
+    Eigen::Map<Eigen::Vector3d>(jacobians[0]).noalias() = H_pose / std_m_;
     return true;
   }
 
  private:
-  NodeRange range_;
+  RangeFactor range_;
   double std_m_;
   const UwbCalibration& calibration_;  ///< owned by the caller of the solver
 };
 
 }  // namespace
 
-PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings, const NodeRanges& ranges, int first_free) {
+PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings, const RangeFactors& ranges, int num_fixed_nodes) {
   std::vector<std::array<double, 3>> poses;
   for (const Pose2& pose : graph.T_map_node) poses.push_back({pose.x, pose.y, pose.yaw});
 
-  ceres::CauchyLoss kernel(settings.loop_kernel);
+  ceres::CauchyLoss kernel(settings.loop_closure_loss_scale);
   ceres::Problem::Options problem_options;
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // one kernel for all residual blocks
   ceres::Problem problem(problem_options);
@@ -79,14 +79,14 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
   };
   for (const PoseGraphEdge& edge : graph.edges) {
     double *const from = node(edge.from), *const to = node(edge.to);
-    if (edge.from < first_free && edge.to < first_free) continue;
-    const bool is_doubted = settings.doubts_loops && edge.kind == PoseGraphEdge::Kind::kLoop;
-    problem.AddResidualBlock(new EdgeCost(edge), is_doubted ? &kernel : nullptr, from, to);
+    if (edge.from < num_fixed_nodes && edge.to < num_fixed_nodes) continue;
+    const bool is_robust = settings.robust_loop_closures && edge.kind == PoseGraphEdge::Kind::kLoop;
+    problem.AddResidualBlock(new EdgeCost(edge), is_robust ? &kernel : nullptr, from, to);
   }
-  for (const NodeRange& range : ranges.ranges()) {
-    if (range.node >= first_free) problem.AddResidualBlock(new RangeCost(range, ranges.std_m(range), ranges.calibration()), &kernel, node(range.node));
+  for (const RangeFactor& range : ranges.ranges()) {
+    if (range.node >= num_fixed_nodes) problem.AddResidualBlock(new RangeCost(range, ranges.std_m(range), ranges.calibration()), &kernel, node(range.node));
   }
-  for (std::size_t i = 0; i < std::min(poses.size(), static_cast<std::size_t>(first_free)); ++i) {
+  for (std::size_t i = 0; i < std::min(poses.size(), static_cast<std::size_t>(num_fixed_nodes)); ++i) {
     if (problem.HasParameterBlock(poses[i].data())) problem.SetParameterBlockConstant(poses[i].data());
   }
   if (problem.NumResidualBlocks() == 0) return {.converged = true};
@@ -99,21 +99,21 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  for (std::size_t i = static_cast<std::size_t>(first_free); i < poses.size(); ++i) graph.T_map_node[i] = {poses[i][0], poses[i][1], wrap_angle(poses[i][2])};
+  for (std::size_t i = static_cast<std::size_t>(num_fixed_nodes); i < poses.size(); ++i) graph.T_map_node[i] = {poses[i][0], poses[i][1], wrap_angle(poses[i][2])};
   return {.initial_cost = summary.initial_cost,
           .final_cost = summary.final_cost,
           .iterations = summary.num_successful_steps,
           .converged = summary.termination_type == ceres::CONVERGENCE};
 }
 
-Eigen::Vector3d edge_error(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node) {
+Eigen::Vector3d edge_residual(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node) {
   const Pose2& T_map_from = T_map_node[static_cast<std::size_t>(edge.from)];
   const Pose2 T_from_to = T_map_from.inverse() * T_map_node[static_cast<std::size_t>(edge.to)];
   return {T_from_to.x - edge.T_from_to.x, T_from_to.y - edge.T_from_to.y, wrap_angle(T_from_to.yaw - edge.T_from_to.yaw)};
 }
 
-double squared_error(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node) {
-  const Eigen::Vector3d error = edge_error(edge, T_map_node);
+double squared_residual(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node) {
+  const Eigen::Vector3d error = edge_residual(edge, T_map_node);
   return error.dot(edge.information * error);
 }
 

@@ -8,15 +8,15 @@ namespace patrol::slam {
 
 struct PoseGraphSolverSettings {
   int max_iterations = 50;
-  bool doubts_loops = true;
-  /// Scale of the Cauchy kernel, in standard deviations; used for loop closures if doubts_loops, and always for ranges.
-  double loop_kernel = 3.0;
+  bool robust_loop_closures = true;
+  /// Scale of the Cauchy kernel, in standard deviations; used for loop closures if robust_loop_closures, and always for ranges.
+  double loop_closure_loss_scale = 3.0;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("max_iterations", self.max_iterations, between(1, 1000));
-    visit("doubts_loops", self.doubts_loops);
-    visit("loop_kernel", self.loop_kernel, at_least(0.1));
+    visit("doubts_loops", self.robust_loop_closures);
+    visit("loop_kernel", self.loop_closure_loss_scale, at_least(0.1));
   }
 };
 
@@ -27,14 +27,14 @@ struct PoseGraphSolution {
   bool converged = false;
 };
 
-/// Optimizes the poses of all nodes from `first_free` on, with the edges and the ranges to fixed anchors in map. Sparse
-/// nonlinear least squares with Cauchy kernels on ranges and, if `doubts_loops` is set, on loop closures. Nodes before
-/// `first_free` are fixed. Throws std::invalid_argument if an edge refers to an unknown node.
-PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings, const NodeRanges& ranges = {}, int first_free = 1);
+/// Optimizes the poses of all nodes from `num_fixed_nodes` on, with the edges and the ranges to fixed anchors in map. Sparse
+/// nonlinear least squares with Cauchy kernels on ranges and, if `robust_loop_closures` is set, on loop closures. Nodes before
+/// `num_fixed_nodes` are fixed. Throws std::invalid_argument if an edge refers to an unknown node.
+PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings, const RangeFactors& ranges = {}, int num_fixed_nodes = 1);
 
 /// Residual of an edge: (x, y, yaw) of the relative pose of its nodes minus the measurement, in the frame of `from`.
-Eigen::Vector3d edge_error(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node);
+Eigen::Vector3d edge_residual(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node);
 /// Squared Mahalanobis norm of the residual of an edge.
-double squared_error(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node);
+double squared_residual(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node);
 
 }  // namespace patrol::slam

@@ -9,19 +9,19 @@ namespace patrol::slam {
 namespace {
 
 /// Degrees of freedom of Student's t distribution of the odometry error.
-constexpr double kTail = 4.0;
+constexpr double kStudentDegreesOfFreedom = 4.0;
 /// Decay per scan of the inflated odometry variance, after odometry contradicted a match.
-constexpr double kForget = 0.8;
-constexpr double kMostDoubt = 400.0;
+constexpr double kVarianceScaleDecay = 0.8;
+constexpr double kMaxVarianceScale = 400.0;
 /// A match with a smaller inlier ratio triggers a window search.
-constexpr double kGoodShare = 0.6;
+constexpr double kGoodInlierRatio = 0.6;
 
-double log_student(const PoseGaussian& prediction, const Pose2& pose) {
-  const Eigen::Vector3d offset = prediction.offset_of(pose);
-  return -0.5 * (kTail + 3.0) * std::log1p(offset.dot(prediction.covariance.inverse() * offset) / kTail);
+double log_student_t(const PoseGaussian& prediction, const Pose2& pose) {
+  const Eigen::Vector3d offset = prediction.residual_to_mean(pose);
+  return -0.5 * (kStudentDegreesOfFreedom + 3.0) * std::log1p(offset.dot(prediction.covariance.inverse() * offset) / kStudentDegreesOfFreedom);
 }
 
-bool is_apart(const Pose2& a, const Pose2& b) { return (a.position() - b.position()).norm() > 0.03 || std::abs(wrap_angle(a.yaw - b.yaw)) > 0.02; }
+bool is_distinct(const Pose2& a, const Pose2& b) { return (a.position() - b.position()).norm() > 0.03 || std::abs(wrap_angle(a.yaw - b.yaw)) > 0.02; }
 
 /// Scales a motion to another duration at constant velocity.
 Pose2 scaled(const Pose2& motion, double factor) { return {factor * motion.x, factor * motion.y, factor * motion.yaw}; }
@@ -39,13 +39,13 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
   const Step step{.seconds = to_seconds(scan.stamp - *stamp_), .T_last_odom = T_odom_last_.inverse() * T_odom_body};
   PoseGaussian prediction =
       predict_motion(matched_.T_local_body, matched_.T_odom_body.inverse() * T_odom_body, std::max(0.0, to_seconds(scan.stamp - matched_.stamp)), settings_.motion);
-  prediction.covariance *= odometry_doubt_;
+  prediction.covariance *= odometry_variance_scale_;
   const bool can_be_matched = older_.has_surface();
-  const Hypothesis best = follow(select_match_points(scan, settings_.matching.point_spacing_m, settings_.matching.max_points), step, prediction);
-  doubt_odometry(prediction, best.T_local_body);
-  TrackedScan tracked = believed(best, prediction);
+  const Hypothesis best = track(downsample_scan(scan, settings_.matching.point_spacing_m, settings_.matching.max_points), step, prediction);
+  inflate_odometry_covariance(prediction, best.T_local_body);
+  TrackedScan tracked = to_tracked_scan(best, prediction);
   tracked.is_keyframe = is_keyframe_due(tracked.T_local_body);
-  if (tracked.is_keyframe) write(scan, tracked.T_local_body, tracked);
+  if (tracked.is_keyframe) integrate(scan, tracked.T_local_body, tracked);
   T_last_now_ = T_local_last_.inverse() * tracked.T_local_body;
   last_step_s_ = step.seconds;
   T_local_last_ = tracked.T_local_body;
@@ -56,37 +56,37 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
 }
 
 // Matches from the odometry prediction and from alternative start poses.
-ScanTracker::Hypothesis ScanTracker::follow(const std::vector<MatchPoint>& points, const Step& step, const PoseGaussian& prediction) const {
+ScanTracker::Hypothesis ScanTracker::track(const std::vector<MatchPoint>& points, const Step& step, const PoseGaussian& prediction) const {
   if (!older_.has_surface() || points.empty()) return {.T_local_body = prediction.mean, .match = {}};
-  Hypothesis best = try_from(prediction.mean, points, prediction, true);
+  Hypothesis best = match_from(prediction.mean, points, prediction, true);
   const auto consider = [&](const Pose2& start) {
-    const Hypothesis other = try_from(start, points, prediction, false);
+    const Hypothesis other = match_from(start, points, prediction, false);
     if (other.match && (!best.match || is_better(other, best))) best = other;
   };
   const double factor = last_step_s_ > 1e-3 ? std::clamp(step.seconds / last_step_s_, 0.0, 2.0) : 1.0;
   const Pose2 as_before = scaled(T_last_now_, factor), none{0.0, 0.0, step.T_last_odom.yaw}, opposite{-step.T_last_odom.x, -step.T_last_odom.y, step.T_last_odom.yaw};
   for (const Pose2& T_last_now : {as_before, none, opposite}) {
     const Pose2 start = T_local_last_ * T_last_now;
-    if (is_apart(start, prediction.mean) && is_apart(start, best.T_local_body)) consider(start);
+    if (is_distinct(start, prediction.mean) && is_distinct(start, best.T_local_body)) consider(start);
   }
-  if (!best.match || best.match->matched_share < kGoodShare) consider(search_pose(older_, points, prediction.mean, settings_.matching));
+  if (!best.match || best.match->inlier_ratio < kGoodInlierRatio) consider(search_pose(older_, points, prediction.mean, settings_.matching));
   return best;
 }
 
-void ScanTracker::doubt_odometry(const PoseGaussian& prediction, const Pose2& T_local_body) {
-  const Eigen::Vector3d offset = prediction.offset_of(T_local_body);
+void ScanTracker::inflate_odometry_covariance(const PoseGaussian& prediction, const Pose2& T_local_body) {
+  const Eigen::Vector3d offset = prediction.residual_to_mean(T_local_body);
   // 3 on average if the variance is correct
   const double squared = offset.dot(prediction.covariance.inverse() * offset);
-  odometry_doubt_ = std::clamp(std::max(kForget * odometry_doubt_, odometry_doubt_ * squared / 3.0), 1.0, kMostDoubt);
+  odometry_variance_scale_ = std::clamp(std::max(kVarianceScaleDecay * odometry_variance_scale_, odometry_variance_scale_ * squared / 3.0), 1.0, kMaxVarianceScale);
 }
 
-TrackedScan ScanTracker::believed(const Hypothesis& best, const PoseGaussian& prediction) const {
+TrackedScan ScanTracker::to_tracked_scan(const Hypothesis& best, const PoseGaussian& prediction) const {
   TrackedScan tracked{.T_local_body = best.T_local_body, .submap = submap_};
   Eigen::Matrix3d information = prediction.covariance.inverse();
   if (best.match) {
     tracked.match_information = best.match->information;
-    tracked.matched_share = best.match->matched_share;
-    information += settings_.likelihood_gain * best.match->information;
+    tracked.inlier_ratio = best.match->inlier_ratio;
+    information += settings_.likelihood_tempering * best.match->information;
   }
   tracked.covariance = information.inverse();
   return tracked;
@@ -98,7 +98,7 @@ bool ScanTracker::is_keyframe_due(const Pose2& T_local_body) const {
          std::abs(T_keyframe_body.yaw) >= settings_.keyframe_angle_rad;
 }
 
-ScanTracker::Hypothesis ScanTracker::try_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points, const PoseGaussian& prediction,
+ScanTracker::Hypothesis ScanTracker::match_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points, const PoseGaussian& prediction,
                                               bool is_odometry) const {
   // A wide prior keeps degenerate directions bounded when odometry has failed.
   PoseGaussian prior = prediction;
@@ -109,22 +109,22 @@ ScanTracker::Hypothesis ScanTracker::try_from(const Pose2& T_local_start, const 
   Hypothesis hypothesis{.T_local_body = prediction.mean, .match = match_scan(older_, points, T_local_start, prior, settings_.matching)};
   if (!hypothesis.match) return hypothesis;
   hypothesis.T_local_body = hypothesis.match->T_map_body;
-  hypothesis.log_prior = log_student(prediction, hypothesis.T_local_body);
+  hypothesis.log_prior = log_student_t(prediction, hypothesis.T_local_body);
   hypothesis.log_likelihoods = point_log_likelihoods(older_, points, hypothesis.T_local_body, settings_.matching);
   return hypothesis;
 }
 
 // Compares at points in observed cells of both poses; other points would favor poses with fewer observed cells.
 bool ScanTracker::is_better(const Hypothesis& a, const Hypothesis& b) const {
-  double gain = 0.0;
+  double log_likelihood_gain = 0.0;
   for (std::size_t i = 0; i < a.log_likelihoods.size(); ++i) {
     const double difference = a.log_likelihoods[i] - b.log_likelihoods[i];
-    if (!std::isnan(difference)) gain += difference;
+    if (!std::isnan(difference)) log_likelihood_gain += difference;
   }
-  return settings_.likelihood_gain * gain + a.log_prior - b.log_prior > 0.0;
+  return settings_.likelihood_tempering * log_likelihood_gain + a.log_prior - b.log_prior > 0.0;
 }
 
-void ScanTracker::write(const LevelScan& scan, const Pose2& T_local_body, TrackedScan& tracked) {
+void ScanTracker::integrate(const LevelScan& scan, const Pose2& T_local_body, TrackedScan& tracked) {
   if (keyframes_ == 0) tracked.is_submap_start = true;
   if (older_keyframes_ >= settings_.submap_keyframes) {
     older_ = std::move(newer_);

@@ -18,12 +18,12 @@ struct ScanTrackerSettings {
   double keyframe_angle_rad = 0.15;
   int initial_keyframes = 10;            ///< the first N scans are all keyframes
   int submap_keyframes = 60;             ///< number of keyframes per map; consecutive maps overlap by half
-  double likelihood_gain = 0.2;          ///< tempering factor: fraction of the points with independent errors
-  MotionModelSettings motion{.along_std_m_per_m = 0.05,
-                             .across_std_m_per_m = 0.03,
-                             .turn_std_rad_per_rad = 0.1,
-                             .turn_std_rad_per_m = 0.03,
-                             .turn_std_rad_per_s = 0.003,
+  double likelihood_tempering = 0.2;          ///< tempering factor: fraction of the points with independent errors
+  MotionModelSettings motion{.longitudinal_std_m_per_m = 0.05,
+                             .lateral_std_m_per_m = 0.03,
+                             .yaw_std_rad_per_rad = 0.1,
+                             .yaw_std_rad_per_m = 0.03,
+                             .yaw_std_rad_per_s = 0.003,
                              .min_std_m = 0.005,
                              .min_std_rad = 0.005};  ///< for uncalibrated wheel odometry
   ScanMatcherSettings matching;
@@ -37,7 +37,7 @@ struct ScanTrackerSettings {
     visit("keyframe_angle_rad", self.keyframe_angle_rad, between(0.0, 3.2));
     visit("initial_keyframes", self.initial_keyframes, between(1, 1000));
     visit("submap_keyframes", self.submap_keyframes, between(4, 10000));
-    visit("likelihood_gain", self.likelihood_gain, between(0.0, 1.0));
+    visit("likelihood_gain", self.likelihood_tempering, between(0.0, 1.0));
     visit("motion", self.motion);
     visit("matching", self.matching);
     visit("integration", self.integration);
@@ -50,7 +50,7 @@ struct TrackedScan {
   Eigen::Matrix3d match_information = Eigen::Matrix3d::Zero();
   /// Covariance of the odometry since the last match, updated with this match; in `local`.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  double matched_share = 0.0;
+  double inlier_ratio = 0.0;
   bool is_keyframe = false;
   /// Index of the matched submap: 0, 1, ...; a keyframe is part of it, including the last one, after which the next
   /// submap takes over.
@@ -93,13 +93,13 @@ class ScanTracker {
     Pose2 T_last_odom;
   };
 
-  Hypothesis follow(const std::vector<MatchPoint>& points, const Step& step, const PoseGaussian& prediction) const;
-  void doubt_odometry(const PoseGaussian& prediction, const Pose2& T_local_body);
-  TrackedScan believed(const Hypothesis& best, const PoseGaussian& prediction) const;
+  Hypothesis track(const std::vector<MatchPoint>& points, const Step& step, const PoseGaussian& prediction) const;
+  void inflate_odometry_covariance(const PoseGaussian& prediction, const Pose2& T_local_body);
+  TrackedScan to_tracked_scan(const Hypothesis& best, const PoseGaussian& prediction) const;
   bool is_keyframe_due(const Pose2& T_local_body) const;
   bool is_better(const Hypothesis& a, const Hypothesis& b) const;
-  Hypothesis try_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points, const PoseGaussian& prediction, bool is_odometry) const;
-  void write(const LevelScan& scan, const Pose2& T_local_body, TrackedScan& tracked);
+  Hypothesis match_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points, const PoseGaussian& prediction, bool is_odometry) const;
+  void integrate(const LevelScan& scan, const Pose2& T_local_body, TrackedScan& tracked);
 
   ScanTrackerSettings settings_;
   GridMap older_, newer_;
@@ -109,7 +109,7 @@ class ScanTracker {
   Fix matched_;       ///< last matched scan
   Pose2 T_last_now_;  ///< last motion between two scans
   double last_step_s_ = 0.0;
-  double odometry_doubt_ = 1.0;  ///< scale factor of the odometry variance
+  double odometry_variance_scale_ = 1.0;  ///< scale factor of the odometry variance
 };
 
 }  // namespace patrol::slam

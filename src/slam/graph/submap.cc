@@ -8,12 +8,12 @@ namespace {
 constexpr double kPyramidCell_m = 0.1;
 constexpr int kSubmapPyramidLevels = 7;
 
-GridMap draw_map(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, const MapDrawing& drawing) {
-  GridMap map(drawing.resolution_m, drawing.max_extent_m);
+GridMap render_submap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, const MapRenderingSettings& rendering) {
+  GridMap map(rendering.resolution_m, rendering.max_extent_m);
   const Pose2 T_first_map = T_map_node[static_cast<std::size_t>(submap.first)].inverse();
   for (int k = submap.first; k <= submap.last; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    integrate_scan(keyframes[i].scan, T_first_map * T_map_node[i], drawing.integration, map);
+    integrate_scan(keyframes[i].scan, T_first_map * T_map_node[i], rendering.integration, map);
   }
   return map;
 }
@@ -26,8 +26,8 @@ std::vector<MatchPoint> surface_points_of(const GridMap& map) {
 
 }  // namespace
 
-DrawnSubmap::DrawnSubmap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, const MapDrawing& drawing)
-    : map_(draw_map(submap, keyframes, T_map_node, drawing)),
+RenderedSubmap::RenderedSubmap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, const MapRenderingSettings& rendering)
+    : map_(render_submap(submap, keyframes, T_map_node, rendering)),
       surface_points_(surface_points_of(map_)),
       pyramid_(map_, kPyramidCell_m, kSubmapPyramidLevels) {}
 

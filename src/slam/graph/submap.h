@@ -26,17 +26,17 @@ struct Submap {
 };
 
 /// Settings for rendering scans into a map.
-struct MapDrawing {
+struct MapRenderingSettings {
   double resolution_m = 0.05;
   double max_extent_m = 4000.0;  ///< side of the mapped square around the origin
   ScanIntegrationSettings integration = {};
 };
 
 /// Submap rendered for matching: grid map, surface points and likelihood pyramid.
-class DrawnSubmap {
+class RenderedSubmap {
  public:
   /// Renders the keyframes of `submap` at `T_map_node` [keyframe].
-  DrawnSubmap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, const MapDrawing& drawing);
+  RenderedSubmap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, const MapRenderingSettings& rendering);
 
   const GridMap& map() const { return map_; }
   /// Downsampled surfaces (surface_points.h), used to match this submap with another.
@@ -55,31 +55,31 @@ class SubmapCache {
  public:
   explicit SubmapCache(std::size_t capacity) : capacity_(capacity) {}
 
-  template <typename Draw>
-  std::shared_ptr<const DrawnSubmap> get(int submap, Draw&& draw);
+  template <typename Render>
+  std::shared_ptr<const RenderedSubmap> get(int submap, Render&& render);
   void clear() { entries_.clear(); }
 
  private:
   struct Entry {
     int submap;
-    std::shared_ptr<const DrawnSubmap> drawn;
+    std::shared_ptr<const RenderedSubmap> rendered;
   };
   std::size_t capacity_;
   std::vector<Entry> entries_;  ///< in order of use, the newest last
 };
 
-template <typename Draw>
-std::shared_ptr<const DrawnSubmap> SubmapCache::get(int submap, Draw&& draw) {
+template <typename Render>
+std::shared_ptr<const RenderedSubmap> SubmapCache::get(int submap, Render&& render) {
   for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
     if (entry->submap != submap) continue;
     const Entry found = *entry;
     entries_.erase(entry);
     entries_.push_back(found);
-    return found.drawn;
+    return found.rendered;
   }
   if (entries_.size() >= capacity_) entries_.erase(entries_.begin());
-  entries_.push_back({submap, draw()});
-  return entries_.back().drawn;
+  entries_.push_back({submap, render()});
+  return entries_.back().rendered;
 }
 
 }  // namespace patrol::slam

@@ -15,14 +15,14 @@ struct SubmapMatcherSettings {
   double max_window_rad = 0.8;
   int search_points = 300;
   /// Minimum overlap ratio: points in observed cells of the other map, in both directions.
-  double min_known_share = 0.35;
+  double min_overlap_ratio = 0.35;
   /// Minimum inlier ratio: points in the overlap that lie on a surface of the other map, in both directions.
-  double min_matched_share = 0.75;
+  double min_inlier_ratio = 0.75;
   double min_matched_length_m = 8.0;  ///< minimum length of matched surface
   /// The match is rejected if a distinct pose scores more than this fraction of the best score.
-  double ambiguity = 0.9;
-  double ambiguity_distance_m = 0.8;  ///< poses at least this far from the best are distinct
-  double ambiguity_angle_rad = 0.35;
+  double max_second_best_ratio = 0.9;
+  double min_second_best_distance_m = 0.8;  ///< poses at least this far from the best are distinct
+  double min_second_best_angle_rad = 0.35;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -30,12 +30,12 @@ struct SubmapMatcherSettings {
     visit("max_window_m", self.max_window_m, between(0.1, 100.0));
     visit("max_window_rad", self.max_window_rad, between(0.01, 3.2));
     visit("search_points", self.search_points, between(10, 100000));
-    visit("min_known_share", self.min_known_share, between(0.0, 1.0));
-    visit("min_matched_share", self.min_matched_share, between(0.0, 1.0));
+    visit("min_known_share", self.min_overlap_ratio, between(0.0, 1.0));
+    visit("min_matched_share", self.min_inlier_ratio, between(0.0, 1.0));
     visit("min_matched_length_m", self.min_matched_length_m, at_least(0.0));
-    visit("ambiguity", self.ambiguity, between(0.0, 1.0));
-    visit("ambiguity_distance_m", self.ambiguity_distance_m, at_least(0.0));
-    visit("ambiguity_angle_rad", self.ambiguity_angle_rad, at_least(0.0));
+    visit("ambiguity", self.max_second_best_ratio, between(0.0, 1.0));
+    visit("ambiguity_distance_m", self.min_second_best_distance_m, at_least(0.0));
+    visit("ambiguity_angle_rad", self.min_second_best_angle_rad, at_least(0.0));
   }
 };
 
@@ -44,8 +44,8 @@ struct SubmapMatch {
   /// Information of x, y, yaw in target, with independent points.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double score = 0.0;          ///< score of the search
-  double known_share = 0.0;    ///< overlap ratio, minimum of both directions
-  double matched_share = 0.0;  ///< inlier ratio, minimum of both directions
+  double overlap_ratio = 0.0;    ///< overlap ratio, minimum of both directions
+  double inlier_ratio = 0.0;  ///< inlier ratio, minimum of both directions
 };
 
 /// Reason for rejecting a submap match.
@@ -57,14 +57,14 @@ struct SubmapMatchResult {
 };
 
 /// Prior of a match with a submap. It bounds degenerate directions with standard deviations of 0.2 m and 0.05 rad.
-inline PoseGaussian start_of_match(const Pose2& T_submap_start) {
+inline PoseGaussian match_prior(const Pose2& T_submap_start) {
   return {.mean = T_submap_start, .covariance = Eigen::Vector3d(0.2 * 0.2, 0.2 * 0.2, 0.05 * 0.05).asDiagonal()};
 }
 
 /// Matches two submaps within three standard deviations of the prediction. A branch-and-bound search gives the coarse
 /// pose, a second one checks for an ambiguous match, and Gauss-Newton on lines refines the pose. Finally, the surfaces
 /// of each submap must lie on surfaces of the other wherever the other has observed cells.
-SubmapMatchResult match_submaps(const DrawnSubmap& target, const DrawnSubmap& source, const PoseGaussian& prediction,
+SubmapMatchResult match_submaps(const RenderedSubmap& target, const RenderedSubmap& source, const PoseGaussian& prediction,
                                 const SubmapMatcherSettings& settings, const ScanMatcherSettings& matching);
 
 }  // namespace patrol::slam

@@ -7,7 +7,7 @@
 namespace patrol::slam {
 
 /// Undirected edge between two nodes with the covariance of their relative pose.
-struct UncertainWay {
+struct CovarianceEdge {
   int from = 0;
   int to = 0;
   /// Covariance of x, y, yaw of `to` in the frame of `from`; m, m, rad.
@@ -18,16 +18,16 @@ struct UncertainWay {
 /// of least uncertainty, found by Dijkstra's search. It is an upper bound of the marginal covariance of the whole graph
 /// [Olson08, section 4.2]. The uncertainty of a path counts one radian as ten meters. Unreachable nodes have infinite
 /// covariance.
-std::vector<PoseGaussian> positions_from(int place, const std::vector<Pose2>& T_map_place, const std::vector<UncertainWay>& ways);
+std::vector<PoseGaussian> shortest_path_distributions(int node, const std::vector<Pose2>& T_map_node, const std::vector<CovarianceEdge>& covariance_edges);
 
-/// Propagates the covariance of `here` along an edge to `there`. `way_covariance` is in the frame of `here`; the poses
+/// Propagates the covariance of `here` along an edge to `there`. `edge_covariance` is in the frame of `here`; the poses
 /// and the result are in one common frame.
-Eigen::Matrix3d carried_on(const PoseGaussian& here, const Pose2& there, const Eigen::Matrix3d& way_covariance);
+Eigen::Matrix3d compose_covariance(const PoseGaussian& here, const Pose2& there, const Eigen::Matrix3d& edge_covariance);
 
 /// Inverts T_b_a with its covariance in b to T_a_b with its covariance in a.
-PoseGaussian inverse_of(const PoseGaussian& T_b_a);
+PoseGaussian invert(const PoseGaussian& T_b_a);
 
 /// Rotates the position axes of a matrix of x, y, yaw by `yaw_rad`.
-Eigen::Matrix3d turned(const Eigen::Matrix3d& matrix, double yaw_rad);
+Eigen::Matrix3d rotate_covariance(const Eigen::Matrix3d& matrix, double yaw_rad);
 
 }  // namespace patrol::slam

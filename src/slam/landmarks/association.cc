@@ -4,21 +4,21 @@
 
 namespace patrol::slam {
 
-std::vector<int> associate(const LandmarkMap& map, const Pose2& T_map_body, const std::vector<RangeBearing>& seen, const RangeBearingNoise& noise,
+std::vector<int> associate(const LandmarkMap& map, const Pose2& T_map_body, const std::vector<RangeBearing>& observations, const RangeBearingNoise& noise,
                            const AssociationSettings& settings) {
   std::vector<int> matches;
-  matches.reserve(seen.size());
+  matches.reserve(observations.size());
   if (settings.is_known) {
-    for (const RangeBearing& sight : seen) matches.push_back(sight.landmark);
+    for (const RangeBearing& observation : observations) matches.push_back(observation.landmark);
     return matches;
   }
   std::vector<bool> is_taken(map.landmarks().size(), false);
   int next_new = static_cast<int>(map.landmarks().size());
-  for (const RangeBearing& sight : seen) {
+  for (const RangeBearing& observation : observations) {
     int best = kUnmatched;
     double best_density = -std::numeric_limits<double>::infinity(), nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < map.landmarks().size(); ++i) {
-      const SightFit fit = fit_sight(T_map_body, map.landmarks()[i], sight, noise);
+      const LandmarkInnovation fit = landmark_innovation(T_map_body, map.landmarks()[i], observation, noise);
       nearest = std::min(nearest, fit.squared_distance);
       if (is_taken[i] || fit.squared_distance > settings.gate || fit.log_density() <= best_density) continue;
       best = static_cast<int>(i);

@@ -20,7 +20,7 @@ inline constexpr int kUnmatched = -1;
 /// Data association, [observation] -> index of the landmark, the next free index for a new landmark, or kUnmatched.
 /// With unknown association, each observation is assigned to the landmark of maximum likelihood [Montemerlo03], and
 /// each landmark at most once.
-std::vector<int> associate(const LandmarkMap& map, const Pose2& T_map_body, const std::vector<RangeBearing>& seen, const RangeBearingNoise& noise,
+std::vector<int> associate(const LandmarkMap& map, const Pose2& T_map_body, const std::vector<RangeBearing>& observations, const RangeBearingNoise& noise,
                            const AssociationSettings& settings);
 
 }  // namespace patrol::slam

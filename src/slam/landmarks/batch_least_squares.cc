@@ -37,15 +37,15 @@ struct MotionCost {
   }
 };
 
-struct SightCost {
-  RangeBearing seen;
+struct ObservationCost {
+  RangeBearing observations;
   RangeBearingNoise noise;
 
   template <typename Scalar>
   bool operator()(const Scalar* pose, const Scalar* landmark, Scalar* residual) const {
     const Scalar dx = landmark[0] - pose[0], dy = landmark[1] - pose[1];
-    residual[0] = (sqrt(dx * dx + dy * dy) - seen.range_m) / noise.range_std_m;
-    residual[1] = wrapped(Scalar(atan2(dy, dx) - pose[2] - seen.bearing_rad)) / noise.bearing_std_rad;
+    residual[0] = (sqrt(dx * dx + dy * dy) - observations.range_m) / noise.range_std_m;
+    residual[1] = wrapped(Scalar(atan2(dy, dx) - pose[2] - observations.bearing_rad)) / noise.bearing_std_rad;
     return true;
   }
 };
@@ -53,7 +53,7 @@ struct SightCost {
 }  // namespace
 
 BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& noise, const std::vector<Control>& controls,
-                          const std::vector<std::vector<RangeBearing>>& seen, const BatchSolution& guess) {
+                          const std::vector<std::vector<RangeBearing>>& observations, const BatchSolution& guess) {
   std::vector<std::array<double, 3>> poses = {{0.0, 0.0, 0.0}};
   for (const Pose2& pose : guess.T_map_body) poses.push_back({pose.x, pose.y, pose.yaw});
   std::vector<std::array<double, 2>> landmarks;
@@ -67,10 +67,10 @@ BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& 
   for (std::size_t k = 0; k < controls.size(); ++k) {
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<MotionCost, 5, 3, 2, 3>(new MotionCost{motion, controls[k]}), nullptr, poses[k].data(),
                              errors[k].data(), poses[k + 1].data());
-    for (const RangeBearing& sight : seen[k]) {
-      if (static_cast<std::size_t>(sight.landmark) >= landmarks.size()) throw std::invalid_argument("a batch needs a guess of every landmark that is seen");
-      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<SightCost, 2, 3, 2>(new SightCost{sight, noise}), nullptr, poses[k + 1].data(),
-                               landmarks[static_cast<std::size_t>(sight.landmark)].data());
+    for (const RangeBearing& observation : observations[k]) {
+      if (static_cast<std::size_t>(observation.landmark) >= landmarks.size()) throw std::invalid_argument("a batch needs a guess of every landmark that is seen");
+      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ObservationCost, 2, 3, 2>(new ObservationCost{observation, noise}), nullptr, poses[k + 1].data(),
+                               landmarks[static_cast<std::size_t>(observation.landmark)].data());
     }
   }
   ceres::Solver::Options options;

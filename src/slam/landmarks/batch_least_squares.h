@@ -19,6 +19,6 @@ struct BatchSolution {
 /// pose is the origin of map. Gauss-Newton by Ceres from `guess`, which must contain every observed landmark
 /// (std::invalid_argument otherwise). `controls` [step], `seen` [step][observation]; known association.
 BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& noise, const std::vector<Control>& controls,
-                          const std::vector<std::vector<RangeBearing>>& seen, const BatchSolution& guess);
+                          const std::vector<std::vector<RangeBearing>>& observations, const BatchSolution& guess);
 
 }  // namespace patrol::slam

@@ -30,7 +30,7 @@ class EkfSlam : public LandmarkSlam {
  public:
   EkfSlam(const EkfSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise);
 
-  LandmarkSlamEstimate step(const Control& control, const std::vector<RangeBearing>& seen) override;
+  LandmarkSlamEstimate step(const Control& control, const std::vector<RangeBearing>& observations) override;
   std::vector<std::optional<Eigen::Vector2d>> landmarks() const override;
   const OdometryBias& bias() const { return bias_; }
 
@@ -39,8 +39,8 @@ class EkfSlam : public LandmarkSlam {
   static constexpr Eigen::Index kYaw = 0, kPosition = 1, kBias = 3, kLandmarks = 5;
 
   void predict(const Control& control);
-  void correct(const RangeBearing& sight);
-  void add_landmark(const RangeBearing& sight);
+  void correct(const RangeBearing& observation);
+  void add_landmark(const RangeBearing& observation);
   void apply(const Eigen::VectorXd& error);
   LandmarkSlamEstimate summary() const;
 

@@ -16,9 +16,9 @@ struct FastSlamSettings {
   int particles = 10;
   /// Scale factor of the stated standard deviations of odometry; larger values cover unmodeled errors.
   double noise_scale = 1.0;
-  bool draws_from_observation = false;  ///< true: FastSLAM 2.0; false: 1.0
+  bool use_optimal_proposal = false;  ///< true: FastSLAM 2.0; false: 1.0
   OdometryBiasSettings bias{};       ///< bias estimated by each particle; off by default
-  double prior_share = 0.0;          ///< lambda: weight of the odometry prior in the optimizer's fitness (1: Bayesian)
+  double prior_weight = 0.0;          ///< lambda: weight of the odometry prior in the optimizer's fitness (1: Bayesian)
   AssociationSettings association{};
 };
 
@@ -38,10 +38,10 @@ struct FastSlamSettings {
 class FastSlam : public LandmarkSlam {
  public:
   /// `motion.std` and `noise` are the assumed noise of odometry and sensor.
-  FastSlam(const FastSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise, ParticleFilterParts parts,
+  FastSlam(const FastSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise, ParticleFilterComponents components,
            std::uint64_t seed);
 
-  LandmarkSlamEstimate step(const Control& control, const std::vector<RangeBearing>& seen) override;
+  LandmarkSlamEstimate step(const Control& control, const std::vector<RangeBearing>& observations) override;
   std::vector<std::optional<Eigen::Vector2d>> landmarks() const override;
 
   /// Particles before the last resampling, [particle].
@@ -63,17 +63,17 @@ class FastSlam : public LandmarkSlam {
   };
   class Step;
 
-  Proposal propose(const Particle& particle, const Control& control, const std::vector<RangeBearing>& seen, const std::vector<int>& matches) const;
-  double log_likelihood(const Particle& particle, const Pose2& T_map_body, const std::vector<RangeBearing>& seen,
+  Proposal propose(const Particle& particle, const Control& control, const std::vector<RangeBearing>& observations, const std::vector<int>& matches) const;
+  double log_likelihood(const Particle& particle, const Pose2& T_map_body, const std::vector<RangeBearing>& observations,
                         const std::vector<int>& matches) const;
-  void reproduce(const Control& control, const std::vector<Offspring>& offspring);
+  void apply_resampling(const Control& control, const std::vector<Offspring>& offspring);
   LandmarkSlamEstimate summary() const;
 
   FastSlamSettings settings_;
   ControlMotion motion_;
   RangeBearingNoise noise_;
-  ParticleFilterParts parts_;
-  RandomStream draws_;
+  ParticleFilterComponents components_;
+  RandomStream random_;
   std::uint64_t steps_ = 0;
   std::vector<Particle> particles_;
   std::vector<double> log_weights_;

@@ -14,13 +14,13 @@ namespace patrol::slam {
 struct Landmark {
   Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< zero: not observed yet
-  bool is_seen = false;
+  bool is_observed = false;
 };
 
 /// Innovation of an observation with respect to an estimated landmark, at a pose without uncertainty. In closed form,
 /// because this is the innermost loop of every swarm. With u the direction to the landmark and n perpendicular to it, H
 /// = [u^T; n^T / r].
-struct SightFit {
+struct LandmarkInnovation {
   double range, bearing;       ///< innovation, m and rad
   double ux, uy, r;            ///< direction and distance of the landmark, m
   double PH00, PH01;           ///< P H^T, cross covariance of landmark position and observation
@@ -32,17 +32,17 @@ struct SightFit {
   double log_density() const { return -0.5 * (squared_distance + std::log(det)); }
   Eigen::Vector2d innovation() const { return {range, bearing}; }
   Eigen::Matrix2d S_inverse() const { return (Eigen::Matrix2d() << S11, -S01, -S01, S00).finished() / det; }
-  Eigen::Matrix<double, 2, 3> by_pose() const { return (Eigen::Matrix<double, 2, 3>() << -ux, -uy, 0.0, uy / r, -ux / r, -1.0).finished(); }
+  Eigen::Matrix<double, 2, 3> H_pose() const { return (Eigen::Matrix<double, 2, 3>() << -ux, -uy, 0.0, uy / r, -ux / r, -1.0).finished(); }
 };
 
-inline SightFit fit_sight(const Pose2& T_map_body, const Landmark& landmark, const RangeBearing& seen, const RangeBearingNoise& noise) {
-  SightFit fit;
+inline LandmarkInnovation landmark_innovation(const Pose2& T_map_body, const Landmark& landmark, const RangeBearing& observations, const RangeBearingNoise& noise) {
+  LandmarkInnovation fit;
   const double dx = landmark.mean_m.x() - T_map_body.x, dy = landmark.mean_m.y() - T_map_body.y;
   fit.r = std::sqrt(std::max(dx * dx + dy * dy, 1e-12));
   fit.ux = dx / fit.r;
   fit.uy = dy / fit.r;
-  fit.range = seen.range_m - fit.r;
-  fit.bearing = wrap_angle(seen.bearing_rad + T_map_body.yaw - std::atan2(dy, dx));
+  fit.range = observations.range_m - fit.r;
+  fit.bearing = wrap_angle(observations.bearing_rad + T_map_body.yaw - std::atan2(dy, dx));
   const double nx = -fit.uy / fit.r, ny = fit.ux / fit.r;
   const Eigen::Matrix2d& P = landmark.covariance;
   fit.PH00 = P(0, 0) * fit.ux + P(0, 1) * fit.uy;
@@ -58,12 +58,12 @@ inline SightFit fit_sight(const Pose2& T_map_body, const Landmark& landmark, con
 }
 
 /// Joint log density of several observations with a single logarithm.
-class SightLikelihood {
+class ObservationLikelihood {
  public:
-  SightLikelihood(const Pose2& T_map_body, const RangeBearingNoise& noise) : T_map_body_(T_map_body), noise_(noise) {}
+  ObservationLikelihood(const Pose2& T_map_body, const RangeBearingNoise& noise) : T_map_body_(T_map_body), noise_(noise) {}
 
-  void add(const Landmark& landmark, const RangeBearing& seen) {
-    const SightFit fit = fit_sight(T_map_body_, landmark, seen, noise_);
+  void add(const Landmark& landmark, const RangeBearing& observations) {
+    const LandmarkInnovation fit = landmark_innovation(T_map_body_, landmark, observations, noise_);
     squared_distance_ += fit.squared_distance;
     determinants_ *= fit.det;
     if (determinants_ < 1e-200) flush();
@@ -88,13 +88,13 @@ class LandmarkMap {
  public:
   const std::vector<Landmark>& landmarks() const { return landmarks_; }
   std::vector<Landmark>& landmarks() { return landmarks_; }
-  bool has(int index) const { return static_cast<std::size_t>(index) < landmarks_.size() && landmarks_[static_cast<std::size_t>(index)].is_seen; }
+  bool has(int index) const { return static_cast<std::size_t>(index) < landmarks_.size() && landmarks_[static_cast<std::size_t>(index)].is_observed; }
   const Landmark& at(int index) const { return landmarks_[static_cast<std::size_t>(index)]; }
 
   /// Updates a landmark with an observation; a new landmark is initialized at the observed position. `index` may be one
   /// beyond the last. Returns the log density of the observation without the log 2 pi term; zero for a new landmark,
   /// which does not constrain the pose.
-  double update(int index, const Pose2& T_map_body, const RangeBearing& seen, const RangeBearingNoise& noise);
+  double update(int index, const Pose2& T_map_body, const RangeBearing& observations, const RangeBearingNoise& noise);
 
  private:
   std::vector<Landmark> landmarks_;

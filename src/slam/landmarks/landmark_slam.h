@@ -24,7 +24,7 @@ class LandmarkSlam {
   virtual ~LandmarkSlam() = default;
 
   /// Predicts one motion step and updates with the observations taken at its end; `seen` may be empty.
-  virtual LandmarkSlamEstimate step(const Control& control, const std::vector<RangeBearing>& seen) = 0;
+  virtual LandmarkSlamEstimate step(const Control& control, const std::vector<RangeBearing>& observations) = 0;
 
   /// Landmark positions, [landmark]: by landmark number with known association, otherwise in order of discovery. None:
   /// not observed yet.

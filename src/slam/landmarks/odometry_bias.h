@@ -32,7 +32,7 @@ struct OdometryBias {
   }
 
   /// Updates the bias with an increment xi = bias + noise.
-  void learn(const Eigen::Vector2d& increment, const OdometryBiasSettings& settings) {
+  void add_increment(const Eigen::Vector2d& increment, const OdometryBiasSettings& settings) {
     const Eigen::Matrix2d K = covariance * increment_covariance().inverse();
     mean += K * (increment - mean);
     covariance -= K * covariance;

@@ -26,32 +26,32 @@ struct RangeBearingNoise {
 };
 
 /// Predicted observation of a landmark at `p_map`, with derivatives.
-struct PredictedSight {
-  Eigen::Vector2d sight;                 ///< range, bearing
-  Eigen::Matrix2d by_landmark;           ///< derivative with respect to x, y of the landmark
-  Eigen::Matrix<double, 2, 3> by_pose;   ///< derivative with respect to x, y, yaw of the body
+struct PredictedObservation {
+  Eigen::Vector2d observation;                 ///< range, bearing
+  Eigen::Matrix2d H_landmark;           ///< derivative with respect to x, y of the landmark
+  Eigen::Matrix<double, 2, 3> H_pose;   ///< derivative with respect to x, y, yaw of the body
 };
 
-inline PredictedSight predict_sight(const Pose2& T_map_body, const Eigen::Vector2d& p_map) {
+inline PredictedObservation predict_observation(const Pose2& T_map_body, const Eigen::Vector2d& p_map) {
   const double dx = p_map.x() - T_map_body.x, dy = p_map.y() - T_map_body.y;
   const double q = std::max(dx * dx + dy * dy, 1e-12), r = std::sqrt(q);
-  PredictedSight predicted;
-  predicted.sight = {r, wrap_angle(std::atan2(dy, dx) - T_map_body.yaw)};
-  predicted.by_landmark << dx / r, dy / r, -dy / q, dx / q;
-  predicted.by_pose.leftCols<2>() = -predicted.by_landmark;
-  predicted.by_pose.col(2) = Eigen::Vector2d(0.0, -1.0);
+  PredictedObservation predicted;
+  predicted.observation = {r, wrap_angle(std::atan2(dy, dx) - T_map_body.yaw)};
+  predicted.H_landmark << dx / r, dy / r, -dy / q, dx / q;
+  predicted.H_pose.leftCols<2>() = -predicted.H_landmark;
+  predicted.H_pose.col(2) = Eigen::Vector2d(0.0, -1.0);
   return predicted;
 }
 
 /// Observed minus predicted range and bearing; the bearing is wrapped.
-inline Eigen::Vector2d innovation_of(const RangeBearing& seen, const PredictedSight& predicted) {
-  return {seen.range_m - predicted.sight.x(), wrap_angle(seen.bearing_rad - predicted.sight.y())};
+inline Eigen::Vector2d innovation_of(const RangeBearing& observations, const PredictedObservation& predicted) {
+  return {observations.range_m - predicted.observation.x(), wrap_angle(observations.bearing_rad - predicted.observation.y())};
 }
 
 /// Position of the landmark given by an observation.
-inline Eigen::Vector2d landmark_of(const Pose2& T_map_body, const RangeBearing& seen) {
-  const double direction = T_map_body.yaw + seen.bearing_rad;
-  return {T_map_body.x + seen.range_m * std::cos(direction), T_map_body.y + seen.range_m * std::sin(direction)};
+inline Eigen::Vector2d invert_observation(const Pose2& T_map_body, const RangeBearing& observations) {
+  const double direction = T_map_body.yaw + observations.bearing_rad;
+  return {T_map_body.x + observations.range_m * std::cos(direction), T_map_body.y + observations.range_m * std::sin(direction)};
 }
 
 }  // namespace patrol::slam

@@ -15,7 +15,7 @@ constexpr double kChance = 0.5 - 1e-9;  // stumps with larger errors differ from
 
 using Order = std::vector<std::size_t>;  ///< example indices in ascending order of one feature
 
-void check(const LabelledFeatures& training) {
+void check(const LabeledFeatures& training) {
   if (training.examples.size() != training.labels.size()) {
     throw InputError(fmt::format("adaboost: there are {} examples and {} labels", training.examples.size(), training.labels.size()));
   }
@@ -34,7 +34,7 @@ void check(const LabelledFeatures& training) {
   }
 }
 
-std::vector<Order> orders_of(const LabelledFeatures& training) {
+std::vector<Order> sort_by_feature(const LabeledFeatures& training) {
   std::vector<Order> orders(training.names.size());
   for (std::size_t f = 0; f < orders.size(); ++f) {
     orders[f].resize(training.examples.size());
@@ -59,7 +59,7 @@ struct StumpCandidate {
 };
 
 /// Tries all thresholds in ascending order; `wrong` is the weighted error of the vote "+1 above".
-StumpCandidate best_of_feature(std::size_t feature, const Order& order, const LabelledFeatures& training, const std::vector<double>& weights) {
+StumpCandidate best_of_feature(std::size_t feature, const Order& order, const LabeledFeatures& training, const std::vector<double>& weights) {
   StumpCandidate best;
   double wrong = 0.0, all = 0.0;
   for (const std::size_t i : order) {
@@ -83,7 +83,7 @@ StumpCandidate best_of_feature(std::size_t feature, const Order& order, const La
   return best;
 }
 
-StumpCandidate best_stump(const std::vector<Order>& orders, const LabelledFeatures& training, const std::vector<double>& weights) {
+StumpCandidate best_stump(const std::vector<Order>& orders, const LabeledFeatures& training, const std::vector<double>& weights) {
   StumpCandidate best;
   for (std::size_t f = 0; f < orders.size(); ++f) {
     const StumpCandidate candidate = best_of_feature(f, orders[f], training, weights);
@@ -92,12 +92,12 @@ StumpCandidate best_stump(const std::vector<Order>& orders, const LabelledFeatur
   return best;
 }
 
-bool is_wrong(const DecisionStump& stump, const LabelledFeatures& training, std::size_t example) {
+bool is_wrong(const DecisionStump& stump, const LabeledFeatures& training, std::size_t example) {
   return stump.vote(training.examples[example]) != training.labels[example];
 }
 
 /// Weighted error, summed directly to avoid the cancellation of the incremental sums.
-double error_of(const DecisionStump& stump, const LabelledFeatures& training, const std::vector<double>& weights) {
+double weighted_error(const DecisionStump& stump, const LabeledFeatures& training, const std::vector<double>& weights) {
   double wrong = 0.0, all = 0.0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
     all += weights[i];
@@ -107,7 +107,7 @@ double error_of(const DecisionStump& stump, const LabelledFeatures& training, co
 }
 
 /// Scales the weights so that the misclassified examples have half of the total.
-void reweigh(const DecisionStump& stump, double error, const LabelledFeatures& training, std::vector<double>& weights) {
+void scale_example_weights(const DecisionStump& stump, double error, const LabeledFeatures& training, std::vector<double>& weights) {
   for (std::size_t i = 0; i < weights.size(); ++i) weights[i] *= 0.5 / (is_wrong(stump, training, i) ? error : 1.0 - error);
 }
 
@@ -115,7 +115,7 @@ double total_weight(const BoostedStumps& model) {
   return std::accumulate(model.stumps.begin(), model.stumps.end(), 0.0, [](double sum, const DecisionStump& stump) { return sum + stump.weight; });
 }
 
-double training_error_of(const BoostedStumps& model, const LabelledFeatures& training, const std::vector<double>& weights) {
+double training_error_of(const BoostedStumps& model, const LabeledFeatures& training, const std::vector<double>& weights) {
   double error = 0.0;
   for (std::size_t i = 0; i < weights.size(); ++i) error += model.margin(training.examples[i]) * training.labels[i] > 0.0 ? 0.0 : weights[i];
   return error;
@@ -123,9 +123,9 @@ double training_error_of(const BoostedStumps& model, const LabelledFeatures& tra
 
 }  // namespace
 
-BoostingResult train_adaboost(const LabelledFeatures& training, const AdaBoostSettings& settings) {
+BoostingResult train_adaboost(const LabeledFeatures& training, const AdaBoostSettings& settings) {
   check(training);
-  const std::vector<Order> orders = orders_of(training);
+  const std::vector<Order> orders = sort_by_feature(training);
   const std::vector<double> at_start = first_weights(training.labels, settings.balance_classes);
   std::vector<double> weights = at_start;
 
@@ -133,14 +133,14 @@ BoostingResult train_adaboost(const LabelledFeatures& training, const AdaBoostSe
   result.model.features = training.names;
   for (int round = 0; round < settings.rounds; ++round) {
     DecisionStump stump = best_stump(orders, training, weights).stump;
-    const double error = training.names.empty() ? 1.0 : error_of(stump, training, weights);
+    const double error = training.names.empty() ? 1.0 : weighted_error(stump, training, weights);
     if (error >= kChance) break;
     stump.weight = error > 0.0 ? 0.5 * std::log((1.0 - error) / error) : 1.0 + total_weight(result.model);
     result.model.stumps.push_back(stump);
     result.errors.push_back(error);
     result.error_bound *= 2.0 * std::sqrt(error * (1.0 - error));
     if (error == 0.0) break;
-    reweigh(stump, error, training, weights);
+    scale_example_weights(stump, error, training, weights);
   }
   result.training_error = training_error_of(result.model, training, at_start);
   return result;

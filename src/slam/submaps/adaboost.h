@@ -19,7 +19,7 @@ struct AdaBoostSettings {
 };
 
 /// Training set of labeled feature vectors.
-struct LabelledFeatures {
+struct LabeledFeatures {
   std::vector<std::string> names;            ///< [feature]
   std::vector<std::vector<double>> examples; ///< [example][feature], finite
   std::vector<int> labels;                   ///< [example], +1 or -1, each at least once
@@ -38,6 +38,6 @@ struct BoostingResult {
 /// weights so that the misclassified examples have half of the total. Thresholds are midway between neighboring values,
 /// plus one below all values. Training ends early after a stump without errors, whose weight then exceeds the sum of
 /// all others, or if no stump is better than chance. Throws InputError if the training set violates its description.
-BoostingResult train_adaboost(const LabelledFeatures& training, const AdaBoostSettings& settings);
+BoostingResult train_adaboost(const LabeledFeatures& training, const AdaBoostSettings& settings);
 
 }  // namespace patrol::slam

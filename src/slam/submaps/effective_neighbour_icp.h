@@ -12,29 +12,29 @@
 namespace patrol::slam {
 
 struct IcpSettings {
-  bool use_effective_neighbours = true;  ///< false: all pairs, as in ICP [Besl92]
+  bool use_effective_neighbors = true;  ///< false: all pairs, as in ICP [Besl92]
   /// Lower bound of the threshold: below about one point spacing, distances reflect the point pattern.
   double min_threshold_m = 0.1;
   double max_threshold_m = 0.3;  ///< upper bound of the threshold: coarse matching leaves smaller errors
-  bool refine_on_lines = true;   ///< after point-to-point convergence, continue with point-to-line distances
+  bool point_to_line = true;   ///< after point-to-point convergence, continue with point-to-line distances
   double line_threshold_m = 0.1; ///< upper bound of the threshold in point-to-line steps
   double line_kernel_m = 0.04;   ///< distance at which a pair has half weight in point-to-line steps
   int max_iterations = 100;
-  double step_tol_m = 1e-5;     ///< convergence: displacement by a step, at 10 m from the origin
+  double step_tolerance_m = 1e-5;     ///< convergence: displacement by a step, at 10 m from the origin
   int min_pairs = 10;           ///< matches with fewer pairs are rejected
   double point_std_m = 0.03;    ///< standard deviation of a point across its wall, for the information
   double normal_radius_m = 0.3; ///< radius of the neighborhood whose principal axis gives the normal
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("use_effective_neighbours", self.use_effective_neighbours);
+    visit("use_effective_neighbours", self.use_effective_neighbors);
     visit("min_threshold_m", self.min_threshold_m, at_least(0.0));
     visit("max_threshold_m", self.max_threshold_m, at_least(0.0));
-    visit("refine_on_lines", self.refine_on_lines);
+    visit("refine_on_lines", self.point_to_line);
     visit("line_threshold_m", self.line_threshold_m, between(1e-3, 10.0));
     visit("line_kernel_m", self.line_kernel_m, between(1e-3, 10.0));
     visit("max_iterations", self.max_iterations, between(1, 100000));
-    visit("step_tol_m", self.step_tol_m, between(0.0, 1.0));
+    visit("step_tol_m", self.step_tolerance_m, between(0.0, 1.0));
     visit("min_pairs", self.min_pairs, between(2, 100000));
     visit("point_std_m", self.point_std_m, between(1e-4, 10.0));
     visit("normal_radius_m", self.normal_radius_m, between(1e-3, 10.0));
@@ -45,20 +45,20 @@ struct IcpSettings {
 class IcpPoints {
  public:
   /// `facings` [point]: free-space normals (surface_points.h); empty: pairs are not gated by normals.
-  IcpPoints(std::vector<Eigen::Vector2d> points, const IcpSettings& settings, std::vector<Eigen::Vector2d> facings = {})
-      : tree_(std::move(points)), normals_(surface_normals(tree_, settings.normal_radius_m)), facings_(std::move(facings)) {
-    facings_.resize(tree_.points().size(), Eigen::Vector2d::Zero());
+  IcpPoints(std::vector<Eigen::Vector2d> points, const IcpSettings& settings, std::vector<Eigen::Vector2d> free_space_normals = {})
+      : tree_(std::move(points)), normals_(surface_normals(tree_, settings.normal_radius_m)), free_space_normals_(std::move(free_space_normals)) {
+    free_space_normals_.resize(tree_.points().size(), Eigen::Vector2d::Zero());
   }
 
   const std::vector<Eigen::Vector2d>& points() const { return tree_.points(); }
   const PointTree& tree() const { return tree_; }
   const std::vector<SurfaceNormal>& normals() const { return normals_; }
-  const std::vector<Eigen::Vector2d>& facings() const { return facings_; }
+  const std::vector<Eigen::Vector2d>& free_space_normals() const { return free_space_normals_; }
 
  private:
   PointTree tree_;
   std::vector<SurfaceNormal> normals_;
-  std::vector<Eigen::Vector2d> facings_;
+  std::vector<Eigen::Vector2d> free_space_normals_;
 };
 
 struct IcpResult {

@@ -17,18 +17,18 @@
 namespace patrol::slam {
 namespace {
 
-constexpr double kMostNodes = 4000.0;  // along either axis
+constexpr double kMaxNodes = 4000.0;  // along either axis
 constexpr double kNdtTurnArm_m = 10.0;        // distance at which the rotation of a step is evaluated
 constexpr double kMinWeight = 1e-6;    // a cell whose points are all on its border has no covariance
 
 /// One of the four nodes around a point, with its bilinear weight.
-struct NodeShare {
+struct NodeWeight {
   Cell node;
   double weight;             ///< 0 ... 1
   Eigen::Vector2d gradient;  ///< gradient of the weight, 1/m
 };
 
-std::array<NodeShare, 4> shares_of(const Eigen::Vector2d& from_origin_m, double spacing_m) {
+std::array<NodeWeight, 4> bilinear_weights(const Eigen::Vector2d& from_origin_m, double spacing_m) {
   const double u = from_origin_m.x() / spacing_m, v = from_origin_m.y() / spacing_m;
   const int col = static_cast<int>(std::floor(u)), row = static_cast<int>(std::floor(v));
   const double a = u - col, b = v - row, slope = 1.0 / spacing_m;
@@ -39,7 +39,7 @@ std::array<NodeShare, 4> shares_of(const Eigen::Vector2d& from_origin_m, double 
 }
 
 /// Lattice that covers all points. Nodes are at multiples of the spacing, independent of the points.
-GridGeometry lattice_of(const std::vector<Eigen::Vector2d>& points, double spacing_m) {
+GridGeometry covering_lattice(const std::vector<Eigen::Vector2d>& points, double spacing_m) {
   check_finite(points);
   if (points.empty()) return {.resolution_m = spacing_m};
   Eigen::Vector2d low = points.front(), high = points.front();
@@ -49,7 +49,7 @@ GridGeometry lattice_of(const std::vector<Eigen::Vector2d>& points, double spaci
   }
   const Eigen::Array2d first = (low.array() / spacing_m).floor(), last = (high.array() / spacing_m).floor() + 1.0;
   const double most = (last - first).maxCoeff() + 1.0;
-  if (most > kMostNodes) throw InputError(fmt::format("ndt: the points need {} nodes of {} m in a row: at most {}", most, spacing_m, kMostNodes));
+  if (most > kMaxNodes) throw InputError(fmt::format("ndt: the points need {} nodes of {} m in a row: at most {}", most, spacing_m, kMaxNodes));
   return {.resolution_m = spacing_m,
           .width = static_cast<int>(last.x() - first.x()) + 1,
           .height = static_cast<int>(last.y() - first.y()) + 1,
@@ -73,25 +73,25 @@ Eigen::Matrix2d floored_information(const Eigen::Matrix2d& covariance, double mi
 }  // namespace
 
 NdtGrid::NdtGrid(const std::vector<Eigen::Vector2d>& points_target, double cell_m, double min_std_m) : node_spacing_m_(0.5 * cell_m) {
-  const GridGeometry lattice = lattice_of(points_target, node_spacing_m_);
+  const GridGeometry lattice = covering_lattice(points_target, node_spacing_m_);
   origin_m_ = lattice.origin_m;
   cell_of_node_ = Grid<int>(lattice, -1);
 
   std::vector<CellSums> sums;
   for (const Eigen::Vector2d& p : points_target) {
-    for (const NodeShare& share : shares_of(p - origin_m_, node_spacing_m_)) {
-      if (share.weight <= kMinWeight) continue;
-      int& cell = cell_of_node_.at(share.node);
+    for (const NodeWeight& node_weight : bilinear_weights(p - origin_m_, node_spacing_m_)) {
+      if (node_weight.weight <= kMinWeight) continue;
+      int& cell = cell_of_node_.at(node_weight.node);
       if (cell < 0) {
         cell = static_cast<int>(sums.size());
         sums.emplace_back();
-        cells_.push_back({.mean = origin_m_ + node_spacing_m_ * Eigen::Vector2d(share.node.col, share.node.row)});
+        cells_.push_back({.mean = origin_m_ + node_spacing_m_ * Eigen::Vector2d(node_weight.node.col, node_weight.node.row)});
       }
       CellSums& sum = sums[static_cast<std::size_t>(cell)];
       const Eigen::Vector2d from_node = p - cells_[static_cast<std::size_t>(cell)].mean;
-      sum.weight += share.weight;
-      sum.first += share.weight * from_node;
-      sum.second += share.weight * from_node * from_node.transpose();
+      sum.weight += node_weight.weight;
+      sum.first += node_weight.weight * from_node;
+      sum.second += node_weight.weight * from_node * from_node.transpose();
     }
   }
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
@@ -105,16 +105,16 @@ NdtGrid::NdtGrid(const std::vector<Eigen::Vector2d>& points_target, double cell_
 void NdtGrid::add(const Eigen::Vector2d& p_target, const Eigen::Vector2d& arm, NdtScore& sum) const {
   Eigen::Matrix<double, 2, 3> J;  // Jacobian of the point with respect to the pose
   J << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x();
-  for (const NodeShare& share : shares_of(p_target - origin_m_, node_spacing_m_)) {
-    if (!cell_of_node_.contains(share.node)) continue;
-    const int index = cell_of_node_.at(share.node);
+  for (const NodeWeight& node_weight : bilinear_weights(p_target - origin_m_, node_spacing_m_)) {
+    if (!cell_of_node_.contains(node_weight.node)) continue;
+    const int index = cell_of_node_.at(node_weight.node);
     if (index < 0) continue;
     const NormalCell& cell = cells_[static_cast<std::size_t>(index)];
     const Eigen::Vector2d q = p_target - cell.mean, pull = cell.information * q;
     const double fit = std::exp(-0.5 * q.dot(pull));
-    sum.value += share.weight * fit;
-    sum.gradient += J.transpose() * (fit * (share.gradient - share.weight * pull));
-    sum.curvature += share.weight * fit * (J.transpose() * cell.information * J);
+    sum.value += node_weight.weight * fit;
+    sum.gradient += J.transpose() * (fit * (node_weight.gradient - node_weight.weight * pull));
+    sum.curvature += node_weight.weight * fit * (J.transpose() * cell.information * J);
   }
 }
 
@@ -140,7 +140,7 @@ std::vector<NdtGrid> make_ndt(const std::vector<Eigen::Vector2d>& points_target,
   return levels;
 }
 
-std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& points, int max_points) {
+std::vector<Eigen::Vector2d> subsample(const std::vector<Eigen::Vector2d>& points, int max_points) {
   const std::size_t most = static_cast<std::size_t>(max_points);
   if (points.size() <= most) return points;
   std::vector<Eigen::Vector2d> kept(most);
@@ -151,7 +151,7 @@ std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& points,
 namespace {
 
 /// State of one optimization.
-struct Climb {
+struct ScoreMaximum {
   Pose2 T_target_source;
   NdtScore score;
   int iterations = 0;
@@ -163,10 +163,10 @@ Pose2 stepped(const Pose2& T_target_source, const Eigen::Vector3d& step) {
 }
 
 /// Levenberg-Marquardt: the damping decreases after accepted steps and increases after rejected ones.
-Climb climb(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, const Pose2& T_start, const NdtSettings& settings) {
-  constexpr double kMostDamping = 1e7;
-  Climb at{.T_target_source = T_start, .score = grid.score(points, T_start)};
-  const double step_tol = settings.step_tol_per_cell * grid.cell_m();
+ScoreMaximum maximize_score(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, const Pose2& T_start, const NdtSettings& settings) {
+  constexpr double kMaxDamping = 1e7;
+  ScoreMaximum at{.T_target_source = T_start, .score = grid.score(points, T_start)};
+  const double step_tol = settings.step_tolerance_per_cell * grid.cell_m();
   double damping = 1e-3;
   while (!at.converged && at.iterations < settings.max_iterations && at.score.value > 0.0) {
     ++at.iterations;
@@ -182,14 +182,14 @@ Climb climb(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, con
     } else {
       damping *= 10.0;
     }
-    at.converged = damping > kMostDamping || (step.head<2>().norm() < step_tol && kNdtTurnArm_m * std::abs(step.z()) < step_tol);
+    at.converged = damping > kMaxDamping || (step.head<2>().norm() < step_tol && kNdtTurnArm_m * std::abs(step.z()) < step_tol);
   }
   return at;
 }
 
 /// Returns whether another result is equal within a hundredth of a cell at 10 m from the origin.
-bool is_near_any(const Pose2& T_target_source, const std::vector<Climb>& climbs, double cell_m) {
-  return std::ranges::any_of(climbs, [&](const Climb& other) {
+bool is_near_any(const Pose2& T_target_source, const std::vector<ScoreMaximum>& maxima, double cell_m) {
+  return std::ranges::any_of(maxima, [&](const ScoreMaximum& other) {
     const Pose2& T = other.T_target_source;
     return (T.position() - T_target_source.position()).norm() < 0.01 * cell_m && kNdtTurnArm_m * std::abs(wrap_angle(T.yaw - T_target_source.yaw)) < 0.01 * cell_m;
   });
@@ -214,21 +214,21 @@ Eigen::Matrix3d measured_information(const NdtGrid& grid, const std::vector<Eige
 
 std::optional<NdtResult> align_ndt(const std::vector<NdtGrid>& target, const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_start,
                                    const NdtSettings& settings) {
-  const std::vector<Eigen::Vector2d> points = thinned(points_source, settings.max_points);
+  const std::vector<Eigen::Vector2d> points = subsample(points_source, settings.max_points);
   if (points.empty()) return std::nullopt;
   // Start every level from `T_start` and from all results of the coarser level.
-  std::vector<Climb> found;
+  std::vector<ScoreMaximum> found;
   int iterations = 0;
   for (const NdtGrid& grid : target) {
-    std::vector<Climb> climbs{climb(grid, points, T_start, settings)};
-    for (const Climb& coarser : found) {
-      if (is_near_any(coarser.T_target_source, climbs, grid.cell_m())) continue;
-      climbs.push_back(climb(grid, points, coarser.T_target_source, settings));
+    std::vector<ScoreMaximum> maxima{maximize_score(grid, points, T_start, settings)};
+    for (const ScoreMaximum& coarser : found) {
+      if (is_near_any(coarser.T_target_source, maxima, grid.cell_m())) continue;
+      maxima.push_back(maximize_score(grid, points, coarser.T_target_source, settings));
     }
-    for (const Climb& each : climbs) iterations += each.iterations;
-    found = std::move(climbs);
+    for (const ScoreMaximum& each : maxima) iterations += each.iterations;
+    found = std::move(maxima);
   }
-  const auto best = std::ranges::max_element(found, {}, [](const Climb& each) { return each.score.value; });
+  const auto best = std::ranges::max_element(found, {}, [](const ScoreMaximum& each) { return each.score.value; });
   if (best == found.end() || !(best->score.value > 0.0)) return std::nullopt;
   return NdtResult{.T_target_source = best->T_target_source,
                    .information = measured_information(target.back(), points, best->T_target_source),

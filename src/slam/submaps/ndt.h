@@ -19,7 +19,7 @@ struct NdtSettings {
   int max_points = 800;            ///< maximum number of source points; a regular subset of more points is used
   int max_iterations = 60;         ///< maximum number of iterations per level
   /// Convergence of a level: displacement by a step at 10 m from the origin, relative to the cell size.
-  double step_tol_per_cell = 5e-4;
+  double step_tolerance_per_cell = 5e-4;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -27,7 +27,7 @@ struct NdtSettings {
     visit("min_std_per_cell", self.min_std_per_cell, between(0.001, 1.0));
     visit("max_points", self.max_points, between(3, 1000000));
     visit("max_iterations", self.max_iterations, between(1, 10000));
-    visit("step_tol_per_cell", self.step_tol_per_cell, between(1e-9, 0.1));
+    visit("step_tol_per_cell", self.step_tolerance_per_cell, between(1e-9, 0.1));
   }
 };
 
@@ -96,6 +96,6 @@ std::optional<NdtResult> align_ndt(const std::vector<NdtGrid>& target, const std
                                    const NdtSettings& settings);
 
 /// Regular subset of at most `max_points` points.
-std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& points, int max_points);
+std::vector<Eigen::Vector2d> subsample(const std::vector<Eigen::Vector2d>& points, int max_points);
 
 }  // namespace patrol::slam

@@ -8,18 +8,18 @@
 namespace patrol::slam {
 namespace {
 
-PoseGaussian draw_prediction(const Pose2& T_target_source, const NeighbourExampleSettings& settings, RandomSequence& random) {
+PoseGaussian sample_prediction(const Pose2& T_target_source, const NeighborExampleSettings& settings, RandomSequence& random) {
   const double std_m = settings.min_prediction_std_m * std::pow(settings.max_prediction_std_m / settings.min_prediction_std_m, random.uniform());
   const Eigen::Vector3d std_devs(std_m, std_m, settings.prediction_rad_per_m * std_m);
-  const double factor = random.uniform() < settings.blunder_share ? 4.0 : 1.0;
+  const double factor = random.uniform() < settings.outlier_probability ? 4.0 : 1.0;
   const Eigen::Vector3d error = factor * std_devs.cwiseProduct(Eigen::Vector3d(random.normal(), random.normal(), random.normal()));
-  return {.mean = shifted(T_target_source, error), .covariance = std_devs.cwiseAbs2().asDiagonal()};
+  return {.mean = perturbed(T_target_source, error), .covariance = std_devs.cwiseAbs2().asDiagonal()};
 }
 
 }  // namespace
 
-void add_neighbour_examples(const SubmapRbpf& built, const std::vector<Pose2>& T_world_submap, const SubmapSurfaceSettings& surfaces, const NeighbourExampleSettings& settings,
-                            std::uint64_t seed, LabelledFeatures& examples) {
+void add_neighbor_examples(const SubmapRbpf& built, const std::vector<Pose2>& T_world_submap, const SubmapSurfaceSettings& surfaces, const NeighborExampleSettings& settings,
+                            std::uint64_t seed, LabeledFeatures& examples) {
   validate(settings, "examples");
   const RandomStream stream(seed, "slam/neighbour_examples");
   std::uint64_t pair = 0;
@@ -30,8 +30,8 @@ void add_neighbour_examples(const SubmapRbpf& built, const std::vector<Pose2>& T
       const Pose2 T_target_source = T_world_submap[target].inverse() * T_world_submap[source];
       RandomSequence random(stream, pair++);
       for (int i = 0; i < settings.predictions; ++i) {
-        const PoseGaussian prediction = draw_prediction(T_target_source, settings, random);
-        if (!may_be_neighbours(of_target->shape, of_source->shape, prediction)) continue;
+        const PoseGaussian prediction = sample_prediction(T_target_source, settings, random);
+        if (!may_be_neighbors(of_target->descriptor, of_source->descriptor, prediction)) continue;
         SurfaceMatch match = match_surfaces(*of_target, *of_source, prediction, surfaces);
         bool is_right = false;
         if (match.fine) {

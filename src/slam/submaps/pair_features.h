@@ -21,7 +21,7 @@ namespace patrol::slam {
 ///   center_mahalanobis     that distance in standard deviations of the prediction; at most 30
 ///   center_std             largest standard deviation of the predicted center, relative to the sum of radii
 ///   hull_overlap           common area of the predicted convex hulls, relative to the smaller hull
-///   seen_overlap           number of cells observed by both as predicted, relative to the smaller number
+///   observed_overlap           number of cells observed by both as predicted, relative to the smaller number
 ///   distance_difference    difference of the distance histograms: 0 ... 1; independent of the pose
 ///   direction_correlation  maximum correlation of the direction histograms: -1 ... 1; independent of the pose
 ///   direction_predicted    correlation of the direction histograms at the predicted rotation: -1 ... 1
@@ -30,7 +30,7 @@ namespace patrol::slam {
 ///   score_predicted        NDT score on the second-coarsest cells as predicted, minimum of both directions: 0 ... 1
 ///   score_aligned          NDT score on the finest cells at the NDT result, minimum of both directions: 0 ... 1
 ///   aligned_mahalanobis    distance of the NDT result from the prediction, in standard deviations; at most 30
-///   aligned_agreement      mutual_agreement at the NDT result
+///   aligned_agreement      mutual_overlap_consistency at the NDT result
 inline constexpr std::array<const char*, 14> kPairFeatures = {
     "center_distance",     "center_mahalanobis", "center_std",   "hull_overlap",    "seen_overlap",  "distance_difference", "direction_correlation",
     "direction_predicted", "point_ratio",        "radius_ratio", "score_predicted", "score_aligned", "aligned_mahalanobis", "aligned_agreement"};
@@ -39,11 +39,11 @@ std::vector<std::string> pair_feature_names();
 
 /// Inlier ratio of two submaps: points on a surface of the other / points in observed cells of the other, minimum of
 /// both directions. 0 if fewer than a tenth of the points of either are in observed cells of the other.
-double mutual_agreement(const SubmapShape& target, const SubmapShape& source, const Pose2& T_target_source);
+double mutual_overlap_consistency(const SubmapDescriptor& target, const SubmapDescriptor& source, const Pose2& T_target_source);
 
 /// Returns whether the distance of the centers, minus two standard deviations of the prediction, is below the sum of
 /// the radii.
-bool may_be_neighbours(const SubmapShape& target, const SubmapShape& source, const PoseGaussian& T_target_source);
+bool may_be_neighbors(const SubmapDescriptor& target, const SubmapDescriptor& source, const PoseGaussian& T_target_source);
 
 struct SubmapComparison {
   std::vector<double> features;      ///< [feature] in the order of kPairFeatures, all finite
@@ -51,6 +51,6 @@ struct SubmapComparison {
 };
 
 /// Computes the features of a pair with one NDT alignment. `T_target_source` is predicted by odometry or the graph.
-SubmapComparison compare_submaps(const SubmapShape& target, const SubmapShape& source, const PoseGaussian& T_target_source, const NdtSettings& settings);
+SubmapComparison compare_submaps(const SubmapDescriptor& target, const SubmapDescriptor& source, const PoseGaussian& T_target_source, const NdtSettings& settings);
 
 }  // namespace patrol::slam

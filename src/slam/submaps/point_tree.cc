@@ -55,17 +55,17 @@ PointTree& PointTree::operator=(PointTree&&) noexcept = default;
 
 const std::vector<Eigen::Vector2d>& PointTree::points() const { return index_->cloud.points; }
 
-PointTree::Neighbour PointTree::nearest(const Eigen::Vector2d& p) const {
+PointTree::Neighbor PointTree::nearest(const Eigen::Vector2d& p) const {
   assert(!points().empty());
-  Neighbour found;
+  Neighbor found;
   index_->tree.knnSearch(p.data(), 1, &found.index, &found.squared_distance_m2);
   return found;
 }
 
-std::vector<PointTree::Neighbour> PointTree::within(const Eigen::Vector2d& p, double radius_m) const {
+std::vector<PointTree::Neighbor> PointTree::within(const Eigen::Vector2d& p, double radius_m) const {
   std::vector<std::pair<std::size_t, double>> matches;
   index_->tree.radiusSearch(p.data(), radius_m * radius_m, matches, nanoflann::SearchParams());
-  std::vector<Neighbour> found;
+  std::vector<Neighbor> found;
   found.reserve(matches.size());
   for (const auto& [index, squared] : matches) found.push_back({index, squared});
   return found;
@@ -73,19 +73,19 @@ std::vector<PointTree::Neighbour> PointTree::within(const Eigen::Vector2d& p, do
 
 namespace {
 
-SurfaceNormal normal_of(const PointTree& tree, const std::vector<PointTree::Neighbour>& near) {
+SurfaceNormal normal_of(const PointTree& tree, const std::vector<PointTree::Neighbor>& near) {
   if (near.size() < 3) return {};
   const auto count = static_cast<double>(near.size());
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const auto& neighbour : near) mean += tree.points()[neighbour.index] / count;
+  for (const auto& neighbor : near) mean += tree.points()[neighbor.index] / count;
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
-  for (const auto& neighbour : near) {
-    const Eigen::Vector2d offset = tree.points()[neighbour.index] - mean;
+  for (const auto& neighbor : near) {
+    const Eigen::Vector2d offset = tree.points()[neighbor.index] - mean;
     scatter += offset * offset.transpose();
   }
   const SymmetricEigen<2> axes = symmetric_eigen_direct(scatter);
   if (!(axes.values[1] > 0.0)) return {};  // coincident points
-  return {.normal = axes.vectors.col(0), .straightness = 1.0 - std::max(0.0, axes.values[0]) / axes.values[1]};
+  return {.normal = axes.vectors.col(0), .linearity = 1.0 - std::max(0.0, axes.values[0]) / axes.values[1]};
 }
 
 }  // namespace

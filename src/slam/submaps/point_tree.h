@@ -22,14 +22,14 @@ class PointTree {
 
   const std::vector<Eigen::Vector2d>& points() const;
 
-  struct Neighbour {
+  struct Neighbor {
     std::size_t index = 0;
     double squared_distance_m2 = 0.0;
   };
   /// Returns the nearest point; the tree must not be empty.
-  Neighbour nearest(const Eigen::Vector2d& p) const;
+  Neighbor nearest(const Eigen::Vector2d& p) const;
   /// Returns all points within the radius, nearest first.
-  std::vector<Neighbour> within(const Eigen::Vector2d& p, double radius_m) const;
+  std::vector<Neighbor> within(const Eigen::Vector2d& p, double radius_m) const;
 
  private:
   struct Index;
@@ -41,7 +41,7 @@ struct SurfaceNormal {
   /// Unit normal, on either side; zero if fewer than three points are nearby.
   Eigen::Vector2d normal = Eigen::Vector2d::Zero();
   /// Linearity: 1 on a straight wall; 0 if as wide as long (corner, bush) or without neighbors.
-  double straightness = 0.0;
+  double linearity = 0.0;
 };
 
 /// Normals of the points of the tree, [point]: the principal axis of smallest variance of the points within the radius.

@@ -7,15 +7,15 @@
 
 namespace patrol::slam {
 
-GridSlamSettings SubmapBuilderSettings::short_ways() {
-  GridSlamSettings settings = tracked_filter();
+GridSlamSettings SubmapBuilderSettings::submap_filter_settings() {
+  GridSlamSettings settings = default_filter_settings();
   settings.max_extent_m = 400.0;
   settings.particles = 10;
-  settings.motion = {.along_std_m_per_m = 0.006,
-                     .across_std_m_per_m = 0.006,
-                     .turn_std_rad_per_rad = 0.006,
-                     .turn_std_rad_per_m = 0.0015,
-                     .turn_std_rad_per_s = 0.0,
+  settings.motion = {.longitudinal_std_m_per_m = 0.006,
+                     .lateral_std_m_per_m = 0.006,
+                     .yaw_std_rad_per_rad = 0.006,
+                     .yaw_std_rad_per_m = 0.0015,
+                     .yaw_std_rad_per_s = 0.0,
                      .min_std_m = 0.0015,
                      .min_std_rad = 0.0006};
   return settings;
@@ -24,8 +24,8 @@ GridSlamSettings SubmapBuilderSettings::short_ways() {
 Pose2 SubmapBuilder::update(const LevelScan& scan, const Pose2& T_odom_body) {
   if (T_odom_last_) {
     const Pose2 step = T_odom_last_->inverse() * T_odom_body;
-    way_m_ += step.position().norm();
-    turn_rad_ += std::abs(step.yaw);
+    distance_m_ += step.position().norm();
+    rotation_rad_ += std::abs(step.yaw);
   }
   T_odom_last_ = T_odom_body;
   const SlamUpdate update = filtered_.update(scan, T_odom_body);

@@ -12,16 +12,16 @@
 namespace patrol::slam {
 
 struct SubmapBuilderSettings {
-  double max_way_m = 12.0;  ///< distance traveled at which a submap is full
+  double max_distance_m = 12.0;  ///< distance traveled at which a submap is full
   int max_keyframes = 150;  ///< number of keyframes at which a submap is full
-  GridSlamSettings filter = short_ways();
+  GridSlamSettings filter = submap_filter_settings();
 
   /// Filter settings for submaps of a few meters on scan-to-scan odometry: few particles and small motion noise.
-  static GridSlamSettings short_ways();
+  static GridSlamSettings submap_filter_settings();
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("max_way_m", self.max_way_m, between(1.0, 1000.0));
+    visit("max_way_m", self.max_distance_m, between(1.0, 1000.0));
     visit("max_keyframes", self.max_keyframes, between(2, 100000));
     visit("filter", self.filter);
   }
@@ -35,11 +35,11 @@ class SubmapBuilder {
 
   /// Processes a scan and returns the body pose in submap.
   Pose2 update(const LevelScan& scan, const Pose2& T_odom_body);
-  bool is_full() const { return way_m_ >= settings_.max_way_m || static_cast<int>(scans_.size()) >= settings_.max_keyframes; }
+  bool is_full() const { return distance_m_ >= settings_.max_distance_m || static_cast<int>(scans_.size()) >= settings_.max_keyframes; }
 
   /// Distance traveled and sum of absolute yaw changes by odometry.
-  double way_m() const { return way_m_; }
-  double turn_rad() const { return turn_rad_; }
+  double distance_m() const { return distance_m_; }
+  double rotation_rad() const { return rotation_rad_; }
 
   // Estimates of the currently best particle, in submap:
   std::vector<Pose2> path() const { return filtered_.path(); }  ///< [scan]
@@ -49,10 +49,10 @@ class SubmapBuilder {
 
  private:
   SubmapBuilderSettings settings_;
-  FilteredPath filtered_;
+  TrajectoryRbpf filtered_;
   std::vector<LevelScan> scans_;  ///< [keyframe]
   std::optional<Pose2> T_odom_last_;
-  double way_m_ = 0.0, turn_rad_ = 0.0;
+  double distance_m_ = 0.0, rotation_rad_ = 0.0;
 };
 
 }  // namespace patrol::slam

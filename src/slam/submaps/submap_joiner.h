@@ -10,36 +10,36 @@
 
 namespace patrol::slam {
 
-struct SubmapJoinerSettings {
+struct SubmapConstraintSettings {
   double min_margin = 0.2;         ///< minimum classifier margin (-1 ... 1) of neighbors
   /// The match is rejected if fine matching moves a submap farther from the coarse pose.
   double max_fine_shift_m = 0.5;
   double max_fine_shift_rad = 0.1;
-  double min_agreement = 0.6;      ///< minimum inlier ratio (mutual_agreement)
+  double min_overlap_consistency = 0.6;      ///< minimum inlier ratio (mutual_overlap_consistency)
   double max_window_m = 15.0;      ///< maximum half width of the search for a second-best match around the prediction
   double max_window_rad = 0.8;
-  double rival_share = 0.9;  ///< the match is rejected if a distinct pose scores more than this fraction of its score
-  double rival_distance_m = 0.8;   ///< poses at least this far from the match are distinct
-  double rival_angle_rad = 0.35;
+  double max_second_best_ratio = 0.9;  ///< the match is rejected if a distinct pose scores more than this fraction of its score
+  double min_second_best_distance_m = 0.8;   ///< poses at least this far from the match are distinct
+  double min_second_best_angle_rad = 0.35;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("min_margin", self.min_margin, between(-1.0, 1.0));
     visit("max_fine_shift_m", self.max_fine_shift_m, at_least(0.0));
     visit("max_fine_shift_rad", self.max_fine_shift_rad, at_least(0.0));
-    visit("min_agreement", self.min_agreement, between(0.0, 1.0));
+    visit("min_agreement", self.min_overlap_consistency, between(0.0, 1.0));
     visit("max_window_m", self.max_window_m, between(0.1, 100.0));
     visit("max_window_rad", self.max_window_rad, between(0.01, 3.2));
-    visit("rival_share", self.rival_share, between(0.0, 1.0));
-    visit("rival_distance_m", self.rival_distance_m, at_least(0.0));
-    visit("rival_angle_rad", self.rival_angle_rad, at_least(0.0));
+    visit("rival_share", self.max_second_best_ratio, between(0.0, 1.0));
+    visit("rival_distance_m", self.min_second_best_distance_m, at_least(0.0));
+    visit("rival_angle_rad", self.min_second_best_angle_rad, at_least(0.0));
   }
 };
 
 /// Reason for rejecting a submap pair.
-enum class JoinFailure {
+enum class ConstraintRejection {
   kNone,
-  kStrangers,  ///< not recognized as neighbors
+  kNotNeighbors,  ///< not recognized as neighbors
   kMismatch,   ///< coarse and fine matching disagree, or the inlier ratio is too small
   kAmbiguous,  ///< a second-best match has a similar score
 };
@@ -54,17 +54,17 @@ struct SurfaceMatch {
 /// Matches coarsely by normal distributions from the prediction, then finely on effective neighbors [Yu23, section 2].
 SurfaceMatch match_surfaces(const SubmapSurfaces& target, const SubmapSurfaces& source, const PoseGaussian& T_target_source, const SubmapSurfaceSettings& settings);
 
-struct SubmapJoint {
+struct SubmapConstraint {
   Pose2 T_target_source;
   /// Information of x, y, yaw in target, with independent points.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double margin = 0.0;
-  double agreement = 0.0;
+  double overlap_consistency = 0.0;
 };
 
-struct JoinResult {
-  std::optional<SubmapJoint> joint;
-  JoinFailure failure = JoinFailure::kNone;
+struct ConstraintResult {
+  std::optional<SubmapConstraint> constraint;
+  ConstraintRejection failure = ConstraintRejection::kNone;
 };
 
 /// Decides whether two submaps are neighbors and estimates their relative pose. `model` classifies the pair [Yu23,
@@ -74,7 +74,7 @@ struct JoinResult {
 /// - the fine match must stay near the coarse match;
 /// - both submaps must agree on free and occupied cells;
 /// - no other pose within three standard deviations of the prediction may score similarly.
-JoinResult join_submaps(const SubmapSurfaces& target, const SubmapSurfaces& source, const PoseGaussian& T_target_source, const BoostedStumps& model,
-                        const SubmapSurfaceSettings& surfaces, const SubmapJoinerSettings& settings);
+ConstraintResult find_constraint(const SubmapSurfaces& target, const SubmapSurfaces& source, const PoseGaussian& T_target_source, const BoostedStumps& model,
+                        const SubmapSurfaceSettings& surfaces, const SubmapConstraintSettings& settings);
 
 }  // namespace patrol::slam

@@ -16,8 +16,8 @@ namespace {
 
 /// Covariance of the next submap's first scan in the frame of the previous submap.
 Eigen::Matrix3d drift_over(const SubmapBuilder& submap, const SubmapRbpfSettings& settings) {
-  const double std_m = settings.drift_std_m_per_m * submap.way_m() + 1e-3;
-  const double std_rad = settings.drift_std_rad_per_m * submap.way_m() + settings.drift_std_rad_per_rad * submap.turn_rad() + 1e-4;
+  const double std_m = settings.drift_std_m_per_m * submap.distance_m() + 1e-3;
+  const double std_rad = settings.drift_std_rad_per_m * submap.distance_m() + settings.drift_std_rad_per_rad * submap.rotation_rad() + 1e-4;
   return Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();
 }
 
@@ -28,8 +28,8 @@ std::uint64_t seed_of_submap(std::uint64_t seed, std::size_t submap) {
 
 }  // namespace
 
-SubmapRbpf::SubmapRbpf(const SubmapRbpfSettings& settings, BoostedStumps neighbours, std::uint64_t seed)
-    : settings_(settings), neighbours_(std::move(neighbours)), seed_(seed), tracker_(settings.tracking) {
+SubmapRbpf::SubmapRbpf(const SubmapRbpfSettings& settings, BoostedStumps neighbors, std::uint64_t seed)
+    : settings_(settings), neighbors_(std::move(neighbors)), seed_(seed), tracker_(settings.tracking) {
   validate(settings, "slam");
 }
 
@@ -55,25 +55,25 @@ void SubmapRbpf::begin_submap() {
 }
 
 void SubmapRbpf::close_submap() {
-  follow_on(*builder_);
+  add_odometry_edge(*builder_);
   Submap closed{.keyframes = {}, .T_submap_body = builder_->path(), .surfaces = describe_surfaces(builder_->map(), settings_.surfaces)};
   closed.keyframes = builder_->take_keyframes();
   builder_.reset();
   submaps_.push_back(std::move(closed));
-  join_neighbours(static_cast<int>(submaps_.size()) - 1);
+  add_loop_closures(static_cast<int>(submaps_.size()) - 1);
 }
 
 // Starts the next submap at the end of this one and adds an odometry edge.
-void SubmapRbpf::follow_on(const SubmapBuilder& before) {
+void SubmapRbpf::add_odometry_edge(const SubmapBuilder& before) {
   const int from = static_cast<int>(graph_.T_map_node.size()) - 1;
   const Pose2 T_submap_next = before.path().back();
   const Eigen::Matrix3d drift = drift_over(before, settings_);
   graph_.T_map_node.push_back(graph_.T_map_node.back() * T_submap_next);
   graph_.edges.push_back({.from = from, .to = from + 1, .T_from_to = T_submap_next, .information = drift.inverse(), .kind = PoseGraphEdge::Kind::kOdometry});
-  ways_.push_back({.from = from, .to = from + 1, .covariance = drift});
+  covariance_edges_.push_back({.from = from, .to = from + 1, .covariance = drift});
 }
 
-std::vector<PoseGaussian> SubmapRbpf::positions_around(int submap) const { return positions_from(submap, graph_.T_map_node, ways_); }
+std::vector<PoseGaussian> SubmapRbpf::relative_pose_distributions(int submap) const { return shortest_path_distributions(submap, graph_.T_map_node, covariance_edges_); }
 
 // Returns the nearest older submaps that may be neighbors.
 std::vector<int> SubmapRbpf::candidates_for(int source, const std::vector<PoseGaussian>& around) const {
@@ -81,8 +81,8 @@ std::vector<int> SubmapRbpf::candidates_for(int source, const std::vector<PoseGa
   for (int target = 0; target < source; ++target) {
     if (!surfaces_of(target)) continue;
     const PoseGaussian& T_source_target = around[static_cast<std::size_t>(target)];
-    const SubmapShape &of_source = surfaces_of(source)->shape, &of_target = surfaces_of(target)->shape;
-    if (!may_be_neighbours(of_source, of_target, T_source_target)) continue;
+    const SubmapDescriptor &of_source = surfaces_of(source)->descriptor, &of_target = surfaces_of(target)->descriptor;
+    if (!may_be_neighbors(of_source, of_target, T_source_target)) continue;
     near.emplace_back((T_source_target.mean * of_target.center - of_source.center).norm(), target);
   }
   std::sort(near.begin(), near.end());
@@ -91,21 +91,21 @@ std::vector<int> SubmapRbpf::candidates_for(int source, const std::vector<PoseGa
   return candidates;
 }
 
-void SubmapRbpf::join_neighbours(int source) {
+void SubmapRbpf::add_loop_closures(int source) {
   if (!surfaces_of(source)) return;
-  const std::vector<PoseGaussian> around = positions_around(source);
-  bool has_joined = false;
+  const std::vector<PoseGaussian> around = relative_pose_distributions(source);
+  bool has_constraint = false;
   for (const int target : candidates_for(source, around)) {
-    const PoseGaussian prediction = inverse_of(around[static_cast<std::size_t>(target)]);
-    const JoinResult result = join_submaps(*surfaces_of(target), *surfaces_of(source), prediction, neighbours_, settings_.surfaces, settings_.joints);
+    const PoseGaussian prediction = invert(around[static_cast<std::size_t>(target)]);
+    const ConstraintResult result = find_constraint(*surfaces_of(target), *surfaces_of(source), prediction, neighbors_, settings_.surfaces, settings_.constraints);
     comparisons_.push_back({.target = target, .source = source, .T_target_source = prediction, .result = result});
-    if (!result.joint) continue;
-    has_joined = true;
-    const Eigen::Matrix3d information = edge_information(settings_.joint_gain * result.joint->information, settings_.joint_std_m, settings_.joint_std_rad);
-    graph_.edges.push_back({.from = target, .to = source, .T_from_to = result.joint->T_target_source, .information = information, .kind = PoseGraphEdge::Kind::kLoop});
-    ways_.push_back({.from = target, .to = source, .covariance = information.inverse()});
+    if (!result.constraint) continue;
+    has_constraint = true;
+    const Eigen::Matrix3d information = edge_information(settings_.likelihood_tempering * result.constraint->information, settings_.constraint_std_m, settings_.constraint_std_rad);
+    graph_.edges.push_back({.from = target, .to = source, .T_from_to = result.constraint->T_target_source, .information = information, .kind = PoseGraphEdge::Kind::kLoop});
+    covariance_edges_.push_back({.from = target, .to = source, .covariance = information.inverse()});
   }
-  if (has_joined) solve(graph_, settings_.solver);
+  if (has_constraint) solve(graph_, settings_.solver);
 }
 
 void SubmapRbpf::finish() {
@@ -136,7 +136,7 @@ OccupancyGrid SubmapRbpf::map() const {
   for (std::size_t s = 0; s < submaps_.size(); ++s) {
     for (const Keyframe& keyframe : submaps_[s].keyframes) integrate_scan(keyframe.scan, graph_.T_map_node[s] * keyframe.T_local_body, filter.integration, map);
   }
-  return render_map(map, settings_.min_hits_occupied, settings_.min_hit_share_occupied);
+  return render_map(map, settings_.min_hits_occupied, settings_.min_occupied_hit_ratio);
 }
 
 }  // namespace patrol::slam

@@ -19,37 +19,37 @@ struct SubmapRbpfSettings {
   ScanTrackerSettings tracking;
   SubmapBuilderSettings submaps;
   SubmapSurfaceSettings surfaces;
-  SubmapJoinerSettings joints;
+  SubmapConstraintSettings constraints;
   // Odometry drift over a submap, for the prediction of loop closures.
   double drift_std_m_per_m = 0.003;
   double drift_std_rad_per_m = 0.0005;
   double drift_std_rad_per_rad = 0.005;
   int max_candidates = 8;        ///< maximum number of older submaps compared with each new one, nearest first
-  double joint_gain = 0.2;       ///< tempering factor: fraction of the matched points with independent errors
+  double likelihood_tempering = 0.2;       ///< tempering factor: fraction of the matched points with independent errors
   /// Standard deviation of the systematic error of a match, independent of the number of points.
-  double joint_std_m = 0.02;
-  double joint_std_rad = 0.002;
+  double constraint_std_m = 0.02;
+  double constraint_std_rad = 0.002;
   /// Narrow kernel: each submap has many constraints, of which only a few need to be inliers.
-  PoseGraphSolverSettings solver = {.max_iterations = 50, .doubts_loops = true, .loop_kernel = 0.3};
+  PoseGraphSolverSettings solver = {.max_iterations = 50, .robust_loop_closures = true, .loop_closure_loss_scale = 0.3};
   int min_hits_occupied = 2;
-  double min_hit_share_occupied = 0.3;
+  double min_occupied_hit_ratio = 0.3;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("tracking", self.tracking);
     visit("submaps", self.submaps);
     visit("surfaces", self.surfaces);
-    visit("joints", self.joints);
+    visit("joints", self.constraints);
     visit("drift_std_m_per_m", self.drift_std_m_per_m, between(1e-6, 10.0));
     visit("drift_std_rad_per_m", self.drift_std_rad_per_m, between(1e-6, 10.0));
     visit("drift_std_rad_per_rad", self.drift_std_rad_per_rad, at_least(0.0));
     visit("max_candidates", self.max_candidates, between(0, 10000));
-    visit("joint_gain", self.joint_gain, between(0.0, 1.0));
-    visit("joint_std_m", self.joint_std_m, between(1e-5, 1.0));
-    visit("joint_std_rad", self.joint_std_rad, between(1e-6, 1.0));
+    visit("joint_gain", self.likelihood_tempering, between(0.0, 1.0));
+    visit("joint_std_m", self.constraint_std_m, between(1e-5, 1.0));
+    visit("joint_std_rad", self.constraint_std_rad, between(1e-6, 1.0));
     visit("solver", self.solver);
     visit("min_hits_occupied", self.min_hits_occupied, between(1, 1000));
-    visit("min_hit_share_occupied", self.min_hit_share_occupied, between(0.0, 1.0));
+    visit("min_hit_share_occupied", self.min_occupied_hit_ratio, between(0.0, 1.0));
   }
 };
 
@@ -67,7 +67,7 @@ class SubmapRbpf {
  public:
   /// `neighbours` classifies submap pairs by their features (pair_features.h). Throws InputError if a setting is
   /// invalid.
-  SubmapRbpf(const SubmapRbpfSettings& settings, BoostedStumps neighbours, std::uint64_t seed);
+  SubmapRbpf(const SubmapRbpfSettings& settings, BoostedStumps neighbors, std::uint64_t seed);
 
   /// Processes a scan and returns the current body pose in map.
   Pose2 update(const LevelScan& scan, const Pose2& T_odom_body);
@@ -78,14 +78,14 @@ class SubmapRbpf {
   std::vector<Pose2> path() const;
   /// Pose graph whose nodes are the submaps.
   const PoseGraph& graph() const { return graph_; }
-  std::vector<std::size_t> node_scans() const { return first_scans_; }
+  std::vector<std::size_t> node_scan_indices() const { return first_scans_; }
   OccupancyGrid map() const;
 
   /// Result of comparing two submaps.
   struct Comparison {
     int target = 0, source = 0;
     PoseGaussian T_target_source;  ///< predicted relative pose
-    JoinResult result;
+    ConstraintResult result;
   };
   const std::vector<Comparison>& comparisons() const { return comparisons_; }
   /// Index of the first scan of each submap, [submap].
@@ -103,13 +103,13 @@ class SubmapRbpf {
 
   void begin_submap();
   void close_submap();
-  void follow_on(const SubmapBuilder& before);
-  void join_neighbours(int source);
-  std::vector<PoseGaussian> positions_around(int submap) const;
+  void add_odometry_edge(const SubmapBuilder& before);
+  void add_loop_closures(int source);
+  std::vector<PoseGaussian> relative_pose_distributions(int submap) const;
   std::vector<int> candidates_for(int source, const std::vector<PoseGaussian>& around) const;
 
   SubmapRbpfSettings settings_;
-  BoostedStumps neighbours_;
+  BoostedStumps neighbors_;
   std::uint64_t seed_;
   ScanTracker tracker_;
   std::optional<SubmapBuilder> builder_;
@@ -117,7 +117,7 @@ class SubmapRbpf {
   std::vector<std::size_t> first_scans_;
   std::size_t num_scans_ = 0;
   PoseGraph graph_;  ///< nodes are the submaps, the last one is the open submap
-  std::vector<UncertainWay> ways_;
+  std::vector<CovarianceEdge> covariance_edges_;
   std::vector<Comparison> comparisons_;
 };
 

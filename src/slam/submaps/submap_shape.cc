@@ -40,7 +40,7 @@ void add_around_circle(std::vector<double>& histogram, double place, double weig
   histogram[(bin + 1) % histogram.size()] += fraction * weight;
 }
 
-std::vector<double> distance_histogram(const std::vector<Eigen::Vector2d>& points, const SubmapShapeSettings& settings) {
+std::vector<double> distance_histogram(const std::vector<Eigen::Vector2d>& points, const SubmapDescriptorSettings& settings) {
   std::vector<double> histogram(static_cast<std::size_t>(settings.distance_bins), 0.0);
   const double last = static_cast<double>(settings.distance_bins - 1);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -57,11 +57,11 @@ std::vector<double> distance_histogram(const std::vector<Eigen::Vector2d>& point
   return histogram;
 }
 
-std::vector<double> direction_histogram(const std::vector<Eigen::Vector2d>& points, const SubmapShapeSettings& settings) {
+std::vector<double> direction_histogram(const std::vector<Eigen::Vector2d>& points, const SubmapDescriptorSettings& settings) {
   std::vector<double> histogram(static_cast<std::size_t>(settings.direction_bins), 0.0);
   for (const SurfaceNormal& surface : surface_normals(PointTree(points), settings.normal_radius_m)) {
     const double direction = std::atan2(surface.normal.y(), surface.normal.x()) + 0.5 * std::numbers::pi;
-    add_around_circle(histogram, direction / std::numbers::pi * settings.direction_bins, surface.straightness * surface.straightness);
+    add_around_circle(histogram, direction / std::numbers::pi * settings.direction_bins, surface.linearity * surface.linearity);
   }
   normalize(histogram);
   return histogram;
@@ -69,10 +69,10 @@ std::vector<double> direction_histogram(const std::vector<Eigen::Vector2d>& poin
 
 }  // namespace
 
-SubmapShape describe_submap(const std::vector<Eigen::Vector2d>& points_submap, const GridMap& map, const SubmapShapeSettings& settings) {
+SubmapDescriptor describe_submap(const std::vector<Eigen::Vector2d>& points_submap, const GridMap& map, const SubmapDescriptorSettings& settings) {
   if (points_submap.size() < 3) throw InputError(fmt::format("submap: has {} surface points: must have at least 3", points_submap.size()));
   const Eigen::Vector2d center = mean_of(points_submap);
-  std::vector<Eigen::Vector2d> points = thinned(points_submap, settings.max_points);
+  std::vector<Eigen::Vector2d> points = subsample(points_submap, settings.max_points);
   std::vector<double> distances = distance_histogram(points, settings);
   return {.points = std::move(points),
           .num_points = points_submap.size(),
@@ -81,7 +81,7 @@ SubmapShape describe_submap(const std::vector<Eigen::Vector2d>& points_submap, c
           .hull = convex_hull(points_submap),
           .distances = std::move(distances),
           .directions = direction_histogram(points_submap, settings),
-          .seen = SeenCells(map, settings.seen_cell_m),
+          .observed = ObservedCells(map, settings.observed_cell_m),
           .ndt = make_ndt(points_submap, settings.ndt)};
 }
 

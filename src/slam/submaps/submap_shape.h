@@ -13,13 +13,13 @@
 
 namespace patrol::slam {
 
-struct SubmapShapeSettings {
+struct SubmapDescriptorSettings {
   int max_points = 300;            ///< maximum number of compared points; a regular subset of larger submaps is used
   double normal_radius_m = 0.4;    ///< radius of the neighborhood whose principal axis is the direction of the wall
   double distance_bin_m = 1.0;     ///< bin width of the histogram of distances between points
   int distance_bins = 40;          ///< number of distance bins; the last one includes all larger distances
   int direction_bins = 36;         ///< number of direction bins over half a turn
-  double seen_cell_m = 0.25;
+  double observed_cell_m = 0.25;
   NdtSettings ndt;
 
   template <typename Self, typename Visitor>
@@ -29,13 +29,13 @@ struct SubmapShapeSettings {
     visit("distance_bin_m", self.distance_bin_m, between(0.01, 100.0));
     visit("distance_bins", self.distance_bins, between(2, 10000));
     visit("direction_bins", self.direction_bins, between(4, 720));
-    visit("seen_cell_m", self.seen_cell_m, between(0.05, 10.0));
+    visit("seen_cell_m", self.observed_cell_m, between(0.05, 10.0));
     visit("ndt", self.ndt);
   }
 };
 
 /// Descriptor of a submap for comparison with others, computed once. All coordinates are in submap.
-struct SubmapShape {
+struct SubmapDescriptor {
   std::vector<Eigen::Vector2d> points;  ///< downsampled surface points
   std::size_t num_points = 0;           ///< before downsampling
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< mean of the points
@@ -44,13 +44,13 @@ struct SubmapShape {
   std::vector<double> distances;        ///< [bin], fractions of all pairs of points: shape distribution D2 [Osada02]
   /// [bin] over half a turn from x on, fractions of the wall directions; points off straight walls have small weights
   std::vector<double> directions;
-  SeenCells seen;
+  ObservedCells observed;
   std::vector<NdtGrid> ndt;
 };
 
 /// Computes the descriptor of a submap. `points_submap` must be at least three finite points; throws InputError
 /// otherwise.
-SubmapShape describe_submap(const std::vector<Eigen::Vector2d>& points_submap, const GridMap& map, const SubmapShapeSettings& settings);
+SubmapDescriptor describe_submap(const std::vector<Eigen::Vector2d>& points_submap, const GridMap& map, const SubmapDescriptorSettings& settings);
 
 /// Difference of two histograms with equal numbers of bins, each of sum 1: 0 equal ... 1 disjoint.
 double histogram_difference(const std::vector<double>& a, const std::vector<double>& b);

@@ -14,9 +14,9 @@ constexpr int kSurfacePyramidLevels = 7;
 std::optional<SubmapSurfaces> describe_surfaces(const GridMap& map, const SubmapSurfaceSettings& settings) {
   std::vector<Eigen::Vector2d> points = surface_points(map);
   if (static_cast<int>(points.size()) < settings.min_points) return std::nullopt;
-  SubmapShape shape = describe_submap(points, map, settings.shape);
-  std::vector<Eigen::Vector2d> facings = facings_of(points, map, settings.facing_radius_m);
-  return SubmapSurfaces{.shape = std::move(shape), .points = IcpPoints(std::move(points), settings.icp, std::move(facings)), .pyramid = LikelihoodPyramid(map, settings.pyramid_cell_m, kSurfacePyramidLevels)};
+  SubmapDescriptor descriptor = describe_submap(points, map, settings.descriptor);
+  std::vector<Eigen::Vector2d> free_space_normals = estimate_free_space_normals(points, map, settings.free_space_radius_m);
+  return SubmapSurfaces{.descriptor = std::move(descriptor), .points = IcpPoints(std::move(points), settings.icp, std::move(free_space_normals)), .pyramid = LikelihoodPyramid(map, settings.pyramid_cell_m, kSurfacePyramidLevels)};
 }
 
 }  // namespace patrol::slam

@@ -4,7 +4,7 @@
 
 namespace patrol::slam {
 
-void BatOptimizer::move(Swarm& swarm, const Fitness& judge, RandomSequence& random) const {
+void BatOptimizer::move(Swarm& swarm, const Fitness& fitness_of, RandomSequence& random) const {
   const Eigen::Index coordinates = swarm.positions.front().size();
   std::vector<Position> velocities(swarm.size(), Position::Zero(coordinates));
   std::vector<double> loudness(swarm.size(), settings_.loudness);
@@ -18,7 +18,7 @@ void BatOptimizer::move(Swarm& swarm, const Fitness& judge, RandomSequence& rand
         candidate = best;
         for (double& coordinate : candidate) coordinate += settings_.local_step * loudness[i] * random.normal();
       }
-      if (random.uniform() < loudness[i] && swarm.accept(i, candidate, judge)) loudness[i] *= settings_.loudness_decay;
+      if (random.uniform() < loudness[i] && swarm.accept(i, candidate, fitness_of)) loudness[i] *= settings_.loudness_decay;
     }
   }
 }

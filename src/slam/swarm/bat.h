@@ -21,7 +21,7 @@ class BatOptimizer : public SwarmOptimizer {
  public:
   explicit BatOptimizer(const BatSettings& settings) : settings_(settings) {}
 
-  void move(Swarm& swarm, const Fitness& judge, RandomSequence& random) const override;
+  void move(Swarm& swarm, const Fitness& fitness_of, RandomSequence& random) const override;
 
  private:
   BatSettings settings_;

@@ -6,32 +6,32 @@ namespace patrol::slam {
 namespace {
 
 /// Attraction beta_0 exp(-gamma r^2) (x_j - x_i) from one position toward another.
-Position flight(const Position& from, const Position& to, double attractiveness, double absorption) {
+Position attraction_step(const Position& from, const Position& to, double attractiveness, double absorption) {
   return attractiveness * std::exp(-absorption * (to - from).squaredNorm()) * (to - from);
 }
 
-void step_at_random(Position& position, double step, RandomSequence& random) {
+void add_random_step(Position& position, double step, RandomSequence& random) {
   for (double& coordinate : position) coordinate += step * (random.uniform() - 0.5);
 }
 
 }  // namespace
 
-void FireflyOptimizer::move(Swarm& swarm, const Fitness& judge, RandomSequence& random) const {
+void FireflyOptimizer::move(Swarm& swarm, const Fitness& fitness_of, RandomSequence& random) const {
   for (int iteration = 0; iteration < settings_.iterations; ++iteration) {
     const Swarm before = swarm;
     const std::vector<std::size_t> ranking = before.ranking();
     for (std::size_t rank = 0; rank < ranking.size(); ++rank) {
       Position candidate = before.positions[ranking[rank]];
       for (std::size_t brighter = rank; brighter-- > 0;) {
-        candidate += flight(candidate, before.positions[ranking[brighter]], settings_.attractiveness, settings_.absorption);
+        candidate += attraction_step(candidate, before.positions[ranking[brighter]], settings_.attractiveness, settings_.absorption);
       }
-      step_at_random(candidate, settings_.step, random);
-      swarm.accept(ranking[rank], candidate, judge);
+      add_random_step(candidate, settings_.step, random);
+      swarm.accept(ranking[rank], candidate, fitness_of);
     }
   }
 }
 
-void ImprovedFireflyOptimizer::move(Swarm& swarm, const Fitness& judge, RandomSequence& random) const {
+void ImprovedFireflyOptimizer::move(Swarm& swarm, const Fitness& fitness_of, RandomSequence& random) const {
   for (int iteration = 0; iteration < settings_.iterations; ++iteration) {
     const Swarm before = swarm;
     const std::vector<std::size_t> ranking = before.ranking();
@@ -40,9 +40,9 @@ void ImprovedFireflyOptimizer::move(Swarm& swarm, const Fitness& judge, RandomSe
     for (std::size_t rank = 0; rank < ranking.size(); ++rank) {
       const std::size_t member = ranking[rank], neighbor = ranking[rank > 0 ? rank - 1 : 0];
       Position candidate = before.positions[member];
-      candidate += flight(candidate, before.positions[neighbor], settings_.attractiveness, settings_.absorption);
-      step_at_random(candidate, std::exp(-settings_.noise_variance * brightness(member) / brightness(neighbor)), random);
-      swarm.accept(member, candidate, judge);
+      candidate += attraction_step(candidate, before.positions[neighbor], settings_.attractiveness, settings_.absorption);
+      add_random_step(candidate, std::exp(-settings_.noise_variance * brightness(member) / brightness(neighbor)), random);
+      swarm.accept(member, candidate, fitness_of);
     }
   }
 }

@@ -19,7 +19,7 @@ class FireflyOptimizer : public SwarmOptimizer {
  public:
   explicit FireflyOptimizer(const FireflySettings& settings) : settings_(settings) {}
 
-  void move(Swarm& swarm, const Fitness& judge, RandomSequence& random) const override;
+  void move(Swarm& swarm, const Fitness& fitness_of, RandomSequence& random) const override;
 
  private:
   FireflySettings settings_;
@@ -44,7 +44,7 @@ class ImprovedFireflyOptimizer : public SwarmOptimizer {
  public:
   explicit ImprovedFireflyOptimizer(const ImprovedFireflySettings& settings) : settings_(settings) {}
 
-  void move(Swarm& swarm, const Fitness& judge, RandomSequence& random) const override;
+  void move(Swarm& swarm, const Fitness& fitness_of, RandomSequence& random) const override;
 
  private:
   ImprovedFireflySettings settings_;

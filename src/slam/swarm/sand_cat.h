@@ -14,11 +14,11 @@ class SandCatOptimizer : public SwarmOptimizer {
  public:
   SandCatOptimizer(int iterations, bool is_improved) : iterations_(iterations), is_improved_(is_improved) {}
 
-  void move(Swarm& swarm, const Fitness& judge, RandomSequence& random) const override;
+  void move(Swarm& swarm, const Fitness& fitness_of, RandomSequence& random) const override;
 
  private:
-  void hunt(int iteration, Swarm& swarm, const Fitness& judge, RandomSequence& random) const;
-  void inherit(int iteration, const Swarm& before, Swarm& swarm, const Fitness& judge) const;
+  void search_and_attack(int iteration, Swarm& swarm, const Fitness& fitness_of, RandomSequence& random) const;
+  void replace_worst(int iteration, const Swarm& before, Swarm& swarm, const Fitness& fitness_of) const;
 
   int iterations_;
   bool is_improved_;

@@ -15,17 +15,17 @@ std::vector<std::size_t> Swarm::ranking() const {
   return order;
 }
 
-bool Swarm::accept(std::size_t member, const Position& candidate, const Fitness& judge) {
-  const double candidate_fitness = judge(member, candidate);
+bool Swarm::accept(std::size_t member, const Position& candidate, const Fitness& fitness_of) {
+  const double candidate_fitness = fitness_of(member, candidate);
   if (!(candidate_fitness > fitness[member])) return false;
   positions[member] = candidate;
   fitness[member] = candidate_fitness;
   return true;
 }
 
-Swarm make_swarm(std::vector<Position> positions, const Fitness& judge) {
+Swarm make_swarm(std::vector<Position> positions, const Fitness& fitness_of) {
   Swarm swarm{.positions = std::move(positions), .fitness = {}};
-  for (std::size_t i = 0; i < swarm.size(); ++i) swarm.fitness.push_back(judge(i, swarm.positions[i]));
+  for (std::size_t i = 0; i < swarm.size(); ++i) swarm.fitness.push_back(fitness_of(i, swarm.positions[i]));
   return swarm;
 }
 

@@ -30,18 +30,18 @@ struct Swarm {
   std::vector<std::size_t> ranking() const;
   /// Moves the member to the candidate if the fitness increases (greedy acceptance); returns whether it did. Equal
   /// fitness is rejected: without observations all positions are equal, and arbitrary jumps would be accepted.
-  bool accept(std::size_t member, const Position& candidate, const Fitness& judge);
+  bool accept(std::size_t member, const Position& candidate, const Fitness& fitness_of);
 };
 
 /// Evaluates the fitness of all positions.
-Swarm make_swarm(std::vector<Position> positions, const Fitness& judge);
+Swarm make_swarm(std::vector<Position> positions, const Fitness& fitness_of);
 
 /// Interface of a swarm optimizer. The fitness of no member decreases.
 class SwarmOptimizer {
  public:
   virtual ~SwarmOptimizer() = default;
 
-  virtual void move(Swarm& swarm, const Fitness& judge, RandomSequence& random) const = 0;
+  virtual void move(Swarm& swarm, const Fitness& fitness_of, RandomSequence& random) const = 0;
 };
 
 }  // namespace patrol::slam

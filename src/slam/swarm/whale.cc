@@ -5,7 +5,7 @@
 
 namespace patrol::slam {
 
-void WhaleOptimizer::move(Swarm& swarm, const Fitness& judge, RandomSequence& random) const {
+void WhaleOptimizer::move(Swarm& swarm, const Fitness& fitness_of, RandomSequence& random) const {
   for (int iteration = 0; iteration < iterations_; ++iteration) {
     const double a = 2.0 - 2.0 * iteration / iterations_;
     const Position best = swarm.positions[swarm.best()];
@@ -20,7 +20,7 @@ void WhaleOptimizer::move(Swarm& swarm, const Fitness& judge, RandomSequence& ra
         const double l = 2.0 * random.uniform() - 1.0;
         candidate = (best - whale).cwiseAbs() * std::exp(l) * std::cos(2.0 * std::numbers::pi * l) + best;
       }
-      swarm.accept(i, candidate, judge);
+      swarm.accept(i, candidate, fitness_of);
     }
   }
 }

@@ -10,7 +10,7 @@ class WhaleOptimizer : public SwarmOptimizer {
  public:
   explicit WhaleOptimizer(int iterations) : iterations_(iterations) {}
 
-  void move(Swarm& swarm, const Fitness& judge, RandomSequence& random) const override;
+  void move(Swarm& swarm, const Fitness& fitness_of, RandomSequence& random) const override;
 
  private:
   int iterations_;

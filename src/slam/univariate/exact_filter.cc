@@ -9,8 +9,8 @@
 namespace patrol::slam {
 namespace {
 
-constexpr double kReachStds = 8.0;        // standard deviations of the process noise; exp(-8^2 / 2) = 1e-14
-constexpr double kSmallestShare = 1e-18;  // of the maximum mass; smaller masses are not propagated
+constexpr double kCutoffSigmas = 8.0;        // standard deviations of the process noise; exp(-8^2 / 2) = 1e-14
+constexpr double kMinMassFraction = 1e-18;  // of the maximum mass; smaller masses are not propagated
 
 }  // namespace
 
@@ -22,7 +22,7 @@ ExactFilter::ExactFilter(const GrowthModel& model, const ExactFilterSettings& se
   const int half = static_cast<int>(std::ceil(settings.half_width / cell_));
   for (int i = -half; i <= half; ++i) nodes_.push_back(i * cell_);
   const double process_var = model.settings().process_var;
-  const int reach = static_cast<int>(std::ceil(kReachStds * std::sqrt(process_var) / cell_));
+  const int reach = static_cast<int>(std::ceil(kCutoffSigmas * std::sqrt(process_var) / cell_));
   for (int k = 0; k <= reach; ++k) bell_.push_back(std::exp(-0.5 * k * k * cell_ * cell_ / process_var));
 }
 
@@ -31,10 +31,10 @@ ExactFilter::ExactFilter(const GrowthModel& model, const ExactFilterSettings& se
 // ends.
 void ExactFilter::spread(double mean, double mass, std::vector<double>& predicted) const {
   const double process_var = model_.settings().process_var;
-  const double place = (mean - nodes_.front()) / cell_;
-  if (place < 0.0 || place > static_cast<double>(nodes_.size() - 1)) return;
-  const auto nearest = static_cast<std::size_t>(std::lround(place));
-  const double ahead = (place - static_cast<double>(nearest)) * cell_;
+  const double position_in_nodes = (mean - nodes_.front()) / cell_;
+  if (position_in_nodes < 0.0 || position_in_nodes > static_cast<double>(nodes_.size() - 1)) return;
+  const auto nearest = static_cast<std::size_t>(std::lround(position_in_nodes));
+  const double ahead = (position_in_nodes - static_cast<double>(nearest)) * cell_;
   const double up_ratio = std::exp(ahead * cell_ / process_var), down_ratio = 1.0 / up_ratio;
   double up = mass * std::exp(-0.5 * ahead * ahead / process_var), down = up;
   const std::size_t middle = nearest + bell_.size();
@@ -52,7 +52,7 @@ std::vector<double> ExactFilter::predict() const {
   if (density_.empty()) {
     spread(model_.drift(model_.settings().initial_state) + forcing, 1.0, predicted);
   } else {
-    const double smallest = kSmallestShare * *std::max_element(density_.begin(), density_.end());
+    const double smallest = kMinMassFraction * *std::max_element(density_.begin(), density_.end());
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       if (density_[i] > smallest) spread(model_.drift(nodes_[i]) + forcing, density_[i], predicted);
     }

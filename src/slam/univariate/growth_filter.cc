@@ -20,23 +20,23 @@ class GrowthFilter::Step {
 
   std::size_t size() const { return filter_.particles_.size(); }
 
-  Position draw(std::size_t i, RandomSequence& random) const {
+  Position sample(std::size_t i, RandomSequence& random) const {
     return Position::Constant(1, filter_.model_.drift(filter_.particles_[i]) + forcing_ + process_std_ * random.normal());
   }
 
   double log_fitness(std::size_t, const Position& position) const { return filter_.model_.log_likelihood(observation_, position[0]); }
 
-  double settle(std::size_t i, const Position& position) {
+  double commit(std::size_t i, const Position& position) {
     filter_.particles_[i] = position[0];
     return filter_.model_.log_likelihood(observation_, position[0]);
   }
 
-  void reproduce(const std::vector<Offspring>& offspring) {
+  void apply_resampling(const std::vector<Offspring>& offspring) {
     std::vector<double> children;
     children.reserve(offspring.size());
     for (const Offspring& child : offspring) {
-      const double own = filter_.particles_[child.parent], other = filter_.particles_[child.toward];
-      children.push_back((1.0 + child.mutation) * (own + child.share * (other - own)));
+      const double own = filter_.particles_[child.parent], other = filter_.particles_[child.attractor];
+      children.push_back((1.0 + child.mutation) * (own + child.attraction * (other - own)));
     }
     filter_.particles_ = std::move(children);
   }
@@ -46,8 +46,8 @@ class GrowthFilter::Step {
   double observation_, forcing_, process_std_;
 };
 
-GrowthFilter::GrowthFilter(int particles, const GrowthModel& model, ParticleFilterParts parts, std::uint64_t seed)
-    : model_(model), parts_(std::move(parts)), draws_(seed, "slam/univariate/particles") {
+GrowthFilter::GrowthFilter(int particles, const GrowthModel& model, ParticleFilterComponents components, std::uint64_t seed)
+    : model_(model), components_(std::move(components)), random_(seed, "slam/univariate/particles") {
   if (particles < 1) throw InputError(fmt::format("growth_filter.particles is {}, but must be at least 1", particles));
   particles_.assign(static_cast<std::size_t>(particles), model.settings().initial_state);
   log_weights_.assign(particles_.size(), 0.0);
@@ -55,16 +55,16 @@ GrowthFilter::GrowthFilter(int particles, const GrowthModel& model, ParticleFilt
 
 UnivariateEstimate GrowthFilter::step(double observation) {
   ++steps_;
-  RandomSequence random(draws_, static_cast<std::uint64_t>(steps_));
+  RandomSequence random(random_, static_cast<std::uint64_t>(steps_));
   Step problem(*this, observation);
-  advance_particles(problem, parts_, random, log_weights_);
+  propagate_and_weight(problem, components_, random, log_weights_);
   weights_ = normalized_weights(log_weights_);
   states_ = particles_;
-  renew_particles(problem, parts_, weights_, random, log_weights_);
+  resample_if_depleted(problem, components_, weights_, random, log_weights_);
   return summarize(states_, weights_);
 }
 
-ParticleFilterSettings ifa_settings_of_paper() {
+ParticleFilterSettings published_ifa_settings() {
   return {.optimizer = "ifa", .optimizer_iterations = 1, .firefly_absorption = 1.0, .resampler = "stepwise", .resample_threshold = 1.0};
 }
 

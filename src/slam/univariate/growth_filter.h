@@ -17,7 +17,7 @@ namespace patrol::slam {
 class GrowthFilter : public UnivariateFilter {
  public:
   /// Throws InputError for less than one particle.
-  GrowthFilter(int particles, const GrowthModel& model, ParticleFilterParts parts, std::uint64_t seed);
+  GrowthFilter(int particles, const GrowthModel& model, ParticleFilterComponents components, std::uint64_t seed);
 
   UnivariateEstimate step(double observation) override;
 
@@ -29,8 +29,8 @@ class GrowthFilter : public UnivariateFilter {
   class Step;
 
   GrowthModel model_;
-  ParticleFilterParts parts_;
-  RandomStream draws_;
+  ParticleFilterComponents components_;
+  RandomStream random_;
   int steps_ = 0;
   std::vector<double> particles_, log_weights_;
   std::vector<double> states_, weights_;
@@ -38,6 +38,6 @@ class GrowthFilter : public UnivariateFilter {
 
 /// Settings of IFA-PF in [Cui21, section 2]: beta_0 = gamma = 1, one generation per step, stepwise resampling at every
 /// step. The latter has the defaults of StepwiseResampling, beta = 0.8 and mu = 0.01.
-ParticleFilterSettings ifa_settings_of_paper();
+ParticleFilterSettings published_ifa_settings();
 
 }  // namespace patrol::slam

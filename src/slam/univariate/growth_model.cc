@@ -18,10 +18,10 @@ double GrowthModel::drift(double state) const { return 0.5 * state + 25.0 * stat
 
 double GrowthModel::forcing(int step) const { return 8.0 * std::cos(1.2 * (step - 1)); }
 
-double GrowthModel::observation_of(double state) const { return state * state / 20.0; }
+double GrowthModel::mean_observation(double state) const { return state * state / 20.0; }
 
 double GrowthModel::log_likelihood(double observation, double state) const {
-  const double error = observation - observation_of(state);
+  const double error = observation - mean_observation(state);
   return log_normalizer_ - 0.5 * error * error / settings_.observation_var;
 }
 
@@ -34,7 +34,7 @@ GrowthRun GrowthModel::simulate(std::uint64_t seed) const {
     const auto tick = static_cast<std::uint64_t>(step);
     state = transition(state, step) + process_std * process.normal(tick);
     run.states.push_back(state);
-    run.observations.push_back(observation_of(state) + sensor_std * sensor.normal(tick));
+    run.observations.push_back(mean_observation(state) + sensor_std * sensor.normal(tick));
   }
   return run;
 }

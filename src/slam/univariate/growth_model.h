@@ -46,7 +46,7 @@ class GrowthModel {
   double drift(double state) const;
   double forcing(int step) const;
   /// Mean of y given x.
-  double observation_of(double state) const;
+  double mean_observation(double state) const;
   /// Returns log p(y | x).
   double log_likelihood(double observation, double state) const;
 

@@ -33,7 +33,7 @@ QuasiFilter::QuasiFilter(const QuasiFilterSettings& settings, const GrowthModel&
 UnivariateEstimate QuasiFilter::step(double observation) {
   constexpr double kGoldenSection = std::numbers::phi - 1.0, kSmallest = 0x1.0p-53;
   ++steps_;
-  const std::vector<Branch> branches = grow_branches(observation);
+  const std::vector<Branch> branches = make_branches(observation);
   const std::array<double, 4> shifts = shifts_.uniforms(static_cast<std::uint64_t>(steps_));
   const std::size_t num = states_.size();
   std::size_t parent = 0;
@@ -52,13 +52,13 @@ UnivariateEstimate QuasiFilter::step(double observation) {
 }
 
 /// Returns the branches sorted by expected state.
-std::vector<QuasiFilter::Branch> QuasiFilter::grow_branches(double observation) const {
+std::vector<QuasiFilter::Branch> QuasiFilter::make_branches(double observation) const {
   const double forcing = model_.forcing(steps_);
   std::vector<Branch> branches;
   std::vector<double> log_weights;
   branches.reserve(states_.size());
   for (std::size_t i = 0; i < states_.size(); ++i) {
-    branches.push_back(look_ahead(model_.drift(states_[i]) + forcing, observation));
+    branches.push_back(make_branch(model_.drift(states_[i]) + forcing, observation));
     log_weights.push_back(log_weights_[i] + branches.back().log_evidence);
   }
   const std::vector<double> weights = normalized_weights(log_weights);
@@ -67,13 +67,13 @@ std::vector<QuasiFilter::Branch> QuasiFilter::grow_branches(double observation) 
   return branches;
 }
 
-QuasiFilter::Branch QuasiFilter::look_ahead(double expected, double observation) const {
+QuasiFilter::Branch QuasiFilter::make_branch(double expected, double observation) const {
   const double Q = model_.settings().process_var, R = model_.settings().observation_var;
-  if (!settings_.looks_ahead) return {.expected = expected, .proposal_mean = expected, .proposal_std = std::sqrt(Q)};
+  if (!settings_.use_auxiliary) return {.expected = expected, .proposal_mean = expected, .proposal_std = std::sqrt(Q)};
   const double evidence_var = R + square_of(expected / 10.0) * Q + Q * Q / 200.0;
   const double surprise = observation - (expected * expected + Q) / 20.0;
   const auto variance_at = [&](double state) { return 1.0 / (1.0 / Q + square_of(state / 10.0) / R); };
-  const double mean = expected + variance_at(expected) * expected / 10.0 / R * (observation - model_.observation_of(expected));
+  const double mean = expected + variance_at(expected) * expected / 10.0 / R * (observation - model_.mean_observation(expected));
   return {.expected = expected,
           .proposal_mean = mean,
           .proposal_std = std::sqrt(settings_.proposal_inflation * variance_at(mean)),

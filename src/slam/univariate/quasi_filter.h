@@ -13,14 +13,14 @@ struct QuasiFilterSettings {
   int particles = 100;
   /// True: auxiliary particle filter that uses the newest observation in selection and proposal; false: bootstrap
   /// filter with quasi-random points.
-  bool looks_ahead = true;
-  /// Factor on the proposal variance with `looks_ahead`: wide tails keep the weights bounded.
+  bool use_auxiliary = true;
+  /// Factor on the proposal variance with `use_auxiliary`: wide tails keep the weights bounded.
   double proposal_inflation = 1.5;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("particles", self.particles, between(1, 1'000'000));
-    visit("looks_ahead", self.looks_ahead);
+    visit("looks_ahead", self.use_auxiliary);
     visit("proposal_inflation", self.proposal_inflation, between(1.0, 10.0));
   }
 };
@@ -31,7 +31,7 @@ struct QuasiFilterSettings {
 /// section. This lattice has low discrepancy for any N, and its first coordinates are sorted. The shifts s, s' are
 /// sampled in each step, which keeps all sums unbiased.
 ///
-/// With `looks_ahead` [Pitt99], parents are selected by weight times p(y | parent). y is approximated as normal with
+/// With `use_auxiliary` [Pitt99], parents are selected by weight times p(y | parent). y is approximated as normal with
 /// mean (m^2 + Q) / 20 and variance R + m^2 Q / 100 + Q^2 / 200, m = f(parent). x is sampled from an approximation of
 /// p(x | parent, y), an extended Kalman filter update with one Gauss-Newton iteration. The weights correct for both
 /// approximations.
@@ -61,8 +61,8 @@ class QuasiFilter : public UnivariateFilter {
     double weight = 0.0;                              ///< selection probability of the parent
   };
 
-  Branch look_ahead(double expected, double observation) const;
-  std::vector<Branch> grow_branches(double observation) const;
+  Branch make_branch(double expected, double observation) const;
+  std::vector<Branch> make_branches(double observation) const;
   double log_weight(const Branch& branch, double state, double observation) const;
 
   QuasiFilterSettings settings_;

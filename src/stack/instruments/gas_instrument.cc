@@ -6,7 +6,7 @@
 
 namespace patrol::stack {
 
-void GasInstrument::add(const SensorMessage& message, const PlaceLookup&) {
+void GasInstrument::add(const SensorMessage& message, const StationPoseLookup&) {
   if (const auto* reading = std::get_if<GasReading>(&message)) newest_ = *reading;
 }
 

@@ -26,7 +26,7 @@ class GasInstrument final : public Instrument {
   GasInstrument(const GasRules& rules, const Pose3& T_body_gas) : rules_(rules), T_body_gas_(T_body_gas) {}
 
   InstrumentKind kind() const override { return InstrumentKind::kGas; }
-  void add(const SensorMessage& message, const PlaceLookup& place_at) override;
+  void add(const SensorMessage& message, const StationPoseLookup& station_pose_at) override;
   void begin(const InspectionOrder& order, Time now) override;
   InspectionProgress step(const InspectionContext& context) override;
 

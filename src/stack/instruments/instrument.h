@@ -12,12 +12,12 @@
 namespace patrol::stack {
 
 /// Function that returns the body pose at a recent instant; none outside the time span of odometry.
-using PlaceLookup = std::function<std::optional<StandingPlace>(Time)>;
+using StationPoseLookup = std::function<std::optional<StationPose>(Time)>;
 
 /// State of the robot in a control period, and the outputs available to an instrument.
 struct InspectionContext {
   Time now{};
-  StandingPlace place;
+  StationPose place;
   StackOutput& output;
   WarningLight& light;
 
@@ -41,7 +41,7 @@ class Instrument {
 
   virtual InstrumentKind kind() const = 0;
   /// Processes a sensor message; called for all types, of which an instrument ignores those that it does not use.
-  virtual void add(const SensorMessage& message, const PlaceLookup& place_at) = 0;
+  virtual void add(const SensorMessage& message, const StationPoseLookup& station_pose_at) = 0;
   /// Starts an order and discards the previous one.
   virtual void begin(const InspectionOrder& order, Time now) = 0;
   /// Executes the order. Called once per control period while there is one.

@@ -8,12 +8,12 @@ namespace patrol::stack {
 InstrumentSet::InstrumentSet(std::vector<std::unique_ptr<Instrument>> instruments, double siren_s)
     : instruments_(std::move(instruments)), light_(siren_s) {}
 
-void InstrumentSet::add(const SensorMessage& message, const PlaceLookup& place_at) {
-  for (const auto& instrument : instruments_) instrument->add(message, place_at);
+void InstrumentSet::add(const SensorMessage& message, const StationPoseLookup& station_pose_at) {
+  for (const auto& instrument : instruments_) instrument->add(message, station_pose_at);
 }
 
 InspectionProgress InstrumentSet::step(Time now, const std::optional<InspectionOrder>& order,
-                                       const StandingPlace& place, StackOutput& output) {
+                                       const StationPose& place, StackOutput& output) {
   light_.step(now, output);
   if (order != order_) {
     if (Instrument* before = order_ ? find(order_->instrument) : nullptr) before->end();

@@ -13,10 +13,10 @@ class InstrumentSet {
  public:
   InstrumentSet(std::vector<std::unique_ptr<Instrument>> instruments, double siren_s);
 
-  void add(const SensorMessage& message, const PlaceLookup& place_at);
+  void add(const SensorMessage& message, const StationPoseLookup& station_pose_at);
   /// Executes `order` for a control period. A new order starts at once; nullopt ends the previous one. An order for an
   /// instrument that the robot does not have fails.
-  InspectionProgress step(Time now, const std::optional<InspectionOrder>& order, const StandingPlace& place,
+  InspectionProgress step(Time now, const std::optional<InspectionOrder>& order, const StationPose& place,
                           StackOutput& output);
 
  private:

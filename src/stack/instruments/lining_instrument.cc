@@ -23,34 +23,34 @@ LiningInstrument::LiningInstrument(const InspectionSettings& settings, const Tun
       inspection_(settings.lining, lining_in_map, T_body_scanner),
       references_(std::move(references)) {}
 
-void LiningInstrument::add(const SensorMessage& message, const PlaceLookup& place_at) {
+void LiningInstrument::add(const SensorMessage& message, const StationPoseLookup& station_pose_at) {
   const auto* scan = std::get_if<PanoramicScan>(&message);
   if (!scan || !is_active_) return;
-  if (const auto place = place_at(scan->stamp)) new_scan_ = {*scan, *place};
+  if (const auto place = station_pose_at(scan->stamp)) new_scan_ = {*scan, *place};
 }
 
 void LiningInstrument::begin(const InspectionOrder& order, Time now) {
   station_ = order.station;
-  began_ = now;
+  order_start_ = now;
   is_active_ = true;
-  has_asked_ = false;
+  has_requested_scan_ = false;
   new_scan_.reset();
 }
 
 InspectionProgress LiningInstrument::step(const InspectionContext& context) {
   const Time now = context.now;
-  if (!has_asked_ && now - began_ >= from_seconds(settings_.scan_settle_s)) {
-    has_asked_ = true;
+  if (!has_requested_scan_ && now - order_start_ >= from_seconds(settings_.scan_settle_s)) {
+    has_requested_scan_ = true;
     context.output.publish(ScanCommand{now});
   }
-  if (now - began_ > from_seconds(settings_.scan_patience_s)) return {.feedback = InspectionFeedback::kFailed};
+  if (now - order_start_ > from_seconds(settings_.scan_patience_s)) return {.feedback = InspectionFeedback::kFailed};
   if (!new_scan_) return {};
   const auto [scan, place] = *std::exchange(new_scan_, std::nullopt);
   return {.feedback = evaluate(context, scan, place)};
 }
 
 InspectionFeedback LiningInstrument::evaluate(const InspectionContext& context, const PanoramicScan& scan,
-                                              const StandingPlace& place) {
+                                              const StationPose& place) {
   const Eigen::Vector2d p_map = context.place.T_map_body.position();
   const auto num_points = scan.points.size();
   context.publish_event(EventKind::kScanTaken, station_, fmt::format("Panoramic scan of {} points.", num_points),

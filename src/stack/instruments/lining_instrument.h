@@ -25,13 +25,13 @@ class LiningInstrument final : public Instrument {
                    LiningReferences references);
 
   InstrumentKind kind() const override { return InstrumentKind::kLining; }
-  void add(const SensorMessage& message, const PlaceLookup& place_at) override;
+  void add(const SensorMessage& message, const StationPoseLookup& station_pose_at) override;
   void begin(const InspectionOrder& order, Time now) override;
   InspectionProgress step(const InspectionContext& context) override;
   void end() override { is_active_ = false; }
 
  private:
-  InspectionFeedback evaluate(const InspectionContext& context, const PanoramicScan& scan, const StandingPlace& place);
+  InspectionFeedback evaluate(const InspectionContext& context, const PanoramicScan& scan, const StationPose& place);
   void report(const InspectionContext& context, const LiningResult& result) const;
 
   InspectionSettings settings_;
@@ -39,10 +39,10 @@ class LiningInstrument final : public Instrument {
   inspect::LiningInspection inspection_;
   LiningReferences references_;
   std::string station_;
-  Time began_{};
+  Time order_start_{};
   bool is_active_ = false;
-  bool has_asked_ = false;  ///< true: the scan has been requested
-  std::optional<std::pair<PanoramicScan, StandingPlace>> new_scan_;
+  bool has_requested_scan_ = false;  ///< true: the scan has been requested
+  std::optional<std::pair<PanoramicScan, StationPose>> new_scan_;
 };
 
 }  // namespace patrol::stack

@@ -17,7 +17,7 @@ class WarningLight {
 
  private:
   double siren_s_;
-  WarningLevel warned_ = WarningLevel::kNone;
+  WarningLevel max_warning_ = WarningLevel::kNone;
   std::optional<Time> siren_until_;
 };
 

@@ -11,7 +11,7 @@ WaterInstrument::WaterInstrument(const inspect::WaterSettings& settings, const A
                                  std::uint64_t seed)
     : settings_(settings), geometry_(antenna), inversion_(settings), seed_(seed) {}
 
-void WaterInstrument::add(const SensorMessage& message, const PlaceLookup&) {
+void WaterInstrument::add(const SensorMessage& message, const StationPoseLookup&) {
   if (const auto* state = std::get_if<AntennaState>(&message)) antenna_ = *state;
   if (const auto* sounding = std::get_if<TemSounding>(&message)) new_sounding_ = *sounding;
 }
@@ -34,7 +34,7 @@ InspectionProgress WaterInstrument::step(const InspectionContext& context) {
 }
 
 WaterResult WaterInstrument::estimate(const InspectionContext& context) const {
-  const StandingPlace& place = context.place;
+  const StationPose& place = context.place;
   AntennaGeometry antenna = geometry_;  // antenna with the tilt of the standing robot
   antenna.T_body_mount = Pose3{Eigen::Vector3d::Zero(), place.T_level_body.rotation} * antenna.T_body_mount;
   WaterResult result =

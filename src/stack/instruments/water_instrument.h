@@ -20,7 +20,7 @@ class WaterInstrument final : public Instrument {
   WaterInstrument(const inspect::WaterSettings& settings, const AntennaGeometry& antenna, std::uint64_t seed);
 
   InstrumentKind kind() const override { return InstrumentKind::kWater; }
-  void add(const SensorMessage& message, const PlaceLookup& place_at) override;
+  void add(const SensorMessage& message, const StationPoseLookup& station_pose_at) override;
   void begin(const InspectionOrder& order, Time now) override;
   InspectionProgress step(const InspectionContext& context) override;
 

@@ -10,11 +10,11 @@ KnownMapLocalizer::KnownMapLocalizer(const localize::MonteCarloSettings& setting
     : map_(std::move(map)), localizer_(settings, map_, anchors_in_map, T_body_uwb, seed) {}
 
 PoseEstimate KnownMapLocalizer::update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) {
-  const auto lap = output.lap("localization");
+  const auto timer = output.time_stage("localization");
   localize::LocalizationUpdate update = localizer_.update(scan, T_odom_body);
-  trust_ = update.trust;
+  confidence_ = update.confidence;
   output.publish(update.estimate);
-  output.publish(update.trust);
+  output.publish(update.confidence);
   if (update.particles) output.publish(std::move(*update.particles));
   return update.estimate;
 }

@@ -19,17 +19,17 @@ class KnownMapLocalizer final : public Localizer {
   PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override;
   OccupancyGrid map() override { return map_; }
   bool is_mapping() const override { return false; }
-  bool is_lost() const override { return trust_.is_lost; }
-  bool knows_pose() const override { return trust_.stamp > Time{} && !trust_.is_lost; }
+  bool is_lost() const override { return confidence_.is_lost; }
+  bool has_pose() const override { return confidence_.stamp > Time{} && !confidence_.is_lost; }
   void start_at(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) override {
     localizer_.start_at(T_map_body, covariance);
   }
-  void start_anywhere() override { localizer_.start_anywhere(); }
+  void start_global_localization() override { localizer_.start_global_localization(); }
 
  private:
   OccupancyGrid map_;
   localize::MonteCarloLocalizer localizer_;
-  LocalizationTrust trust_{.trust = 1.0};  ///< confidence at the newest scan
+  LocalizationConfidence confidence_{.confidence = 1.0};  ///< confidence at the newest scan
 };
 
 }  // namespace patrol::stack

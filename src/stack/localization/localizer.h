@@ -30,13 +30,13 @@ class Localizer {
   virtual bool is_lost() const = 0;
   /// Returns whether the pose is known: at once for a localizer that defines the map's origin, after the first
   /// confident scan for others.
-  virtual bool knows_pose() const = 0;
+  virtual bool has_pose() const = 0;
 
   /// Ends the mapping; the map is fixed from then on. Ignored by localizers that do not switch.
   virtual void finish_map(const PoseEstimate&) {}
   /// Restarts near a pose, or anywhere on the map. Ignored by localizers that make the map.
   virtual void start_at(const Pose2& /*T_map_body*/, const Eigen::Matrix3d& /*covariance*/) {}
-  virtual void start_anywhere() {}
+  virtual void start_global_localization() {}
 };
 
 }  // namespace patrol::stack

@@ -37,20 +37,20 @@ std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const R
   const std::string method = method_of(settings, start);
   const auto refuse = [&](const char* why) { throw InputError(fmt::format("stack.localizer = {}: {}", method, why)); };
   const std::optional<Pose3> T_body_uwb = antenna_of(robot);
-  const auto on_map = [settings = settings.localization,
+  const auto make_on_map = [settings = settings.localization,
                        anchors = anchors_above_body(site_in_map.anchors, start.height_above_ground_m), T_body_uwb,
                        seed](OccupancyGrid map) -> std::unique_ptr<Localizer> {
     return std::make_unique<KnownMapLocalizer>(settings, std::move(map), anchors, T_body_uwb.value_or(Pose3{}), seed);
   };
   if (method == "monte_carlo") {
     if (!start.map) refuse("there is no map: give one by the key map, or choose slam or slam_then_monte_carlo");
-    return on_map(*start.map);
+    return make_on_map(*start.map);
   }
   if (start.map) refuse("a map is given, and another would be made: leave the key map empty, or choose monte_carlo");
   auto slam = std::make_unique<SlamLocalizer>(make_mapper(settings, start.neighbor_model, seed), site_in_map.anchors, T_body_uwb);
   if (method == "slam") return slam;
   if (!start.has_mapping_drive) refuse("there is no drive by remote control that makes the map: choose slam");
-  return std::make_unique<MapThenLocalize>(std::move(slam), on_map);
+  return std::make_unique<MapThenLocalize>(std::move(slam), make_on_map);
 }
 
 }  // namespace patrol::stack

@@ -4,12 +4,12 @@
 
 namespace patrol::stack {
 
-MapThenLocalize::MapThenLocalize(std::unique_ptr<Localizer> slam, OnMap on_map)
-    : current_(std::move(slam)), on_map_(std::move(on_map)) {}
+MapThenLocalize::MapThenLocalize(std::unique_ptr<Localizer> slam, LocalizerFactory make_on_map)
+    : current_(std::move(slam)), make_on_map_(std::move(make_on_map)) {}
 
 void MapThenLocalize::finish_map(const PoseEstimate& pose) {
   if (!current_->is_mapping()) return;
-  current_ = on_map_(current_->map());
+  current_ = make_on_map_(current_->map());
   current_->start_at(pose.T_map_body, pose.covariance);
 }
 

@@ -10,10 +10,10 @@ namespace patrol::stack {
 /// SLAM until the map is complete, then Monte Carlo localization on that map.
 class MapThenLocalize final : public Localizer {
  public:
-  using OnMap = std::function<std::unique_ptr<Localizer>(OccupancyGrid)>;
+  using LocalizerFactory = std::function<std::unique_ptr<Localizer>(OccupancyGrid)>;
 
-  /// `on_map` makes the localizer for the complete map.
-  MapThenLocalize(std::unique_ptr<Localizer> slam, OnMap on_map);
+  /// `make_on_map` makes the localizer for the complete map.
+  MapThenLocalize(std::unique_ptr<Localizer> slam, LocalizerFactory make_on_map);
 
   void add(const RangeWithOdometry& range) override { current_->add(range); }
   PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override {
@@ -22,16 +22,16 @@ class MapThenLocalize final : public Localizer {
   OccupancyGrid map() override { return current_->map(); }
   bool is_mapping() const override { return current_->is_mapping(); }
   bool is_lost() const override { return current_->is_lost(); }
-  bool knows_pose() const override { return current_->knows_pose(); }
+  bool has_pose() const override { return current_->has_pose(); }
   void finish_map(const PoseEstimate& pose) override;
   void start_at(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) override {
     current_->start_at(T_map_body, covariance);
   }
-  void start_anywhere() override { current_->start_anywhere(); }
+  void start_global_localization() override { current_->start_global_localization(); }
 
  private:
   std::unique_ptr<Localizer> current_;
-  OnMap on_map_;
+  LocalizerFactory make_on_map_;
 };
 
 }  // namespace patrol::stack

@@ -30,7 +30,7 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
 
 void PosePipeline::add(const SensorMessage& message, StackOutput& output) {
   if (const auto* range = std::get_if<UwbRange>(&message)) return add_range(*range);
-  const auto lap = output.lap("odometry");
+  const auto timer = output.time_stage("odometry");
   odometry_->add(message);
 }
 
@@ -50,13 +50,13 @@ std::optional<OdometryEstimate> PosePipeline::update_odometry() {
 
 std::optional<LevelScan> PosePipeline::level(const LaserScan& scan, StackOutput& output) const {
   if (!has_settled(scan.stamp)) return std::nullopt;
-  const auto lap = output.lap("odometry");
+  const auto timer = output.time_stage("odometry");
   return leveler_.level(
       scan, [this](Time stamp) { return odometry_->T_odom_body_at(stamp); }, odometry_->height_above_ground_m());
 }
 
 ScanPose PosePipeline::localize(const LevelScan& scan, StackOutput& output) {
-  const Pose2 T_odom_body = to_planar(*odometry_->T_odom_body_at(scan.stamp));
+  const Pose2 T_odom_body = to_pose2(*odometry_->T_odom_body_at(scan.stamp));
   const PoseEstimate estimate = localizer_->update(scan, T_odom_body, output);
   tracker_.correct(scan.stamp, T_odom_body, estimate.T_map_body, estimate.covariance);
   return {.T_odom_body = T_odom_body, .T_map_body = tracker_.at(scan.stamp, T_odom_body).T_map_body};
@@ -66,26 +66,26 @@ ScanPose PosePipeline::localize(const LevelScan& scan, StackOutput& output) {
 void PosePipeline::publish_range_pose(const OdometryEstimate& odometry, const PoseEstimate& pose, StackOutput& output) {
   if (!range_pose_ || !range_pose_->has_anchors()) return;
   if (!range_pose_->has_started()) {
-    if (!localizer_->knows_pose()) return;
+    if (!localizer_->has_pose()) return;
     range_pose_->start_at(odometry, odometry_->height_above_ground_m(), pose.T_map_body,
                           localizer_->is_mapping() ? surveyed_covariance() : pose.covariance);
   }
-  const RangePoseEstimate estimate = range_pose_->predict(odometry, odometry_->twist_std());
+  const UwbPoseEstimate estimate = range_pose_->predict(odometry, odometry_->twist_std());
   if (has_settled(odometry.stamp)) output.publish(estimate);
 }
 
-std::optional<StandingPlace> PosePipeline::place_at(Time stamp) const {
+std::optional<StationPose> PosePipeline::station_pose_at(Time stamp) const {
   const std::optional<Pose3> T_odom_body = odometry_->T_odom_body_at(stamp);
   if (!T_odom_body) return std::nullopt;
-  const Eigen::Quaterniond tilt = quaternion_from_yaw(-yaw_of(T_odom_body->rotation)) * T_odom_body->rotation;
-  return StandingPlace{.T_level_body = {{0.0, 0.0, odometry_->height_above_ground_m()}, tilt},
-                       .T_map_body = tracker_.at(stamp, to_planar(*T_odom_body)).T_map_body};
+  const Eigen::Quaterniond tilt = quaternion_from_yaw(-to_yaw(T_odom_body->rotation)) * T_odom_body->rotation;
+  return StationPose{.T_level_body = {{0.0, 0.0, odometry_->height_above_ground_m()}, tilt},
+                       .T_map_body = tracker_.at(stamp, to_pose2(*T_odom_body)).T_map_body};
 }
 
 void PosePipeline::restart_at(const Pose2& T_map_body, const OdometryEstimate& odometry) {
   localizer_->start_at(T_map_body, surveyed_covariance());
   tracker_ = localize::MapPoseTracker();
-  tracker_.correct(odometry.stamp, to_planar(odometry.T_odom_body), T_map_body, surveyed_covariance());
+  tracker_.correct(odometry.stamp, to_pose2(odometry.T_odom_body), T_map_body, surveyed_covariance());
   if (range_pose_)
     range_pose_->start_at(odometry, odometry_->height_above_ground_m(), T_map_body, surveyed_covariance());
 }

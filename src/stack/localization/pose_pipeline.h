@@ -47,13 +47,13 @@ class PosePipeline {
 
   PoseEstimate pose_at(Time stamp, const Pose2& T_odom_body) const { return tracker_.at(stamp, T_odom_body); }
   /// Returns the body pose at an instant; none outside the time span of odometry.
-  std::optional<StandingPlace> place_at(Time stamp) const;
+  std::optional<StationPose> station_pose_at(Time stamp) const;
   OccupancyGrid map() { return localizer_->map(); }
   bool is_mapping() const { return localizer_->is_mapping(); }
   bool is_lost() const { return localizer_->is_lost(); }
 
   void finish_map(const PoseEstimate& pose) { localizer_->finish_map(pose); }
-  void start_anywhere() { localizer_->start_anywhere(); }
+  void start_global_localization() { localizer_->start_global_localization(); }
   /// Starts at the surveyed start, the origin of map, before the robot has moved.
   void start_at_survey() { localizer_->start_at(Pose2{}, surveyed_covariance()); }
   /// Restarts at a surveyed pose; every component discards its previous pose.

@@ -25,7 +25,7 @@ class RangePoseTracker {
                      odometry.T_odom_body, height_above_ground_m);
   }
   void add(const UwbRange& range, const Pose3& T_odom_body) { filter_.add(range, T_odom_body); }
-  RangePoseEstimate predict(const OdometryEstimate& odometry, const Eigen::Vector3d& twist_std) {
+  UwbPoseEstimate predict(const OdometryEstimate& odometry, const Eigen::Vector3d& twist_std) {
     filter_.predict(odometry.stamp, odometry.T_odom_body, twist_std);
     return {filter_.estimate(odometry.stamp, odometry.T_odom_body)};
   }

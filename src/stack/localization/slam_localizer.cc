@@ -16,12 +16,12 @@ void SlamLocalizer::add(const RangeWithOdometry& range) {
   mapper_->add(
       {.anchor = *anchor,
        .range_m = range.range.range_m,
-       .T_odom_body = to_planar(range.T_odom_body),
+       .T_odom_body = to_pose2(range.T_odom_body),
        .p_level_antenna = uwb_antenna_in_level(range.T_odom_body.rotation, *T_body_uwb_, range.height_above_ground_m)});
 }
 
 PoseEstimate SlamLocalizer::update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) {
-  const auto lap = output.lap("slam");
+  const auto timer = output.time_stage("slam");
   const slam::SlamUpdate update = mapper_->update(scan, T_odom_body);
   const PoseEstimate estimate{scan.stamp, update.T_map_body, update.covariance};
   output.publish(estimate);

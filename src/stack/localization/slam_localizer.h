@@ -23,7 +23,7 @@ class SlamLocalizer final : public Localizer {
   OccupancyGrid map() override { return mapper_->map(); }
   bool is_mapping() const override { return true; }
   bool is_lost() const override { return false; }
-  bool knows_pose() const override { return true; }
+  bool has_pose() const override { return true; }
 
  private:
   std::unique_ptr<slam::Mapper> mapper_;

@@ -15,8 +15,8 @@ GasRules gas_rules(const GasMissionSettings& settings) {
           .alarm_column_ppm_m = settings.alarm_column_ppm_m};
 }
 
-GasMission::GasMission(const GasMissionSettings& settings, Route route_in_map, std::string about_order)
-    : settings_(settings), route_(std::move(route_in_map)), about_order_(std::move(about_order)) {
+GasMission::GasMission(const GasMissionSettings& settings, Route route_in_map, std::string order_text)
+    : settings_(settings), route_(std::move(route_in_map)), order_text_(std::move(order_text)) {
   validate(settings, "mission");
   if (route_.stations.empty()) throw InputError("the route has no station");
 }
@@ -69,7 +69,7 @@ void GasMission::wait(MissionOutput& output) {
   std::vector<std::string> names;
   for (const Station& station : route_.stations) names.push_back(station.name);
   const std::string stations = fmt::format("The mission starts: {} stations, {}.", names.size(), fmt::join(names, ", "));
-  output.events.push_back(event(EventKind::kMissionStarted, "", about_order_.empty() ? stations : stations + " " + about_order_));
+  output.events.push_back(event(EventKind::kMissionStarted, "", order_text_.empty() ? stations : stations + " " + order_text_));
   phase_ = Phase::kDriving;
   phase_start_ = now_;
 }

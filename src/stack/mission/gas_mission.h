@@ -56,9 +56,9 @@ GasRules gas_rules(const GasMissionSettings& settings);
 /// station_failed, mission_completed (every station was done), mission_failed.
 class GasMission final : public Mission {
  public:
-  /// `route_in_map`: route with its stations in order. `about_order`: a sentence for mission_started. Throws InputError
+  /// `route_in_map`: route with its stations in order. `order_text`: a sentence for mission_started. Throws InputError
   /// if a setting is out of range or the route has no station.
-  GasMission(const GasMissionSettings& settings, Route route_in_map, std::string about_order = "");
+  GasMission(const GasMissionSettings& settings, Route route_in_map, std::string order_text = "");
 
   MissionOutput step(Time now, const MissionInput& input) override;
   bool is_over() const override { return phase_ == Phase::kOver; }
@@ -80,7 +80,7 @@ class GasMission final : public Mission {
 
   GasMissionSettings settings_;
   Route route_;
-  std::string about_order_;
+  std::string order_text_;
   Phase phase_ = Phase::kWaiting;
   std::size_t current_ = 0;
   int num_failed_ = 0;

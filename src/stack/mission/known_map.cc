@@ -9,11 +9,11 @@
 namespace patrol::stack {
 namespace {
 
-constexpr double kFarthestGoal_m = 1000.0;
+constexpr double kMaxGoalDistance_m = 1000.0;
 
 /// Returns whether p is inside the map. Computed in real numbers, because the cell index of a distant position
 /// overflows.
-bool holds(const GridGeometry& map, const Eigen::Vector2d& p_map) {
+bool contains(const GridGeometry& map, const Eigen::Vector2d& p_map) {
   const Eigen::Array2d along = p_map - map.origin_m;
   const Eigen::Array2d size = map.resolution_m * Eigen::Array2d(map.width, map.height);
   return (along >= 0.0).all() && (along < size).all();
@@ -26,21 +26,21 @@ std::string extent_of(const GridGeometry& map) {
 
 }  // namespace
 
-void check_known_map(const std::string& file, const OccupancyGrid& map) {
+void validate_map(const std::string& file, const OccupancyGrid& map) {
   const auto has = [&](std::int8_t value) { return std::find(map.values().begin(), map.values().end(), value) != map.values().end(); };
   if (!has(kFree)) throw InputError(file + ": the map has no free cell to stand on");
   if (!has(kOccupied)) throw InputError(file + ": the map has no occupied cell to see");
-  if (holds(map.geometry(), Eigen::Vector2d::Zero())) return;
+  if (contains(map.geometry(), Eigen::Vector2d::Zero())) return;
   throw InputError(fmt::format("{}: the start, at 0, 0, lies outside the map ({})", file, extent_of(map.geometry())));
 }
 
-void check_goals(const std::string& file, const std::vector<MarkedGoal>& goals, const std::optional<OccupancyGrid>& map) {
-  for (const MarkedGoal& goal : goals) {
+void validate_goals(const std::string& file, const std::vector<SavedGoal>& goals, const std::optional<OccupancyGrid>& map) {
+  for (const SavedGoal& goal : goals) {
     const Eigen::Vector2d p_map = goal.T_map_body.position();
     const std::string place = fmt::format("{}: goal {}: position {:.6g}, {:.6g} lies", file, goal.number, p_map.x(), p_map.y());
     const auto refuse = [&](const std::string& what) { throw InputError(place + " " + what); };
-    if (map && !holds(map->geometry(), p_map)) refuse(fmt::format("outside the map ({})", extent_of(map->geometry())));
-    if (!map && p_map.norm() > kFarthestGoal_m) refuse(fmt::format("more than {} m from the start", kFarthestGoal_m));
+    if (map && !contains(map->geometry(), p_map)) refuse(fmt::format("outside the map ({})", extent_of(map->geometry())));
+    if (!map && p_map.norm() > kMaxGoalDistance_m) refuse(fmt::format("more than {} m from the start", kMaxGoalDistance_m));
   }
 }
 

@@ -11,10 +11,10 @@ namespace patrol::stack {
 
 /// Checks a given map: it must have a free cell, an occupied cell, and the surveyed start, map's origin, inside. Throws
 /// InputError that names `file`.
-void check_known_map(const std::string& file, const OccupancyGrid& map);
+void validate_map(const std::string& file, const OccupancyGrid& map);
 
 /// Checks that goals are inside the map or, if the map is still to be made, at most 1 km from the start. Goals inside
 /// walls or in unknown space are rejected later by the navigation. Throws InputError that names `file` and the goal.
-void check_goals(const std::string& file, const std::vector<MarkedGoal>& goals, const std::optional<OccupancyGrid>& map);
+void validate_goals(const std::string& file, const std::vector<SavedGoal>& goals, const std::optional<OccupancyGrid>& map);
 
 }  // namespace patrol::stack

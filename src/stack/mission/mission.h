@@ -16,7 +16,7 @@ struct MissionInput {
   NavigationFeedback navigation = NavigationFeedback::kDriving;
   DockingFeedback docking = DockingFeedback::kUnderWay;
   InspectionProgress inspection = {};
-  std::optional<RemoteCommand> remote = {};  ///< command received since the last step
+  std::optional<TeleopCommand> teleop = {};  ///< command received since the last step
 };
 
 /// Action of the localizer: none, restart from the pose at the dock, or restart without prior knowledge of the pose.
@@ -24,7 +24,7 @@ enum class Relocalization { kNone, kAtDock, kAnywhere };
 
 struct MissionOutput {
   Task task;
-  bool map_is_made = false;  ///< true in the step in which the mapping drive ends
+  bool is_map_complete = false;  ///< true in the step in which the mapping drive ends
   Relocalization relocalization = Relocalization::kNone;
   std::vector<Event> events;
 };

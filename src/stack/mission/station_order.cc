@@ -10,21 +10,21 @@
 namespace patrol::stack {
 namespace {
 
-constexpr double kMargin_m = 10.0;  ///< margin of the map around the stations
+constexpr double kMapMargin_m = 10.0;  ///< margin of the map around the stations
 
 /// Returns the robot's start, then the stations.
-std::vector<Eigen::Vector2d> places_of(const std::vector<Station>& stations) {
-  std::vector<Eigen::Vector2d> places{Eigen::Vector2d::Zero()};
-  for (const Station& station : stations) places.push_back(station.T_route_body.position());
-  return places;
+std::vector<Eigen::Vector2d> to_positions(const std::vector<Station>& stations) {
+  std::vector<Eigen::Vector2d> positions{Eigen::Vector2d::Zero()};
+  for (const Station& station : stations) positions.push_back(station.T_route_body.position());
+  return positions;
 }
 
 /// Returns the path lengths, [from][to], m; infinite if there is no path.
-std::vector<std::vector<double>> lengths_between(const std::vector<Eigen::Vector2d>& places, const plan::Costmap& costmap, plan::GlobalPlanner& planner) {
-  std::vector<std::vector<double>> lengths(places.size(), std::vector<double>(places.size(), 0.0));
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    for (std::size_t j = i + 1; j < places.size(); ++j) {
-      const plan::PlanResult plan = planner.plan(costmap.cost(), places[i], places[j]);
+std::vector<std::vector<double>> lengths_between(const std::vector<Eigen::Vector2d>& positions, const plan::Costmap& costmap, plan::GlobalPlanner& planner) {
+  std::vector<std::vector<double>> lengths(positions.size(), std::vector<double>(positions.size(), 0.0));
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    for (std::size_t j = i + 1; j < positions.size(); ++j) {
+      const plan::PlanResult plan = planner.plan(costmap.cost(), positions[i], positions[j]);
       lengths[i][j] = lengths[j][i] = plan.status == plan::PlanStatus::kFound ? plan.length_m : std::numeric_limits<double>::infinity();
     }
   }
@@ -52,10 +52,10 @@ StationOrder order_stations(const Route& route_in_map, const RobotDescription& r
                             std::uint64_t seed) {
   plan::Costmap costmap(navigation.costmap, plan::Footprint(robot.footprint_m, navigation.footprint_rows), route_in_map.keep_out_lines);
   costmap.set_map(OccupancyGrid({.resolution_m = navigation.costmap.resolution_m, .width = 1, .height = 1}, kUnknown));
-  const std::vector<Eigen::Vector2d> places = places_of(route_in_map.stations);
-  for (const Eigen::Vector2d& place : places) costmap.include(place, kMargin_m);
+  const std::vector<Eigen::Vector2d> positions = to_positions(route_in_map.stations);
+  for (const Eigen::Vector2d& place : positions) costmap.include(place, kMapMargin_m);
   plan::GlobalPlanner planner(navigation.global, navigation.routes, seed);
-  const plan::TourOrder order = plan::order_tour(problem_of(route_in_map.stations, lengths_between(places, costmap, planner), mission), {}, seed);
+  const plan::TourOrder order = plan::order_tour(problem_of(route_in_map.stations, lengths_between(positions, costmap, planner), mission), {}, seed);
   if (!order.is_found) return {.stations = route_in_map.stations, .text = "No order reaches all stations: the given one is kept."};
 
   StationOrder ordered;

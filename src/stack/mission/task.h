@@ -8,7 +8,7 @@
 namespace patrol::stack {
 
 /// Motion that a mission can request. kNavigate without a goal is kStand.
-enum class Motion { kStand, kFollowRemote, kNavigate, kUndock, kDock };
+enum class Motion { kStand, kTeleop, kNavigate, kUndock, kDock };
 
 /// Request of a mission in a control period: a motion, and optionally an inspection at the same time.
 struct Task {

@@ -8,17 +8,17 @@
 
 namespace patrol::stack {
 
-GoalType TunnelMissionSettings::type_of_mark(std::size_t index) const {
+GoalType TunnelMissionSettings::goal_type(std::size_t index) const {
   if (index >= mark_types.size()) return GoalType::kStop;
   if (const auto* row = find_named(kGoalTypes, std::string_view(mark_types).substr(index, 1))) return row->value;
   throw InputError(fmt::format("tour.mark_types = {}: must be made of the letters {}", mark_types, fmt::join(names_of(kGoalTypes), ", ")));
 }
 
-TunnelMission::TunnelMission(const TunnelMissionSettings& settings, std::vector<MarkedGoal> goals, bool has_remote, bool has_map)
-    : settings_(settings), goals_(std::move(goals)), has_remote_(has_remote), has_map_(has_map), is_docked_(settings.starts_docked && !settings.starts_at_survey) {
+TunnelMission::TunnelMission(const TunnelMissionSettings& settings, std::vector<SavedGoal> goals, bool has_teleop, bool has_map)
+    : settings_(settings), goals_(std::move(goals)), has_teleop_(has_teleop), has_map_(has_map), is_docked_(settings.starts_docked && !settings.starts_at_survey) {
   validate(settings, "tour");
-  for (std::size_t i = 0; i < settings.mark_types.size(); ++i) settings.type_of_mark(i);
-  if (goals_.empty() && !has_remote) throw InputError("tour: there is no goal, and no remote control to mark one");
+  for (std::size_t i = 0; i < settings.mark_types.size(); ++i) settings.goal_type(i);
+  if (goals_.empty() && !has_teleop) throw InputError("tour: there is no goal, and no remote control to mark one");
 }
 
 MissionOutput TunnelMission::step(Time now, const MissionInput& input) {
@@ -26,13 +26,13 @@ MissionOutput TunnelMission::step(Time now, const MissionInput& input) {
   if (!first_step_) first_step_ = now;
   T_map_body_ = input.pose.T_map_body;
   MissionOutput output;
-  if (watch_localization(input, output)) return output;
+  if (monitor_localization(input, output)) return output;
   switch (phase_) {
     case Phase::kWaiting:
       wait(output);
       break;
-    case Phase::kRemote:
-      follow_remote(input, output);
+    case Phase::kTeleop:
+      teleoperate(input, output);
       break;
     case Phase::kUndocking:
       undock(input);
@@ -46,8 +46,8 @@ MissionOutput TunnelMission::step(Time now, const MissionInput& input) {
     case Phase::kScanning:
       scan(input, output);
       break;
-    case Phase::kHandedOver:
-      hand_over(input, output);
+    case Phase::kTeleopAtGoal:
+      await_teleop(input, output);
       break;
     case Phase::kSounding:
       sound(input, output);
@@ -64,13 +64,13 @@ MissionOutput TunnelMission::step(Time now, const MissionInput& input) {
 
 Task TunnelMission::task() const {
   Task task;
-  if (phase_ == Phase::kRemote || phase_ == Phase::kHandedOver) task.motion = Motion::kFollowRemote;
+  if (phase_ == Phase::kTeleop || phase_ == Phase::kTeleopAtGoal) task.motion = Motion::kTeleop;
   if (phase_ == Phase::kUndocking) task.motion = Motion::kUndock;
   if (phase_ == Phase::kDocking) task.motion = Motion::kDock;
   if (phase_ == Phase::kScanning) task.inspection = InspectionOrder{.instrument = InstrumentKind::kLining, .station = goal_name()};
   if (phase_ == Phase::kSounding) task.inspection = InspectionOrder{.instrument = InstrumentKind::kWater, .station = sounding_name()};
   if (phase_ != Phase::kDriving) return task;
-  const MarkedGoal& goal = goals_[goal_];
+  const SavedGoal& goal = goals_[goal_];
   const bool stops = goal.type != GoalType::kVia;
   task.motion = Motion::kNavigate;
   task.goal = {.T_map_body = goal.T_map_body,
@@ -80,9 +80,9 @@ Task TunnelMission::task() const {
 }
 
 /// Returns whether the robot stands still because localization is lost.
-bool TunnelMission::watch_localization(const MissionInput& input, MissionOutput& output) {
-  const bool needs_place = phase_ == Phase::kDriving || phase_ == Phase::kStanding || phase_ == Phase::kDocking;
-  if (!input.is_lost || !needs_place) {
+bool TunnelMission::monitor_localization(const MissionInput& input, MissionOutput& output) {
+  const bool needs_pose = phase_ == Phase::kDriving || phase_ == Phase::kStanding || phase_ == Phase::kDocking;
+  if (!input.is_lost || !needs_pose) {
     if (lost_since_) output.events.push_back(event(EventKind::kRelocalized, "", "The robot knows where it is again.", to_seconds(now_ - *lost_since_)));
     lost_since_.reset();
     return false;
@@ -101,24 +101,24 @@ bool TunnelMission::watch_localization(const MissionInput& input, MissionOutput&
 
 void TunnelMission::wait(MissionOutput& output) {
   if (now_ < from_seconds(settings_.start_wait_s) || now_ < *first_step_ + from_seconds(settings_.start_look_s)) return;
-  if (!has_remote_ || has_map_) return start_navigation(output);
-  last_remote_ = now_;
-  enter(Phase::kRemote);
+  if (!has_teleop_ || has_map_) return start_run(output);
+  last_teleop_ = now_;
+  enter(Phase::kTeleop);
 }
 
-void TunnelMission::follow_remote(const MissionInput& input, MissionOutput& output) {
+void TunnelMission::teleoperate(const MissionInput& input, MissionOutput& output) {
   is_docked_ = false;
-  if (input.remote) last_remote_ = now_;
-  if (input.remote && input.remote->mark) {
-    goals_.push_back({.number = static_cast<int>(goals_.size()) + 1, .T_map_body = T_map_body_, .type = settings_.type_of_mark(goals_.size())});
+  if (input.teleop) last_teleop_ = now_;
+  if (input.teleop && input.teleop->save_goal) {
+    goals_.push_back({.number = static_cast<int>(goals_.size()) + 1, .T_map_body = T_map_body_, .type = settings_.goal_type(goals_.size())});
     goal_ = goals_.size() - 1;
     output.events.push_back(event(EventKind::kGoalMarked, goal_name(), fmt::format("Marked {}.", goal_name())));
   }
-  const bool is_off = now_ - last_remote_ > from_seconds(settings_.remote_silence_s);
-  if (!is_off && !(input.remote && input.remote->hand_over)) return;
-  output.map_is_made = true;
+  const bool is_off = now_ - last_teleop_ > from_seconds(settings_.remote_silence_s);
+  if (!is_off && !(input.teleop && input.teleop->await_teleop)) return;
+  output.is_map_complete = true;
   output.events.push_back(event(EventKind::kMappingCompleted, "", fmt::format("The map is made; {} goals are marked.", goals_.size())));
-  end_navigation(output);
+  end_run(output);
 }
 
 void TunnelMission::undock(const MissionInput& input) {
@@ -131,7 +131,7 @@ void TunnelMission::drive(const MissionInput& input, MissionOutput& output) {
   if (now_ == phase_start_) return;  // the feedback is for the previous goal
   if (input.navigation == NavigationFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event(EventKind::kGoalFailed, goal_name(), fmt::format("No way to {}.", goal_name()), navigation_));
+    output.events.push_back(event(EventKind::kGoalFailed, goal_name(), fmt::format("No way to {}.", goal_name()), run_));
     return next_goal(output);
   }
   if (input.navigation != NavigationFeedback::kArrived) return;
@@ -141,66 +141,66 @@ void TunnelMission::drive(const MissionInput& input, MissionOutput& output) {
 
 void TunnelMission::stand(MissionOutput& output) {
   if (now_ - phase_start_ < from_seconds(settings_.stand_s)) return;
-  output.events.push_back(event(EventKind::kGoalReached, goal_name(), fmt::format("At {}.", goal_name()), navigation_));
+  output.events.push_back(event(EventKind::kGoalReached, goal_name(), fmt::format("At {}.", goal_name()), run_));
   if (goals_[goal_].type == GoalType::kScan) return enter(Phase::kScanning);
-  if (goals_[goal_].type != GoalType::kOperator || !has_remote_ || !has_map_) return next_goal(output);
+  if (goals_[goal_].type != GoalType::kOperator || !has_teleop_ || !has_map_) return next_goal(output);
   output.events.push_back(event(EventKind::kTeleopRequested, goal_name(), "From here a person drives."));
-  last_remote_ = now_;
-  enter(Phase::kHandedOver);
+  last_teleop_ = now_;
+  enter(Phase::kTeleopAtGoal);
 }
 
 void TunnelMission::scan(const MissionInput& input, MissionOutput& output) {
   if (now_ == phase_start_ || input.inspection.feedback == InspectionFeedback::kUnderWay) return;
   if (input.inspection.feedback == InspectionFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event(EventKind::kInspectionFailed, goal_name(), fmt::format("The lining at {} could not be measured.", goal_name()), navigation_));
+    output.events.push_back(event(EventKind::kInspectionFailed, goal_name(), fmt::format("The lining at {} could not be measured.", goal_name()), run_));
   }
   next_goal(output);
 }
 
-void TunnelMission::hand_over(const MissionInput& input, MissionOutput& output) {
-  if (input.remote) last_remote_ = now_;
-  if (input.remote && input.remote->mark) {
+void TunnelMission::await_teleop(const MissionInput& input, MissionOutput& output) {
+  if (input.teleop) last_teleop_ = now_;
+  if (input.teleop && input.teleop->save_goal) {
     ++num_soundings_;
     return enter(Phase::kSounding);
   }
-  const bool is_over = input.remote && input.remote->hand_over;
-  if (!is_over && now_ - last_remote_ <= from_seconds(settings_.driver_patience_s)) return;
+  const bool is_over = input.teleop && input.teleop->await_teleop;
+  if (!is_over && now_ - last_teleop_ <= from_seconds(settings_.driver_patience_s)) return;
   if (!is_over) ++num_failed_;
   output.events.push_back(event(EventKind::kTeleopEnded, goal_name(), is_over ? "The robot goes on by itself." : "Nobody drives: the robot goes on by itself."));
   next_goal(output);
 }
 
 void TunnelMission::sound(const MissionInput& input, MissionOutput& output) {
-  if (input.remote) last_remote_ = now_;
+  if (input.teleop) last_teleop_ = now_;
   if (now_ == phase_start_ || input.inspection.feedback == InspectionFeedback::kUnderWay) return;
   if (input.inspection.feedback == InspectionFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event(EventKind::kInspectionFailed, sounding_name(), "The antenna could not sound for water.", navigation_));
+    output.events.push_back(event(EventKind::kInspectionFailed, sounding_name(), "The antenna could not sound for water.", run_));
   }
-  enter(Phase::kHandedOver);
+  enter(Phase::kTeleopAtGoal);
 }
 
 void TunnelMission::dock(const MissionInput& input, MissionOutput& output) {
   if (now_ == phase_start_ || input.docking == DockingFeedback::kUnderWay) return;
   is_docked_ = input.docking == DockingFeedback::kDone;
   if (is_docked_) {
-    output.events.push_back(event(EventKind::kDocked, "", "Docked at the charging post.", navigation_));
+    output.events.push_back(event(EventKind::kDocked, "", "Docked at the charging post.", run_));
   } else {
     ++num_failed_;
-    output.events.push_back(event(EventKind::kDockFailed, "", "The robot could not dock.", navigation_));
+    output.events.push_back(event(EventKind::kDockFailed, "", "The robot could not dock.", run_));
   }
-  start_navigation(output);
+  start_run(output);
 }
 
-void TunnelMission::start_navigation(MissionOutput& output) {
-  if (navigation_ >= settings_.navigations || goals_.empty()) return finish(output);
-  ++navigation_;
+void TunnelMission::start_run(MissionOutput& output) {
+  if (run_ >= settings_.navigations || goals_.empty()) return finish(output);
+  ++run_;
   goal_ = 0;
   output.relocalization = relocalization();
-  output.events.push_back(event(EventKind::kNavigationStarted, fmt::format("navigation_{}", navigation_),
-                                fmt::format("Navigation {} of {}: {} goals.", navigation_, settings_.navigations, goals_.size()),
-                                navigation_));
+  output.events.push_back(event(EventKind::kNavigationStarted, fmt::format("navigation_{}", run_),
+                                fmt::format("Navigation {} of {}: {} goals.", run_, settings_.navigations, goals_.size()),
+                                run_));
   enter(is_docked_ ? Phase::kUndocking : Phase::kDriving);
 }
 
@@ -212,12 +212,12 @@ Relocalization TunnelMission::relocalization() const {
 void TunnelMission::next_goal(MissionOutput& output) {
   ++goal_;
   if (goal_ < goals_.size()) return enter(Phase::kDriving);
-  end_navigation(output);
+  end_run(output);
 }
 
-void TunnelMission::end_navigation(MissionOutput& output) {
+void TunnelMission::end_run(MissionOutput& output) {
   if (settings_.docks) return enter(Phase::kDocking);
-  start_navigation(output);
+  start_run(output);
 }
 
 void TunnelMission::finish(MissionOutput& output) {

@@ -51,7 +51,7 @@ struct TunnelMissionSettings {
 
   /// Returns the type of the goal with this index, from 0. Throws InputError when `mark_types` contains a letter that
   /// is not in `kGoalTypes`.
-  GoalType type_of_mark(std::size_t index) const;
+  GoalType goal_type(std::size_t index) const;
 };
 
 /// Mission after the experiment of [Liu21, section 4.2].
@@ -72,33 +72,33 @@ class TunnelMission final : public Mission {
   /// `goals`: in map; empty: they are saved during teleoperation. Without a map, teleoperation comes first, to make
   /// one; with a map, it is only used at goals of type R. Throws InputError when there are neither goals nor
   /// teleoperation.
-  TunnelMission(const TunnelMissionSettings& settings, std::vector<MarkedGoal> goals, bool has_remote, bool has_map = false);
+  TunnelMission(const TunnelMissionSettings& settings, std::vector<SavedGoal> goals, bool has_teleop, bool has_map = false);
 
   MissionOutput step(Time now, const MissionInput& input) override;
   bool is_over() const override { return phase_ == Phase::kOver; }
   Event abort(Time now, EventKind kind, const std::string& text) override;
   TaskTiming timing() const override { return TaskTiming::kNow; }
   bool starts_at_survey() const override { return settings_.starts_at_survey; }
-  const std::vector<MarkedGoal>& goals() const { return goals_; }
+  const std::vector<SavedGoal>& goals() const { return goals_; }
 
  private:
-  enum class Phase { kWaiting, kRemote, kUndocking, kDriving, kStanding, kScanning, kHandedOver, kSounding, kDocking, kOver };
+  enum class Phase { kWaiting, kTeleop, kUndocking, kDriving, kStanding, kScanning, kTeleopAtGoal, kSounding, kDocking, kOver };
 
   void wait(MissionOutput& output);
-  void follow_remote(const MissionInput& input, MissionOutput& output);
+  void teleoperate(const MissionInput& input, MissionOutput& output);
   void undock(const MissionInput& input);
   void drive(const MissionInput& input, MissionOutput& output);
   void stand(MissionOutput& output);
   void scan(const MissionInput& input, MissionOutput& output);
-  void hand_over(const MissionInput& input, MissionOutput& output);
+  void await_teleop(const MissionInput& input, MissionOutput& output);
   void sound(const MissionInput& input, MissionOutput& output);
   void dock(const MissionInput& input, MissionOutput& output);
-  bool watch_localization(const MissionInput& input, MissionOutput& output);
+  bool monitor_localization(const MissionInput& input, MissionOutput& output);
   Task task() const;
   Relocalization relocalization() const;
-  void start_navigation(MissionOutput& output);
+  void start_run(MissionOutput& output);
   void next_goal(MissionOutput& output);
-  void end_navigation(MissionOutput& output);
+  void end_run(MissionOutput& output);
   void finish(MissionOutput& output);
   void enter(Phase phase);
   Event event(EventKind kind, const std::string& subject, const std::string& text, double value = 0.0) const;
@@ -106,15 +106,15 @@ class TunnelMission final : public Mission {
   std::string sounding_name() const;
 
   TunnelMissionSettings settings_;
-  std::vector<MarkedGoal> goals_;
-  bool has_remote_;
+  std::vector<SavedGoal> goals_;
+  bool has_teleop_;
   bool has_map_;
   bool is_docked_;
   Phase phase_ = Phase::kWaiting;
   std::optional<Time> first_step_;
   Time phase_start_{};
-  Time last_remote_{};
-  int navigation_ = 0;        ///< number of the present run, from 1
+  Time last_teleop_{};
+  int run_ = 0;        ///< number of the present run, from 1
   std::size_t goal_ = 0;
   int num_soundings_ = 0;
   int num_failed_ = 0;

@@ -7,7 +7,7 @@
 namespace patrol::stack {
 
 /// Message published by the robot's software: estimates, map, commands, events and results.
-using StackMessage = std::variant<OdometryEstimate, PoseEstimate, RangePoseEstimate, LocalizationTrust, ParticleSet,
+using StackMessage = std::variant<OdometryEstimate, PoseEstimate, UwbPoseEstimate, LocalizationConfidence, ParticleSet,
                                   MapUpdate, Path, VelocityCommand, Event, ScanCommand, AntennaCommand, SoundingCommand,
                                   WarningCommand, LiningResult, WaterResult>;
 

@@ -30,12 +30,12 @@ class StackOutput {
   /// Removes and returns the messages published since the last call.
   std::vector<StackMessage> take_messages() { return std::exchange(messages_, {}); }
 
-  [[nodiscard]] PartClock::Lap lap(const std::string& part) { return clock_.lap(part); }
-  const PartClock& clock() const { return clock_; }
+  [[nodiscard]] StageProfiler::ScopedTimer time_stage(const std::string& part) { return clock_.time_stage(part); }
+  const StageProfiler& clock() const { return clock_; }
 
  private:
   std::vector<StackMessage> messages_;
-  PartClock clock_;
+  StageProfiler clock_;
 };
 
 }  // namespace patrol::stack

@@ -13,7 +13,7 @@
 namespace patrol::stack {
 
 /// Settings of the sensor monitor. The age of a reading is counted from its stamp, so late readings count as missing.
-struct SensorWatchSettings {
+struct SensorMonitorSettings {
   double lidar_age_s = 0.6;       ///< age limit of sensors with SensorTimeout::kLidar (core/sensors/registry.h)
   double motion_age_s = 0.15;     ///< age limit of sensors with SensorTimeout::kMotion
   double instrument_age_s = 5.0;  ///< age limit of sensors with SensorTimeout::kInstrument
@@ -39,7 +39,7 @@ struct SensorWatchSettings {
 /// Change of the state of a sensor: fault or recovery.
 struct SensorChange {
   std::string sensor;
-  bool is_back = false;
+  bool has_recovered = false;
   std::string text;  ///< one sentence for a person
 };
 
@@ -51,12 +51,12 @@ struct SensorChange {
 /// The robot must not drive without its lidar, the only sensor of obstacles ahead. It must not drive without its
 /// encoders either, since the IMU alone loses the pose within seconds. It can drive without all others, including IMU
 /// and foot sensors, because odometry continues without them.
-class SensorWatch {
+class SensorMonitor {
  public:
-  explicit SensorWatch(const SensorWatchSettings& settings) : settings_(settings) {}
+  explicit SensorMonitor(const SensorMonitorSettings& settings) : settings_(settings) {}
 
   /// Processes a message. Returns false if it must not be used, because its stamp is in the future.
-  bool hear(const SensorMessage& message, Time now);
+  bool receive(const SensorMessage& message, Time now);
 
   /// Returns the changes since the last step. Call once per control period. The reference motion is `T_odom_body`; for
   /// the encoders, from which odometry is computed, it is the `command` since the last step.
@@ -64,16 +64,16 @@ class SensorWatch {
 
   bool can_drive() const { return !halted_since_; }
   /// Returns whether the robot has been unable to drive for longer than `give_up_s`.
-  bool has_given_up(Time now) const { return halted_since_ && now - *halted_since_ > from_seconds(settings_.give_up_s); }
+  bool must_abort(Time now) const { return halted_since_ && now - *halted_since_ > from_seconds(settings_.give_up_s); }
 
  private:
-  enum class State { kFine, kSilent, kWrongClock, kFrozen };
+  enum class State { kFine, kTimedOut, kWrongClock, kFrozen };
 
   /// State of one type of sensor message.
   struct Sensor {
     Time stamp{};  ///< stamp of the newest message; zero: none received yet
     SensorMessage reading;
-    bool is_ahead = false;     ///< true: the newest message has a stamp in the future
+    bool has_future_stamp = false;     ///< true: the newest message has a stamp in the future
     int num_repeats = 0;       ///< repetitions of the newest reading
     bool has_changed = true;   ///< true: the reading has changed since the reference below was taken
     Pose2 T_odom_changed;      ///< body pose when the reading last changed
@@ -86,7 +86,7 @@ class SensorWatch {
   bool is_frozen(std::size_t kind, const Sensor& sensor, const Pose2& T_odom_body) const;
   double age_limit_s(std::size_t kind) const;
 
-  SensorWatchSettings settings_;
+  SensorMonitorSettings settings_;
   std::array<Sensor, std::variant_size_v<SensorMessage>> sensors_;
   std::optional<Time> last_step_;
   std::optional<Time> halted_since_;

@@ -2,23 +2,23 @@
 
 namespace patrol::stack {
 
-slam::GraphSlamSettings graph_of_a_known_robot() {
+slam::GraphSlamSettings default_graph_settings() {
   slam::GraphSlamSettings settings;
   settings.tracking.motion = {};
   settings.tracking.keyframe_distance_m = 0.5;
   settings.tracking.initial_keyframes = 25;
   settings.cached_submaps = 6;
-  settings.min_hit_share_occupied = 0.5;
+  settings.min_occupied_hit_ratio = 0.5;
   settings.edge_std_m = 0.003;
   settings.edge_std_rad = 0.0001;
   return settings;
 }
 
-slam::TrackedRbpfSettings rbpf_of_a_known_robot() { return {.odometry = "given", .tracking = {}, .filter = {}}; }
+slam::ScanOdometryRbpfSettings default_rbpf_settings() { return {.odometry = "given", .tracking = {}, .filter = {}}; }
 
-std::unique_ptr<slam::Mapper> make_mapper(const StackSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed) {
+std::unique_ptr<slam::Mapper> make_mapper(const StackSettings& settings, const BoostedStumps& neighbor_model, std::uint64_t seed) {
   return slam::make_mapper(
-      {.method = settings.mapping, .graph = settings.graph, .rbpf = settings.slam, .submap_rbpf = settings.submap_rbpf}, neighbours, seed);
+      {.method = settings.mapping, .graph = settings.graph, .rbpf = settings.slam, .submap_rbpf = settings.submap_rbpf}, neighbor_model, seed);
 }
 
 }  // namespace patrol::stack

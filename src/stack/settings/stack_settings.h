@@ -23,10 +23,10 @@ namespace patrol::stack {
 
 /// Returns the default graph SLAM settings for the project's robots: odometry with the error model of the particle
 /// filter, and a leveled lidar.
-slam::GraphSlamSettings graph_of_a_known_robot();
+slam::GraphSlamSettings default_graph_settings();
 /// Returns the default RBPF settings for the project's robots: eight particles propagated by odometry. Its errors are
 /// modeled, and scan-to-scan matching would add its own.
-slam::TrackedRbpfSettings rbpf_of_a_known_robot();
+slam::ScanOdometryRbpfSettings default_rbpf_settings();
 
 /// Settings of the stack: three selectors and the settings of all components. A stack uses those of the components that
 /// it is composed of.
@@ -41,13 +41,13 @@ struct StackSettings {
   localize::ScanLevelerSettings leveling;
   std::string mapping = "graph";  ///< SLAM method (`slam::mapping_methods`); its settings are in one of the next three
                                   ///< sections
-  slam::GraphSlamSettings graph = graph_of_a_known_robot();
-  slam::TrackedRbpfSettings slam = rbpf_of_a_known_robot();  ///< settings of method `rbpf`
+  slam::GraphSlamSettings graph = default_graph_settings();
+  slam::ScanOdometryRbpfSettings slam = default_rbpf_settings();  ///< settings of method `rbpf`
   slam::SubmapRbpfSettings submap_rbpf;
   localize::MonteCarloSettings localization;  ///< settings of the localization on a given map
   localize::RangeFilterSettings range_filter;  ///< settings of the UWB pose of a robot with tracks and UWB
   plan::NavigatorSettings plan;
-  SensorWatchSettings sensor_watch;
+  SensorMonitorSettings sensor_watch;
   localize::DockDetectorSettings dock_detector;
   plan::DockingSettings docking;
   GasMissionSettings mission;
@@ -81,6 +81,6 @@ struct StackSettings {
 
 /// Makes the SLAM method named by the settings, from the table that `patrol slam` also uses. `neighbours` classifies
 /// submap pairs, for methods that need it. Throws InputError when a setting is out of range.
-std::unique_ptr<slam::Mapper> make_mapper(const StackSettings& settings, const BoostedStumps& neighbours, std::uint64_t seed);
+std::unique_ptr<slam::Mapper> make_mapper(const StackSettings& settings, const BoostedStumps& neighbor_model, std::uint64_t seed);
 
 }  // namespace patrol::stack

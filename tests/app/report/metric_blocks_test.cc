@@ -7,8 +7,8 @@ namespace {
 
 using render::TableBlock;
 
-TEST(KeyFigures, AreInTheUnitOfTheirSizeAndOnlyWhatWasMeasured) {
-  const render::KeyFigures figures = key_figures(io::Metrics::parse(R"({"pose": {"ate_rmse_m": 0.0026, "ate_max_m": 0.023, "heading_rmse_deg": null},
+TEST(KeyMetrics, AreInTheUnitOfTheirSizeAndOnlyWhatWasMeasured) {
+  const render::KeyMetrics figures = key_figures(io::Metrics::parse(R"({"pose": {"ate_rmse_m": 0.0026, "ate_max_m": 0.023, "heading_rmse_deg": null},
       "stations": [{"reached": true}, {"reached": false}], "goals": []})"));
   ASSERT_EQ(figures.figures.size(), 2u);
   EXPECT_EQ(figures.figures[0].value + figures.figures[0].unit, "2.6mm");
@@ -17,7 +17,7 @@ TEST(KeyFigures, AreInTheUnitOfTheirSizeAndOnlyWhatWasMeasured) {
 }
 
 TEST(AllMetrics, AreGroupedAndSayWhatWasExpected) {
-  const render::FoldedTables all = all_metrics(io::Metrics::parse(R"({"mission": {"completed": true}, "pose": {"aligned": {"rmse_m": 0.5}, "poses": 3}})"),
+  const render::CollapsibleTables all = all_metrics(io::Metrics::parse(R"({"mission": {"completed": true}, "pose": {"aligned": {"rmse_m": 0.5}, "poses": 3}})"),
                                                {{.metric = "pose.aligned.rmse_m", .wanted = "<= 0.1", .got = "0.5", .is_measured = true, .is_met = false}});
   EXPECT_EQ(all.summary, "All 3 figures");
   ASSERT_EQ(all.tables.size(), 2u);

@@ -53,7 +53,7 @@ TEST(SweepPage, RunsThatFailedAreSaidAndStandFirst) {
   sweep.rows[7]->end = RunStatus::kCrashed;
   EXPECT_THAT(sweep.verdict().reason, HasSubstr("1 of 20 runs did not end as expected"));
   const render::Page page = sweep.page();
-  const auto& runs = std::get<render::FoldedTables>(page.sections.back().blocks.front());
+  const auto& runs = std::get<render::CollapsibleTables>(page.sections.back().blocks.front());
   EXPECT_EQ(runs.tables.front().rows.front()[2].text, "crashed");
 }
 
@@ -64,7 +64,7 @@ TEST(SweepPage, LengthsAreInCentimetresAndEveryRunIsADot) {
   EXPECT_EQ(boxes.unit, "cm");
   EXPECT_EQ(boxes.boxes[0].values.size(), 10u);
   EXPECT_NEAR(boxes.boxes[0].median, 10.5, 1e-9);
-  EXPECT_NEAR(std::get<render::SpanChart>(blocks[1]).spans[0].to, 2.0, 1e-9);
+  EXPECT_NEAR(std::get<render::WaterfallChart>(blocks[1]).spans[0].to, 2.0, 1e-9);
 }
 
 TEST(SweepPage, AFaultMatrixSaysHowManyWereUnsafe) {
@@ -89,7 +89,7 @@ TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
   }
   EXPECT_EQ(budget.verdict().word, "lidar: range noise");
   const render::Page page = budget.page();
-  const auto& spans = std::get<render::SpanChart>(page.sections[1].blocks[0]).spans;
+  const auto& spans = std::get<render::WaterfallChart>(page.sections[1].blocks[0]).spans;
   ASSERT_EQ(spans.size(), 4u);  // as it is, the share, the interaction, all ideal
   EXPECT_NEAR(spans[1].from, spans[0].to, 1e-9);
   EXPECT_NEAR(spans[2].from, spans[1].to, 1e-9);

@@ -40,14 +40,14 @@ TEST(RunVerdict, KidnapsThatTheRunDidNotReachAreNotExecuted) {
   outcome.num_kidnaps = 1;
   const RunVerdict verdict = verdict_of(outcome, {{.at_s = 10.0}, {.at_s = 900.0}}, {}, {});
   ASSERT_EQ(verdict.events.size(), 2u);
-  EXPECT_TRUE(verdict.events[0].is_executed);
-  EXPECT_FALSE(verdict.events[1].is_executed);
+  EXPECT_TRUE(verdict.events[0].was_triggered);
+  EXPECT_FALSE(verdict.events[1].was_triggered);
   EXPECT_EQ(verdict.events[1].what, "kidnap at 900 s");
 }
 
 TEST(RunVerdict, ComesBackFromJson) {
   RunOutcome outcome = ended(RunEnd::kTimeLimit, 60.0);
-  outcome.faults = {{.fault = {.sensor = "imu", .kind = "freeze", .start_s = 12.0}, .is_executed = true}};
+  outcome.faults = {{.fault = {.sensor = "imu", .kind = "freeze", .start_s = 12.0}, .was_triggered = true}};
   const RunVerdict verdict = verdict_of(outcome, {}, {{"pose", {{"ate_rmse_m", 0.25}}}}, {make_check(false)});
   EXPECT_EQ(to_json(verdict_from_json(to_json(verdict))), to_json(verdict));
 }

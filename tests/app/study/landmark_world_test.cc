@@ -50,7 +50,7 @@ TEST(GardenWorld, EverySightIsOfALandmarkWithin10MetresAndErrsByHalfAMetreAnd5De
   test::Moments range, bearing;
   for (std::size_t k = 0; k < run.seen.size(); ++k) {
     for (const slam::RangeBearing& sight : run.seen[k]) {
-      const slam::PredictedSight truth = slam::predict_sight(run.truth[k], world.landmarks_m[static_cast<std::size_t>(sight.landmark)]);
+      const slam::PredictedObservation truth = slam::predict_observation(run.truth[k], world.landmarks_m[static_cast<std::size_t>(sight.landmark)]);
       EXPECT_LE(truth.sight.x(), 10.0);
       range.add(sight.range_m - truth.sight.x());
       bearing.add(wrap_angle(sight.bearing_rad - truth.sight.y()));

@@ -44,7 +44,7 @@ TEST(FaultMatrix, OnARobotWithEverythingItHasEverySensorOfTheRegistryThatGivesNo
   files.recorded.resize(1);
   std::set<std::string> in_matrix;
   for (const sim::FaultSettings& fault : fault_matrix(scenario, files, 12.0, 8.0)) in_matrix.insert(fault.sensor);
-  for (const SensorInfo& info : kSensorInfos) EXPECT_EQ(in_matrix.contains(info.name), *info.not_in_fault_matrix == '\0') << info.name;
+  for (const SensorInfo& info : kSensorInfos) EXPECT_EQ(in_matrix.contains(info.name), *info.fault_matrix_exclusion_reason == '\0') << info.name;
 }
 
 TEST(FaultMatrix, WithoutStationsAndRemoteControlScannerAndRemoteAreNotInIt) {

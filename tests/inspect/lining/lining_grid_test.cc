@@ -69,9 +69,9 @@ TEST(LiningGrid, TenCentimetresFromAJointBelongToNoCell) {
 }
 
 /// Points of the lining with 2 mm of noise, a third of them on things 0.3 m before it.
-std::vector<ThinPoint> seen(const LiningInMap& lining, double chainage_m) {
+std::vector<DownsampledPoint> seen(const LiningInMap& lining, double chainage_m) {
   const RandomStream draw(5, "test/seen");
-  std::vector<ThinPoint> points;
+  std::vector<DownsampledPoint> points;
   for (std::uint64_t i = 0; i < 6000; ++i) {
     const double s = chainage_m + 14.0 * (2.0 * draw.uniform(i, 0) - 1.0), clock_deg = 360.0 + 115.0 * (2.0 * draw.uniform(i, 1) - 1.0);
     const Eigen::Vector3d p = lining.intrados(s, std::fmod(clock_deg, 360.0));
@@ -84,7 +84,7 @@ std::vector<ThinPoint> seen(const LiningInMap& lining, double chainage_m) {
 TEST(FitDesign, FindsTheLiningThatTheMapHas200mmAsideAnd1DegreeTurned) {
   const LiningInMap lining = lining_in_map();
   const Eigen::Vector3d scanner(85.0, 1.0, 0.5);
-  const std::vector<ThinPoint> points = seen(lining, 85.0);
+  const std::vector<DownsampledPoint> points = seen(lining, 85.0);
   TunnelLining wrong = lining.design;
   wrong.T_route_start = Pose2{0.0, 0.2, 0.0} * Pose2{85.0, 0.0, 0.0} * Pose2{0.0, 0.0, kDegree} * Pose2{-85.0, 0.0, 0.0} * wrong.T_route_start;
   const auto fitted = fit_design(wrong, points, scanner, {});
@@ -99,13 +99,13 @@ TEST(FitDesign, FindsTheLiningThatTheMapHas200mmAsideAnd1DegreeTurned) {
 
 TEST(FitDesign, OfAHallThatIsNoTunnelThereIsNone) {
   // A ceiling 12 m up, over 10 m by 10 m.
-  std::vector<ThinPoint> points;
+  std::vector<DownsampledPoint> points;
   for (int i = 0; i < 100; ++i) {
     for (int k = 0; k < 100; ++k) points.push_back({.p = {80.0 + 0.1 * i, 0.1 * k - 5.0, 12.0}, .intensity = 0.0, .count = 1});
   }
   LiningSettings settings;
   EXPECT_FALSE(fit_design(lining_in_map().design, {}, {85.0, 0.0, 0.5}, settings).has_value());
-  for (ThinPoint& point : points) point.p.z() = 0.4;  // nothing overhead
+  for (DownsampledPoint& point : points) point.p.z() = 0.4;  // nothing overhead
   EXPECT_FALSE(fit_design(lining_in_map().design, points, {85.0, 0.0, 0.5}, settings).has_value());
 }
 

@@ -51,7 +51,7 @@ TEST_P(LiningSeeds, PushesOf3And6And12mmAndABulgeAreFoundTo1500MicrometresBeside
       EXPECT_NEAR(line.change_m, -0.012, 0.0015);
     }
   }
-  const Pose2 T_map_body = to_planar(station.T_map_scanner) * to_planar(kT_body_scanner).inverse();
+  const Pose2 T_map_body = to_pose2(station.T_map_scanner) * to_pose2(kT_body_scanner).inverse();
   EXPECT_LT((result.T_map_body.position() - T_map_body.position()).norm(), 0.005);
   const double way_m = (station.T_map_scanner.position - station.T_map_scanner_guess.position).norm();
   EXPECT_NEAR(result.correction_m, way_m, 0.005);

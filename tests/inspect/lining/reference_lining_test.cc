@@ -17,9 +17,9 @@ const LiningGrid kGrid(kLining, {35.0, 0.0, 0.85}, {});
 /// Ring 18 about the crown, every 8 cm, built 10 mm too far in at its beginning and leaning outwards by 5 mm/m.
 double as_built_m(double chainage_m) { return 0.010 - 0.005 * (chainage_m - 34.0); }
 
-std::vector<ThinPoint> ring_18(double noise_std_m) {
+std::vector<DownsampledPoint> ring_18(double noise_std_m) {
   const RandomStream noise(7, "test/ring");
-  std::vector<ThinPoint> points;
+  std::vector<DownsampledPoint> points;
   for (int i = 0; i < 25; ++i) {
     for (int k = -25; k <= 25; ++k) {
       const double s = 34.0 + 0.08 * i, clock_deg = std::fmod(360.0 + 0.8 * k, 360.0);
@@ -42,7 +42,7 @@ TEST(ReferenceLining, LeaningRingIsFollowedToATenthOfAMillimetre) {
 }
 
 TEST(ReferenceLining, CableThatHangs30mmBeforeTheWallIsNotTheLining) {
-  std::vector<ThinPoint> points = ring_18(0.001);
+  std::vector<DownsampledPoint> points = ring_18(0.001);
   for (int i = 0; i < 100; ++i) points.push_back({.p = kLining.intrados(34.0 + 0.02 * i, 2.0) - Eigen::Vector3d(0.0, 0.0, 0.03), .intensity = 0.0, .count = 1});
   const ReferenceLining reference(kLining, kGrid, points, {});
   const LiningPoint point{.chainage_m = 35.0, .clock_deg = 2.0};

@@ -9,7 +9,7 @@ namespace patrol::inspect::registration_test {
 namespace {
 
 SurfaceCloud scan_from(const test::LinedTunnel& tunnel, const Pose3& T_route_scanner, std::uint64_t seed) {
-  return SurfaceCloud(thin(tunnel.scan(T_route_scanner, {.step_deg = 1.0}, seed).points, 0.1, 1.5));
+  return SurfaceCloud(downsample(tunnel.scan(T_route_scanner, {.step_deg = 1.0}, seed).points, 0.1, 1.5));
 }
 
 /// 0.3 m along and aside, 6 cm up and 2 degrees off, to either side.
@@ -22,7 +22,7 @@ TEST(Registration, Start300mmAnd2DegreesOffEndsWithin10mm) {
     const Pose3 start{truth.position + sign * Eigen::Vector3d(0.3, 0.3, 0.06), quaternion_from_yaw(2.0 * kDegree * sign) * truth.rotation};
     const Registration found = register_cloud(target, source, start, {});
     EXPECT_TRUE(found.converged);
-    EXPECT_GT(found.share, 0.85);
+    EXPECT_GT(found.inlier_ratio, 0.85);
     EXPECT_LT((found.T_target_source.position - truth.position).norm(), 0.01);
     EXPECT_LT(found.T_target_source.rotation.angularDistance(truth.rotation), 0.1 * kDegree);
   }
@@ -46,7 +46,7 @@ TEST(Registration, OfNothingFails) {
 TEST(Moved, StepTurnsAboutTheSourcesOriginAndShiftsIt) {
   Eigen::Matrix<double, 6, 1> step;
   step << 1.0, 2.0, 3.0, 0.0, 0.0, 90.0 * kDegree;
-  const Pose3 T = moved({{5.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()}, step);
+  const Pose3 T = apply_step({{5.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()}, step);
   EXPECT_TRUE(T.position.isApprox(Eigen::Vector3d(6.0, 2.0, 3.0), 1e-12));
   EXPECT_TRUE((T * Eigen::Vector3d(1.0, 0.0, 0.0)).isApprox(Eigen::Vector3d(6.0, 3.0, 3.0), 1e-12));
 }

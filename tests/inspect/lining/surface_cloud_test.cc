@@ -27,8 +27,8 @@ std::vector<ScannerPoint> wall(double noise_std_m = 0.0) {
 
 TEST(Thin, WallOf4SquareMetresAt10cmKeepsAbout400PointsAndEveryBeamCounts) {
   int beams = 0;
-  const auto thinned = thin(wall(), 0.1);
-  for (const ThinPoint& point : thinned) {
+  const auto thinned = downsample(wall(), 0.1);
+  for (const DownsampledPoint& point : thinned) {
     EXPECT_NEAR(point.p.y(), 4.0, 1e-6);
     EXPECT_EQ(point.intensity, 50.0);
     beams += point.count;
@@ -42,36 +42,36 @@ TEST(Thin, MeansAreNotBiasedByNoiseWhereverTheWallStands) {
   // Cells in space would sort a wall's points by their noise. The mean of means has a standard deviation of 0.002 / sqrt(40000) = 0.01 mm, somewhat
   // more as cells differ in size.
   double sum = 0.0;
-  const auto thinned = thin(wall(0.002), 0.1);
-  for (const ThinPoint& point : thinned) sum += point.p.y() - 4.0;
+  const auto thinned = downsample(wall(0.002), 0.1);
+  for (const DownsampledPoint& point : thinned) sum += point.p.y() - 4.0;
   EXPECT_LT(std::abs(sum / static_cast<double>(thinned.size())), 5e-5);
 }
 
 TEST(Thin, StepInRangeIsNotAveragedOver) {
   // One direction, two surfaces.
-  const auto thinned = thin({{2.0F, 0.0F, 0.0F, 0.0F}, {2.01F, 0.0F, 0.0F, 0.0F}, {2.5F, 0.0F, 0.0F, 0.0F}}, 0.1);
+  const auto thinned = downsample({{2.0F, 0.0F, 0.0F, 0.0F}, {2.01F, 0.0F, 0.0F, 0.0F}, {2.5F, 0.0F, 0.0F, 0.0F}}, 0.1);
   ASSERT_EQ(thinned.size(), 2U);
   EXPECT_NEAR(thinned[0].p.x(), 2.005, 1e-6);
   EXPECT_NEAR(thinned[1].p.x(), 2.5, 1e-6);
 }
 
 TEST(Thin, WhatIsNearerThan1500mmIsLeftOut) {
-  EXPECT_TRUE(thin({{1.4F, 0.0F, 0.3F, 0.0F}}, 0.1, 1.5).empty());
-  EXPECT_EQ(thin({{1.6F, 0.0F, 0.0F, 0.0F}}, 0.1, 1.5).size(), 1U);
+  EXPECT_TRUE(downsample({{1.4F, 0.0F, 0.3F, 0.0F}}, 0.1, 1.5).empty());
+  EXPECT_EQ(downsample({{1.6F, 0.0F, 0.0F, 0.0F}}, 0.1, 1.5).size(), 1U);
 }
 
 TEST(Thin, PointThatIsNotFiniteIsRefused) {
-  EXPECT_THROW(thin({{1.0F, std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F}}, 0.1), InputError);
-  EXPECT_THROW(thin({{std::numeric_limits<float>::infinity(), 0.0F, 0.0F, 0.0F}}, 0.1), InputError);
+  EXPECT_THROW(downsample({{1.0F, std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F}}, 0.1), InputError);
+  EXPECT_THROW(downsample({{std::numeric_limits<float>::infinity(), 0.0F, 0.0F, 0.0F}}, 0.1), InputError);
 }
 
 TEST(SurfaceCloud, NormalsOfAWallLieAcrossIt) {
-  const SurfaceCloud cloud(thin(wall(), 0.1));
+  const SurfaceCloud cloud(downsample(wall(), 0.1));
   for (const SurfaceCloud::Surface& surface : cloud.surfaces()) EXPECT_NEAR(std::abs(surface.normal.y()), 1.0, 1e-5);
 }
 
 TEST(SurfaceCloud, RowOfPointsIsNoSurface) {
-  std::vector<ThinPoint> row;
+  std::vector<DownsampledPoint> row;
   for (int i = 0; i < 20; ++i) row.push_back({.p = {0.1 * i, 0.0, 0.0}, .intensity = 0.0, .count = 1});
   const SurfaceCloud cloud(row);
   for (const SurfaceCloud::Surface& surface : cloud.surfaces()) EXPECT_TRUE(surface.normal.isZero());

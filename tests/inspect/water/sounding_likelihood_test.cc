@@ -15,47 +15,47 @@ const ConductiveSphere kBody{.distance_m = 16.0, .radius_m = 6.0, .conductivity_
 const ConductiveSphere kNone{};
 const Eigen::Vector3d kAhead = Eigen::Vector3d(1.0, 0.2, -0.1).normalized();
 
-std::vector<AimedSounding> soundings(const ConductiveSphere& body, std::uint64_t seed = 1) {
+std::vector<OrientedSounding> soundings(const ConductiveSphere& body, std::uint64_t seed = 1) {
   return test::make_soundings(0.003, body, kAhead, antenna_poses({}, test::antenna_mount()), seed);
 }
 
 TEST(SoundingLikelihood, IsLargestNearTheRockThatWasThere) {
   const SoundingLikelihood likelihood({}, soundings(kNone));
-  EXPECT_GT(likelihood.of_rock(0.003), likelihood.of_rock(0.004) + 5.0);
-  EXPECT_GT(likelihood.of_rock(0.003), likelihood.of_rock(0.002) + 5.0);
+  EXPECT_GT(likelihood.log_likelihood_rock(0.003), likelihood.log_likelihood_rock(0.004) + 5.0);
+  EXPECT_GT(likelihood.log_likelihood_rock(0.003), likelihood.log_likelihood_rock(0.002) + 5.0);
 }
 
 TEST(SoundingLikelihood, OfABodyTooSmallToSeeIsThatOfTheRock) {
   const SoundingLikelihood likelihood({}, soundings(kNone));
-  EXPECT_NEAR(likelihood.of_body(0.003, {.distance_m = 30.0, .radius_m = 0.2, .conductivity_spm = 0.6}, kAhead), likelihood.of_rock(0.003), 1e-3);
+  EXPECT_NEAR(likelihood.log_likelihood_body(0.003, {.distance_m = 30.0, .radius_m = 0.2, .conductivity_spm = 0.6}, kAhead), likelihood.log_likelihood_rock(0.003), 1e-3);
 }
 
 TEST(SoundingLikelihood, AheadAndBehindAreAlike) {
   const SoundingLikelihood likelihood({}, soundings(kBody));
-  EXPECT_NEAR(likelihood.of_body(0.003, kBody, kAhead), likelihood.of_body(0.003, kBody, -kAhead), 1e-9);
+  EXPECT_NEAR(likelihood.log_likelihood_body(0.003, kBody, kAhead), likelihood.log_likelihood_body(0.003, kBody, -kAhead), 1e-9);
 }
 
 // Turning body and antenna together about z changes nothing: steel is alike in all directions, and so is the noise.
 TEST(SoundingLikelihood, TurningBodyAndAntennaTogetherChangesNothing) {
-  std::vector<AimedSounding> turned = soundings(kBody);
+  std::vector<OrientedSounding> turned = soundings(kBody);
   constexpr double kTurn_rad = 0.3;
-  for (AimedSounding& aimed : turned) aimed.pose.yaw_rad += kTurn_rad;
-  const double before = SoundingLikelihood({}, soundings(kBody)).of_body(0.003, kBody, kAhead);
-  const double after = SoundingLikelihood({}, turned).of_body(0.003, kBody, quaternion_from_yaw(kTurn_rad) * kAhead);
+  for (OrientedSounding& aimed : turned) aimed.pose.yaw_rad += kTurn_rad;
+  const double before = SoundingLikelihood({}, soundings(kBody)).log_likelihood_body(0.003, kBody, kAhead);
+  const double after = SoundingLikelihood({}, turned).log_likelihood_body(0.003, kBody, quaternion_from_yaw(kTurn_rad) * kAhead);
   // The prior of steel's share by direction is independent in the six entries of its form, which a turn mixes: hence a little.
   EXPECT_NEAR(after, before, 0.5);
 }
 
 TEST(SoundingLikelihood, AGainOfFivePerCentAndASmallShiftOfTimeCostLittleAndTwentyPerCentMuch) {
   const auto scaled = [](double gain) {
-    std::vector<AimedSounding> all = soundings(kBody);
-    for (AimedSounding& aimed : all) {
+    std::vector<OrientedSounding> all = soundings(kBody);
+    for (OrientedSounding& aimed : all) {
       for (std::size_t gate = 0; gate < aimed.sounding.rate_tps.size(); ++gate) {
         aimed.sounding.rate_tps[gate] *= gain;
         aimed.sounding.std_tps[gate] *= gain;
       }
     }
-    return SoundingLikelihood({}, all).of_body(0.003, kBody, kAhead);
+    return SoundingLikelihood({}, all).log_likelihood_body(0.003, kBody, kAhead);
   };
   EXPECT_LT(scaled(1.0) - scaled(1.05), 4.0);  // (0.05 / 0.03)^2 / 2 = 1.4, and what time's shift and steel make of it
   EXPECT_GT(scaled(1.0) - scaled(1.3), 8.0);
@@ -65,14 +65,14 @@ TEST(SoundingLikelihood, AGainOfFivePerCentAndASmallShiftOfTimeCostLittleAndTwen
 TEST(SoundingLikelihood, TheTruthIsNotBeatenByAWeakerWorld) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const SoundingLikelihood likelihood({}, soundings(kBody, seed));
-    const double truth = likelihood.of_body(0.003, kBody, kAhead);
-    EXPECT_GT(truth + 4.0, likelihood.of_body(0.0026, {.distance_m = 17.2, .radius_m = 6.0, .conductivity_spm = 0.6}, kAhead)) << seed;
+    const double truth = likelihood.log_likelihood_body(0.003, kBody, kAhead);
+    EXPECT_GT(truth + 4.0, likelihood.log_likelihood_body(0.0026, {.distance_m = 17.2, .radius_m = 6.0, .conductivity_spm = 0.6}, kAhead)) << seed;
   }
 }
 
 TEST(SoundingLikelihood, RefusesNoSoundingsAndGatesThatDiffer) {
   EXPECT_THROW(SoundingLikelihood({}, {}), InputError);
-  std::vector<AimedSounding> odd = soundings(kNone);
+  std::vector<OrientedSounding> odd = soundings(kNone);
   odd[3].sounding.rate_tps.pop_back();
   try {
     SoundingLikelihood({}, odd);

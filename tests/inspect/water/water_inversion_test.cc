@@ -55,8 +55,8 @@ TEST(WaterInversion, InRockAloneNothingIsFoundAndTheRockIsTold) {
 TEST(WaterInversion, WhereTheRobotStoodTurnsAndMovesTheBodyInTheMap) {
   const Pose2 T_map_body{100.0, -20.0, 2.0};
   const WaterResult here = invert(kBody), there = invert(kBody, quick(), T_map_body);
-  EXPECT_LT((to_spatial(T_map_body) * here.p_map - there.p_map).norm(), 1e-9);
-  const Eigen::Matrix3d R = to_spatial(T_map_body).rotation.toRotationMatrix();
+  EXPECT_LT((to_pose3(T_map_body) * here.p_map - there.p_map).norm(), 1e-9);
+  const Eigen::Matrix3d R = to_pose3(T_map_body).rotation.toRotationMatrix();
   EXPECT_LT((R * here.covariance_m2 * R.transpose() - there.covariance_m2).norm(), 1e-9);
   EXPECT_EQ(here.azimuth_deg, there.azimuth_deg);
 }

@@ -95,7 +95,7 @@ TEST(WaterSounding, Takes35SoundingsWhereTheServosReadAndStowsTheAntenna) {
   Bench bench;
   const double took_s = bench.run(water);
   ASSERT_EQ(water.soundings().size(), 35U);
-  EXPECT_EQ(water.num_left_out(), 0);
+  EXPECT_EQ(water.num_skipped(), 0);
   EXPECT_TRUE(water.is_stowed());
   EXPECT_NEAR(bench.state().pitch_rad, -90.0 * kDegree, 1e-9);
   for (std::size_t i = 0; i < 35; ++i) EXPECT_NEAR(water.soundings()[i].pose.yaw_rad, bench.true_yaws_rad()[i], 1e-9) << "still while sounding";
@@ -118,7 +118,7 @@ TEST(WaterSounding, ServosThatStickLeaveOutThreePosesThenItGivesUpAndSaysThatItI
   const double took_s = bench.run(water);
   EXPECT_GT(water.soundings().size(), 3U);
   EXPECT_LT(water.soundings().size(), 20U);
-  EXPECT_EQ(water.num_left_out() + static_cast<int>(water.soundings().size()), 35);
+  EXPECT_EQ(water.num_skipped() + static_cast<int>(water.soundings().size()), 35);
   EXPECT_FALSE(water.is_stowed());
   EXPECT_LT(took_s, 20.0 + 4.0 * 8.0 + 3.0);  // three poses and the stowing, 8 s each
 }
@@ -129,7 +129,7 @@ TEST(WaterSounding, AnInstrumentThatIsSilentIsGivenUpAfterThreePosesAndTheAntenn
   bench.deaf_from_s = 0.0;
   bench.run(water);
   EXPECT_TRUE(water.soundings().empty());
-  EXPECT_EQ(water.num_left_out(), 35);
+  EXPECT_EQ(water.num_skipped(), 35);
   EXPECT_TRUE(water.is_stowed());
   EXPECT_EQ(water.antenna_error_deg(), 0.0);
 }

@@ -12,7 +12,7 @@ namespace {
 
 using test::Pose2Near;
 
-DockSighting see(double time_s, const Pose2& T_level_docked, double std_m = 0.01, double std_rad = 0.01) {
+DockDetection see(double time_s, const Pose2& T_level_docked, double std_m = 0.01, double std_rad = 0.01) {
   const Eigen::Vector3d stds(std_m, std_m, std_rad);
   return {.stamp = from_seconds(time_s), .T_level_docked = T_level_docked, .covariance = stds.cwiseAbs2().asDiagonal()};
 }

@@ -30,7 +30,7 @@ class Looker {
     const Pose3 T_level_body{Eigen::Vector3d::Zero(), quaternion_from_rpy(0.0, pitch_rad, 0.0)};
     const Pose3 T_level_camera = T_level_body * body_camera();
     const double z = scene_.ground_m(T_map_body.x, T_map_body.y) + kBodyHeight_m;
-    const DepthImage exact = scene_.look(to_spatial(T_map_body, z) * T_level_camera);
+    const DepthImage exact = scene_.look(to_pose3(T_map_body, z) * T_level_camera);
     for (int i = 0; i < images; ++i) {
       const DepthImage image = test::with_noise(exact, kStdPerM, noise_, tick_++);
       const DepthPoints points = find_depth_points({}, image, T_level_camera, kBodyHeight_m);
@@ -106,7 +106,7 @@ TEST(CostmapLow, ATakenAwayBarIsForgottenWhenTheGroundIsSeen) {
   looker.look({}, 5);
   ASSERT_GT(looker.costmap().num_low_obstacles(), 0u);
   Costmap costmap = looker.costmap();
-  const DepthImage empty = DepthScene().look(to_spatial({}, kBodyHeight_m) * body_camera());
+  const DepthImage empty = DepthScene().look(to_pose3({}, kBodyHeight_m) * body_camera());
   for (int i = 0; i < 6; ++i) {
     costmap.add_image(find_depth_points({}, empty, body_camera(), kBodyHeight_m), from_seconds(2.0 + 0.2 * i), {});
   }

@@ -14,8 +14,8 @@ using ::testing::IsEmpty;
 Director director_of_a_fault() {
   RunHistory history{.num_states = 2, .begin = 0s, .end = 60s, .T_world_body = {}, .errors = {}, .approaches = {}, .events = {}, .collisions = {}};
   for (const Time at : {Time(0s), Time(60s)}) history.T_world_body.push_back({at, {}});
-  const StorySettings settings{.lead_s = 4.0, .hold_s = 3.0};
-  ShotPlan plan = plan_shots(history, {{30s, MomentKind::kFault, "Fault"}}, Cut::kStory, {}, settings);
+  const ShotSettings settings{.lead_s = 4.0, .lag_s = 3.0};
+  ShotPlan plan = plan_shots(history, {{30s, HighlightKind::kFault, "Fault"}}, FilmStyle::kHighlights, {}, settings);
   return Director(std::move(plan), CameraRig(CameraKind::kChase), {});
 }
 

@@ -14,7 +14,7 @@ bool is_in_picture(const View& view, const Eigen::Vector3d& point) {
 }
 
 TEST(ShotCamera, BesideTheRobotLooksAtItFromAhead) {
-  const Shot shot{.span = {}, .kind = ShotKind::kBeside, .caption = {}, .T_world_body = kOrigin};
+  const Shot shot{.span = {}, .kind = ShotKind::kClose, .caption = {}, .T_world_body = kOrigin};
   const View view = ShotCamera(shot, {}, kOrigin).follow(kOrigin, {0.0, 0.0}, kFrame_s);
   EXPECT_GT(view.eye.x(), 0.5);
   EXPECT_TRUE(is_in_picture(view, kOrigin.position));
@@ -22,7 +22,7 @@ TEST(ShotCamera, BesideTheRobotLooksAtItFromAhead) {
 
 TEST(ShotCamera, OfTwoHasBothInThePicture) {
   const Eigen::Vector2d subject(0.0, 2.5);
-  const Shot shot{.span = {}, .kind = ShotKind::kTwoShot, .caption = {}, .T_world_body = kOrigin, .p_world_subject = subject};
+  const Shot shot{.span = {}, .kind = ShotKind::kTwoSubjects, .caption = {}, .T_world_body = kOrigin, .p_world_subject = subject};
   const View view = ShotCamera(shot, {}, kOrigin).follow(kOrigin, {0.0, 0.0}, kFrame_s);
   EXPECT_TRUE(is_in_picture(view, kOrigin.position));
   EXPECT_TRUE(is_in_picture(view, {subject.x(), subject.y(), 0.5}));
@@ -32,7 +32,7 @@ TEST(ShotCamera, DoesNotGoWhereAWallIs) {
   const auto wall_on_the_left = [](const Eigen::Vector3d& from, const Eigen::Vector3d& direction, double max_m) {
     return direction.y() > 1e-9 ? std::min(max_m, (0.5 - from.y()) / direction.y()) : max_m;
   };
-  const Shot shot{.span = {}, .kind = ShotKind::kBeside, .caption = {}, .T_world_body = kOrigin};
+  const Shot shot{.span = {}, .kind = ShotKind::kClose, .caption = {}, .T_world_body = kOrigin};
   ShotCamera camera(shot, wall_on_the_left, kOrigin);
   EXPECT_LT(camera.follow(kOrigin, {0.0, 0.0}, kFrame_s).eye.y(), 0.0);
 }

@@ -13,7 +13,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 const SpeedSettings kSpeeds{};
-const StorySettings kStory{.lead_s = 5.0, .hold_s = 4.0, .same_scene_s = 4.0, .most_shots = 3};
+const ShotSettings kHighlights{.lead_s = 5.0, .lag_s = 4.0, .same_scene_s = 4.0, .max_shots = 3};
 
 /// Two minutes along x at 1 m/s.
 RunHistory two_minutes() {
@@ -22,21 +22,21 @@ RunHistory two_minutes() {
   return history;
 }
 
-ShotPlan plan(const std::vector<Moment>& moments, Cut cut = Cut::kStory) { return plan_shots(two_minutes(), moments, cut, kSpeeds, kStory); }
+ShotPlan plan(const std::vector<Highlight>& moments, FilmStyle style = FilmStyle::kHighlights) { return plan_shots(two_minutes(), moments, style, kSpeeds, kHighlights); }
 
 TEST(ShotPlan, ASceneBeginsBeforeItsMomentAndEndsAfterIt) {
-  const ShotPlan one = plan({{60s, MomentKind::kAlarm, "Leak", Eigen::Vector2d(61.0, 2.0)}});
+  const ShotPlan one = plan({{60s, HighlightKind::kAlarm, "Leak", Eigen::Vector2d(61.0, 2.0)}});
   ASSERT_EQ(one.shots.size(), 1u);
   EXPECT_EQ(one.shots[0].span.from, Time(55s));
   EXPECT_EQ(one.shots[0].span.to, Time(64s));
-  EXPECT_EQ(one.shots[0].kind, ShotKind::kTwoShot);
+  EXPECT_EQ(one.shots[0].kind, ShotKind::kTwoSubjects);
   EXPECT_NEAR(one.shots[0].T_world_body.position.x(), 60.0, 1e-9);
   EXPECT_NEAR(one.speed.speed(60s), 2.0, 1e-9);
   EXPECT_NEAR(one.speed.speed(20s), 8.0, 1e-9);
 }
 
 TEST(ShotPlan, MomentsCloseToEachOtherAreOneSceneToldInOrder) {
-  const ShotPlan one = plan({{60s, MomentKind::kKidnap, "Lifted"}, {61s, MomentKind::kLost, "Lost"}, {64s, MomentKind::kRelocalized, "Found"}});
+  const ShotPlan one = plan({{60s, HighlightKind::kKidnap, "Lifted"}, {61s, HighlightKind::kLost, "Lost"}, {64s, HighlightKind::kRelocalized, "Found"}});
   ASSERT_EQ(one.shots.size(), 1u);
   EXPECT_THAT(one.shots[0].caption, ElementsAre("Lifted", "Lost", "Found"));
   EXPECT_EQ(one.shots[0].kind, ShotKind::kOverhead);
@@ -44,20 +44,20 @@ TEST(ShotPlan, MomentsCloseToEachOtherAreOneSceneToldInOrder) {
 }
 
 TEST(ShotPlan, OfTooManyMomentsInOneSceneTheLeastNotableIsNotTold) {
-  const ShotPlan one = plan({{60s, MomentKind::kLargestError, "Error"}, {60s, MomentKind::kKidnap, "Lifted"}, {61s, MomentKind::kLost, "Lost"}, {62s, MomentKind::kRelocalized, "Found"}});
+  const ShotPlan one = plan({{60s, HighlightKind::kMaxError, "Error"}, {60s, HighlightKind::kKidnap, "Lifted"}, {61s, HighlightKind::kLost, "Lost"}, {62s, HighlightKind::kRelocalized, "Found"}});
   EXPECT_THAT(one.shots[0].caption, ElementsAre("Lifted", "Lost", "Found"));
 }
 
 TEST(ShotPlan, ScenesThatWouldOverlapMeetInTheMiddle) {
-  const ShotPlan two = plan({{60s, MomentKind::kNearMiss, "Near"}, {66s, MomentKind::kDocking, "Docked"}});
+  const ShotPlan two = plan({{60s, HighlightKind::kNearMiss, "Near"}, {66s, HighlightKind::kDocking, "Docked"}});
   ASSERT_EQ(two.shots.size(), 2u);
   EXPECT_EQ(two.shots[0].span.to, Time(62500ms));  // of 61 s and 64 s
   EXPECT_EQ(two.shots[1].span.from, Time(62500ms));
 }
 
 TEST(ShotPlan, TheLessNotableScenesAreChaptersOnly) {
-  std::vector<Moment> moments;
-  for (int i = 1; i <= 5; ++i) moments.push_back({i * 20s, i % 2 == 0 ? MomentKind::kCollision : MomentKind::kGoal, "moment " + std::to_string(i)});
+  std::vector<Highlight> moments;
+  for (int i = 1; i <= 5; ++i) moments.push_back({i * 20s, i % 2 == 0 ? HighlightKind::kCollision : HighlightKind::kGoal, "moment " + std::to_string(i)});
   const ShotPlan some = plan(moments);
   ASSERT_EQ(some.shots.size(), 3u);  // both collisions, and the first of the goals
   EXPECT_EQ(some.shots[0].caption[0], "moment 1");
@@ -67,7 +67,7 @@ TEST(ShotPlan, TheLessNotableScenesAreChaptersOnly) {
 }
 
 TEST(ShotPlan, ChaptersFollowEachOtherFromTheBeginToTheEndOfTheFilm) {
-  const ShotPlan some = plan({{1s, MomentKind::kMission, "Mission begins"}, {60s, MomentKind::kGoal, "Goal"}, {100s, MomentKind::kAlarm, "Leak"}});
+  const ShotPlan some = plan({{1s, HighlightKind::kMission, "Mission begins"}, {60s, HighlightKind::kGoal, "Goal"}, {100s, HighlightKind::kAlarm, "Leak"}});
   ASSERT_EQ(some.chapters.size(), 3u);
   EXPECT_EQ(some.chapters[0].title, "Mission begins") << "nothing comes before it";
   EXPECT_EQ(some.chapters[0].begin_s, 0.0);
@@ -77,16 +77,16 @@ TEST(ShotPlan, ChaptersFollowEachOtherFromTheBeginToTheEndOfTheFilm) {
 }
 
 TEST(ShotPlan, APlainCutIsEvenAndHasChaptersAllTheSame) {
-  const ShotPlan even = plan({{60s, MomentKind::kAlarm, "Leak"}}, Cut::kPlain);
+  const ShotPlan even = plan({{60s, HighlightKind::kAlarm, "Leak"}}, FilmStyle::kContinuous);
   EXPECT_THAT(even.shots, IsEmpty());
   EXPECT_NEAR(even.speed.length_s(), 120.0 / 8.0, 1e-9);
   EXPECT_EQ(even.chapters.size(), 2u);
 }
 
 TEST(ShotPlan, KnowsTheNamesOfItsCuts) {
-  EXPECT_EQ(cut_named("plain"), Cut::kPlain);
+  EXPECT_EQ(parse_film_style("plain"), FilmStyle::kContinuous);
   try {
-    cut_named("fast");
+    parse_film_style("fast");
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "cut = fast: must be one of story, plain");

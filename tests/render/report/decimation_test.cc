@@ -20,14 +20,14 @@ TEST(Decimated, KeepsTheOnePeakAndTheOneDipOfALongCurve) {
   Points curve = line_of(100000);
   curve[31415].y() = 1e3;
   curve[92653].y() = -1e3;
-  const Points kept = decimated(curve, 600);
+  const Points kept = decimate(curve, 600);
   EXPECT_LE(kept.size(), 2u * 600u + 2u);
   EXPECT_NE(std::find(kept.begin(), kept.end(), curve[31415]), kept.end());
   EXPECT_NE(std::find(kept.begin(), kept.end(), curve[92653]), kept.end());
 }
 
 TEST(Decimated, KeepsBothEndsAndTheOrder) {
-  const Points curve = line_of(5001), kept = decimated(curve, 100);
+  const Points curve = line_of(5001), kept = decimate(curve, 100);
   EXPECT_EQ(kept.front(), curve.front());
   EXPECT_EQ(kept.back(), curve.back());
   EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end(), [](const auto& a, const auto& b) { return a.x() < b.x(); }));
@@ -35,19 +35,19 @@ TEST(Decimated, KeepsBothEndsAndTheOrder) {
 
 TEST(Decimated, HoldsNoPointThatTheCurveDoesNotHave) {
   const Points curve = line_of(5001);
-  for (const Eigen::Vector2d& point : decimated(curve, 100)) EXPECT_NE(std::find(curve.begin(), curve.end(), point), curve.end());
+  for (const Eigen::Vector2d& point : decimate(curve, 100)) EXPECT_NE(std::find(curve.begin(), curve.end(), point), curve.end());
 }
 
 TEST(Decimated, LeavesAShortCurveAsItIs) {
-  EXPECT_EQ(decimated(line_of(200), 100), line_of(200));
-  EXPECT_TRUE(decimated({}, 100).empty());
+  EXPECT_EQ(decimate(line_of(200), 100), line_of(200));
+  EXPECT_TRUE(decimate({}, 100).empty());
 }
 
 TEST(Simplified, StaysWithinItsToleranceOfEveryPointOfACircle) {
   constexpr double kTolerance = 0.01;
   Points circle;
   for (int i = 0; i <= 3600; ++i) circle.emplace_back(5.0 * std::cos(i * M_PI / 1800.0), 5.0 * std::sin(i * M_PI / 1800.0));
-  const Points kept = simplified(circle, kTolerance);
+  const Points kept = simplify_path(circle, kTolerance);
   // A chord that stays within h of a circle of radius r is sqrt(8 r h) = 0.63 m long: 50 of them.
   EXPECT_GE(kept.size(), 50u);
   EXPECT_LE(kept.size(), 130u);
@@ -59,13 +59,13 @@ TEST(Simplified, KeepsTheCornersOfASquareAndNothingElse) {
   for (const Eigen::Vector2d& side : {Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1), Eigen::Vector2d(-1, 0), Eigen::Vector2d(0, -1)}) {
     for (int i = 0; i < 10; ++i) square.push_back((square.empty() ? Eigen::Vector2d(0, 0) : square.back()) + side);
   }
-  EXPECT_EQ(simplified(square, 0.01), (Points{{1, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}}));
+  EXPECT_EQ(simplify_path(square, 0.01), (Points{{1, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}}));
 }
 
 TEST(Simplified, LeavesStandingStillAndShortPathsAlone) {
-  EXPECT_EQ(simplified(Points(100, {3, 4}), 0.01), (Points{{3, 4}, {3, 4}}));
-  EXPECT_EQ(simplified({{1, 2}}, 0.01), (Points{{1, 2}}));
-  EXPECT_TRUE(simplified({}, 0.01).empty());
+  EXPECT_EQ(simplify_path(Points(100, {3, 4}), 0.01), (Points{{3, 4}, {3, 4}}));
+  EXPECT_EQ(simplify_path({{1, 2}}, 0.01), (Points{{1, 2}}));
+  EXPECT_TRUE(simplify_path({}, 0.01).empty());
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ Curve long_curve() {
 Page page_of_everything(const std::string& text) {
   const TableBlock table{.caption = text, .columns = {{text}, {text, true}}, .rows = {{{text}, {text, Tone::kBad}}}};
   const PlotAxis axis{.label = text, .max = 200.0};
-  const PlotMark mark{1.0, text, Ink::kEvent};
+  const PlotMark mark{1.0, text, SeriesColor::kEvent};
   const PlotSpan span{.from = 1.0, .to = 2.0, .text = text};
   Curve curve = long_curve();
   curve.name = text;
@@ -32,13 +32,13 @@ Page page_of_everything(const std::string& text) {
           .facts = {{text, text}},
           .sections = {{.title = "", .blocks = {VerdictBlock{text, Tone::kBad, text, table}}},
                        {.title = text,
-                        .blocks = {TextBlock{text}, KeyFigures{{{text, text, text, text}}}, table, FoldedTables{text, {table}},
+                        .blocks = {TextBlock{text}, KeyMetrics{{{text, text, text, text}}}, table, CollapsibleTables{text, {table}},
                                    BarBlock{text, {{text, 1.0, text}}}, BoxPlot{text, text, {{text, {1.0, 2.0, 4.0}, 1.5, 2.0, 3.0, text}}},
-                                   SpanChart{text, text, {{text, -1.0, 2.0, std::pair(1.5, 2.5), Tone::kBad, text}}},
-                                   LinePlot{text, text, axis, {}, {curve}, {mark}, {span}}, LanePlot{text, axis, {{text, {mark}}}, {span}},
-                                   MapBlock{map_picture({}, {}), {{text, Ink::kTruth, {{{0, 0}, {1, 1}}}}}, {{text, Ink::kEvent, {0, 0}}}},
+                                   WaterfallChart{text, text, {{text, -1.0, 2.0, std::pair(1.5, 2.5), Tone::kBad, text}}},
+                                   LinePlot{text, text, axis, {}, {curve}, {mark}, {span}}, EventTimeline{text, axis, {{text, {mark}}}, {span}},
+                                   MapBlock{map_picture({}, {}), {{text, SeriesColor::kTruth, {{{0, 0}, {1, 1}}}}}, {{text, SeriesColor::kEvent, {0, 0}}}},
                                    VideoBlock{text, "", text}, VideoBlock{"", text, text}}}},
-          .colophon = text};
+          .footer = text};
 }
 
 std::string html_of(const Block& block) {
@@ -125,8 +125,8 @@ TEST(BoxPlot, StandsOnAScaleOfRoundTicks) {
   EXPECT_EQ(count(html, "class=\"dot\""), 3u);
 }
 
-TEST(SpanChart, HasAScaleWithZeroAndNegativeValuesInIt) {
-  const std::string html = html_of(SpanChart{"", "cm", {{.label = "a", .from = 0.0, .to = -2.0, .interval = std::pair(-3.0, -1.0), .text = ""},
+TEST(WaterfallChart, HasAScaleWithZeroAndNegativeValuesInIt) {
+  const std::string html = html_of(WaterfallChart{"", "cm", {{.label = "a", .from = 0.0, .to = -2.0, .interval = std::pair(-3.0, -1.0), .text = ""},
                                                          {.label = "b", .from = 0.0, .to = 1.0, .text = ""}}});
   // -3 ... 1 in steps of 1: zero at three quarters; a from -2 to 0, its interval from -3 to -1.
   EXPECT_THAT(html, HasSubstr("zero\" style=\"left:75.000%"));

@@ -15,7 +15,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 constexpr test::Noise kNoise{.odometry_m = 0.002, .odometry_rad = 0.002, .lidar_m = 0.001, .lidar_rad = 0.0005};
 enum Parameter : std::size_t { kX, kY, kYaw, kDistance, kTurn, kSteering };
 
-Vector6 vector_of(const Calibration& c) { return {c.lidar_x_m, c.lidar_y_m, c.lidar_yaw_rad, c.distance_scale, c.turn_scale, c.steering_rad_per_m}; }
+Vector6 vector_of(const Calibration& c) { return {c.lidar_x_m, c.lidar_y_m, c.lidar_yaw_rad, c.distance_scale, c.rotation_scale, c.steering_bias_rad_per_m}; }
 
 /// In standard deviations.
 Vector6 normalized_errors(const CalibrationResult& result, const Calibration& truth) {
@@ -39,7 +39,7 @@ TEST(Calibrate, WithoutNoiseAllSixAreFoundExactly) {
   EXPECT_TRUE(result.converged);
   EXPECT_EQ(result.num_rejected, 0);
   EXPECT_LT((vector_of(result.calibration()) - vector_of(kWorn)).norm(), 1e-6);
-  EXPECT_TRUE(result.calibration().places_lidar);
+  EXPECT_TRUE(result.calibration().override_lidar_pose);
 }
 
 // 20 seeds of 6 errors, each of variance 1: the mean square of 120 has a standard deviation of sqrt(2/120) = 0.13 where they are independent.
@@ -70,7 +70,7 @@ TEST(Calibrate, NoiseOfOdometryShrinksNoScale) {
 }
 
 TEST(Calibrate, OneStretchInFiveThatSaysForwardsForBackwardsIsRejected) {
-  std::vector<MotionPair> pairs = record(wandering(2400), 6, kWorn, kNoise, 1);
+  std::vector<MotionSegment> pairs = record(wandering(2400), 6, kWorn, kNoise, 1);
   for (std::size_t k = 0; k < pairs.size(); k += 5) pairs[k].odometry.x *= -1.0;
   const CalibrationResult result = calibrate(pairs, {}, {});
   EXPECT_LT(normalized_errors(result, kWorn).cwiseAbs().maxCoeff(), 4.0);
@@ -79,7 +79,7 @@ TEST(Calibrate, OneStretchInFiveThatSaysForwardsForBackwardsIsRejected) {
 }
 
 TEST(Calibrate, AWayWithoutTurnsTellsNeitherLeverArmNorScaleOfTurns) {
-  const Calibration truth{.places_lidar = true, .lidar_x_m = 0.25, .lidar_yaw_rad = 0.03, .distance_scale = 1.03, .steering_rad_per_m = 0.0};
+  const Calibration truth{.override_lidar_pose = true, .lidar_x_m = 0.25, .lidar_yaw_rad = 0.03, .distance_scale = 1.03, .steering_bias_rad_per_m = 0.0};
   const CalibrationResult result = calibrate(record(repeated({0.1, 0.0, 0.0}, 1200), 5, truth, kNoise, 1), {0.1, 0.05, 0.0}, {});
   EXPECT_THAT(not_observable(result), ::testing::UnorderedElementsAre("lidar_x_m", "lidar_y_m", "turn_scale"));
   EXPECT_EQ(result.parameters[kX].value, 0.1) << "as before";
@@ -91,7 +91,7 @@ TEST(Calibrate, AWayWithoutTurnsTellsNeitherLeverArmNorScaleOfTurns) {
 
 // Seen from a lidar on a circle, its direction and its heading turn together.
 TEST(Calibrate, TurnsOnTheSpotTellTheScaleOfTurnsAndTheLengthOfTheLeverArmAlone) {
-  const Calibration truth{.places_lidar = true, .lidar_x_m = 0.25, .lidar_yaw_rad = 0.03, .turn_scale = 0.9};
+  const Calibration truth{.override_lidar_pose = true, .lidar_x_m = 0.25, .lidar_yaw_rad = 0.03, .rotation_scale = 0.9};
   const CalibrationResult result = calibrate(record(repeated({0.0, 0.0, 0.06}, 1200), 6, truth, kNoise, 1), {}, {});
   EXPECT_THAT(not_observable(result), ::testing::UnorderedElementsAre("lidar_yaw_rad", "distance_scale", "steering_rad_per_m"));
   EXPECT_NEAR(std::hypot(result.parameters[kX].value, result.parameters[kY].value), 0.25, 4.0 * result.parameters[kX].std);

@@ -14,14 +14,14 @@ constexpr double kExactTol = 1e-12;
 
 TEST(CorrectedStep, AMetreOfSteeringByATenthBendsTheWayToAnArcOfTenMetres) {
   const Pose2 arc{std::cos(0.05), std::sin(0.05), 0.1};  // a chord of 1 m
-  EXPECT_THAT(corrected_step({1.0, 0.0, 0.0}, {.steering_rad_per_m = 0.1}), Pose2Near(arc, kExactTol, kExactTol));
+  EXPECT_THAT(corrected_step({1.0, 0.0, 0.0}, {.steering_bias_rad_per_m = 0.1}), Pose2Near(arc, kExactTol, kExactTol));
   const Pose2 back{-std::cos(0.05), std::sin(0.05), -0.1};
-  EXPECT_THAT(corrected_step({-1.0, 0.0, 0.0}, {.steering_rad_per_m = 0.1}), Pose2Near(back, kExactTol, kExactTol));
+  EXPECT_THAT(corrected_step({-1.0, 0.0, 0.0}, {.steering_bias_rad_per_m = 0.1}), Pose2Near(back, kExactTol, kExactTol));
 }
 
 TEST(CorrectedStep, AnArcOfTwiceTheTurnKeepsItsChordAndTurnsItByHalf) {
   const Pose2 step{2.0 * std::cos(0.1), 2.0 * std::sin(0.1), 0.2}, wanted{3.0 * std::cos(0.2), 3.0 * std::sin(0.2), 0.4};
-  EXPECT_THAT(corrected_step(step, {.distance_scale = 1.5, .turn_scale = 2.0}), Pose2Near(wanted, kExactTol, kExactTol));
+  EXPECT_THAT(corrected_step(step, {.distance_scale = 1.5, .rotation_scale = 2.0}), Pose2Near(wanted, kExactTol, kExactTol));
 }
 
 TEST(CorrectedStep, IsTheInverseOfWhatWornWheelsReport) {
@@ -43,7 +43,7 @@ TEST(CalibratedScans, TheDefaultsChangeNothingToTheBit) {
 }
 
 TEST(CalibratedScans, GoOnFromTheFirstScanAndPutTheLidarInItsPlace) {
-  CalibratedScans scans({.places_lidar = true, .lidar_x_m = 0.3, .distance_scale = 2.0});
+  CalibratedScans scans({.override_lidar_pose = true, .lidar_x_m = 0.3, .distance_scale = 2.0});
   RecordedScan first = at({5.0, 1.0, 0.0}), second = at({6.0, 1.0, 0.0}), third = at({6.0, 2.0, 0.0});
   scans.correct(first);
   scans.correct(second);
@@ -55,11 +55,11 @@ TEST(CalibratedScans, GoOnFromTheFirstScanAndPutTheLidarInItsPlace) {
 }
 
 TEST(CalibratedScans, TheWayWithinAScanIsPutRightToo) {
-  CalibratedScans scans({.distance_scale = 2.0, .turn_scale = 0.5});
+  CalibratedScans scans({.distance_scale = 2.0, .rotation_scale = 0.5});
   RecordedScan scan = at({});
-  scan.T_first_last = {0.02, 0.0, 0.0};
+  scan.T_begin_end = {0.02, 0.0, 0.0};
   scans.correct(scan);
-  EXPECT_THAT(scan.T_first_last, Pose2Near(Pose2{0.04, 0.0, 0.0}, kExactTol, kExactTol));
+  EXPECT_THAT(scan.T_begin_end, Pose2Near(Pose2{0.04, 0.0, 0.0}, kExactTol, kExactTol));
 }
 
 }  // namespace

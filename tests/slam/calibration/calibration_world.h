@@ -12,18 +12,18 @@
 namespace patrol::test {
 
 /// A lidar a quarter of a metre ahead of the body and turned by two degrees, on wheels whose way is 3 % too short and whose turn 10 % too large.
-inline const slam::Calibration kWorn{.places_lidar = true,
+inline const slam::Calibration kWorn{.override_lidar_pose = true,
                                      .lidar_x_m = 0.25,
                                      .lidar_y_m = -0.04,
                                      .lidar_yaw_rad = to_rad(2.0),
                                      .distance_scale = 1.03,
-                                     .turn_scale = 0.9,
-                                     .steering_rad_per_m = 0.02};
+                                     .rotation_scale = 0.9,
+                                     .steering_bias_rad_per_m = 0.02};
 
 /// What wheels that are so worn report of a true step: the equations of Calibration, solved for odometry.
 inline Pose2 reported(const Pose2& step, const slam::Calibration& worn) {
   const Eigen::Vector2d m = Eigen::Rotation2Dd(-0.5 * step.yaw) * step.position() / worn.distance_scale;
-  const double turn_rad = (step.yaw - worn.steering_rad_per_m * m.x()) / worn.turn_scale;
+  const double turn_rad = (step.yaw - worn.steering_bias_rad_per_m * m.x()) / worn.rotation_scale;
   const Eigen::Vector2d move = Eigen::Rotation2Dd(0.5 * turn_rad) * m;
   return {move.x(), move.y(), turn_rad};
 }
@@ -34,15 +34,15 @@ struct Noise {
 };
 
 /// Stretches of `steps_per_stretch` true steps of the body, as a worn robot records them.
-inline std::vector<slam::MotionPair> record(const std::vector<Pose2>& steps, std::size_t steps_per_stretch, const slam::Calibration& worn, const Noise& noise, std::uint64_t seed) {
+inline std::vector<slam::MotionSegment> record(const std::vector<Pose2>& steps, std::size_t steps_per_stretch, const slam::Calibration& worn, const Noise& noise, std::uint64_t seed) {
   const RandomStream odometry(seed, "test/odometry"), lidar(seed, "test/lidar");
   const auto shaken = [](const Pose2& pose, double std_m, double std_rad, const RandomStream& stream, std::uint64_t tick) {
     const auto normals = stream.normals(tick);
     return Pose2{pose.x + std_m * normals[0], pose.y + std_m * normals[1], wrap_angle(pose.yaw + std_rad * normals[2])};
   };
-  std::vector<slam::MotionPair> pairs;
+  std::vector<slam::MotionSegment> pairs;
   Pose2 T_local_body, T_local_lidar = worn.T_body_lidar();
-  slam::MotionPair pair;
+  slam::MotionSegment pair;
   for (std::size_t k = 0; k < steps.size(); ++k) {
     T_local_body = T_local_body * steps[k];
     const Pose2 T_local_now = shaken(T_local_body * worn.T_body_lidar(), noise.lidar_m, noise.lidar_rad, lidar, k);

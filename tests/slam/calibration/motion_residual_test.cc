@@ -9,14 +9,14 @@
 namespace patrol::slam::motion_residual_test {
 namespace {
 
-const CalibrationVector kTruth{test::kWorn.lidar_x_m, test::kWorn.lidar_y_m, test::kWorn.lidar_yaw_rad, test::kWorn.distance_scale, test::kWorn.turn_scale, test::kWorn.steering_rad_per_m};
+const CalibrationVector kTruth{test::kWorn.lidar_x_m, test::kWorn.lidar_y_m, test::kWorn.lidar_yaw_rad, test::kWorn.distance_scale, test::kWorn.rotation_scale, test::kWorn.steering_bias_rad_per_m};
 
-MotionPair stretch() { return test::record(test::wandering(8), 8, test::kWorn, {}, 1).front(); }
+MotionSegment stretch() { return test::record(test::wandering(8), 8, test::kWorn, {}, 1).front(); }
 
 TEST(MotionResidual, IsNoneUnderTheTruth) { EXPECT_LT(motion_residual(stretch(), kTruth, {}).error.norm(), 1e-12); }
 
 TEST(MotionResidual, ItsDerivativesAreThoseOfDifferences) {
-  const MotionPair pair = stretch();
+  const MotionSegment pair = stretch();
   const CalibrationVector there = kTruth + CalibrationVector{0.1, 0.2, -0.1, 0.05, 0.1, -0.03};
   const MotionResidual residual = motion_residual(pair, there, {});
   constexpr double kStep = 1e-6;  // central: errors of kStep^2 and of 1e-16 / kStep
@@ -29,7 +29,7 @@ TEST(MotionResidual, ItsDerivativesAreThoseOfDifferences) {
 
 // A lidar that looks to the left has its own x along the body's y.
 TEST(MotionResidual, TheLidarsCovarianceIsTurnedIntoTheBody) {
-  MotionPair pair = stretch();
+  MotionSegment pair = stretch();
   pair.lidar_covariance = Eigen::Vector3d(4.0, 1.0, 0.25).asDiagonal();
   CalibrationVector left = kTruth;
   left[2] = 0.5 * std::numbers::pi;

@@ -29,7 +29,7 @@ const LikelihoodPyramid& office_pyramid() {
 
 std::vector<Eigen::Vector2d> points_seen() {
   std::vector<Eigen::Vector2d> points;
-  for (const MatchPoint& point : select_match_points(test::make_office().scan(kSeen, test::kOldLidar), 0.1, 100)) points.push_back(point.p_body);
+  for (const MatchPoint& point : downsample_scan(test::make_office().scan(kSeen, test::kOldLidar), 0.1, 100)) points.push_back(point.p_body);
   return points;
 }
 

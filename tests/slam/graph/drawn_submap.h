@@ -9,7 +9,7 @@
 namespace patrol::test {
 
 /// A submap drawn from scans every half metre along a way, at their true poses; its frame is the first of them.
-inline slam::DrawnSubmap drive_past(const RoomWorld& world, const std::vector<Eigen::Vector2d>& way, std::uint64_t seed) {
+inline slam::RenderedSubmap drive_past(const RoomWorld& world, const std::vector<Eigen::Vector2d>& way, std::uint64_t seed) {
   std::vector<slam::Keyframe> keyframes;
   std::vector<Pose2> poses;
   const RandomStream noise(seed, "test/submap");
@@ -17,7 +17,7 @@ inline slam::DrawnSubmap drive_past(const RoomWorld& world, const std::vector<Ei
     keyframes.push_back({world.scan(step.T_world_body, step.stamp, kOldLidar, noise, keyframes.size()), step.T_world_body});
     poses.push_back(step.T_world_body);
   }
-  return slam::DrawnSubmap({.first = 0, .last = static_cast<int>(keyframes.size()) - 1}, keyframes, poses, {});
+  return slam::RenderedSubmap({.first = 0, .last = static_cast<int>(keyframes.size()) - 1}, keyframes, poses, {});
 }
 
 }  // namespace patrol::test

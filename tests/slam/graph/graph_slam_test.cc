@@ -35,7 +35,7 @@ double rms_error_m(const MappedDrive& mapped) {
 TEST(GraphSlam, ARoundOfTheOfficeClosesToThreeCentimetres) {
   const MappedDrive mapped = map_rounds(test::make_office(), test::office_rounds(1), {});
   EXPECT_LT(rms_error_m(mapped), 0.03);
-  EXPECT_GE(mapped.slam.loop_counts().closed, 1);
+  EXPECT_GE(mapped.slam.loop_closure_statistics().closed, 1);
   EXPECT_EQ(mapped.slam.path().size(), mapped.drive.size());
 }
 
@@ -46,7 +46,7 @@ TEST(GraphSlam, EveryLoopThatItClosesIsTrueToFiveCentimetres) {
   for (const PoseGraphEdge& edge : mapped.slam.graph().edges) {
     if (edge.kind != PoseGraphEdge::Kind::kLoop) continue;
     ++loops;
-    EXPECT_LT(edge_error(edge, nodes).head<2>().norm(), 0.05);
+    EXPECT_LT(edge_residual(edge, nodes).head<2>().norm(), 0.05);
   }
   EXPECT_GT(loops, 100);
   EXPECT_LT(rms_error_m(mapped), 0.03);
@@ -58,7 +58,7 @@ TEST(GraphSlam, AmongIdenticalDoorsNoFalseLoopIsClosedInTenDrives) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const MappedDrive mapped = map_rounds(test::make_corridor_of_doors(), {{20.0, 0.0}, {45.0, 0.0}, {15.0, 0.0}, {20.0, 0.0}}, {.speed_mps = 1.0, .odometry_scale = 0.01}, {}, seed);
     const std::vector<test::DriveStep>& drive = mapped.drive;
-    const std::vector<std::size_t> scans = mapped.slam.node_scans();
+    const std::vector<std::size_t> scans = mapped.slam.node_scan_indices();
     for (const PoseGraphEdge& edge : mapped.slam.graph().edges) {
       if (edge.kind != PoseGraphEdge::Kind::kLoop) continue;
       ++loops;

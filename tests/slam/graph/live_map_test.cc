@@ -41,38 +41,38 @@ int hits_in(const GridMap& map) {
   return hits;
 }
 
-TEST(LiveMap, WritesEveryKeyframeOnce) {
+TEST(IncrementalMap, WritesEveryKeyframeOnce) {
   Drive drive;
   drive.go_to(0.0);
-  LiveMap live({});
-  const int one = hits_in(live.draw(drive.keyframes, drive.poses, 0.03));
+  IncrementalMap live({});
+  const int one = hits_in(live.render(drive.keyframes, drive.poses, 0.03));
   EXPECT_GT(one, 0);
-  EXPECT_EQ(hits_in(live.draw(drive.keyframes, drive.poses, 0.03)), one);
+  EXPECT_EQ(hits_in(live.render(drive.keyframes, drive.poses, 0.03)), one);
   drive.go_to(0.5);
-  EXPECT_EQ(hits_in(live.draw(drive.keyframes, drive.poses, 0.03)), 2 * one);  // every beam of both hits the box
+  EXPECT_EQ(hits_in(live.render(drive.keyframes, drive.poses, 0.03)), 2 * one);  // every beam of both hits the box
 }
 
 // The second scan moves by 0.5 m: its end wall, at 6 m, is then seen at 6.5 m.
-TEST(LiveMap, IsDrawnAnewWhenAKeyframeHasMovedFartherThanIsBorne) {
+TEST(IncrementalMap, IsDrawnAnewWhenAKeyframeHasMovedFartherThanIsBorne) {
   Drive drive;
   drive.go_to(0.0), drive.go_to(0.5);
-  LiveMap live({});
-  EXPECT_NEAR(farthest_hit_m(live.draw(drive.keyframes, drive.poses, 0.03)), 6.0, 0.05);
+  IncrementalMap live({});
+  EXPECT_NEAR(farthest_hit_m(live.render(drive.keyframes, drive.poses, 0.03)), 6.0, 0.05);
   drive.poses[1].x += 0.5;
-  EXPECT_NEAR(farthest_hit_m(live.draw(drive.keyframes, drive.poses, 0.6)), 6.0, 0.05);
-  const GridMap& moved = live.draw(drive.keyframes, drive.poses, 0.4);
+  EXPECT_NEAR(farthest_hit_m(live.render(drive.keyframes, drive.poses, 0.6)), 6.0, 0.05);
+  const GridMap& moved = live.render(drive.keyframes, drive.poses, 0.4);
   EXPECT_NEAR(farthest_hit_m(moved), 6.5, 0.05);
-  EXPECT_EQ(hits_in(moved), hits_in(LiveMap({}).draw(drive.keyframes, drive.poses, 0.0)));
+  EXPECT_EQ(hits_in(moved), hits_in(IncrementalMap({}).render(drive.keyframes, drive.poses, 0.0)));
 }
 
 // A hundredth of a radian swings what is ten metres away by 0.1 m.
-TEST(LiveMap, ATurnCountsByWhatItMovesTenMetresAway) {
+TEST(IncrementalMap, ATurnCountsByWhatItMovesTenMetresAway) {
   Drive drive;
   drive.go_to(0.0), drive.go_to(0.5);
-  LiveMap live({});
+  IncrementalMap live({});
   const auto mean_of = [&](double max_shift_m) {
     double sum = 0.0;
-    live.draw(drive.keyframes, drive.poses, max_shift_m).for_each_tile([&](Cell, const GridTile& tile) {
+    live.render(drive.keyframes, drive.poses, max_shift_m).for_each_tile([&](Cell, const GridTile& tile) {
       for (const GridCell& cell : tile.cells) sum += cell.mean_y_m;
     });
     return sum;

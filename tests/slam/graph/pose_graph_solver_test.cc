@@ -92,7 +92,7 @@ TEST(SolvePoseGraph, OneFalseClosureAmongSixMovesNoNodeByTwoCentimetresAndWithou
     for (std::size_t i = 0; i < 40; ++i) far_m = std::max(far_m, (graph.T_map_node[i].position() - truth.T_map_node[i].position()).norm());
     if (kind == Kind::kLoop) {
       EXPECT_LT(far_m, 0.02);
-      EXPECT_GT(squared_error(graph.edges.back(), graph.T_map_node), 1e5);
+      EXPECT_GT(squared_residual(graph.edges.back(), graph.T_map_node), 1e5);
     } else {
       EXPECT_GT(far_m, 2.0);
     }
@@ -115,7 +115,7 @@ PoseGraph make_line(int num_nodes, double step_m) {
   return graph;
 }
 
-RangeSighting clear_range(const Pose2& T_map_body, const UwbAnchor& anchor) {
+RangeMeasurement clear_range(const Pose2& T_map_body, const UwbAnchor& anchor) {
   const Eigen::Vector3d antenna = Eigen::Vector3d::Zero();
   return {.anchor = anchor, .range_m = predict_uwb_range(anchor, T_map_body, antenna, {}).range_m, .T_odom_body = {}, .p_level_antenna = antenna};
 }
@@ -124,7 +124,7 @@ RangeSighting clear_range(const Pose2& T_map_body, const UwbAnchor& anchor) {
 TEST(SolvePoseGraph, RangesAlongALineHoldItWhereOdometryIsOnePercentTooLong) {
   PoseGraph graph = make_line(11, 1.01);
   const PoseGraph truth = graph;
-  NodeRanges ranges({.range_std_m = 0.02});
+  RangeFactors ranges({.range_std_m = 0.02});
   for (int i = 1; i < 11; ++i) {
     const Pose2& node = truth.T_map_node[static_cast<std::size_t>(i)];
     for (int reading = 0; reading < 10; ++reading) ranges.add(i, node, {}, clear_range(node, {.number = 1, .p_m = {30.0, 0.0, 0.0}}));
@@ -140,11 +140,11 @@ TEST(SolvePoseGraph, RangesAlongALineHoldItWhereOdometryIsOnePercentTooLong) {
 TEST(SolvePoseGraph, ARangeMovesItsNodeOnlyInTheDirectionThatItIsAskedAbout) {
   for (const bool is_along : {true, false}) {
     PoseGraph graph = make_line(2, 1.0);
-    NodeRanges ranges({.range_std_m = 0.01});
+    RangeFactors ranges({.range_std_m = 0.01});
     const Eigen::Vector2d along(1.0, 0.0), across(0.0, 1.0);
-    RangeSighting sighting = clear_range(graph.T_map_node[1], {.number = 1, .p_m = {1.0, 10.0, 0.0}});
-    sighting.range_m -= 0.01;
-    ranges.add(1, graph.T_map_node[1], {}, sighting, is_along ? along : across);
+    RangeMeasurement measurement = clear_range(graph.T_map_node[1], {.number = 1, .p_m = {1.0, 10.0, 0.0}});
+    measurement.range_m -= 0.01;
+    ranges.add(1, graph.T_map_node[1], {}, measurement, is_along ? along : across);
     solve(graph, {}, ranges);
     EXPECT_NEAR(graph.T_map_node[1].x, 1.0, 1e-6);
     EXPECT_NEAR(graph.T_map_node[1].y, is_along ? 0.0 : 0.005, 5e-4);  // the edge's 1 cm against the range's
@@ -155,11 +155,11 @@ TEST(SolvePoseGraph, ARangeMovesItsNodeOnlyInTheDirectionThatItIsAskedAbout) {
 // One of six went round a corner and is 8 m too long.
 TEST(SolvePoseGraph, ARangeThatIsFarTooLongIsDoubted) {
   PoseGraph graph = make_line(7, 1.0);
-  NodeRanges ranges({.range_std_m = 0.1});
+  RangeFactors ranges({.range_std_m = 0.1});
   for (int i = 1; i < 7; ++i) {
-    RangeSighting sighting = clear_range(graph.T_map_node[static_cast<std::size_t>(i)], {.number = 1, .p_m = {-20.0, 0.0, 0.0}});
-    if (i == 3) sighting.range_m += 8.0;
-    ranges.add(i, graph.T_map_node[static_cast<std::size_t>(i)], {}, sighting);
+    RangeMeasurement measurement = clear_range(graph.T_map_node[static_cast<std::size_t>(i)], {.number = 1, .p_m = {-20.0, 0.0, 0.0}});
+    if (i == 3) measurement.range_m += 8.0;
+    ranges.add(i, graph.T_map_node[static_cast<std::size_t>(i)], {}, measurement);
   }
   solve(graph, {}, ranges);
   for (int i = 0; i < 7; ++i) EXPECT_NEAR(graph.T_map_node[static_cast<std::size_t>(i)].x, i, 0.01) << i;
@@ -176,10 +176,10 @@ TEST(SolvePoseGraph, NodesBeforeTheFirstFreeOneStayAndTheOthersAreSolvedBesideTh
 TEST(EdgeError, IsInTheFrameOfItsFirstNodeAndWrapsTheAngle) {
   const std::vector<Pose2> nodes = {{1.0, 1.0, 0.5 * std::numbers::pi}, {1.0, 4.0, -3.0}};
   const PoseGraphEdge edge{.from = 0, .to = 1, .T_from_to = {2.5, 0.1, 1.7}, .information = Eigen::Vector3d(1.0, 4.0, 9.0).asDiagonal()};
-  const Eigen::Vector3d error = edge_error(edge, nodes);
+  const Eigen::Vector3d error = edge_residual(edge, nodes);
   const double yaw = 2.0 * std::numbers::pi - 3.0 - 0.5 * std::numbers::pi - 1.7;
   EXPECT_LT((error - Eigen::Vector3d(0.5, -0.1, yaw)).norm(), 1e-12);
-  EXPECT_NEAR(squared_error(edge, nodes), 0.25 + 4.0 * 0.01 + 9.0 * yaw * yaw, 1e-12);
+  EXPECT_NEAR(squared_residual(edge, nodes), 0.25 + 4.0 * 0.01 + 9.0 * yaw * yaw, 1e-12);
 }
 
 }  // namespace

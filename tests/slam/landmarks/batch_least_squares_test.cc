@@ -20,13 +20,13 @@ CircleWorld world_of(Steering steering) {
 }
 
 /// Poses as they are, and each landmark where its first sight says.
-BatchSolution guess_of(const std::vector<Pose2>& poses, const std::vector<std::vector<RangeBearing>>& seen, int num_landmarks) {
+BatchSolution guess_of(const std::vector<Pose2>& poses, const std::vector<std::vector<RangeBearing>>& observations, int num_landmarks) {
   BatchSolution guess{.T_map_body = poses, .landmarks = {}};
   guess.landmarks.resize(static_cast<std::size_t>(num_landmarks));
-  for (std::size_t k = 0; k < seen.size(); ++k) {
-    for (const RangeBearing& sight : seen[k]) {
-      std::optional<Eigen::Vector2d>& landmark = guess.landmarks[static_cast<std::size_t>(sight.landmark)];
-      if (!landmark) landmark = landmark_of(poses[k], sight);
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    for (const RangeBearing& observation : observations[k]) {
+      std::optional<Eigen::Vector2d>& landmark = guess.landmarks[static_cast<std::size_t>(observation.landmark)];
+      if (!landmark) landmark = invert_observation(poses[k], observation);
     }
   }
   return guess;
@@ -45,9 +45,9 @@ TEST(SolveBatch, RecoversTheTruthFromNoiselessDataAndAGuessMetresOff) {
     const Drive measured = drive(world, 1, 0.0);
     std::vector<Control> off = measured.controls;
     for (Control& control : off) control.y() += 0.035;
-    const BatchSolution guess = guess_of(dead_reckoning(world.motion, off), measured.seen, world.num_landmarks);
+    const BatchSolution guess = guess_of(dead_reckoning(world.motion, off), measured.observations, world.num_landmarks);
     EXPECT_GT(rmse_m(guess.T_map_body, measured.T_map_body), 1.0);
-    expect_truth(world, measured, solve_batch(world.motion, world.noise, measured.controls, measured.seen, guess));
+    expect_truth(world, measured, solve_batch(world.motion, world.noise, measured.controls, measured.observations, guess));
   }
 }
 
@@ -58,10 +58,10 @@ Drive noiseless(const CircleWorld& world, const Control& control) {
   for (int k = 0; k < 20; ++k) {
     drive.T_map_body.push_back(pose = world.motion.move(pose, control));
     drive.controls.push_back(control);
-    drive.seen.emplace_back();
+    drive.observations.emplace_back();
     for (int i = 0; i < world.num_landmarks; ++i) {
-      const Eigen::Vector2d sight = predict_sight(pose, world.landmark(i)).sight;
-      drive.seen.back().push_back({.landmark = i, .range_m = sight.x(), .bearing_rad = sight.y()});
+      const Eigen::Vector2d observation = predict_observation(pose, world.landmark(i)).observation;
+      drive.observations.back().push_back({.landmark = i, .range_m = observation.x(), .bearing_rad = observation.y()});
     }
   }
   return drive;
@@ -72,9 +72,9 @@ TEST(SolveBatch, StandingStillAndGoingBackwardsAreRecoveredToo) {
     for (const double speed_mps : {0.0, -1.0}) {
       const CircleWorld world = world_of(steering);
       const Drive measured = noiseless(world, {speed_mps, world.control().y()});
-      BatchSolution guess = guess_of(measured.T_map_body, measured.seen, world.num_landmarks);
+      BatchSolution guess = guess_of(measured.T_map_body, measured.observations, world.num_landmarks);
       for (auto& landmark : guess.landmarks) *landmark += Eigen::Vector2d(0.1, -0.2);
-      expect_truth(world, measured, solve_batch(world.motion, world.noise, measured.controls, measured.seen, guess));
+      expect_truth(world, measured, solve_batch(world.motion, world.noise, measured.controls, measured.observations, guess));
     }
   }
 }
@@ -88,7 +88,7 @@ TEST(SolveBatch, WithNoiseBeatsBothEkfsOnTheMeanOfTenSeeds) {
       EkfSlam plain_slam({.bias = {.std = 0.0}, .is_invariant = false}, world.motion, world.noise), invariant_slam({.bias = {.std = 0.0}}, world.motion, world.noise);
       const std::vector<Pose2> guess = poses_of(run(plain_slam, measured));
       const BatchSolution solution =
-          solve_batch(world.motion, world.noise, measured.controls, measured.seen, {.T_map_body = guess, .landmarks = plain_slam.landmarks()});
+          solve_batch(world.motion, world.noise, measured.controls, measured.observations, {.T_map_body = guess, .landmarks = plain_slam.landmarks()});
       EXPECT_TRUE(solution.has_converged) << seed;
       batch += rmse_m(solution.T_map_body, measured.T_map_body) / 10.0;
       plain += rmse_m(guess, measured.T_map_body) / 10.0;
@@ -104,9 +104,9 @@ TEST(SolveBatch, WithNoiseBeatsBothEkfsOnTheMeanOfTenSeeds) {
 TEST(SolveBatch, OfTwoRangesAndOneStepIsTheWeightedMean) {
   const ControlMotion motion{.step_s = 0.1, .std = {2.0, 1e-3}};
   const RangeBearingNoise noise{.range_std_m = 0.5, .bearing_std_rad = 0.1};
-  const std::vector<std::vector<RangeBearing>> seen = {{{.landmark = 0, .range_m = 5.0, .bearing_rad = 0.0}}, {{.landmark = 0, .range_m = 4.7, .bearing_rad = 0.0}}};
+  const std::vector<std::vector<RangeBearing>> observations = {{{.landmark = 0, .range_m = 5.0, .bearing_rad = 0.0}}, {{.landmark = 0, .range_m = 4.7, .bearing_rad = 0.0}}};
   const std::vector<Control> controls = {{2.0, 0.0}, {2.0, 0.0}};
-  const BatchSolution solution = solve_batch(motion, noise, controls, seen, guess_of(dead_reckoning(motion, controls), seen, 1));
+  const BatchSolution solution = solve_batch(motion, noise, controls, observations, guess_of(dead_reckoning(motion, controls), observations, 1));
   EXPECT_NEAR(solution.T_map_body[0].x, 0.2, kSolverTol);  // where it first looked from is odometry's alone
   EXPECT_NEAR(solution.T_map_body[1].x, 0.4 + 0.1 * 0.04 / (0.04 + 0.5), kSolverTol);
 }

@@ -34,7 +34,7 @@ struct CircleWorld {
 struct Drive {
   std::vector<Pose2> T_map_body;                ///< [step], after its motion
   std::vector<Control> controls;                ///< [step], as measured
-  std::vector<std::vector<RangeBearing>> seen;  ///< [step][sight]
+  std::vector<std::vector<RangeBearing>> observations;  ///< [step][sight]
 };
 
 /// The truth is the same for every seed; what is measured differs from it by `noise_share` of the world's noise, and by its bias.
@@ -48,14 +48,14 @@ inline Drive drive(const CircleWorld& world, std::uint64_t seed, double noise_sh
     drive.T_map_body.push_back(pose);
     const Eigen::Vector2d error = noise_share * Eigen::Vector2d(odometry.normal(tick, 0), odometry.normal(tick, 1)) + world.bias;
     drive.controls.push_back(world.control() - world.motion.std.cwiseProduct(error));
-    drive.seen.emplace_back();
+    drive.observations.emplace_back();
     for (int i = 0; i < world.num_landmarks && k >= world.blind_steps; ++i) {
-      const Eigen::Vector2d sight = slam::predict_sight(pose, world.landmark(i)).sight;
-      if (sight.x() > world.range_m) continue;
+      const Eigen::Vector2d observation = slam::predict_observation(pose, world.landmark(i)).observation;
+      if (observation.x() > world.range_m) continue;
       const auto draw = sights.normals(tick, static_cast<std::uint64_t>(i));
-      drive.seen.back().push_back({.landmark = i,
-                                   .range_m = sight.x() + noise_share * world.noise.range_std_m * draw[0],
-                                   .bearing_rad = wrap_angle(sight.y() + noise_share * world.noise.bearing_std_rad * draw[1])});
+      drive.observations.back().push_back({.landmark = i,
+                                   .range_m = observation.x() + noise_share * world.noise.range_std_m * draw[0],
+                                   .bearing_rad = wrap_angle(observation.y() + noise_share * world.noise.bearing_std_rad * draw[1])});
     }
   }
   return drive;
@@ -64,7 +64,7 @@ inline Drive drive(const CircleWorld& world, std::uint64_t seed, double noise_sh
 /// [step]
 inline std::vector<slam::LandmarkSlamEstimate> run(LandmarkSlam& slam, const Drive& drive) {
   std::vector<slam::LandmarkSlamEstimate> estimates;
-  for (std::size_t k = 0; k < drive.controls.size(); ++k) estimates.push_back(slam.step(drive.controls[k], drive.seen[k]));
+  for (std::size_t k = 0; k < drive.controls.size(); ++k) estimates.push_back(slam.step(drive.controls[k], drive.observations[k]));
   return estimates;
 }
 

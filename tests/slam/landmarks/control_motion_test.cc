@@ -18,7 +18,7 @@ constexpr double kDifferenceTol = 1e-9;
 
 const ControlMotion kYawRateMotion{.steering = Steering::kYawRate, .step_s = 0.1};
 const ControlMotion kCar{.steering = Steering::kAckermann, .wheelbase_m = 2.0, .step_s = 0.1};
-const ControlMotion kCarInFiveParts{.steering = Steering::kAckermann, .wheelbase_m = 2.0, .step_s = 0.5, .parts = 5};
+const ControlMotion kCarInFiveParts{.steering = Steering::kAckermann, .wheelbase_m = 2.0, .step_s = 0.5, .substeps = 5};
 
 Eigen::Vector3d difference(const Pose2& a, const Pose2& b) { return {a.x - b.x, a.y - b.y, wrap_angle(a.yaw - b.yaw)}; }
 
@@ -38,7 +38,7 @@ void expect_jacobians_are_the_differences(const ControlMotion& motion, const Pos
 }
 
 TEST(ControlMotionJacobian, IsTheCentralDifferenceForBothSteeringsAndInParts) {
-  for (const ControlMotion& motion : {kYawRateMotion, kCar, kCarInFiveParts, ControlMotion{.step_s = 0.3, .parts = 3}}) {
+  for (const ControlMotion& motion : {kYawRateMotion, kCar, kCarInFiveParts, ControlMotion{.step_s = 0.3, .substeps = 3}}) {
     for (const Control& control : {Control(1.2, 0.3), Control(-0.7, -0.4), Control(0.0, 0.2), Control(2.0, 0.0)}) {
       expect_jacobians_are_the_differences(motion, {0.5, -2.0, 0.8}, control);
       expect_jacobians_are_the_differences(motion, {0.5, -2.0, std::numbers::pi}, control);  // across the wrap
@@ -99,7 +99,7 @@ TEST(ControlMotion, StandingStillMovesNothing) {
 
 TEST(ControlMotion, AnIncrementOfTwoAndMinusOneIsTwoDeviationsFasterAndOneLessTurn) {
   const ControlMotion motion{.std = {0.1, 0.05}};
-  EXPECT_THAT(motion.move_off({1.0, 2.0, 3.0}, {1.0, 0.2}, {2.0, -1.0}), Pose2Near(motion.move({1.0, 2.0, 3.0}, {1.2, 0.15}), kExactTol, kExactTol));
+  EXPECT_THAT(motion.move_with_noise({1.0, 2.0, 3.0}, {1.0, 0.2}, {2.0, -1.0}), Pose2Near(motion.move({1.0, 2.0, 3.0}, {1.2, 0.15}), kExactTol, kExactTol));
 }
 
 }  // namespace

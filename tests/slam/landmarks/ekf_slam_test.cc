@@ -26,20 +26,20 @@ class TextbookEkf {
   TextbookEkf(const CircleWorld& world, int num_landmarks)
       : world_(world), mean_(Eigen::VectorXd::Zero(3 + 2 * num_landmarks)), P_(Eigen::MatrixXd::Zero(mean_.size(), mean_.size())), is_known_(static_cast<std::size_t>(num_landmarks)) {}
 
-  void step(const Control& control, const std::vector<RangeBearing>& seen) {
+  void step(const Control& control, const std::vector<RangeBearing>& observations) {
     const ControlMotionJacobian jacobian = jacobian_of(world_.motion, pose(), control);
-    const Pose2 moved = world_.motion.move(pose(), control);
+    const Pose2 transformed = world_.motion.move(pose(), control);
     Eigen::MatrixXd F = Eigen::MatrixXd::Identity(mean_.size(), mean_.size());
     F.topLeftCorner<3, 3>() = jacobian.pose;
     P_ = F * P_ * F.transpose();
     P_.topLeftCorner<3, 3>() += jacobian.control * world_.motion.std.cwiseAbs2().asDiagonal() * jacobian.control.transpose();
-    mean_.head<3>() = moved.vector();
+    mean_.head<3>() = transformed.vector();
     std::vector<RangeBearing> firsts;
-    for (const RangeBearing& sight : seen) {
-      if (is_known_[static_cast<std::size_t>(sight.landmark)]) correct(sight);
-      else firsts.push_back(sight);
+    for (const RangeBearing& observation : observations) {
+      if (is_known_[static_cast<std::size_t>(observation.landmark)]) correct(observation);
+      else firsts.push_back(observation);
     }
-    for (const RangeBearing& sight : firsts) begin(sight);
+    for (const RangeBearing& observation : firsts) begin(observation);
   }
 
   Pose2 pose() const { return {mean_(0), mean_(1), mean_(2)}; }
@@ -47,29 +47,29 @@ class TextbookEkf {
   Eigen::Vector2d landmark(int i) const { return mean_.segment<2>(3 + 2 * i); }
 
  private:
-  void correct(const RangeBearing& sight) {
-    const PredictedSight predicted = predict_sight(pose(), landmark(sight.landmark));
+  void correct(const RangeBearing& observation) {
+    const PredictedObservation predicted = predict_observation(pose(), landmark(observation.landmark));
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(2, mean_.size());
-    H.leftCols<3>() = predicted.by_pose;
-    H.middleCols<2>(3 + 2 * sight.landmark) = predicted.by_landmark;
+    H.leftCols<3>() = predicted.H_pose;
+    H.middleCols<2>(3 + 2 * observation.landmark) = predicted.H_landmark;
     const Eigen::MatrixXd K = P_ * H.transpose() * (H * P_ * H.transpose() + world_.noise.covariance()).inverse();
-    mean_ += K * innovation_of(sight, predicted);
+    mean_ += K * innovation_of(observation, predicted);
     mean_(2) = wrap_angle(mean_(2));
     const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(mean_.size(), mean_.size()) - K * H;
     P_ = rest * P_ * rest.transpose() + K * world_.noise.covariance() * K.transpose();  // Joseph's form
   }
 
   // l = p + r (cos, sin)(yaw + bearing), differentiated by hand.
-  void begin(const RangeBearing& sight) {
-    is_known_[static_cast<std::size_t>(sight.landmark)] = true;
-    const double direction = mean_(2) + sight.bearing_rad, c = std::cos(direction), s = std::sin(direction), r = sight.range_m;
-    mean_.segment<2>(3 + 2 * sight.landmark) = mean_.head<2>() + r * Eigen::Vector2d(c, s);
-    Eigen::MatrixXd by_state = Eigen::MatrixXd::Identity(mean_.size(), mean_.size());
-    by_state.middleRows<2>(3 + 2 * sight.landmark).setZero();
-    by_state.block<2, 3>(3 + 2 * sight.landmark, 0) << 1.0, 0.0, -r * s, 0.0, 1.0, r * c;
-    const Eigen::Matrix2d by_sight = (Eigen::Matrix2d() << c, -r * s, s, r * c).finished();
-    P_ = by_state * P_ * by_state.transpose();
-    P_.block<2, 2>(3 + 2 * sight.landmark, 3 + 2 * sight.landmark) += by_sight * world_.noise.covariance() * by_sight.transpose();
+  void begin(const RangeBearing& observation) {
+    is_known_[static_cast<std::size_t>(observation.landmark)] = true;
+    const double direction = mean_(2) + observation.bearing_rad, c = std::cos(direction), s = std::sin(direction), r = observation.range_m;
+    mean_.segment<2>(3 + 2 * observation.landmark) = mean_.head<2>() + r * Eigen::Vector2d(c, s);
+    Eigen::MatrixXd d_by_state = Eigen::MatrixXd::Identity(mean_.size(), mean_.size());
+    d_by_state.middleRows<2>(3 + 2 * observation.landmark).setZero();
+    d_by_state.block<2, 3>(3 + 2 * observation.landmark, 0) << 1.0, 0.0, -r * s, 0.0, 1.0, r * c;
+    const Eigen::Matrix2d d_by_observation = (Eigen::Matrix2d() << c, -r * s, s, r * c).finished();
+    P_ = d_by_state * P_ * d_by_state.transpose();
+    P_.block<2, 2>(3 + 2 * observation.landmark, 3 + 2 * observation.landmark) += d_by_observation * world_.noise.covariance() * d_by_observation.transpose();
   }
 
   CircleWorld world_;
@@ -88,8 +88,8 @@ TEST(EkfSlam, PlainIsTheTextbooksFilterToANanometreWithOneLandmarkAndWithEight) 
     EkfSlam slam(kPlain, world.motion, world.noise);
     TextbookEkf textbook(world, num_landmarks);
     for (std::size_t k = 0; k < measured.controls.size(); ++k) {
-      const LandmarkSlamEstimate estimate = slam.step(measured.controls[k], measured.seen[k]);
-      textbook.step(measured.controls[k], measured.seen[k]);
+      const LandmarkSlamEstimate estimate = slam.step(measured.controls[k], measured.observations[k]);
+      textbook.step(measured.controls[k], measured.observations[k]);
       ASSERT_THAT(estimate.T_map_body, test::Pose2Near(textbook.pose(), 1e-9, 1e-9)) << k;
       ASSERT_LT((estimate.covariance - textbook.covariance()).norm(), 1e-9) << k;
     }

@@ -24,7 +24,7 @@ TEST(OdometryBias, AfterNIncrementsTheVarianceIsOneOverTheInformation) {
   for (int n = 1; n <= 50; ++n) {
     const auto draw = stream.normals(static_cast<std::uint64_t>(n));
     const Eigen::Vector2d increment(draw[0] + 1.0, draw[1] - 0.5);
-    bias.learn(increment, settings);
+    bias.add_increment(increment, settings);
     sum += increment;
     EXPECT_LT((bias.covariance - Eigen::Matrix2d::Identity() / (0.25 + n)).norm(), kExactTol) << n;
     EXPECT_THAT(bias.mean, VectorNear(Eigen::Vector2d(sum / (0.25 + n)), kExactTol)) << n;
@@ -33,7 +33,7 @@ TEST(OdometryBias, AfterNIncrementsTheVarianceIsOneOverTheInformation) {
 
 TEST(OdometryBias, WithoutUncertaintyLearnsNothing) {
   OdometryBias bias;
-  bias.learn({3.0, -2.0}, {});
+  bias.add_increment({3.0, -2.0}, {});
   EXPECT_EQ(bias.mean, Eigen::Vector2d::Zero());
   EXPECT_EQ(bias.covariance, Eigen::Matrix2d::Zero());
   EXPECT_EQ(bias.increment_covariance(), Eigen::Matrix2d::Identity());
@@ -55,7 +55,7 @@ TEST(OdometryBias, RootTimesItsTransposeIsTheIncrementsCovariance) {
 TEST(OdometryBias, ThatWandersATenthEachStepIsKnownToTheSteadyStatesVariance) {
   const OdometryBiasSettings settings{.std = 2.0, .walk_std = 0.1};
   OdometryBias bias(settings);
-  for (int n = 0; n < 200; ++n) bias.learn({1.0, -1.0}, settings);
+  for (int n = 0; n < 200; ++n) bias.add_increment({1.0, -1.0}, settings);
   const double steady = 0.5 * (0.01 + 0.1 * std::sqrt(0.01 + 4.0));
   EXPECT_LT((bias.covariance - steady * Eigen::Matrix2d::Identity()).norm(), 1e-9);  // (1 - gain)^400 of the start is left
   EXPECT_THAT(bias.mean, VectorNear(Eigen::Vector2d(1.0, -1.0), 1e-6));            // (1 - gain)^200 = 2e-9

@@ -15,9 +15,9 @@ namespace {
 constexpr double kExactTol = 1e-12;  // algebra
 
 /// Points in the square of 2 m about the origin, labelled by a rule; `flips` of them wrongly.
-LabelledFeatures make_square(int count, const std::function<bool(double, double)>& is_positive, double flips = 0.0) {
+LabeledFeatures make_square(int count, const std::function<bool(double, double)>& is_positive, double flips = 0.0) {
   const RandomStream random(7, "test/adaboost");
-  LabelledFeatures training{.names = {"x", "y"}, .examples = {}, .labels = {}};
+  LabeledFeatures training{.names = {"x", "y"}, .examples = {}, .labels = {}};
   for (int i = 0; i < count; ++i) {
     const auto u = random.uniforms(static_cast<std::uint64_t>(i));
     const double x = 2.0 * u[0] - 1.0, y = 2.0 * u[1] - 1.0;
@@ -27,7 +27,7 @@ LabelledFeatures make_square(int count, const std::function<bool(double, double)
   return training;
 }
 
-int num_wrong(const BoostedStumps& model, const LabelledFeatures& data) {
+int num_wrong(const BoostedStumps& model, const LabeledFeatures& data) {
   int wrong = 0;
   for (std::size_t i = 0; i < data.examples.size(); ++i) wrong += model.margin(data.examples[i]) * data.labels[i] > 0.0 ? 0 : 1;
   return wrong;
@@ -37,7 +37,7 @@ bool in_box(double x, double y) { return std::abs(x) < 0.6 && std::abs(y) < 0.5;
 
 // Six examples on a line, + + - + - -: the best stump has one wrong, the fourth. e = 1/6, vote 1/2 ln 5.
 TEST(AdaBoost, TheFirstStumpIsTheOneWithTheFewestWrong) {
-  const LabelledFeatures training{.names = {"x"}, .examples = {{0}, {1}, {2}, {3}, {4}, {5}}, .labels = {1, 1, -1, 1, -1, -1}};
+  const LabeledFeatures training{.names = {"x"}, .examples = {{0}, {1}, {2}, {3}, {4}, {5}}, .labels = {1, 1, -1, 1, -1, -1}};
   const BoostingResult result = train_adaboost(training, {.rounds = 1});
   ASSERT_EQ(result.model.stumps.size(), 1U);
   EXPECT_EQ(result.model.stumps[0], (DecisionStump{.feature = 0, .threshold = 1.5, .sign_above = -1, .weight = result.model.stumps[0].weight}));
@@ -49,7 +49,7 @@ TEST(AdaBoost, TheFirstStumpIsTheOneWithTheFewestWrong) {
 
 // After the first round the fourth weighs 1/2, the others 1/10 each: "up to 3.5" has only the third wrong.
 TEST(AdaBoost, ThreeStumpsSeparateWhatNoneDoesAlone) {
-  const LabelledFeatures training{.names = {"x"}, .examples = {{0}, {1}, {2}, {3}, {4}, {5}}, .labels = {1, 1, -1, 1, -1, -1}};
+  const LabeledFeatures training{.names = {"x"}, .examples = {{0}, {1}, {2}, {3}, {4}, {5}}, .labels = {1, 1, -1, 1, -1, -1}};
   const BoostingResult result = train_adaboost(training, {.rounds = 3});
   EXPECT_EQ(result.model.stumps.size(), 3U);
   EXPECT_EQ(result.model.stumps[1].threshold, 3.5);
@@ -58,7 +58,7 @@ TEST(AdaBoost, ThreeStumpsSeparateWhatNoneDoesAlone) {
 }
 
 TEST(AdaBoost, ABoxInASquareIsLearntWithoutAMistakeByThirtyStumps) {
-  const LabelledFeatures training = make_square(400, in_box);
+  const LabeledFeatures training = make_square(400, in_box);
   const BoostingResult result = train_adaboost(training, {.rounds = 30});
   EXPECT_EQ(result.training_error, 0.0);
   EXPECT_EQ(num_wrong(result.model, training), 0);
@@ -68,7 +68,7 @@ TEST(AdaBoost, ABoxInASquareIsLearntWithoutAMistakeByThirtyStumps) {
 
 // Sums of a function of x and one of y: what is right for two opposite quadrants is wrong for the other two.
 TEST(AdaBoost, StumpsCannotLearnOppositeQuadrantsButCanFromTheProduct) {
-  LabelledFeatures training{.names = {"x", "y"}, .examples = {{-1, -1}, {-1, 1}, {1, -1}, {1, 1}}, .labels = {1, -1, -1, 1}};
+  LabeledFeatures training{.names = {"x", "y"}, .examples = {{-1, -1}, {-1, 1}, {1, -1}, {1, 1}}, .labels = {1, -1, -1, 1}};
   const BoostingResult none = train_adaboost(training, {});
   EXPECT_TRUE(none.model.stumps.empty()) << "every stump has half of them wrong";
   EXPECT_EQ(none.training_error, 1.0) << "who says nothing is wrong";
@@ -80,7 +80,7 @@ TEST(AdaBoost, StumpsCannotLearnOppositeQuadrantsButCanFromTheProduct) {
 }
 
 TEST(AdaBoost, TheTrainingErrorStaysBelowItsBoundAfterEveryRound) {
-  const LabelledFeatures training = make_square(300, in_box, 0.1);
+  const LabeledFeatures training = make_square(300, in_box, 0.1);
   for (const bool balance : {false, true}) {
     double before = 1.0;
     for (int rounds = 1; rounds <= 60; ++rounds) {
@@ -98,7 +98,7 @@ TEST(AdaBoost, TheTrainingErrorStaysBelowItsBoundAfterEveryRound) {
 
 // The product of all factors is the bound itself: sum w exp(-y F) = prod 2 sqrt(e (1 - e)).
 TEST(AdaBoost, TheBoundIsTheExponentialLoss) {
-  const LabelledFeatures training = make_square(200, in_box, 0.2);
+  const LabeledFeatures training = make_square(200, in_box, 0.2);
   const BoostingResult result = train_adaboost(training, {.rounds = 20});
   double loss = 0.0;
   for (std::size_t i = 0; i < training.examples.size(); ++i) {
@@ -110,7 +110,7 @@ TEST(AdaBoost, TheBoundIsTheExponentialLoss) {
 }
 
 TEST(AdaBoost, NoStumpIsTakenTwiceInARow) {
-  const LabelledFeatures training = make_square(200, in_box, 0.2);
+  const LabeledFeatures training = make_square(200, in_box, 0.2);
   const BoostingResult result = train_adaboost(training, {.rounds = 20});
   for (std::size_t i = 1; i < result.model.stumps.size(); ++i) {
     const DecisionStump &a = result.model.stumps[i - 1], &b = result.model.stumps[i];
@@ -119,10 +119,10 @@ TEST(AdaBoost, NoStumpIsTakenTwiceInARow) {
 }
 
 TEST(AdaBoost, WhatWasNotSeenIsToldAsWell) {
-  const LabelledFeatures all = make_square(3000, in_box, 0.05);
-  LabelledFeatures training{.names = all.names, .examples = {}, .labels = {}}, test = training;
+  const LabeledFeatures all = make_square(3000, in_box, 0.05);
+  LabeledFeatures training{.names = all.names, .examples = {}, .labels = {}}, test = training;
   for (std::size_t i = 0; i < all.examples.size(); ++i) {
-    LabelledFeatures& part = i < 1000 ? training : test;
+    LabeledFeatures& part = i < 1000 ? training : test;
     part.examples.push_back(all.examples[i]);
     part.labels.push_back(all.labels[i]);
   }
@@ -131,7 +131,7 @@ TEST(AdaBoost, WhatWasNotSeenIsToldAsWell) {
 }
 
 TEST(AdaBoost, BalancedClassesHearTheRareOne) {
-  LabelledFeatures training{.names = {"x"}, .examples = {}, .labels = {}};
+  LabeledFeatures training{.names = {"x"}, .examples = {}, .labels = {}};
   for (int i = 0; i < 100; ++i) {  // one in ten beyond 0.5 is positive
     training.examples.push_back({0.01 * i});
     training.labels.push_back(i > 50 && i % 10 == 5 ? 1 : -1);
@@ -142,8 +142,8 @@ TEST(AdaBoost, BalancedClassesHearTheRareOne) {
 }
 
 TEST(AdaBoost, TheSameExamplesGiveTheSameModelAndOtherScalesTheSameVotes) {
-  const LabelledFeatures training = make_square(200, in_box, 0.1);
-  LabelledFeatures scaled = training;
+  const LabeledFeatures training = make_square(200, in_box, 0.1);
+  LabeledFeatures scaled = training;
   for (auto& example : scaled.examples) example[1] = 1000.0 * example[1] + 5.0;
   const BoostingResult first = train_adaboost(training, {.rounds = 20}), second = train_adaboost(scaled, {.rounds = 20});
   EXPECT_EQ(first.model, train_adaboost(training, {.rounds = 20}).model);
@@ -162,8 +162,8 @@ TEST(BoostedStumps, TheMarginIsTheShareOfVotes) {
 }
 
 TEST(AdaBoost, WrongExamplesAreRefusedByName) {
-  const auto complaint = [](const std::function<void(LabelledFeatures&)>& change) -> std::string {
-    LabelledFeatures training{.names = {"x", "y"}, .examples = {{0, 0}, {1, 1}}, .labels = {1, -1}};
+  const auto complaint = [](const std::function<void(LabeledFeatures&)>& change) -> std::string {
+    LabeledFeatures training{.names = {"x", "y"}, .examples = {{0, 0}, {1, 1}}, .labels = {1, -1}};
     change(training);
     try {
       train_adaboost(training, {});

@@ -19,7 +19,7 @@ constexpr double kExactTol = 1e-12;  // algebra
 
 const Pose2 kTruth = test::kYardTarget.inverse() * test::kYardSource;
 constexpr double kNoLimit = 1e9;
-constexpr IcpSettings kPaper{.min_threshold_m = 0.0, .max_threshold_m = kNoLimit, .refine_on_lines = false};
+constexpr IcpSettings kPaper{.min_threshold_m = 0.0, .max_threshold_m = kNoLimit, .point_to_line = false};
 constexpr IcpSettings kFromAfar{.max_threshold_m = kNoLimit};
 
 /// Errors of 12 starts all around, 0.3 m and 3 degrees off.
@@ -121,7 +121,7 @@ TEST_P(PartlyOverlapping, PlainIcpIsMetresOffAndEffectiveNeighboursAreNot) {
   const auto has_partner = [&](const auto& p) { return std::ranges::any_of(target, [&](const auto& q) { return (kTruth * p - q).norm() < 0.15; }); };
   ASSERT_NEAR(static_cast<double>(std::ranges::count_if(source, has_partner)) / static_cast<double>(source.size()), GetParam().share, 0.02);
 
-  const Errors plain = errors_of(target, source, {.use_effective_neighbours = false, .max_threshold_m = kNoLimit, .refine_on_lines = false});
+  const Errors plain = errors_of(target, source, {.use_effective_neighbors = false, .max_threshold_m = kNoLimit, .point_to_line = false});
   EXPECT_GT(plain.smallest_m, 3.0);
   const Errors paper = errors_of(target, source, kPaper);
   EXPECT_LT(paper.largest_m, 0.12);
@@ -189,9 +189,9 @@ TEST(AlignIcp, FacesOfAWallSeenFromOppositeSidesAreNotLaidOnEachOther) {
   both.insert(both.end(), north.begin(), north.end());
   std::vector<Eigen::Vector2d> sides = facing(south, -1.0);
   for (std::size_t i = 0; i < north.size(); ++i) sides.emplace_back(0.0, 1.0);
-  const auto seen = align_icp(IcpPoints(both, settings, sides), IcpPoints(north, settings, facing(north, 1.0)), {0.0, -0.2, 0.0}, settings);
-  ASSERT_TRUE(seen);
-  EXPECT_NEAR(seen->T_target_source.y, 0.0, 0.01);  // though the other face was nearer
+  const auto observed = align_icp(IcpPoints(both, settings, sides), IcpPoints(north, settings, facing(north, 1.0)), {0.0, -0.2, 0.0}, settings);
+  ASSERT_TRUE(observed);
+  EXPECT_NEAR(observed->T_target_source.y, 0.0, 0.01);  // though the other face was nearer
 }
 
 TEST(AlignIcp, WithoutEnoughPointsThereIsNoMatch) {

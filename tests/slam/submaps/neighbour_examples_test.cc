@@ -15,14 +15,14 @@ const test::SubmapDrive& office_drive() {
   return kDrive;
 }
 
-LabelledFeatures examples_of(const test::SubmapDrive& drive, const NeighbourExampleSettings& settings) {
-  LabelledFeatures examples{.names = pair_feature_names(), .examples = {}, .labels = {}};
-  add_neighbour_examples(drive.slam, drive.T_world_submap(), SubmapRbpfSettings{}.surfaces, settings, 1, examples);
+LabeledFeatures examples_of(const test::SubmapDrive& drive, const NeighborExampleSettings& settings) {
+  LabeledFeatures examples{.names = pair_feature_names(), .examples = {}, .labels = {}};
+  add_neighbor_examples(drive.slam, drive.T_world_submap(), SubmapRbpfSettings{}.surfaces, settings, 1, examples);
   return examples;
 }
 
 TEST(NeighbourExamples, AreOfBothKindsAndFinite) {
-  const LabelledFeatures examples = examples_of(office_drive(), {});
+  const LabeledFeatures examples = examples_of(office_drive(), {});
   ASSERT_EQ(examples.examples.size(), examples.labels.size());
   EXPECT_GT(std::ranges::count(examples.labels, 1), 10);
   EXPECT_GT(std::ranges::count(examples.labels, -1), 10);
@@ -35,7 +35,7 @@ TEST(NeighbourExamples, AreOfBothKindsAndFinite) {
 TEST(NeighbourExamples, WhatIsLearntOfOneRoundRecognisesNeighboursOnTheNextWithAPrecisionOf95Percent) {
   const BoostedStumps model = train_adaboost(examples_of(office_drive(), {}), {}).model;
   const test::SubmapDrive other = test::map_by_submaps(test::make_office(), test::office_rounds(1), {.speed_mps = 0.8, .odometry_scale = -0.02}, {}, {}, 2);
-  const LabelledFeatures trial = examples_of(other, {.predictions = 2});
+  const LabeledFeatures trial = examples_of(other, {.predictions = 2});
   int right = 0, wrong = 0, missed = 0;
   for (std::size_t i = 0; i < trial.labels.size(); ++i) {
     const bool is_taken = model.margin(trial.examples[i]) > 0.2;

@@ -20,7 +20,7 @@ using Points = std::vector<Eigen::Vector2d>;
 
 constexpr double kExactTol = 1e-9;  // algebra, some of it through a histogram
 
-std::vector<double> pair_features(const SubmapShape& target, const SubmapShape& source, const PoseGaussian& T_target_source, const NdtSettings& settings) {
+std::vector<double> pair_features(const SubmapDescriptor& target, const SubmapDescriptor& source, const PoseGaussian& T_target_source, const NdtSettings& settings) {
   return compare_submaps(target, source, T_target_source, settings).features;
 }
 
@@ -37,10 +37,10 @@ Points square_outline() {
   return test::sample_walls(box, {});
 }
 
-SubmapShape describe(const SeenSubmap& submap) { return describe_submap(submap.points, submap.map, {}); }
+SubmapDescriptor describe(const SeenSubmap& submap) { return describe_submap(submap.points, submap.map, {}); }
 
 /// A submap of the yard from a short walk that starts at its frame.
-SubmapShape describe_yard(const Pose2& T_world_submap, std::uint64_t seed) {
+SubmapDescriptor describe_yard(const Pose2& T_world_submap, std::uint64_t seed) {
   return describe(see_submap(make_yard(), T_world_submap, short_walk(T_world_submap), seed));
 }
 
@@ -60,7 +60,7 @@ TEST(PairFeatures, HaveFourteenNamesNoneTwice) {
 
 // Two squares of side 2, one 1 m to the side: radius of the outline sqrt(1 + 1/3).
 TEST(PairFeatures, OfTwoSquaresAreWhatGeometrySays) {
-  const SubmapShape square = describe_submap(square_outline(), GridMap(0.05, 100.0), {});
+  const SubmapDescriptor square = describe_submap(square_outline(), GridMap(0.05, 100.0), {});
   const double radius = std::sqrt(4.0 / 3.0);
   ASSERT_NEAR(square.radius_m, radius, 0.01) << "of 80 points";
   const auto features = pair_features(square, square, prediction_of({1.0, 0.0, 0.0}, 0.25, 0.05), {});
@@ -83,13 +83,13 @@ TEST(PairFeatures, OfTwoSquaresAreWhatGeometrySays) {
 TEST(PairFeatures, TheCentreIsAsUncertainAsItsArmIsLong) {
   Points far = square_outline();
   for (auto& p : far) p.x() += 10.0;
-  const SubmapShape near = describe_submap(square_outline(), GridMap(0.05, 100.0), {}), away = describe_submap(far, GridMap(0.05, 100.0), {});
+  const SubmapDescriptor near = describe_submap(square_outline(), GridMap(0.05, 100.0), {}), away = describe_submap(far, GridMap(0.05, 100.0), {});
   const auto features = pair_features(near, away, prediction_of({-10.0, 0.0, 0.0}, 0.0, 0.1), {});
   EXPECT_NEAR(value(features, "center_std"), (away.center.norm() * 0.1) / (near.radius_m + away.radius_m), kExactTol);
 }
 
 TEST(PairFeatures, OfNeighboursSayThatTheyAre) {
-  const SubmapShape target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
+  const SubmapDescriptor target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
   const auto features = pair_features(target, source, prediction_of({kTruth.x + 0.8, kTruth.y - 0.6, kTruth.yaw + 5.0 * kDegree}, 0.7, 4.0 * kDegree), {});
   EXPECT_GT(value(features, "hull_overlap"), 0.8);
   EXPECT_GT(value(features, "seen_overlap"), 0.6) << "through the gate and between posts each sees what the other does not";
@@ -104,7 +104,7 @@ TEST(PairFeatures, OfStrangersSayThatTheyAreNot) {
   RoomWorld hall;
   hall.add_box(-14.0, -9.0, 5.0, 3.0);
   for (int i = -3; i <= 0; ++i) hall.add_post(4.0 * i + 1.0, -2.0, 0.4).add_post(4.0 * i + 1.0, -7.5, 0.4);
-  const SubmapShape target = describe_yard(kTarget, 1), source = describe(see_submap(hall, kSource, short_walk(kSource), 2));
+  const SubmapDescriptor target = describe_yard(kTarget, 1), source = describe(see_submap(hall, kSource, short_walk(kSource), 2));
   const auto features = pair_features(target, source, prediction_of(kTruth, 0.7, 4.0 * kDegree), {});
   EXPECT_GT(value(features, "hull_overlap"), 0.5) << "by the prediction alone they would be neighbours";
   EXPECT_LT(value(features, "aligned_agreement"), 0.7);
@@ -117,7 +117,7 @@ TEST(PairFeatures, AgreementIsThatOfTheOneWhoDisagrees) {
   room.add_box(-5.02, -5.02, 5.02, 5.02);  // in the middle of cells: with 1 cm of noise one row of them is a wall
   divided.add(room).add_wall(2.02, -2.02, 2.02, 2.02);
   const std::vector<Pose2> still(3);
-  const SubmapShape before = describe(see_submap(room, {}, still, 1)), after = describe(see_submap(divided, {}, still, 2));
+  const SubmapDescriptor before = describe(see_submap(room, {}, still, 1)), after = describe(see_submap(divided, {}, still, 2));
   const PoseGaussian prediction = prediction_of({0.1, 0.1, 0.01}, 0.1, 0.01);
   EXPECT_NEAR(value(pair_features(before, after, prediction, {}), "aligned_agreement"), 30.0 / 34.0, 0.03);
   EXPECT_NEAR(value(pair_features(after, before, prediction, {}), "aligned_agreement"), 30.0 / 34.0, 0.03);
@@ -125,7 +125,7 @@ TEST(PairFeatures, AgreementIsThatOfTheOneWhoDisagrees) {
 }
 
 TEST(PairFeatures, FourNeedNoPose) {
-  const SubmapShape target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
+  const SubmapDescriptor target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
   const auto here = pair_features(target, source, prediction_of(kTruth, 0.1, 0.01), {});
   const auto there = pair_features(target, source, prediction_of({70.0, -9.0, 2.0}, 5.0, 1.0), {});
   const auto swapped = pair_features(source, target, prediction_of({}, 1.0, 1.0), {});
@@ -138,8 +138,8 @@ TEST(PairFeatures, FourNeedNoPose) {
 // The source's frame lies elsewhere in it: 7 m away, turned by 35 degrees. What is computed from points is the same; maps are drawn anew on other cells.
 TEST(PairFeatures, DoNotDependOnWhereASubmapsFrameLies) {
   const Pose2 T_source_other{5.0, -5.0, 35.0 * kDegree};
-  const SubmapShape target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
-  const SubmapShape other = describe(see_submap(make_yard(), kSource * T_source_other, short_walk(kSource), 2));
+  const SubmapDescriptor target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
+  const SubmapDescriptor other = describe(see_submap(make_yard(), kSource * T_source_other, short_walk(kSource), 2));
   // The same place of the centre must be as uncertain, whatever the arm: no error of heading.
   const auto features = pair_features(target, source, prediction_of(kTruth, 0.5, 0.0), {});
   const auto others = pair_features(target, other, prediction_of(kTruth * T_source_other, 0.5, 0.0), {});
@@ -153,7 +153,7 @@ TEST(PairFeatures, DoNotDependOnWhereASubmapsFrameLies) {
 TEST(PairFeatures, TwiceAsLargeIsTheSame) {
   Points twice = square_outline();
   for (auto& p : twice) p *= 2.0;
-  const SubmapShape small = describe_submap(square_outline(), GridMap(0.05, 100.0), {}), large = describe_submap(twice, GridMap(0.05, 100.0), {});
+  const SubmapDescriptor small = describe_submap(square_outline(), GridMap(0.05, 100.0), {}), large = describe_submap(twice, GridMap(0.05, 100.0), {});
   const auto of_small = pair_features(small, small, prediction_of({0.7, 0.2, 0.3}, 0.2, 0.05), {});
   const auto of_large = pair_features(large, large, prediction_of({1.4, 0.4, 0.3}, 0.4, 0.05), {});
   for (const char* name : {"center_distance", "center_mahalanobis", "center_std", "hull_overlap", "radius_ratio", "point_ratio"}) {
@@ -163,7 +163,7 @@ TEST(PairFeatures, TwiceAsLargeIsTheSame) {
 
 TEST(PairFeatures, AreFiniteWhateverTheSubmaps) {
   const GridMap nothing(0.05, 100.0);
-  const SubmapShape line = describe_submap({{0, 0}, {1, 1}, {2, 2}}, nothing, {}), spot = describe_submap({{1, 1}, {1, 1}, {1, 1}}, nothing, {});
+  const SubmapDescriptor line = describe_submap({{0, 0}, {1, 1}, {2, 2}}, nothing, {}), spot = describe_submap({{1, 1}, {1, 1}, {1, 1}}, nothing, {});
   for (const PoseGaussian& prediction : {prediction_of({}, 0.0, 0.0), prediction_of({1e6, -1e6, 3.0}, 1e6, 100.0)}) {
     for (const auto& [target, source] : {std::pair(&line, &spot), {&spot, &line}, {&spot, &spot}}) {
       const auto features = pair_features(*target, *source, prediction, {});
@@ -187,10 +187,10 @@ RoomWorld make_site(std::uint64_t seed) {
 }
 
 /// Pairs of submaps of a site, half of them neighbours; predictions are off by 1 m and 5 degrees (one standard deviation) and say all the same of strangers.
-LabelledFeatures make_pairs(std::uint64_t seed, int num_pairs) {
+LabeledFeatures make_pairs(std::uint64_t seed, int num_pairs) {
   const RoomWorld site = make_site(seed);
   const RandomStream random(seed, "test/pairs");
-  LabelledFeatures pairs{.names = pair_feature_names(), .examples = {}, .labels = {}};
+  LabeledFeatures pairs{.names = pair_feature_names(), .examples = {}, .labels = {}};
   for (int i = 0; i < num_pairs; ++i) {
     const auto tick = static_cast<std::uint64_t>(i);
     const auto u = random.uniforms(tick), v = random.uniforms(tick, 1), error = random.normals(tick, 2);
@@ -198,7 +198,7 @@ LabelledFeatures make_pairs(std::uint64_t seed, int num_pairs) {
     const Pose2 T_target_source{12.0 * v[0] - 6.0, 12.0 * v[1] - 6.0, 6.28 * v[2]};
     const bool are_neighbours = i % 2 == 0;
     const Pose2 T_world_source = are_neighbours ? T_world_target * T_target_source : Pose2{-T_world_target.x, -T_world_target.y, 6.28 * u[3]};
-    const SubmapShape target = describe(see_submap(site, T_world_target, short_walk(T_world_target), 2 * tick)),
+    const SubmapDescriptor target = describe(see_submap(site, T_world_target, short_walk(T_world_target), 2 * tick)),
                       source = describe(see_submap(site, T_world_source, short_walk(T_world_source), 2 * tick + 1));
     if (!are_neighbours && (T_world_target.position() - T_world_source.position()).norm() < 12.0) continue;
     const Pose2 predicted{T_target_source.x + error[0], T_target_source.y + error[1], wrap_angle(T_target_source.yaw + 5.0 * kDegree * error[2])};
@@ -209,7 +209,7 @@ LabelledFeatures make_pairs(std::uint64_t seed, int num_pairs) {
 }
 
 TEST(PairFeatures, AdaBoostTellsNeighboursFromStrangersOnASiteItHasNotSeen) {
-  const LabelledFeatures training = make_pairs(1, 80), test = make_pairs(2, 80);
+  const LabeledFeatures training = make_pairs(1, 80), test = make_pairs(2, 80);
   const BoostingResult result = train_adaboost(training, {.rounds = 20});
   int missed = 0, mistaken = 0;
   for (std::size_t i = 0; i < test.examples.size(); ++i) {

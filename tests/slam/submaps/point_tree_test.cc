@@ -63,14 +63,14 @@ TEST(SurfaceNormals, OfAWallStandsAcrossItAndOfACrossIsWorthNothing) {
   const auto wall = surface_normals(PointTree(points), 0.35);
   for (const SurfaceNormal& at : wall) {
     EXPECT_NEAR(std::abs(at.normal.dot(Eigen::Vector2d(-std::sin(0.5), std::cos(0.5)))), 1.0, 1e-9);
-    EXPECT_NEAR(at.straightness, 1.0, 1e-9);
+    EXPECT_NEAR(at.linearity, 1.0, 1e-9);
   }
   const auto cross = surface_normals(PointTree({{0, 0}, {0.1, 0}, {-0.1, 0}, {0, 0.1}, {0, -0.1}}), 0.15);
-  EXPECT_NEAR(cross[0].straightness, 0.0, 1e-9);
+  EXPECT_NEAR(cross[0].linearity, 0.0, 1e-9);
   const auto pair = surface_normals(PointTree({{0, 0}, {0.1, 0}}), 1.0);
   EXPECT_EQ(pair[0].normal.norm(), 0.0);
-  EXPECT_EQ(pair[0].straightness, 0.0);
-  EXPECT_EQ(surface_normals(PointTree({{1, 1}, {1, 1}, {1, 1}}), 1.0)[0].straightness, 0.0) << "all in one place";
+  EXPECT_EQ(pair[0].linearity, 0.0);
+  EXPECT_EQ(surface_normals(PointTree({{1, 1}, {1, 1}, {1, 1}}), 1.0)[0].linearity, 0.0) << "all in one place";
 }
 
 }  // namespace

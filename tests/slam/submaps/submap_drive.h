@@ -34,8 +34,8 @@ struct SubmapDrive {
 };
 
 inline SubmapDrive map_by_submaps(const RoomWorld& world, const std::vector<Eigen::Vector2d>& corners, const DriveOptions& options, const slam::SubmapRbpfSettings& settings,
-                                  const BoostedStumps& neighbours, std::uint64_t seed = 1) {
-  SubmapDrive mapped{.drive = drive_along(corners, options), .slam = slam::SubmapRbpf(settings, neighbours, seed)};
+                                  const BoostedStumps& neighbors, std::uint64_t seed = 1) {
+  SubmapDrive mapped{.drive = drive_along(corners, options), .slam = slam::SubmapRbpf(settings, neighbors, seed)};
   const RandomStream noise(seed, "test/submaps");
   for (std::size_t k = 0; k < mapped.drive.size(); ++k) {
     const DriveStep& step = mapped.drive[k];

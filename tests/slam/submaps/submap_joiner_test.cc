@@ -28,35 +28,35 @@ PoseGaussian prediction_of(const Pose2& mean, double std_m, double std_rad) {
 // Four metres apart, predicted 0.3 m and 1 degree off.
 TEST(JoinSubmaps, NeighboursInTheOfficeAreJoinedToTwoCentimetres) {
   const SubmapSurfaces target = seen_from(test::make_office(), 10.0, 4.2, 1), source = seen_from(test::make_office(), 14.0, 4.2, 2);
-  const JoinResult result = join_submaps(target, source, prediction_of({4.25, 0.15, 0.017}, 0.3, 0.02), test::agreeing_neighbours(), {}, {});
-  ASSERT_TRUE(result.joint);
-  EXPECT_EQ(result.failure, JoinFailure::kNone);
-  EXPECT_THAT(result.joint->T_target_source, test::Pose2Near(Pose2{4.0, 0.0, 0.0}, 0.02, 0.003));
+  const ConstraintResult result = find_constraint(target, source, prediction_of({4.25, 0.15, 0.017}, 0.3, 0.02), test::agreeing_neighbours(), {}, {});
+  ASSERT_TRUE(result.constraint);
+  EXPECT_EQ(result.failure, ConstraintRejection::kNone);
+  EXPECT_THAT(result.constraint->T_target_source, test::Pose2Near(Pose2{4.0, 0.0, 0.0}, 0.02, 0.003));
 }
 
 TEST(JoinSubmaps, WithoutAModelTheyAreStrangers) {
   const SubmapSurfaces submap = seen_from(test::make_office(), 10.0, 4.2, 1);
-  EXPECT_EQ(join_submaps(submap, submap, prediction_of({}, 0.1, 0.01), {}, {}, {}).failure, JoinFailure::kStrangers);
+  EXPECT_EQ(find_constraint(submap, submap, prediction_of({}, 0.1, 0.01), {}, {}, {}).failure, ConstraintRejection::kNotNeighbors);
 }
 
 // Doors every three metres: known to 0.3 m there is one place, known to 2 m there are others.
 TEST(JoinSubmaps, AmongIdenticalDoorsAnotherPlaceThatFitsAsWellMakesTheMatchWorthless) {
   const test::RoomWorld doors = test::make_corridor_of_doors();
   const SubmapSurfaces target = seen_from(doors, 36.0, 0.0, 1), source = seen_from(doors, 39.0, 0.0, 2);
-  SubmapJoinerSettings any;
+  SubmapConstraintSettings any;
   any.min_margin = -1.0;
   const BoostedStumps all = test::agreeing_neighbours();
-  const JoinResult sure = join_submaps(target, source, prediction_of({3.0, 0.0, 0.0}, 0.2, 0.01), all, {}, any);
-  ASSERT_TRUE(sure.joint);
-  EXPECT_THAT(sure.joint->T_target_source, test::Pose2Near(Pose2{3.0, 0.0, 0.0}, 0.05, 0.005));
-  EXPECT_EQ(join_submaps(target, source, prediction_of({3.0, 0.0, 0.0}, 2.0, 0.01), all, {}, any).failure, JoinFailure::kAmbiguous);
+  const ConstraintResult sure = find_constraint(target, source, prediction_of({3.0, 0.0, 0.0}, 0.2, 0.01), all, {}, any);
+  ASSERT_TRUE(sure.constraint);
+  EXPECT_THAT(sure.constraint->T_target_source, test::Pose2Near(Pose2{3.0, 0.0, 0.0}, 0.05, 0.005));
+  EXPECT_EQ(find_constraint(target, source, prediction_of({3.0, 0.0, 0.0}, 2.0, 0.01), all, {}, any).failure, ConstraintRejection::kAmbiguous);
 }
 
 TEST(JoinSubmaps, AMatchThatLeavesTheRecognisedPlaceIsNone) {
   const SubmapSurfaces target = seen_from(test::make_office(), 10.0, 4.2, 1), source = seen_from(test::make_office(), 14.0, 4.2, 2);
-  SubmapJoinerSettings narrow;
+  SubmapConstraintSettings narrow;
   narrow.max_fine_shift_m = 0.0;
-  EXPECT_EQ(join_submaps(target, source, prediction_of({4.25, 0.15, 0.017}, 0.3, 0.02), test::agreeing_neighbours(), {}, narrow).failure, JoinFailure::kMismatch);
+  EXPECT_EQ(find_constraint(target, source, prediction_of({4.25, 0.15, 0.017}, 0.3, 0.02), test::agreeing_neighbours(), {}, narrow).failure, ConstraintRejection::kMismatch);
 }
 
 }  // namespace

@@ -11,9 +11,9 @@ namespace {
 using test::agreeing_neighbours, test::map_by_submaps, test::SubmapDrive;
 
 int num_joints(const SubmapRbpf& slam, int min_apart) {
-  int joints = 0;
-  for (const SubmapRbpf::Comparison& comparison : slam.comparisons()) joints += comparison.result.joint && comparison.source - comparison.target >= min_apart ? 1 : 0;
-  return joints;
+  int constraints = 0;
+  for (const SubmapRbpf::Comparison& comparison : slam.comparisons()) constraints += comparison.result.constraint && comparison.source - comparison.target >= min_apart ? 1 : 0;
+  return constraints;
 }
 
 // 125 m and a bit of corridor; odometry alone turns by a radian and ends tens of metres off.
@@ -29,9 +29,9 @@ TEST(SubmapRbpf, EveryJointOfTwoRoundsIsTrueToADecimetre) {
   const SubmapDrive mapped = map_by_submaps(test::make_office(), test::office_rounds(2), {}, {}, agreeing_neighbours());
   const std::vector<Pose2> T_world_submap = mapped.T_world_submap();
   for (const SubmapRbpf::Comparison& comparison : mapped.slam.comparisons()) {
-    if (!comparison.result.joint) continue;
+    if (!comparison.result.constraint) continue;
     const Pose2 T_target_source = T_world_submap[static_cast<std::size_t>(comparison.target)].inverse() * T_world_submap[static_cast<std::size_t>(comparison.source)];
-    EXPECT_THAT(comparison.result.joint->T_target_source, test::Pose2Near(T_target_source, 0.1, 0.02)) << comparison.target << " " << comparison.source;
+    EXPECT_THAT(comparison.result.constraint->T_target_source, test::Pose2Near(T_target_source, 0.1, 0.02)) << comparison.target << " " << comparison.source;
   }
   EXPECT_GT(num_joints(mapped.slam, 8), 8);
 }
@@ -43,9 +43,9 @@ TEST(SubmapRbpf, AmongIdenticalDoorsNoFalseJointIsMadeInTenDrives) {
                                               agreeing_neighbours(), seed);
     const std::vector<Pose2> T_world_submap = mapped.T_world_submap();
     for (const SubmapRbpf::Comparison& comparison : mapped.slam.comparisons()) {
-      if (!comparison.result.joint) continue;
+      if (!comparison.result.constraint) continue;
       const Pose2 T_target_source = T_world_submap[static_cast<std::size_t>(comparison.target)].inverse() * T_world_submap[static_cast<std::size_t>(comparison.source)];
-      EXPECT_LT((comparison.result.joint->T_target_source.position() - T_target_source.position()).norm(), 1.0) << seed;
+      EXPECT_LT((comparison.result.constraint->T_target_source.position() - T_target_source.position()).norm(), 1.0) << seed;
     }
     EXPECT_LT(mapped.rms_error_m(), 0.3) << seed;
   }
@@ -59,7 +59,7 @@ TEST(SubmapRbpf, WithoutAModelNobodyIsANeighbour) {
 
 TEST(SubmapRbpf, ASubmapIsClosedWhenTheWayIsFullAndTheNextBeginsThere) {
   SubmapRbpfSettings settings;
-  settings.submaps.max_way_m = 5.0;
+  settings.submaps.max_distance_m = 5.0;
   const SubmapDrive mapped = map_by_submaps(test::make_office(), {{8.0, 4.2}, {30.0, 4.2}}, {.odometry_scale = 0.0, .odometry_drift_rad_per_m = 0.0}, settings, {});
   EXPECT_EQ(mapped.slam.first_scans().size(), 5U);  // 22 m
   const std::vector<Pose2>& nodes = mapped.slam.graph().T_map_node;

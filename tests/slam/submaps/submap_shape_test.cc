@@ -26,48 +26,48 @@ Points moved(const Points& points, const Pose2& T) {
 }
 
 // Four corners of a square of side 2: distances 2 (four) and 2.828 (two), between the bins 2 and 3.
-TEST(SubmapShape, OfASquaresCornersIsWhatGeometrySays) {
-  const SubmapShape shape = describe_submap({{0, 0}, {2, 0}, {2, 2}, {0, 2}}, kNoMap, {});
-  EXPECT_EQ(shape.num_points, 4U);
-  EXPECT_EQ(shape.center, Eigen::Vector2d(1, 1));
-  EXPECT_NEAR(shape.radius_m, std::sqrt(2.0), kExactTol);
-  EXPECT_EQ(area_of(shape.hull), 4.0);
+TEST(SubmapDescriptor, OfASquaresCornersIsWhatGeometrySays) {
+  const SubmapDescriptor descriptor = describe_submap({{0, 0}, {2, 0}, {2, 2}, {0, 2}}, kNoMap, {});
+  EXPECT_EQ(descriptor.num_points, 4U);
+  EXPECT_EQ(descriptor.center, Eigen::Vector2d(1, 1));
+  EXPECT_NEAR(descriptor.radius_m, std::sqrt(2.0), kExactTol);
+  EXPECT_EQ(polygon_area(descriptor.hull), 4.0);
   const double beyond = 2.0 * std::sqrt(2.0) - 2.0;  // of the diagonal, in bins
-  EXPECT_NEAR(shape.distances[2], (4.0 + 2.0 * (1.0 - beyond)) / 6.0, kExactTol);
-  EXPECT_NEAR(shape.distances[3], 2.0 * beyond / 6.0, kExactTol);
-  EXPECT_NEAR(std::accumulate(shape.distances.begin(), shape.distances.end(), 0.0), 1.0, kExactTol);
+  EXPECT_NEAR(descriptor.distances[2], (4.0 + 2.0 * (1.0 - beyond)) / 6.0, kExactTol);
+  EXPECT_NEAR(descriptor.distances[3], 2.0 * beyond / 6.0, kExactTol);
+  EXPECT_NEAR(std::accumulate(descriptor.distances.begin(), descriptor.distances.end(), 0.0), 1.0, kExactTol);
 }
 
-TEST(SubmapShape, WhatDoesNotDependOnTheFrameStaysWhenItMoves) {
+TEST(SubmapDescriptor, WhatDoesNotDependOnTheFrameStaysWhenItMoves) {
   const Points points = sample_walls(make_yard(), {});
-  const SubmapShape here = describe_submap(points, kNoMap, {}), there = describe_submap(moved(points, {30.0, -20.0, 2.2}), kNoMap, {});
+  const SubmapDescriptor here = describe_submap(points, kNoMap, {}), there = describe_submap(moved(points, {30.0, -20.0, 2.2}), kNoMap, {});
   EXPECT_NEAR(here.radius_m, there.radius_m, 1e-10);
-  EXPECT_NEAR(area_of(here.hull), area_of(there.hull), 1e-9);
+  EXPECT_NEAR(polygon_area(here.hull), polygon_area(there.hull), 1e-9);
   EXPECT_LT(histogram_difference(here.distances, there.distances), 1e-9);
 }
 
-TEST(SubmapShape, DirectionsTurnWithTheFrame) {
+TEST(SubmapDescriptor, DirectionsTurnWithTheFrame) {
   const Points points = sample_walls(make_yard(), {}, {.spacing_m = 0.11});  // none just so far apart as a neighbourhood reaches
-  const SubmapShape here = describe_submap(points, kNoMap, {});
+  const SubmapDescriptor here = describe_submap(points, kNoMap, {});
   // 25 degrees are five bins of 5.
-  const SubmapShape turned = describe_submap(moved(points, {1.0, 2.0, 25.0 * kDegree}), kNoMap, {});
+  const SubmapDescriptor turned = describe_submap(moved(points, {1.0, 2.0, 25.0 * kDegree}), kNoMap, {});
   EXPECT_NEAR(circular_correlation(turned.directions, here.directions, 5), 1.0, 1e-9);
   EXPECT_LT(circular_correlation(turned.directions, here.directions, 0), 0.2);
-  const SubmapShape between = describe_submap(moved(points, {1.0, 2.0, 27.5 * kDegree}), kNoMap, {});
+  const SubmapDescriptor between = describe_submap(moved(points, {1.0, 2.0, 27.5 * kDegree}), kNoMap, {});
   EXPECT_GT(circular_correlation(between.directions, here.directions, 5), 0.6) << "half a bin off";
 }
 
 // Walls of 20 m along x and 10 m along y, less what lies in the corners, which count little.
-TEST(SubmapShape, AnUprightYardHasTwoDirections) {
+TEST(SubmapDescriptor, AnUprightYardHasTwoDirections) {
   test::RoomWorld box;
   box.add_box(0.0, 0.0, 10.0, 5.0);
-  const SubmapShape shape = describe_submap(sample_walls(box, {}), kNoMap, {});
-  EXPECT_NEAR(shape.directions[0], 2.0 / 3.0, 0.05);
-  EXPECT_NEAR(shape.directions[18], 1.0 / 3.0, 0.05);
-  EXPECT_GT(shape.directions[0] + shape.directions[18], 0.9);
+  const SubmapDescriptor descriptor = describe_submap(sample_walls(box, {}), kNoMap, {});
+  EXPECT_NEAR(descriptor.directions[0], 2.0 / 3.0, 0.05);
+  EXPECT_NEAR(descriptor.directions[18], 1.0 / 3.0, 0.05);
+  EXPECT_GT(descriptor.directions[0] + descriptor.directions[18], 0.9);
 }
 
-TEST(SubmapShape, OfTwoPointsIsRefused) {
+TEST(SubmapDescriptor, OfTwoPointsIsRefused) {
   try {
     describe_submap({{0, 0}, {1, 1}}, kNoMap, {});
     FAIL();

@@ -31,10 +31,10 @@ TEST(FireflyOptimizer, WithoutAbsorptionOneFlightEndsAtTheBrightest) {
 // Two fireflies r = 2 apart: the dimmer flies beta_0 exp(-gamma r^2) r = 0.5 exp(-0.1 x 4) x 2 = 0.670320 of the way.
 TEST(FireflyOptimizer, AFlightOfTwoIsTheFormulas) {
   const FireflyOptimizer fireflies({.iterations = 1, .attractiveness = 0.5, .absorption = 0.1, .step = 0.0});
-  const Fitness judge = [](std::size_t, const Position& position) { return position(0); };
-  Swarm swarm = make_swarm({Eigen::Vector2d(0.0, 1.0), Eigen::Vector2d(2.0, 1.0)}, judge);
+  const Fitness fitness_of = [](std::size_t, const Position& position) { return position(0); };
+  Swarm swarm = make_swarm({Eigen::Vector2d(0.0, 1.0), Eigen::Vector2d(2.0, 1.0)}, fitness_of);
   RandomSequence random(RandomStream(1, "test/swarm"), 0);
-  fireflies.move(swarm, judge, random);
+  fireflies.move(swarm, fitness_of, random);
   EXPECT_NEAR(swarm.positions[0](0), 0.670320, 1e-6);
   EXPECT_EQ(swarm.positions[0](1), 1.0);
   EXPECT_EQ(swarm.positions[1], Position(Eigen::Vector2d(2.0, 1.0)));

@@ -19,11 +19,11 @@ TEST(Swarm, RanksMembersFromTheBestAndEqualsInOrder) {
 
 TEST(Swarm, AcceptsOnlyWhatTheMembersOwnJudgeFindsBetter) {
   Swarm swarm = four_members();
-  const Fitness judge = [](std::size_t member, const Position&) { return member == 2 ? -4.0 : -9.0; };
-  EXPECT_TRUE(swarm.accept(2, at(7, 7), judge));
+  const Fitness fitness_of = [](std::size_t member, const Position&) { return member == 2 ? -4.0 : -9.0; };
+  EXPECT_TRUE(swarm.accept(2, at(7, 7), fitness_of));
   EXPECT_EQ(swarm.positions[2], at(7, 7));
   EXPECT_EQ(swarm.fitness[2], -4.0);
-  EXPECT_FALSE(swarm.accept(0, at(7, 7), judge));
+  EXPECT_FALSE(swarm.accept(0, at(7, 7), fitness_of));
   EXPECT_EQ(swarm.positions[0], at(0, 0));
   EXPECT_EQ(swarm.fitness[0], -2.0);
 }
@@ -36,8 +36,8 @@ TEST(Swarm, AcceptsNeitherAnEqualNorNotANumber) {
 }
 
 TEST(MakeSwarm, JudgesEachMemberOnceByItsOwnJudge) {
-  const Fitness judge = [](std::size_t member, const Position& position) { return 10.0 * static_cast<double>(member) + position.x(); };
-  const Swarm swarm = make_swarm({at(1, 0), at(2, 0), at(3, 0)}, judge);
+  const Fitness fitness_of = [](std::size_t member, const Position& position) { return 10.0 * static_cast<double>(member) + position.x(); };
+  const Swarm swarm = make_swarm({at(1, 0), at(2, 0), at(3, 0)}, fitness_of);
   EXPECT_EQ(swarm.fitness, (std::vector<double>{1.0, 12.0, 23.0}));
 }
 

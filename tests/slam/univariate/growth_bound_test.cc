@@ -23,7 +23,7 @@ std::vector<double> exact_errors() {
 }
 
 std::vector<double> swarm_errors(int particles, const ParticleFilterSettings& settings) {
-  return errors_of([&](std::uint64_t seed, const GrowthRun&) { return std::make_unique<GrowthFilter>(particles, GrowthModel(), make_parts(settings), seed); },
+  return errors_of([&](std::uint64_t seed, const GrowthRun&) { return std::make_unique<GrowthFilter>(particles, GrowthModel(), make_components(settings), seed); },
                    GrowthModel(), kSeeds);
 }
 
@@ -41,7 +41,7 @@ TEST(GrowthBound, NoFilterLiesSignificantlyBelowIt) {
   for (const int particles : {50, 150}) {
     EXPECT_FALSE(is_below_bound(swarm_errors(particles, {.resample_threshold = 1.0}), bound)) << "PF " << particles;
     EXPECT_FALSE(is_below_bound(swarm_errors(particles, {.optimizer = "ba", .optimizer_iterations = 1}), bound)) << "BA " << particles;
-    EXPECT_FALSE(is_below_bound(swarm_errors(particles, ifa_settings_of_paper()), bound)) << "IFA as printed " << particles;
+    EXPECT_FALSE(is_below_bound(swarm_errors(particles, published_ifa_settings()), bound)) << "IFA as printed " << particles;
     EXPECT_FALSE(is_below_bound(swarm_errors(particles, {.optimizer = "ifa", .optimizer_iterations = 1, .firefly_absorption = 1.0}), bound))
         << "IFA " << particles;
     EXPECT_FALSE(is_below_bound(quasi_errors(particles), bound)) << "quasi " << particles;
@@ -67,7 +67,7 @@ class LeakingOptimizer : public SwarmOptimizer {
 
 TEST(GrowthBound, CatchesAFilterThatIsToldATwentiethOfTheTrueState) {
   const auto leaking = [](std::uint64_t seed, const GrowthRun& run) {
-    ParticleFilterParts parts = make_parts({.resample_threshold = 1.0});
+    ParticleFilterComponents parts = make_components({.resample_threshold = 1.0});
     parts.optimizer = std::make_shared<LeakingOptimizer>(run.states, 0.05);
     return std::make_unique<GrowthFilter>(150, GrowthModel(), parts, seed);
   };

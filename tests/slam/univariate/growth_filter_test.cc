@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 FilterMaker filters_of(int particles, const ParticleFilterSettings& settings) {
-  return [=](std::uint64_t seed, const GrowthRun&) { return std::make_unique<GrowthFilter>(particles, GrowthModel(), make_parts(settings), seed); };
+  return [=](std::uint64_t seed, const GrowthRun&) { return std::make_unique<GrowthFilter>(particles, GrowthModel(), make_components(settings), seed); };
 }
 
 // After one step the posterior is N(x; 8, 1) N(y; x^2 / 20, 1): summed in steps of 0.001.
@@ -33,7 +33,7 @@ UnivariateEstimate posterior_of_first_step(double observation) {
 
 TEST(GrowthFilter, AgreesWithTheIntegralAfterOneStep) {
   const UnivariateEstimate expected = posterior_of_first_step(2.5);
-  GrowthFilter filter(100'000, GrowthModel(), make_parts({}), 1);
+  GrowthFilter filter(100'000, GrowthModel(), make_components({}), 1);
   const UnivariateEstimate estimate = filter.step(2.5);
   const double standard_error = std::sqrt(expected.variance / estimate.effective_sample_size);
   EXPECT_NEAR(estimate.mean, expected.mean, 4.0 * standard_error);
@@ -42,7 +42,7 @@ TEST(GrowthFilter, AgreesWithTheIntegralAfterOneStep) {
 
 TEST(GrowthFilter, ShowsParticlesAndWeightsOfItsEstimate) {
   const GrowthRun run = GrowthModel().simulate(1);
-  GrowthFilter filter(50, GrowthModel(), make_parts({.resample_threshold = 1.0}), 1);
+  GrowthFilter filter(50, GrowthModel(), make_components({.resample_threshold = 1.0}), 1);
   for (const double observation : run.observations) {
     const UnivariateEstimate estimate = filter.step(observation);
     ASSERT_EQ(filter.states().size(), 50U);
@@ -54,7 +54,7 @@ TEST(GrowthFilter, ShowsParticlesAndWeightsOfItsEstimate) {
 
 TEST(GrowthFilter, ChildHalfWayToAnotherAndATenthFartherStartsThere) {
   const Resampler halfway = [](const std::vector<double>& weights, RandomSequence&) {
-    return std::vector<Offspring>(weights.size(), {.parent = 0, .toward = 1, .share = 0.5, .mutation = 0.1});
+    return std::vector<Offspring>(weights.size(), {.parent = 0, .attractor = 1, .share = 0.5, .mutation = 0.1});
   };
   GrowthFilter filter(10'000, GrowthModel(), {.optimizer = nullptr, .resample = halfway, .resample_threshold = 1.0}, 1);
   filter.step(3.2);
@@ -65,7 +65,7 @@ TEST(GrowthFilter, ChildHalfWayToAnotherAndATenthFartherStartsThere) {
 }
 
 TEST(GrowthFilter, KeepsWeightsThatNeedNoResampling) {
-  GrowthFilter filter(100, GrowthModel({.observation_var = 1e6}), make_parts({.resample_threshold = 0.5}), 1);
+  GrowthFilter filter(100, GrowthModel({.observation_var = 1e6}), make_components({.resample_threshold = 0.5}), 1);
   filter.step(3.0);
   const std::vector<double> before = filter.states();
   EXPECT_GT(filter.step(3.0).effective_sample_size, 99.0);
@@ -76,7 +76,7 @@ TEST(GrowthFilter, GivesTheSameForTheSameSeedOnly) {
   const GrowthRun run = GrowthModel().simulate(1);
   for (const char* optimizer : {"none", "ba", "fa", "ifa", "woa", "scso", "iscso"}) {
     const auto means = [&](std::uint64_t seed) {
-      GrowthFilter filter(20, GrowthModel(), make_parts({.optimizer = optimizer}), seed);
+      GrowthFilter filter(20, GrowthModel(), make_components({.optimizer = optimizer}), seed);
       return means_of(filter_all(filter, run.observations));
     };
     EXPECT_EQ(means(3), means(3)) << optimizer;
@@ -86,13 +86,13 @@ TEST(GrowthFilter, GivesTheSameForTheSameSeedOnly) {
 
 // Stepwise resampling drops what is light: over 500 runs the mean error is 5.40 against 3.60.
 TEST(GrowthFilter, FirefliesAsPrintedErrByOneMoreThanNone) {
-  const std::vector<double> ifa = errors_of(filters_of(50, ifa_settings_of_paper()), GrowthModel(), 40);
+  const std::vector<double> ifa = errors_of(filters_of(50, published_ifa_settings()), GrowthModel(), 40);
   const std::vector<double> none = errors_of(filters_of(50, {.resample_threshold = 1.0}), GrowthModel(), 40);
   EXPECT_GT(paired_difference(ifa, none).low, 1.0);
 }
 
 TEST(GrowthFilter, SetsFirefliesAsThePaper) {
-  const ParticleFilterSettings settings = ifa_settings_of_paper();
+  const ParticleFilterSettings settings = published_ifa_settings();
   EXPECT_EQ(settings.optimizer, "ifa");
   EXPECT_EQ(settings.resampler, "stepwise");
   EXPECT_EQ(settings.optimizer_iterations, 1);
@@ -105,7 +105,7 @@ TEST(GrowthFilter, SetsFirefliesAsThePaper) {
 TEST(GrowthFilter, StaysFiniteWhereTheModelExplodes) {
   const GrowthModel model({.denominator_sign = -1});
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    GrowthFilter filter(50, model, make_parts(ifa_settings_of_paper()), seed);
+    GrowthFilter filter(50, model, make_components(published_ifa_settings()), seed);
     for (const UnivariateEstimate& estimate : filter_all(filter, model.simulate(seed).observations)) EXPECT_TRUE(std::isfinite(estimate.mean));
   }
 }

@@ -36,12 +36,12 @@ FilterMaker quasi_filters(const QuasiFilterSettings& settings) {
 
 TEST(QuasiFilter, ComesWithinFiveThousandthsOfTheExactMeansWithTwentyThousandParticles) {
   EXPECT_LT(distance_from_exact(quasi_filters({.particles = 20'000}), 1), 0.005);
-  EXPECT_LT(distance_from_exact(quasi_filters({.particles = 20'000, .looks_ahead = false}), 1), 0.005);
+  EXPECT_LT(distance_from_exact(quasi_filters({.particles = 20'000, .use_auxiliary = false}), 1), 0.005);
 }
 
 TEST(QuasiFilter, WithAHundredAndFiftyParticlesIsFourTimesNearerToTheExactMeansThanRandomDraws) {
   const FilterMaker bootstrap = [](std::uint64_t seed, const GrowthRun&) {
-    return std::make_unique<GrowthFilter>(150, GrowthModel(), make_parts({.resample_threshold = 1.0}), seed);
+    return std::make_unique<GrowthFilter>(150, GrowthModel(), make_components({.resample_threshold = 1.0}), seed);
   };
   EXPECT_LT(distance_from_exact(quasi_filters({.particles = 150}), 30), 0.25 * distance_from_exact(bootstrap, 30));
 }
@@ -49,9 +49,9 @@ TEST(QuasiFilter, WithAHundredAndFiftyParticlesIsFourTimesNearerToTheExactMeansT
 TEST(QuasiFilter, LooksAheadToNearlyEqualWeights) {
   const GrowthRun run = GrowthModel().simulate(1);
   double ahead = 0.0, behind = 0.0;
-  for (const bool looks_ahead : {true, false}) {
-    QuasiFilter filter({.particles = 100, .looks_ahead = looks_ahead}, GrowthModel(), 1);
-    for (const UnivariateEstimate& estimate : filter_all(filter, run.observations)) (looks_ahead ? ahead : behind) += estimate.effective_sample_size / 100.0;
+  for (const bool use_auxiliary : {true, false}) {
+    QuasiFilter filter({.particles = 100, .use_auxiliary = use_auxiliary}, GrowthModel(), 1);
+    for (const UnivariateEstimate& estimate : filter_all(filter, run.observations)) (use_auxiliary ? ahead : behind) += estimate.effective_sample_size / 100.0;
   }
   EXPECT_GT(ahead, 90.0);   // of 100
   EXPECT_LT(behind, 70.0);
@@ -62,7 +62,7 @@ TEST(QuasiFilter, DrawsASingleParticleFromNormalEightOne) {
   double sum = 0.0, squares = 0.0;
   constexpr int kSeeds = 20'000;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const double drawn = QuasiFilter({.particles = 1, .looks_ahead = false}, GrowthModel(), seed).step(0.0).mean;
+    const double drawn = QuasiFilter({.particles = 1, .use_auxiliary = false}, GrowthModel(), seed).step(0.0).mean;
     sum += drawn, squares += drawn * drawn;
   }
   const double mean = sum / kSeeds, variance = squares / kSeeds - mean * mean;

@@ -11,7 +11,7 @@ class CountingInstrument final : public Instrument {
   explicit CountingInstrument(std::vector<std::string>& log) : log_(log) {}
 
   InstrumentKind kind() const override { return InstrumentKind::kWater; }
-  void add(const SensorMessage&, const PlaceLookup&) override { log_.push_back("message"); }
+  void add(const SensorMessage&, const StationPoseLookup&) override { log_.push_back("message"); }
   void begin(const InspectionOrder& order, Time) override {
     steps_ = 0;
     log_.push_back("begin " + order.station);

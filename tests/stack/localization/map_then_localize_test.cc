@@ -25,13 +25,13 @@ TEST(MapThenLocalize, LocalizesOnItsOwnMapFromWhereTheMappingEnded) {
   };
   drive(0, 20);
   EXPECT_TRUE(localizer->is_mapping());
-  EXPECT_TRUE(localizer->knows_pose());
+  EXPECT_TRUE(localizer->has_pose());
   localizer->finish_map(pose);
   EXPECT_FALSE(localizer->is_mapping());
-  EXPECT_FALSE(localizer->knows_pose());  // before the first scan on the finished map
+  EXPECT_FALSE(localizer->has_pose());  // before the first scan on the finished map
   const OccupancyGrid map = localizer->map();
   drive(21, 30);
-  EXPECT_TRUE(localizer->knows_pose());
+  EXPECT_TRUE(localizer->has_pose());
   EXPECT_FALSE(localizer->is_lost());
   EXPECT_EQ(localizer->map().values(), map.values());
 }

@@ -57,8 +57,8 @@ GasMissionSettings make_settings() {
 /// A gas mission with its instrument, in the order of a control period: the instrument works on the task of the period before.
 class GasRound {
  public:
-  GasRound(const GasMissionSettings& settings, Route route, const Pose3& T_body_gas, std::string about_order = "")
-      : mission_(settings, std::move(route), std::move(about_order)), instruments_(gas_meter(settings, T_body_gas), 1.0) {}
+  GasRound(const GasMissionSettings& settings, Route route, const Pose3& T_body_gas, std::string order_text = "")
+      : mission_(settings, std::move(route), std::move(order_text)), instruments_(gas_meter(settings, T_body_gas), 1.0) {}
 
   MissionOutput step(Time now, const PoseEstimate& pose, NavigationFeedback feedback, const std::optional<GasReading>& newest_gas) {
     if (newest_gas) instruments_.add(*newest_gas, nullptr);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Time kStep = std::chrono::milliseconds(50);
 
-std::vector<MarkedGoal> two_goals() {
+std::vector<SavedGoal> two_goals() {
   return {{.number = 1, .T_map_body = {10.0, 0.0, 0.0}}, {.number = 2, .T_map_body = {20.0, 1.0, 1.0}}};
 }
 
@@ -25,15 +25,15 @@ class Robot {
   DockingFeedback docking = DockingFeedback::kDone;
   InspectionFeedback inspection = InspectionFeedback::kDone;
 
-  void run(double seconds, std::optional<RemoteCommand> remote = std::nullopt) {
+  void run(double seconds, std::optional<TeleopCommand> teleop = std::nullopt) {
     for (const Time end = now_ + from_seconds(seconds); now_ < end && !tour_.is_over(); now_ += kStep) {
       if (output.task.goal) pose_ = output.task.goal->T_map_body;
       output = tour_.step(now_, {.pose = {.stamp = now_, .T_map_body = pose_}, .is_lost = is_lost, .navigation = navigation,
-                                 .docking = docking, .inspection = {.feedback = inspection}, .remote = remote});
-      if (remote) remote->mark = remote->hand_over = false;
+                                 .docking = docking, .inspection = {.feedback = inspection}, .teleop = teleop});
+      if (teleop) teleop->save_goal = teleop->hand_over = false;
       for (const Event& event : output.events) events.push_back(event);
       restarts += output.relocalization != Relocalization::kNone ? 1 : 0;
-      maps += output.map_is_made ? 1 : 0;
+      maps += output.is_map_complete ? 1 : 0;
     }
   }
   int count(EventKind kind) const {
@@ -66,12 +66,12 @@ TEST(TunnelMission, TenNavigationsOfTwoGoalsReachTwentyAndDockTenTimes) {
 TEST(TunnelMission, MarksGoalsByRemoteControlThenDrivesToThemByItself) {
   Robot robot(TunnelMission({.navigations = 1}, {}, true));
   robot.run(5.0);
-  EXPECT_EQ(robot.output.task.motion, Motion::kFollowRemote);
-  robot.run(1.0, RemoteCommand{.vx_mps = 0.5});
-  robot.run(1.0, RemoteCommand{.mark = true});
-  robot.run(1.0, RemoteCommand{.mark = true});
+  EXPECT_EQ(robot.output.task.motion, Motion::kTeleop);
+  robot.run(1.0, TeleopCommand{.vx_mps = 0.5});
+  robot.run(1.0, TeleopCommand{.save_goal = true});
+  robot.run(1.0, TeleopCommand{.save_goal = true});
   EXPECT_EQ(robot.maps, 0);
-  robot.run(1.0, RemoteCommand{.hand_over = true});
+  robot.run(1.0, TeleopCommand{.hand_over = true});
   EXPECT_EQ(robot.maps, 1);
   robot.run(100.0);
   EXPECT_EQ(robot.count(EventKind::kGoalMarked), 2);
@@ -83,9 +83,9 @@ TEST(TunnelMission, MarksGoalsByRemoteControlThenDrivesToThemByItself) {
 TEST(TunnelMission, ARemoteControlThatFallsSilentForTwoSecondsIsOff) {
   Robot robot(TunnelMission({.navigations = 0, .docks = false}, {}, true));
   robot.run(4.1);
-  robot.run(1.0, RemoteCommand{.vx_mps = 0.5});
+  robot.run(1.0, TeleopCommand{.vx_mps = 0.5});
   robot.run(1.9);
-  EXPECT_EQ(robot.output.task.motion, Motion::kFollowRemote);
+  EXPECT_EQ(robot.output.task.motion, Motion::kTeleop);
   robot.run(0.3);
   EXPECT_EQ(robot.count(EventKind::kMappingCompleted), 1);
   EXPECT_TRUE(robot.tour().is_over());
@@ -136,8 +136,8 @@ TEST(TunnelMission, LostForThirtySecondsItSaysThatItCannotTell) {
 }
 
 /// A goal at which the lining is scanned, and one from which a person drives on.
-std::vector<MarkedGoal> inspection_goals() {
-  std::vector<MarkedGoal> goals = two_goals();
+std::vector<SavedGoal> inspection_goals() {
+  std::vector<SavedGoal> goals = two_goals();
   goals[0].type = GoalType::kScan;
   goals[1].type = GoalType::kOperator;
   return goals;
@@ -177,16 +177,16 @@ TEST(TunnelMission, AtAGoalOfTypeRAPersonDrivesMarksAndHandsOverAgain) {
   Robot robot(TunnelMission({.navigations = 1}, inspection_goals(), true, true));
   robot.run(30.0);
   EXPECT_EQ(robot.count(EventKind::kTeleopRequested), 1);
-  EXPECT_EQ(robot.output.task.motion, Motion::kFollowRemote);
-  robot.run(10.0, RemoteCommand{.vx_mps = 0.5});
+  EXPECT_EQ(robot.output.task.motion, Motion::kTeleop);
+  robot.run(10.0, TeleopCommand{.vx_mps = 0.5});
   robot.inspection = InspectionFeedback::kUnderWay;
-  robot.run(10.0, RemoteCommand{.mark = true});
+  robot.run(10.0, TeleopCommand{.save_goal = true});
   EXPECT_EQ(robot.output.task.inspection.value().instrument, InstrumentKind::kWater);
   EXPECT_EQ(robot.output.task.inspection.value().station, "sounding_1");
   robot.inspection = InspectionFeedback::kDone;
-  robot.run(10.0, RemoteCommand{.vx_mps = 0.5});
-  EXPECT_EQ(robot.output.task.motion, Motion::kFollowRemote);
-  robot.run(60.0, RemoteCommand{.hand_over = true});
+  robot.run(10.0, TeleopCommand{.vx_mps = 0.5});
+  EXPECT_EQ(robot.output.task.motion, Motion::kTeleop);
+  robot.run(60.0, TeleopCommand{.hand_over = true});
   EXPECT_EQ(robot.count(EventKind::kGoalMarked), 0);
   EXPECT_EQ(robot.count(EventKind::kDocked), 1);
   EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
@@ -195,7 +195,7 @@ TEST(TunnelMission, AtAGoalOfTypeRAPersonDrivesMarksAndHandsOverAgain) {
 TEST(TunnelMission, NobodyComesFor120SecondsAndItGoesHomeByItselfWithoutCallingItDone) {
   Robot robot(TunnelMission({.navigations = 1}, inspection_goals(), true, true));
   robot.run(5.0 + 119.0);
-  EXPECT_EQ(robot.output.task.motion, Motion::kFollowRemote);
+  EXPECT_EQ(robot.output.task.motion, Motion::kTeleop);
   robot.run(30.0);
   EXPECT_EQ(robot.count(EventKind::kDocked), 1);
   EXPECT_EQ(robot.count(EventKind::kMissionFailed), 1);
@@ -204,7 +204,7 @@ TEST(TunnelMission, NobodyComesFor120SecondsAndItGoesHomeByItselfWithoutCallingI
 TEST(TunnelMission, MarksTakeTheTypesThatTheSettingsName) {
   Robot robot(TunnelMission({.navigations = 0, .docks = false, .mark_types = "DR"}, {}, true));
   robot.run(5.0);
-  for (int i = 0; i < 3; ++i) robot.run(0.5, RemoteCommand{.mark = true});
+  for (int i = 0; i < 3; ++i) robot.run(0.5, TeleopCommand{.save_goal = true});
   ASSERT_EQ(robot.tour().goals().size(), 3u);
   EXPECT_EQ(robot.tour().goals()[0].type, GoalType::kScan);
   EXPECT_EQ(robot.tour().goals()[1].type, GoalType::kOperator);

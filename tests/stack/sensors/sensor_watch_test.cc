@@ -21,17 +21,17 @@ LaserScan scan_at(Time stamp, float range_m) {
 /// Ten scans a second while the robot walks ahead at 1 m/s; [call] what was said.
 class WatchedWalk {
  public:
-  explicit WatchedWalk(const SensorWatchSettings& settings = {}) : watch(settings) {}
+  explicit WatchedWalk(const SensorMonitorSettings& settings = {}) : watch(settings) {}
 
   /// `hear` may be given a scan or none.
   void go_on(double seconds, const std::function<std::optional<LaserScan>(Time)>& scan) {
     for (const Time end = now + from_seconds(seconds); now < end; now += kPeriod) {
-      if (const auto heard = scan(now)) watch.hear(*heard, now);
+      if (const auto heard = scan(now)) watch.receive(*heard, now);
       for (const SensorChange& change : watch.step(now, {to_seconds(now), 0.0, 0.0}, command)) said.push_back(change.text);
     }
   }
 
-  SensorWatch watch;
+  SensorMonitor watch;
   VelocityCommand command{.stamp = {}, .vx_mps = 1.0};
   Time now = from_seconds(1.0);
   std::vector<std::string> said;
@@ -43,14 +43,14 @@ std::optional<LaserScan> nothing(Time) { return std::nullopt; }
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-TEST(SensorWatch, SaysNothingWhileAllIsWell) {
+TEST(SensorMonitor, SaysNothingWhileAllIsWell) {
   WatchedWalk walk;
   walk.go_on(5.0, fresh);
   EXPECT_THAT(walk.said, IsEmpty());
   EXPECT_TRUE(walk.watch.can_drive());
 }
 
-TEST(SensorWatch, HaltsSixTenthsOfASecondAfterTheLastScanAndGoesOnWithTheNext) {
+TEST(SensorMonitor, HaltsSixTenthsOfASecondAfterTheLastScanAndGoesOnWithTheNext) {
   WatchedWalk walk;
   walk.go_on(1.0, fresh);
   walk.go_on(0.6, nothing);
@@ -62,14 +62,14 @@ TEST(SensorWatch, HaltsSixTenthsOfASecondAfterTheLastScanAndGoesOnWithTheNext) {
   EXPECT_THAT(walk.said, ElementsAre("The lidar is silent or late.", "The lidar is back."));
 }
 
-TEST(SensorWatch, AScanThatComesASecondLateIsAsBadAsNone) {
+TEST(SensorMonitor, AScanThatComesASecondLateIsAsBadAsNone) {
   WatchedWalk walk;
   walk.go_on(1.0, fresh);
   walk.go_on(1.0, [](Time now) { return fresh(now - from_seconds(1.0)); });
   EXPECT_FALSE(walk.watch.can_drive());
 }
 
-TEST(SensorWatch, AStampOfTheFutureIsAWrongClock) {
+TEST(SensorMonitor, AStampOfTheFutureIsAWrongClock) {
   WatchedWalk walk;
   walk.go_on(1.0, fresh);
   walk.go_on(1.0, [](Time now) { return fresh(now + from_seconds(0.2)); });
@@ -77,7 +77,7 @@ TEST(SensorWatch, AStampOfTheFutureIsAWrongClock) {
   EXPECT_THAT(walk.said, ElementsAre("The lidar has a wrong clock."));
 }
 
-TEST(SensorWatch, TheSameScanAgainAndAgainIsFrozenOnceTheRobotHasMoved) {
+TEST(SensorMonitor, TheSameScanAgainAndAgainIsFrozenOnceTheRobotHasMoved) {
   WatchedWalk walk;
   walk.go_on(1.0, fresh);
   walk.go_on(0.5, [](Time now) { return scan_at(now, 3.0F); });
@@ -85,54 +85,54 @@ TEST(SensorWatch, TheSameScanAgainAndAgainIsFrozenOnceTheRobotHasMoved) {
   EXPECT_THAT(walk.said, ElementsAre("The lidar repeats itself."));
 }
 
-TEST(SensorWatch, AlikeScansOfARobotAtRestAreNoFault) {
-  SensorWatch watch{{}};
+TEST(SensorMonitor, AlikeScansOfARobotAtRestAreNoFault) {
+  SensorMonitor watch{{}};
   for (Time now = from_seconds(1.0); now < from_seconds(5.0); now += kPeriod) {
-    watch.hear(scan_at(now, 3.0F), now);
+    watch.receive(scan_at(now, 3.0F), now);
     EXPECT_THAT(watch.step(now, {1.0, 2.0, 0.3}, {}), IsEmpty());
   }
 }
 
-TEST(SensorWatch, AnEmptyFieldIsNoFault) {
+TEST(SensorMonitor, AnEmptyFieldIsNoFault) {
   WatchedWalk walk;
   walk.go_on(5.0, [](Time now) { return scan_at(now, std::numeric_limits<float>::infinity()); });
   EXPECT_TRUE(walk.watch.can_drive());
 }
 
-TEST(SensorWatch, ASilentImuIsSaidAndDoesNotHalt) {
+TEST(SensorMonitor, ASilentImuIsSaidAndDoesNotHalt) {
   WatchedWalk walk;
   Imu imu;
   imu.stamp = walk.now;
-  walk.watch.hear(imu, walk.now);
+  walk.watch.receive(imu, walk.now);
   walk.go_on(1.0, fresh);
   EXPECT_THAT(walk.said, ElementsAre("The imu is silent or late."));
   EXPECT_TRUE(walk.watch.can_drive());
 }
 
-TEST(SensorWatch, WhatComesFromTheFutureIsNotToBeUsed) {
-  SensorWatch watch{{}};
+TEST(SensorMonitor, WhatComesFromTheFutureIsNotToBeUsed) {
+  SensorMonitor watch{{}};
   const Time now = from_seconds(5.0);
   Imu imu;
   imu.stamp = now + from_seconds(0.04);
-  EXPECT_TRUE(watch.hear(imu, now));
+  EXPECT_TRUE(watch.receive(imu, now));
   imu.stamp = now + from_seconds(0.2);
-  EXPECT_FALSE(watch.hear(imu, now));
+  EXPECT_FALSE(watch.receive(imu, now));
   EXPECT_EQ(watch.step(now + from_seconds(0.3), {}, {}).front().text, "The imu has a wrong clock.");  // and stays so until the next message
   EXPECT_TRUE(watch.can_drive());
 }
 
-TEST(SensorWatch, ASensorWhoseFirstMessageCameFromTheFutureIsHeardLikeAnyOther) {
-  SensorWatch watch{{}};
+TEST(SensorMonitor, ASensorWhoseFirstMessageCameFromTheFutureIsHeardLikeAnyOther) {
+  SensorMonitor watch{{}};
   Imu imu;
   imu.stamp = from_seconds(1.0);
-  EXPECT_FALSE(watch.hear(imu, from_seconds(0.5)));
-  EXPECT_TRUE(watch.hear(imu, from_seconds(1.0)));
-  EXPECT_TRUE(watch.hear(imu, from_seconds(1.0)));
+  EXPECT_FALSE(watch.receive(imu, from_seconds(0.5)));
+  EXPECT_TRUE(watch.receive(imu, from_seconds(1.0)));
+  EXPECT_TRUE(watch.receive(imu, from_seconds(1.0)));
 }
 
 // Frozen encoders say that the robot stands, and odometry believes them: that it should move is known from the command alone.
-TEST(SensorWatch, EncodersThatRepeatThemselvesHaltTheRobotOnceItShouldHaveMoved) {
-  SensorWatch watch{{}};
+TEST(SensorMonitor, EncodersThatRepeatThemselvesHaltTheRobotOnceItShouldHaveMoved) {
+  SensorMonitor watch{{}};
   const auto go_on = [&](double vx_mps) {
     for (int i = 0; i < 10; ++i) {
       static Time now = from_seconds(1.0);
@@ -140,7 +140,7 @@ TEST(SensorWatch, EncodersThatRepeatThemselvesHaltTheRobotOnceItShouldHaveMoved)
       JointState joints;
       joints.stamp = now;
       joints.position_rad = {0.1, 0.2};
-      watch.hear(joints, now);
+      watch.receive(joints, now);
       watch.step(now, {}, {.stamp = {}, .vx_mps = vx_mps});
     }
   };
@@ -152,28 +152,28 @@ TEST(SensorWatch, EncodersThatRepeatThemselvesHaltTheRobotOnceItShouldHaveMoved)
   EXPECT_FALSE(watch.can_drive());  // it stands now, and they are frozen still
 }
 
-TEST(SensorWatch, ASlowSensorIsNotFrozenBetweenTwoMessages) {
+TEST(SensorMonitor, ASlowSensorIsNotFrozenBetweenTwoMessages) {
   WatchedWalk walk;
   GnssFix fix;
   walk.go_on(3.0, [&](Time now) {
-    if (now - fix.stamp >= from_seconds(0.5)) walk.watch.hear(fix = GnssFix{.stamp = now}, now);
+    if (now - fix.stamp >= from_seconds(0.5)) walk.watch.receive(fix = GnssFix{.stamp = now}, now);
     return fresh(now);
   });
   EXPECT_THAT(walk.said, IsEmpty());
 }
 
-TEST(SensorWatch, WhatWasNeverHeardOfIsNotMissed) {
-  SensorWatch watch{{}};
+TEST(SensorMonitor, WhatWasNeverHeardOfIsNotMissed) {
+  SensorMonitor watch{{}};
   EXPECT_THAT(watch.step(from_seconds(100.0), {}, {}), IsEmpty());
 }
 
-TEST(SensorWatch, GivesUpAfterAMinuteWithoutScans) {
+TEST(SensorMonitor, GivesUpAfterAMinuteWithoutScans) {
   WatchedWalk walk;
   walk.go_on(1.0, fresh);
   walk.go_on(60.0, nothing);
-  EXPECT_FALSE(walk.watch.has_given_up(walk.now));
+  EXPECT_FALSE(walk.watch.must_abort(walk.now));
   walk.go_on(1.0, nothing);
-  EXPECT_TRUE(walk.watch.has_given_up(walk.now));
+  EXPECT_TRUE(walk.watch.must_abort(walk.now));
 }
 
 }  // namespace
