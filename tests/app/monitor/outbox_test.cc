@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include <nlohmann/json.hpp>
 
 #include "app/run/run_directory.h"
@@ -75,6 +77,7 @@ TEST(Outbox, AHalfWrittenLastLineIsLeftOut) {
 
 TEST(Outbox, ARunDirectoryWhoseResultsWaitIsNotUsedAgain) {
   const TemporaryFolder folder;
+  std::ofstream(folder / "scenario.yaml") << "{}\n";  // an earlier run's
   Outbox outbox(folder.path());
   outbox.add(pose_result(0));
   EXPECT_THROW(begin_run_directory(folder.path()), InputError);

@@ -66,8 +66,9 @@ TEST(PlanGrid, CellsAreNoFinerThanTheMaps) {
   EXPECT_EQ(make_costs(map, setup.body, setup.settings.costmap).geometry().resolution_m, 0.4);
 }
 
+// Without inflation the distance field reaches 0.3 m beyond the outline, in whole cells of 0.1 m: 0.6 m here.
 TEST(PlanGrid, AnOutlineBeyondTheCostmapsReachIsRefused) {
-  const PlanSetup wide = setup_of(disc(9.9)), margins = setup_of(disc(0.2, {"costmap.inflation_radius_m=0.05", "costmap.safety_margin_m=0.4"}));
+  const PlanSetup wide = setup_of(disc(9.9)), margins = setup_of(disc(0.2, {"costmap.inflation_radius_m=0.05", "costmap.safety_margin_m=0.5"}));
   EXPECT_THROW(make_costs(one_post({0.0, 0.0}), wide.body, wide.settings.costmap), InputError);
   EXPECT_THROW(make_costs(one_post({0.0, 0.0}), margins.body, margins.settings.costmap), InputError);
 }
