@@ -14,7 +14,7 @@ constexpr Time kSpacing = std::chrono::milliseconds(500);
 std::optional<double> confidence_at(const std::vector<LocalizationConfidence>& confidences, Time stamp) {
   const auto found = std::ranges::lower_bound(confidences, stamp, {}, &LocalizationConfidence::stamp);
   if (found == confidences.end() || found->stamp != stamp) return std::nullopt;
-  return found->trust;
+  return found->confidence;
 }
 
 }  // namespace

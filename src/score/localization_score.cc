@@ -12,9 +12,9 @@ constexpr double kLowConfidence = 0.5;
 constexpr Time kStablePeriod = std::chrono::seconds(5);
 
 /// Newest confidence up to `stamp`, null before the first one.
-const LocalizationConfidence* confidence_at(const std::vector<LocalizationConfidence>& confidences, Time stamp) {
+const LocalizationConfidence* newest_confidence(const std::vector<LocalizationConfidence>& confidences, Time stamp) {
   const auto after = std::upper_bound(confidences.begin(), confidences.end(), stamp,
-                                      [](Time time, const LocalizationConfidence& trust) { return time < trust.stamp; });
+                                      [](Time time, const LocalizationConfidence& confidence) { return time < confidence.stamp; });
   return after == confidences.begin() ? nullptr : &*std::prev(after);
 }
 
@@ -23,13 +23,13 @@ const LocalizationConfidence* confidence_at(const std::vector<LocalizationConfid
 LocalizationScore localization_score(const std::vector<MatchedPose>& matched, const std::vector<LocalizationConfidence>& confidences) {
   LocalizationScore score;
   for (std::size_t i = 0; i < confidences.size(); ++i) {
-    score.min_confidence = std::min(score.min_confidence, confidences[i].trust);
-    if (confidences[i].trust < kLowConfidence && !score.low_confidence_at_s) score.low_confidence_at_s = to_seconds(confidences[i].stamp);
+    score.min_confidence = std::min(score.min_confidence, confidences[i].confidence);
+    if (confidences[i].confidence < kLowConfidence && !score.low_confidence_at_s) score.low_confidence_at_s = to_seconds(confidences[i].stamp);
     if (confidences[i].is_lost && i + 1 < confidences.size()) score.lost_s += to_seconds(confidences[i + 1].stamp - confidences[i].stamp);
   }
   for (const MatchedPose& pose : matched) {
-    const LocalizationConfidence* trust = confidence_at(confidences, pose.stamp);
-    if (trust == nullptr || trust->is_lost) continue;
+    const LocalizationConfidence* confidence = newest_confidence(confidences, pose.stamp);
+    if (confidence == nullptr || confidence->is_lost) continue;
     score.max_error_m = std::max(score.max_error_m, pose.position_error_m());
     if (pose.position_error_m() > kMaxAcceptedError_m && !score.error_exceeded_at_s) score.error_exceeded_at_s = to_seconds(pose.stamp);
   }
@@ -39,9 +39,9 @@ LocalizationScore localization_score(const std::vector<MatchedPose>& matched, co
 RelocalizationScore relocalization_score(Time kidnapped, const std::vector<MatchedPose>& matched,
                                          const std::vector<LocalizationConfidence>& confidences) {
   RelocalizationScore score{.at_s = to_seconds(kidnapped), .time_to_detect_s = {}, .relocalized_s = {}};
-  for (const LocalizationConfidence& trust : confidences) {
-    if (trust.stamp < kidnapped || !trust.is_lost) continue;
-    score.time_to_detect_s = to_seconds(trust.stamp - kidnapped);
+  for (const LocalizationConfidence& confidence : confidences) {
+    if (confidence.stamp < kidnapped || !confidence.is_lost) continue;
+    score.time_to_detect_s = to_seconds(confidence.stamp - kidnapped);
     break;
   }
   constexpr Time kNever = Time::max();
@@ -50,8 +50,8 @@ RelocalizationScore relocalization_score(Time kidnapped, const std::vector<Match
   for (const MatchedPose& pose : matched) {
     if (pose.stamp < kidnapped) continue;
     if (std::exchange(is_first, false)) score.displacement_m = pose.position_error_m();
-    const LocalizationConfidence* trust = confidence_at(confidences, pose.stamp);
-    const bool is_good = pose.position_error_m() < kMaxAcceptedError_m && trust != nullptr && !trust->is_lost;
+    const LocalizationConfidence* confidence = newest_confidence(confidences, pose.stamp);
+    const bool is_good = pose.position_error_m() < kMaxAcceptedError_m && confidence != nullptr && !confidence->is_lost;
     if (!is_good) good_since = kNever;
     if (is_good) good_since = std::min(good_since, pose.stamp);
     if (good_since != kNever && pose.stamp - good_since >= kStablePeriod) break;

@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 MatchedPose off_by(Time stamp, double error_m) { return {.stamp = stamp, .T_world_estimate = {error_m, 0.0, 0.0}, .T_world_truth = {}}; }
 
 LocalizationConfidence trust(Time stamp, double value, bool is_lost = false) {
-  return {.stamp = stamp, .trust = value, .is_lost = is_lost};
+  return {.stamp = stamp, .confidence = value, .is_lost = is_lost};
 }
 
 TEST(LocalizationScore, SaysWhenItDoubtedAndWhenItStrayed) {

@@ -85,7 +85,7 @@ TEST(EstimateScore, PlacesAGivenMapWhereTheSurveySays) {
 
 TEST(EstimateScore, ScoresLocalizationOnAKnownMapAndEachKidnap) {
   RunRecord record = perfect_run();
-  for (const StampedPose& pose : record.T_map_body) record.trusts.push_back({.stamp = pose.stamp, .trust = 0.9});
+  for (const StampedPose& pose : record.T_map_body) record.confidences.push_back({.stamp = pose.stamp, .confidence = 0.9});
   RunReferences references = wall_references();
   references.kidnaps = {1s, 2s};
   const EstimateScore score = estimate_score(record, references);

@@ -30,7 +30,7 @@ InspectionProgress WaterInstrument::step(const InspectionContext& context) {
   WaterResult result = estimate(context);
   report(context, result);
   context.output.publish(std::move(result));
-  return {.feedback = sounding_->num_left_out() == 0 ? InspectionFeedback::kDone : InspectionFeedback::kFailed};
+  return {.feedback = sounding_->num_skipped() == 0 ? InspectionFeedback::kDone : InspectionFeedback::kFailed};
 }
 
 WaterResult WaterInstrument::estimate(const InspectionContext& context) const {

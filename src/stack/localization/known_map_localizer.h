@@ -21,8 +21,8 @@ class KnownMapLocalizer final : public Localizer {
   bool is_mapping() const override { return false; }
   bool is_lost() const override { return confidence_.is_lost; }
   bool has_pose() const override { return confidence_.stamp > Time{} && !confidence_.is_lost; }
-  void start_at(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) override {
-    localizer_.start_at(T_map_body, covariance);
+  void set_initial_pose(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) override {
+    localizer_.set_initial_pose(T_map_body, covariance);
   }
   void start_global_localization() override { localizer_.start_global_localization(); }
 

@@ -35,7 +35,7 @@ class Localizer {
   /// Ends the mapping; the map is fixed from then on. Ignored by localizers that do not switch.
   virtual void finish_map(const PoseEstimate&) {}
   /// Restarts near a pose, or anywhere on the map. Ignored by localizers that make the map.
-  virtual void start_at(const Pose2& /*T_map_body*/, const Eigen::Matrix3d& /*covariance*/) {}
+  virtual void set_initial_pose(const Pose2& /*T_map_body*/, const Eigen::Matrix3d& /*covariance*/) {}
   virtual void start_global_localization() {}
 };
 

@@ -10,7 +10,7 @@ MapThenLocalize::MapThenLocalize(std::unique_ptr<Localizer> slam, LocalizerFacto
 void MapThenLocalize::finish_map(const PoseEstimate& pose) {
   if (!current_->is_mapping()) return;
   current_ = make_on_map_(current_->map());
-  current_->start_at(pose.T_map_body, pose.covariance);
+  current_->set_initial_pose(pose.T_map_body, pose.covariance);
 }
 
 }  // namespace patrol::stack

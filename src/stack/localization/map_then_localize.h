@@ -24,8 +24,8 @@ class MapThenLocalize final : public Localizer {
   bool is_lost() const override { return current_->is_lost(); }
   bool has_pose() const override { return current_->has_pose(); }
   void finish_map(const PoseEstimate& pose) override;
-  void start_at(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) override {
-    current_->start_at(T_map_body, covariance);
+  void set_initial_pose(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) override {
+    current_->set_initial_pose(T_map_body, covariance);
   }
   void start_global_localization() override { current_->start_global_localization(); }
 

@@ -67,7 +67,7 @@ void PosePipeline::publish_range_pose(const OdometryEstimate& odometry, const Po
   if (!range_pose_ || !range_pose_->has_anchors()) return;
   if (!range_pose_->has_started()) {
     if (!localizer_->has_pose()) return;
-    range_pose_->start_at(odometry, odometry_->height_above_ground_m(), pose.T_map_body,
+    range_pose_->set_initial_pose(odometry, odometry_->height_above_ground_m(), pose.T_map_body,
                           localizer_->is_mapping() ? surveyed_covariance() : pose.covariance);
   }
   const UwbPoseEstimate estimate = range_pose_->predict(odometry, odometry_->twist_std());
@@ -83,11 +83,11 @@ std::optional<StationPose> PosePipeline::station_pose_at(Time stamp) const {
 }
 
 void PosePipeline::restart_at(const Pose2& T_map_body, const OdometryEstimate& odometry) {
-  localizer_->start_at(T_map_body, surveyed_covariance());
+  localizer_->set_initial_pose(T_map_body, surveyed_covariance());
   tracker_ = localize::MapPoseTracker();
   tracker_.correct(odometry.stamp, to_pose2(odometry.T_odom_body), T_map_body, surveyed_covariance());
   if (range_pose_)
-    range_pose_->start_at(odometry, odometry_->height_above_ground_m(), T_map_body, surveyed_covariance());
+    range_pose_->set_initial_pose(odometry, odometry_->height_above_ground_m(), T_map_body, surveyed_covariance());
 }
 
 }  // namespace patrol::stack

@@ -55,7 +55,7 @@ class PosePipeline {
   void finish_map(const PoseEstimate& pose) { localizer_->finish_map(pose); }
   void start_global_localization() { localizer_->start_global_localization(); }
   /// Starts at the surveyed start, the origin of map, before the robot has moved.
-  void start_at_survey() { localizer_->start_at(Pose2{}, surveyed_covariance()); }
+  void start_at_survey() { localizer_->set_initial_pose(Pose2{}, surveyed_covariance()); }
   /// Restarts at a surveyed pose; every component discards its previous pose.
   void restart_at(const Pose2& T_map_body, const OdometryEstimate& odometry);
 

@@ -115,7 +115,7 @@ void TunnelMission::teleoperate(const MissionInput& input, MissionOutput& output
     output.events.push_back(event(EventKind::kGoalMarked, goal_name(), fmt::format("Marked {}.", goal_name())));
   }
   const bool is_off = now_ - last_teleop_ > from_seconds(settings_.remote_silence_s);
-  if (!is_off && !(input.teleop && input.teleop->await_teleop)) return;
+  if (!is_off && !(input.teleop && input.teleop->hand_over)) return;
   output.is_map_complete = true;
   output.events.push_back(event(EventKind::kMappingCompleted, "", fmt::format("The map is made; {} goals are marked.", goals_.size())));
   end_run(output);
@@ -164,7 +164,7 @@ void TunnelMission::await_teleop(const MissionInput& input, MissionOutput& outpu
     ++num_soundings_;
     return enter(Phase::kSounding);
   }
-  const bool is_over = input.teleop && input.teleop->await_teleop;
+  const bool is_over = input.teleop && input.teleop->hand_over;
   if (!is_over && now_ - last_teleop_ <= from_seconds(settings_.driver_patience_s)) return;
   if (!is_over) ++num_failed_;
   output.events.push_back(event(EventKind::kTeleopEnded, goal_name(), is_over ? "The robot goes on by itself." : "Nobody drives: the robot goes on by itself."));
