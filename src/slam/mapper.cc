@@ -50,7 +50,7 @@ constexpr std::array kMethods = std::to_array<MappingMethod>({
      [](const MapperSettings& settings, const BoostedStumps&, std::uint64_t seed) -> std::unique_ptr<Mapper> {
        return std::make_unique<MapperAdapter<ScanOdometryRbpf>>(settings.rbpf, seed);
      }},
-    {"submap_rbpf", "Submaps of such a filter, connected by classified neighbors (paper 002)",
+    {"submap_rbpf", "Submaps of such a filter, connected by classified neighbors ([Yu23])",
      [](const MapperSettings& settings, const BoostedStumps& neighbors, std::uint64_t seed) -> std::unique_ptr<Mapper> {
        return std::make_unique<MapperAdapter<SubmapRbpf>>(settings.submap_rbpf, neighbors, seed);
      },

@@ -29,10 +29,10 @@ constexpr std::array kOptimizers = std::to_array<OptimizerRow>({
      [](const Settings& s) -> Optimizer {
        return std::make_shared<FireflyOptimizer>(FireflySettings{.iterations = s.optimizer_iterations, .absorption = s.firefly_absorption});
      }},
-    {"ifa", "Improved firefly algorithm of paper 001, with its stepwise resampling", "stepwise", make_improved_firefly},
+    {"ifa", "Improved firefly algorithm of [Cui21], with its stepwise resampling", "stepwise", make_improved_firefly},
     {"scso", "Sand cat swarm optimization", "systematic",
      [](const Settings& s) -> Optimizer { return std::make_shared<SandCatOptimizer>(s.optimizer_iterations, false); }},
-    {"iscso", "Improved sand cat swarm optimization of paper 000, with its low-weight optimization", "low_weight",
+    {"iscso", "Improved sand cat swarm optimization of [Wu25], with its low-weight optimization", "low_weight",
      [](const Settings& s) -> Optimizer { return std::make_shared<SandCatOptimizer>(s.optimizer_iterations, true); }},
 });
 
@@ -40,8 +40,8 @@ constexpr std::array kResamplers = std::to_array<ResamplerRow>({
     {"multinomial", "One independent draw for each new particle", resample_multinomial},
     {"systematic", "One draw for all new particles, at equal steps of the cumulative weight", resample_systematic},
     {"residual", "Integer parts of the expected counts for certain, the rest drawn", resample_residual},
-    {"low_weight", "Low-weight optimization of paper 000; biased", optimize_low_weights},
-    {"stepwise", "Stepwise resampling of paper 001; biased",
+    {"low_weight", "Low-weight optimization of [Wu25]; biased", optimize_low_weights},
+    {"stepwise", "Stepwise resampling of [Cui21]; biased",
      [](const std::vector<double>& weights, RandomSequence& random) { return resample_stepwise(weights, random); }},
 });
 

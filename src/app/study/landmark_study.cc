@@ -136,7 +136,7 @@ void add_references(int particles, std::vector<LandmarkMethod>& methods) {
 }
 
 const char* const kGardenConditions =
-    "Paper 000 states speed (0.5 m/s), time step (0.1 s), range (10 m) and the sensor's noise (0.5 m; \"5 rad\" can only be 5 degrees), but neither layout nor odometry's errors. "
+    "[Wu25] states speed (0.5 m/s), time step (0.1 s), range (10 m) and the sensor's noise (0.5 m; \"5 rad\" can only be 5 degrees), but neither layout nor odometry's errors. "
     "Here: one lap of about 7 m radius, 24 landmarks in turn 2 m inside and outside of the way, seen all round; every method knows the start and is told the stated noise. "
     "M: odometry errs by 0.2 m/s and 10 deg/s. S5: by 0.1 m/s and 5 deg/s, and lastingly by 2 deg/s, of which no method is told. S3: the same with 3 deg/s. "
     "NEES: squared error of the position over the covariance that the method claims; 2 is right, more is overconfidence. Batch least squares has all of the run at once.";
@@ -159,7 +159,7 @@ Study circle_study() {
                                {{"FastSLAM", 100}, {0.3773, 0.4276}}, {{"WOA", 100}, {0.2127, 0.2205}}, {{"SCSO", 100}, {0.1916, 0.2103}}, {{"ISCSO", 100}, {0.1764, 0.1691}}};
   return landmark_study({.name = "landmarks-circle",
                          .title = "FastSLAM and its swarms on a round course",
-                         .source = "paper 000, table 1 and figures 2 to 4 (20 runs there)",
+                         .source = "[Wu25], table 1 and figures 2 to 4 (20 runs there)",
                          .conditions = kGardenConditions,
                          .default_seeds = 200,
                          .compared_with = "FastSLAM"},
@@ -174,7 +174,7 @@ Study noncircular_study() {
   }
   return landmark_study({.name = "landmarks-noncircular",
                          .title = "FastSLAM and its swarms on a course that is not round",
-                         .source = "paper 000, figures 5 to 7 (20 particles; no table)",
+                         .source = "[Wu25], figures 5 to 7 (20 particles; no table)",
                          .conditions = kGardenConditions,
                          .default_seeds = 50,
                          .compared_with = "FastSLAM"},
@@ -200,7 +200,7 @@ Study campus_study() {
   }
   return landmark_study({.name = "landmarks-100x80",
                          .title = "FastSLAM and its swarms, driving round a campus",
-                         .source = "paper 001, table 3 and figures 5 to 7 (20 runs there)",
+                         .source = "[Cui21], table 3 and figures 5 to 7 (20 runs there)",
                          .conditions = "The paper states 100 m x 80 m, 15 waypoints, 31 landmarks, 3 m/s, 8000 steps of 0.025 s, the errors of range (0.3 m), speed (0.5 m/s) and steering "
                                        "(5 degrees), but neither layout, particles, the bearing's error nor the sensor's reach. Here: 20 particles; bearings err by 1 degree; landmarks are seen "
                                        "in the front half up to 30 m, at every eighth step. Matched: odometry errs as the methods are told. Biased: besides, it says 0.3 m/s and 2 degrees "

@@ -49,7 +49,7 @@ struct PlannerMethod {
 /// Methods; all others are compared with the first. The last two are lower bounds, over eight neighbors and over all
 /// paths.
 constexpr std::array<PlannerMethod, 9> kPlannerMethods = {{{"improved ants (ours)", "ant_colony", true, SeriesColor::kEstimate},
-                                                    {"paper 003's ants", "ant_colony", true, SeriesColor::kEvent, false},
+                                                    {"ants of [Li22]", "ant_colony", true, SeriesColor::kEvent, false},
                                                     {"plain ants", "plain_ant_colony", true, SeriesColor::kOdometry},
                                                     {"two swarms", "two_swarms", true, SeriesColor::kRanges},
                                                     {"Q-learning", "q_learning", true, SeriesColor::kAlarm},
@@ -180,8 +180,8 @@ std::vector<render::Section> illustrate_planners(const std::vector<PlannerWorld>
 Study planner_study() {
   std::vector<PlannerWorld> worlds = planner_worlds();
   Study study{.name = "planners",
-              .title = "Planners of routes: paper 003's ants and the others",
-              .source = "paper 003, figures 1 to 4, which carry no numbers that can be read",
+              .title = "Planners of routes: ants of [Li22] and the others",
+              .source = "[Li22], figures 1 to 4, which carry no numbers that can be read",
               .conditions = "Every seed draws each grid anew, or the ends on a world's map (its surfaces at the lidar's height in cells of 0.2 m, inflated by its robot's footprint). "
                             "Eight neighbours, no corner cut; lengths in cells. Ants: 80 in 200 iterations; swarms: two of 40 in 200; Q-learning: 5000 episodes; none beyond 50 million "
                             "steps. The improved ants are the paper's, whose routes are pulled tight before they count (ours). Over any-angle: than the shortest way there is, which touches corners. Default settings throughout, chosen on generated grids of other seeds. A planner that is improved later and one that is done at once both need few iterations to "

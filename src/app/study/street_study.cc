@@ -101,7 +101,7 @@ std::vector<render::Section> illustrate_street(std::uint64_t seed) {
 Study street_study() {
   Study study{.name = "street-map",
               .title = "The street, mapped with one proposal or another",
-              .source = "paper 000, table 2",
+              .source = "[Wu25], table 2",
               .conditions = "Each seed is one patrol in the twin (worlds/street/scenarios/patrol.yaml); its log is then mapped by every method, so that all hear the same. The paper's figures "
                             "are of its own street, quadruped and lidar, and of one walk. box 1, box 2, well 3: how far the built map has the place from where it is.",
               .default_seeds = 5,

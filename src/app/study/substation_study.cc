@@ -142,7 +142,7 @@ std::vector<render::Section> illustrate_row(std::uint64_t seed) {
 Study substation_study() {
   Study study{.name = "substation",
               .title = "The substation, mapped from the same logs by three methods",
-              .source = "paper 002, tables 1 and 2, figure 6",
+              .source = "[Yu23], tables 1 and 2, figure 6",
               .conditions = "Each seed is one patrol of 923 m in the twin (worlds/substation/scenarios/mapping.yaml, the paper's lidar); its log is then mapped by every method with its default "
                             "settings. What the plain filter makes of it differs tenfold from seed to seed: so factors, that is logarithms, are compared too. Distances are from every occupied cell of the built map to the nearest surface of the true one, map and world joined at the start. The paper's figures "
                             "are of its own substation, robot and machine, and of one drive of 964 m; its memory is the program's, ours the heap's. Closures are right within 0.3 m and 0.05 rad; "

@@ -30,7 +30,7 @@ bool is_same_position(const ScanView& source, const ScanView& target_map, const 
   const Pose3 T_source_map = fine.T_map_scanner.inverse();
   const AxialOverlap there = axial_overlap(source, target_map, fine.T_map_scanner, T_source_map.rotation * axis_map);
   const AxialOverlap back = axial_overlap(target_map, source, T_source_map, axis_map);
-  return std::max(there.inlier_ratio(), back.inlier_ratio()) >= settings.min_grip_share;
+  return std::max(there.ratio(), back.ratio()) >= settings.min_grip_share;
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ using LocalPlannerFactory = NamedFactory<std::unique_ptr<LocalPlanner>(const Nav
 constexpr std::array kLocalPlanners = std::to_array<LocalPlannerFactory>({
     {"dwa", "Dynamic window approach over forward simulated arcs",
      [](const NavigatorSettings& settings) -> std::unique_ptr<LocalPlanner> { return std::make_unique<DynamicWindow>(settings.local); }},
-    {"paper_dwa", "Dynamic window approach of paper 004, as printed",
+    {"paper_dwa", "Dynamic window approach of [Liu21], as printed",
      [](const NavigatorSettings& settings) -> std::unique_ptr<LocalPlanner> { return std::make_unique<PaperDwa>(settings.paper_local); }},
 });
 

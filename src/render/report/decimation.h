@@ -12,7 +12,7 @@ namespace patrol::render {
 /// returned unchanged.
 std::vector<Eigen::Vector2d> decimate(const std::vector<Eigen::Vector2d>& curve, std::size_t num_segments);
 
-/// Reduces a path to the points needed to stay within `tolerance` of all points [Ramer72; Douglas73].
+/// Reduces a path to the points needed to stay within `tolerance` of all points [Ramer72], [Douglas73].
 std::vector<Eigen::Vector2d> simplify_path(const std::vector<Eigen::Vector2d>& path, double tolerance);
 
 }  // namespace patrol::render

@@ -11,7 +11,7 @@
 #include "slam/univariate/quasi_filter.h"
 #include "tests/slam/univariate/growth_runs.h"
 
-/// The exact filter bounds all that see observations alone. What is significantly better has seen more than that, as the figures of paper 001,
+/// The exact filter bounds all that see observations alone. What is significantly better has seen more than that, as the figures of [Cui21],
 /// table 1, must have.
 namespace patrol::slam::growth_bound_test {
 namespace {
