@@ -37,8 +37,6 @@ GROUND_TRUTH = "core/ground_truth.h"
 
 # Folders that still include each other in a cycle. Entries may only shrink; one that holds no cycle any more must go.
 KNOWN_CYCLES = (
-    {"app", "app/batch", "app/mapping", "app/monitor", "app/plan", "app/report", "app/run", "app/scoring", "app/study",
-     "app/sweep", "app/test"},
     {"render", "render/film"},
     {"sim", "sim/sensors"},
     {"slam", "slam/graph", "slam/submaps"},
@@ -191,7 +189,7 @@ class PlantedViolations(unittest.TestCase):
         self.assert_caught(("arrow",), "core/frames.h", '#include "slam/submaps/ndt.h"\n')
         self.assert_caught(("arrow",), "slam/grid.cc", '# include "plan/costs.h"\n')
         self.assert_caught(("arrow",), "inspect/grid.cc", '#include "stack/robot_stack.h"\n')
-        self.assert_caught(("arrow",), "stack/tour.cc", '#include "app/scenario.h"\n')
+        self.assert_caught(("arrow",), "stack/tour.cc", '#include "app/scenario/scenario.h"\n')
 
     def test_the_simulator_in_the_robots_software_and_the_evaluation(self):
         for folder in BLIND:

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "app/process_cost.h"
-#include "app/progress_bar.h"
+#include "app/common/process_cost.h"
+#include "app/common/progress_bar.h"
 #include "io/scan_log.h"
 
 namespace patrol::app {

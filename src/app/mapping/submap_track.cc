@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "app/run/run_directory.h"
+#include "app/record/run_directory.h"
 #include "core/error.h"
 #include "core/trajectory.h"
 #include "io/scan_log.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "app/progress_bar.h"
+#include "app/common/progress_bar.h"
 #include "core/time.h"
 #include "slam/planar_scan.h"
 #include "slam/submaps/submap_rbpf.h"

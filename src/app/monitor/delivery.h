@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "app/monitor/outbox.h"
+#include "app/record/outbox.h"
 #include "monitor/url.h"
 
 namespace patrol::app {

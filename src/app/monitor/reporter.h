@@ -7,7 +7,7 @@
 #include <string>
 
 #include "app/monitor/delivery.h"
-#include "app/monitor/outbox.h"
+#include "app/record/outbox.h"
 #include "app/run/run_loop.h"
 
 namespace patrol::app {

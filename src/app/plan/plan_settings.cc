@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/scenario.h"
+#include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "io/settings_yaml.h"
 #include "io/urdf.h"

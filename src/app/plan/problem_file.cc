@@ -9,8 +9,8 @@
 #include "app/plan/plan_grid.h"
 #include "app/plan/route_check.h"
 #include "app/plan/route_figures.h"
-#include "app/process_cost.h"
-#include "app/progress_bar.h"
+#include "app/common/process_cost.h"
+#include "app/common/progress_bar.h"
 #include "core/error.h"
 
 namespace patrol::app {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "app/plan/plan_grid.h"
-#include "app/process_cost.h"
+#include "app/common/process_cost.h"
 #include "plan/routes/any_angle_optimum.h"
 #include "plan/routes/grid_search.h"
 #include "plan/routes/line_of_sight.h"

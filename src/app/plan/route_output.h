@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/output_directory.h"
+#include "app/common/output_directory.h"
 #include "app/plan/plan_map.h"
 #include "app/plan/plan_settings.h"
 #include "app/plan/route_figures.h"

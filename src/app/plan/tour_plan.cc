@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "app/plan/route_figures.h"
-#include "app/process_cost.h"
-#include "app/progress_bar.h"
+#include "app/common/process_cost.h"
+#include "app/common/progress_bar.h"
 
 namespace patrol::app {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/sweep/budget.h"
+#include "app/campaign/sweep/budget.h"
 #include "render/report/blocks.h"
 
 namespace patrol::app {

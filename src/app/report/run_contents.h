@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "app/run/run_directory.h"
-#include "app/run/run_record.h"
-#include "app/scenario.h"
+#include "app/record/run_directory.h"
+#include "app/record/run_record.h"
+#include "app/scenario/scenario.h"
 #include "io/junit.h"
 #include "io/metrics_json.h"
 

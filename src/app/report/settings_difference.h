@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "app/scenario.h"
+#include "app/scenario/scenario.h"
 
 namespace patrol::app {
 

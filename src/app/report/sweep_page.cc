@@ -6,7 +6,7 @@
 
 #include "app/report/budget_blocks.h"
 #include "app/report/comparison_blocks.h"
-#include "app/sweep/fault_outcomes.h"
+#include "app/campaign/sweep/fault_outcomes.h"
 
 namespace patrol::app {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/sweep/comparison.h"
+#include "app/campaign/sweep/comparison.h"
 #include "render/report/blocks.h"
 
 namespace patrol::app {

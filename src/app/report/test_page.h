@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "app/test/tested_scenario.h"
+#include "app/campaign/test/tested_scenario.h"
 #include "render/report/blocks.h"
 
 namespace patrol::app {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/run/run_verdict.h"
-#include "app/scenario.h"
+#include "app/scenario/scenario.h"
 #include "io/junit.h"
 
 namespace patrol::app {

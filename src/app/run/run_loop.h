@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/scenario.h"
+#include "app/scenario/scenario.h"
 #include "core/time.h"
 #include "stack/stack.h"
 

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
-#include "app/output_directory.h"
-#include "app/process_cost.h"
-#include "app/run/run_directory.h"
+#include "app/common/output_directory.h"
+#include "app/common/process_cost.h"
+#include "app/record/run_directory.h"
 #include "app/run/run_junit.h"
 #include "app/scoring/score_json.h"
 #include "app/scoring/score_run.h"

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/exit_code.h"
+#include "app/common/exit_code.h"
 #include "app/run/run_loop.h"
 #include "app/scoring/expectations.h"
 #include "core/named_table.h"

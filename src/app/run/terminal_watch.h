@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "app/progress_bar.h"
+#include "app/common/progress_bar.h"
 #include "app/run/run_loop.h"
 #include "app/run/watch_frame.h"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "app/scenario.h"
+#include "app/scenario/scenario.h"
 #include "core/grid.h"
 #include "score/localizability.h"
 

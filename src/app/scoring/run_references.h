@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/scenario.h"
+#include "app/scenario/scenario.h"
 #include "app/scoring/true_map.h"
 #include "score/run_score.h"
 

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "app/run/run_record.h"
-#include "app/scenario.h"
+#include "app/record/run_record.h"
+#include "app/scenario/scenario.h"
 #include "io/station_scans.h"
 
 namespace patrol::app {

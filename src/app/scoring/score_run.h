@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "app/run/run_directory.h"
-#include "app/run/run_record.h"
-#include "app/scenario.h"
+#include "app/record/run_directory.h"
+#include "app/record/run_record.h"
+#include "app/scenario/scenario.h"
 #include "app/scoring/true_map.h"
 #include "core/grid.h"
 #include "core/trajectory.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/run/run_record.h"
-#include "app/scenario.h"
+#include "app/record/run_record.h"
+#include "app/scenario/scenario.h"
 #include "score/visibility.h"
 #include "sim/mujoco.h"
 

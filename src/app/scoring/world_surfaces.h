@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/scenario.h"
+#include "app/scenario/scenario.h"
 #include "core/grid.h"
 #include "sim/mujoco.h"
 

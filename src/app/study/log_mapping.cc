@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "app/mapping/neighbour_model.h"
-#include "app/process_cost.h"
-#include "app/scenario.h"
+#include "app/scenario/neighbor_model.h"
+#include "app/common/process_cost.h"
+#include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "core/thread_clock.h"
 #include "io/scan_log.h"

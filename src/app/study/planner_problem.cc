@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/scenario.h"
+#include "app/scenario/scenario.h"
 #include "app/scoring/world_surfaces.h"
 #include "core/error.h"
 #include "core/random.h"

@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "app/process_cost.h"
+#include "app/common/process_cost.h"
 #include "app/study/log_mapper.h"
 #include "app/study/study_run.h"
-#include "app/temporary_folder.h"
+#include "app/common/temporary_folder.h"
 #include "score/map_error.h"
 #include "score/station_error.h"
 #include "score/trajectory_error.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "app/run/run_directory.h"
+#include "app/record/run_directory.h"
 #include "app/run/run_once.h"
 #include "render/report/map_picture.h"
 #include "score/map_error.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "app/run/run_record.h"
-#include "app/scenario.h"
+#include "app/record/run_record.h"
+#include "app/scenario/scenario.h"
 #include "app/scoring/true_map.h"
 #include "core/grid.h"
 #include "render/report/blocks.h"

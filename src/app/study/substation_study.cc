@@ -8,7 +8,7 @@
 #include "app/report/boxes.h"
 #include "app/study/log_mapping.h"
 #include "app/study/study_run.h"
-#include "app/temporary_folder.h"
+#include "app/common/temporary_folder.h"
 #include "score/map_error.h"
 #include "score/trajectory_error.h"
 

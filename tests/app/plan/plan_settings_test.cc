@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "app/scenario.h"
+#include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "plan/routes/global_planner.h"
 

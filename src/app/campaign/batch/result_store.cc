@@ -1,0 +1,30 @@
+#include "app/campaign/batch/result_store.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/atomic_file.h"
+
+namespace patrol::app {
+
+std::optional<RunVerdict> ResultStore::load(const std::string& address) const {
+  if (!has(address)) return std::nullopt;
+  const io::Metrics json = io::load_metrics(file(address));
+  try {
+    return verdict_from_json(json);
+  } catch (const std::exception& error) {
+    throw InputError(fmt::format("{}: is not a run's result: {}", file(address).string(), error.what()));
+  }
+}
+
+void ResultStore::save(const std::string& address, const RunVerdict& verdict) const {
+  std::filesystem::create_directories(folder_);
+  io::save_metrics(file(address), to_json(verdict));
+}
+
+void ResultStore::copy(const std::string& address, const ResultStore& from) const {
+  std::filesystem::create_directories(folder_);
+  io::save_text(file(address), io::load_text(from.file(address)));
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,134 @@
+#include "app/campaign/batch/run_batch.h"
+
+#include <cmath>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/campaign/batch/work_folder.h"
+#include "app/common/progress_bar.h"
+#include "app/run/run_once.h"
+#include "core/error.h"
+
+namespace patrol::app {
+namespace {
+
+RunVerdict verdict_of_run(const BatchRun& run, const std::filesystem::path& work) {
+  try {
+    const Scenario scenario = load_scenario(run.scenario, run.overrides);
+    Unobserved nobody;
+    return run_once(scenario, run.scenario.stem().string(), find_data_root(run.scenario), work, nobody).value();
+  } catch (const InputError& error) {
+    return {.end = RunStatus::kWrongInput, .message = error.what(), .metrics = {}, .checks = {}, .events = {}};
+  } catch (const std::exception& error) {
+    return {.end = RunStatus::kFailed, .message = error.what(), .metrics = {}, .checks = {}, .events = {}};
+  }
+}
+
+/// Verdict on a run whose process died without one.
+RunVerdict verdict_of_death(const TaskEnd& end, double limit_s) {
+  if (end.is_over_time) {
+    return {.end = RunStatus::kWallTimeLimit, .message = fmt::format("after {:g} s", limit_s), .metrics = {}, .checks = {}, .events = {}};
+  }
+  const std::string how = end.signal != 0 ? fmt::format("signal {} ({})", end.signal, ::strsignal(end.signal))
+                                          : fmt::format("exit status {}", end.exit_code);
+  return {.end = RunStatus::kCrashed,
+          .message = end.last_words.empty() ? how : how + ": " + end.last_words,
+          .metrics = {},
+          .checks = {},
+          .events = {}};
+}
+
+class Batch {
+ public:
+  Batch(const std::vector<BatchRun>& runs, const BatchSettings& settings, const std::filesystem::path& root)
+      : runs_(runs), settings_(settings), work_(root), store_(runs_folder(root)) {
+    for (std::size_t i = 0; i < runs.size(); ++i) waiting_.push_back(i);
+  }
+
+  bool run() {
+    while (!waiting_.empty()) {
+      const std::vector<std::size_t> round = std::exchange(waiting_, {});
+      const bool is_through = run_in_processes(
+          round.size(), settings_.pool, [&](std::size_t i) { return live(runs_[round[i]]); },
+          [&](const TaskEnd& end) { handle(round[end.task], end); },
+          [&] {
+            show();
+            return !interrupt_.is_interrupted();
+          });
+      if (!is_through) return false;
+    }
+    return true;
+  }
+
+ private:
+  /// Executes a run in the child process.
+  int live(const BatchRun& run) const {
+    const std::filesystem::path work = work_.of(run.address);
+    RunVerdict verdict = verdict_of_run(run, work);
+    std::string& message = verdict.message;  // must not depend on the work folder
+    for (std::size_t at; (at = message.find(work.string())) != std::string::npos;) message.replace(at, work.string().size(), "RUN");
+    keep_or_remove(run.address, verdict.code());
+    store_.save(run.address, verdict);
+    return static_cast<int>(verdict.code());
+  }
+
+  void handle(std::size_t i, const TaskEnd& end) {
+    const BatchRun& run = runs_[i];
+    const bool is_killed_from_outside = end.signal == SIGKILL && !end.is_over_time;
+    if (is_killed_from_outside && killed_once_.insert(i).second) {
+      waiting_.push_back(i);
+      return;
+    }
+    if (!store_.has(run.address)) {
+      store_.save(run.address, verdict_of_death(end, settings_.pool.limit_s));
+      keep_or_remove(run.address, ExitCode::kProgramFailed);
+    }
+    const RunVerdict verdict = store_.load(run.address).value();
+    ++num_done_;
+    if (verdict.code() == ExitCode::kDone) return;
+    ++num_not_fine_;
+    bar_.say(fmt::format("{}: {}: {}", run.label, name_of(verdict.end), verdict.message));
+  }
+
+  void keep_or_remove(const std::string& address, ExitCode code) const {
+    const bool stays = settings_.keep == KeepRuns::kAll || (settings_.keep == KeepRuns::kFailed && code != ExitCode::kDone);
+    std::error_code ignored;
+    if (stays) {
+      std::filesystem::create_directories(store_.folder(), ignored);
+      std::filesystem::remove_all(store_.folder() / address, ignored);
+      std::filesystem::rename(work_.of(address), store_.folder() / address, ignored);
+    }
+    std::filesystem::remove_all(work_.of(address), ignored);
+  }
+
+  void show() {
+    const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    const double left_s = num_done_ == 0 ? 0.0 : elapsed_s / static_cast<double>(num_done_) * static_cast<double>(runs_.size() - num_done_);
+    bar_.show(fmt::format("{} of {} runs, {} not as expected{}", num_done_, runs_.size(), num_not_fine_,
+                          num_done_ == 0 ? "" : fmt::format(", about {:.0f} min left", std::ceil(left_s / 60.0))));
+  }
+
+  const std::vector<BatchRun>& runs_;
+  BatchSettings settings_;
+  WorkFolder work_;
+  ResultStore store_;
+  std::vector<std::size_t> waiting_;
+  std::set<std::size_t> killed_once_;
+  std::size_t num_done_ = 0, num_not_fine_ = 0;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  ProgressBar bar_;
+  InterruptGuard interrupt_;
+};
+
+}  // namespace
+
+bool run_batch(const std::vector<BatchRun>& runs, const BatchSettings& settings, const std::filesystem::path& root) {
+  return Batch(runs, settings, root).run();
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/campaign/sweep/sweep_rows.h"
+#include "io/table.h"
+#include "score/statistics.h"
+
+namespace patrol::app {
+
+/// Contribution of one error source to a metric.
+struct BudgetShare {
+  std::string name;
+  std::size_t num_pairs = 0;               ///< seeds for which the metric exists with and without the error source
+  std::optional<score::Interval> share;    ///< baseline minus metric without this error source; 95 %, paired by seed
+};
+
+/// Error budget of one metric. The manifest's first variant is the scenario as it is (baseline), the last one has every
+/// error source removed, the others one each.
+struct Budget {
+  std::string metric;
+  std::optional<score::Interval> as_it_is;
+  std::optional<score::Interval> ideal;        ///< with every error source removed
+  std::vector<BudgetShare> shares;             ///< largest first
+  std::optional<score::Interval> sum;          ///< sum of the contributions
+  std::optional<score::Interval> interaction;  ///< effect of removing all together minus the sum of the contributions
+};
+
+/// Error budgets of all metrics of the manifest.
+std::vector<Budget> make_budgets(const SweepManifest& manifest, const SweepRows& rows);
+Budget make_budget(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric);
+
+/// Waterfall chart as text: from the baseline, contribution by contribution, to the ideal value.
+std::string budget_text(const Budget& budget);
+
+/// Table of all budgets: one row per contribution, and rows "as it is", "sum", "interaction", "all ideal".
+io::Table budget_table(const std::vector<Budget>& budgets);
+
+}  // namespace patrol::app

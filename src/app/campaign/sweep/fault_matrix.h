@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/scenario/scenario.h"
+#include "sim/sensors/fault.h"
+
+namespace patrol::app {
+
+/// Faults of every kind for every registered sensor that the scenario uses, from `start_s` on for `duration_s`. The
+/// magnitudes of drift and spikes are in the registry (SensorInfo::fault), the others in fault_matrix.cc.
+std::vector<sim::FaultSettings> fault_matrix(const Scenario& scenario, const ScenarioFiles& files, double start_s, double duration_s);
+
+/// Name of a fault's variant: "lidar: drift".
+std::string variant_name(const sim::FaultSettings& fault);
+
+/// Fault that a variant's name describes.
+struct FaultVariant {
+  std::string sensor;  ///< sensor, or the whole name of the variant without a fault
+  std::string kind;    ///< empty without a fault
+};
+
+FaultVariant fault_of(const std::string& variant_name);
+
+/// Override that sets the fault: "faults=[{...}]".
+std::string fault_override(const sim::FaultSettings& fault);
+
+}  // namespace patrol::app

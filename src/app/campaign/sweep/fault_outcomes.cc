@@ -1,0 +1,76 @@
+#include "app/campaign/sweep/fault_outcomes.h"
+
+#include <array>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace patrol::app {
+namespace {
+
+/// Whether the single declared fault of a run was executed; none without a fault.
+std::optional<bool> was_triggered(const RunVerdict& verdict) {
+  if (verdict.events.empty()) return std::nullopt;
+  return verdict.events.front().was_triggered;
+}
+
+}  // namespace
+
+FaultOutcome outcome_of(const RunVerdict& verdict) {
+  const auto completed = io::metric_at(verdict.metrics, "mission.completed");
+  if (!completed) return FaultOutcome::kNoResult;
+  if (verdict.end == RunStatus::kFall || io::metric_at(verdict.metrics, "mission.collisions").value_or(0.0) > 0.0) return FaultOutcome::kUnsafe;
+  if (*completed == 0.0) return FaultOutcome::kStopped;
+  return verdict.code() == ExitCode::kDone ? FaultOutcome::kSurvived : FaultOutcome::kDegraded;
+}
+
+std::string_view text_of(FaultOutcome outcome) { return row_of(kFaultOutcomes, outcome).name; }
+
+std::vector<FaultRow> fault_rows(const SweepManifest& manifest, const SweepRows& rows) {
+  std::vector<FaultRow> faults;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const PlannedRun& run = manifest.runs[i];
+    const RunVerdict& verdict = *rows[i];
+    FaultRow& row = faults.emplace_back(FaultRow{.name = manifest.variants[run.variant].name,
+                                                 .fault = fault_of(manifest.variants[run.variant].name),
+                                                 .seed = run.seed,
+                                                 .was_triggered = was_triggered(verdict),
+                                                 .outcome = outcome_of(verdict),
+                                                 .num_noticed = io::metric_at(verdict.metrics, "mission.sensor_faults_noticed"),
+                                                 .end = std::string(name_of(verdict.end)),
+                                                 .message = verdict.message,
+                                                 .figures = {},
+                                                 .without = {}});
+    for (const std::string& metric : manifest.metrics) {
+      row.figures.push_back(io::metric_at(verdict.metrics, metric));
+      row.without.push_back(io::metric_at(rows[i - run.variant]->metrics, metric));
+    }
+  }
+  return faults;
+}
+
+std::string executed_text(const FaultRow& row) {
+  if (!row.was_triggered) return "";
+  return *row.was_triggered ? "executed" : "NOT EXECUTED";
+}
+
+std::string faults_summary(const std::vector<FaultRow>& rows) {
+  std::map<FaultOutcome, int> counts;
+  int num_not_executed = 0;
+  for (const FaultRow& row : rows) {
+    ++counts[row.outcome];
+    num_not_executed += row.is_not_executed();
+  }
+  std::vector<std::string> parts;
+  for (const auto& [outcome, count] : counts) parts.push_back(fmt::format("{} {}", count, text_of(outcome)));
+  return fmt::format("{} runs: {}; {} faults NOT EXECUTED.", rows.size(), fmt::join(parts, ", "), num_not_executed);
+}
+
+std::string fault_legend() {
+  return "Survived: the mission was completed without fall or collision, and all that the scenario expects was met. Degraded: completed, with something missed. Stopped: "
+         "not completed, and the robot neither fell nor hit anything. UNSAFE: a fall or a "
+         "collision. NO RESULT: the run crashed, hung or came to no score. Noticed: how often the robot said of a sensor that it is silent, late, frozen or "
+         "has a wrong clock; it cannot tell a drift or a spike.";
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,120 @@
+#include "app/campaign/sweep/fault_tables.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "score/statistics.h"
+
+namespace patrol::app {
+namespace {
+
+/// Outcomes of one fault over its seeds.
+struct FaultCell {
+  FaultOutcome worst = FaultOutcome::kSurvived;
+  bool is_not_executed = false;  ///< in one seed or more
+  bool is_noticed = true;        ///< in all seeds
+  std::vector<double> figures;   ///< values of the first metric
+
+  void add(const FaultRow& row) {
+    worst = std::max(worst, row.outcome);
+    is_not_executed |= row.is_not_executed();
+    is_noticed &= row.num_noticed.value_or(0.0) > 0.0;
+    if (!row.figures.empty() && row.figures.front()) figures.push_back(*row.figures.front());
+  }
+};
+
+std::string text_of(const FaultCell& cell) {
+  std::string text = cell.worst == FaultOutcome::kSurvived ? std::string(text_of(cell.worst)) : fmt::format("**{}**", text_of(cell.worst));
+  if (!cell.figures.empty()) text += fmt::format(" {:.3g}", score::mean(cell.figures));
+  if (cell.is_noticed) text += ", noticed";
+  if (cell.is_not_executed) text += ", NOT EXECUTED";
+  return text;
+}
+
+void add_once(std::vector<std::string>& names, const std::string& name) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+/// Cells by sensor and kind of fault, both in the order of their first run.
+struct FaultGrid {
+  std::vector<std::string> sensors, kinds;
+  std::map<std::pair<std::string, std::string>, FaultCell> cells;
+  FaultCell without;
+  std::string without_name;
+};
+
+FaultGrid grid_of(const std::vector<FaultRow>& rows) {
+  FaultGrid grid;
+  for (const FaultRow& row : rows) {
+    if (row.fault.kind.empty()) {
+      grid.without_name = row.name;
+      grid.without.add(row);
+      continue;
+    }
+    add_once(grid.sensors, row.fault.sensor);
+    add_once(grid.kinds, row.fault.kind);
+    grid.cells[{row.fault.sensor, row.fault.kind}].add(row);
+  }
+  return grid;
+}
+
+}  // namespace
+
+io::Table faults_table(const SweepManifest& manifest, const SweepRows& rows) {
+  const auto cell = [](const std::optional<double>& figure) { return figure ? io::TableValue{*figure} : io::TableValue{}; };
+  io::Table table{.name = "faults", .columns = {"fault", "seed", "executed", "outcome", "noticed", "end", "message"}, .rows = {}};
+  for (const std::string& metric : manifest.metrics) {
+    table.columns.push_back(metric);
+    table.columns.push_back(metric + " more than without");
+  }
+  for (const FaultRow& row : fault_rows(manifest, rows)) {
+    std::vector<io::TableValue>& cells = table.rows.emplace_back();
+    cells.emplace_back(row.name);
+    cells.push_back(static_cast<std::int64_t>(row.seed));
+    cells.emplace_back(executed_text(row));
+    cells.emplace_back(std::string(text_of(row.outcome)));
+    cells.push_back(cell(row.num_noticed));
+    cells.emplace_back(row.end);
+    cells.emplace_back(row.message);
+    for (std::size_t metric = 0; metric < row.figures.size(); ++metric) {
+      cells.push_back(cell(row.figures[metric]));
+      cells.push_back(row.figures[metric] && row.without[metric] ? io::TableValue{*row.figures[metric] - *row.without[metric]} : io::TableValue{});
+    }
+  }
+  return table;
+}
+
+std::string faults_text(const SweepManifest& manifest, const SweepRows& rows) {
+  std::string text = fmt::format("{:<28} {:>4}  {:<12}  {:<9}  {:>7}  {:<16}", "fault", "seed", "", "outcome", "noticed", "end");
+  for (const std::string& metric : manifest.metrics) text += fmt::format("  {:>20}", metric);
+  text += "\n";
+  const std::vector<FaultRow> all = fault_rows(manifest, rows);
+  for (const FaultRow& row : all) {
+    text += fmt::format("{:<28} {:>4}  {:<12}  {:<9}  {:>7.0f}  {:<16}", row.name, row.seed, executed_text(row), text_of(row.outcome), row.num_noticed.value_or(0.0), row.end);
+    for (const auto& figure : row.figures) text += figure ? fmt::format("  {:>20.4g}", *figure) : fmt::format("  {:>20}", "-");
+    text += "\n";
+  }
+  return text + faults_summary(all) + "\n";
+}
+
+std::string faults_markdown(const SweepManifest& manifest, const SweepRows& rows) {
+  const std::vector<FaultRow> all = fault_rows(manifest, rows);
+  const FaultGrid grid = grid_of(all);
+  std::string page = fmt::format("| {} | {} |\n| --- |", manifest.metrics.front(), fmt::join(grid.kinds, " | "));
+  for (std::size_t i = 0; i < grid.kinds.size(); ++i) page += " --- |";
+  page += fmt::format("\n| {}: {} |\n", grid.without_name, text_of(grid.without));
+  for (const std::string& sensor : grid.sensors) {
+    page += fmt::format("| {} |", sensor);
+    for (const std::string& kind : grid.kinds) {
+      const auto cell = grid.cells.find({sensor, kind});
+      page += cell == grid.cells.end() ? "  |" : fmt::format(" {} |", text_of(cell->second));
+    }
+    page += "\n";
+  }
+  return page + "\n" + faults_summary(all) + " " + fault_legend() + "\n";
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "app/campaign/sweep/fault_outcomes.h"
+#include "io/table.h"
+
+namespace patrol::app {
+
+/// Fault matrix as a table for a file.
+io::Table faults_table(const SweepManifest& manifest, const SweepRows& rows);
+
+/// Fault matrix as text for a terminal.
+std::string faults_text(const SweepManifest& manifest, const SweepRows& rows);
+
+/// Fault matrix in Markdown: rows by sensor, columns by kind of fault. A cell has the worst outcome over the seeds, the
+/// mean of the first metric, and whether the robot reported the fault.
+std::string faults_markdown(const SweepManifest& manifest, const SweepRows& rows);
+
+}  // namespace patrol::app

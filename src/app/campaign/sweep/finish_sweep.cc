@@ -1,0 +1,67 @@
+#include "app/campaign/sweep/finish_sweep.h"
+
+#include <fmt/format.h>
+
+#include "app/campaign/sweep/budget.h"
+#include "app/campaign/sweep/comparison.h"
+#include "app/campaign/sweep/fault_tables.h"
+#include "app/campaign/sweep/sweep_tables.h"
+#include "io/atomic_file.h"
+
+namespace patrol::app {
+namespace {
+
+/// Results of a sweep, for files and for the terminal.
+struct Findings {
+  std::vector<io::Table> tables;
+  std::string text;
+  std::string markdown;  ///< for documents; empty if there is no such form
+};
+
+Findings findings_of(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
+  Findings findings{.tables = {runs_table(manifest, rows, progress), comparison_table(manifest, rows, progress)}, .text = "", .markdown = ""};
+  switch (manifest.kind) {
+    case SweepKind::kSweep:
+      findings.text = comparison_text(manifest, rows, progress);
+      break;
+    case SweepKind::kBudget: {
+      const std::vector<Budget> budgets = make_budgets(manifest, rows);
+      findings.tables.push_back(budget_table(budgets));
+      for (const Budget& budget : budgets) findings.text += budget_text(budget) + "\n";
+      break;
+    }
+    case SweepKind::kFaults:
+      findings.tables.push_back(faults_table(manifest, rows));
+      findings.text = faults_text(manifest, rows);
+      findings.markdown = faults_markdown(manifest, rows);
+      break;
+  }
+  return findings;
+}
+
+/// Exit code of the worst counted run; kNothingExecuted without runs.
+ExitCode worst_of(const SweepRows& rows, const SweepProgress& progress) {
+  if (progress.counted.empty()) return ExitCode::kNothingExecuted;
+  ExitCode worst = ExitCode::kDone;
+  for (const std::size_t i : progress.counted) worst = worse(worst, rows[i]->code());
+  return worst;
+}
+
+}  // namespace
+
+ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& manifest) {
+  const SweepRows rows = load_rows(manifest, directory.store());
+  const SweepProgress progress = progress_of(manifest, rows);
+  if (!progress.needed.empty()) {
+    fmt::print("{}: {} of {} runs are still to do; `patrol collect` puts shards together\n", directory.root.string(),
+               progress.needed.size(), progress.counted.size());
+    return ExitCode::kDone;
+  }
+  const Findings findings = findings_of(manifest, rows, progress);
+  if (!findings.markdown.empty()) io::save_text(directory.root / "faults.md", findings.markdown);
+  complete_sweep_directory(directory, findings.tables);
+  fmt::print("{}{} runs: {}\n", findings.text, progress.counted.size(), directory.table(findings.tables.back().name).string());
+  return worst_of(rows, progress);
+}
+
+}  // namespace patrol::app

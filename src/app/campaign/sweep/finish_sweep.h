@@ -1,0 +1,12 @@
+#pragma once
+
+#include "app/common/exit_code.h"
+#include "app/campaign/sweep/sweep_directory.h"
+
+namespace patrol::app {
+
+/// Completes a sweep with all results: writes the tables, prints the comparison, and returns the exit code of the worst
+/// run. Otherwise prints the number of missing runs.
+ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& manifest);
+
+}  // namespace patrol::app

@@ -1,0 +1,90 @@
+#include "app/campaign/sweep/plan.h"
+
+#include "app/campaign/batch/run_address.h"
+#include "app/campaign/sweep/axis.h"
+#include "app/campaign/sweep/fault_matrix.h"
+#include "app/campaign/sweep/imperfections.h"
+#include "core/error.h"
+#include "io/settings_yaml.h"
+
+namespace patrol::app {
+namespace {
+
+/// Manifest with the parts common to all kinds; variants and runs follow.
+template <typename Options>
+SweepManifest begin_manifest(SweepKind kind, const Options& options) {
+  return {.kind = kind,
+          .scenario = options.scenario.filename().string(),
+          .overrides = options.overrides,
+          .paths = {},
+          .variants = {},
+          .seeds = parse_seeds(options.seeds),
+          .metrics = options.metrics,
+          .stop = {},
+          .runs = {}};
+}
+
+/// Adds the runs, ordered by seed, then by variant.
+void plan_runs(const std::filesystem::path& scenario, const std::vector<Axis>& axes, SweepManifest& manifest) {
+  RunAddresses addresses(find_data_root(scenario));
+  for (const std::uint64_t seed : manifest.seeds) {
+    for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
+      PlannedRun run{.variant = variant, .seed = seed, .overrides = manifest.variants[variant].overrides, .address = ""};
+      for (const Axis& axis : axes) {
+        if (axis.is_drawn()) run.overrides.push_back(axis.draw(seed));
+      }
+      run.address = addresses.of(load_scenario(scenario, overrides_of(manifest, run)));
+      manifest.runs.push_back(run);
+    }
+  }
+}
+
+}  // namespace
+
+SweepManifest plan_sweep(const SweepOptions& options) {
+  std::vector<Axis> axes;
+  for (const std::string& text : options.vary) axes.push_back(parse_axis(text));
+  SweepManifest manifest = begin_manifest(SweepKind::kSweep, options);
+  manifest.variants = cross(axes);
+  manifest.stop = {.when_decided = options.stop_when_decided, .margin = options.margin};
+  for (const Axis& axis : axes) manifest.paths.push_back(axis.path);
+  plan_runs(options.scenario, axes, manifest);
+  return manifest;
+}
+
+SweepManifest plan_budget(const BudgetOptions& options) {
+  SweepManifest manifest = begin_manifest(SweepKind::kBudget, options);
+  manifest.variants.push_back({.name = "as it is", .overrides = {}});
+  if (manifest.seeds.size() < 2) throw InputError("--seeds: a budget needs two at least: one says nothing of the spread");
+  const Scenario scenario = load_scenario(options.scenario, options.overrides);
+  const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
+  const auto changes_it = [&](const Imperfection& imperfection) {
+    std::vector<std::string> overrides = options.overrides;
+    overrides.insert(overrides.end(), imperfection.overrides.begin(), imperfection.overrides.end());
+    return io::to_yaml(load_scenario(options.scenario, overrides)) != io::to_yaml(scenario);
+  };
+  Variant ideal{.name = "all ideal", .overrides = {}};
+  for (const Imperfection& imperfection : imperfections()) {
+    if (!imperfection.is_there(scenario, files) || !changes_it(imperfection)) continue;
+    manifest.variants.push_back({.name = imperfection.name, .overrides = imperfection.overrides});
+    ideal.overrides.insert(ideal.overrides.end(), imperfection.overrides.begin(), imperfection.overrides.end());
+  }
+  manifest.variants.push_back(ideal);
+  plan_runs(options.scenario, {}, manifest);
+  return manifest;
+}
+
+SweepManifest plan_faults(const FaultsOptions& options) {
+  SweepManifest manifest = begin_manifest(SweepKind::kFaults, options);
+  manifest.paths = {"faults"};
+  manifest.variants.push_back({.name = "no fault", .overrides = {"faults=[]"}});
+  const Scenario scenario = load_scenario(options.scenario, options.overrides);
+  const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
+  for (const sim::FaultSettings& fault : fault_matrix(scenario, files, options.start_s, options.duration_s)) {
+    manifest.variants.push_back({.name = variant_name(fault), .overrides = {fault_override(fault)}});
+  }
+  plan_runs(options.scenario, {}, manifest);
+  return manifest;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "app/campaign/sweep/manifest.h"
+#include "app/campaign/sweep/sweep_options.h"
+
+namespace patrol::app {
+
+/// Plans a sweep, with the content hash of every run. Loads the scenario of every variant: an invalid key or value is
+/// reported before anything runs. These functions throw InputError.
+SweepManifest plan_sweep(const SweepOptions& options);
+
+/// Plans an error budget: the scenario as it is, without each of its error sources (imperfections.h), and without all.
+SweepManifest plan_budget(const BudgetOptions& options);
+
+/// Plans a fault matrix: the scenario as it is, and with each fault of its sensors (fault_matrix.h).
+SweepManifest plan_faults(const FaultsOptions& options);
+
+}  // namespace patrol::app

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+
+#include "app/campaign/batch/run_batch.h"
+#include "app/campaign/sweep/sweep_directory.h"
+#include "app/campaign/sweep/sweep_options.h"
+
+namespace patrol::app {
+
+/// Runs the missing runs of a shard on this machine; with early stopping, in stages of interim analyses. Throws
+/// std::runtime_error if interrupted.
+void run_sweep(const std::filesystem::path& scenario, const SweepManifest& manifest, const SweepDirectory& directory, const Shard& shard,
+               const BatchSettings& settings);
+
+}  // namespace patrol::app

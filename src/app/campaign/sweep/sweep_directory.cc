@@ -1,0 +1,42 @@
+#include "app/campaign/sweep/sweep_directory.h"
+
+#include <fmt/format.h>
+
+#include "app/common/output_directory.h"
+#include "core/error.h"
+#include "io/csv.h"
+#include "io/sqlite.h"
+
+namespace patrol::app {
+namespace {
+
+// Several processes may share one directory: files being written by another one (*.part) stay.
+const OutputKind kSweep = {.name = "sweep",
+                           .unfinished = "Not every run of this sweep has ended: tables come at the end. The same command goes on.",
+                           .made = {"runs.csv", "comparison.csv", "budget.csv", "faults.csv", "faults.md", "sweep.sqlite", "report.html"},
+                           .proof = "sweep.json",
+                           .kept = {"sweep.json", "runs", "work", "slurm", "*.part"},
+                           .is_shared = true};
+
+}  // namespace
+
+SweepDirectory begin_sweep_directory(const std::filesystem::path& root, const SweepManifest& manifest) {
+  const OutputLock shared = begin_output(root, kSweep);
+  const SweepDirectory directory{root};
+  save_manifest(directory.manifest(), manifest);
+  return directory;
+}
+
+SweepDirectory open_sweep_directory(const std::filesystem::path& root) {
+  const SweepDirectory directory{root};
+  if (!std::filesystem::exists(directory.manifest())) throw InputError(fmt::format("{}: not a sweep: it has no sweep.json", root.string()));
+  return directory;
+}
+
+void complete_sweep_directory(const SweepDirectory& directory, const std::vector<io::Table>& tables) {
+  for (const io::Table& table : tables) io::save_csv(directory.table(table.name), table);
+  io::save_sqlite(directory.sqlite(), tables);
+  complete_output(directory.root);
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/campaign/batch/batch_options.h"
+
+namespace patrol::app {
+
+/// Options of `patrol sweep`.
+struct SweepOptions {
+  std::filesystem::path scenario;
+  std::vector<std::string> overrides;  ///< "path=value", for all runs
+  std::vector<std::string> vary;       ///< axis.h
+  std::string seeds = "10";            ///< "N": 1 ... N; or "A..B"
+  std::vector<std::string> metrics = {"pose.ate_rmse_m", "pose.heading_rmse_deg", "map.nearest_mean_m", "mission.completed"};
+  bool stop_when_decided = false;
+  double margin = 0.0;
+  BatchOptions batch;
+  std::string shard;                   ///< "i/n"; empty: all
+  std::string engine = "local";
+  int slurm_tasks = 8;                 ///< tasks of the job array; each runs a shard
+  std::vector<std::string> slurm_options;  ///< for sbatch, "--partition=long"
+  bool detach = false;                 ///< submit without waiting
+  std::filesystem::path out = "out/sweep";
+};
+
+/// Options of `patrol budget`.
+struct BudgetOptions {
+  std::filesystem::path scenario;
+  std::vector<std::string> overrides;
+  std::string seeds = "5";
+  std::vector<std::string> metrics = {"pose.ate_rmse_m", "map.nearest_mean_m"};
+  BatchOptions batch;
+  std::filesystem::path out = "out/budget";
+};
+
+/// Options of `patrol faults`.
+struct FaultsOptions {
+  std::filesystem::path scenario;
+  std::vector<std::string> overrides;
+  std::string seeds = "1";
+  std::vector<std::string> metrics = {"pose.ate_rmse_m", "pose.heading_rmse_deg", "map.nearest_mean_m"};
+  double start_s = 12.0;     ///< start of every fault
+  double duration_s = 8.0;
+  BatchOptions batch;
+  std::filesystem::path out = "out/faults";
+};
+
+/// Part of the runs: those whose number modulo `count` is `index`.
+struct Shard {
+  std::size_t index = 0;  ///< from 0
+  std::size_t count = 1;
+
+  bool holds(std::size_t run) const { return run % count == index; }
+};
+
+/// Parses the seeds. Throws InputError with the option's name.
+std::vector<std::uint64_t> parse_seeds(const std::string& text);
+/// Parses a shard "i/n". Throws InputError with the option's name.
+Shard parse_shard(const std::string& text);
+
+}  // namespace patrol::app

@@ -1,0 +1,154 @@
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "app/cli/commands.h"
+#include "app/mapping/read_scans.h"
+#include "app/common/output_directory.h"
+#include "core/angles.h"
+#include "core/error.h"
+#include "io/csv.h"
+#include "io/metrics_json.h"
+#include "io/scan_log.h"
+#include "io/settings_yaml.h"
+#include "slam/calibration/calibrate.h"
+
+namespace patrol::app {
+namespace {
+
+const OutputKind kCalibrating = {.name = "calibration of a log",
+                                 .unfinished = "The log has not been calibrated.",
+                                 .made = {"calibration.yaml", "stretches.csv", "metrics.json", "settings.yaml"},
+                                 .proof = "settings.yaml",
+                                 .kept = {"*.part"}};
+
+/// Settings of `patrol calibrate --set`.
+struct LogCalibrationSettings {
+  int passes = 2;  ///< passes over the log; each uses the calibration of the one before
+  io::ScanLogOptions log;
+  slam::PlanarScanSettings scan;
+  slam::MotionSegmentSettings stretches;
+  slam::CalibratorSettings calibrator;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("passes", self.passes, between(1, 10));
+    visit("log", self.log);
+    visit("scan", self.scan);
+    visit("stretches", self.stretches);
+    visit("calibrator", self.calibrator);
+  }
+};
+
+/// Result of a pass over the log.
+struct CalibratedLog {
+  io::ScanLogSummary summary;
+  Pose2 T_body_lidar;  ///< lidar pose of the log's first scan
+  std::vector<slam::MotionSegment> pairs;
+  slam::CalibrationResult result;
+};
+
+/// Calibrates in one pass over the log; none if interrupted.
+std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, const LogCalibrationSettings& settings, const slam::Calibration& known, const std::string& name) {
+  const InterruptGuard guard;
+  ProgressBar bar;
+  const std::unique_ptr<io::ScanLog> log = io::open_scan_log(file, settings.log);
+  slam::MotionSegmenter pairs(settings.stretches, settings.scan, known);
+  std::optional<Pose2> T_body_lidar;
+  const bool is_whole = read_scans(*log, name, guard, bar, [&](const RecordedScan& recorded) {
+    if (!T_body_lidar) T_body_lidar = recorded.T_body_lidar;
+    pairs.add(recorded);
+  });
+  if (!is_whole) return std::nullopt;
+  CalibratedLog calibrated{.summary = log->summary(), .T_body_lidar = *T_body_lidar, .pairs = pairs.pairs(), .result = {}};
+  try {
+    calibrated.result = slam::calibrate(calibrated.pairs, calibrated.T_body_lidar, settings.calibrator);
+  } catch (const InputError& error) {
+    throw InputError(file.string() + ": " + error.what());
+  }
+  return calibrated;
+}
+
+/// Table of the motion of each segment by odometry and by scan matching, with its error, which shows rejected segments.
+io::Table stretch_table(const CalibratedLog& log) {
+  io::Table table{.name = "stretches",
+                  .columns = {"begin_s", "end_s", "odometry_x_m", "odometry_y_m", "odometry_yaw_rad", "lidar_x_m", "lidar_y_m", "lidar_yaw_rad", "error_std"},
+                  .rows = {}};
+  for (std::size_t k = 0; k < log.pairs.size(); ++k) {
+    const slam::MotionSegment& pair = log.pairs[k];
+    const Pose2 lidar = pair.lidar();
+    table.rows.push_back({to_seconds(pair.begin), to_seconds(pair.end), pair.odometry.x, pair.odometry.y, pair.odometry.yaw, lidar.x, lidar.y, lidar.yaw, log.result.errors[k]});
+  }
+  return table;
+}
+
+io::Metrics metrics_of(const CalibratedLog& log) {
+  io::Metrics metrics;
+  const slam::CalibrationResult& result = log.result;
+  metrics["log"] = {{"scans", log.summary.num_scans}};
+  metrics["stretches"] = {{"count", result.num_segments}, {"rejected", result.num_rejected}, {"move_noise", result.translation_noise_scale}, {"turn_noise", result.rotation_noise_scale}};
+  metrics["converged"] = result.converged;
+  for (std::size_t i = 0; i < result.parameters.size(); ++i) {
+    const slam::CalibratedParameter& parameter = result.parameters[i];
+    metrics["calibration"][slam::kCalibrationParameters[i]] = {
+        {"before", parameter.before}, {"value", parameter.value}, {"std", parameter.std}, {"observable", parameter.is_observable}};
+  }
+  return metrics;
+}
+
+std::string table_text(const slam::CalibrationResult& result) {
+  struct Row {
+    const char* name;
+    double factor;
+    const char* unit;
+    int decimals;
+  };
+  constexpr std::array<Row, 6> kRows = {{{"lidar ahead of the body", 1.0, "m", 4},
+                                         {"lidar to its left", 1.0, "m", 4},
+                                         {"lidar turned to the left", kDegPerRad, "deg", 3},
+                                         {"true way over odometry's", 1.0, "", 5},
+                                         {"true turn over odometry's", 1.0, "", 5},
+                                         {"steering to the left", kDegPerRad, "deg/m", 3}}};
+  std::string text = fmt::format("{:<26} {:>10} {:>11} {:>9}\n", "", "in the log", "calibrated", "std");
+  for (std::size_t i = 0; i < kRows.size(); ++i) {
+    const Row& row = kRows[i];
+    const slam::CalibratedParameter& parameter = result.parameters[i];
+    const auto number = [&](double value) { return fmt::format("{:.{}f}", row.factor * value, row.decimals); };
+    text += fmt::format("{:<26} {:>10} {:>11} {:>9} {}\n", row.name, number(parameter.before), parameter.is_observable ? number(parameter.value) : "-", number(parameter.std),
+                        parameter.is_observable ? row.unit : fmt::format("{} not observable: as it was", row.unit));
+  }
+  return text;
+}
+
+}  // namespace
+
+ExitCode calibrate_command(const CalibrateOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (options.skip_bad_lines) overrides.push_back("log.skip_bad_lines=true");
+  const auto settings = io::parse_settings<LogCalibrationSettings>(overrides);
+  std::optional<CalibratedLog> log;
+  for (int pass = 1; pass <= settings.passes; ++pass) {
+    const slam::Calibration known = log ? log->result.calibration() : slam::Calibration{};
+    log = calibrate_once(options.log, settings, known, fmt::format("{}, {} of {}", options.log.filename().string(), pass, settings.passes));
+    if (!log) break;
+  }
+  const OutputLock lock = begin_output(options.out, kCalibrating);  // not earlier: a damaged log must leave no output
+  if (!log) {
+    fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", options.out.string());
+    return ExitCode::kProgramFailed;
+  }
+  const slam::CalibrationResult& result = log->result;
+  io::save_settings(options.out / "calibration.yaml", result.calibration(), "from " + options.log.filename().string() + "; for patrol slam --calibration");
+  io::save_csv(options.out / "stretches.csv", stretch_table(*log));
+  io::save_metrics(options.out / "metrics.json", metrics_of(*log));
+  io::save_settings(options.out / "settings.yaml", settings);
+  complete_output(options.out);
+
+  fmt::print("{}{} stretches of the way, {} of them rejected (odometry slipped or lied, or the match was wrong){}\n{}{}\n", io::to_text(log->summary), result.num_segments,
+             result.num_rejected, result.converged ? "" : "; not converged", table_text(result), (options.out / "calibration.yaml").string());
+  return result.converged ? ExitCode::kDone : ExitCode::kExpectationMissed;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,154 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/common/exit_code.h"
+#include "app/monitor/monitor_options.h"
+#include "app/plan/plan_options.h"
+#include "app/campaign/sweep/sweep_options.h"
+#include "app/campaign/test/test_options.h"
+#include "score/relation_error.h"
+
+/// Functions of the program's commands, one each. Results are printed to standard output, messages to standard error.
+namespace patrol::app {
+
+struct RunOptions {
+  std::filesystem::path scenario;
+  std::vector<std::string> overrides;  ///< "path=value"
+  std::optional<std::uint64_t> seed;
+  bool watch = false;  ///< show live status in the terminal
+  std::optional<std::filesystem::path> out;
+  std::optional<std::string> report_to;  ///< URL of a monitoring server
+  std::optional<std::filesystem::path> report_token_file;
+  std::optional<std::string> robot_name;  ///< name shown by the monitoring server; default: robot and seed
+};
+ExitCode run_command(const RunOptions& options);
+
+/// Input of `patrol score`: a run directory, two trajectories, a trajectory and relations, or two maps.
+struct ScoreOptions {
+  std::filesystem::path run;
+  std::filesystem::path estimate;
+  std::filesystem::path reference;
+  std::filesystem::path relations;
+  score::RelationSettings relation_settings;
+  std::filesystem::path map;
+  std::filesystem::path reference_map;
+};
+ExitCode score_command(const ScoreOptions& options);
+
+struct LocalizabilityOptions {
+  std::filesystem::path scenario;
+  std::vector<std::string> overrides;
+  double step_m = 0.5;
+  std::filesystem::path out = "out/localizability";
+};
+/// Maps the accuracy bound of a single scan over a scenario's world.
+ExitCode localizability_command(const LocalizabilityOptions& options);
+
+struct ReplayOptions {
+  std::filesystem::path run;
+  std::string style = "story";
+  std::string camera = "chase";
+  double speed = 8.0;
+  double slow = 2.0;
+  std::string renderer = "auto";
+  std::string size = "1280x720";
+  std::optional<double> still_s;
+  std::optional<std::filesystem::path> out;
+};
+ExitCode replay_command(const ReplayOptions& options);
+
+struct ReportOptions {
+  std::filesystem::path directory;  ///< directory of a run, a sweep, an error budget or a fault matrix
+  std::optional<std::filesystem::path> out;
+};
+ExitCode report_command(const ReportOptions& options);
+
+/// Reruns `run` in a temporary directory and compares the logs.
+ExitCode verify_command(const std::filesystem::path& run);
+
+/// Runs every variant with every seed, or one shard of these runs, and compares the variants.
+ExitCode sweep_command(const SweepOptions& options);
+
+/// Copies the results of `parts`, shards of one sweep, to `root`, and writes the tables if all runs are complete.
+ExitCode collect_command(const std::filesystem::path& root, const std::vector<std::filesystem::path>& parts);
+
+/// Computes an error budget: reruns the scenario with one error source removed at a time.
+ExitCode budget_command(const BudgetOptions& options);
+
+/// Runs a scenario with every fault of every sensor and classifies the outcomes.
+ExitCode faults_command(const FaultsOptions& options);
+
+struct SlamOptions {
+  std::filesystem::path log;          ///< CARMEN or MCAP
+  std::optional<std::string> method;  ///< slam.method
+  std::vector<std::string> overrides;
+  std::optional<std::filesystem::path> calibration;  ///< calibration.yaml of `patrol calibrate`
+  std::optional<std::uint64_t> seed;
+  bool skip_bad_lines = false;
+  std::filesystem::path out = "out/slam";
+};
+/// Builds a map from a recorded log.
+ExitCode slam_command(const SlamOptions& options);
+
+struct CalibrateOptions {
+  std::filesystem::path log;  ///< CARMEN or MCAP
+  std::vector<std::string> overrides;
+  bool skip_bad_lines = false;
+  std::filesystem::path out = "out/calibration";
+};
+/// Calibrates the lidar pose and the odometry scales from a recorded log.
+ExitCode calibrate_command(const CalibrateOptions& options);
+
+struct TrainOptions {
+  std::vector<std::filesystem::path> runs;      ///< run directories for training
+  std::vector<std::filesystem::path> held_out;  ///< run directories for validation
+  std::vector<std::string> overrides;
+  std::filesystem::path out = "submap_neighbours.json";
+};
+/// Trains the classifier of neighboring submaps (`--method submap_rbpf`).
+ExitCode train_command(const TrainOptions& options);
+
+struct SolveOptions {
+  std::filesystem::path graph;  ///< g2o
+  bool robust_loop_closures = false;    ///< robust loss on edges that are not odometry
+  std::filesystem::path out = "out/solved.g2o";
+};
+/// Optimizes a pose graph.
+ExitCode solve_command(const SolveOptions& options);
+
+/// Plans a path, a station order, or every problem of a benchmark file.
+ExitCode plan_command(const PlanOptions& options);
+
+struct StudyOptions {
+  std::string name;
+  std::optional<std::string> seeds;  ///< "N": 1001 ... 1000 + N, which were not used for tuning; or "A..B"
+  int jobs = 0;                      ///< parallel seeds; 0: one per core
+  double seed_limit_s = 3600.0;      ///< wall-clock limit per seed
+  std::filesystem::path out = "out/study";
+};
+/// Reproduces a published experiment and compares the results.
+ExitCode study_command(const StudyOptions& options);
+
+/// Runs every scenario of a folder and checks its expectations.
+ExitCode test_command(const TestOptions& options);
+
+/// Runs the monitoring server until it is interrupted.
+ExitCode monitor_command(const MonitorOptions& options);
+
+struct SendOptions {
+  std::filesystem::path run;
+  std::string to;
+  std::optional<std::filesystem::path> token_file;
+  double limit_s = 30.0;  ///< timeout without progress
+};
+/// Uploads the pending results of a run to the monitoring server.
+ExitCode send_command(const SendOptions& options);
+
+ExitCode list_command();
+
+}  // namespace patrol::app

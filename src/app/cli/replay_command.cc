@@ -1,0 +1,108 @@
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "app/cli/commands.h"
+#include "app/common/progress_bar.h"
+#include "app/record/run_directory.h"
+#include "app/run/run_loop.h"
+#include "app/record/run_record.h"
+#include "core/error.h"
+#include "render/replay.h"
+#include "score/trajectory_error.h"
+
+namespace patrol::app {
+namespace {
+
+constexpr int kMinSize = 64, kMaxSize = 3840;
+
+/// Parses "1280x720". The encoder takes even sizes only.
+std::pair<int, int> parse_size(const std::string& text) {
+  int width = 0, height = 0;
+  const char* end = text.data() + text.size();
+  const auto [cross, bad_width] = std::from_chars(text.data(), end, width);
+  const bool has_cross = bad_width == std::errc{} && cross != end && *cross == 'x';
+  const auto [rest, bad_height] = has_cross ? std::from_chars(cross + 1, end, height) : std::from_chars_result{cross, bad_width};
+  const auto is_fine = [](int value) { return value >= kMinSize && value <= kMaxSize && value % 2 == 0; };
+  if (!has_cross || bad_height != std::errc{} || rest != end || !is_fine(width) || !is_fine(height)) {
+    throw InputError(fmt::format("--size {}: must be WIDTHxHEIGHT, even numbers of pixels in {} ... {}", text, kMinSize, kMaxSize));
+  }
+  return {width, height};
+}
+
+double checked_speed(const char* option, double speed) {
+  if (!(speed > 0.0 && speed <= 1000.0)) throw InputError(fmt::format("{} {}: must lie in 0 ... 1000", option, speed));
+  return speed;
+}
+
+render::ReplaySettings replay_settings(const ReplayOptions& options) {
+  render::ReplaySettings settings;
+  settings.style = render::parse_film_style(options.style);
+  settings.camera = render::parse_camera_kind(options.camera);
+  settings.renderer = render::parse_renderer(options.renderer);
+  settings.speed.fast = checked_speed("--speed", options.speed);
+  settings.speed.slow = checked_speed("--slow", options.slow);
+  std::tie(settings.width, settings.height) = parse_size(options.size);
+  return settings;
+}
+
+/// Highlights at the start of faults. They come from the scenario because the log does not contain them.
+std::vector<render::Highlight> fault_moments(const std::vector<sim::FaultSettings>& faults) {
+  std::vector<render::Highlight> moments;
+  for (const sim::FaultSettings& fault : faults) {
+    moments.push_back({.at = from_seconds(fault.start_s),
+                       .kind = render::HighlightKind::kFault,
+                       .title = fmt::format("Fault: {} of {} for {:g} s", fault.kind, fault.sensor, fault.duration_s)});
+  }
+  return moments;
+}
+
+}  // namespace
+
+ExitCode replay_command(const ReplayOptions& options) {
+  render::ReplaySettings settings = replay_settings(options);
+  const RunDirectory directory = open_run_directory(options.run);
+  const Scenario scenario = load_scenario(directory.scenario());
+  const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
+  settings.dust = scenario.sensors.dust;
+  settings.light = scenario.light;
+  settings.leaks = scenario.leaks;
+  settings.wind = scenario.wind;
+  settings.announced = fault_moments(scenario.faults);
+  settings.map = files.map;
+  const RunRecord record = read_run_record(directory.log());
+  if (!record.has_estimate()) throw InputError(fmt::format("{}: ended before the robot had an estimate", directory.log().string()));
+  const Pose2 T_world_map =
+      files.map ? files.T_site_start : score::align_at_start(record.T_map_body, record.T_world_body);
+  sim::AssembledModel model =
+      sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), start_in_world(scenario, files), props_of(scenario));
+
+  if (options.still_s) {
+    const Time at = from_seconds(*options.still_s);
+    if (at < Time::zero() || at > record.T_world_body.back().stamp) {
+      throw InputError(fmt::format("--still {}: the run lasted from 0 to {:.1f} s", *options.still_s,
+                                   to_seconds(record.T_world_body.back().stamp)));
+    }
+    const std::filesystem::path out =
+        options.out.value_or(directory.root / fmt::format("still_{}_{:g}s.png", options.camera, *options.still_s));
+    render::still(directory.log(), std::move(model), T_world_map, settings, at, out);
+    fmt::print("{}\n", out.string());
+    return ExitCode::kDone;
+  }
+  const std::filesystem::path out = options.out.value_or(directory.root / "replay.mp4");
+  ProgressBar bar;
+  const InterruptGuard interrupt;
+  const render::ReplaySummary summary = render::replay(directory.log(), std::move(model), T_world_map, settings, out, [&](double done) {
+    bar.show(fmt::format("replay  {:3.0f} %", 100.0 * done));
+    return !interrupt.is_interrupted();
+  });
+  if (summary.is_interrupted) {
+    fmt::print(stderr, "patrol: interrupted; no film is left\n");
+    return ExitCode::kProgramFailed;
+  }
+  fmt::print("{}: {} frames, {} chapters, {:.1f} s of the run{}\n", out.string(), summary.num_frames, summary.num_chapters,
+             to_seconds(summary.end), summary.log_is_complete ? "" : ", whose log was cut off");
+  return ExitCode::kDone;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,47 @@
+#include <fmt/format.h>
+
+#include "app/cli/commands.h"
+#include "app/report/run_page.h"
+#include "app/report/sweep_page.h"
+#include "app/campaign/sweep/sweep_directory.h"
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "render/report/page.h"
+
+namespace patrol::app {
+namespace {
+
+/// Loads the page of a study or of a mapped log, which is generated with its results.
+std::string page_made_before(const std::filesystem::path& root) {
+  const std::filesystem::path page = root / "report.html";
+  if (!std::filesystem::exists(page)) throw InputError(fmt::format("{}: has not come to its end: there is nothing to report", root.string()));
+  return io::load_text(page);
+}
+
+render::Page page_of(const std::filesystem::path& root, const std::filesystem::path& page_file) {
+  if (!std::filesystem::exists(SweepDirectory{root}.manifest())) return run_page(read_run_contents(root), page_file);
+  const SweepDirectory directory = open_sweep_directory(root);
+  const SweepManifest manifest = load_manifest(directory.manifest());
+  const SweepRows rows = load_rows(manifest, directory.store());
+  const SweepProgress progress = progress_of(manifest, rows);
+  if (progress.needed.empty()) return sweep_page(manifest, rows, progress);
+  throw InputError(fmt::format("{}: {} of {} runs have no result yet: there is nothing to report", root.string(), progress.needed.size(), progress.counted.size()));
+}
+
+}  // namespace
+
+ExitCode report_command(const ReportOptions& options) {
+  const std::filesystem::path out = options.out.value_or(options.directory / "report.html");
+  std::string html;
+  try {
+    const bool is_made = std::filesystem::exists(options.directory / "study.json") || std::filesystem::exists(options.directory / "pose_graph.g2o");
+    html = is_made ? page_made_before(options.directory) : render::to_html(page_of(options.directory, out));
+  } catch (const io::Metrics::exception& error) {
+    throw InputError(fmt::format("{}: metrics.json is not as a run leaves it: {}", options.directory.string(), error.what()));
+  }
+  io::save_text(out, html);
+  fmt::print("{}: {:.2f} MB\n", out.string(), 1e-6 * static_cast<double>(html.size()));
+  return ExitCode::kDone;
+}
+
+}  // namespace patrol::app

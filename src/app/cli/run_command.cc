@@ -1,0 +1,129 @@
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/cli/commands.h"
+#include "app/monitor/reporter.h"
+#include "app/common/progress_bar.h"
+#include "app/run/run_once.h"
+#include "app/run/terminal_watch.h"
+#include "app/scoring/goal_table.h"
+#include "app/scoring/score_table.h"
+
+namespace patrol::app {
+namespace {
+
+std::filesystem::path default_directory(const RunOptions& options, const Scenario& scenario) {
+  return std::filesystem::path("out") /
+         fmt::format("{}_{}_seed{}", scenario.world, options.scenario.stem().string(), scenario.seed);
+}
+
+Scenario scenario_of(const RunOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
+  return load_scenario(options.scenario, overrides);
+}
+
+/// Observer that shows the progress of a run in one line.
+class ProgressLine final : public RunObserver {
+ public:
+  explicit ProgressLine(const std::string& name) : name_(name) {}
+
+  bool go_on(Time now, double distance_m) override {
+    bar_.show(fmt::format("{}  {:6.1f} s simulated  {:6.1f} m walked", name_, to_seconds(now), distance_m));
+    return !interrupt_.is_interrupted();
+  }
+
+ private:
+  std::string name_;
+  ProgressBar bar_;
+  InterruptGuard interrupt_;
+};
+
+/// Group of observers; each may stop the run.
+class Together final : public RunObserver {
+ public:
+  explicit Together(std::vector<RunObserver*> observers) : observers_(std::move(observers)) {}
+
+  void begin(const ScenarioFiles& files) override { for (RunObserver* one : observers_) one->begin(files); }
+  void see(const stack::StackMessage& message) override { for (RunObserver* one : observers_) one->see(message); }
+  void see(const GroundTruth& truth) override { for (RunObserver* one : observers_) one->see(truth); }
+  bool go_on(Time now, double distance_m) override {
+    bool goes_on = true;
+    for (RunObserver* one : observers_) goes_on = one->go_on(now, distance_m) && goes_on;
+    return goes_on;
+  }
+
+ private:
+  std::vector<RunObserver*> observers_;
+};
+
+std::unique_ptr<RunObserver> observer_of(const RunOptions& options, const std::string& name) {
+  if (options.watch) return std::make_unique<TerminalWatch>(name);
+  return std::make_unique<ProgressLine>(name);
+}
+
+std::unique_ptr<Reporter> reporter_of(const RunOptions& options, const Scenario& scenario, const std::string& name, const std::filesystem::path& root) {
+  if (!options.report_to) return nullptr;
+  const ReportedRun run{.robot = options.robot_name.value_or(fmt::format("{}-{}", scenario.robot, scenario.seed)),
+                        .run = new_run_name(name, scenario.seed),
+                        .world = scenario.world,
+                        .scenario = name};
+  return std::make_unique<Reporter>(root, run, platform_from(*options.report_to, options.report_token_file));
+}
+
+std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario& scenario, const std::string& name, const std::filesystem::path& root,
+                                      Reporter* reporter, RunObserver& screen) {
+  const std::filesystem::path data_root = find_data_root(options.scenario);
+  if (reporter == nullptr) return run_once(scenario, name, data_root, root, screen);
+  Together observers({&screen, reporter});
+  try {
+    std::optional<RunVerdict> verdict = run_once(scenario, name, data_root, root, observers);
+    if (!verdict) reporter->finish("interrupted", "somebody stopped it");
+    else reporter->finish(verdict->code() == ExitCode::kDone ? "finished" : "failed", verdict->message.empty() ? std::string(name_of(verdict->end)) : verdict->message);
+    return verdict;
+  } catch (const std::exception& error) {
+    reporter->finish("failed", error.what());
+    throw;
+  }
+}
+
+void say_what_was_sent(const Reporter& reporter, const std::string& to, const std::filesystem::path& root) {
+  if (reporter.num_refused() > 0) {
+    fmt::print(stderr, "patrol: {} refused {} results: they lie in {}\n", to, reporter.num_refused(), (root / "outbox.refused.jsonl").string());
+  }
+  if (const std::size_t waiting = reporter.num_waiting(); waiting > 0) {
+    fmt::print(stderr, "patrol: {} results wait in {} ({}); send them with: patrol send {} --to {}\n", waiting,
+               (root / "outbox.jsonl").string(), reporter.why_not(), root.string(), to);
+  } else {
+    fmt::print(stderr, "patrol: {} has all {} results\n", to, reporter.num_results());
+  }
+}
+
+}  // namespace
+
+ExitCode run_command(const RunOptions& options) {
+  const Scenario scenario = scenario_of(options);
+  const std::string name = options.scenario.stem().string();
+  const std::filesystem::path root = options.out.value_or(default_directory(options, scenario));
+
+  const std::unique_ptr<Reporter> reporter = reporter_of(options, scenario, name, root);
+  std::unique_ptr<RunObserver> observer = observer_of(options, name);
+  const std::optional<RunVerdict> verdict = run_reported(options, scenario, name, root, reporter.get(), *observer);
+  observer.reset();  // restores the screen
+  if (reporter) say_what_was_sent(*reporter, *options.report_to, root);
+  if (!verdict) {
+    fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", root.string());
+    return ExitCode::kProgramFailed;
+  }
+
+  fmt::print("{}\n", score_table(verdict->metrics, verdict->checks));
+  if (const std::string goals = goal_table(verdict->metrics); !goals.empty()) fmt::print("{}\n", goals);
+  for (const DeclaredEvent& event : verdict->events) fmt::print("{}: {}\n", event.what, event.was_triggered ? "executed" : "NOT EXECUTED");
+  fmt::print("run directory: {}\n", root.string());
+  return verdict->code();
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,169 @@
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/cli/commands.h"
+#include "app/mapping/mapping_page.h"
+#include "app/scenario/neighbor_model.h"
+#include "app/mapping/read_scans.h"
+#include "app/common/output_directory.h"
+#include "app/common/process_cost.h"
+#include "app/scenario/scenario.h"
+#include "core/thread_clock.h"
+#include "io/atomic_file.h"
+#include "io/csv.h"
+#include "io/g2o.h"
+#include "io/map_server.h"
+#include "io/metrics_json.h"
+#include "io/scan_log.h"
+#include "io/settings_yaml.h"
+#include "io/tum.h"
+#include "render/report/page.h"
+#include "slam/calibration/calibration.h"
+#include "slam/mapper.h"
+#include "slam/planar_scan.h"
+
+namespace patrol::app {
+namespace {
+
+const OutputKind kMapping = {.name = "mapping of a log",
+                             .unfinished = "The log has not been mapped to its end.",
+                             .made = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o", "performance.csv", "metrics.json", "settings.yaml", "report.html"},
+                             .proof = "settings.yaml",
+                             .kept = {"*.part"}};
+
+/// Settings of `patrol slam --set`.
+struct LogMappingSettings {
+  std::uint64_t seed = 1;
+  io::ScanLogOptions log;
+  slam::Calibration calibration;
+  slam::PlanarScanSettings scan;
+  slam::MapperSettings slam;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("seed", self.seed);
+    visit("log", self.log);
+    visit("calibration", self.calibration);
+    visit("scan", self.scan);
+    visit("slam", self.slam);
+  }
+};
+
+/// Computation time by segment of scans, which shows whether it grows with the map.
+class CostTable {
+ public:
+  static constexpr std::size_t kScans = 200;  ///< scans per row of the table
+
+  void add(std::size_t num_scans, double way_m) {
+    if (num_scans % kScans != 0) return;
+    const double now_s = thread_cpu_time_s();
+    table_.rows.push_back({static_cast<double>(num_scans), way_m, 1e3 * (now_s - last_s_) / kScans, peak_memory_mb()});
+    last_s_ = now_s;
+  }
+  const io::Table& table() const { return table_; }
+
+ private:
+  io::Table table_{.name = "performance", .columns = {"scans", "way_m", "ms_per_scan", "peak_memory_mb"}, .rows = {}};
+  double last_s_ = thread_cpu_time_s();
+};
+
+/// Data of the log in addition to the mapper's.
+struct MappedLog {
+  std::vector<Time> stamps;
+  std::vector<Pose2> T_odom_body;  ///< [scan], relative to the first
+  double way_m = 0.0;              ///< distance traveled, by odometry
+  CostTable cost;
+
+  double duration_s() const { return stamps.empty() ? 0.0 : to_seconds(stamps.back() - stamps.front()); }
+};
+
+/// Maps a log; false if interrupted.
+bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::string& name, slam::Mapper& mapper, MappedLog& mapped) {
+  InterruptGuard guard;
+  ProgressBar bar;
+  slam::CalibratedScans calibrated(settings.calibration);
+  std::optional<Pose2> T_first_odom, T_odom_last;
+  const bool is_whole = read_scans(log, name, guard, bar, [&](RecordedScan& recorded) {
+    calibrated.correct(recorded);
+    mapper.update(slam::planar_scan(recorded, settings.scan), recorded.T_odom_body);
+    if (!T_first_odom) T_first_odom = recorded.T_odom_body.inverse();
+    if (T_odom_last) mapped.way_m += (recorded.T_odom_body.position() - T_odom_last->position()).norm();
+    T_odom_last = recorded.T_odom_body;
+    mapped.stamps.push_back(recorded.scan.stamp);
+    mapped.T_odom_body.push_back(*T_first_odom * recorded.T_odom_body);
+    mapped.cost.add(mapped.stamps.size(), mapped.way_m);
+  });
+  if (!is_whole) return false;
+  bar.show(fmt::format("{}  {} scans, at the end once more over all of them", name, mapped.stamps.size()));
+  mapper.finish();
+  return !guard.is_interrupted();
+}
+
+/// Trajectory with one pose per scan, in the log's order; duplicate stamps are kept.
+Trajectory trajectory_of(const std::vector<Time>& stamps, const std::vector<Pose2>& poses) {
+  Trajectory trajectory;
+  for (std::size_t i = 0; i < stamps.size(); ++i) trajectory.push_back({stamps[i], to_pose3(poses[i])});
+  return trajectory;
+}
+
+io::Metrics metrics_of(const io::ScanLogSummary& summary, const MappedLog& mapped, const Trajectory& estimate, const PoseGraph& graph) {
+  std::size_t num_cross_submap = 0;  // loop closures, and after finish() every keyframe's matches with nearby submaps
+  for (const PoseGraphEdge& edge : graph.edges) num_cross_submap += edge.kind == PoseGraphEdge::Kind::kLoop ? 1 : 0;
+  std::uint64_t num_skipped = 0;
+  for (const auto& [reason, count] : summary.skipped) num_skipped += count;
+  return {{"log", {{"scans", mapped.stamps.size()}, {"skipped", num_skipped}, {"duration_s", mapped.duration_s()}, {"odometry_way_m", mapped.way_m}}},
+          {"path", {{"poses", estimate.size()}, {"way_m", planar_length_m(estimate)}}},
+          {"graph", {{"nodes", graph.T_map_node.size()}, {"edges", graph.edges.size()}, {"cross_submap_edges", num_cross_submap}}}};
+}
+
+}  // namespace
+
+ExitCode slam_command(const SlamOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (options.method) overrides.push_back("slam.method=" + *options.method);
+  if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
+  if (options.skip_bad_lines) overrides.push_back("log.skip_bad_lines=true");
+  LogMappingSettings settings;
+  if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
+  io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
+  const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
+  BoostedStumps neighbours;
+  if (needs_neighbor_model(settings.slam.method)) neighbours = neighbours_for(settings.slam.method, find_data_root(""));
+  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbours, settings.seed);
+
+  const double wall_s = wall_seconds(), thread_s = thread_cpu_time_s();
+  MappedLog mapped;
+  const bool is_whole = map_log(*log, settings, options.log.filename().string(), *mapper, mapped);
+  const OutputLock lock = begin_output(options.out, kMapping);  // not earlier: a damaged log must leave no output
+  if (!is_whole) {
+    fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", options.out.string());
+    return ExitCode::kProgramFailed;
+  }
+  const Trajectory estimate = trajectory_of(mapped.stamps, mapper->path());
+  const PoseGraph graph = mapper->graph();
+  io::save_tum(options.out / "estimate.tum", estimate, "T_map_body by " + settings.slam.method);
+  io::save_tum(options.out / "odometry.tum", trajectory_of(mapped.stamps, mapped.T_odom_body), "T_odom_body, from the first scan");
+  const OccupancyGrid map = mapper->map();
+  io::save_map(options.out / "map.yaml", map);
+  io::save_g2o(options.out / "pose_graph.g2o", graph);
+  io::save_settings(options.out / "settings.yaml", settings);
+  io::save_csv(options.out / "performance.csv", mapped.cost.table());
+  io::Metrics metrics = metrics_of(log->summary(), mapped, estimate, graph);
+  const double took_s = wall_seconds() - wall_s;
+  metrics["performance"] = {{"wall_s", took_s}, {"processor_s", thread_cpu_time_s() - thread_s}, {"real_time_factor", mapped.duration_s() / std::max(1e-9, took_s)}, {"peak_memory_mb", peak_memory_mb()}};
+  io::save_metrics(options.out / "metrics.json", metrics);
+  const MappingContents contents{.log = options.log.filename().string(), .method = settings.slam.method, .map = map, .estimate = estimate, .cost = mapped.cost.table(), .metrics = metrics};
+  io::save_text(options.out / "report.html", render::to_html(mapping_page(contents)));
+  complete_output(options.out);
+
+  fmt::print("{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, {} edges, {} of them to other submaps\n{}\n",
+             io::to_text(log->summary()), mapped.stamps.size(), mapped.way_m, settings.slam.method, took_s, mapped.duration_s() / std::max(1e-9, took_s), peak_memory_mb(),
+             graph.T_map_node.size(), graph.edges.size(), metrics["graph"]["cross_submap_edges"].get<std::size_t>(), (options.out / "map.yaml").string());
+  return ExitCode::kDone;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,53 @@
+#include <fmt/format.h>
+
+#include "app/cli/commands.h"
+#include "app/campaign/sweep/finish_sweep.h"
+#include "app/campaign/sweep/plan.h"
+#include "app/campaign/sweep/run_sweep.h"
+#include "app/campaign/sweep/slurm_engine.h"
+#include "core/error.h"
+
+namespace patrol::app {
+namespace {
+
+/// Checks options that have no check of their own. Throws InputError.
+void check(const SweepOptions& options) {
+  if (options.engine != "local" && options.engine != "slurm") throw InputError(fmt::format("--engine {}: must be local or slurm", options.engine));
+  if (options.stop_when_decided && (!options.shard.empty() || options.engine == "slurm")) {
+    throw InputError("--stop-when-decided: cannot be shared out, since what is still to do depends on what all have found");
+  }
+  if (options.engine == "slurm" && !options.shard.empty()) throw InputError("--shard: the engine slurm makes the shards itself (--slurm-tasks)");
+  if (options.metrics.empty()) throw InputError("--metric: at least one is compared");
+  if (!(options.margin >= 0.0)) throw InputError("--margin: must not be negative");
+  if (options.slurm_tasks < 1 || options.slurm_tasks > 100'000) throw InputError("--slurm-tasks: must lie in 1 ... 100000");
+}
+
+ExitCode perform(const std::filesystem::path& scenario, const SweepManifest& manifest, const Shard& shard, const BatchSettings& settings,
+                 const std::filesystem::path& out) {
+  const SweepDirectory directory = begin_sweep_directory(out, manifest);
+  run_sweep(scenario, manifest, directory, shard, settings);
+  return finish_sweep(directory, manifest);
+}
+
+}  // namespace
+
+ExitCode sweep_command(const SweepOptions& options) {
+  check(options);
+  const Shard shard = parse_shard(options.shard);
+  const BatchSettings settings = batch_settings(options.batch);
+  const SweepManifest manifest = plan_sweep(options);
+  if (options.engine == "slurm") return sweep_on_slurm(options, begin_sweep_directory(options.out, manifest), manifest);
+  return perform(options.scenario, manifest, shard, settings, options.out);
+}
+
+ExitCode budget_command(const BudgetOptions& options) {
+  const BatchSettings settings = batch_settings(options.batch);
+  return perform(options.scenario, plan_budget(options), {}, settings, options.out);
+}
+
+ExitCode faults_command(const FaultsOptions& options) {
+  const BatchSettings settings = batch_settings(options.batch);
+  return perform(options.scenario, plan_faults(options), {}, settings, options.out);
+}
+
+}  // namespace patrol::app

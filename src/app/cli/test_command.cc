@@ -1,0 +1,72 @@
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "app/campaign/batch/result_store.h"
+#include "app/campaign/batch/run_batch.h"
+#include "app/cli/commands.h"
+#include "app/common/output_directory.h"
+#include "app/report/test_page.h"
+#include "app/campaign/test/tested_scenario.h"
+#include "io/atomic_file.h"
+#include "io/csv.h"
+#include "render/report/page.h"
+
+namespace patrol::app {
+namespace {
+
+const OutputKind kTest = {.name = "test",
+                          .unfinished = "Not every scenario has ended.",
+                          .made = {"junit.xml", "tests.csv", "summary.md", "report.html", "runs/[0-9][0-9][0-9][0-9]_*", "work/*-*-*", "*.part"},
+                          .proof = "junit.xml",
+                          .kept = {}};
+
+std::vector<BatchRun> runs_of(const std::vector<TestedScenario>& tested, const TestOptions& options) {
+  std::vector<BatchRun> runs;
+  for (const TestedScenario& one : tested) {
+    runs.push_back({.scenario = one.file, .overrides = options.overrides, .address = one.address, .label = one.name});
+  }
+  return runs;
+}
+
+void print_verdicts(const std::vector<TestedScenario>& tested) {
+  for (const TestedScenario& one : tested) {
+    const RunVerdict& verdict = *one.verdict;
+    fmt::print("{:<20} {}  {}\n", verdict.code() == ExitCode::kDone ? "passed" : name_of(verdict.end), one.name, verdict.message);
+  }
+}
+
+}  // namespace
+
+ExitCode test_command(const TestOptions& options) {
+  const BatchSettings settings = batch_settings(options.batch);
+  std::vector<TestedScenario> tested = find_scenarios(options.scenarios, options.overrides);
+  if (tested.empty()) {
+    fmt::print(stderr, "patrol: {}: holds no scenario (*.yaml): nothing was executed\n", options.scenarios.string());
+    return ExitCode::kNothingExecuted;
+  }
+  const OutputLock lock = begin_output(options.out, kTest);
+  save_test_junit(options.out / "junit.xml", tested);
+
+  const bool is_through = run_batch(runs_of(tested, options), settings, options.out);
+  const ResultStore store(runs_folder(options.out));
+  ExitCode worst = ExitCode::kDone;
+  for (TestedScenario& one : tested) {
+    one.verdict = store.load(one.address);
+    if (one.verdict) worst = worse(worst, one.verdict->code());
+  }
+  save_test_junit(options.out / "junit.xml", tested);
+  if (!is_through) {
+    throw std::runtime_error(fmt::format("interrupted; {} is incomplete", options.out.string()));
+  }
+  io::save_csv(options.out / "tests.csv", tests_table(tested));
+  io::save_text(options.out / "summary.md", tests_summary(tested));
+  io::save_text(options.out / "report.html", render::to_html(test_page(tested)));
+  complete_output(options.out);
+
+  print_verdicts(tested);
+  fmt::print("{} scenarios: {}\n", tested.size(), (options.out / "junit.xml").string());
+  return worst;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/cli/commands.h"
+#include "app/mapping/submap_track.h"
+#include "app/common/progress_bar.h"
+#include "io/adaboost_json.h"
+#include "io/settings_yaml.h"
+#include "slam/submaps/neighbour_examples.h"
+#include "slam/submaps/pair_features.h"
+
+namespace patrol::app {
+namespace {
+
+/// Settings of `patrol train-neighbours --set`.
+struct TrainingSettings {
+  std::uint64_t seed = 1;
+  slam::PlanarScanSettings scan;
+  slam::SubmapRbpfSettings submap_rbpf;
+  slam::NeighborExampleSettings examples;
+  slam::AdaBoostSettings boosting;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("seed", self.seed);
+    visit("scan", self.scan);
+    visit("submap_rbpf", self.submap_rbpf);
+    visit("examples", self.examples);
+    visit("boosting", self.boosting);
+  }
+};
+
+/// Labeled pairs of submaps from the runs; none if interrupted.
+std::optional<slam::LabeledFeatures> examples_of(const std::vector<std::filesystem::path>& runs, const TrainingSettings& settings, const InterruptGuard& guard) {
+  slam::SubmapRbpfSettings apart = settings.submap_rbpf;
+  apart.max_candidates = 0;  // no submap constraints: the classifier does not exist yet
+  slam::LabeledFeatures examples{.names = slam::pair_feature_names(), .examples = {}, .labels = {}};
+  ProgressBar bar;
+  for (const std::filesystem::path& run : runs) {
+    const std::optional<SubmapTrack> track = build_submaps(run, settings.scan, apart, {}, settings.seed, bar, guard);
+    if (!track) return std::nullopt;
+    const std::size_t before = examples.labels.size();
+    slam::add_neighbor_examples(track->slam, track->T_world_submap, settings.submap_rbpf.surfaces, settings.examples, settings.seed + before, examples);
+    const auto joinable = std::count(examples.labels.begin() + static_cast<std::ptrdiff_t>(before), examples.labels.end(), 1);
+    bar.say(fmt::format("{}: {} submaps, {} examples, {} of them neighbours", run.string(), track->T_world_submap.size(), examples.labels.size() - before, joinable));
+  }
+  return examples;
+}
+
+struct Recognised {
+  double precision = 0.0, recall = 0.0;
+};
+
+Recognised recognised_at(double min_margin, const BoostedStumps& model, const slam::LabeledFeatures& examples) {
+  int right = 0, wrong = 0, missed = 0;
+  for (std::size_t i = 0; i < examples.labels.size(); ++i) {
+    const bool is_taken = model.margin(examples.examples[i]) > min_margin, is_neighbour = examples.labels[i] > 0;
+    right += is_taken && is_neighbour ? 1 : 0;
+    wrong += is_taken && !is_neighbour ? 1 : 0;
+    missed += !is_taken && is_neighbour ? 1 : 0;
+  }
+  const auto share = [](int part, int rest) { return part + rest > 0 ? static_cast<double>(part) / (part + rest) : 1.0; };
+  return {.precision = share(right, wrong), .recall = share(right, missed)};
+}
+
+void print_recognition(const char* of, const BoostedStumps& model, const slam::LabeledFeatures& examples) {
+  fmt::print("{}, {} examples:\n  margin above   precision   recall\n", of, examples.labels.size());
+  for (const double margin : {0.0, 0.1, 0.2, 0.3, 0.4}) {
+    const Recognised recognised = recognised_at(margin, model, examples);
+    fmt::print("  {:12.1f}   {:9.4f}   {:6.4f}\n", margin, recognised.precision, recognised.recall);
+  }
+}
+
+}  // namespace
+
+ExitCode train_command(const TrainOptions& options) {
+  const auto settings = io::parse_settings<TrainingSettings>(options.overrides);
+  const InterruptGuard guard;
+  const std::optional<slam::LabeledFeatures> training = examples_of(options.runs, settings, guard);
+  const std::optional<slam::LabeledFeatures> held_out = training ? examples_of(options.held_out, settings, guard) : std::nullopt;
+  if (!training || !held_out) {
+    fmt::print(stderr, "patrol: interrupted; nothing is written\n");
+    return ExitCode::kProgramFailed;
+  }
+  const slam::BoostingResult boosted = slam::train_adaboost(*training, settings.boosting);
+  io::save_boosted_stumps(options.out, boosted.model);
+  fmt::print("{} stumps; of the training examples {:.2f} % wrong, the bound says at most {:.2f} %\n", boosted.model.stumps.size(), 100.0 * boosted.training_error,
+             100.0 * std::min(1.0, boosted.error_bound));
+  print_recognition("training", boosted.model, *training);
+  if (!held_out->labels.empty()) print_recognition("held out", boosted.model, *held_out);
+  fmt::print("{}\n", options.out.string());
+  return ExitCode::kDone;
+}
+
+}  // namespace patrol::app

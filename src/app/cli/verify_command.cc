@@ -1,0 +1,34 @@
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "app/cli/commands.h"
+#include "app/record/run_directory.h"
+#include "app/run/run_loop.h"
+#include "app/common/temporary_folder.h"
+#include "io/log_compare.h"
+
+namespace patrol::app {
+ExitCode verify_command(const std::filesystem::path& run) {
+  const RunDirectory directory = open_run_directory(run);
+  const Scenario scenario = load_scenario(directory.scenario());
+  const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
+
+  const TemporaryFolder again("verify");
+  const std::filesystem::path log = again.path() / "log.mcap";
+  fmt::print(stderr, "verify: running {} again, seed {}\n", directory.scenario().string(), scenario.seed);
+  sim::Simulator twin = make_twin(scenario, files);
+  stack::Stack stack = make_stack(scenario, files);
+  Unobserved nobody;
+  run_loop(scenario, files, twin, stack, log, nobody);
+
+  const std::optional<io::LogDifference> difference = io::first_difference(directory.log(), log);
+  if (!difference) {
+    fmt::print("verified: {} is what the scenario gives, byte for byte\n", directory.log().string());
+    return ExitCode::kDone;
+  }
+  fmt::print("differs: {}\n", io::describe(*difference));
+  return ExitCode::kExpectationMissed;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,42 @@
+#include "app/record/run_directory.h"
+
+#include <fmt/format.h>
+
+#include "app/record/outbox.h"
+#include "app/common/output_directory.h"
+#include "core/error.h"
+
+namespace patrol::app {
+namespace {
+
+const OutputKind kRun = {
+    .name = "run",
+    .unfinished = "This run has not ended: what lies here is not a result.",
+    .made = {"scenario.yaml", "log.mcap", "metrics.json", "junit.xml", "estimate.tum", "truth.tum", "odometry.tum", "map.yaml", "map.pgm",
+             "truth_map.yaml", "truth_map.pgm", "report.html", "replay.mp4", "nav.json", "remote.csv", "scans/scans.json", "scans/*.ply", "map_errors.pgm", "localizability.csv", "still_*.png", "outbox.jsonl", "outbox.sent",
+             "outbox.refused.jsonl", "*.part"},
+    .proof = "scenario.yaml",
+    .kept = {}};
+
+}  // namespace
+
+bool RunDirectory::is_complete() const {
+  return std::filesystem::exists(metrics()) && !std::filesystem::exists(incomplete_marker(root));
+}
+
+RunDirectory begin_run_directory(const std::filesystem::path& root) {
+  if (const std::size_t waiting = num_waiting_results(root); waiting > 0) {
+    throw InputError(fmt::format("{}: {} results of an earlier run wait there for the platform: patrol send them, or name another directory", root.string(), waiting));
+  }
+  return {.root = root, .lock = std::make_shared<const OutputLock>(begin_output(root, kRun))};
+}
+
+RunDirectory open_run_directory(const std::filesystem::path& root) {
+  const RunDirectory directory{root};
+  if (!std::filesystem::exists(directory.log())) {
+    throw InputError(fmt::format("{}: not a run directory: it has no log.mcap", root.string()));
+  }
+  return directory;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "app/common/output_directory.h"
+
+namespace patrol::app {
+
+/// Files of a run directory (README, "The run directory").
+struct RunDirectory {
+  std::filesystem::path root;
+  std::shared_ptr<const OutputLock> lock = nullptr;  ///< lock while the run is being written
+
+  std::filesystem::path scenario() const { return root / "scenario.yaml"; }
+  std::filesystem::path log() const { return root / "log.mcap"; }
+  std::filesystem::path nav() const { return root / "nav.json"; }
+  std::filesystem::path remote() const { return root / "remote.csv"; }
+  std::filesystem::path scans() const { return root / "scans"; }
+  std::filesystem::path metrics() const { return root / "metrics.json"; }
+  std::filesystem::path junit() const { return root / "junit.xml"; }
+  std::filesystem::path estimate() const { return root / "estimate.tum"; }
+  std::filesystem::path truth() const { return root / "truth.tum"; }
+  std::filesystem::path odometry() const { return root / "odometry.tum"; }
+  std::filesystem::path map() const { return root / "map.yaml"; }
+  std::filesystem::path map_errors() const { return root / "map_errors.pgm"; }
+  std::filesystem::path localizability() const { return root / "localizability.csv"; }
+  std::filesystem::path truth_map() const { return root / "truth_map.yaml"; }
+
+  bool is_complete() const;
+};
+
+/// Creates the directory and marks it incomplete (output_directory.h). Removes the files of an earlier run. Throws
+/// InputError if results of that run have not been uploaded.
+RunDirectory begin_run_directory(const std::filesystem::path& root);
+
+/// Opens the directory of an existing run. Throws InputError if it contains no log.
+RunDirectory open_run_directory(const std::filesystem::path& root);
+
+}  // namespace patrol::app

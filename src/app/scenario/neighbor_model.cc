@@ -1,0 +1,17 @@
+#include "app/scenario/neighbor_model.h"
+
+#include "core/named_table.h"
+#include "io/adaboost_json.h"
+#include "slam/mapper.h"
+#include "slam/submaps/pair_features.h"
+
+namespace patrol::app {
+
+bool needs_neighbor_model(const std::string& method) { return row_named(slam::mapping_methods(), method, "mapping").needs_neighbor_model; }
+
+BoostedStumps neighbours_for(const std::string& method, const std::filesystem::path& data_root) {
+  if (!needs_neighbor_model(method)) return {};
+  return io::load_boosted_stumps(data_root / kNeighbourModel, slam::pair_feature_names());
+}
+
+}  // namespace patrol::app

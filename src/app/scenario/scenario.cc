@@ -1,0 +1,178 @@
+#include "app/scenario/scenario.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/scenario/neighbor_model.h"
+#include "core/angles.h"
+#include "core/error.h"
+#include "io/drive_json.h"
+#include "io/map_server.h"
+#include "io/nav_json.h"
+#include "io/remote_csv.h"
+#include "io/route_json.h"
+#include "io/settings_yaml.h"
+#include "io/urdf.h"
+#include "stack/mission/known_map.h"
+
+namespace patrol::app {
+namespace {
+
+bool holds_data(const std::filesystem::path& root) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(root / "worlds", ignored) && std::filesystem::is_directory(root / "models", ignored);
+}
+
+/// Data folder of the program's own installation (bin/patrol and share/patrol) or of the source tree of its build
+/// folder; empty if there is none.
+std::filesystem::path data_root_of_program() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) return {};
+  const std::filesystem::path outer = program.parent_path().parent_path();
+  for (const std::filesystem::path& root : {outer / "share/patrol", outer}) {
+    if (holds_data(root)) return root;
+  }
+  return {};
+}
+
+/// Names of the folders in `parent`, sorted, for "known: ..." in messages.
+std::string folders_in(const std::filesystem::path& parent) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(parent)) {
+    if (entry.is_directory()) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Path <root>/<kind>/<name>/<name><extension>. Throws InputError if it does not exist.
+std::filesystem::path find_definition(const std::filesystem::path& root, const std::string& kind, const std::string& key,
+                                      const std::string& name, const std::string& extension) {
+  const std::filesystem::path file = root / kind / name / (name + extension);
+  if (!std::filesystem::exists(file)) {
+    throw InputError(fmt::format("{} = {}: there is no {} (known: {})", key, name, file.string(), folders_in(root / kind)));
+  }
+  return file;
+}
+
+/// Path of a file below the world's folder that a key names. Throws InputError if it does not exist.
+std::filesystem::path find_named_file(const std::filesystem::path& world, const char* key, const std::string& name) {
+  const std::filesystem::path file = world / name;
+  if (!std::filesystem::exists(file)) throw InputError(fmt::format("{} = {}: there is no {}", key, name, file.string()));
+  if (std::filesystem::is_directory(file)) throw InputError(fmt::format("{} = {}: {} is a folder", key, name, file.string()));
+  return file;
+}
+
+/// Adds the frames of the scenario's mounts to the robot's frames.
+void add_mounts(RobotDescription& robot, const std::vector<MountSettings>& mounts) {
+  for (std::size_t i = 0; i < mounts.size(); ++i) {
+    const MountSettings& mount = mounts[i];
+    const Pose3 T_body_mount{{mount.x_m, mount.y_m, mount.z_m},
+                             quaternion_from_rpy(kDegree * mount.roll_deg, kDegree * mount.pitch_deg, kDegree * mount.yaw_deg)};
+    if (robot.T_body_sensor.emplace(mount.frame, T_body_mount).second) continue;
+    throw InputError(fmt::format("mounts.{}.frame = {}: the robot {} has this frame already: another name is needed", i, mount.frame, robot.name));
+  }
+}
+
+}  // namespace
+
+Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root) {
+  Scenario scenario;
+  const std::filesystem::path profile_file = data_root / "models" / robot / (robot + ".yaml");
+  if (std::filesystem::exists(profile_file)) {
+    const auto profile = io::load_settings<RobotProfile>(profile_file, {});
+    scenario.sensors = profile.sensors;
+    scenario.locomotion = profile.locomotion;
+    scenario.track_drive = profile.track_drive;
+    scenario.stack = profile.stack;
+  }
+  return scenario;
+}
+
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  const std::string robot = io::load_settings<Scenario>(file, overrides).robot;
+  Scenario scenario = default_scenario(robot, find_data_root(file));
+  io::read_settings(file, overrides, scenario);
+  return scenario;
+}
+
+void save_scenario(const std::filesystem::path& file, const Scenario& scenario, const std::string& comment) {
+  io::save_settings(file, scenario, comment);
+}
+
+std::filesystem::path find_data_root(const std::filesystem::path& scenario) {
+  if (const char* named = std::getenv("PATROL_DATA"); named != nullptr && *named != '\0') {
+    if (!holds_data(named)) throw InputError(fmt::format("PATROL_DATA = {}: must be a folder that holds the folders worlds and models", named));
+    return std::filesystem::absolute(named);
+  }
+  std::filesystem::path folder = scenario.empty() ? std::filesystem::current_path() : std::filesystem::absolute(scenario).parent_path();
+  for (; folder != folder.parent_path(); folder = folder.parent_path()) {
+    if (holds_data(folder)) return folder;
+  }
+  if (holds_data(std::filesystem::current_path())) return std::filesystem::current_path();
+  if (const std::filesystem::path found = data_root_of_program(); !found.empty()) return found;
+  if (holds_data(PATROL_SOURCE_DIR)) return PATROL_SOURCE_DIR;
+  throw InputError("the folders worlds and models were found neither beside the scenario nor beside the program: set PATROL_DATA to the "
+                   "folder that holds them");
+}
+
+std::vector<std::filesystem::path> named_files(const Scenario& scenario, const std::filesystem::path& data_root) {
+  const std::filesystem::path world = data_root / "worlds" / scenario.world;
+  const std::pair<const char*, const std::string&> named[] = {{"mission", scenario.mission}, {"map", scenario.map}, {"goals", scenario.goals},
+                                                              {"remote.drive", scenario.remote.drive}, {"remote.recorded", scenario.remote.recorded}};
+  std::vector<std::filesystem::path> files;
+  for (const auto& [key, name] : named) {
+    if (!name.empty()) files.push_back(find_named_file(world, key, name));
+  }
+  if (!scenario.map.empty()) files.push_back(io::map_image(find_named_file(world, "map", scenario.map)));
+  if (!scenario.references.empty()) {
+    for (const std::filesystem::path& file : io::station_scan_files(world / scenario.references)) files.push_back(file);
+  }
+  if (needs_neighbor_model(scenario.stack.mapping)) files.push_back(data_root / kNeighbourModel);
+  return files;
+}
+
+ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root) {
+  ScenarioFiles files;
+  files.world_xml = find_definition(data_root, "worlds", "world", scenario.world, ".xml");
+  files.robot_urdf = find_definition(data_root, "models", "robot", scenario.robot, ".urdf");
+  files.robot = io::load_robot_description(files.robot_urdf.string());
+  add_mounts(files.robot, scenario.mounts);
+  const auto named_file = [&](const char* key, const std::string& name) { return find_named_file(files.world_xml.parent_path(), key, name); };
+  const io::RouteFile route = io::load_route(named_file("mission", scenario.mission));
+  files.route = route.route;
+  files.T_site_start = route.T_site_start;
+  if (!scenario.map.empty()) {
+    const std::filesystem::path file = named_file("map", scenario.map);
+    files.map = io::load_map(file);
+    stack::validate_map(file.string(), *files.map);
+  }
+  if (!scenario.goals.empty()) {
+    const std::filesystem::path file = named_file("goals", scenario.goals);
+    files.goals = io::load_nav(file);
+    stack::validate_goals(file.string(), files.goals, files.map);
+  }
+  files.neighbor_model = neighbours_for(scenario.stack.mapping, data_root);
+  if (!scenario.references.empty()) files.references = io::load_station_scans(files.world_xml.parent_path() / scenario.references);
+  const RemoteSettings& remote = scenario.remote;
+  if (!remote.drive.empty() && !remote.recorded.empty()) {
+    throw InputError("remote: has a drive and recorded commands: only one of them can be followed");
+  }
+  if (!remote.drive.empty()) files.drive = io::load_teleop_route(named_file("remote.drive", remote.drive));
+  if (!remote.recorded.empty()) files.recorded = io::load_teleop(named_file("remote.recorded", remote.recorded));
+  const bool waits_for_remote = std::any_of(files.goals.begin(), files.goals.end(), [](const SavedGoal& goal) { return goal.type == GoalType::kOperator; });
+  if (files.map && files.has_teleop() && !waits_for_remote) {
+    throw InputError(fmt::format("map = {}: a map is given, and by remote control another would be made: only one of them can be used, unless "
+                                 "a goal of type R waits for the remote control",
+                                 scenario.map));
+  }
+  return files;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,122 @@
+#include "app/campaign/sweep/plan.h"
+
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::app::plan_test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+SweepOptions street(const std::vector<std::string>& vary) {
+  SweepOptions options;
+  options.scenario = PATROL_SOURCE_DIR "/worlds/street/scenarios/short.yaml";
+  options.vary = vary;
+  options.seeds = "2";
+  return options;
+}
+
+std::vector<std::string> variants_of(const SweepManifest& manifest) {
+  std::vector<std::string> names;
+  for (const Variant& variant : manifest.variants) names.push_back(variant.name);
+  return names;
+}
+
+BudgetOptions budget_of(const char* scenario) {
+  BudgetOptions options;
+  options.scenario = std::string(PATROL_SOURCE_DIR "/worlds/") + scenario;
+  options.seeds = "2";
+  return options;
+}
+
+TEST(PlanSweep, EveryRunHasAnAddressOfItsOwnAndItIsTheSameNextTime) {
+  const SweepManifest manifest = plan_sweep(street({"sensors.lidar.range_noise_m=0.01,0.03"}));
+  std::set<std::string> addresses;
+  for (const PlannedRun& run : manifest.runs) addresses.insert(run.address);
+  EXPECT_EQ(addresses.size(), 4u);
+  EXPECT_EQ(plan_sweep(street({"sensors.lidar.range_noise_m=0.01,0.03"})).runs[3].address, manifest.runs[3].address);
+}
+
+TEST(PlanSweep, TheSameSettingsHaveTheSameAddressHoweverTheyAreSaid) {
+  SweepOptions said = street({});
+  said.overrides = {"sensors.lidar.range_noise_m=0.030"};
+  EXPECT_EQ(plan_sweep(said).runs[0].address, plan_sweep(street({"sensors.lidar.range_noise_m=0.03"})).runs[0].address);
+}
+
+TEST(PlanSweep, ADrawIsCommonToTheVariantsOfASeed) {
+  const SweepManifest manifest = plan_sweep(street({"stack.slam.particles=10,20", "sensors.lidar.range_noise_m=uniform:0.01:0.05"}));
+  EXPECT_EQ(manifest.runs[0].overrides.back(), manifest.runs[1].overrides.back());
+  EXPECT_NE(manifest.runs[0].overrides.back(), manifest.runs[2].overrides.back());
+}
+
+TEST(PlanSweep, AWrongKeyOrValueIsRefusedBeforeAnythingRuns) {
+  EXPECT_THROW(plan_sweep(street({"sensors.lidar.range_nose_m=0.01,0.03"})), InputError);
+  EXPECT_THROW(plan_sweep(street({"sensors.lidar.range_noise_m=0.01,-0.03"})), InputError);
+}
+
+// The path is the same, the file is another.
+TEST(PlanSweep, AMissionFromElsewhereIsKnownByWhatStandsInIt) {
+  const test::TemporaryFolder folder;
+  const std::string mission = io::load_text(PATROL_SOURCE_DIR "/worlds/street/routes/short.json");
+  SweepOptions elsewhere = street({});
+  elsewhere.overrides = {"mission=" + (folder / "mission.json").string()};
+  io::save_text(folder / "mission.json", mission);
+  const std::string address = plan_sweep(elsewhere).runs[0].address;
+  EXPECT_EQ(plan_sweep(elsewhere).runs[0].address, address);
+  io::save_text(folder / "mission.json", mission + " ");
+  EXPECT_NE(plan_sweep(elsewhere).runs[0].address, address);
+}
+
+TEST(PlanSweep, AMissionThatIsMissingIsRefusedBeforeAnythingRuns) {
+  EXPECT_THROW(plan_sweep(street({"mission=routes/short.json,routes/nowhere.json"})), InputError);
+}
+
+TEST(PlanBudget, AQuadrupedHasNoBeltsAndNoUwbToLoseAnythingBy) {
+  const std::vector<std::string> variants = variants_of(plan_budget(budget_of("street/scenarios/short.yaml")));
+  EXPECT_THAT(variants, Contains("foot contact: noise"));
+  EXPECT_THAT(variants, Not(Contains(HasSubstr("UWB"))));
+  EXPECT_THAT(variants, Not(Contains(HasSubstr("belts"))));
+}
+
+TEST(PlanBudget, ATrackedRobotHasNoLegs) {
+  const std::vector<std::string> variants = variants_of(plan_budget(budget_of("tunnel/scenarios/docking.yaml")));
+  EXPECT_THAT(variants, Contains("UWB: blocked paths"));
+  EXPECT_THAT(variants, Contains("belts: slip (friction 2)"));
+  EXPECT_THAT(variants, Not(Contains("foot contact: noise")));
+}
+
+TEST(PlanBudget, WhatAScenarioDoesNotHaveIsNotTakenAway) {
+  BudgetOptions options = budget_of("street/scenarios/short.yaml");
+  options.overrides = {"sensors.lidar.range_noise_m=0"};
+  EXPECT_THAT(variants_of(plan_budget(options)), Not(Contains("lidar: range noise")));
+}
+
+TEST(PlanBudget, OneSeedSaysNothingOfTheSpread) {
+  BudgetOptions options = budget_of("street/scenarios/short.yaml");
+  options.seeds = "1";
+  EXPECT_THROW(plan_budget(options), InputError);
+}
+
+FaultsOptions faults_of(const char* scenario) {
+  FaultsOptions options;
+  options.scenario = std::string(PATROL_SOURCE_DIR "/worlds/") + scenario;
+  return options;
+}
+
+TEST(PlanFaults, EachOfTheSevenKindsForEachSensorAndOneRunWithout) {
+  // lidar, IMU, joint encoders, foot sensors, gas meter, GNSS
+  EXPECT_EQ(plan_faults(faults_of("street/scenarios/short.yaml")).runs.size(), 1u + 6u * 7u);
+  // lidar, IMU, Hall sensors, UWB, ultrasonic ring, depth camera
+  EXPECT_EQ(plan_faults(faults_of("tunnel/scenarios/docking.yaml")).runs.size(), 1u + 6u * 7u);
+}
+
+}  // namespace
+}  // namespace patrol::app::plan_test

@@ -1,0 +1,125 @@
+#include "app/scenario/scenario.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::app::scenario_test {
+namespace {
+
+using test::TemporaryFolder;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+const std::filesystem::path kSource = PATROL_SOURCE_DIR;
+
+TEST(Scenario, EveryOneOfEveryWorldIsReadFindsItsFilesAndExpectsSomething) {
+  int num_scenarios = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kSource / "worlds")) {
+    if (entry.path().extension() != ".yaml" || entry.path().parent_path().filename() != "scenarios") continue;
+    ++num_scenarios;
+    const Scenario scenario = load_scenario(entry.path());
+    const ScenarioFiles files = load_scenario_files(scenario, find_data_root(entry.path()));
+    EXPECT_TRUE(std::filesystem::exists(files.world_xml)) << entry.path();
+    EXPECT_FALSE(files.route.stations.empty() && files.goals.empty() && !files.has_teleop()) << entry.path() << " leads nowhere";
+    EXPECT_FALSE(scenario.expect.empty()) << entry.path() << " expects nothing";
+  }
+  EXPECT_GE(num_scenarios, 10);
+}
+
+TEST(Scenario, FindsTheQuadrupedByItsName) {
+  const ScenarioFiles files = load_scenario_files(Scenario{}, kSource);
+  EXPECT_EQ(files.world_xml, kSource / "worlds/street/street.xml");
+  EXPECT_EQ(files.robot_urdf, kSource / "models/quadruped/quadruped.urdf");
+  EXPECT_EQ(files.robot.legs.size(), 4u);
+}
+
+TEST(Scenario, AnUnknownWorldOrRobotNamesTheKnownOnes) {
+  Scenario scenario;
+  scenario.world = "moon";
+  EXPECT_THAT(
+      [&] { load_scenario_files(scenario, kSource); },
+      ThrowsMessage<InputError>(AllOf(HasSubstr("world = moon"), HasSubstr("known: "), HasSubstr("street"))));
+  scenario.world = "street";
+  scenario.robot = "hexapod";
+  EXPECT_THAT([&] { load_scenario_files(scenario, kSource); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("robot = hexapod"), HasSubstr("quadruped"))));
+}
+
+TEST(Scenario, AMissingMissionIsNamed) {
+  Scenario scenario;
+  scenario.mission = "routes/absent.json";
+  EXPECT_THAT([&] { load_scenario_files(scenario, kSource); },
+              ThrowsMessage<InputError>(
+                  AllOf(HasSubstr("mission = routes/absent.json"), HasSubstr("worlds/street"))));
+}
+
+// <folder>/worlds and <folder>/models, the scenario two folders down.
+TEST(Scenario, DataLieInTheNearestFolderAboveItThatHasBoth) {
+  const TemporaryFolder folder;
+  for (const char* name : {"worlds/field/scenarios", "models", "worlds/field/worlds"}) {
+    std::filesystem::create_directories(folder / name);
+  }
+  EXPECT_EQ(find_data_root(folder / "worlds/field/scenarios/night.yaml"), folder.path());
+}
+
+TEST(Scenario, ElsewhereItTakesTheWorkingDirectoryOrTheSourceTree) {
+  const TemporaryFolder folder;
+  const std::filesystem::path here = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());  // nothing here
+  const std::filesystem::path from_nowhere = find_data_root(folder / "my.yaml");
+  std::filesystem::create_directories(folder / "elsewhere/worlds");
+  std::filesystem::create_directories(folder / "elsewhere/models");
+  std::filesystem::create_directories(folder / "apart");
+  std::filesystem::current_path(folder / "elsewhere");
+  const std::filesystem::path from_working_directory = find_data_root(folder / "apart/my.yaml");
+  std::filesystem::current_path(here);
+  EXPECT_EQ(from_nowhere, kSource);
+  EXPECT_EQ(from_working_directory, folder / "elsewhere");
+}
+
+TEST(Scenario, DataLieWhereTheEnvironmentSays) {
+  const TemporaryFolder folder;
+  for (const char* name : {"worlds", "models", "other/worlds", "other/models", "empty"}) std::filesystem::create_directories(folder / name);
+  ::setenv("PATROL_DATA", (folder / "other").c_str(), 1);
+  const std::filesystem::path named = find_data_root(folder / "worlds/my.yaml");
+  ::setenv("PATROL_DATA", (folder / "empty").c_str(), 1);
+  EXPECT_THROW(find_data_root(folder / "worlds/my.yaml"), InputError);
+  ::setenv("PATROL_DATA", "", 1);
+  const std::filesystem::path unnamed = find_data_root(folder / "worlds/my.yaml");
+  ::unsetenv("PATROL_DATA");
+  EXPECT_EQ(named, folder / "other");
+  EXPECT_EQ(unnamed, folder.path());
+}
+
+// What `patrol run` writes beside its results runs again: everything that was set comes back.
+TEST(Scenario, ResolvedAndReadAgainIsTheSame) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = kSource / "worlds/street/scenarios/short.yaml";
+  const auto first = load_scenario(file, {"seed=7", "sensors.lidar.range_noise_m=0.05"});
+  save_scenario(folder / "a.yaml", first, "");
+  const auto second = load_scenario(folder / "a.yaml");
+  save_scenario(folder / "b.yaml", second, "");
+  EXPECT_EQ(second.seed, 7u);
+  EXPECT_EQ(second.expect.size(), first.expect.size());
+  EXPECT_EQ(test::read_bytes(folder / "a.yaml"), test::read_bytes(folder / "b.yaml"));
+}
+
+TEST(Scenario, TheLightIsAsTheWorldHasItUnlessOneDimsIt) {
+  const std::filesystem::path file = kSource / "worlds/tunnel/scenarios/docking.yaml";
+  EXPECT_EQ(load_scenario(file).light.brightness_share, 1.0);
+  EXPECT_EQ(load_scenario(file, {"light.brightness_share=0.4"}).light.brightness_share, 0.4);
+  EXPECT_THAT([&] { load_scenario(file, {"light.brightness_share=1.5"}); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("light.brightness_share"), HasSubstr("1.5"), HasSubstr("0 ... 1"))));
+}
+
+TEST(Scenario, AnOverrideOfAnUnknownKeyNamesTheNearest) {
+  EXPECT_THAT([] { load_scenario(kSource / "worlds/street/scenarios/short.yaml", {"sed=3"}); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("sed"), HasSubstr("seed"))));
+}
+
+}  // namespace
+}  // namespace patrol::app::scenario_test
