@@ -51,9 +51,9 @@ LocalizabilityScore localizability_score(const std::vector<LocalizabilitySample>
     truth.push_back(sample.truth.max_std_m);
     claimed.push_back(sample.reported_std_m);
     is_degenerate.push_back(sample.truth.is_degenerate());
-    if (sample.trust) {
+    if (sample.confidence) {
       truth_with_confidence.push_back(sample.truth.max_std_m);
-      negated_confidence.push_back(-*sample.trust);
+      negated_confidence.push_back(-*sample.confidence);
       is_degenerate_with_confidence.push_back(sample.truth.is_degenerate());
     }
     if (sample.truth.is_degenerate()) {

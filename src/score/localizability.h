@@ -41,7 +41,7 @@ struct LocalizabilitySample {
   Localizability truth;
   double reported_std_m = 0.0;          ///< standard deviation along the weakest direction of the stack's covariance
   double reported_direction_rad = 0.0;  ///< weakest direction of the stack's covariance, in world
-  std::optional<double> trust;         ///< confidence, 0 lost ... 1 certain; none when the stack does not report one
+  std::optional<double> confidence;         ///< confidence, 0 lost ... 1 certain; none when the stack does not report one
 };
 
 /// Agreement of the stack's reported uncertainty with the Cramer-Rao bound. Values that need degenerate poses, or lists

@@ -33,12 +33,12 @@ std::vector<TrackedLocalizability> track_localizability(const RunRecord& record,
                      .sample = {.truth = oracle(p_world_m),
                                 .reported_std_m = std::sqrt(std::max(own.large, 0.0)),
                                 .reported_direction_rad = T_world_map.yaw + own.large_direction_rad,
-                                .trust = confidence_at(record.confidences, stamp)}});
+                                .confidence = confidence_at(record.confidences, stamp)}});
   }
   return track;
 }
 
-LocalizabilityScore mean_weight(const std::vector<TrackedLocalizability>& track) {
+LocalizabilityScore score_of(const std::vector<TrackedLocalizability>& track) {
   std::vector<LocalizabilitySample> samples;
   for (const TrackedLocalizability& at : track) samples.push_back(at.sample);
   return localizability_score(samples);

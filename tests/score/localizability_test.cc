@@ -145,7 +145,7 @@ TEST(Localizability, LeastSquaresOverFourHundredNoisyScansSpreadsAsTheBoundSays)
 }
 
 LocalizabilitySample sample(double true_std_m, double reported_std_m, std::optional<double> trust = {}) {
-  LocalizabilitySample sample{.truth = {}, .reported_std_m = reported_std_m, .reported_direction_rad = 0.1, .trust = trust};
+  LocalizabilitySample sample{.truth = {}, .reported_std_m = reported_std_m, .reported_direction_rad = 0.1, .confidence = trust};
   sample.truth.max_std_m = true_std_m;
   return sample;
 }

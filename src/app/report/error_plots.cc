@@ -87,7 +87,7 @@ std::vector<render::Block> error_blocks(const RunContents& run) {
   blocks.emplace_back(plots.lines("Position error", "m", {position_curve("estimate", SeriesColor::kEstimate, estimate), bound_curve("its own 2σ", record, position_std_m)}));
   blocks.emplace_back(unaided_plot(plots, run));
   blocks.emplace_back(plots.lines("Heading error", "°", {heading_curve("estimate", SeriesColor::kEstimate, estimate), bound_curve("its own 2σ", record, heading_std_deg)}));
-  if (!record.trusts.empty()) blocks.emplace_back(trust_plot(plots, record.trusts));
+  if (!record.confidences.empty()) blocks.emplace_back(trust_plot(plots, record.confidences));
   render::TextBlock note;
   note.text = "Map and world are joined at the start; nothing is fitted afterwards. 2σ: of the position, twice the root of the sum of both variances. "
               "Lines: troubles, recoveries, relocalisations; shaded: faults, and where the robot says that it is lost.";

@@ -62,7 +62,7 @@ std::vector<render::PlotSpan> spans_of(const RunContents& run) {
     const double end_s = std::min(fault.start_s + fault.duration_s, run.end_s());
     if (fault.start_s < end_s) spans.push_back({.from = fault.start_s, .to = end_s, .text = name_of(fault)});
   }
-  const std::vector<LocalizationConfidence>& trusts = run.record.trusts;
+  const std::vector<LocalizationConfidence>& trusts = run.record.confidences;
   for (std::size_t i = 0; i + 1 < trusts.size(); ++i) {
     if (!trusts[i].is_lost) continue;
     const std::size_t first = i;

@@ -38,12 +38,12 @@ Blocks replay_blocks(const RunContents& run, const std::filesystem::path& page_f
   const std::filesystem::path video = run.directory.root / "replay.mp4";
   if (!std::filesystem::exists(video)) return {};
   if (std::filesystem::file_size(video) <= kLargestEmbedded) {
-    return {render::VideoBlock{.mp4 = io::load_text(video), .address = "", .caption = "Rendered from the log by patrol replay"}};
+    return {render::VideoBlock{.mp4 = io::load_text(video), .url = "", .caption = "Rendered from the log by patrol replay"}};
   }
   const bool is_beside = std::filesystem::absolute(page_file).lexically_normal().parent_path() ==
                          std::filesystem::absolute(video).lexically_normal().parent_path();
   if (!is_beside) return {};
-  return {render::VideoBlock{.mp4 = "", .address = "replay.mp4",
+  return {render::VideoBlock{.mp4 = "", .url = "replay.mp4",
                              .caption = "Rendered from the log by patrol replay. Plays from replay.mp4, which must stay next to this page."}};
 }
 

@@ -110,7 +110,7 @@ TEST(ErrorBlocks, ShowTheEstimatesErrorItsBoundAndOdometrys) {
 TEST(ErrorBlocks, ShadeFaultsAndWhereTheRobotSaysThatItIsLost) {
   RunContents run = small_run();
   run.scenario.faults = {{.sensor = "imu", .kind = "freeze", .start_s = 2.0, .duration_s = 100.0}};
-  run.record.trusts = {{.stamp = from_seconds(3.0), .confidence = 1.0}, {.stamp = from_seconds(4.0), .is_lost = true}, {.stamp = from_seconds(5.0), .confidence = 1.0}};
+  run.record.confidences = {{.stamp = from_seconds(3.0), .confidence = 1.0}, {.stamp = from_seconds(4.0), .is_lost = true}, {.stamp = from_seconds(5.0), .confidence = 1.0}};
   const std::vector<render::PlotSpan> spans = spans_of(run);
   ASSERT_EQ(spans.size(), 2u);
   EXPECT_EQ(spans[0].to, 10.0);  // the run's end
