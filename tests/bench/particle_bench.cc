@@ -99,8 +99,8 @@ void StepAgainstBareLoop(benchmark::State& state) {
     slam::FastSlam slam({.particles = static_cast<int>(particles)}, world.motion, world.noise, slam::make_components({}), 1);
     double round_s = 0.0;
     for (std::size_t k = 0; k < drive.controls.size(); ++k, ++num_steps) {
-      ratio.reference([&] { sum += bare.step(drive.controls[k], drive.seen[k]); });
-      round_s += ratio.subject([&] { sum += slam.step(drive.controls[k], drive.seen[k]).T_map_body.x; });
+      ratio.reference([&] { sum += bare.step(drive.controls[k], drive.observations[k]); });
+      round_s += ratio.subject([&] { sum += slam.step(drive.controls[k], drive.observations[k]).T_map_body.x; });
     }
     subject_s += round_s;
     state.SetIterationTime(round_s);

@@ -403,7 +403,7 @@ TEST_F(McapScans, AFileWithoutScansOrOdometrySaysSo) {
 TEST_F(McapScans, ARecordLargerThanAQuarterOfAGigabyteIsDamageNotData) {
   writer.close();
   std::string bytes(mcap::kMagic);
-  mcap::Bytes head;
+  mcap::RecordWriter head;
   head.record_head(mcap::kMessage, 9'000'000'000);
   write_bytes(file, bytes + std::string(head.view()));
   std::filesystem::resize_file(file, 10'000'000'000);  // sparse
