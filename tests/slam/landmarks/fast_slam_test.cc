@@ -185,7 +185,7 @@ std::vector<double> second_positions(const Offspring& child, std::vector<double>
 TEST(FastSlam, OffspringStandAQuarterOfTheWayOrHalfAnIncrementFarther) {
   std::vector<double> first;
   const std::vector<double> copies = second_positions({.parent = 2}, first);
-  const std::vector<double> drawn = second_positions({.parent = 2, .attractor = 1, .share = 0.25}, first);
+  const std::vector<double> drawn = second_positions({.parent = 2, .attractor = 1, .attraction = 0.25}, first);
   const std::vector<double> shaken = second_positions({.parent = 2, .mutation = 0.5}, first);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(drawn[i] - copies[i], 0.25 * (first[1] - first[2]), kExactTol) << i;

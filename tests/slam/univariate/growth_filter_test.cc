@@ -54,7 +54,7 @@ TEST(GrowthFilter, ShowsParticlesAndWeightsOfItsEstimate) {
 
 TEST(GrowthFilter, ChildHalfWayToAnotherAndATenthFartherStartsThere) {
   const Resampler halfway = [](const std::vector<double>& weights, RandomSequence&) {
-    return std::vector<Offspring>(weights.size(), {.parent = 0, .attractor = 1, .share = 0.5, .mutation = 0.1});
+    return std::vector<Offspring>(weights.size(), {.parent = 0, .attractor = 1, .attraction = 0.5, .mutation = 0.1});
   };
   GrowthFilter filter(10'000, GrowthModel(), {.optimizer = nullptr, .resample = halfway, .resample_threshold = 1.0}, 1);
   filter.step(3.2);
