@@ -11,7 +11,7 @@ namespace patrol::slam {
 /// Recipe of a new particle: a copy of `parent`, optionally moved toward another particle or perturbed.
 struct Offspring {
   std::size_t parent = 0;
-  std::size_t attractor = 0;     ///< index of the attracting particle; state = parent + share (toward - parent)
+  std::size_t attractor = 0;     ///< index of the attracting particle; state = parent + attraction (attractor - parent)
   double attraction = 0.0;
   double mutation = 0.0;      ///< relative perturbation: the state, or its increment, is multiplied by 1 + mutation
 };

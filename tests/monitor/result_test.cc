@@ -32,7 +32,7 @@ TEST(Result, ComesBackFromItsJson) {
   const std::vector<Result> back = results_from_json(to_json(result));
   ASSERT_EQ(back.size(), 1U);
   EXPECT_EQ(back[0].id, "spot-1/run_1/7");
-  EXPECT_EQ(content_of(back[0]), content_of(result));
+  EXPECT_EQ(to_content(back[0]), to_content(result));
 }
 
 TEST(Result, AListIsABatch) { EXPECT_EQ(results_from_json("[" + to_json(pose_result(0)) + "," + to_json(pose_result(1)) + "]").size(), 2U); }
@@ -81,8 +81,8 @@ TEST(Result, OneInABatchRefusesIt) {
 }
 
 TEST(Result, ItsSummaryHasTheLengthsOfLongLists) {
-  EXPECT_EQ(summary_of(pose_result(1)), pose_result(1).data);
-  const Json summary = Json::parse(summary_of(lining_result(1, 4.0)));
+  EXPECT_EQ(to_summary(pose_result(1)), pose_result(1).data);
+  const Json summary = Json::parse(to_summary(lining_result(1, 4.0)));
   EXPECT_EQ(summary["cells"], 3);
   EXPECT_EQ(summary["findings"], 1);
   EXPECT_EQ(summary["station"], "station_1");

@@ -20,7 +20,7 @@ struct Summary {
   double processor_s = 0.0;
 };
 
-Summary summary_of(const ProblemReport& report) {
+Summary to_summary(const ProblemReport& report) {
   Summary summary;
   for (const SolvedProblem& solved : report.solved) {
     summary.processor_s += solved.processor_s;
@@ -47,7 +47,7 @@ std::size_t num_failed(const ProblemReport& report) {
 }
 
 std::string to_text(const ProblemReport& report) {
-  const Summary summary = summary_of(report);
+  const Summary summary = to_summary(report);
   const std::size_t count = report.solved.size(), failed = num_failed(report);
   std::string text = fmt::format("{}: {} problems by {}\nroutes             {} found, each checked against every lethal cell\n", report.file_name, count,
                                  report.settings.planner, summary.num_found);
@@ -68,7 +68,7 @@ std::string to_text(const ProblemReport& report) {
 }
 
 io::Metrics to_json(const ProblemReport& report) {
-  const Summary summary = summary_of(report);
+  const Summary summary = to_summary(report);
   const auto ratio = [&](double value) { return summary.ratios.empty() ? std::nan("") : value; };
   const std::vector<double>& ratios = summary.ratios;
   return {{"problems", report.file_name},

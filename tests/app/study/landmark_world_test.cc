@@ -48,12 +48,12 @@ TEST(GardenWorld, EverySightIsOfALandmarkWithin10MetresAndErrsByHalfAMetreAnd5De
   const LandmarkWorld world = garden_world("M", true);
   const LandmarkRun run = simulate(world, 3);
   test::Moments range, bearing;
-  for (std::size_t k = 0; k < run.seen.size(); ++k) {
-    for (const slam::RangeBearing& sight : run.seen[k]) {
+  for (std::size_t k = 0; k < run.observations.size(); ++k) {
+    for (const slam::RangeBearing& sight : run.observations[k]) {
       const slam::PredictedObservation truth = slam::predict_observation(run.truth[k], world.landmarks_m[static_cast<std::size_t>(sight.landmark)]);
-      EXPECT_LE(truth.sight.x(), 10.0);
-      range.add(sight.range_m - truth.sight.x());
-      bearing.add(wrap_angle(sight.bearing_rad - truth.sight.y()));
+      EXPECT_LE(truth.observation.x(), 10.0);
+      range.add(sight.range_m - truth.observation.x());
+      bearing.add(wrap_angle(sight.bearing_rad - truth.observation.y()));
     }
   }
   EXPECT_GT(range.count, 5000);
@@ -93,8 +93,8 @@ TEST(LandmarkWorld, TheSameSeedGivesTheSameRunAndSwitchingTheBiasOffMovesNoOther
   for (std::size_t k = 0; k < with.odometry.size(); ++k) {
     EXPECT_NEAR(with.odometry[k].x() - without.odometry[k].x(), 0.3, 1e-12);
     EXPECT_NEAR(with.odometry[k].y() - without.odometry[k].y(), 2.0 * kDegree, 1e-12);
-    ASSERT_EQ(with.seen[k].size(), without.seen[k].size());
-    for (std::size_t i = 0; i < with.seen[k].size(); ++i) EXPECT_EQ(with.seen[k][i].range_m, without.seen[k][i].range_m);
+    ASSERT_EQ(with.observations[k].size(), without.observations[k].size());
+    for (std::size_t i = 0; i < with.observations[k].size(); ++i) EXPECT_EQ(with.observations[k][i].range_m, without.observations[k][i].range_m);
   }
 }
 
