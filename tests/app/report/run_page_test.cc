@@ -92,7 +92,7 @@ TEST(RunPage, EmbedsASmallReplayAndPlaysALargeOneFromTheFileNextToThePage) {
   test::write_bytes(folder / "replay.mp4", "film");
   EXPECT_EQ(replays(folder / "report.html").at(0).mp4, "film");
   std::filesystem::resize_file(folder / "replay.mp4", 7 << 20);
-  EXPECT_EQ(replays(folder / "report.html").at(0).address, "replay.mp4");
+  EXPECT_EQ(replays(folder / "report.html").at(0).url, "replay.mp4");
   EXPECT_THAT(render::to_html(run_page(run, folder / "report.html")), HasSubstr("<video controls preload=\"metadata\" src=\"replay.mp4\">"));
   EXPECT_TRUE(replays(folder / "elsewhere/report.html").empty());
 }
