@@ -32,7 +32,7 @@ const Asset* asset_at(std::string_view path) {
                                   {"/page.css", "text/css; charset=utf-8", kPageStyle},
                                   {"/page.js", "text/javascript; charset=utf-8", kPageScript},
                                   {"/site.js", "text/javascript; charset=utf-8", kSiteScript},
-                                  {"/words.js", "text/javascript; charset=utf-8", kFormatScript},
+                                  {"/words.js", "text/javascript; charset=utf-8", kWordsScript},
                                   {"/map.js", "text/javascript; charset=utf-8", kMapScript},
                                   {"/plots.js", "text/javascript; charset=utf-8", kPlotsScript},
                                   {"/uplot.js", "text/javascript; charset=utf-8", kPlotLibrary},
