@@ -18,7 +18,7 @@ struct DecisionStump {
   friend bool operator==(const DecisionStump&, const DecisionStump&) = default;
 };
 
-/// Weighted vote of decision stumps [Freund97]. Trained in slam/submaps/adaboost.h, stored by io/adaboost_json.h.
+/// Weighted vote of decision stumps [Freund97]. Trained in slam/submaps/adaboost.h, stored by io/json/adaboost_json.h.
 struct BoostedStumps {
   std::vector<std::string> features;  ///< [feature]: name, checked when a model is loaded
   std::vector<DecisionStump> stumps;

@@ -14,7 +14,7 @@
 
 /// Conventions for settings. Settings are plain structs with default member values. Each struct lists its fields once,
 /// in a static function; this list serves reading from YAML, writing with all defaults, and validation
-/// (io/settings_yaml.h):
+/// (io/yaml/settings_yaml.h):
 ///
 ///   struct LidarSettings {
 ///     double range_noise_m = 0.03;   ///< standard deviation

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 
 namespace patrol {
 namespace {

@@ -14,10 +14,10 @@
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include "core/convex_polygon.h"
+#include "core/geometry/convex_polygon.h"
 #include "core/error.h"
 #include "core/leg_kinematics.h"
-#include "io/atomic_file.h"
+#include "io/files/atomic_file.h"
 
 namespace patrol::io {
 namespace {

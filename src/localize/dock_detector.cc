@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/linear_algebra.h"
-#include "core/segment.h"
+#include "core/geometry/linear_algebra.h"
+#include "core/geometry/segment.h"
 
 namespace patrol::localize {
 namespace {

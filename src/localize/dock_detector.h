@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/dock_sighting.h"
+#include "core/dock_detection.h"
 #include "core/messages.h"
 #include "core/settings.h"
 

@@ -9,7 +9,7 @@
 #include "localize/frozen_readings.h"
 #include "localize/imu_mount.h"
 #include "localize/motion_history.h"
-#include "localize/standstill.h"
+#include "localize/stationary_gyro_bias.h"
 
 namespace patrol::localize {
 

@@ -7,10 +7,10 @@
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
 #include "core/settings.h"
-#include "localize/belt_counters.h"
+#include "localize/track_encoders.h"
 #include "localize/imu_front_end.h"
 #include "localize/pending_readings.h"
-#include "localize/slip_watch.h"
+#include "localize/slip_detector.h"
 #include "localize/track_filter.h"
 
 namespace patrol::localize {

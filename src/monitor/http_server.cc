@@ -25,7 +25,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "io/one_line.h"
+#include "io/files/one_line.h"
 #include "monitor/byte_budget.h"
 #include "monitor/url.h"
 

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "io/one_line.h"
+#include "io/files/one_line.h"
 #include "monitor/result.h"
 
 namespace patrol::monitor {

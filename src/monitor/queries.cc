@@ -7,8 +7,8 @@
 
 #include "core/error.h"
 #include "core/inspection_result.h"
-#include "io/base64.h"
-#include "io/json_object.h"
+#include "io/files/base64.h"
+#include "io/json/json_object.h"
 
 namespace patrol::monitor {
 namespace {

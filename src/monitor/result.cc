@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "io/base64.h"
-#include "io/inspection_json.h"
-#include "io/json_check.h"
-#include "io/json_object.h"
+#include "io/files/base64.h"
+#include "io/json/inspection_json.h"
+#include "io/json/json_check.h"
+#include "io/json/json_object.h"
 #include "monitor/png_size.h"
 
 namespace patrol::monitor {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "io/json_check.h"
-#include "io/json_object.h"
+#include "io/json/json_check.h"
+#include "io/json/json_object.h"
 #include "monitor/assets.h"
 #include "monitor/queries.h"
 #include "monitor/token.h"

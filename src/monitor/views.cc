@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "core/event.h"
-#include "io/inspection_json.h"
-#include "io/json_object.h"
+#include "io/json/inspection_json.h"
+#include "io/json/json_object.h"
 
 namespace patrol::monitor {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <numbers>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "render/canvas.h"
-#include "render/palette.h"
+#include "render/scene/palette.h"
 
 namespace patrol::render {
 namespace {

@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <mujoco/mujoco.h>
 
-#include "render/camera.h"
-#include "render/frame.h"
+#include "render/scene/camera.h"
+#include "render/scene/frame.h"
 #include "sim/gas_plume.h"
 
 namespace patrol::render {

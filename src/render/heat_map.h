@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "core/grid.h"
-#include "render/frame.h"
+#include "render/scene/frame.h"
 
 namespace patrol::render {
 

@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "render/palette.h"
+#include "render/scene/palette.h"
 
 namespace patrol::render {
 namespace {

@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/time.h"
-#include "render/ghost.h"
-#include "render/palette.h"
-#include "render/world_ink.h"
+#include "render/scene/ghost.h"
+#include "render/scene/palette.h"
+#include "render/world_overlay.h"
 
 namespace patrol::render {
 namespace {

@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "render/camera.h"
+#include "render/scene/camera.h"
 #include "render/canvas.h"
-#include "render/film/film_note.h"
+#include "render/film_note.h"
 #include "render/gas_puffs.h"
 #include "render/map_inset.h"
 #include "render/run_snapshot.h"

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "render/offscreen.h"
+#include "render/scene/offscreen.h"
 #include "sim/lidar_scene.h"
 #include "sim/mujoco.h"
 #include "sim/robot_model.h"

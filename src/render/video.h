@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/frame.h"
+#include "render/scene/frame.h"
 
 namespace patrol::render {
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/frames.h"
-#include "core/segment.h"
+#include "core/geometry/segment.h"
 #include "score/distance_field.h"
 #include "score/statistics.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::score {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/angles.h"
-#include "core/symmetric_axes.h"
+#include "core/geometry/angles.h"
+#include "core/geometry/principal_axes.h"
 #include "score/statistics.h"
 
 namespace patrol::score {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/surface_return.h"
+#include "core/beam_return.h"
 
 namespace patrol::score {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/symmetric_axes.h"
+#include "core/geometry/principal_axes.h"
 
 namespace patrol::score {
 namespace {

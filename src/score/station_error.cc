@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/angles.h"
-#include "core/linear_algebra.h"
+#include "core/geometry/angles.h"
+#include "core/geometry/linear_algebra.h"
 #include "score/distance_field.h"
 #include "score/map_error.h"
 

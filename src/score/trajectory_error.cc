@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 #include "score/statistics.h"
 

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "core/linear_algebra.h"
+#include "core/geometry/linear_algebra.h"
 
 namespace patrol::score {
 namespace {

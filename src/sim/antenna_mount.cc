@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 
 namespace patrol::sim {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 
 namespace patrol::sim {

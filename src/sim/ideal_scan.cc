@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::sim {
 

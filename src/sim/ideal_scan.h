@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/surface_return.h"
+#include "core/beam_return.h"
 #include "sim/lidar_scene.h"
 
 namespace patrol::sim {

@@ -5,7 +5,7 @@
 
 #include "core/frames.h"
 #include "sim/mujoco.h"
-#include "sim/props.h"
+#include "sim/static_obstacles.h"
 #include "sim/robot_model.h"
 
 namespace patrol::sim {

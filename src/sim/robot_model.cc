@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 #include "sim/track_model.h"
 

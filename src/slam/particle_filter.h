@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/particle_weights.h"
-#include "slam/particle_filter_parts.h"
+#include "slam/particle_filter_components.h"
 
 namespace patrol::slam {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/linear_algebra.h"
+#include "core/geometry/linear_algebra.h"
 #include "slam/local_line.h"
 
 namespace patrol::slam {

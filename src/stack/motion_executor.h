@@ -10,7 +10,7 @@
 #include "localize/dock_detector.h"
 #include "plan/control/docking.h"
 #include "plan/navigation/navigator.h"
-#include "stack/instruments/standing_place.h"
+#include "stack/instruments/station_pose.h"
 #include "stack/localization/pose_pipeline.h"
 #include "stack/mission/task.h"
 #include "stack/output/stack_output.h"

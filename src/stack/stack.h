@@ -7,7 +7,7 @@
 
 #include "core/messages.h"
 #include "core/sensors/registry.h"
-#include "stack/sensors/sensor_watch.h"
+#include "stack/sensors/sensor_monitor.h"
 #include "stack/instruments/instrument_set.h"
 #include "stack/localization/pose_pipeline.h"
 #include "stack/mission/mission.h"

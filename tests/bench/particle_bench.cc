@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "core/random.h"
-#include "slam/landmarks/fast_slam.h"
+#include "studies/landmarks/fast_slam.h"
 #include "tests/bench/ratio.h"
 #include "tests/slam/landmarks/circle_world.h"
 
 namespace patrol::bench {
 namespace {
 
-using slam::RangeBearing;
+using studies::RangeBearing;
 
 test::CircleWorld bench_world() {
   test::CircleWorld world;
@@ -33,7 +33,7 @@ class BareLoop {
       : world_(world), landmarks_(static_cast<std::size_t>(world.num_landmarks)), x_(particles), y_(particles), yaw_(particles), log_weight_(particles),
         mx_(particles * landmarks_), my_(mx_), pxx_(mx_), pxy_(mx_), pyy_(mx_), is_seen_(mx_.size(), 0) {}
 
-  double step(const slam::Control& control, const std::vector<RangeBearing>& seen) {
+  double step(const studies::Control& control, const std::vector<RangeBearing>& seen) {
     RandomSequence random(stream_, steps_++);
     const double dt = world_.motion.step_s, R0 = std::pow(world_.noise.range_std_m, 2), R1 = std::pow(world_.noise.bearing_std_rad, 2);
     double sum = 0.0;
@@ -96,7 +96,7 @@ void StepAgainstBareLoop(benchmark::State& state) {
   std::size_t num_steps = 0;
   for (auto _ : state) {  // one round
     BareLoop bare(world, particles);
-    slam::FastSlam slam({.particles = static_cast<int>(particles)}, world.motion, world.noise, slam::make_components({}), 1);
+    studies::FastSlam slam({.particles = static_cast<int>(particles)}, world.motion, world.noise, slam::make_components({}), 1);
     double round_s = 0.0;
     for (std::size_t k = 0; k < drive.controls.size(); ++k, ++num_steps) {
       ratio.reference([&] { sum += bare.step(drive.controls[k], drive.observations[k]); });

@@ -2,7 +2,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "core/thread_clock.h"
+#include "core/thread_cpu_time.h"
 
 namespace patrol::bench {
 

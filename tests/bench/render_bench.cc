@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "render/antialias.h"
-#include "render/depth_renderer.h"
+#include "render/scene/antialias.h"
+#include "render/scene/depth_renderer.h"
 #include "render/overlay.h"
-#include "render/scene_painter.h"
+#include "render/scene/scene_painter.h"
 #include "sim/model_assembly.h"
 
 namespace patrol::bench {

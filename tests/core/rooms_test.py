@@ -26,8 +26,10 @@ MAY_USE = {
     "stack": {"core", "slam", "localize", "plan", "inspect"},
     "score": {"core"},
     "render": {"core", "io", "sim"},
+    "report": {"core", "io", "score"},
     "monitor": {"core", "io"},
-    "app": {"core", "io", "sim", "slam", "localize", "plan", "inspect", "stack", "score", "render", "monitor"},
+    "studies": {"core", "io", "slam", "localize", "plan", "inspect", "stack", "score", "report"},
+    "app": {"core", "io", "sim", "slam", "localize", "plan", "inspect", "stack", "score", "render", "report", "monitor", "studies"},
 }
 
 STACK = ("slam", "localize", "plan", "inspect", "stack")  # folders of the robot's software
@@ -36,11 +38,7 @@ SIMULATOR = ("mujoco", "sim/", "render/", "embree")
 GROUND_TRUTH = "core/ground_truth.h"
 
 # Folders that still include each other in a cycle. Entries may only shrink; one that holds no cycle any more must go.
-KNOWN_CYCLES = (
-    {"render", "render/film"},
-    {"sim", "sim/sensors"},
-    {"slam", "slam/graph", "slam/submaps"},
-)
+KNOWN_CYCLES = ()
 
 
 def read_includes(source):
@@ -158,8 +156,8 @@ class PlantedViolations(unittest.TestCase):
         "slam/mapper.h": '#include "core/time.h"\n',
         "localize/filter.cc": '#include "slam/mapper.h"\n',
         "stack/robot_stack.cc": '#include "localize/filter.h"\n#include "plan/navigator.h"\n',
-        "app/run/run_loop.cc": '#include "sim/twin.h"\n#include "core/ground_truth.h"\n',
-        "sim/twin.h": '#include <mujoco/mujoco.h>\n#include "core/ground_truth.h"\n',
+        "app/run/run_loop.cc": '#include "sim/simulator.h"\n#include "core/ground_truth.h"\n',
+        "sim/simulator.h": '#include <mujoco/mujoco.h>\n#include "core/ground_truth.h"\n',
         "score/pose_error.h": '#include "core/ground_truth.h"\n',
     }
 

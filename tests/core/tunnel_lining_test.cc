@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::tunnel_lining_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/carmen_log.h"
+#include "io/logs/carmen_log.h"
 #include "tests/fuzz/scan_log_checks.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

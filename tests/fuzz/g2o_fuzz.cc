@@ -1,4 +1,4 @@
-#include "io/g2o.h"
+#include "io/trajectories/g2o.h"
 
 #include <optional>
 

@@ -1,4 +1,4 @@
-#include "io/map_server.h"
+#include "io/maps/map_server.h"
 
 #include <algorithm>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "io/mcap_scan_log.h"
+#include "io/logs/mcap_scan_log.h"
 #include "tests/fuzz/scan_log_checks.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

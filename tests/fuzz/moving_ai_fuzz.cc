@@ -1,4 +1,4 @@
-#include "io/moving_ai.h"
+#include "io/maps/moving_ai.h"
 
 #include <cmath>
 

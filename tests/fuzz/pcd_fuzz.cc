@@ -1,4 +1,4 @@
-#include "io/pcd.h"
+#include "io/points/pcd.h"
 
 #include <cmath>
 

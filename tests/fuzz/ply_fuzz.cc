@@ -1,4 +1,4 @@
-#include "io/ply.h"
+#include "io/points/ply.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "io/relations.h"
+#include "io/trajectories/relations.h"
 
 #include <cmath>
 

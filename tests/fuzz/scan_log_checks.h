@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/error.h"
-#include "io/scan_log.h"
+#include "io/logs/scan_log.h"
 #include "tests/fuzz/fuzz_input.h"
 
 namespace patrol::test {

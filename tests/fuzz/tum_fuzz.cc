@@ -1,4 +1,4 @@
-#include "io/tum.h"
+#include "io/trajectories/tum.h"
 
 #include <cmath>
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/error.h"
-#include "io/pcd.h"
-#include "io/ply.h"
+#include "io/points/pcd.h"
+#include "io/points/ply.h"
 
 namespace {
 

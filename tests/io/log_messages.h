@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "io/mcap_writer.h"
-#include "io/ros_definitions.h"
-#include "io/ros_messages.h"
+#include "io/mcap/mcap_writer.h"
+#include "io/ros/ros_definitions.h"
+#include "io/ros/ros_messages.h"
 
 /// What other people's robots record, and the MCAP file that they record it in.
 namespace patrol::test {

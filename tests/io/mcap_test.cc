@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "io/mcap_reader.h"
-#include "io/mcap_writer.h"
+#include "io/mcap/mcap_reader.h"
+#include "io/mcap/mcap_writer.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::io::mcap_test {

@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "io/drive_json.h"
-#include "io/remote_csv.h"
+#include "io/json/teleop_route_json.h"
+#include "io/files/teleop_csv.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::io::remote_drive_test {

@@ -6,7 +6,7 @@
 #include "core/ground_truth.h"
 #include "core/messages.h"
 #include "core/sensors/registry.h"
-#include "io/ros_messages.h"
+#include "io/ros/ros_messages.h"
 
 namespace patrol::test {
 

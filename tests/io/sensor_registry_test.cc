@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "io/ros_definitions.h"
-#include "io/ros_fields.h"
-#include "io/ros_messages.h"
-#include "io/run_log.h"
+#include "io/ros/ros_definitions.h"
+#include "io/ros/ros_fields.h"
+#include "io/ros/ros_messages.h"
+#include "io/logs/run_log.h"
 
 namespace patrol::io::sensor_registry_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 #include "tests/support/walking_robot.h"
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 #include "tests/support/dock_world.h"
 #include "tests/support/pose_near.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/trajectory.h"
 #include "tests/support/walking_robot.h"
 

@@ -11,7 +11,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 #include "tests/support/tracked_drive.h"
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/inspection_result.h"
-#include "io/inspection_json.h"
+#include "io/json/inspection_json.h"
 #include "monitor/result.h"
 
 namespace patrol::test {

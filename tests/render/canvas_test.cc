@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/antialias.h"
+#include "render/scene/antialias.h"
 
 namespace patrol::render::canvas_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "render/palette.h"
+#include "render/scene/palette.h"
 #include "tests/render/small_scene.h"
 
 namespace patrol::render::gas_puffs_test {

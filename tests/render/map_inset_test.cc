@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "render/palette.h"
+#include "render/scene/palette.h"
 
 namespace patrol::render::map_inset_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 #include "tests/render/small_scene.h"
 

@@ -3,7 +3,7 @@
 #include <exception>
 #include <vector>
 
-#include "render/scene_painter.h"
+#include "render/scene/scene_painter.h"
 #include "tests/render/small_scene.h"
 
 int main(int, char** argv) {

@@ -6,10 +6,10 @@
 #include <variant>
 #include <vector>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "io/urdf.h"
 #include "localize/body_estimator.h"
-#include "sim/twin.h"
+#include "sim/simulator/simulator.h"
 #include "tests/support/temporary_file.h"
 
 /// The stack's odometry against MuJoCo's truth on the real trot, with the sensors at their defaults.

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "tests/sim/rubble.h"
 #include "tests/support/tracked_twin.h"
 #include "tests/support/quadruped_twin.h"

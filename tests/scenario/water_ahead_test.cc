@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "inspect/water/water_inversion.h"
 #include "sim/sensors/tem.h"
 #include "tests/support/soundings.h"

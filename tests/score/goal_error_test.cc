@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::score::goal_error_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 
 namespace patrol::score::relation_error_test {

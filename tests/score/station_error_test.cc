@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::score::station_error_test {
 namespace {

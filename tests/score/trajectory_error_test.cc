@@ -6,7 +6,7 @@
 #include <functional>
 #include <numbers>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 #include "tests/support/pose_near.h"
 

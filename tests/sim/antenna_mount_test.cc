@@ -6,9 +6,9 @@
 #include <cmath>
 #include <optional>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
-#include "sim/twin.h"
+#include "sim/simulator/simulator.h"
 #include "tests/support/quadruped_twin.h"
 #include "tests/support/temporary_file.h"
 #include "tests/support/tracked_twin.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "sim/sensors/lidar.h"
 #include "tests/sim/small_world.h"
 

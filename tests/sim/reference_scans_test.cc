@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/random.h"
-#include "io/station_scans.h"
+#include "io/points/station_scans.h"
 #include "sim/sensors/panoramic_scanner.h"
 
 namespace patrol::sim::reference_scans_test {

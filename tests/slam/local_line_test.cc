@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/random.h"
 
 namespace patrol::slam::local_line_test {

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "slam/proposal.h"
+#include "slam/rbpf/proposal.h"
 #include "tests/support/pose_near.h"
 
 namespace patrol::slam::motion_model_test {

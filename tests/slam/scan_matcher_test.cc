@@ -4,7 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "slam/match_points.h"
 #include "slam/scan_integration.h"
 #include "tests/support/pose_near.h"

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/frames.h"
 #include "core/messages.h"
 #include "core/random.h"

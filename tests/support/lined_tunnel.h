@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/frames.h"
 #include "core/random.h"
 #include "core/sensors/registry.h"

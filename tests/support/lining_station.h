@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/frames.h"
 #include "core/random.h"
 #include "core/sensors/registry.h"

@@ -11,7 +11,7 @@
 #include "core/sensors/registry.h"
 #include "sim/locomotion/quadruped_controller.h"
 #include "sim/model_assembly.h"
-#include "sim/nearby_scenery.h"
+#include "sim/collision_culler.h"
 #include "sim/sensors/foot_contact.h"
 #include "sim/sensors/imu.h"
 #include "sim/sensors/joint_encoders.h"

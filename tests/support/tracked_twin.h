@@ -10,7 +10,7 @@
 #include "core/sensors/registry.h"
 #include "sim/locomotion/track_drive.h"
 #include "sim/model_assembly.h"
-#include "sim/nearby_scenery.h"
+#include "sim/collision_culler.h"
 #include "sim/sensors/hall_sensors.h"
 #include "sim/sensors/imu.h"
 

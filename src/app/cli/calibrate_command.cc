@@ -7,12 +7,12 @@
 #include "app/cli/commands.h"
 #include "app/mapping/read_scans.h"
 #include "app/common/output_directory.h"
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
-#include "io/csv.h"
-#include "io/metrics_json.h"
-#include "io/scan_log.h"
-#include "io/settings_yaml.h"
+#include "io/files/csv.h"
+#include "io/json/metrics_json.h"
+#include "io/logs/scan_log.h"
+#include "io/yaml/settings_yaml.h"
 #include "slam/calibration/calibrate.h"
 
 namespace patrol::app {

@@ -4,7 +4,7 @@
 #include "app/campaign/sweep/comparison.h"
 #include "app/campaign/sweep/finish_sweep.h"
 #include "core/error.h"
-#include "io/atomic_file.h"
+#include "io/files/atomic_file.h"
 
 namespace patrol::app {
 namespace {

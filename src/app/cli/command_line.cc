@@ -21,7 +21,7 @@
 
 #include "app/cli/commands.h"
 #include "core/error.h"
-#include "io/one_line.h"
+#include "io/files/one_line.h"
 
 namespace patrol::app {
 namespace {

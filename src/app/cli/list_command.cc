@@ -9,12 +9,12 @@
 
 #include "app/cli/commands.h"
 #include "app/scenario/scenario.h"
-#include "app/study/study.h"
+#include "app/study/study_table.h"
 #include "core/event.h"
 #include "core/named_table.h"
 #include "core/route.h"
 #include "plan/routes/planners.h"
-#include "slam/mapper.h"
+#include "slam/methods/mapper.h"
 
 namespace patrol::app {
 namespace {

@@ -6,9 +6,9 @@
 #include "app/cli/commands.h"
 #include "app/common/output_directory.h"
 #include "app/scoring/localizability_map.h"
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
-#include "io/csv.h"
+#include "io/files/csv.h"
 #include "render/heat_map.h"
 #include "score/statistics.h"
 

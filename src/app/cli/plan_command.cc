@@ -10,15 +10,15 @@
 #include "app/plan/plan_settings.h"
 #include "app/plan/problem_file.h"
 #include "app/plan/problem_output.h"
-#include "app/plan/route_figures.h"
+#include "app/plan/route_metrics.h"
 #include "app/plan/route_output.h"
 #include "app/plan/route_picture.h"
 #include "app/plan/tour_output.h"
 #include "app/plan/tour_plan.h"
 #include "core/error.h"
-#include "io/csv.h"
-#include "io/settings_yaml.h"
-#include "io/tour_stations.h"
+#include "io/files/csv.h"
+#include "io/yaml/settings_yaml.h"
+#include "io/files/tour_stations.h"
 
 namespace patrol::app {
 namespace {

@@ -8,7 +8,7 @@
 #include "app/run/run_loop.h"
 #include "app/record/run_record.h"
 #include "core/error.h"
-#include "render/replay.h"
+#include "render/film/replay.h"
 #include "score/trajectory_error.h"
 
 namespace patrol::app {

@@ -5,8 +5,8 @@
 #include "app/report/sweep_page.h"
 #include "app/campaign/sweep/sweep_directory.h"
 #include "core/error.h"
-#include "io/atomic_file.h"
-#include "render/report/page.h"
+#include "io/files/atomic_file.h"
+#include "report/page.h"
 
 namespace patrol::app {
 namespace {
@@ -18,7 +18,7 @@ std::string page_made_before(const std::filesystem::path& root) {
   return io::load_text(page);
 }
 
-render::Page page_of(const std::filesystem::path& root, const std::filesystem::path& page_file) {
+report::Page page_of(const std::filesystem::path& root, const std::filesystem::path& page_file) {
   if (!std::filesystem::exists(SweepDirectory{root}.manifest())) return run_page(read_run_contents(root), page_file);
   const SweepDirectory directory = open_sweep_directory(root);
   const SweepManifest manifest = load_manifest(directory.manifest());
@@ -35,7 +35,7 @@ ExitCode report_command(const ReportOptions& options) {
   std::string html;
   try {
     const bool is_made = std::filesystem::exists(options.directory / "study.json") || std::filesystem::exists(options.directory / "pose_graph.g2o");
-    html = is_made ? page_made_before(options.directory) : render::to_html(page_of(options.directory, out));
+    html = is_made ? page_made_before(options.directory) : report::to_html(page_of(options.directory, out));
   } catch (const io::Metrics::exception& error) {
     throw InputError(fmt::format("{}: metrics.json is not as a run leaves it: {}", options.directory.string(), error.what()));
   }

@@ -8,9 +8,9 @@
 #include "app/scoring/score_run.h"
 #include "app/scoring/score_table.h"
 #include "core/error.h"
-#include "io/map_server.h"
-#include "io/relations.h"
-#include "io/tum.h"
+#include "io/maps/map_server.h"
+#include "io/trajectories/relations.h"
+#include "io/trajectories/tum.h"
 
 namespace patrol::app {
 namespace {

@@ -12,18 +12,18 @@
 #include "app/common/output_directory.h"
 #include "app/common/process_cost.h"
 #include "app/scenario/scenario.h"
-#include "core/thread_clock.h"
-#include "io/atomic_file.h"
-#include "io/csv.h"
-#include "io/g2o.h"
-#include "io/map_server.h"
-#include "io/metrics_json.h"
-#include "io/scan_log.h"
-#include "io/settings_yaml.h"
-#include "io/tum.h"
-#include "render/report/page.h"
+#include "core/thread_cpu_time.h"
+#include "io/files/atomic_file.h"
+#include "io/files/csv.h"
+#include "io/trajectories/g2o.h"
+#include "io/maps/map_server.h"
+#include "io/json/metrics_json.h"
+#include "io/logs/scan_log.h"
+#include "io/yaml/settings_yaml.h"
+#include "io/trajectories/tum.h"
+#include "report/page.h"
 #include "slam/calibration/calibration.h"
-#include "slam/mapper.h"
+#include "slam/methods/mapper.h"
 #include "slam/planar_scan.h"
 
 namespace patrol::app {
@@ -157,7 +157,7 @@ ExitCode slam_command(const SlamOptions& options) {
   metrics["performance"] = {{"wall_s", took_s}, {"processor_s", thread_cpu_time_s() - thread_s}, {"real_time_factor", mapped.duration_s() / std::max(1e-9, took_s)}, {"peak_memory_mb", peak_memory_mb()}};
   io::save_metrics(options.out / "metrics.json", metrics);
   const MappingContents contents{.log = options.log.filename().string(), .method = settings.slam.method, .map = map, .estimate = estimate, .cost = mapped.cost.table(), .metrics = metrics};
-  io::save_text(options.out / "report.html", render::to_html(mapping_page(contents)));
+  io::save_text(options.out / "report.html", report::to_html(mapping_page(contents)));
   complete_output(options.out);
 
   fmt::print("{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, {} edges, {} of them to other submaps\n{}\n",

@@ -2,7 +2,7 @@
 
 #include "app/cli/commands.h"
 #include "core/error.h"
-#include "io/g2o.h"
+#include "io/trajectories/g2o.h"
 #include "slam/graph/pose_graph_solver.h"
 
 namespace patrol::app {

@@ -8,17 +8,17 @@
 
 #include "app/campaign/batch/batch_options.h"
 #include "app/campaign/batch/process_pool.h"
-#include "app/campaign/batch/run_address.h"
+#include "app/campaign/batch/run_hash.h"
 #include "app/cli/commands.h"
 #include "app/common/output_directory.h"
 #include "app/common/progress_bar.h"
-#include "app/study/study.h"
-#include "app/study/study_results.h"
+#include "app/study/study_table.h"
+#include "studies/study_results.h"
 #include "core/error.h"
-#include "io/atomic_file.h"
-#include "io/csv.h"
-#include "io/metrics_json.h"
-#include "render/report/page.h"
+#include "io/files/atomic_file.h"
+#include "io/files/csv.h"
+#include "io/json/metrics_json.h"
+#include "report/page.h"
 
 namespace patrol::app {
 namespace {
@@ -42,15 +42,15 @@ std::vector<std::uint64_t> held_out_seeds(const std::string& text) {
 /// Samples by seed, one file each, written atomically; those of another study or build are ignored.
 class SampleStore {
  public:
-  SampleStore(std::filesystem::path folder, const Study& study) : folder_(std::move(folder)), study_(study), build_(build_id()) {
+  SampleStore(std::filesystem::path folder, const studies::Study& study) : folder_(std::move(folder)), study_(study), build_(build_id()) {
     std::filesystem::create_directories(folder_);
   }
 
-  std::optional<StudySample> load(std::uint64_t seed) const {
+  std::optional<studies::StudySample> load(std::uint64_t seed) const {
     if (!std::filesystem::exists(file(seed))) return std::nullopt;
     const io::Metrics json = io::load_metrics(file(seed));
     if (json.value("study", "") != study_.name || json.value("build", "") != build_ || !json.contains("figures")) return std::nullopt;
-    StudySample sample;
+    studies::StudySample sample;
     for (const io::Metrics& variant : json["figures"]) {
       std::vector<double>& figures = sample.emplace_back();
       for (const io::Metrics& figure : variant) figures.push_back(figure.is_number() ? figure.get<double>() : std::numeric_limits<double>::quiet_NaN());
@@ -58,7 +58,7 @@ class SampleStore {
     return sample;
   }
 
-  void save(std::uint64_t seed, const StudySample& sample) const {
+  void save(std::uint64_t seed, const studies::StudySample& sample) const {
     io::save_metrics(file(seed), {{"study", study_.name}, {"build", build_}, {"figures", sample}});
   }
 
@@ -66,12 +66,12 @@ class SampleStore {
   std::filesystem::path file(std::uint64_t seed) const { return folder_ / fmt::format("{}.json", seed); }
 
   std::filesystem::path folder_;
-  const Study& study_;
+  const studies::Study& study_;
   std::string build_;
 };
 
 /// Runs the missing seeds; false if interrupted.
-bool run_seeds(const Study& study, const std::vector<std::uint64_t>& seeds, const SampleStore& store, const ProcessPoolSettings& pool) {
+bool run_seeds(const studies::Study& study, const std::vector<std::uint64_t>& seeds, const SampleStore& store, const ProcessPoolSettings& pool) {
   std::vector<std::uint64_t> missing;
   for (const std::uint64_t seed : seeds) {
     if (!store.load(seed)) missing.push_back(seed);
@@ -95,7 +95,7 @@ bool run_seeds(const Study& study, const std::vector<std::uint64_t>& seeds, cons
 }  // namespace
 
 ExitCode study_command(const StudyOptions& options) {
-  const Study study = make_study(options.name);
+  const studies::Study study = make_study(options.name);
   const std::vector<std::uint64_t> seeds = held_out_seeds(options.seeds.value_or(std::to_string(study.default_seeds)));
   const BatchSettings settings = batch_settings({.jobs = options.jobs, .run_limit_s = options.seed_limit_s, .keep = "none"});
 
@@ -104,15 +104,15 @@ ExitCode study_command(const StudyOptions& options) {
   const SampleStore store(options.out / "seeds", study);
   if (!run_seeds(study, seeds, store, settings.pool)) throw std::runtime_error(fmt::format("interrupted; {} is incomplete, the same command goes on", options.out.string()));
 
-  std::vector<StudySample> samples;
+  std::vector<studies::StudySample> samples;
   for (const std::uint64_t seed : seeds) samples.push_back(store.load(seed).value());
-  const StudyResults results = summarize(study, samples);
-  for (const io::Table& table : {results_table(study, results), samples_table(study, seeds, samples), performance_table(study, results)}) {
+  const studies::StudyResults results = studies::summarize(study, samples);
+  for (const io::Table& table : {studies::results_table(study, results), studies::samples_table(study, seeds, samples), studies::performance_table(study, results)}) {
     io::save_csv(options.out / (table.name + ".csv"), table);
   }
-  io::save_text(options.out / "report.html", render::to_html(study_page(study, seeds, samples, results)));
+  io::save_text(options.out / "report.html", report::to_html(studies::study_page(study, seeds, samples, results)));
   complete_output(options.out);
-  fmt::print("{}\nafter {}\n{}\n\n{}{}\n", study.title, study.source, study.conditions, results_text(study, results), (options.out / "report.html").string());
+  fmt::print("{}\nafter {}\n{}\n\n{}{}\n", study.title, study.source, study.conditions, studies::results_text(study, results), (options.out / "report.html").string());
   return ExitCode::kDone;
 }
 

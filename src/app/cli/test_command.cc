@@ -8,9 +8,9 @@
 #include "app/common/output_directory.h"
 #include "app/report/test_page.h"
 #include "app/campaign/test/tested_scenario.h"
-#include "io/atomic_file.h"
-#include "io/csv.h"
-#include "render/report/page.h"
+#include "io/files/atomic_file.h"
+#include "io/files/csv.h"
+#include "report/page.h"
 
 namespace patrol::app {
 namespace {
@@ -61,7 +61,7 @@ ExitCode test_command(const TestOptions& options) {
   }
   io::save_csv(options.out / "tests.csv", tests_table(tested));
   io::save_text(options.out / "summary.md", tests_summary(tested));
-  io::save_text(options.out / "report.html", render::to_html(test_page(tested)));
+  io::save_text(options.out / "report.html", report::to_html(test_page(tested)));
   complete_output(options.out);
 
   print_verdicts(tested);

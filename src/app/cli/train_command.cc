@@ -8,9 +8,9 @@
 #include "app/cli/commands.h"
 #include "app/mapping/submap_track.h"
 #include "app/common/progress_bar.h"
-#include "io/adaboost_json.h"
-#include "io/settings_yaml.h"
-#include "slam/submaps/neighbour_examples.h"
+#include "io/json/adaboost_json.h"
+#include "io/yaml/settings_yaml.h"
+#include "slam/submaps/neighbor_examples.h"
 #include "slam/submaps/pair_features.h"
 
 namespace patrol::app {

@@ -6,7 +6,7 @@
 #include "app/record/run_directory.h"
 #include "app/run/run_loop.h"
 #include "app/common/temporary_folder.h"
-#include "io/log_compare.h"
+#include "io/logs/log_compare.h"
 
 namespace patrol::app {
 ExitCode verify_command(const std::filesystem::path& run) {

@@ -6,29 +6,29 @@
 
 #include <fmt/format.h>
 
-#include "render/report/map_picture.h"
+#include "report/map_picture.h"
 
 namespace patrol::app {
 namespace {
 
-render::MapBlock map_block(const MappingContents& contents) {
+report::MapBlock map_block(const MappingContents& contents) {
   std::vector<Eigen::Vector2d> way;
   Eigen::AlignedBox2d shown;
   for (const StampedPose& entry : contents.estimate) {
     way.push_back(entry.pose.position.head<2>());
     shown.extend(way.back());
   }
-  const render::MapLayers layers{.built = contents.map, .T_world_map = {}, .truth = {}, .error_m = {}};
-  return {.picture = render::map_picture(layers, shown), .paths = {{"estimated path", render::SeriesColor::kEstimate, {std::move(way)}}}, .marks = {}};
+  const report::MapLayers layers{.built = contents.map, .T_world_map = {}, .truth = {}, .error_m = {}};
+  return {.picture = report::map_picture(layers, shown), .paths = {{"estimated path", report::SeriesColor::kEstimate, {std::move(way)}}}, .marks = {}};
 }
 
 /// Plot of one cost column, by its name, over the scans.
-render::LinePlot plot_of(const MappingContents& contents, const std::string& column, const std::string& title, const std::string& unit) {
+report::LinePlot plot_of(const MappingContents& contents, const std::string& column, const std::string& title, const std::string& unit) {
   const auto index_of = [&](const std::string& name) {
     return static_cast<std::size_t>(std::ranges::find(contents.cost.columns, name) - contents.cost.columns.begin());
   };
   const std::size_t scans = index_of("scans"), value = index_of(column);
-  render::Curve curve{.name = title, .ink = render::SeriesColor::kEstimate, .is_dashed = false, .points = {}};
+  report::Curve curve{.name = title, .ink = report::SeriesColor::kEstimate, .is_dashed = false, .points = {}};
   for (const auto& row : contents.cost.rows) curve.points.emplace_back(std::get<double>(row[scans]), std::get<double>(row[value]));
   const double last = curve.points.empty() ? 1.0 : curve.points.back().x();
   return {.title = title, .unit = unit, .axis = {.label = "scans", .max = last}, .max = {}, .curves = {std::move(curve)}, .marks = {}, .spans = {}};
@@ -36,9 +36,9 @@ render::LinePlot plot_of(const MappingContents& contents, const std::string& col
 
 }  // namespace
 
-render::Page mapping_page(const MappingContents& contents) {
+report::Page mapping_page(const MappingContents& contents) {
   const io::Metrics &log = contents.metrics["log"], &graph = contents.metrics["graph"], &performance = contents.metrics["performance"];
-  const render::KeyMetrics figures{.figures = {{.label = "scans", .value = fmt::format("{}", log["scans"].get<std::size_t>()), .unit = "", .note = fmt::format("{:.0f} s", log["duration_s"].get<double>())},
+  const report::KeyMetrics figures{.figures = {{.label = "scans", .value = fmt::format("{}", log["scans"].get<std::size_t>()), .unit = "", .note = fmt::format("{:.0f} s", log["duration_s"].get<double>())},
                                                {.label = "way", .value = fmt::format("{:.0f}", contents.metrics["path"]["way_m"].get<double>()), .unit = "m",
                                                 .note = fmt::format("by odometry {:.0f} m", log["odometry_way_m"].get<double>())},
                                                {.label = "edges to other submaps", .value = fmt::format("{}", graph["cross_submap_edges"].get<std::size_t>()), .unit = "",

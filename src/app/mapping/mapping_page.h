@@ -4,9 +4,9 @@
 
 #include "core/grid.h"
 #include "core/trajectory.h"
-#include "io/metrics_json.h"
-#include "io/table.h"
-#include "render/report/blocks.h"
+#include "io/json/metrics_json.h"
+#include "io/files/table.h"
+#include "report/blocks.h"
 
 namespace patrol::app {
 
@@ -21,6 +21,6 @@ struct MappingContents {
 
 /// Report page of `patrol slam`: metrics, the map with the trajectory, and the computation time of scans as the map
 /// grows.
-render::Page mapping_page(const MappingContents& contents);
+report::Page mapping_page(const MappingContents& contents);
 
 }  // namespace patrol::app

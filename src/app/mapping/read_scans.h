@@ -8,7 +8,7 @@
 
 #include "app/common/process_cost.h"
 #include "app/common/progress_bar.h"
-#include "io/scan_log.h"
+#include "io/logs/scan_log.h"
 
 namespace patrol::app {
 

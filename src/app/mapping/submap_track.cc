@@ -7,8 +7,8 @@
 #include "app/record/run_directory.h"
 #include "core/error.h"
 #include "core/trajectory.h"
-#include "io/scan_log.h"
-#include "io/tum.h"
+#include "io/logs/scan_log.h"
+#include "io/trajectories/tum.h"
 
 namespace patrol::app {
 

@@ -11,10 +11,10 @@
 
 #include "core/overloaded.h"
 #include "inspect/route_frame.h"
-#include "io/base64.h"
-#include "io/inspection_json.h"
-#include "io/map_png.h"
-#include "io/one_line.h"
+#include "io/files/base64.h"
+#include "io/json/inspection_json.h"
+#include "io/maps/map_png.h"
+#include "io/files/one_line.h"
 
 namespace patrol::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "io/map_server.h"
+#include "io/maps/map_server.h"
 
 namespace patrol::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/grid.h"
-#include "io/moving_ai.h"
+#include "io/maps/moving_ai.h"
 
 namespace patrol::app {
 

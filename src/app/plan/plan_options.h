@@ -13,7 +13,7 @@ namespace patrol::app {
 struct PlanOptions {
   std::filesystem::path map = {};  ///< map_server YAML, MovingAI .map, or a .scen file of problems
   std::optional<std::string> from = {}, to = {};
-  std::optional<std::filesystem::path> stations = {};  ///< stations to order (io/tour_stations.h)
+  std::optional<std::filesystem::path> stations = {};  ///< stations to order (io/files/tour_stations.h)
   std::optional<std::string> planner = {};
   std::optional<std::string> robot = {};
   std::optional<double> radius_m = {};

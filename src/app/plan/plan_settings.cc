@@ -10,7 +10,7 @@
 
 #include "app/scenario/scenario.h"
 #include "core/error.h"
-#include "io/settings_yaml.h"
+#include "io/yaml/settings_yaml.h"
 #include "io/urdf.h"
 #include "plan/routes/global_planner.h"
 

@@ -9,7 +9,7 @@
 #include "plan/perception/costmap.h"
 #include "plan/perception/footprint.h"
 #include "plan/routes/planners.h"
-#include "plan/routes/tour_order.h"
+#include "plan/routes/station_order.h"
 
 namespace patrol::app {
 

@@ -8,7 +8,7 @@
 
 #include "app/plan/plan_grid.h"
 #include "app/plan/route_check.h"
-#include "app/plan/route_figures.h"
+#include "app/plan/route_metrics.h"
 #include "app/common/process_cost.h"
 #include "app/common/progress_bar.h"
 #include "core/error.h"

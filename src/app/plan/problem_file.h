@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/plan/plan_settings.h"
-#include "io/moving_ai.h"
+#include "io/maps/moving_ai.h"
 
 namespace patrol::app {
 

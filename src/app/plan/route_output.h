@@ -8,9 +8,9 @@
 #include "app/common/output_directory.h"
 #include "app/plan/plan_map.h"
 #include "app/plan/plan_settings.h"
-#include "app/plan/route_figures.h"
-#include "io/metrics_json.h"
-#include "io/table.h"
+#include "app/plan/route_metrics.h"
+#include "io/json/metrics_json.h"
+#include "io/files/table.h"
 
 namespace patrol::app {
 

@@ -10,7 +10,6 @@
 namespace patrol::app {
 namespace {
 
-using render::Color;
 
 constexpr Color kPaper{255, 255, 255}, kUnknownGround{214, 216, 219}, kObstacle{22, 34, 48}, kInflated{233, 164, 136}, kDear{252, 222, 170};
 constexpr Color kRoute{20, 90, 214}, kWriting{40, 48, 58};

@@ -7,7 +7,7 @@
 
 #include "core/grid.h"
 #include "plan/perception/costmap.h"
-#include "render/frame.h"
+#include "render/scene/frame.h"
 
 namespace patrol::app {
 
@@ -16,7 +16,7 @@ struct RoutePicture {
   struct Mark {
     Eigen::Vector2d p_m;
     std::string text;
-    render::Color color;
+    Color color;
   };
   const OccupancyGrid& occupancy;
   const Grid<plan::Cost>& costs;  ///< in the frame of `occupancy`
@@ -25,7 +25,7 @@ struct RoutePicture {
   std::string title, note;
 };
 
-inline constexpr render::Color kStartColor{0, 128, 96}, kGoalColor{196, 40, 32}, kStopColor{92, 48, 150};
+inline constexpr Color kStartColor{0, 128, 96}, kGoalColor{196, 40, 32}, kStopColor{92, 48, 150};
 
 /// Renders the known part of the map, y up, at most 1600 x 1000 pixels: obstacles dark, inflated lethal and costly
 /// cells shaded. Throws InputError if no font is found.

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/plan/route_figures.h"
+#include "app/plan/route_metrics.h"
 #include "app/plan/route_output.h"
 
 namespace patrol::app {

@@ -9,8 +9,8 @@
 #include "app/plan/plan_map.h"
 #include "app/plan/route_picture.h"
 #include "app/plan/tour_plan.h"
-#include "io/metrics_json.h"
-#include "io/table.h"
+#include "io/json/metrics_json.h"
+#include "io/files/table.h"
 
 namespace patrol::app {
 

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "app/plan/route_figures.h"
+#include "app/plan/route_metrics.h"
 #include "app/common/process_cost.h"
 #include "app/common/progress_bar.h"
 

@@ -8,8 +8,8 @@
 
 #include "app/plan/plan_settings.h"
 #include "core/grid.h"
-#include "io/tour_stations.h"
-#include "plan/routes/tour_order.h"
+#include "io/files/tour_stations.h"
+#include "plan/routes/station_order.h"
 
 namespace patrol::app {
 

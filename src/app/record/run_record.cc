@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "io/run_log.h"
+#include "io/logs/run_log.h"
 
 namespace patrol::app {
 namespace {

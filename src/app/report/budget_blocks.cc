@@ -2,17 +2,17 @@
 
 #include <fmt/format.h>
 
-#include "app/report/quantity.h"
+#include "report/quantity.h"
 
 namespace patrol::app {
 namespace {
 
-using render::Tone;
+using report::Tone;
 
 /// Steps of a waterfall chart, in the metric's display unit.
 class Waterfall {
  public:
-  explicit Waterfall(const Budget& budget) : unit_(unit_of(budget.metric)), level_(budget.as_it_is->center) {}
+  explicit Waterfall(const Budget& budget) : unit_(report::unit_of(budget.metric)), level_(budget.as_it_is->center) {}
 
   /// Adds a bar from zero.
   void total(const std::string& label, const score::Interval& value) {
@@ -26,7 +26,7 @@ class Waterfall {
         fmt::format("{:+.3g} {}", -unit_.factor * share.center, unit_.name));
     level_ = next;
   }
-  render::WaterfallChart chart() && { return std::move(chart_); }
+  report::WaterfallChart chart() && { return std::move(chart_); }
 
  private:
   void add(const std::string& label, double from, double to, const score::Interval& about, Tone tone, const std::string& text) {
@@ -39,25 +39,25 @@ class Waterfall {
     chart_.unit = unit_.name;
   }
 
-  Unit unit_;
+  report::Unit unit_;
   double level_;
-  render::WaterfallChart chart_;
+  report::WaterfallChart chart_;
 };
 
 bool is_whole(const Budget& budget) { return budget.as_it_is && budget.ideal && budget.sum && budget.interaction; }
 
-std::string with_interval(const score::Interval& value, const Unit& unit) {
+std::string with_interval(const score::Interval& value, const report::Unit& unit) {
   return fmt::format("{:+.3g} [{:+.3g}, {:+.3g}]", unit.factor * value.center, unit.factor * value.low, unit.factor * value.high);
 }
 
 }  // namespace
 
-std::vector<render::Block> budget_blocks(const Budget& budget) {
-  if (!is_whole(budget)) return {render::TextBlock{"Too few runs gave this figure."}};
-  const Unit unit = unit_of(budget.metric);
+std::vector<report::Block> budget_blocks(const Budget& budget) {
+  if (!is_whole(budget)) return {report::TextBlock{"Too few runs gave this figure."}};
+  const report::Unit unit = report::unit_of(budget.metric);
   Waterfall waterfall(budget);
   waterfall.total("as it is", *budget.as_it_is);
-  render::TableBlock table{.caption = "", .columns = {{"imperfection"}, {"seeds", true}, {fmt::format("share, {}", unit.name), true}, {""}}, .rows = {}};
+  report::TableBlock table{.caption = "", .columns = {{"imperfection"}, {"seeds", true}, {fmt::format("share, {}", unit.name), true}, {""}}, .rows = {}};
   for (const BudgetShare& share : budget.shares) {
     if (!share.share) continue;
     waterfall.step(share.name, *share.share);
@@ -70,13 +70,13 @@ std::vector<render::Block> budget_blocks(const Budget& budget) {
   table.rows.push_back({{"sum of the shares"}, {""}, {with_interval(*budget.sum, unit)}, {""}});
   table.rows.push_back({{"interaction"}, {""}, {with_interval(*budget.interaction, unit)}, {""}});
   return {std::move(waterfall).chart(), table,
-          render::TextBlock{"A share is the figure with all imperfections less the figure without this one, paired by seed, with its 95 % interval. Interaction: "
+          report::TextBlock{"A share is the figure with all imperfections less the figure without this one, paired by seed, with its 95 % interval. Interaction: "
                             "what all take away together, less the sum of the shares; imperfections that hide or feed each other."}};
 }
 
 std::string budget_finding(const Budget& budget) {
   if (!is_whole(budget) || budget.shares.empty() || !budget.shares.front().share) return fmt::format("{}: too few runs gave it.", budget.metric);
-  const Unit unit = unit_of(budget.metric);
+  const report::Unit unit = report::unit_of(budget.metric);
   const BudgetShare& first = budget.shares.front();
   const std::string whole = fmt::format("{:.3g} {}", unit.factor * budget.as_it_is->center, unit.name);
   if (first.share->contains(0.0)) return fmt::format("{}: of {}, no imperfection owns a share whose interval leaves out zero.", budget.metric, whole);

@@ -1,12 +1,12 @@
 #pragma once
 
 #include "app/campaign/sweep/budget.h"
-#include "render/report/blocks.h"
+#include "report/blocks.h"
 
 namespace patrol::app {
 
 /// Waterfall chart from the baseline to the ideal value by contributions, and a table of the values.
-std::vector<render::Block> budget_blocks(const Budget& budget);
+std::vector<report::Block> budget_blocks(const Budget& budget);
 
 /// Sentence on the largest contributions.
 std::string budget_finding(const Budget& budget);

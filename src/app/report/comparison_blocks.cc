@@ -6,19 +6,19 @@
 
 #include <fmt/format.h>
 
-#include "app/report/boxes.h"
+#include "report/boxes.h"
 
 namespace patrol::app {
 namespace {
 
-using render::Tone;
+using report::Tone;
 
-render::TableCell verdict_cell(const VariantFigure& figure) {
+report::TableCell verdict_cell(const VariantFigure& figure) {
   const bool is_difference = figure.verdict == "lower" || figure.verdict == "higher";
   return {figure.verdict, is_difference ? Tone::kPlain : Tone::kFaint};
 }
 
-std::string interval_text(const std::optional<score::Interval>& interval, const Unit& unit, const char* sign) {
+std::string interval_text(const std::optional<score::Interval>& interval, const report::Unit& unit, const char* sign) {
   if (!interval) return "–";
   const auto number = [&](double value) { return fmt::format(fmt::runtime(fmt::format("{{:{}.4g}}", sign)), unit.factor * value); };
   return fmt::format("{} [{}, {}]", number(interval->center), number(interval->low), number(interval->high));
@@ -45,15 +45,15 @@ std::vector<std::string> short_names(const SweepManifest& manifest) {
   return names;
 }
 
-std::vector<render::Block> comparison_blocks(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, const std::string& metric) {
-  const Unit unit = unit_of(metric);
+std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, const std::string& metric) {
+  const report::Unit unit = report::unit_of(metric);
   const auto figures = flatten_metrics(manifest, rows, metric);
   const std::vector<std::string> names = short_names(manifest);
-  render::BoxPlot boxes{.caption = "Every run, median and quartiles", .unit = unit.name, .boxes = {}};
-  render::WaterfallChart differences{.caption = fmt::format("Difference from {}, paired by seed, {:g} % intervals", names.front(), 100.0 * level_of(manifest)),
+  report::BoxPlot boxes{.caption = "Every run, median and quartiles", .unit = unit.name, .boxes = {}};
+  report::WaterfallChart differences{.caption = fmt::format("Difference from {}, paired by seed, {:g} % intervals", names.front(), 100.0 * level_of(manifest)),
                                 .unit = unit.name,
                                 .spans = {}};
-  render::TableBlock table{.caption = "",
+  report::TableBlock table{.caption = "",
                            .columns = {{"variant"}, {"runs", true}, {"mean, " + unit.name, true}, {"difference, " + unit.name, true}, {""}},
                            .rows = {}};
   for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
@@ -63,7 +63,7 @@ std::vector<render::Block> comparison_blocks(const SweepManifest& manifest, cons
     for (std::size_t seed = 0; seed < progress.num_seeds[variant]; ++seed) {
       if (figures[seed][variant]) values.push_back(*figures[seed][variant]);
     }
-    if (!values.empty()) boxes.boxes.push_back(box_of(name, values, unit));
+    if (!values.empty()) boxes.boxes.push_back(report::box_of(name, values, unit));
     if (figure.difference) {
       differences.spans.push_back({.label = name,
                                    .from = 0.0,
@@ -78,16 +78,16 @@ std::vector<render::Block> comparison_blocks(const SweepManifest& manifest, cons
                           {variant == 0 ? "" : interval_text(figure.difference, unit, "+")},
                           verdict_cell(figure)});
   }
-  std::vector<render::Block> blocks;
+  std::vector<report::Block> blocks;
   if (!boxes.boxes.empty()) blocks.emplace_back(boxes);
   if (!differences.spans.empty()) blocks.emplace_back(differences);
   blocks.emplace_back(table);
   return blocks;
 }
 
-render::CollapsibleTables run_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
+report::CollapsibleTables run_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
   const std::vector<std::string> names = short_names(manifest);
-  render::TableBlock table{.caption = "", .columns = {{"variant"}, {"seed", true}, {"end"}, {"exit code", true}, {"why"}}, .rows = {}};
+  report::TableBlock table{.caption = "", .columns = {{"variant"}, {"seed", true}, {"end"}, {"exit code", true}, {"why"}}, .rows = {}};
   std::vector<std::size_t> order = progress.counted;
   std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return rows[i]->code() != ExitCode::kDone; });
   for (const std::size_t i : order) {

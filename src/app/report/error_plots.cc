@@ -2,16 +2,16 @@
 
 #include <cmath>
 
-#include "app/report/occasions.h"
-#include "core/angles.h"
+#include "app/report/event_timeline.h"
+#include "core/geometry/angles.h"
 #include "score/trajectory_error.h"
 
 namespace patrol::app {
 namespace {
 
-using render::Curve;
-using render::SeriesColor;
-using render::LinePlot;
+using report::Curve;
+using report::SeriesColor;
+using report::LinePlot;
 
 Curve position_curve(const std::string& name, SeriesColor ink, const std::vector<score::MatchedPose>& poses) {
   Curve curve{.name = name, .ink = ink, .points = {}};
@@ -41,7 +41,7 @@ class Plots {
  public:
   explicit Plots(const RunContents& run) : axis_{.label = "time, s", .max = run.end_s()}, marks_(marks_of(run)), spans_(spans_of(run)) {}
 
-  render::EventTimeline lanes(const RunContents& run) const {
+  report::EventTimeline lanes(const RunContents& run) const {
     return {.title = "Events", .axis = axis_, .lanes = lanes_of(run), .spans = spans_};
   }
   LinePlot lines(const std::string& title, const std::string& unit, std::vector<Curve> curves) const {
@@ -49,9 +49,9 @@ class Plots {
   }
 
  private:
-  render::PlotAxis axis_;
-  std::vector<render::PlotMark> marks_;
-  std::vector<render::PlotSpan> spans_;
+  report::PlotAxis axis_;
+  std::vector<report::PlotMark> marks_;
+  std::vector<report::PlotSpan> spans_;
 };
 
 LinePlot trust_plot(const Plots& plots, const std::vector<LocalizationConfidence>& trusts) {
@@ -75,10 +75,10 @@ LinePlot unaided_plot(const Plots& plots, const RunContents& run) {
 
 }  // namespace
 
-std::vector<render::Block> error_blocks(const RunContents& run) {
+std::vector<report::Block> error_blocks(const RunContents& run) {
   const RunRecord& record = run.record;
   const Plots plots(run);
-  std::vector<render::Block> blocks;
+  std::vector<report::Block> blocks;
   if (!record.events.empty() || !record.collisions.empty()) blocks.emplace_back(plots.lanes(run));
   if (!overlap(record.T_map_body, record.T_world_body) || !overlap(record.T_odom_body, record.T_world_body)) return blocks;
   const std::vector<score::MatchedPose> estimate = score::pair_poses(record.T_map_body, run.T_world_map, record.T_world_body);
@@ -88,7 +88,7 @@ std::vector<render::Block> error_blocks(const RunContents& run) {
   blocks.emplace_back(unaided_plot(plots, run));
   blocks.emplace_back(plots.lines("Heading error", "°", {heading_curve("estimate", SeriesColor::kEstimate, estimate), bound_curve("its own 2σ", record, heading_std_deg)}));
   if (!record.confidences.empty()) blocks.emplace_back(trust_plot(plots, record.confidences));
-  render::TextBlock note;
+  report::TextBlock note;
   note.text = "Map and world are joined at the start; nothing is fitted afterwards. 2σ: of the position, twice the root of the sum of both variances. "
               "Lines: troubles, recoveries, relocalisations; shaded: faults, and where the robot says that it is lost.";
   blocks.emplace_back(note);

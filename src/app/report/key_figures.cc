@@ -3,19 +3,19 @@
 #include <fmt/format.h>
 
 #include "app/report/metric_blocks.h"
-#include "app/report/quantity.h"
+#include "report/quantity.h"
 
 namespace patrol::app {
 namespace {
 
-using render::KeyMetric;
+using report::KeyMetric;
 
 class Figures {
  public:
   explicit Figures(const io::Metrics& metrics) : metrics_(metrics) {}
 
   std::optional<double> at(const std::string& path) const { return io::metric_at(metrics_, path); }
-  void add(const std::string& label, const Quantity& quantity, const std::string& note) {
+  void add(const std::string& label, const report::Quantity& quantity, const std::string& note) {
     figures_.push_back({label, quantity.value, quantity.unit, note});
   }
   std::vector<KeyMetric> take() { return std::move(figures_); }
@@ -36,13 +36,13 @@ class Figures {
 
 void add_accuracy(Figures& figures) {
   if (const auto rmse_m = figures.at("pose.ate_rmse_m")) {
-    figures.add("Position error, RMS", length(*rmse_m), "at most " + length(figures.at("pose.ate_max_m").value_or(0.0)).text());
+    figures.add("Position error, RMS", report::length(*rmse_m), "at most " + report::length(figures.at("pose.ate_max_m").value_or(0.0)).text());
   }
-  if (const auto rmse_deg = figures.at("pose.heading_rmse_deg")) figures.add("Heading error, RMS", angle(*rmse_deg), "");
+  if (const auto rmse_deg = figures.at("pose.heading_rmse_deg")) figures.add("Heading error, RMS", report::angle(*rmse_deg), "");
   if (const auto mean_m = figures.at("map.nearest_mean_m")) {
-    figures.add("Map to nearest surface", length(*mean_m), fmt::format("{:.0f} % of what could be seen is mapped", 100.0 * figures.at("map.coverage").value_or(0.0)));
+    figures.add("Map to nearest surface", report::length(*mean_m), fmt::format("{:.0f} % of what could be seen is mapped", 100.0 * figures.at("map.coverage").value_or(0.0)));
   }
-  if (const auto rmse_m = figures.at("odometry.ate_rmse_m")) figures.add("Odometry alone, RMS", length(*rmse_m), "the same without map");
+  if (const auto rmse_m = figures.at("odometry.ate_rmse_m")) figures.add("Odometry alone, RMS", report::length(*rmse_m), "the same without map");
 }
 
 void add_places(Figures& figures) {
@@ -53,7 +53,7 @@ void add_places(Figures& figures) {
   const double dockings = figures.at("docking.arrivals").value_or(0.0), failed = figures.at("docking.failed").value_or(0.0);
   if (dockings + failed > 0.0) {
     const auto worst_m = figures.at("docking.position_error_m.max");
-    figures.add("Dockings", {fmt::format("{:.0f} of {:.0f}", dockings, dockings + failed), ""}, worst_m ? "at most " + length(*worst_m).text() + " off" : "");
+    figures.add("Dockings", {fmt::format("{:.0f} of {:.0f}", dockings, dockings + failed), ""}, worst_m ? "at most " + report::length(*worst_m).text() + " off" : "");
   }
 }
 
@@ -67,7 +67,7 @@ void add_mission(Figures& figures) {
     figures.add("Collisions", {fmt::format("{:.0f}", *collisions), ""}, figures.at("mission.fell").value_or(0.0) > 0.5 ? "and the robot fell" : "");
   }
   if (const auto distance_m = figures.at("mission.distance_m")) {
-    figures.add("Way", length(*distance_m), fmt::format("in {:.1f} s", figures.at("mission.duration_s").value_or(0.0)));
+    figures.add("Way", report::length(*distance_m), fmt::format("in {:.1f} s", figures.at("mission.duration_s").value_or(0.0)));
   }
   if (const auto factor = figures.at("performance.real_time_factor")) {
     figures.add("Simulated s per wall s", {fmt::format("{:.1f}", *factor), ""}, "");
@@ -76,7 +76,7 @@ void add_mission(Figures& figures) {
 
 }  // namespace
 
-render::KeyMetrics key_figures(const io::Metrics& metrics) {
+report::KeyMetrics key_figures(const io::Metrics& metrics) {
   Figures figures(metrics);
   add_accuracy(figures);
   add_places(figures);

@@ -8,21 +8,21 @@
 
 #include <fmt/format.h>
 
-#include "app/report/boxes.h"
+#include "report/boxes.h"
 #include "app/scoring/metric_lines.h"
 
 namespace patrol::app {
 namespace {
 
-using render::Tone;
+using report::Tone;
 
 /// Cell with a metric of an entry in fixed decimals, which aligns the decimal points of a column.
-render::TableCell figure_cell(const io::Metrics& entry, const std::string& path, int decimals, double factor = 1.0) {
+report::TableCell figure_cell(const io::Metrics& entry, const std::string& path, int decimals, double factor = 1.0) {
   const std::optional<double> value = io::metric_at(entry, path);
-  return value ? render::TableCell{fmt::format("{:.{}f}", factor * *value, decimals)} : render::TableCell{"–", Tone::kFaint};
+  return value ? report::TableCell{fmt::format("{:.{}f}", factor * *value, decimals)} : report::TableCell{"–", Tone::kFaint};
 }
 
-render::TableCell checked_cell(const std::string& path, const std::vector<CheckedExpectation>& checks) {
+report::TableCell checked_cell(const std::string& path, const std::vector<CheckedExpectation>& checks) {
   const auto check = std::find_if(checks.begin(), checks.end(), [&](const CheckedExpectation& one) { return one.metric == path; });
   if (check == checks.end()) return {};
   return {check->wanted + (check->is_met ? " met" : " MISSED"), check->is_met ? Tone::kGood : Tone::kBad};
@@ -37,18 +37,18 @@ std::vector<double> each_of(const io::Metrics& goal, const std::string& metric) 
 }
 
 /// Box plot with a dot for every arrival; empty if no goal was reached more than once.
-render::BoxPlot box_plot(const io::Metrics& metrics, const std::string& metric, const std::string& caption) {
-  const Unit unit = unit_of(metric);
-  render::BoxPlot plot{.caption = caption, .unit = unit.name, .boxes = {}};
-  for (const io::Metrics& goal : metrics["goals"]) plot.boxes.push_back(box_of(goal.value("name", ""), each_of(goal, metric), unit));
-  if (metrics.contains("docking")) plot.boxes.push_back(box_of("dock", each_of(metrics["docking"], metric), unit));
-  const auto is_single = [](const render::Box& box) { return box.values.size() < 2; };
+report::BoxPlot box_plot(const io::Metrics& metrics, const std::string& metric, const std::string& caption) {
+  const report::Unit unit = report::unit_of(metric);
+  report::BoxPlot plot{.caption = caption, .unit = unit.name, .boxes = {}};
+  for (const io::Metrics& goal : metrics["goals"]) plot.boxes.push_back(report::box_of(goal.value("name", ""), each_of(goal, metric), unit));
+  if (metrics.contains("docking")) plot.boxes.push_back(report::box_of("dock", each_of(metrics["docking"], metric), unit));
+  const auto is_single = [](const report::Box& box) { return box.values.size() < 2; };
   if (std::all_of(plot.boxes.begin(), plot.boxes.end(), is_single)) plot.boxes.clear();
   return plot;
 }
 
-std::vector<render::TableCell> goal_row(const std::string& name, const io::Metrics& goal) {
-  std::vector<render::TableCell> row = {{name}, figure_cell(goal, "arrivals", 0), figure_cell(goal, "failed", 0)};
+std::vector<report::TableCell> goal_row(const std::string& name, const io::Metrics& goal) {
+  std::vector<report::TableCell> row = {{name}, figure_cell(goal, "arrivals", 0), figure_cell(goal, "failed", 0)};
   if (goal.value("failed", 0) > 0) row.back().tone = Tone::kBad;
   for (const char* statistic : {"mean", "std", "max"}) row.push_back(figure_cell(goal, fmt::format("position_error_m.{}", statistic), 2, 100.0));
   for (const char* statistic : {"mean", "std", "max"}) row.push_back(figure_cell(goal, fmt::format("heading_error_deg.{}", statistic), 2));
@@ -59,9 +59,9 @@ bool is_list(const io::Metrics& metrics, const char* key) { return metrics.conta
 
 }  // namespace
 
-render::CollapsibleTables all_metrics(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks) {
+report::CollapsibleTables all_metrics(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks) {
   const std::vector<MetricLine> lines = metric_lines(metrics);
-  render::CollapsibleTables folded{.summary = fmt::format("All {} figures", lines.size()), .tables = {}};
+  report::CollapsibleTables folded{.summary = fmt::format("All {} figures", lines.size()), .tables = {}};
   for (const MetricLine& line : lines) {
     const std::size_t dot = line.path.find('.');
     const std::string group = line.path.substr(0, dot);
@@ -73,48 +73,48 @@ render::CollapsibleTables all_metrics(const io::Metrics& metrics, const std::vec
   return folded;
 }
 
-std::vector<render::Block> station_blocks(const io::Metrics& metrics) {
+std::vector<report::Block> station_blocks(const io::Metrics& metrics) {
   if (!is_list(metrics, "stations")) return {};
-  render::TableBlock table{.caption = "",
+  report::TableBlock table{.caption = "",
                            .columns = {{"station"}, {"reached"}, {"believed to be off, cm", true}, {"heading, °", true}, {"stood off, cm", true}, {"in the map off, cm", true}},
                            .rows = {}};
   for (const io::Metrics& station : metrics["stations"]) {
     const bool is_reached = station.value("reached", false);
     table.rows.push_back({{station.value("name", "")},
-                          is_reached ? render::TableCell{"yes", Tone::kGood} : render::TableCell{"NO", Tone::kBad},
+                          is_reached ? report::TableCell{"yes", Tone::kGood} : report::TableCell{"NO", Tone::kBad},
                           figure_cell(station, "position_error_m", 1, 100.0),
                           figure_cell(station, "heading_error_deg", 2),
                           figure_cell(station, "stand_error_m", 1, 100.0),
                           figure_cell(station, "map_error_m", 1, 100.0)});
   }
-  return {table, render::TextBlock{"On arrival: error of the robot's own pose and heading; where it truly stood, from where the survey wants it; "
+  return {table, report::TextBlock{"On arrival: error of the robot's own pose and heading; where it truly stood, from where the survey wants it; "
                                    "how far the map's surroundings have to be moved to fit the world."}};
 }
 
-std::vector<render::Block> goal_blocks(const io::Metrics& metrics) {
+std::vector<report::Block> goal_blocks(const io::Metrics& metrics) {
   if (!is_list(metrics, "goals")) return {};
-  render::TableBlock table{.caption = "",
+  report::TableBlock table{.caption = "",
                            .columns = {{"goal"}, {"reached", true}, {"failed", true}, {"position, cm: mean", true}, {"std", true}, {"max", true},
                                        {"heading, °: mean", true}, {"std", true}, {"max", true}},
                            .rows = {}};
   for (const io::Metrics& goal : metrics["goals"]) table.rows.push_back(goal_row(goal.value("name", ""), goal));
   if (metrics.contains("docking")) table.rows.push_back(goal_row("dock", metrics["docking"]));
-  std::vector<render::Block> blocks = {table};
+  std::vector<report::Block> blocks = {table};
   for (const auto& [metric, caption] : {std::pair("position_error_m", "Position error on arrival"), std::pair("heading_error_deg", "Heading error on arrival")}) {
-    render::BoxPlot plot = box_plot(metrics, metric, caption);
+    report::BoxPlot plot = box_plot(metrics, metric, caption);
     if (!plot.boxes.empty()) blocks.emplace_back(std::move(plot));
   }
-  if (blocks.size() > 1) blocks.emplace_back(render::TextBlock{"Box: from quartile to quartile; line: from least to greatest; dots: every arrival; at the right the median."});
+  if (blocks.size() > 1) blocks.emplace_back(report::TextBlock{"Box: from quartile to quartile; line: from least to greatest; dots: every arrival; at the right the median."});
   return blocks;
 }
 
 namespace {
 
-std::vector<render::Block> leak_blocks(const io::Metrics& metrics) {
+std::vector<report::Block> leak_blocks(const io::Metrics& metrics) {
   const bool has_findings = metrics.contains("inspection") && is_list(metrics["inspection"], "findings");
   if (!has_findings && io::metric_at(metrics, "inspection.leaks").value_or(0.0) == 0.0) return {};
-  if (!has_findings) return {render::TextBlock{fmt::format("{:.0f} leaks in the world, nothing found.", *io::metric_at(metrics, "inspection.leaks"))}};
-  render::TableBlock table{.caption = "",
+  if (!has_findings) return {report::TextBlock{fmt::format("{:.0f} leaks in the world, nothing found.", *io::metric_at(metrics, "inspection.leaks"))}};
+  report::TableBlock table{.caption = "",
                            .columns = {{"finding at"}, {"column, ppm m", true}, {"x, m", true}, {"y, m", true}, {"leak"}, {"off by, cm", true}},
                            .rows = {}};
   for (const io::Metrics& finding : metrics["inspection"]["findings"]) {
@@ -123,16 +123,16 @@ std::vector<render::Block> leak_blocks(const io::Metrics& metrics) {
                           figure_cell(finding, "column_ppm_m", 0),
                           figure_cell(finding, "x_m", 2),
                           figure_cell(finding, "y_m", 2),
-                          is_leak ? render::TableCell{finding["leak"].get<std::string>(), Tone::kGood} : render::TableCell{"false alarm", Tone::kBad},
+                          is_leak ? report::TableCell{finding["leak"].get<std::string>(), Tone::kGood} : report::TableCell{"false alarm", Tone::kBad},
                           figure_cell(finding, "position_error_m", 1, 100.0)});
   }
   return {table};
 }
 
-std::vector<render::Block> lining_blocks(const io::Metrics& metrics) {
+std::vector<report::Block> lining_blocks(const io::Metrics& metrics) {
   if (!io::metric_at(metrics, "inspection.lining.stations")) return {};
   const io::Metrics& lining = metrics["inspection"]["lining"];
-  render::TableBlock table{.caption = "Rings of the lining",
+  report::TableBlock table{.caption = "Rings of the lining",
                            .columns = {{"station"}, {"ring", true}, {"true peak, mm", true}, {"reported, mm", true}, {"off by, mm", true}, {"place off by, cm", true}, {""}},
                            .rows = {}};
   for (const io::Metrics& ring : lining["rings"]) {
@@ -143,21 +143,21 @@ std::vector<render::Block> lining_blocks(const io::Metrics& metrics) {
                           figure_cell(ring, "reported_mm", 2),
                           figure_cell(ring, "error_mm", 2),
                           figure_cell(ring, "place_error_m", 1, 100.0),
-                          !is_found ? render::TableCell{"missed", Tone::kBad} : has_moved ? render::TableCell{"found", Tone::kGood} : render::TableCell{"false finding", Tone::kBad}});
+                          !is_found ? report::TableCell{"missed", Tone::kBad} : has_moved ? report::TableCell{"found", Tone::kGood} : report::TableCell{"false finding", Tone::kBad}});
   }
   const auto figure = [&](const char* name) { return io::metric_at(lining, name).value_or(0.0); };
-  return {table, render::TextBlock{fmt::format("{:.0f} of {:.0f} scans were laid on their references. {:.0f} cells (a ring's part in ten degrees): RMS error {:.2f} mm; {:.1f} % of their "
+  return {table, report::TextBlock{fmt::format("{:.0f} of {:.0f} scans were laid on their references. {:.0f} cells (a ring's part in ten degrees): RMS error {:.2f} mm; {:.1f} % of their "
                                                "95 % intervals hold the truth.",
                                                figure("registered"), figure("stations"), figure("cells"), figure("cell_rmse_mm"), 100.0 * figure("cell_coverage_95"))}};
 }
 
-std::vector<render::Block> water_blocks(const io::Metrics& metrics) {
+std::vector<report::Block> water_blocks(const io::Metrics& metrics) {
   if (!io::metric_at(metrics, "inspection.water.stations")) return {};
   const io::Metrics& water = metrics["inspection"]["water"];
   const auto figure = [&](const char* name) { return io::metric_at(water, name).value_or(0.0); };
   const std::string summary = fmt::format("Bodies of water ahead of the face: {:.0f}; found: {:.0f}; false alarms: {:.0f}.", figure("bodies"), figure("found"), figure("false_alarms"));
-  if (!is_list(water, "findings")) return {render::TextBlock{summary}};
-  render::TableBlock table{.caption = "Water ahead of the face",
+  if (!is_list(water, "findings")) return {report::TextBlock{summary}};
+  report::TableBlock table{.caption = "Water ahead of the face",
                            .columns = {{"soundings"}, {"off by, m", true}, {"of that along the way, m", true}, {"radius off by, m", true}, {"interval"}, {""}},
                            .rows = {}};
   for (const io::Metrics& finding : water["findings"]) {
@@ -168,26 +168,26 @@ std::vector<render::Block> water_blocks(const io::Metrics& metrics) {
                           figure_cell(finding, "ahead_error_m", 2),
                           figure_cell(finding, "radius_error_m", 2),
                           {holds ? "holds the distance" : "does not hold it", holds ? Tone::kGood : Tone::kBad},
-                          is_true ? render::TableCell{"found", Tone::kGood} : render::TableCell{"false alarm", Tone::kBad}});
+                          is_true ? report::TableCell{"found", Tone::kGood} : report::TableCell{"false alarm", Tone::kBad}});
   }
-  return {table, render::TextBlock{summary}};
+  return {table, report::TextBlock{summary}};
 }
 
 }  // namespace
 
-std::vector<render::Block> inspection_blocks(const io::Metrics& metrics) {
-  std::vector<render::Block> blocks = leak_blocks(metrics);
-  for (std::vector<render::Block>& more : std::array{lining_blocks(metrics), water_blocks(metrics)}) {
+std::vector<report::Block> inspection_blocks(const io::Metrics& metrics) {
+  std::vector<report::Block> blocks = leak_blocks(metrics);
+  for (std::vector<report::Block>& more : std::array{lining_blocks(metrics), water_blocks(metrics)}) {
     std::move(more.begin(), more.end(), std::back_inserter(blocks));
   }
   return blocks;
 }
 
-std::vector<render::Block> performance_blocks(const io::Metrics& metrics) {
+std::vector<report::Block> performance_blocks(const io::Metrics& metrics) {
   if (!metrics.contains("performance") || !metrics["performance"].contains("parts_s")) return {};
   const io::Metrics& performance = metrics["performance"];
   const auto figure = [&](const char* name) { return io::metric_at(performance, name).value_or(0.0); };
-  render::BarBlock bars{.caption = fmt::format("Wall time by part: {:.1f} s in all, {:.1f} s of processor time, {:.1f} simulated s per s, {:.0f} MB at most",
+  report::BarBlock bars{.caption = fmt::format("Wall time by part: {:.1f} s in all, {:.1f} s of processor time, {:.1f} simulated s per s, {:.0f} MB at most",
                                                figure("wall_s"), figure("cpu_s"), figure("real_time_factor"), figure("peak_memory_mb")),
                         .bars = {}};
   double rest_s = figure("wall_s");
@@ -196,7 +196,7 @@ std::vector<render::Block> performance_blocks(const io::Metrics& metrics) {
     rest_s -= part_s;
     bars.bars.push_back({.label = part, .value = part_s, .text = fmt::format("{:.2f} s", part_s)});
   }
-  std::stable_sort(bars.bars.begin(), bars.bars.end(), [](const render::Bar& a, const render::Bar& b) { return a.value > b.value; });
+  std::stable_sort(bars.bars.begin(), bars.bars.end(), [](const report::Bar& a, const report::Bar& b) { return a.value > b.value; });
   if (rest_s > 0.0) bars.bars.push_back({.label = "the rest", .value = rest_s, .text = fmt::format("{:.2f} s", rest_s)});
   return {bars};
 }

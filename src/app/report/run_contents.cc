@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "io/atomic_file.h"
-#include "io/map_server.h"
+#include "io/files/atomic_file.h"
+#include "io/maps/map_server.h"
 #include "score/trajectory_error.h"
 
 namespace patrol::app {

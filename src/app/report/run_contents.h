@@ -7,8 +7,8 @@
 #include "app/record/run_directory.h"
 #include "app/record/run_record.h"
 #include "app/scenario/scenario.h"
-#include "io/junit.h"
-#include "io/metrics_json.h"
+#include "io/files/junit.h"
+#include "io/json/metrics_json.h"
 
 namespace patrol::app {
 

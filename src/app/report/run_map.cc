@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <map>
 
-#include "app/report/occasions.h"
+#include "app/report/event_timeline.h"
 #include "app/report/verdict.h"
 
 namespace patrol::app {
 namespace {
 
-using render::SeriesColor;
-using render::MapMark;
+using report::SeriesColor;
+using report::MapMark;
 
 /// Divides a trajectory into polylines at jumps of the robot or of its estimate.
 std::vector<std::vector<Eigen::Vector2d>> pieces_of(const Trajectory& T_frame_body, const Pose2& T_world_frame) {
@@ -24,9 +24,9 @@ std::vector<std::vector<Eigen::Vector2d>> pieces_of(const Trajectory& T_frame_bo
   return pieces;
 }
 
-Eigen::AlignedBox2d extent_of(const std::vector<render::MapPath>& paths) {
+Eigen::AlignedBox2d extent_of(const std::vector<report::MapPath>& paths) {
   Eigen::AlignedBox2d extent;
-  for (const render::MapPath& path : paths) {
+  for (const report::MapPath& path : paths) {
     for (const std::vector<Eigen::Vector2d>& piece : path.pieces_m) {
       for (const Eigen::Vector2d& p_world : piece) extent.extend(p_world);
     }
@@ -75,17 +75,17 @@ std::vector<MapMark> marks_on_map(const RunContents& run) {
 
 }  // namespace
 
-std::vector<render::Block> map_blocks(const RunContents& run) {
+std::vector<report::Block> map_blocks(const RunContents& run) {
   const RunRecord& record = run.record;
   if (record.map.values().empty()) return {};
-  const render::MapLayers layers{.built = record.map, .T_world_map = run.T_world_map, .truth = run.truth_map, .error_m = run.map_errors_m};
-  const std::vector<render::MapPath> paths = {{"true path", SeriesColor::kTruth, pieces_of(record.T_world_body, {})},
+  const report::MapLayers layers{.built = record.map, .T_world_map = run.T_world_map, .truth = run.truth_map, .error_m = run.map_errors_m};
+  const std::vector<report::MapPath> paths = {{"true path", SeriesColor::kTruth, pieces_of(record.T_world_body, {})},
                                               {"estimated path", SeriesColor::kEstimate, pieces_of(record.T_map_body, run.T_world_map)}};
-  const render::MapBlock map{.picture = render::map_picture(layers, extent_of(paths)), .paths = paths, .marks = marks_on_map(run)};
+  const report::MapBlock map{.picture = report::map_picture(layers, extent_of(paths)), .paths = paths, .marks = marks_on_map(run)};
   std::string note = "World frame, x to the right, y up; paths to a centimetre.";
   if (run.truth_map) note += " True surfaces: those that could be seen on this run, at the lidar's height; errors are to any surface.";
   if (!map.picture.has_errors) note += " The run left no map_errors.pgm (patrol score makes it): the map is drawn in one colour.";
-  return {map, render::TextBlock{note}};
+  return {map, report::TextBlock{note}};
 }
 
 }  // namespace patrol::app

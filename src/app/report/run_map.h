@@ -3,12 +3,12 @@
 #include <vector>
 
 #include "app/report/run_contents.h"
-#include "render/report/blocks.h"
+#include "report/blocks.h"
 
 namespace patrol::app {
 
 /// Map built by the run over the reference map, colored by its errors, with both paths and the positions of events.
 /// Empty without a map.
-std::vector<render::Block> map_blocks(const RunContents& run);
+std::vector<report::Block> map_blocks(const RunContents& run);
 
 }  // namespace patrol::app

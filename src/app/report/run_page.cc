@@ -6,18 +6,18 @@
 
 #include "app/report/error_plots.h"
 #include "app/report/metric_blocks.h"
-#include "app/report/occasions.h"
+#include "app/report/event_timeline.h"
 #include "app/report/run_map.h"
 #include "app/report/settings_difference.h"
 #include "app/report/verdict.h"
-#include "io/atomic_file.h"
+#include "io/files/atomic_file.h"
 
 namespace patrol::app {
 namespace {
 
 constexpr std::uintmax_t kLargestEmbedded = 6u << 20;  // bytes: limit of common mail gateways
 
-using Blocks = std::vector<render::Block>;
+using Blocks = std::vector<report::Block>;
 
 Blocks figure_blocks(const RunContents& run) {
   if (run.metrics.empty()) return {};
@@ -26,24 +26,24 @@ Blocks figure_blocks(const RunContents& run) {
 
 Blocks settings_blocks(const RunContents& run) {
   const Scenario standard = default_scenario(run.scenario.robot, find_data_root(run.directory.scenario()));
-  render::TableBlock table{.caption = "", .columns = {{"setting"}, {"default"}, {"this run"}}, .rows = {}};
+  report::TableBlock table{.caption = "", .columns = {{"setting"}, {"default"}, {"this run"}}, .rows = {}};
   for (const SettingDifference& difference : settings_differences(standard, run.scenario)) {
-    table.rows.push_back({{difference.path}, {difference.standard, render::Tone::kFaint}, {difference.value}});
+    table.rows.push_back({{difference.path}, {difference.standard, report::Tone::kFaint}, {difference.value}});
   }
-  if (table.rows.empty()) return {render::TextBlock{"Every setting is the default."}};
-  return {table, render::TextBlock{fmt::format("Defaults: the program's, under those of models/{0}/{0}.yaml. scenario.yaml lists every setting.", run.scenario.robot)}};
+  if (table.rows.empty()) return {report::TextBlock{"Every setting is the default."}};
+  return {table, report::TextBlock{fmt::format("Defaults: the program's, under those of models/{0}/{0}.yaml. scenario.yaml lists every setting.", run.scenario.robot)}};
 }
 
 Blocks replay_blocks(const RunContents& run, const std::filesystem::path& page_file) {
   const std::filesystem::path video = run.directory.root / "replay.mp4";
   if (!std::filesystem::exists(video)) return {};
   if (std::filesystem::file_size(video) <= kLargestEmbedded) {
-    return {render::VideoBlock{.mp4 = io::load_text(video), .url = "", .caption = "Rendered from the log by patrol replay"}};
+    return {report::VideoBlock{.mp4 = io::load_text(video), .url = "", .caption = "Rendered from the log by patrol replay"}};
   }
   const bool is_beside = std::filesystem::absolute(page_file).lexically_normal().parent_path() ==
                          std::filesystem::absolute(video).lexically_normal().parent_path();
   if (!is_beside) return {};
-  return {render::VideoBlock{.mp4 = "", .url = "replay.mp4",
+  return {report::VideoBlock{.mp4 = "", .url = "replay.mp4",
                              .caption = "Rendered from the log by patrol replay. Plays from replay.mp4, which must stay next to this page."}};
 }
 
@@ -58,8 +58,8 @@ std::vector<std::pair<std::string, std::string>> facts_of(const RunContents& run
 
 }  // namespace
 
-render::Page run_page(const RunContents& run, const std::filesystem::path& page_file) {
-  render::Page page{.kind = "report of a run",
+report::Page run_page(const RunContents& run, const std::filesystem::path& page_file) {
+  report::Page page{.kind = "report of a run",
                     .title = fmt::format("{} in the {}, seed {}", run.name, run.scenario.world, run.scenario.seed),
                     .facts = facts_of(run),
                     .sections = {{.title = "", .blocks = {verdict_of(run)}}},

@@ -3,11 +3,11 @@
 #include <filesystem>
 
 #include "app/report/run_contents.h"
-#include "render/report/blocks.h"
+#include "report/blocks.h"
 
 namespace patrol::app {
 
 /// Report page of one run. `page_file`: path of the page, which determines whether a large video can be linked.
-render::Page run_page(const RunContents& run, const std::filesystem::path& page_file);
+report::Page run_page(const RunContents& run, const std::filesystem::path& page_file);
 
 }  // namespace patrol::app

@@ -11,7 +11,7 @@
 namespace patrol::app {
 namespace {
 
-using render::Tone;
+using report::Tone;
 
 std::string not_done(const SweepRows& rows, const SweepProgress& progress) {
   const auto num = std::count_if(progress.counted.begin(), progress.counted.end(), [&](std::size_t i) { return rows[i]->code() != ExitCode::kDone; });
@@ -19,7 +19,7 @@ std::string not_done(const SweepRows& rows, const SweepProgress& progress) {
                   : fmt::format(" {} of {} runs did not end as expected.", num, progress.counted.size());
 }
 
-render::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
+report::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
   const std::string& metric = manifest.metrics.front();
   const std::vector<std::string> names = short_names(manifest);
   std::vector<std::string> better, worse;
@@ -28,7 +28,7 @@ render::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRow
     if (figure.verdict == "lower") better.push_back(names[variant]);
     if (figure.verdict == "higher") worse.push_back(names[variant]);
   }
-  render::VerdictBlock verdict;
+  report::VerdictBlock verdict;
   if (manifest.variants.size() == 1) {
     verdict.word = "One variant";
     verdict.reason = "Nothing is compared.";
@@ -46,8 +46,8 @@ render::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRow
   return verdict;
 }
 
-render::VerdictBlock budget_verdict(const std::vector<Budget>& budgets, const SweepRows& rows, const SweepProgress& progress) {
-  render::VerdictBlock verdict;
+report::VerdictBlock budget_verdict(const std::vector<Budget>& budgets, const SweepRows& rows, const SweepProgress& progress) {
+  report::VerdictBlock verdict;
   const bool has_owner = !budgets.empty() && !budgets.front().shares.empty() && budgets.front().shares.front().share && !budgets.front().shares.front().share->contains(0.0);
   verdict.word = has_owner ? budgets.front().shares.front().name : "No single owner";
   for (const Budget& budget : budgets) verdict.reason += budget_finding(budget) + " ";
@@ -65,11 +65,11 @@ Tone tone_of(FaultOutcome outcome) {
 }
 
 /// Table of faults.csv, ordered by fault.
-render::TableBlock fault_table(const SweepManifest& manifest, const std::vector<FaultRow>& rows) {
-  render::TableBlock table{.caption = "", .columns = {{"fault"}, {"seed", true}, {"executed"}, {"outcome"}, {"noticed", true}, {"end"}}, .rows = {}};
+report::TableBlock fault_table(const SweepManifest& manifest, const std::vector<FaultRow>& rows) {
+  report::TableBlock table{.caption = "", .columns = {{"fault"}, {"seed", true}, {"executed"}, {"outcome"}, {"noticed", true}, {"end"}}, .rows = {}};
   for (const std::string& metric : manifest.metrics) table.columns.push_back({metric, true});
   for (const FaultRow& row : rows) {
-    std::vector<render::TableCell> cells = {{row.name},
+    std::vector<report::TableCell> cells = {{row.name},
                                        {std::to_string(row.seed)},
                                        {executed_text(row), row.is_not_executed() ? Tone::kWarning : Tone::kPlain},
                                        {std::string(text_of(row.outcome)), tone_of(row.outcome)},
@@ -81,10 +81,10 @@ render::TableBlock fault_table(const SweepManifest& manifest, const std::vector<
   return table;
 }
 
-render::VerdictBlock faults_verdict(const std::vector<FaultRow>& rows) {
+report::VerdictBlock faults_verdict(const std::vector<FaultRow>& rows) {
   const auto count = [&](FaultOutcome outcome) { return std::count_if(rows.begin(), rows.end(), [&](const FaultRow& row) { return row.outcome == outcome; }); };
   const auto num_bad = count(FaultOutcome::kUnsafe) + count(FaultOutcome::kNoResult);
-  render::VerdictBlock verdict;
+  report::VerdictBlock verdict;
   verdict.word = num_bad == 0 ? "No fault was unsafe" : fmt::format("{} of {} runs unsafe", num_bad, rows.size());
   verdict.tone = num_bad == 0 ? Tone::kGood : Tone::kBad;
   verdict.reason = faults_summary(rows);
@@ -99,15 +99,15 @@ const char* kind_of(SweepKind kind) {
   }
 }
 
-void add_comparisons(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, render::Page& page) {
+void add_comparisons(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, report::Page& page) {
   for (const std::string& metric : manifest.metrics) page.sections.push_back({metric, comparison_blocks(manifest, rows, progress, metric)});
 }
 
 }  // namespace
 
-render::Page sweep_page(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
+report::Page sweep_page(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
   const std::string scenario = manifest.scenario.substr(0, manifest.scenario.rfind('.'));
-  render::Page page{.kind = fmt::format("report of {} {}", manifest.kind == SweepKind::kBudget ? "an" : "a", kind_of(manifest.kind)),
+  report::Page page{.kind = fmt::format("report of {} {}", manifest.kind == SweepKind::kBudget ? "an" : "a", kind_of(manifest.kind)),
                     .title = scenario,
                     .facts = {{"variants", std::to_string(manifest.variants.size())},
                               {"seeds", manifest.seeds.size() == 1 ? std::to_string(manifest.seeds.front()) : fmt::format("{} … {}", manifest.seeds.front(), manifest.seeds.back())},
@@ -129,7 +129,7 @@ render::Page sweep_page(const SweepManifest& manifest, const SweepRows& rows, co
     case SweepKind::kFaults: {
       const std::vector<FaultRow> faults = fault_rows(manifest, rows);
       page.sections.push_back({"", {faults_verdict(faults)}});
-      page.sections.push_back({"Faults", {fault_table(manifest, faults), render::TextBlock{fault_legend()}}});
+      page.sections.push_back({"Faults", {fault_table(manifest, faults), report::TextBlock{fault_legend()}}});
       break;
     }
   }

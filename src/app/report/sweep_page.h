@@ -1,11 +1,11 @@
 #pragma once
 
 #include "app/campaign/sweep/comparison.h"
-#include "render/report/blocks.h"
+#include "report/blocks.h"
 
 namespace patrol::app {
 
 /// Report page of a complete sweep, error budget or fault matrix.
-render::Page sweep_page(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress);
+report::Page sweep_page(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress);
 
 }  // namespace patrol::app

@@ -10,7 +10,7 @@
 namespace patrol::app {
 namespace {
 
-using render::Tone;
+using report::Tone;
 
 const io::JunitCase* case_named(const RunContents& run, const std::string& name) {
   const auto found = std::find_if(run.cases.begin(), run.cases.end(), [&](const io::JunitCase& test) { return test.name == name; });
@@ -23,21 +23,21 @@ std::string early_end(const RunContents& run) {
   return end == nullptr || end->result == io::JunitResult::kPassed ? "" : end->message;
 }
 
-render::TableCell executed_cell(bool was_triggered) { return was_triggered ? render::TableCell{"executed", Tone::kGood} : render::TableCell{"NOT EXECUTED", Tone::kWarning}; }
+report::TableCell executed_cell(bool was_triggered) { return was_triggered ? report::TableCell{"executed", Tone::kGood} : report::TableCell{"NOT EXECUTED", Tone::kWarning}; }
 
-std::vector<render::TableCell> expectation_row(const CheckedExpectation& check, bool is_complete) {
-  const render::TableCell judged = check.is_met ? render::TableCell{"met", Tone::kGood} : render::TableCell{"MISSED", Tone::kBad};
-  return {{check.metric}, {check.wanted}, {check.got}, is_complete ? judged : render::TableCell{"not known", Tone::kFaint}};
+std::vector<report::TableCell> expectation_row(const CheckedExpectation& check, bool is_complete) {
+  const report::TableCell judged = check.is_met ? report::TableCell{"met", Tone::kGood} : report::TableCell{"MISSED", Tone::kBad};
+  return {{check.metric}, {check.wanted}, {check.got}, is_complete ? judged : report::TableCell{"not known", Tone::kFaint}};
 }
 
-std::vector<render::TableCell> fault_row(const RunContents& run, const sim::FaultSettings& fault) {
+std::vector<report::TableCell> fault_row(const RunContents& run, const sim::FaultSettings& fault) {
   const std::string name = name_of(fault);
   const io::JunitCase* test = case_named(run, name);
-  const render::TableCell result = test == nullptr ? render::TableCell{"not known", Tone::kFaint} : executed_cell(test->result == io::JunitResult::kPassed);
+  const report::TableCell result = test == nullptr ? report::TableCell{"not known", Tone::kFaint} : executed_cell(test->result == io::JunitResult::kPassed);
   return {{name}, {fmt::format("{} s long", fault.duration_s)}, {test == nullptr ? "" : test->message}, result};
 }
 
-std::vector<render::TableCell> kidnap_row(const RunContents& run, const KidnapSettings& kidnap) {
+std::vector<report::TableCell> kidnap_row(const RunContents& run, const KidnapSettings& kidnap) {
   return {{name_of(kidnap)},
           {fmt::format("to ({}, {}) m", kidnap.x_m, kidnap.y_m)},
           {},
@@ -54,7 +54,7 @@ std::string missed_text(const std::vector<CheckedExpectation>& checks) {
 }
 
 /// Fills in verdict, tone and reason of a complete run.
-void judge(const RunContents& run, const std::vector<CheckedExpectation>& checks, render::VerdictBlock& verdict) {
+void judge(const RunContents& run, const std::vector<CheckedExpectation>& checks, report::VerdictBlock& verdict) {
   const std::string end = early_end(run), misses = missed_text(checks);
   const bool is_passed = end.empty() && status_of(RunEnd::kMissionOver, checks) == RunStatus::kDone;
   verdict.word = is_passed ? "Passed" : "Missed";
@@ -67,8 +67,8 @@ void judge(const RunContents& run, const std::vector<CheckedExpectation>& checks
                                         : fmt::format("The run came to its end, and met all {} expectations.", checks.size());
 }
 
-void add_unexecuted(render::VerdictBlock& verdict) {
-  const auto is_unexecuted = [](const std::vector<render::TableCell>& row) { return row.back().tone == Tone::kWarning; };
+void add_unexecuted(report::VerdictBlock& verdict) {
+  const auto is_unexecuted = [](const std::vector<report::TableCell>& row) { return row.back().tone == Tone::kWarning; };
   const auto num = std::count_if(verdict.checks.rows.begin(), verdict.checks.rows.end(), is_unexecuted);
   if (num > 0) verdict.reason += fmt::format(" {} declared, but NOT EXECUTED.", num == 1 ? "One fault or kidnap was" : fmt::format("{} faults and kidnaps were", num));
 }
@@ -82,8 +82,8 @@ bool was_triggered(const KidnapSettings& kidnap, const Trajectory& T_world_body)
   return truth && (truth->position.head<2>() - Eigen::Vector2d(kidnap.x_m, kidnap.y_m)).norm() < kNear_m;
 }
 
-render::VerdictBlock verdict_of(const RunContents& run) {
-  render::VerdictBlock verdict;
+report::VerdictBlock verdict_of(const RunContents& run) {
+  report::VerdictBlock verdict;
   verdict.checks.columns = {{"declared"}, {"wanted", true}, {"got", true}, {"result"}};
   const std::vector<CheckedExpectation> checks = check_expectations(run.scenario.expect, run.metrics);
   for (const CheckedExpectation& check : checks) verdict.checks.rows.push_back(expectation_row(check, run.is_complete));

@@ -6,7 +6,7 @@
 
 #include "app/run/run_verdict.h"
 #include "app/scenario/scenario.h"
-#include "io/junit.h"
+#include "io/files/junit.h"
 
 namespace patrol::app {
 

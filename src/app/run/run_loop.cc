@@ -5,11 +5,11 @@
 #include <ctime>
 #include <utility>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/overloaded.h"
 #include "inspect/route_frame.h"
-#include "io/run_log.h"
-#include "render/depth_renderer.h"
+#include "io/logs/run_log.h"
+#include "render/scene/depth_renderer.h"
 #include "stack/make_stack.h"
 
 namespace patrol::app {

@@ -10,7 +10,7 @@
 #include "app/run/run_loop.h"
 #include "app/scoring/expectations.h"
 #include "core/named_table.h"
-#include "io/metrics_json.h"
+#include "io/json/metrics_json.h"
 
 namespace patrol::app {
 

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::app {
 namespace {

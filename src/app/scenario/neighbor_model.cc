@@ -1,8 +1,8 @@
 #include "app/scenario/neighbor_model.h"
 
 #include "core/named_table.h"
-#include "io/adaboost_json.h"
-#include "slam/mapper.h"
+#include "io/json/adaboost_json.h"
+#include "slam/methods/mapper.h"
 #include "slam/submaps/pair_features.h"
 
 namespace patrol::app {

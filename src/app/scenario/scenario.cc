@@ -9,14 +9,14 @@
 #include <fmt/format.h>
 
 #include "app/scenario/neighbor_model.h"
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
-#include "io/drive_json.h"
-#include "io/map_server.h"
-#include "io/nav_json.h"
-#include "io/remote_csv.h"
-#include "io/route_json.h"
-#include "io/settings_yaml.h"
+#include "io/json/teleop_route_json.h"
+#include "io/maps/map_server.h"
+#include "io/json/nav_json.h"
+#include "io/files/teleop_csv.h"
+#include "io/json/route_json.h"
+#include "io/yaml/settings_yaml.h"
 #include "io/urdf.h"
 #include "stack/mission/known_map.h"
 

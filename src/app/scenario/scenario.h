@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "core/boosted_stumps.h"
-#include "core/remote_drive.h"
+#include "core/teleop_route.h"
 #include "core/route.h"
 #include "core/settings.h"
-#include "io/expectations.h"
-#include "io/station_scans.h"
-#include "render/light.h"
-#include "sim/twin.h"
+#include "io/yaml/expectations.h"
+#include "io/points/station_scans.h"
+#include "render/scene/light.h"
+#include "sim/simulator/simulator.h"
 #include "stack/settings/stack_settings.h"
 
 namespace patrol::app {
@@ -105,7 +105,7 @@ struct Scenario {
   std::string mission = "routes/boxes_and_well.json";  ///< below the world's folder
   std::string map;    ///< map_server YAML below the world's folder, in map; empty: the robot builds a map
   std::string goals;  ///< nav.json below the world's folder; empty: goals are saved during teleoperation
-  std::string references;  ///< folder below the world's folder with scans of an earlier run (io/station_scans.h)
+  std::string references;  ///< folder below the world's folder with scans of an earlier run (io/points/station_scans.h)
   RemoteSettings remote;
   StartOffsetSettings start;
   std::vector<MountSettings> mounts;       ///< sensors in addition to those of the robot's URDF

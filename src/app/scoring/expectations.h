@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "io/expectations.h"
-#include "io/metrics_json.h"
+#include "io/yaml/expectations.h"
+#include "io/json/metrics_json.h"
 
 namespace patrol::app {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "io/metrics_json.h"
+#include "io/json/metrics_json.h"
 
 namespace patrol::app {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::app {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "io/metrics_json.h"
+#include "io/json/metrics_json.h"
 
 namespace patrol::app {
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "app/scoring/localizability_oracle.h"
-#include "sim/lining_moves.h"
+#include "sim/lining_deformation.h"
 
 namespace patrol::app {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "inspect/lining/reference.h"
-#include "io/run_log.h"
-#include "stack/instruments/standing_place.h"
+#include "io/logs/run_log.h"
+#include "stack/instruments/station_pose.h"
 
 namespace patrol::app {
 namespace {

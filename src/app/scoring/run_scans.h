@@ -5,7 +5,7 @@
 
 #include "app/record/run_record.h"
 #include "app/scenario/scenario.h"
-#include "io/station_scans.h"
+#include "io/points/station_scans.h"
 
 namespace patrol::app {
 

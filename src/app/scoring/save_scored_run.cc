@@ -2,12 +2,12 @@
 #include <numbers>
 
 #include "app/scoring/score_run.h"
-#include "core/angles.h"
-#include "io/csv.h"
-#include "io/map_server.h"
-#include "io/nav_json.h"
-#include "io/remote_csv.h"
-#include "io/tum.h"
+#include "core/geometry/angles.h"
+#include "io/files/csv.h"
+#include "io/maps/map_server.h"
+#include "io/json/nav_json.h"
+#include "io/files/teleop_csv.h"
+#include "io/trajectories/tum.h"
 
 namespace patrol::app {
 namespace {

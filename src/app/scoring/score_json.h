@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "io/metrics_json.h"
+#include "io/json/metrics_json.h"
 #include "score/driven_clearance.h"
 #include "score/goal_error.h"
 #include "score/inspection_score.h"

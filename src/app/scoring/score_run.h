@@ -10,8 +10,8 @@
 #include "app/scoring/true_map.h"
 #include "core/grid.h"
 #include "core/trajectory.h"
-#include "io/metrics_json.h"
-#include "io/station_scans.h"
+#include "io/json/metrics_json.h"
+#include "io/points/station_scans.h"
 #include "score/run_score.h"
 
 namespace patrol::app {

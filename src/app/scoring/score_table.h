@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "app/scoring/expectations.h"
-#include "io/metrics_json.h"
+#include "io/json/metrics_json.h"
 
 namespace patrol::app {
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/thread_clock.h"
-#include "io/run_log.h"
+#include "core/thread_cpu_time.h"
+#include "io/logs/run_log.h"
 
 namespace patrol::app {
 

@@ -9,9 +9,9 @@
 #include "app/common/process_cost.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
-#include "core/thread_clock.h"
-#include "io/scan_log.h"
-#include "slam/mapper.h"
+#include "core/thread_cpu_time.h"
+#include "io/logs/scan_log.h"
+#include "slam/methods/mapper.h"
 #include "slam/planar_scan.h"
 
 namespace patrol::app {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "app/study/loop_truth.h"
+#include "app/study/loop_closure_accuracy.h"
 #include "app/study/study_run.h"
 #include "core/trajectory.h"
 

@@ -8,14 +8,14 @@
 #include <fmt/format.h>
 
 #include "app/study/planner_problem.h"
-#include "core/thread_clock.h"
+#include "core/thread_cpu_time.h"
 #include "plan/routes/planners.h"
-#include "render/report/map_picture.h"
+#include "report/map_picture.h"
 
 namespace patrol::app {
 namespace {
 
-using render::SeriesColor;
+using report::SeriesColor;
 
 constexpr double kNoPlannerFigure = std::numeric_limits<double>::quiet_NaN();
 constexpr int kMaxStepsMillions = 50;  // of ants, particles and episodes, per planning
@@ -59,7 +59,7 @@ constexpr std::array<PlannerMethod, 9> kPlannerMethods = {{{"improved ants (ours
                                                     {"any-angle optimum", "any_angle_optimum", false, SeriesColor::kBound}}};
 constexpr std::size_t kAstar = 7, kOptimum = 8;
 
-const std::vector<StudyFigure> kPlannerFigures = {{.name = "longer than A*", .unit = "%", .is_compared = true},
+const std::vector<studies::StudyFigure> kPlannerFigures = {{.name = "longer than A*", .unit = "%", .is_compared = true},
                                            {.name = "iterations to 1 % of its final value", .unit = "", .is_compared = true},
                                            {.name = "iterations to A* + 3 %", .unit = ""},
                                            {.name = "found", .unit = "%"},
@@ -116,8 +116,8 @@ std::array<Planned, kPlannerMethods.size()> plan_all(const PlannerProblem& probl
   return all;
 }
 
-StudySample run_planners(const std::vector<PlannerWorld>& worlds, std::uint64_t seed) {
-  StudySample sample;
+studies::StudySample run_planners(const std::vector<PlannerWorld>& worlds, std::uint64_t seed) {
+  studies::StudySample sample;
   for (const PlannerWorld& world : worlds) {
     for (std::vector<double>& figures : flatten_metrics(plan_all(world.problem(seed), seed))) sample.push_back(std::move(figures));
   }
@@ -125,13 +125,13 @@ StudySample run_planners(const std::vector<PlannerWorld>& worlds, std::uint64_t 
 }
 
 /// Figure 1: excess of the best route so far over A*'s length, in the first two hundred iterations.
-render::LinePlot convergence(const std::array<Planned, kPlannerMethods.size()>& all, const std::string& world) {
+report::LinePlot convergence(const std::array<Planned, kPlannerMethods.size()>& all, const std::string& world) {
   constexpr std::size_t kShown = 200;
   constexpr double kMost = 25.0;
-  render::LinePlot plot{.title = fmt::format("Longer than A*, best so far: {}", world), .unit = "%", .axis = {.label = "iteration", .max = kShown}, .max = kMost, .curves = {}, .marks = {}, .spans = {}};
+  report::LinePlot plot{.title = fmt::format("Longer than A*, best so far: {}", world), .unit = "%", .axis = {.label = "iteration", .max = kShown}, .max = kMost, .curves = {}, .marks = {}, .spans = {}};
   for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) {
     if (!kPlannerMethods[m].iterates) continue;
-    render::Curve curve{.name = kPlannerMethods[m].title, .ink = kPlannerMethods[m].ink, .is_dashed = false, .points = {}};
+    report::Curve curve{.name = kPlannerMethods[m].title, .ink = kPlannerMethods[m].ink, .is_dashed = false, .points = {}};
     for (std::size_t i = 0; i < kShown; ++i) {
       const std::vector<double>& history = all[m].route.history;
       const double excess = i < history.size() ? 100.0 * (history[i] / all[kAstar].route.length - 1.0) : kNoPlannerFigure;
@@ -142,16 +142,16 @@ render::LinePlot convergence(const std::array<Planned, kPlannerMethods.size()>& 
   return plot;
 }
 
-render::MapBlock routes_on(const PlannerProblem& problem, const std::array<Planned, kPlannerMethods.size()>& all) {
+report::MapBlock routes_on(const PlannerProblem& problem, const std::array<Planned, kPlannerMethods.size()>& all) {
   const GridGeometry& grid = problem.costs.geometry();
   OccupancyGrid map(grid, kFree);
   for (std::size_t i = 0; i < map.values().size(); ++i) {
     if (problem.costs.values()[i] == plan::kLethalCost) map.values()[i] = kOccupied;
   }
-  render::MapBlock block;
+  report::MapBlock block;
   Eigen::AlignedBox2d shown(grid.origin_m);
   shown.extend(grid.origin_m + grid.resolution_m * Eigen::Vector2d(grid.width, grid.height));
-  block.picture = render::map_picture({.built = map, .T_world_map = {}, .truth = {}, .error_m = {}}, shown);
+  block.picture = report::map_picture({.built = map, .T_world_map = {}, .truth = {}, .error_m = {}}, shown);
   for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) {
     if (m != kOptimum && !kPlannerMethods[m].iterates) continue;
     block.paths.push_back({kPlannerMethods[m].title, kPlannerMethods[m].ink, {plan::to_metres(grid, all[m].route.points)}});
@@ -162,9 +162,9 @@ render::MapBlock routes_on(const PlannerProblem& problem, const std::array<Plann
   return block;
 }
 
-std::vector<render::Section> illustrate_planners(const std::vector<PlannerWorld>& worlds, std::uint64_t seed) {
-  render::Section plots{fmt::format("Convergence, seed {}", seed), {}};
-  std::vector<render::Section> maps;
+std::vector<report::Section> illustrate_planners(const std::vector<PlannerWorld>& worlds, std::uint64_t seed) {
+  report::Section plots{fmt::format("Convergence, seed {}", seed), {}};
+  std::vector<report::Section> maps;
   for (const PlannerWorld& world : worlds) {
     const PlannerProblem problem = world.problem(seed);
     const std::array<Planned, kPlannerMethods.size()> all = plan_all(problem, seed);
@@ -177,9 +177,9 @@ std::vector<render::Section> illustrate_planners(const std::vector<PlannerWorld>
 
 }  // namespace
 
-Study planner_study() {
+studies::Study planner_study() {
   std::vector<PlannerWorld> worlds = planner_worlds();
-  Study study{.name = "planners",
+  studies::Study study{.name = "planners",
               .title = "Planners of routes: ants of [Li22] and the others",
               .source = "[Li22], figures 1 to 4, which carry no numbers that can be read",
               .conditions = "Every seed draws each grid anew, or the ends on a world's map (its surfaces at the lidar's height in cells of 0.2 m, inflated by its robot's footprint). "

@@ -36,7 +36,7 @@ const std::vector<GridMethod> kStreetMethods = {{.name = "FastSLAM", .particles 
                                           {.name = "scan matching (ours)", .particles = 8, .proposal = "scan_match", .optimizer = "none"},
                                           {.name = "pose graph (ours, the default)", .particles = 1, .proposal = "scan_match", .optimizer = "none", .mapping = "graph"}};
 
-const std::vector<StudyFigure> kStreetFigures = {{.name = "box 1", .unit = "m", .is_compared = true},
+const std::vector<studies::StudyFigure> kStreetFigures = {{.name = "box 1", .unit = "m", .is_compared = true},
                                            {.name = "box 2", .unit = "m", .is_compared = true},
                                            {.name = "well 3", .unit = "m", .is_compared = true},
                                            {.name = "map to nearest surface", .unit = "m"},
@@ -76,19 +76,19 @@ std::vector<double> flatten_metrics(const Mapped& mapped, const StudyRun& patrol
   return figures;
 }
 
-StudySample run_street(std::uint64_t seed) {
+studies::StudySample run_street(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun patrol = run_for_study(kScenario, {}, seed, folder.path());
-  StudySample sample;
+  studies::StudySample sample;
   for (const GridMethod& method : kStreetMethods) sample.push_back(flatten_metrics(map_by(method, patrol), patrol));
   return sample;
 }
 
 /// Maps of all methods, colored by their errors.
-std::vector<render::Section> illustrate_street(std::uint64_t seed) {
+std::vector<report::Section> illustrate_street(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun patrol = run_for_study(kScenario, {}, seed, folder.path());
-  std::vector<render::Section> sections;
+  std::vector<report::Section> sections;
   for (const GridMethod& method : kStreetMethods) {
     const Mapped mapped = map_by(method, patrol);
     sections.push_back({method.name, {mapped_block(mapped.map, mapped.T_map_body, patrol)}});
@@ -98,8 +98,8 @@ std::vector<render::Section> illustrate_street(std::uint64_t seed) {
 
 }  // namespace
 
-Study street_study() {
-  Study study{.name = "street-map",
+studies::Study street_study() {
+  studies::Study study{.name = "street-map",
               .title = "The street, mapped with one proposal or another",
               .source = "[Wu25], table 2",
               .conditions = "Each seed is one patrol in the twin (worlds/street/scenarios/patrol.yaml); its log is then mapped by every method, so that all hear the same. The paper's figures "

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "app/study/study.h"
+#include "studies/study.h"
 
 namespace patrol::app {
 
 /// Study of [Wu25, table 2]: the street mapped from the logs of identical patrols by grid SLAM with different
 /// proposals.
-Study street_study();
+studies::Study street_study();
 
 }  // namespace patrol::app

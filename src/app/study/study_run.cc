@@ -4,7 +4,7 @@
 
 #include "app/record/run_directory.h"
 #include "app/run/run_once.h"
-#include "render/report/map_picture.h"
+#include "report/map_picture.h"
 #include "score/map_error.h"
 #include "score/trajectory_error.h"
 
@@ -33,15 +33,15 @@ StudyRun run_for_study(const std::string& scenario, const std::vector<std::strin
   return run;
 }
 
-render::MapBlock mapped_block(const OccupancyGrid& map, const Trajectory& T_map_body, const StudyRun& run) {
+report::MapBlock mapped_block(const OccupancyGrid& map, const Trajectory& T_map_body, const StudyRun& run) {
   const Pose2 T_world_map = score::align_at_start(T_map_body, run.record.T_world_body);
-  const std::vector<render::MapPath> paths = {{"true path", render::SeriesColor::kTruth, {positions_of(run.record.T_world_body, {})}},
-                                              {"estimated path", render::SeriesColor::kEstimate, {positions_of(T_map_body, T_world_map)}}};
+  const std::vector<report::MapPath> paths = {{"true path", report::SeriesColor::kTruth, {positions_of(run.record.T_world_body, {})}},
+                                              {"estimated path", report::SeriesColor::kEstimate, {positions_of(T_map_body, T_world_map)}}};
   Eigen::AlignedBox2d shown;
   for (const Eigen::Vector2d& p_m : paths.front().pieces_m.front()) shown.extend(p_m);
-  const render::MapLayers layers{.built = map, .T_world_map = T_world_map, .truth = score::observable_part(run.truth.reference),
+  const report::MapLayers layers{.built = map, .T_world_map = T_world_map, .truth = score::observable_part(run.truth.reference),
                                  .error_m = score::map_error(map, T_world_map, run.truth.reference).cells_m};
-  return {.picture = render::map_picture(layers, shown), .paths = paths, .marks = {}};
+  return {.picture = report::map_picture(layers, shown), .paths = paths, .marks = {}};
 }
 
 }  // namespace patrol::app

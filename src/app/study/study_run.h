@@ -9,7 +9,7 @@
 #include "app/scenario/scenario.h"
 #include "app/scoring/true_map.h"
 #include "core/grid.h"
-#include "render/report/blocks.h"
+#include "report/blocks.h"
 
 namespace patrol::app {
 
@@ -26,6 +26,6 @@ struct StudyRun {
 StudyRun run_for_study(const std::string& scenario, const std::vector<std::string>& overrides, std::uint64_t seed, const std::filesystem::path& folder);
 
 /// Map built from a run's log, colored by its errors, with estimated and true path.
-render::MapBlock mapped_block(const OccupancyGrid& map, const Trajectory& T_map_body, const StudyRun& run);
+report::MapBlock mapped_block(const OccupancyGrid& map, const Trajectory& T_map_body, const StudyRun& run);
 
 }  // namespace patrol::app

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "app/report/boxes.h"
+#include "report/boxes.h"
 #include "app/study/log_mapping.h"
 #include "app/study/study_run.h"
 #include "app/common/temporary_folder.h"
@@ -22,17 +22,17 @@ struct LogMethod {
   std::string name;
   std::string method;  ///< slam.method
   std::vector<std::optional<double>> published{};
-  render::SeriesColor ink = render::SeriesColor::kEstimate;
+  report::SeriesColor ink = report::SeriesColor::kEstimate;
 };
 
 constexpr double kMinute_s = 60.0, kGigabyte_mb = 1000.0;
 
 const std::vector<LogMethod> kSubstationMethods = {
-    {.name = "improved RBPF (submap_rbpf)", .method = "submap_rbpf", .published = {0.1522, std::log10(0.1522), 0.0707, {}, {}, {}, {}, {}, 43.93 * kMinute_s, 0.9 * kGigabyte_mb}, .ink = render::SeriesColor::kEstimate},
-    {.name = "Cartographer's class (graph)", .method = "graph", .published = {0.3491, std::log10(0.3491), {}, {}, {}, {}, {}, {}, 51.35 * kMinute_s, 1.3 * kGigabyte_mb}, .ink = render::SeriesColor::kRanges},
-    {.name = "plain RBPF (rbpf)", .method = "rbpf", .published = {2.7605, std::log10(2.7605), {}, {}, {}, {}, {}, {}, 21.01 * kMinute_s, 1.4 * kGigabyte_mb}, .ink = render::SeriesColor::kOdometry}};
+    {.name = "improved RBPF (submap_rbpf)", .method = "submap_rbpf", .published = {0.1522, std::log10(0.1522), 0.0707, {}, {}, {}, {}, {}, 43.93 * kMinute_s, 0.9 * kGigabyte_mb}, .ink = report::SeriesColor::kEstimate},
+    {.name = "Cartographer's class (graph)", .method = "graph", .published = {0.3491, std::log10(0.3491), {}, {}, {}, {}, {}, {}, 51.35 * kMinute_s, 1.3 * kGigabyte_mb}, .ink = report::SeriesColor::kRanges},
+    {.name = "plain RBPF (rbpf)", .method = "rbpf", .published = {2.7605, std::log10(2.7605), {}, {}, {}, {}, {}, {}, 21.01 * kMinute_s, 1.4 * kGigabyte_mb}, .ink = report::SeriesColor::kOdometry}};
 
-const std::vector<StudyFigure> kSubstationFigures = {{.name = "map to nearest surface", .unit = "m", .is_compared = true},
+const std::vector<studies::StudyFigure> kSubstationFigures = {{.name = "map to nearest surface", .unit = "m", .is_compared = true},
                                            {.name = "its logarithm to base 10", .unit = "", .is_compared = true},
                                            {.name = "variance of that", .unit = "m^2", .is_compared = true},
                                            {.name = "95 % of it below", .unit = "m"},
@@ -63,10 +63,10 @@ std::vector<double> flatten_metrics(const MappedRun& mapped, const StudyRun& run
           mapped.memory_mb};
 }
 
-StudySample map_patrol(std::uint64_t seed) {
+studies::StudySample map_patrol(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun run = drive(kPatrol, seed, folder);
-  StudySample sample;
+  studies::StudySample sample;
   for (const LogMethod& method : kSubstationMethods) sample.push_back(flatten_metrics(map_log_of(run, method.method), run));
   return sample;
 }
@@ -91,32 +91,32 @@ std::vector<double> quantiles(const std::vector<double>& sorted, std::size_t cou
 }
 
 /// Figure 6, then the maps.
-std::vector<render::Section> illustrate_patrol(std::uint64_t seed) {
+std::vector<report::Section> illustrate_patrol(std::uint64_t seed) {
   constexpr std::size_t kPoints = 401;
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun run = drive(kPatrol, seed, folder);
-  render::LinePlot curves{.title = fmt::format("Every map point's distance to the true map, sorted, seed {}", seed), .unit = "m", .axis = {.label = "% of the points", .max = 100.0},
+  report::LinePlot curves{.title = fmt::format("Every map point's distance to the true map, sorted, seed {}", seed), .unit = "m", .axis = {.label = "% of the points", .max = 100.0},
                           .max = {}, .curves = {}, .marks = {}, .spans = {}};
-  render::BoxPlot boxes{.caption = "The same, as boxes", .unit = "m", .boxes = {}};
-  std::vector<render::Section> maps;
+  report::BoxPlot boxes{.caption = "The same, as boxes", .unit = "m", .boxes = {}};
+  std::vector<report::Section> maps;
   for (const LogMethod& method : kSubstationMethods) {
     const MappedRun mapped = map_log_of(run, method.method);
     const std::vector<double> errors = quantiles(sorted_errors_m(mapped, run), kPoints);
-    render::Curve curve{.name = method.name, .ink = method.ink, .is_dashed = false, .points = {}};
+    report::Curve curve{.name = method.name, .ink = method.ink, .is_dashed = false, .points = {}};
     for (std::size_t i = 0; i < errors.size(); ++i) curve.points.emplace_back(100.0 * static_cast<double>(i) / (kPoints - 1), errors[i]);
     curves.curves.push_back(std::move(curve));
-    boxes.boxes.push_back(box_of(method.name, errors, {.factor = 1.0, .name = "m"}));
+    boxes.boxes.push_back(report::box_of(method.name, errors, {.factor = 1.0, .name = "m"}));
     maps.push_back({method.name, {mapped_block(mapped.map, mapped.T_map_body, run)}});
   }
-  std::vector<render::Section> sections = {{"Errors of the map's points (figure 6)", {curves, boxes}}};
-  for (render::Section& map : maps) sections.push_back(std::move(map));
+  std::vector<report::Section> sections = {{"Errors of the map's points (figure 6)", {curves, boxes}}};
+  for (report::Section& map : maps) sections.push_back(std::move(map));
   return sections;
 }
 
-StudySample map_row(std::uint64_t seed) {
+studies::StudySample map_row(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun run = drive(kRow, seed, folder);
-  StudySample sample;
+  studies::StudySample sample;
   for (const LogMethod& method : kSubstationMethods) {
     const MappedRun mapped = map_log_of(run, method.method);
     const Pose2 T_world_map = score::align_at_start(mapped.T_map_body, run.record.T_world_body);
@@ -126,10 +126,10 @@ StudySample map_row(std::uint64_t seed) {
   return sample;
 }
 
-std::vector<render::Section> illustrate_row(std::uint64_t seed) {
+std::vector<report::Section> illustrate_row(std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun run = drive(kRow, seed, folder);
-  std::vector<render::Section> maps;
+  std::vector<report::Section> maps;
   for (const LogMethod& method : kSubstationMethods) {
     const MappedRun mapped = map_log_of(run, method.method);
     maps.push_back({method.name, {mapped_block(mapped.map, mapped.T_map_body, run)}});
@@ -139,8 +139,8 @@ std::vector<render::Section> illustrate_row(std::uint64_t seed) {
 
 }  // namespace
 
-Study substation_study() {
-  Study study{.name = "substation",
+studies::Study substation_study() {
+  studies::Study study{.name = "substation",
               .title = "The substation, mapped from the same logs by three methods",
               .source = "[Yu23], tables 1 and 2, figure 6",
               .conditions = "Each seed is one patrol of 923 m in the twin (worlds/substation/scenarios/mapping.yaml, the paper's lidar); its log is then mapped by every method with its default "
@@ -158,8 +158,8 @@ Study substation_study() {
   return study;
 }
 
-Study row_study() {
-  Study study{.name = "substation-row",
+studies::Study row_study() {
+  studies::Study study{.name = "substation-row",
               .title = "Past six identical bays, once: no closure may lead from one to another",
               .source = "no paper: a trial of the closures of loops",
               .conditions = "Each seed is one drive along the bays (worlds/substation/scenarios/row.yaml), which comes back nowhere. Closures between places that truly see the same are right within "

@@ -18,7 +18,7 @@
 #include "core/sensors/lidar.h"
 #include "core/sensors/lidar3d.h"
 #include "core/sensors/magnetometer.h"
-#include "core/sensors/remote.h"
+#include "core/sensors/teleop.h"
 #include "core/sensors/scanner.h"
 #include "core/sensors/tdlas.h"
 #include "core/sensors/tem.h"

@@ -8,7 +8,7 @@
 #include <map>
 #include <tuple>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "inspect/lining/registration.h"
 #include "inspect/lining/robust_mean.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/angles.h"
-#include "core/linear_algebra.h"
+#include "core/geometry/angles.h"
+#include "core/geometry/linear_algebra.h"
 
 namespace patrol::inspect {
 namespace {

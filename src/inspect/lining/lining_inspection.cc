@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "inspect/lining/adjustment.h"
-#include "inspect/lining/grip.h"
+#include "inspect/lining/axial_overlap.h"
 #include "inspect/lining/lining_grid.h"
 #include "inspect/lining/reference_lining.h"
 #include "inspect/lining/registration.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/angles.h"
-#include "core/linear_algebra.h"
+#include "core/geometry/angles.h"
+#include "core/geometry/linear_algebra.h"
 #include "inspect/lining/robust_mean.h"
 
 namespace patrol::inspect {

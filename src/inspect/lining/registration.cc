@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/linear_algebra.h"
+#include "core/geometry/linear_algebra.h"
 
 namespace patrol::inspect {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::inspect {
 namespace {

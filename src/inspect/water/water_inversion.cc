@@ -9,7 +9,7 @@
 #include <Eigen/Cholesky>
 #include <fmt/format.h>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 #include "core/particle_weights.h"
 #include "core/random.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/distance_transform.h"
+#include "core/geometry/distance_transform.h"
 
 namespace patrol::localize {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/linear_algebra.h"
+#include "core/geometry/linear_algebra.h"
 #include "core/particle_weights.h"
 #include "localize/amcl/distance_to_occupied.h"
 

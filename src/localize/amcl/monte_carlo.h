@@ -17,7 +17,7 @@
 #include "core/settings.h"
 #include "core/uwb.h"
 #include "localize/amcl/beam_model.h"
-#include "localize/amcl/fit_monitor.h"
+#include "localize/amcl/divergence_monitor.h"
 #include "localize/amcl/global_search.h"
 #include "localize/amcl/kld.h"
 #include "localize/amcl/likelihood_field.h"
@@ -26,9 +26,9 @@
 #include "localize/amcl/particle_cloud.h"
 #include "localize/amcl/pose_refinement.h"
 #include "localize/amcl/range_likelihood.h"
-#include "localize/amcl/range_memory.h"
+#include "localize/amcl/range_buffer.h"
 #include "localize/amcl/sensor_model.h"
-#include "localize/amcl/trust.h"
+#include "localize/amcl/confidence.h"
 
 namespace patrol::localize {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/linear_algebra.h"
+#include "core/geometry/linear_algebra.h"
 
 namespace patrol::localize {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/symmetric_axes.h"
+#include "core/geometry/principal_axes.h"
 
 namespace patrol::localize {
 namespace {

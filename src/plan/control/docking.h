@@ -3,11 +3,11 @@
 #include <optional>
 #include <string>
 
-#include "core/dock_sighting.h"
+#include "core/dock_detection.h"
 #include "core/messages.h"
 #include "core/navigation_goal.h"
 #include "core/settings.h"
-#include "plan/control/dock_track.h"
+#include "plan/control/dock_pose_filter.h"
 #include "plan/control/line_following.h"
 
 namespace patrol::plan {

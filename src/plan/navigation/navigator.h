@@ -9,7 +9,7 @@
 #include "core/navigation_goal.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
-#include "plan/control/differential_approach.h"
+#include "plan/control/differential_pose_controller.h"
 #include "plan/navigation/motion_check.h"
 #include "plan/navigation/navigation_step.h"
 #include "plan/navigation/navigator_settings.h"

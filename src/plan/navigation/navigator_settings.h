@@ -7,13 +7,13 @@
 
 #include "core/named_table.h"
 #include "core/settings.h"
-#include "plan/control/differential_approach.h"
+#include "plan/control/differential_pose_controller.h"
 #include "plan/control/dwa.h"
 #include "plan/control/local_planner.h"
-#include "plan/control/paper_dwa.h"
+#include "plan/control/dwa_liu21.h"
 #include "plan/control/pose_regulator.h"
 #include "plan/perception/costmap_settings.h"
-#include "plan/perception/depth_points.h"
+#include "plan/perception/depth_obstacles.h"
 #include "plan/perception/sonar_cone.h"
 #include "plan/routes/global_planner.h"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/distance_transform.h"
+#include "core/geometry/distance_transform.h"
 #include "plan/perception/cell_box.h"
 #include "plan/perception/cell_lattice.h"
 #include "plan/perception/cost.h"

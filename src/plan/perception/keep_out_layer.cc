@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/segment.h"
+#include "core/geometry/segment.h"
 #include "plan/perception/bilinear.h"
 #include "plan/perception/cell_box.h"
 

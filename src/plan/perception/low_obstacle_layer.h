@@ -5,7 +5,7 @@
 
 #include "plan/perception/cell_box.h"
 #include "plan/perception/cell_lattice.h"
-#include "plan/perception/depth_points.h"
+#include "plan/perception/depth_obstacles.h"
 #include "plan/perception/low_obstacles.h"
 #include "plan/perception/scan_layer.h"
 #include "plan/perception/sonar_cone.h"

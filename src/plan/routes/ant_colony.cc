@@ -7,8 +7,8 @@
 #include <thread>
 #include <utility>
 
-#include "core/angles.h"
-#include "plan/routes/grid_walk.h"
+#include "core/geometry/angles.h"
+#include "plan/routes/grid_path.h"
 
 namespace patrol::plan {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/named_table.h"
-#include "plan/routes/any_angle_optimum.h"
+#include "plan/routes/visibility_graph.h"
 #include "plan/routes/grid_search.h"
 #include "plan/routes/theta_star.h"
 

@@ -10,7 +10,7 @@
 #include "plan/routes/ant_colony.h"
 #include "plan/routes/q_learning.h"
 #include "plan/routes/route_planner.h"
-#include "plan/routes/two_swarms.h"
+#include "plan/routes/dual_swarm_pso.h"
 
 namespace patrol::plan {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "plan/routes/grid_walk.h"
+#include "plan/routes/grid_path.h"
 
 namespace patrol::plan {
 namespace {

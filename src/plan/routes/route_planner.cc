@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/segment.h"
+#include "core/geometry/segment.h"
 #include "plan/routes/line_of_sight.h"
 
 namespace patrol::plan {

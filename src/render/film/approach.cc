@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "core/frames.h"
-#include "render/model_state.h"
+#include "render/scene/model_state.h"
 
 namespace patrol::render {
 namespace {

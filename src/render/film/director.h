@@ -3,8 +3,8 @@
 #include <optional>
 #include <utility>
 
-#include "render/camera.h"
-#include "render/film/film_note.h"
+#include "render/scene/camera.h"
+#include "render/film_note.h"
 #include "render/film/shot_camera.h"
 #include "render/film/shot_plan.h"
 #include "render/run_snapshot.h"

@@ -5,7 +5,7 @@
 #include <future>
 
 #include "render/film/director.h"
-#include "render/paint_thread.h"
+#include "render/frame_renderer.h"
 #include "render/run_snapshot.h"
 #include "render/video.h"
 

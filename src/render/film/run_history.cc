@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "io/run_log.h"
+#include "io/logs/run_log.h"
 
 namespace patrol::render {
 namespace {

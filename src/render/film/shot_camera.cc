@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::render {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/camera.h"
+#include "render/scene/camera.h"
 #include "render/film/shot_plan.h"
 
 namespace patrol::render {

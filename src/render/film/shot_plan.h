@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/frames.h"
-#include "render/film/moment.h"
+#include "render/film/highlight.h"
 #include "render/film/run_history.h"
 #include "render/film/speed_plan.h"
 #include "render/video.h"

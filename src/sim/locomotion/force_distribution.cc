@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/linear_algebra.h"
+#include "core/geometry/linear_algebra.h"
 
 namespace patrol::sim {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/frames.h"
-#include "core/linear_algebra.h"
+#include "core/geometry/linear_algebra.h"
 #include "sim/locomotion/swing_trajectory.h"
 
 namespace patrol::sim {

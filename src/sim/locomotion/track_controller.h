@@ -7,7 +7,7 @@
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
-#include "sim/locomotion/sprocket_regulator.h"
+#include "sim/locomotion/sprocket_speed_controller.h"
 #include "sim/locomotion/track_drive_settings.h"
 
 namespace patrol::sim {

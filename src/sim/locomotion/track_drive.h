@@ -3,7 +3,7 @@
 #include <array>
 
 #include "sim/locomotion/locomotion.h"
-#include "sim/locomotion/track_belts.h"
+#include "sim/locomotion/track_contact.h"
 #include "sim/locomotion/track_controller.h"
 
 namespace patrol::sim {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 #include "sim/sensors/sensor.h"
 

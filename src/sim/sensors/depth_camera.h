@@ -32,7 +32,7 @@ struct IdealDepthImage {
 };
 
 /// Renderer of the world for the camera. The simulator has no renderer; the program provides one
-/// (render/depth_renderer.h).
+/// (render/scene/depth_renderer.h).
 class DepthImager {
  public:
   virtual ~DepthImager() = default;

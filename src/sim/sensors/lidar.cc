@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 #include "sim/sensors/sensor.h"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string_view>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "sim/sensors/sensor.h"
 
 namespace patrol::sim {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 
 #include "sim/sensors/sensor.h"
 

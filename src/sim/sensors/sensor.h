@@ -7,14 +7,14 @@
 #include <mujoco/mujoco.h>
 
 #include "core/messages.h"
-#include "core/part_clock.h"
+#include "core/stage_profiler.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
 #include "sim/gas_plume.h"
 #include "sim/lidar_scene.h"
 #include "sim/sensors/depth_camera.h"
 #include "sim/sensors/sensor_suite_settings.h"
-#include "sim/water_ahead.h"
+#include "sim/subsurface.h"
 
 namespace patrol::sim {
 

@@ -8,7 +8,7 @@
 #include <mujoco/mujoco.h>
 
 #include "core/messages.h"
-#include "core/part_clock.h"
+#include "core/stage_profiler.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
 #include "sim/gas_plume.h"
@@ -17,7 +17,7 @@
 #include "sim/sensors/fault_injector.h"
 #include "sim/sensors/sensor.h"
 #include "sim/sensors/sensor_suite_settings.h"
-#include "sim/water_ahead.h"
+#include "sim/subsurface.h"
 
 namespace patrol::sim {
 

@@ -11,7 +11,7 @@
 #include "core/sensors/registry.h"
 #include "core/settings.h"
 #include "core/tem_response.h"
-#include "sim/water_ahead.h"
+#include "sim/subsurface.h"
 
 namespace patrol::sim {
 

@@ -10,7 +10,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 #include "sim/sensors/sensor.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/settings.h"
-#include "slam/calibration/motion_pairs.h"
+#include "slam/calibration/motion_segments.h"
 #include "slam/motion_model.h"
 
 namespace patrol::slam {

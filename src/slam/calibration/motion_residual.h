@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "slam/calibration/motion_pairs.h"
+#include "slam/calibration/motion_segments.h"
 #include "slam/motion_model.h"
 
 namespace patrol::slam {

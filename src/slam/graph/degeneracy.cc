@@ -1,6 +1,6 @@
 #include "slam/graph/degeneracy.h"
 
-#include "core/linear_algebra.h"
+#include "core/geometry/linear_algebra.h"
 
 namespace patrol::slam {
 

@@ -8,7 +8,7 @@
 #include "slam/graph/degeneracy.h"
 #include "slam/graph/edge_weight.h"
 #include "slam/graph/nearest.h"
-#include "slam/graph/way_uncertainty.h"
+#include "slam/graph/relative_covariance.h"
 #include "slam/map_rendering.h"
 
 namespace patrol::slam {

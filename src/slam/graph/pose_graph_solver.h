@@ -2,7 +2,7 @@
 
 #include "core/pose_graph.h"
 #include "core/settings.h"
-#include "slam/graph/node_ranges.h"
+#include "slam/graph/range_factors.h"
 
 namespace patrol::slam {
 

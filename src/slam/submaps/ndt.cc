@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/linear_algebra.h"
+#include "core/geometry/linear_algebra.h"
 #include "slam/submaps/point_tree.h"
 
 namespace patrol::slam {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <optional>
 
-#include "core/linear_algebra.h"
+#include "core/geometry/linear_algebra.h"
 
 namespace patrol::slam {
 namespace {

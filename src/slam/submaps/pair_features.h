@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "slam/pose_gaussian.h"
-#include "slam/submaps/submap_shape.h"
+#include "slam/submaps/submap_descriptor.h"
 
 namespace patrol::slam {
 

@@ -10,7 +10,7 @@
 #include <nanoflann.hpp>
 
 #include "core/error.h"
-#include "core/linear_algebra.h"
+#include "core/geometry/linear_algebra.h"
 
 namespace patrol::slam {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "slam/tracked_rbpf.h"
+#include "slam/rbpf/scan_odometry_rbpf.h"
 
 namespace patrol::slam {
 

@@ -6,7 +6,7 @@
 
 #include "core/messages.h"
 #include "core/settings.h"
-#include "slam/filtered_path.h"
+#include "slam/rbpf/trajectory_rbpf.h"
 #include "slam/graph/submap.h"
 
 namespace patrol::slam {

@@ -9,9 +9,9 @@
 #include "core/pose_graph.h"
 #include "slam/graph/pose_graph_solver.h"
 #include "slam/graph/scan_tracker.h"
-#include "slam/graph/way_uncertainty.h"
+#include "slam/graph/relative_covariance.h"
 #include "slam/submaps/submap_builder.h"
-#include "slam/submaps/submap_joiner.h"
+#include "slam/submaps/submap_constraint_finder.h"
 
 namespace patrol::slam {
 

@@ -4,8 +4,8 @@
 
 #include "core/settings.h"
 #include "slam/graph/likelihood_pyramid.h"
-#include "slam/submaps/effective_neighbour_icp.h"
-#include "slam/submaps/submap_shape.h"
+#include "slam/submaps/effective_neighbor_icp.h"
+#include "slam/submaps/submap_descriptor.h"
 
 namespace patrol::slam {
 

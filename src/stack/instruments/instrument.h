@@ -6,7 +6,7 @@
 #include "core/messages.h"
 #include "core/sensors/registry.h"
 #include "stack/instruments/inspection_order.h"
-#include "stack/instruments/standing_place.h"
+#include "stack/instruments/station_pose.h"
 #include "stack/instruments/warning_light.h"
 
 namespace patrol::stack {

@@ -10,7 +10,7 @@
 #include "core/sensors/registry.h"
 #include "localize/map_pose_tracker.h"
 #include "localize/scan_leveler.h"
-#include "stack/instruments/standing_place.h"
+#include "stack/instruments/station_pose.h"
 #include "stack/localization/make_localizer.h"
 #include "stack/localization/odometry_source.h"
 #include "stack/localization/range_pose_tracker.h"

@@ -6,7 +6,7 @@
 
 #include "core/frames.h"
 #include "core/uwb.h"
-#include "slam/mapper.h"
+#include "slam/methods/mapper.h"
 #include "stack/localization/localizer.h"
 
 namespace patrol::stack {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "plan/routes/global_planner.h"
-#include "plan/routes/tour_order.h"
+#include "plan/routes/station_order.h"
 
 namespace patrol::stack {
 namespace {

@@ -17,7 +17,7 @@ struct StationOrder {
 };
 
 /// Returns the order in which a robot at map's origin completes the stations of a route earliest
-/// (plan/routes/tour_order.h).
+/// (plan/routes/station_order.h).
 ///
 /// Stations of a lower priority value precede all others, time windows are respected if possible, and the route ends at
 /// home. Paths are planned like the navigator's, on a map with the survey's keep-out lines only, at the mission's

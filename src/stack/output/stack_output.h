@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/part_clock.h"
+#include "core/stage_profiler.h"
 #include "stack/output/stack_message.h"
 
 namespace patrol::stack {

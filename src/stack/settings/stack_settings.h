@@ -16,8 +16,8 @@
 #include "localize/track_odometry.h"
 #include "plan/control/docking.h"
 #include "plan/navigation/navigator.h"
-#include "stack/sensors/sensor_watch.h"
-#include "slam/mapper.h"
+#include "stack/sensors/sensor_monitor.h"
+#include "slam/methods/mapper.h"
 
 namespace patrol::stack {
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "io/map_server.h"
+#include "io/maps/map_server.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::app::plan_map_test {

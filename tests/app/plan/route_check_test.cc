@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "plan/routes/any_angle_optimum.h"
+#include "plan/routes/visibility_graph.h"
 #include "plan/routes/theta_star.h"
 #include "tests/plan/routes/drawn_grid.h"
 

@@ -21,7 +21,7 @@ class RoutePictureTest : public ::testing::Test {
     return draw_route({.occupancy = occupancy, .costs = costs, .line_m = std::move(line_m), .marks = {}, .title = "t", .note = "n"});
   }
   /// The pixel in the middle of a cell, y up.
-  static render::Color at(const render::Frame& frame, int col, int row) { return frame.at(24 * col + 12, 24 * (9 - row) + 12); }
+  static Color at(const render::Frame& frame, int col, int row) { return frame.at(24 * col + 12, 24 * (9 - row) + 12); }
 
   OccupancyGrid occupancy{{.resolution_m = 1.0, .width = 20, .height = 10}, kFree};
   Grid<plan::Cost> costs{{.resolution_m = 1.0, .width = 20, .height = 10}};
@@ -30,10 +30,10 @@ class RoutePictureTest : public ::testing::Test {
 TEST_F(RoutePictureTest, ObstaclesInflationCostsAndTheUnknownAreToldApart) {
   const render::Frame frame = draw({});
   EXPECT_EQ(frame.width(), 720);  // of which the map takes 480
-  const render::Color obstacle = at(frame, 0, 4), inflated = at(frame, 1, 4), dear = at(frame, 2, 4), free = at(frame, 6, 4), unknown = at(frame, 10, 9);
+  const Color obstacle = at(frame, 0, 4), inflated = at(frame, 1, 4), dear = at(frame, 2, 4), free = at(frame, 6, 4), unknown = at(frame, 10, 9);
   EXPECT_LT(obstacle.r, 60);
   EXPECT_GT(inflated.r, inflated.b + 60);
-  EXPECT_EQ(free, (render::Color{255, 255, 255}));
+  EXPECT_EQ(free, (Color{255, 255, 255}));
   EXPECT_TRUE(dear != free && dear != inflated && unknown != free && unknown != inflated);
 }
 
@@ -41,7 +41,7 @@ TEST_F(RoutePictureTest, TheRouteLiesWhereItIsWithYUp) {
   const render::Frame frame = draw({{5.5, 1.5}, {15.5, 1.5}});
   EXPECT_GT(at(frame, 10, 1).b, 180);
   EXPECT_LT(at(frame, 10, 1).r, 60);
-  EXPECT_EQ(at(frame, 10, 8), (render::Color{255, 255, 255}));
+  EXPECT_EQ(at(frame, 10, 8), (Color{255, 255, 255}));
 }
 
 TEST(RoutePicture, AMapOfOneCellAndOneOfMillionsAreDrawn) {

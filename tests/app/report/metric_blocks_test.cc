@@ -5,10 +5,10 @@
 namespace patrol::app::metric_blocks_test {
 namespace {
 
-using render::TableBlock;
+using report::TableBlock;
 
 TEST(KeyMetrics, AreInTheUnitOfTheirSizeAndOnlyWhatWasMeasured) {
-  const render::KeyMetrics figures = key_figures(io::Metrics::parse(R"({"pose": {"ate_rmse_m": 0.0026, "ate_max_m": 0.023, "heading_rmse_deg": null},
+  const report::KeyMetrics figures = key_figures(io::Metrics::parse(R"({"pose": {"ate_rmse_m": 0.0026, "ate_max_m": 0.023, "heading_rmse_deg": null},
       "stations": [{"reached": true}, {"reached": false}], "goals": []})"));
   ASSERT_EQ(figures.figures.size(), 2u);
   EXPECT_EQ(figures.figures[0].value + figures.figures[0].unit, "2.6mm");
@@ -17,7 +17,7 @@ TEST(KeyMetrics, AreInTheUnitOfTheirSizeAndOnlyWhatWasMeasured) {
 }
 
 TEST(AllMetrics, AreGroupedAndSayWhatWasExpected) {
-  const render::CollapsibleTables all = all_metrics(io::Metrics::parse(R"({"mission": {"completed": true}, "pose": {"aligned": {"rmse_m": 0.5}, "poses": 3}})"),
+  const report::CollapsibleTables all = all_metrics(io::Metrics::parse(R"({"mission": {"completed": true}, "pose": {"aligned": {"rmse_m": 0.5}, "poses": 3}})"),
                                                {{.metric = "pose.aligned.rmse_m", .wanted = "<= 0.1", .got = "0.5", .is_measured = true, .is_met = false}});
   EXPECT_EQ(all.summary, "All 3 figures");
   ASSERT_EQ(all.tables.size(), 2u);
@@ -34,12 +34,12 @@ io::Metrics goal(const std::string& name, const std::vector<double>& each_m, int
 
 TEST(GoalBlocks, AreATableInCentimetresAndABoxOfEveryArrival) {
   const io::Metrics metrics = {{"goals", {goal("goal_1", {0.01, 0.02, 0.05}, 0), goal("goal_2", {0.03}, 1)}}};
-  const std::vector<render::Block> blocks = goal_blocks(metrics);
+  const std::vector<report::Block> blocks = goal_blocks(metrics);
   ASSERT_EQ(blocks.size(), 4u);  // and what the boxes mean
   const auto& table = std::get<TableBlock>(blocks[0]);
   EXPECT_EQ(table.rows[0][3].text, "2.00");
-  EXPECT_EQ(table.rows[1][2].tone, render::Tone::kBad);
-  const auto& boxes = std::get<render::BoxPlot>(blocks[1]);
+  EXPECT_EQ(table.rows[1][2].tone, report::Tone::kBad);
+  const auto& boxes = std::get<report::BoxPlot>(blocks[1]);
   ASSERT_EQ(boxes.boxes.size(), 2u);
   EXPECT_DOUBLE_EQ(boxes.boxes[0].median, 2.0);
   EXPECT_DOUBLE_EQ(boxes.boxes[0].upper_quartile, 3.5);  // halfway from the second to the third
@@ -63,7 +63,7 @@ TEST(InspectionBlocks, TellLeaksFromFalseAlarms) {
 
 TEST(PerformanceBlocks, AreInOrderOfTimeWithTheRestLast) {
   const io::Metrics metrics = io::Metrics::parse(R"({"performance": {"wall_s": 10, "parts_s": {"lidar": 2, "physics": 5}}})");
-  const auto bars = std::get<render::BarBlock>(performance_blocks(metrics).at(0)).bars;
+  const auto bars = std::get<report::BarBlock>(performance_blocks(metrics).at(0)).bars;
   ASSERT_EQ(bars.size(), 3u);
   EXPECT_EQ(bars[0].label, "physics");
   EXPECT_EQ(bars[2].label, "the rest");

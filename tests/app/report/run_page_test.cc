@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "app/report/error_plots.h"
-#include "app/report/occasions.h"
+#include "app/report/event_timeline.h"
 #include "app/report/run_map.h"
-#include "core/angles.h"
-#include "render/report/page.h"
+#include "core/geometry/angles.h"
+#include "report/page.h"
 #include "tests/support/small_run.h"
 #include "tests/support/temporary_file.h"
 
@@ -20,17 +20,17 @@ using ::testing::Not;
 using test::small_run;
 
 template <typename Wanted>
-std::vector<Wanted> blocks_of(const std::vector<render::Block>& blocks) {
+std::vector<Wanted> blocks_of(const std::vector<report::Block>& blocks) {
   std::vector<Wanted> found;
-  for (const render::Block& block : blocks) {
+  for (const report::Block& block : blocks) {
     if (const auto* wanted = std::get_if<Wanted>(&block)) found.push_back(*wanted);
   }
   return found;
 }
 
-std::vector<std::string> titles_of(const render::Page& page) {
+std::vector<std::string> titles_of(const report::Page& page) {
   std::vector<std::string> titles;
-  for (const render::Section& section : page.sections) titles.push_back(section.title);
+  for (const report::Section& section : page.sections) titles.push_back(section.title);
   return titles;
 }
 
@@ -39,13 +39,13 @@ Event event_at(double at_s, EventKind kind) {
 }
 
 TEST(RunPage, BeginsWithTheVerdict) {
-  const render::Page page = run_page(small_run(), "report.html");
-  EXPECT_TRUE(std::holds_alternative<render::VerdictBlock>(page.sections.front().blocks.front()));
+  const report::Page page = run_page(small_run(), "report.html");
+  EXPECT_TRUE(std::holds_alternative<report::VerdictBlock>(page.sections.front().blocks.front()));
   EXPECT_THAT(titles_of(page), ElementsAre("", "Key figures", "Map", "Error over time", "Settings"));
 }
 
 TEST(RunPage, IsTheSameBytesTwice) {
-  EXPECT_EQ(render::to_html(run_page(small_run(), "report.html")), render::to_html(run_page(small_run(), "report.html")));
+  EXPECT_EQ(report::to_html(run_page(small_run(), "report.html")), report::to_html(run_page(small_run(), "report.html")));
 }
 
 TEST(RunPage, NamesAndEventsOfARunAreNoMarkup) {
@@ -55,7 +55,7 @@ TEST(RunPage, NamesAndEventsOfARunAreNoMarkup) {
   run.record.events[0].foreign_kind = "</script><b>";
   run.record.events[0].subject = run.record.events[0].text = "<img src=x>";
   run.record.collisions = {{.stamp = from_seconds(2.0), .first = "<img src=x>", .second = "</script>"}};
-  const std::string html = render::to_html(run_page(run, "report.html"));
+  const std::string html = report::to_html(run_page(run, "report.html"));
   EXPECT_THAT(html, Not(HasSubstr("<img")));
   EXPECT_THAT(html, Not(HasSubstr("</script><b>")));
 }
@@ -68,14 +68,14 @@ TEST(RunPage, OfARunThatWasCutOffBeforeAnyEstimateStillTellsItsPath) {
   run.record.covariances.clear();
   run.record.T_odom_body.clear();
   run.record.map = {};
-  EXPECT_THAT(render::to_html(run_page(run, "report.html")), HasSubstr("INCOMPLETE"));
+  EXPECT_THAT(report::to_html(run_page(run, "report.html")), HasSubstr("INCOMPLETE"));
 }
 
 TEST(RunPage, OfARunThatWasCutOffRightAfterItsFirstEstimateHasNoErrors) {
   RunContents run = small_run();
   run.record.T_world_body.resize(1);
   run.record.T_map_body.erase(run.record.T_map_body.begin());
-  EXPECT_TRUE(blocks_of<render::LinePlot>(error_blocks(run)).empty());
+  EXPECT_TRUE(blocks_of<report::LinePlot>(error_blocks(run)).empty());
 }
 
 TEST(RunPage, EmbedsASmallReplayAndPlaysALargeOneFromTheFileNextToThePage) {
@@ -83,22 +83,22 @@ TEST(RunPage, EmbedsASmallReplayAndPlaysALargeOneFromTheFileNextToThePage) {
   RunContents run = small_run();
   run.directory.root = folder.path();
   const auto replays = [&](const std::filesystem::path& page_file) {
-    for (const render::Section& section : run_page(run, page_file).sections) {
-      if (section.title == "Replay") return blocks_of<render::VideoBlock>(section.blocks);
+    for (const report::Section& section : run_page(run, page_file).sections) {
+      if (section.title == "Replay") return blocks_of<report::VideoBlock>(section.blocks);
     }
-    return std::vector<render::VideoBlock>{};
+    return std::vector<report::VideoBlock>{};
   };
   EXPECT_TRUE(replays(folder / "report.html").empty());
   test::write_bytes(folder / "replay.mp4", "film");
   EXPECT_EQ(replays(folder / "report.html").at(0).mp4, "film");
   std::filesystem::resize_file(folder / "replay.mp4", 7 << 20);
   EXPECT_EQ(replays(folder / "report.html").at(0).url, "replay.mp4");
-  EXPECT_THAT(render::to_html(run_page(run, folder / "report.html")), HasSubstr("<video controls preload=\"metadata\" src=\"replay.mp4\">"));
+  EXPECT_THAT(report::to_html(run_page(run, folder / "report.html")), HasSubstr("<video controls preload=\"metadata\" src=\"replay.mp4\">"));
   EXPECT_TRUE(replays(folder / "elsewhere/report.html").empty());
 }
 
 TEST(ErrorBlocks, ShowTheEstimatesErrorItsBoundAndOdometrys) {
-  const std::vector<render::LinePlot> plots = blocks_of<render::LinePlot>(error_blocks(small_run()));
+  const std::vector<report::LinePlot> plots = blocks_of<report::LinePlot>(error_blocks(small_run()));
   ASSERT_EQ(plots.size(), 3u);  // no trust
   EXPECT_EQ(plots[0].title, "Position error");
   EXPECT_NEAR(plots[0].curves[0].points.back().y(), 0.1, 1e-9);
@@ -111,7 +111,7 @@ TEST(ErrorBlocks, ShadeFaultsAndWhereTheRobotSaysThatItIsLost) {
   RunContents run = small_run();
   run.scenario.faults = {{.sensor = "imu", .kind = "freeze", .start_s = 2.0, .duration_s = 100.0}};
   run.record.confidences = {{.stamp = from_seconds(3.0), .confidence = 1.0}, {.stamp = from_seconds(4.0), .is_lost = true}, {.stamp = from_seconds(5.0), .confidence = 1.0}};
-  const std::vector<render::PlotSpan> spans = spans_of(run);
+  const std::vector<report::PlotSpan> spans = spans_of(run);
   ASSERT_EQ(spans.size(), 2u);
   EXPECT_EQ(spans[0].to, 10.0);  // the run's end
   EXPECT_EQ(spans[1].from, 4.0);
@@ -132,7 +132,7 @@ TEST(Occasions, HaveALaneForEachKindAndMarkTroublesOnTheCurves) {
 TEST(MapBlocks, DrawThePathsInWorldAndBreakThemWhereTheRobotIsLifted) {
   RunContents run = small_run();
   for (std::size_t i = 50; i < run.record.T_world_body.size(); ++i) run.record.T_world_body[i].pose.position.y() += 20.0;
-  const render::MapBlock map = blocks_of<render::MapBlock>(map_blocks(run)).at(0);
+  const report::MapBlock map = blocks_of<report::MapBlock>(map_blocks(run)).at(0);
   EXPECT_EQ(map.paths[0].pieces_m.size(), 2u);
   EXPECT_EQ(map.paths[1].pieces_m.size(), 1u);
   EXPECT_NEAR(map.paths[1].pieces_m[0].front().x(), 5.0, 1e-9);
@@ -143,7 +143,7 @@ TEST(MapBlocks, DrawThePathsInWorldAndBreakThemWhereTheRobotIsLifted) {
 TEST(MapBlocks, MarkAPlaceOnceAndJoinWhatLiesTogether) {
   RunContents run = small_run();
   run.record.events = {event_at(0.5, EventKind::kStationReached), event_at(8.0, EventKind::kDocked), event_at(8.1, EventKind::kDocked)};
-  const std::vector<render::MapMark> marks = blocks_of<render::MapBlock>(map_blocks(run)).at(0).marks;
+  const std::vector<report::MapMark> marks = blocks_of<report::MapBlock>(map_blocks(run)).at(0).marks;
   ASSERT_EQ(marks.size(), 2u);
   EXPECT_EQ(marks[0].label, "start, box");
   EXPECT_EQ(marks[1].label, "dock");

@@ -33,8 +33,8 @@ struct SmallSweep {
       }
     }
   }
-  render::Page page() const { return sweep_page(manifest, rows, progress_of(manifest, rows)); }
-  render::VerdictBlock verdict() const { return std::get<render::VerdictBlock>(page().sections.front().blocks.front()); }
+  report::Page page() const { return sweep_page(manifest, rows, progress_of(manifest, rows)); }
+  report::VerdictBlock verdict() const { return std::get<report::VerdictBlock>(page().sections.front().blocks.front()); }
 
   SweepManifest manifest;
   SweepRows rows;
@@ -52,19 +52,19 @@ TEST(SweepPage, RunsThatFailedAreSaidAndStandFirst) {
   SmallSweep sweep(0.0);
   sweep.rows[7]->end = RunStatus::kCrashed;
   EXPECT_THAT(sweep.verdict().reason, HasSubstr("1 of 20 runs did not end as expected"));
-  const render::Page page = sweep.page();
-  const auto& runs = std::get<render::CollapsibleTables>(page.sections.back().blocks.front());
+  const report::Page page = sweep.page();
+  const auto& runs = std::get<report::CollapsibleTables>(page.sections.back().blocks.front());
   EXPECT_EQ(runs.tables.front().rows.front()[2].text, "crashed");
 }
 
 TEST(SweepPage, LengthsAreInCentimetresAndEveryRunIsADot) {
-  const render::Page page = SmallSweep(0.02).page();
+  const report::Page page = SmallSweep(0.02).page();
   const auto& blocks = page.sections[1].blocks;
-  const auto& boxes = std::get<render::BoxPlot>(blocks[0]);
+  const auto& boxes = std::get<report::BoxPlot>(blocks[0]);
   EXPECT_EQ(boxes.unit, "cm");
   EXPECT_EQ(boxes.boxes[0].values.size(), 10u);
   EXPECT_NEAR(boxes.boxes[0].median, 10.5, 1e-9);
-  EXPECT_NEAR(std::get<render::WaterfallChart>(blocks[1]).spans[0].to, 2.0, 1e-9);
+  EXPECT_NEAR(std::get<report::WaterfallChart>(blocks[1]).spans[0].to, 2.0, 1e-9);
 }
 
 TEST(SweepPage, AFaultMatrixSaysHowManyWereUnsafe) {
@@ -88,8 +88,8 @@ TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
     }
   }
   EXPECT_EQ(budget.verdict().word, "lidar: range noise");
-  const render::Page page = budget.page();
-  const auto& spans = std::get<render::WaterfallChart>(page.sections[1].blocks[0]).spans;
+  const report::Page page = budget.page();
+  const auto& spans = std::get<report::WaterfallChart>(page.sections[1].blocks[0]).spans;
   ASSERT_EQ(spans.size(), 4u);  // as it is, the share, the interaction, all ideal
   EXPECT_NEAR(spans[1].from, spans[0].to, 1e-9);
   EXPECT_NEAR(spans[2].from, spans[1].to, 1e-9);

@@ -9,14 +9,14 @@ namespace patrol::app::verdict_test {
 namespace {
 
 using ::testing::HasSubstr;
-using render::Tone;
+using report::Tone;
 using test::small_run;
 
 /// The cells of the row that begins with `name`; empty if there is none.
-std::vector<std::string> row_of(const render::VerdictBlock& verdict, const std::string& name) {
-  for (const std::vector<render::TableCell>& row : verdict.checks.rows) {
+std::vector<std::string> row_of(const report::VerdictBlock& verdict, const std::string& name) {
+  for (const std::vector<report::TableCell>& row : verdict.checks.rows) {
     std::vector<std::string> texts;
-    for (const render::TableCell& cell : row) texts.push_back(cell.text);
+    for (const report::TableCell& cell : row) texts.push_back(cell.text);
     if (texts.front() == name) return texts;
   }
   return {};
@@ -25,7 +25,7 @@ std::vector<std::string> row_of(const render::VerdictBlock& verdict, const std::
 using Texts = std::vector<std::string>;
 
 TEST(Verdict, IsPassedWhenTheRunEndedAndMetEverything) {
-  const render::VerdictBlock verdict = verdict_of(small_run());
+  const report::VerdictBlock verdict = verdict_of(small_run());
   EXPECT_EQ(verdict.word, "Passed");
   EXPECT_EQ(verdict.tone, Tone::kGood);
   EXPECT_EQ(row_of(verdict, "pose.ate_rmse_m"), (Texts{"pose.ate_rmse_m", "<= 0.15", "0.1", "met"}));
@@ -35,7 +35,7 @@ TEST(Verdict, NamesWhatWasMissedWithWantedAndGot) {
   RunContents run = small_run();
   run.scenario.expect["pose.ate_rmse_m"].max = 0.05;
   run.scenario.expect["map.iou"].min = 0.5;
-  const render::VerdictBlock verdict = verdict_of(run);
+  const report::VerdictBlock verdict = verdict_of(run);
   EXPECT_EQ(verdict.word, "Missed");
   EXPECT_EQ(verdict.reason, "2 of 2 expectations missed: map.iou is not measured, expected >= 0.5; pose.ate_rmse_m is 0.1, expected <= 0.05.");
   EXPECT_EQ(row_of(verdict, "pose.ate_rmse_m").back(), "MISSED");
@@ -53,7 +53,7 @@ TEST(Verdict, OfARunThatWasCutOffIsIncompleteAndJudgesNothing) {
   RunContents run = small_run();
   run.is_complete = false;
   run.metrics = io::Metrics::object();
-  const render::VerdictBlock verdict = verdict_of(run);
+  const report::VerdictBlock verdict = verdict_of(run);
   EXPECT_EQ(verdict.word, "INCOMPLETE");
   EXPECT_EQ(verdict.tone, Tone::kBad);
   EXPECT_THAT(verdict.reason, HasSubstr("10.0 s"));
@@ -65,7 +65,7 @@ TEST(Verdict, SaysOfEachFaultWhatTheJunitSays) {
   run.scenario.faults = {{.sensor = "imu", .kind = "freeze", .start_s = 2.0}, {.sensor = "uwb", .kind = "silence", .start_s = 3.0}, {.sensor = "gnss", .kind = "drift", .start_s = 4.0}};
   run.cases.push_back({.class_name = "small", .name = "fault imu freeze at 2 s", .message = "", .details = ""});
   run.cases.push_back({.class_name = "small", .name = "fault uwb silence at 3 s", .result = io::JunitResult::kSkipped, .message = "NOT EXECUTED: no message was touched", .details = ""});
-  const render::VerdictBlock verdict = verdict_of(run);
+  const report::VerdictBlock verdict = verdict_of(run);
   EXPECT_EQ(row_of(verdict, "fault imu freeze at 2 s").back(), "executed");
   EXPECT_EQ(row_of(verdict, "fault uwb silence at 3 s").back(), "NOT EXECUTED");
   EXPECT_EQ(row_of(verdict, "fault gnss drift at 4 s").back(), "not known");
@@ -76,7 +76,7 @@ TEST(Verdict, SaysOfEachFaultWhatTheJunitSays) {
 TEST(Verdict, SaysOfEachKidnapWhatTheTruthInTheLogShows) {
   RunContents run = small_run();
   run.scenario.kidnaps = {{.at_s = 4.0, .x_m = 9.1, .y_m = 6.0}, {.at_s = 6.0, .x_m = 50.0, .y_m = 6.0}, {.at_s = 60.0, .x_m = 9.1, .y_m = 6.0}};
-  const render::VerdictBlock verdict = verdict_of(run);
+  const report::VerdictBlock verdict = verdict_of(run);
   EXPECT_EQ(row_of(verdict, "kidnap at 4 s").back(), "executed");
   EXPECT_EQ(row_of(verdict, "kidnap at 6 s").back(), "NOT EXECUTED");  // it is elsewhere
   EXPECT_EQ(row_of(verdict, "kidnap at 60 s").back(), "NOT EXECUTED");  // the run was over

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/random.h"
 #include "tests/support/lined_tunnel.h"
 

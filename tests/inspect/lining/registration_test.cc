@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "tests/support/lined_tunnel.h"
 
 namespace patrol::inspect::registration_test {

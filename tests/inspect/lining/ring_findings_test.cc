@@ -6,7 +6,7 @@
 #include <functional>
 #include <numbers>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "tests/support/lined_tunnel.h"
 
 namespace patrol::inspect::ring_findings_test {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 
 namespace patrol::inspect::water_sounding_test {

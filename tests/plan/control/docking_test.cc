@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 #include "core/random.h"
 #include "localize/dock_detector.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/random.h"
 #include "plan/navigation/navigator.h"
 #include "tests/plan/kinematic_drive.h"

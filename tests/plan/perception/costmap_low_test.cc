@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "plan/perception/costmap.h"
 #include "tests/support/depth_scene.h"
 #include "tests/support/room_world.h"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "io/moving_ai.h"
+#include "io/maps/moving_ai.h"
 #include "plan/routes/grid_search.h"
 #include "plan/routes/theta_star.h"
 #include "tests/plan/routes/drawn_grid.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/run_log.h"
+#include "io/logs/run_log.h"
 #include "tests/render/small_scene.h"
 #include "tests/support/temporary_file.h"
 

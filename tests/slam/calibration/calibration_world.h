@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/random.h"
-#include "slam/calibration/motion_pairs.h"
+#include "slam/calibration/motion_segments.h"
 
 namespace patrol::test {
 

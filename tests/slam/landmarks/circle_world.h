@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "core/random.h"
-#include "slam/landmarks/landmark_slam.h"
+#include "studies/landmarks/landmark_slam.h"
 
 namespace patrol::test {
 
-using slam::Control, slam::ControlMotion, slam::LandmarkSlam, slam::RangeBearing, slam::RangeBearingNoise, slam::Steering;
+using studies::Control, studies::ControlMotion, studies::LandmarkSlam, studies::RangeBearing, studies::RangeBearingNoise, studies::Steering;
 
 /// A vehicle at 1 m/s on a circle of 5 m radius about (0, 5), once round, and landmarks on a circle of 7 m about the same point. It starts at the origin of map.
 struct CircleWorld {
@@ -19,7 +19,7 @@ struct CircleWorld {
   double range_m = 6.0;     ///< to which landmarks are seen
   int num_landmarks = 8;
   int blind_steps = 0;      ///< at first, nothing is seen
-  Eigen::Vector2d bias = Eigen::Vector2d::Zero();  ///< of odometry, in its standard deviations: as slam::OdometryBias has it
+  Eigen::Vector2d bias = Eigen::Vector2d::Zero();  ///< of odometry, in its standard deviations: as studies::OdometryBias has it
 
   /// For a circle of 5 m, the turn is length / 5 m: yaw rate v / 5, or sin G / L = 1 / 5.
   Control control() const { return {1.0, motion.steering == Steering::kAckermann ? std::asin(motion.wheelbase_m / 5.0) : 0.2}; }
@@ -50,7 +50,7 @@ inline Drive drive(const CircleWorld& world, std::uint64_t seed, double noise_sh
     drive.controls.push_back(world.control() - world.motion.std.cwiseProduct(error));
     drive.observations.emplace_back();
     for (int i = 0; i < world.num_landmarks && k >= world.blind_steps; ++i) {
-      const Eigen::Vector2d observation = slam::predict_observation(pose, world.landmark(i)).observation;
+      const Eigen::Vector2d observation = studies::predict_observation(pose, world.landmark(i)).observation;
       if (observation.x() > world.range_m) continue;
       const auto draw = sights.normals(tick, static_cast<std::uint64_t>(i));
       drive.observations.back().push_back({.landmark = i,
@@ -62,15 +62,15 @@ inline Drive drive(const CircleWorld& world, std::uint64_t seed, double noise_sh
 }
 
 /// [step]
-inline std::vector<slam::LandmarkSlamEstimate> run(LandmarkSlam& slam, const Drive& drive) {
-  std::vector<slam::LandmarkSlamEstimate> estimates;
+inline std::vector<studies::LandmarkSlamEstimate> run(LandmarkSlam& slam, const Drive& drive) {
+  std::vector<studies::LandmarkSlamEstimate> estimates;
   for (std::size_t k = 0; k < drive.controls.size(); ++k) estimates.push_back(slam.step(drive.controls[k], drive.observations[k]));
   return estimates;
 }
 
-inline std::vector<Pose2> poses_of(const std::vector<slam::LandmarkSlamEstimate>& estimates) {
+inline std::vector<Pose2> poses_of(const std::vector<studies::LandmarkSlamEstimate>& estimates) {
   std::vector<Pose2> poses;
-  for (const slam::LandmarkSlamEstimate& estimate : estimates) poses.push_back(estimate.T_map_body);
+  for (const studies::LandmarkSlamEstimate& estimate : estimates) poses.push_back(estimate.T_map_body);
   return poses;
 }
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "core/error.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/submap_points.h"

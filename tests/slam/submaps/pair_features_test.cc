@@ -7,9 +7,9 @@
 #include <set>
 #include <utility>
 
-#include "core/angles.h"
+#include "core/geometry/angles.h"
 #include "slam/submaps/adaboost.h"
-#include "tests/support/seen_submap.h"
+#include "tests/support/observed_submap.h"
 #include "tests/support/submap_points.h"
 
 namespace patrol::slam::pair_features_test {

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "slam/univariate/exact_filter.h"
-#include "slam/univariate/growth_filter.h"
-#include "slam/univariate/quasi_filter.h"
+#include "studies/univariate/exact_filter.h"
+#include "studies/univariate/growth_filter.h"
+#include "studies/univariate/quasi_filter.h"
 #include "tests/slam/univariate/growth_runs.h"
 
 /// The exact filter bounds all that see observations alone. What is significantly better has seen more than that, as the figures of [Cui21],

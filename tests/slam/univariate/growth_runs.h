@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "slam/univariate/growth_model.h"
-#include "slam/univariate/univariate_filter.h"
+#include "studies/univariate/growth_model.h"
+#include "studies/univariate/univariate_filter.h"
 
 namespace patrol::slam {
 

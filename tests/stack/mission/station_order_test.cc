@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "inspect/route_frame.h"
-#include "io/route_json.h"
+#include "io/json/route_json.h"
 #include "io/urdf.h"
 
 namespace patrol::stack::station_order_test {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/campaign/sweep/sweep_rows.h"
-#include "io/table.h"
+#include "io/files/table.h"
 #include "score/statistics.h"
 
 namespace patrol::app {

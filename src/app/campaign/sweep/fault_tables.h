@@ -3,7 +3,7 @@
 #include <string>
 
 #include "app/campaign/sweep/fault_outcomes.h"
-#include "io/table.h"
+#include "io/files/table.h"
 
 namespace patrol::app {
 

@@ -6,7 +6,7 @@
 #include "app/campaign/sweep/comparison.h"
 #include "app/campaign/sweep/fault_tables.h"
 #include "app/campaign/sweep/sweep_tables.h"
-#include "io/atomic_file.h"
+#include "io/files/atomic_file.h"
 
 namespace patrol::app {
 namespace {

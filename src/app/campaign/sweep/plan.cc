@@ -1,11 +1,11 @@
 #include "app/campaign/sweep/plan.h"
 
-#include "app/campaign/batch/run_address.h"
+#include "app/campaign/batch/run_hash.h"
 #include "app/campaign/sweep/axis.h"
 #include "app/campaign/sweep/fault_matrix.h"
-#include "app/campaign/sweep/imperfections.h"
+#include "app/campaign/sweep/error_sources.h"
 #include "core/error.h"
-#include "io/settings_yaml.h"
+#include "io/yaml/settings_yaml.h"
 
 namespace patrol::app {
 namespace {

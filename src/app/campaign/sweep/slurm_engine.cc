@@ -11,7 +11,7 @@
 #include "app/common/progress_bar.h"
 #include "app/campaign/sweep/comparison.h"
 #include "app/campaign/sweep/finish_sweep.h"
-#include "io/atomic_file.h"
+#include "io/files/atomic_file.h"
 
 namespace patrol::app {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "app/common/output_directory.h"
 #include "core/error.h"
-#include "io/csv.h"
-#include "io/sqlite.h"
+#include "io/files/csv.h"
+#include "io/files/sqlite.h"
 
 namespace patrol::app {
 namespace {

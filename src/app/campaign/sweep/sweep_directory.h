@@ -6,7 +6,7 @@
 
 #include "app/campaign/batch/result_store.h"
 #include "app/campaign/sweep/manifest.h"
-#include "io/table.h"
+#include "io/files/table.h"
 
 namespace patrol::app {
 

@@ -4,7 +4,7 @@
 
 #include "app/campaign/sweep/comparison.h"
 #include "app/campaign/sweep/manifest.h"
-#include "io/table.h"
+#include "io/files/table.h"
 
 namespace patrol::app {
 

@@ -7,7 +7,7 @@
 
 #include "app/run/run_junit.h"
 #include "app/scenario/scenario.h"
-#include "app/campaign/batch/run_address.h"
+#include "app/campaign/batch/run_hash.h"
 #include "core/error.h"
 
 namespace patrol::app {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/run/run_verdict.h"
-#include "io/table.h"
+#include "io/files/table.h"
 
 namespace patrol::app {
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "app/scenario/scenario.h"
-#include "app/campaign/sweep/imperfections.h"
+#include "app/campaign/sweep/error_sources.h"
 
 namespace patrol::app::budget_test {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/csv.h"
+#include "io/files/csv.h"
 
 namespace patrol::app::sweep_tables_test {
 namespace {

@@ -1,0 +1,60 @@
+#include "app/study/loop_closure_accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace patrol::app {
+namespace {
+
+constexpr double kRight_m = 0.3, kRight_rad = 0.05;
+constexpr double kReturn_m = 5.0, kWay_m = 30.0;
+
+bool is_right(const PoseGraphEdge& edge, const std::vector<Pose2>& T_world_node) {
+  const Pose2 T_from_to = T_world_node[static_cast<std::size_t>(edge.from)].inverse() * T_world_node[static_cast<std::size_t>(edge.to)];
+  const Pose2 off = T_from_to.inverse() * edge.T_from_to;
+  return off.position().norm() < kRight_m && std::abs(off.yaw) < kRight_rad;
+}
+
+/// Distance traveled at each node, m.
+std::vector<double> ways_to(const std::vector<Pose2>& T_world_node) {
+  std::vector<double> way_m;
+  for (std::size_t i = 0; i < T_world_node.size(); ++i) {
+    way_m.push_back(i == 0 ? 0.0 : way_m.back() + (T_world_node[i].position() - T_world_node[i - 1].position()).norm());
+  }
+  return way_m;
+}
+
+double share(std::size_t part, std::size_t whole) { return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 1.0; }
+
+}  // namespace
+
+double LoopTruth::precision() const { return share(right, right + wrong); }
+double LoopTruth::recall() const { return share(closed, returns); }
+
+LoopTruth judge_loops(const PoseGraph& graph, const std::vector<Pose2>& T_world_node) {
+  LoopTruth truth;
+  const std::vector<double> way_m = ways_to(T_world_node);
+  std::vector<bool> is_closed(T_world_node.size(), false);
+  for (const PoseGraphEdge& edge : graph.edges) {
+    if (edge.kind != PoseGraphEdge::Kind::kLoop || std::abs(edge.to - edge.from) <= 1) continue;
+    if (!is_right(edge, T_world_node)) {
+      ++truth.wrong;
+      continue;
+    }
+    ++truth.right;
+    const auto older = static_cast<std::size_t>(std::min(edge.from, edge.to)), newer = static_cast<std::size_t>(std::max(edge.from, edge.to));
+    if (way_m[newer] - way_m[older] > kWay_m) is_closed[newer] = true;
+  }
+  for (std::size_t newer = 0; newer < T_world_node.size(); ++newer) {
+    bool has_returned = false;
+    for (std::size_t older = 0; older < newer && way_m[newer] - way_m[older] > kWay_m && !has_returned; ++older) {
+      has_returned = (T_world_node[newer].position() - T_world_node[older].position()).norm() < kReturn_m;
+    }
+    truth.returns += has_returned ? 1 : 0;
+    truth.closed += has_returned && is_closed[newer] ? 1 : 0;
+  }
+  return truth;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,42 @@
+#include "app/study/study_table.h"
+
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "studies/growth_study.h"
+#include "studies/landmark_study.h"
+#include "app/study/planner_study.h"
+#include "app/study/street_study.h"
+#include "app/study/substation_study.h"
+#include "core/error.h"
+
+namespace patrol::app {
+namespace {
+
+constexpr std::array<std::pair<const char*, studies::Study (*)()>, 8> kStudies = {{{"ungm", studies::growth_study},
+                                                                         {"landmarks-circle", studies::circle_study},
+                                                                         {"landmarks-noncircular", studies::noncircular_study},
+                                                                         {"landmarks-100x80", studies::campus_study},
+                                                                         {"street-map", street_study},
+                                                                         {"substation", substation_study},
+                                                                         {"substation-row", row_study},
+                                                                         {"planners", planner_study}}};
+
+}  // namespace
+
+studies::Study make_study(const std::string& name) {
+  for (const auto& [known, make] : kStudies) {
+    if (name == known) return make();
+  }
+  throw InputError(fmt::format("there is no study '{}' (known: {})", name, fmt::join(study_names(), ", ")));
+}
+
+std::vector<std::string> study_names() {
+  std::vector<std::string> names;
+  for (const auto& study : kStudies) names.emplace_back(study.first);
+  return names;
+}
+
+}  // namespace patrol::app

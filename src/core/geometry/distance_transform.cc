@@ -1,0 +1,118 @@
+#include "core/geometry/distance_transform.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <limits>
+
+namespace patrol {
+namespace {
+
+/// Squared distances along one row; `square(d)` is the value of a distance of d cells, `far` the largest distance that counts.
+template <typename Value, typename Square>
+void transform_row(const std::uint8_t* is_obstacle, int width, int far, const Square& square, Value* squared) {
+  int distance = far;
+  for (int col = 0; col < width; ++col) {
+    distance = is_obstacle[col] ? 0 : std::min(far, distance + 1);
+    squared[col] = square(distance);
+  }
+  distance = far;
+  for (int col = width - 1; col >= 0; --col) {
+    distance = is_obstacle[col] ? 0 : std::min(far, distance + 1);
+    squared[col] = std::min(squared[col], square(distance));
+  }
+}
+
+/// Lower envelope of parabolas over one column [Felzenszwalb12].
+class LowerEnvelope {
+ public:
+  explicit LowerEnvelope(std::size_t length) : vertex_(length), boundary_(length + 1), input_(length) {}
+
+  /// `line[i * stride]` becomes the minimum over j of line[j * stride] + (i - j)^2.
+  void apply(double* line, std::size_t stride) {
+    for (std::size_t q = 0; q < input_.size(); ++q) input_[q] = line[q * stride];
+    build();
+    for (std::size_t q = 0, k = 0; q < input_.size(); ++q) {
+      while (boundary_[k + 1] < static_cast<double>(q)) ++k;
+      const double step = static_cast<double>(q) - static_cast<double>(vertex_[k]);
+      line[q * stride] = step * step + input_[vertex_[k]];
+    }
+  }
+
+ private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  void build() {
+    std::size_t last = 0;
+    vertex_[0] = 0;
+    boundary_[0] = -kInfinity;
+    boundary_[1] = kInfinity;
+    for (std::size_t q = 1; q < input_.size(); ++q) {
+      double meet = intersection(vertex_[last], q);
+      while (meet <= boundary_[last]) meet = intersection(vertex_[--last], q);
+      vertex_[++last] = q;
+      boundary_[last] = meet;
+      boundary_[last + 1] = kInfinity;
+    }
+  }
+
+  /// Abscissa at which the parabolas with the vertices p < q intersect.
+  double intersection(std::size_t p, std::size_t q) const {
+    const auto x_p = static_cast<double>(p), x_q = static_cast<double>(q);
+    return ((input_[q] + x_q * x_q) - (input_[p] + x_p * x_p)) / (2.0 * (x_q - x_p));
+  }
+
+  std::vector<std::size_t> vertex_;  ///< of the envelope's parabolas
+  std::vector<double> boundary_;     ///< between neighboring parabolas
+  std::vector<double> input_;
+};
+
+}  // namespace
+
+DistanceTransform::DistanceTransform(int cap_cells) : cap_(cap_cells) { assert(cap_ >= 1 && cap_ <= kMaxCap_cells); }
+
+void DistanceTransform::compute(const std::vector<std::uint8_t>& is_obstacle, int width, int height, SquaredDistances& result) {
+  const auto columns = static_cast<std::size_t>(width);
+  const auto rows = static_cast<std::size_t>(height);
+  assert(is_obstacle.size() == columns * rows);
+  along_rows_.resize(columns * rows);
+  row_is_empty_.resize(rows);
+  const auto square = [this](int distance) { return distance > cap_ ? beyond() : static_cast<std::int16_t>(distance * distance); };
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::uint8_t* obstacles = is_obstacle.data() + row * columns;
+    row_is_empty_[row] = std::find(obstacles, obstacles + columns, 1) == obstacles + columns;
+    if (!row_is_empty_[row]) transform_row(obstacles, width, cap_ + 1, square, along_rows_.data() + row * columns);
+  }
+
+  result.assign(columns * rows, beyond());
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::int16_t* nearest = result.data() + row * columns;
+    const std::size_t first = row - std::min(row, static_cast<std::size_t>(cap_));
+    const std::size_t last = std::min(rows - 1, row + static_cast<std::size_t>(cap_));
+    for (std::size_t other = first; other <= last; ++other) {
+      if (row_is_empty_[other]) continue;
+      const int apart = static_cast<int>(other) - static_cast<int>(row);
+      const auto parabola = static_cast<std::int16_t>(apart * apart);
+      const std::int16_t* squared = along_rows_.data() + other * columns;
+      for (std::size_t col = 0; col < columns; ++col) {
+        nearest[col] = std::min(nearest[col], static_cast<std::int16_t>(squared[col] + parabola));
+      }
+    }
+  }
+}
+
+std::vector<double> squared_distances(const std::vector<std::uint8_t>& is_obstacle, int width, int height) {
+  const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
+  assert(is_obstacle.size() == columns * rows);
+  std::vector<double> squared(columns * rows);
+  if (squared.empty()) return squared;
+  const auto square = [width](int distance) { return distance > width ? kNoObstacle : static_cast<double>(distance) * distance; };
+  for (std::size_t row = 0; row < rows; ++row) {
+    transform_row(is_obstacle.data() + row * columns, width, width + 1, square, squared.data() + row * columns);
+  }
+  LowerEnvelope envelope(rows);
+  for (std::size_t col = 0; col < columns; ++col) envelope.apply(squared.data() + col, columns);
+  return squared;
+}
+
+}  // namespace patrol

@@ -1,0 +1,86 @@
+#include "io/files/sqlite.h"
+
+#include <unistd.h>
+
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include "core/error.h"
+
+namespace patrol::io {
+namespace {
+
+using Database = std::unique_ptr<sqlite3, decltype(&sqlite3_close)>;
+using Statement = std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)>;
+
+/// Returns a quoted SQL identifier for any name.
+std::string identifier(const std::string& name) {
+  std::string quoted = "\"";
+  for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+void check(bool is_fine, sqlite3* database) {
+  if (!is_fine) throw InputError(sqlite3_errmsg(database));
+}
+
+void execute(sqlite3* database, const std::string& sql) {
+  check(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK, database);
+}
+
+int bind(sqlite3_stmt* statement, int place, const TableValue& cell) {
+  if (const auto* text = std::get_if<std::string>(&cell)) {
+    return sqlite3_bind_text(statement, place, text->data(), static_cast<int>(text->size()), SQLITE_STATIC);
+  }
+  if (const auto* number = std::get_if<double>(&cell)) return sqlite3_bind_double(statement, place, *number);
+  if (const auto* number = std::get_if<std::int64_t>(&cell)) return sqlite3_bind_int64(statement, place, *number);
+  return sqlite3_bind_null(statement, place);
+}
+
+void write(sqlite3* database, const Table& table) {
+  std::vector<std::string> columns;
+  for (const std::string& column : table.columns) columns.push_back(identifier(column));
+  execute(database, fmt::format("CREATE TABLE {} ({})", identifier(table.name), fmt::join(columns, ", ")));
+
+  const std::vector<char> marks(table.columns.size(), '?');
+  const std::string sql = fmt::format("INSERT INTO {} VALUES ({})", identifier(table.name), fmt::join(marks, ", "));
+  sqlite3_stmt* raw = nullptr;
+  check(sqlite3_prepare_v2(database, sql.c_str(), -1, &raw, nullptr) == SQLITE_OK, database);
+  const Statement insert(raw, sqlite3_finalize);
+  for (const std::vector<TableValue>& row : table.rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) check(bind(raw, static_cast<int>(i) + 1, row[i]) == SQLITE_OK, database);
+    check(sqlite3_step(raw) == SQLITE_DONE && sqlite3_reset(raw) == SQLITE_OK, database);
+  }
+}
+
+void write_all(const std::filesystem::path& file, const std::vector<Table>& tables) {
+  sqlite3* raw = nullptr;
+  const int opened = sqlite3_open(file.string().c_str(), &raw);
+  const Database database(raw, sqlite3_close);
+  check(opened == SQLITE_OK, raw);
+  execute(raw, "PRAGMA journal_mode = OFF");  // safe: the database is a temporary file until it is complete
+  execute(raw, "BEGIN");
+  for (const Table& table : tables) write(raw, table);
+  execute(raw, "COMMIT");
+}
+
+}  // namespace
+
+void save_sqlite(const std::filesystem::path& file, const std::vector<Table>& tables) {
+  const std::filesystem::path temporary = fmt::format("{}.{}.part", file.string(), ::getpid());
+  std::error_code error;
+  std::filesystem::remove(temporary, error);
+  try {
+    write_all(temporary, tables);
+    std::filesystem::rename(temporary, file);
+  } catch (const std::exception& failure) {
+    std::filesystem::remove(temporary, error);
+    throw InputError(fmt::format("{}: cannot be written: {}", file.string(), failure.what()));
+  }
+}
+
+}  // namespace patrol::io

@@ -1,0 +1,243 @@
+#include "io/logs/mcap_scan_log.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/logs/run_log.h"
+
+namespace patrol::io {
+namespace {
+
+constexpr std::size_t kMaxWaiting = 256;  ///< maximum number of waiting scans; later odometry is treated as missing
+constexpr std::size_t kMaxBeams = 10'000;
+constexpr double kQuaternionTol = 1e-3;          ///< tolerance of the norm of a quaternion
+constexpr double kMaxPoseDistance_m = 1e8;
+constexpr double kMaxScanAngle_rad = 7.0;       ///< one turn plus rounding
+constexpr double kMaxRateRadps = 1e3;      ///< maximum plausible rate
+constexpr const char* kTfStaticSuffix = "/tf_static";
+
+void expect_pose(const Pose3& pose, const char* whose) {
+  const bool is_pose = pose.position.allFinite() && pose.position.cwiseAbs().maxCoeff() <= kMaxPoseDistance_m && std::abs(pose.rotation.norm() - 1.0) <= kQuaternionTol;
+  if (!is_pose) throw DecodeError(fmt::format("{} is no pose: not finite, or its quaternion not of length 1", whose));
+}
+
+Pose3 normalized(const Pose3& pose) { return {pose.position, pose.rotation.normalized()}; }
+
+void expect_scan(const LaserScan& scan) {
+  const std::size_t num_beams = scan.ranges_m.size();
+  if (num_beams == 0 || num_beams > kMaxBeams) throw DecodeError(fmt::format("a scan of {} beams: must be 1 ... {}", num_beams, kMaxBeams));
+  const double span_rad = std::abs(scan.angle_increment_rad) * static_cast<double>(num_beams);
+  const bool has_angles = std::abs(scan.angle_min_rad) <= kMaxScanAngle_rad && span_rad <= kMaxScanAngle_rad;
+  if (!has_angles) throw DecodeError("a scan of more than a turn");
+  if (!std::isfinite(scan.time_increment_s) || !std::isfinite(scan.scan_time_s)) throw DecodeError("a scan whose times are not finite");
+}
+
+/// Returns the time of the last beam, or of the first if the scan has no plausible beam times.
+Time last_beam(const LaserScan& scan) {
+  constexpr double kMaxDuration_s = 1.0;
+  const double span_s = scan.time_increment_s * static_cast<double>(scan.ranges_m.size() - 1);
+  return span_s > 0.0 && span_s <= kMaxDuration_s ? scan.stamp + from_seconds(span_s) : scan.stamp;
+}
+
+/// Applies REP 117, which many drivers follow only in part.
+void tidy_ranges(LaserScan& scan, double no_return_m) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  if (!(scan.range_max_m > 0.0)) scan.range_max_m = no_return_m;
+  if (!(scan.range_min_m >= 0.0)) scan.range_min_m = 0.0;
+  scan.range_max_m = std::min(scan.range_max_m, no_return_m);
+  for (float& range_m : scan.ranges_m) {
+    if (range_m >= static_cast<float>(scan.range_max_m)) range_m = kInfinity;
+    else if (range_m > 0.0F && range_m < static_cast<float>(scan.range_min_m)) range_m = -kInfinity;
+    else if (range_m <= 0.0F && range_m != -kInfinity) range_m = std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+}  // namespace
+
+McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options, std::optional<double> gyro_bias_radps)
+    : file_(file),
+      options_(options),
+      reader_(file, {.topics = {}, .use_summary = false}),
+      scan_topic_(options.scan_topic),
+      odometry_topic_(options.odometry_topic),
+      imu_topic_(options.imu_topic),
+      gyro_(gyro_bias_radps) {}
+
+std::string McapScanLog::place(const McapMessage& message) const {
+  return fmt::format("{}: {} at {:.9f} s: ", file_.string(), message.channel.topic, to_seconds(message.log_time));
+}
+
+std::optional<RecordedScan> McapScanLog::next() {
+  while (true) {
+    if (std::optional<RecordedScan> scan = sorter_.take(is_at_end_)) {
+      count_returned(*scan);
+      const Pose2 T_fused_body = gyro_.fuse(scan->scan.stamp, scan->T_odom_body);
+      if (options_.imu == "on" && !imu_topic_.empty()) {
+        scan->T_odom_body = T_fused_body;
+        scan->T_begin_end = gyro_.replace_rotation(scan->T_begin_end, scan->scan.stamp, last_beam(scan->scan));
+      }
+      return scan;
+    }
+    if (is_at_end_) {
+      report_gyro();
+      return std::nullopt;
+    }
+    if (!read_message()) finish();
+  }
+}
+
+/// Returns the next message. After damage the reader continues with the next record of the file, if it can find one.
+std::optional<McapMessage> McapScanLog::next_message() {
+  while (true) {
+    try {
+      return reader_.next();
+    } catch (const InputError& error) {  // the message contains the byte offset
+      if (damaged_at_ == reader_.progress()) return std::nullopt;
+      damaged_at_ = reader_.progress();
+      reject_or_skip(options_, "damaged parts of the file", error.what());
+    }
+  }
+}
+
+bool McapScanLog::read_message() {
+  const std::optional<McapMessage> message = next_message();
+  if (!message) return false;
+  ++summary_.num_read;
+  try {
+    handle(*message);
+  } catch (const DecodeError& error) {
+    reject_or_skip(options_, "messages that cannot be read", place(*message) + error.what());
+  }
+  return true;
+}
+
+void McapScanLog::handle(const McapMessage& message) {
+  const std::string &topic = message.channel.topic, &type = message.channel.type;
+  if (type == kRosType<LaserScan>) {
+    if (scan_topic_.empty()) scan_topic_ = topic;
+    if (topic == scan_topic_) return add_scan(message);
+  } else if (type == kRosType<OdometryEstimate>) {
+    if (odometry_topic_.empty() || topic == odometry_topic_) return add_odometry(message);
+  } else if (type == kRosType<Imu> && options_.imu != "off") {
+    if (imu_topic_.empty()) imu_topic_ = topic;
+    if (topic == imu_topic_) return add_imu(message);
+  } else if (type == kRosType<TransformSet>) {
+    return add_transforms(message, topic.ends_with(kTfStaticSuffix));
+  }
+  count_ignored(topic);
+}
+
+void McapScanLog::add_scan(const McapMessage& message) {
+  WaitingScan waiting{.scan = decode<LaserScan>(message.cdr), .frame = frame_id_of(message.cdr)};
+  expect_scan(waiting.scan);
+  tidy_ranges(waiting.scan, options_.no_return_m);
+  waiting_.push_back(std::move(waiting));
+  if (waiting_.size() > kMaxWaiting) {
+    waiting_.pop_front();
+    count_skipped("scans without odometry", place(message) + "no odometry at the time of a scan long before it");
+  }
+  resolve_waiting();
+}
+
+void McapScanLog::add_odometry(const McapMessage& message) {
+  const auto odometry = decode<OdometryEstimate>(message.cdr);
+  const OdometryFrames names = odometry_frames_of(message.cdr);
+  const bool is_own_opinion = names.frame != frame_id::kWorld && names.frame != frame_id::kMap;
+  if (options_.odometry_topic.empty() && !is_own_opinion) return count_ignored(message.channel.topic);
+  expect_pose(odometry.T_odom_body, "odometry");
+  odometry_topic_ = message.channel.topic;
+  if (body_frame_.empty()) body_frame_ = names.child.empty() ? frame_id::kBody : names.child;
+  odometry_.add({.stamp = odometry.stamp, .parent = frame_id::kOdom, .child = frame_id::kBody, .T_parent_child = normalized(odometry.T_odom_body)});
+  resolve_waiting();
+}
+
+void McapScanLog::add_imu(const McapMessage& message) {
+  const Imu imu = decode<Imu>(message.cdr);
+  if (!(imu.angular_velocity_radps.norm() <= kMaxRateRadps)) throw DecodeError("an IMU whose rates are not finite, or no robot's");
+  const std::optional<Pose3> T_body_imu = sensor_pose_in_body(frame_id_of(message.cdr), imu.stamp);
+  if (!T_body_imu && options_.imu == "on") ++summary_.assumed["IMU messages: the IMU is level (no transform says how it sits)"];
+  gyro_.add(imu.stamp, T_body_imu ? (T_body_imu->rotation * imu.angular_velocity_radps).z() : imu.angular_velocity_radps.z());
+}
+
+void McapScanLog::add_transforms(const McapMessage& message, bool is_static) {
+  for (FrameTransform& transform : decode<TransformSet>(message.cdr).transforms) {
+    expect_pose(transform.T_parent_child, "a transform");
+    transform.T_parent_child = normalized(transform.T_parent_child);
+    is_static ? frames_.add_static(transform) : frames_.add(transform);
+  }
+  resolve_waiting();
+}
+
+std::optional<Pose3> McapScanLog::odometry_at(Time stamp) const {
+  const bool has_topic = !odometry_topic_.empty() && !uses_tf_;
+  return (has_topic ? odometry_ : frames_).find(frame_id::kOdom, frame_id::kBody, stamp);
+}
+
+/// Passes on the scans whose stamps odometry has reached.
+void McapScanLog::resolve_waiting() {
+  std::deque<WaitingScan> still_waiting;
+  for (WaitingScan& waiting : waiting_) {
+    const std::optional<Pose3> T_odom_first = odometry_at(waiting.scan.stamp), T_odom_last = odometry_at(last_beam(waiting.scan));
+    if (T_odom_first && (T_odom_last || is_at_end_)) add_with_pose(std::move(waiting), to_pose2(*T_odom_first), to_pose2(T_odom_last.value_or(*T_odom_first)));
+    else still_waiting.push_back(std::move(waiting));
+  }
+  waiting_ = std::move(still_waiting);
+}
+
+void McapScanLog::add_with_pose(WaitingScan waiting, const Pose2& T_odom_body, const Pose2& T_odom_last) {
+  if (odometry_topic_.empty()) uses_tf_ = true;  // from now on use tf only: two sources may differ
+  const Pose2 T_body_lidar = to_pose2(mount_of(waiting));
+  sort_in(sorter_, {.scan = std::move(waiting.scan), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar, .T_begin_end = T_odom_body.inverse() * T_odom_last}, options_,
+          fmt::format("{}: {}", file_.string(), scan_topic_));
+}
+
+std::optional<Pose3> McapScanLog::sensor_pose_in_body(const std::string& frame, Time stamp) const {
+  const std::optional<Pose3> place = frames_.find(body_frame_.empty() ? frame_id::kBody : body_frame_, frame, stamp);
+  return place ? place : frames_.find(frame_id::kBody, frame, stamp);
+}
+
+/// Returns the mount of the lidar. Reverses the beams of a lidar mounted upside down, so that the planar pose is
+/// sufficient.
+Pose3 McapScanLog::mount_of(WaitingScan& waiting) {
+  const std::optional<Pose3> T_body_lidar = sensor_pose_in_body(waiting.frame, waiting.scan.stamp);
+  if (!T_body_lidar) {
+    ++summary_.assumed["scans: the lidar is at the body's origin (no transform says where)"];
+    return {};
+  }
+  const bool is_upside_down = (T_body_lidar->rotation * Eigen::Vector3d::UnitZ()).z() < 0.0;
+  if (is_upside_down) {
+    waiting.scan.angle_min_rad *= -1.0;
+    waiting.scan.angle_increment_rad *= -1.0;
+  }
+  return *T_body_lidar;
+}
+
+void McapScanLog::report_gyro() {
+  if (options_.imu != "on" || imu_topic_.empty() || is_gyro_reported_) return;
+  is_gyro_reported_ = true;
+  const std::optional<double> bias_radps = gyro_.bias_radps();
+  std::string how = bias_radps ? fmt::format("bias {:.5f} rad/s from {:.0f} s of standing", *bias_radps, gyro_.stationary_s()) : "the robot is not seen standing: its bias is taken as none";
+  if (bias_radps && gyro_.motion_without_bias_s() > 0.0) how += fmt::format(", the first {:.0f} s of way without it", gyro_.motion_without_bias_s());
+  if (gyro_.uncovered_s() > 0.0) how += fmt::format("; {:.1f} s that it does not cover turn by odometry", gyro_.uncovered_s());
+  add_found(fmt::format("odometry turns by the gyro of {}: {} (log.imu)", imu_topic_, how));
+}
+
+void McapScanLog::finish() {
+  is_at_end_ = true;
+  resolve_waiting();
+  if (!reader_.is_complete()) count_skipped("file ends too early", file_.string() + ": was cut off: read up to the cut");
+  const std::size_t without_odometry = waiting_.size();
+  for (; !waiting_.empty(); waiting_.pop_front()) {
+    count_skipped("scans without odometry", fmt::format("{}: no odometry at the scan of {:.9f} s", file_.string(), to_seconds(waiting_.front().scan.stamp)));
+  }
+  if (summary_.num_scans > 0 || !sorter_.is_empty()) return;
+  const char* const what = without_odometry > 0 ? "holds no odometry at its scans' times: nav_msgs/msg/Odometry, or tf odom -> base_link, is read"
+                                                : "holds no scan: sensor_msgs/msg/LaserScan is read";
+  throw InputError(fmt::format("{}: {} ({})", file_.string(), what, counted(summary_)));
+}
+
+}  // namespace patrol::io

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/ground_truth.h"
+#include "core/messages.h"
+#include "core/robot_description.h"
+#include "core/sensors/registry.h"
+#include "core/trajectory.h"
+#include "io/mcap/mcap_writer.h"
+#include "io/ros/ros_messages.h"
+
+namespace patrol::io {
+
+/// Topic of each message.
+template <typename Message>
+inline constexpr const char* kTopic = nullptr;
+template <IsSensorMessage Message>
+inline constexpr const char* kTopic<Message> = SensorTraits<Message>::kInfo.topic;
+template <> inline constexpr const char* kTopic<ScanCommand> = "/scanner/command";
+template <> inline constexpr const char* kTopic<AntennaCommand> = "/tem/antenna_command";
+template <> inline constexpr const char* kTopic<SoundingCommand> = "/tem/command";
+template <> inline constexpr const char* kTopic<WarningCommand> = "/warning";
+template <> inline constexpr const char* kTopic<LiningResult> = "/inspection/lining";
+template <> inline constexpr const char* kTopic<WaterResult> = "/inspection/water";
+template <> inline constexpr const char* kTopic<LocalizationConfidence> = "/trust";
+template <> inline constexpr const char* kTopic<OdometryEstimate> = "/odom";
+template <> inline constexpr const char* kTopic<PoseEstimate> = "/pose";
+template <> inline constexpr const char* kTopic<UwbPoseEstimate> = "/uwb/pose";
+template <> inline constexpr const char* kTopic<ParticleSet> = "/particles";
+template <> inline constexpr const char* kTopic<MapUpdate> = "/map";
+template <> inline constexpr const char* kTopic<Path> = "/plan";
+template <> inline constexpr const char* kTopic<VelocityCommand> = "/cmd_vel";
+template <> inline constexpr const char* kTopic<Event> = "/events";
+template <> inline constexpr const char* kTopic<GroundTruth> = "/ground_truth/odom";
+template <> inline constexpr const char* kTopic<SimState> = "/sim/state";
+template <> inline constexpr const char* kTopic<Collision> = "/ground_truth/collisions";
+
+/// Writes log.mcap: every message on its topic, and the frames on /tf and /tf_static.
+class RunLogWriter {
+ public:
+  RunLogWriter(const std::filesystem::path& log_mcap, const RobotDescription& robot);
+
+  template <typename Message>
+  void write(Time log_time, const Message& message) {
+    writer_.write(channel<Message>(kTopic<Message>), log_time, encode(message, names_));
+    if constexpr (std::is_same_v<Message, OdometryEstimate>) write_frames(log_time, message);
+    if constexpr (std::is_same_v<Message, PoseEstimate>) write_frames(log_time, message);
+  }
+  void write(Time log_time, const SensorMessage& message) {
+    std::visit([&](const auto& content) { write(log_time, content); }, message);
+  }
+
+  void close() { writer_.close(); }
+
+ private:
+  template <typename Message>
+  McapWriter::ChannelId channel(const char* topic) {
+    const auto known = channels_.find(topic);
+    if (known != channels_.end()) return known->second;
+    return add_channel(topic, kRosType<Message>);
+  }
+  McapWriter::ChannelId add_channel(const std::string& topic, const char* type);
+  void write_frames(Time log_time, const OdometryEstimate& odometry);
+  void write_frames(Time log_time, const PoseEstimate& estimate);
+
+  McapWriter writer_;
+  RosNames names_;
+  std::map<std::string, McapWriter::ChannelId> channels_;
+  Trajectory odometry_;  ///< of late, to place map over odom at an estimate's stamp
+};
+
+/// Handlers of the messages of a log; messages without a handler are skipped undecoded.
+class LogHandlers {
+ public:
+  template <typename Message>
+  using Handler = std::function<void(Time log_time, const Message&)>;
+
+  /// Sets the handler of a message that has a topic.
+  template <typename Message>
+  LogHandlers& on(Handler<Message> handler) {
+    by_topic_[kTopic<Message>] = [handle = std::move(handler)](Time log_time, std::string_view cdr) {
+      handle(log_time, decode<Message>(cdr));
+    };
+    return *this;
+  }
+
+  std::vector<std::string> topics() const;
+  /// Decodes a message of one of the topics. Throws DecodeError.
+  void handle(const std::string& topic, Time log_time, std::string_view cdr) const { by_topic_.at(topic)(log_time, cdr); }
+
+ private:
+  std::map<std::string, std::function<void(Time, std::string_view)>> by_topic_;
+};
+
+/// Reads a log in order, from one log time to another (both included); returns whether the log is complete: one that was
+/// cut off by a crash is read up to the cut. Throws InputError, naming file and place, when it is damaged.
+bool read_run_log(const std::filesystem::path& log_mcap, const LogHandlers& handlers, Time from = Time::min(),
+                  Time to = Time::max());
+
+}  // namespace patrol::io

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/time.h"
+#include "io/mcap/mcap_format.h"
+
+namespace patrol::io {
+
+/// Channel of an MCAP file: topic and message type.
+struct McapChannel {
+  std::string topic;
+  std::string type;        ///< "sensor_msgs/msg/LaserScan"
+  std::string definition;  ///< message definition, including all types that it uses
+};
+
+/// Serialized message of an MCAP file. Valid until the next call of the reader.
+struct McapMessage {
+  const McapChannel& channel;
+  Time log_time;
+  std::string_view cdr;
+};
+
+/// Selection of the messages to read; all by default.
+struct McapSelection {
+  std::vector<std::string> topics;  ///< all if empty
+  Time from = Time::min();          ///< log time
+  Time to = Time::max();            ///< log time, inclusive
+  bool use_summary = true;          ///< false: read the file sequentially, which works with a damaged summary
+};
+
+/// Reader of the messages of an MCAP file in file order. Uses the summary, if present, to skip chunks without selected
+/// messages. A truncated file (crash of the writer) is read up to the truncation.
+///
+/// Throws InputError with file and byte offset if the file is not MCAP or is otherwise damaged.
+class McapReader {
+ public:
+  explicit McapReader(const std::filesystem::path& path, McapSelection selection = {});
+
+  /// Returns the next message, valid until the next call; nullopt at the end or truncation. After an InputError another
+  /// call continues with the record after the damaged one. If that record cannot be found, the same error is thrown
+  /// again.
+  std::optional<McapMessage> next();
+
+  /// Returns whether the writer closed the file: the summary is present.
+  bool is_complete() const { return footer_start_ > 0; }
+
+  /// Returns the fraction of the file read, 0 to 1.
+  double progress() const { return size_ > 0 ? static_cast<double>(offset_) / static_cast<double>(size_) : 1.0; }
+
+  /// Returns the log time of the last message according to the summary; nullopt in a truncated file.
+  std::optional<Time> last_time() const { return last_time_; }
+
+ private:
+  std::string read_bytes(std::uint64_t offset, std::uint64_t size);
+  void find_footer();
+  void read_summary(std::uint64_t start, std::uint64_t end);
+  void add_chunk(mcap::RecordReader content);
+  void add_schema(mcap::RecordReader content);
+  void add_channel(mcap::RecordReader content);
+  bool read_record();
+  std::optional<McapMessage> read_message(mcap::RecordReader content);
+  std::string unpack_chunk(mcap::RecordReader content) const;
+  bool is_wanted(const std::string& topic) const;
+  [[noreturn]] void fail(const std::string& what) const;
+
+  std::filesystem::path path_;
+  std::ifstream file_;
+  McapSelection selection_;
+  std::uint64_t size_ = 0;
+  std::uint64_t footer_start_ = 0;
+  std::uint64_t offset_ = 0;        ///< offset of the next record in the file
+  std::uint64_t record_start_ = 0;  ///< offset of the current record, for error messages
+  bool is_at_end_ = false;
+  std::optional<Time> last_time_;
+
+  struct Schema {
+    std::string type, definition;
+  };
+  std::map<std::uint16_t, Schema> schemas_;
+  std::map<std::uint16_t, McapChannel> channels_;
+  std::set<std::uint64_t> unwanted_chunks_;  ///< by offset in the file
+  std::string record_, chunk_;
+  std::string_view rest_of_chunk_;  ///< unread part of chunk_
+};
+
+/// Calls `handle` for each selected message in file order. Returns whether the file is complete.
+bool read_mcap(const std::filesystem::path& path, const std::function<void(const McapMessage&)>& handle,
+               const McapSelection& selection = {});
+
+}  // namespace patrol::io

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/time.h"
+#include "io/mcap/mcap_format.h"
+
+struct ZSTD_CCtx_s;
+
+namespace patrol::io {
+
+/// Writer of MCAP files: profile ros2, schemas ros2msg, messages cdr, zstd-compressed chunks, a summary with indexes,
+/// and checksums throughout. The same calls produce the same bytes.
+///
+/// Each chunk (1 MB or one second) is written when it is complete: after a crash the file is readable up to the last
+/// complete chunk. Without `close` the file has no summary, by which readers recognize truncation.
+class McapWriter {
+ public:
+  using ChannelId = std::uint16_t;
+
+  /// Creates the file. Throws InputError if this fails.
+  explicit McapWriter(const std::filesystem::path& path);
+  ~McapWriter();
+  McapWriter(const McapWriter&) = delete;
+  McapWriter& operator=(const McapWriter&) = delete;
+
+  /// Adds a channel. `definition`: ROS 2 message definition, including all types that it uses.
+  ChannelId add_channel(const std::string& topic, const std::string& type, const std::string& definition);
+
+  void write(ChannelId channel, Time log_time, std::string_view cdr);
+
+  /// Writes the remaining messages and the summary.
+  void close();
+
+ private:
+  struct ChunkIndex;
+  struct IndexEntry {
+    std::uint64_t log_time, offset_in_chunk;
+  };
+
+  void put(std::string_view bytes);
+  void begin_chunk(std::uint64_t log_time);
+  void flush_chunk();
+  void write_message_indexes(ChunkIndex& chunk);
+  void write_summary();
+  mcap::RecordWriter statistics() const;
+  mcap::RecordWriter chunk_indexes() const;
+
+  std::filesystem::path path_;
+  std::ofstream file_;
+  std::uint64_t offset_ = 0;  ///< position of the next byte
+  std::uint32_t crc_ = 0;     ///< checksum of all bytes written
+  bool is_closed_ = false;
+  std::unique_ptr<ZSTD_CCtx_s, std::size_t (*)(ZSTD_CCtx_s*)> compressor_;
+  std::string packed_;
+
+  std::vector<std::string> schema_types_;     ///< [schema id - 1]
+  mcap::RecordWriter schemas_, channels_;            ///< records for the summary
+  std::vector<std::uint32_t> message_count_;  ///< [channel id - 1]
+  std::uint64_t total_count_ = 0;
+  std::uint64_t first_time_ = 0, last_time_ = 0;
+
+  mcap::RecordWriter chunk_;
+  std::uint64_t chunk_start_ = 0, chunk_end_ = 0;
+  std::map<ChannelId, std::vector<IndexEntry>> chunk_index_;
+  std::vector<ChunkIndex> chunks_;
+};
+
+}  // namespace patrol::io

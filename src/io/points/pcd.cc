@@ -1,0 +1,118 @@
+#include "io/points/pcd.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "io/files/atomic_file.h"
+#include "io/files/line_tokenizer.h"
+#include "io/points/point_table.h"
+
+namespace patrol::io {
+namespace {
+
+constexpr std::int64_t kMostPcdPoints = 1'000'000'000;
+constexpr std::size_t kMostPcdFields = 1000;
+constexpr std::int64_t kMaxFieldCount = 100'000;
+
+struct PcdHeader {
+  std::vector<PointColumn> columns;
+  std::vector<std::size_t> sizes;  ///< [column], bytes
+  std::string types;               ///< [column]: I, U or F
+  std::int64_t width = 0, height = 1;
+  std::optional<std::int64_t> points;
+  std::string data;
+};
+
+void read_values(FileText& text, const std::string& key, LineTokenizer& fields, PcdHeader& header) {
+  if (key == "FIELDS") {
+    if (fields.num_words() > kMostPcdFields) text.refuse(fmt::format("FIELDS has more than {} words", kMostPcdFields));
+    while (!fields.is_empty()) header.columns.push_back({.name = std::string(fields.word("name"))});
+  } else if (key == "SIZE") {
+    while (!fields.is_empty()) header.sizes.push_back(static_cast<std::size_t>(fields.integer("SIZE", 1, 8)));
+  } else if (key == "TYPE") {
+    while (!fields.is_empty()) header.types += fields.word("type").front();
+  } else if (key == "COUNT") {
+    for (std::size_t i = 0; !fields.is_empty(); ++i) {
+      if (i >= header.columns.size()) text.refuse("COUNT has more words than FIELDS");
+      header.columns[i].count = static_cast<std::size_t>(fields.integer("COUNT", 1, kMaxFieldCount));
+    }
+  } else if (key == "WIDTH") {
+    header.width = fields.integer("WIDTH", 0, kMostPcdPoints);
+  } else if (key == "HEIGHT") {
+    header.height = fields.integer("HEIGHT", 0, kMostPcdPoints);
+  } else if (key == "POINTS") {
+    header.points = fields.integer("POINTS", 0, kMostPcdPoints);
+  } else if (key == "DATA") {
+    header.data = fields.word("DATA");
+  } else if (key != "VERSION" && key != "VIEWPOINT") {
+    text.refuse("is no line of a PCD header");
+  }
+}
+
+std::optional<NumberType> type_of(char type, std::size_t bytes) {
+  if (type == 'F') return bytes == 4 ? std::optional(NumberType::kFloat32) : bytes == 8 ? std::optional(NumberType::kFloat64) : std::nullopt;
+  if (type != 'I' && type != 'U') return std::nullopt;
+  for (const NumberType known : {NumberType::kInt8, NumberType::kInt16, NumberType::kInt32, NumberType::kInt64}) {
+    if (bytes_of(known) != bytes) continue;
+    // Each signed type is followed by its unsigned counterpart.
+    return type == 'I' ? known : static_cast<NumberType>(static_cast<int>(known) + 1);
+  }
+  return std::nullopt;
+}
+
+void set_types(FileText& text, PcdHeader& header) {
+  if (header.sizes.size() != header.columns.size() || header.types.size() != header.columns.size()) {
+    text.refuse(fmt::format("FIELDS has {} words, SIZE {} and TYPE {}", header.columns.size(), header.sizes.size(), header.types.size()));
+  }
+  for (std::size_t i = 0; i < header.columns.size(); ++i) {
+    const auto type = type_of(header.types[i], header.sizes[i]);
+    if (!type) text.refuse(fmt::format("TYPE and SIZE of field {} do not go together", i + 1));
+    header.columns[i].type = *type;
+  }
+}
+
+PcdHeader read_pcd_header(FileText& text) {
+  PcdHeader header;
+  while (header.data.empty()) {
+    const auto line = text.next_line();
+    if (!line) text.refuse("the header has no line DATA");
+    LineTokenizer fields(*line);
+    if (fields.is_empty() || line->front() == '#') continue;
+    try {
+      const std::string key(fields.word("key"));
+      read_values(text, key, fields, header);
+    } catch (const ParseError& error) {
+      text.refuse(error.what());
+    }
+  }
+  set_types(text, header);
+  if (header.data != "ascii" && header.data != "binary") text.refuse("DATA must be ascii or binary");
+  if (header.height > 0 && header.width > kMostPcdPoints / header.height) text.refuse("WIDTH x HEIGHT is too large");
+  const std::int64_t points = header.width * header.height;
+  if (header.points.value_or(points) != points) text.refuse(fmt::format("POINTS is {}, WIDTH x HEIGHT {}", *header.points, points));
+  return header;
+}
+
+}  // namespace
+
+void save_pcd(const std::filesystem::path& file, const std::vector<ScannerPoint>& points) {
+  const std::string header = fmt::format(
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\n"
+      "WIDTH {0}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {0}\nDATA binary\n",
+      points.size());
+  save_text(file, header + to_rows(points));
+}
+
+std::vector<ScannerPoint> load_pcd(const std::filesystem::path& file) {
+  FileText text(file);
+  PcdHeader header = read_pcd_header(text);
+  PointTable table(text, std::move(header.columns), static_cast<std::size_t>(header.width * header.height));
+  std::vector<ScannerPoint> points = header.data == "ascii" ? table.read_ascii() : table.read_binary();
+  table.expect_end();
+  return points;
+}
+
+}  // namespace patrol::io

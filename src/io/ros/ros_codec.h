@@ -1,0 +1,211 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fastcdr/Cdr.h>
+#include <fastcdr/FastBuffer.h>
+#include <fastcdr/exceptions/Exception.h>
+
+#include "io/ros/ros_messages.h"
+
+/// How ros_messages.h's encode and decode are made: for the files that describe messages, each in a function `describe(codec, message)` in this namespace.
+namespace patrol::io::ros {
+
+using eprosima::fastcdr::Cdr;
+using eprosima::fastcdr::FastBuffer;
+
+/// One description of a message's fields serves both ways: `codec(field)` writes the field or fills it.
+struct Writer {
+  Cdr& cdr;
+  const RosNames& names;
+  static constexpr bool kWrites = true;
+  template <typename T>
+  void operator()(T& value) { cdr << value; }
+};
+
+struct Reader {
+  Cdr& cdr;
+  RosNames names{};
+  static constexpr bool kWrites = false;
+  template <typename T>
+  void operator()(T& value) { cdr >> value; }
+};
+
+template <typename Codec>
+void time_field(Codec& codec, Time& time) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  auto seconds = static_cast<std::int32_t>(time.count() / kSecond);
+  auto nanoseconds = static_cast<std::uint32_t>(time.count() % kSecond);
+  codec(seconds);
+  codec(nanoseconds);
+  time = Time{seconds * kSecond + nanoseconds};
+}
+
+template <typename Codec>
+void header(Codec& codec, Time& stamp, std::string frame) {
+  time_field(codec, stamp);
+  codec(frame);
+}
+
+/// A double of ours that is a float32 in ROS.
+template <typename Codec>
+void float_field(Codec& codec, double& value) {
+  auto single = static_cast<float>(value);
+  codec(single);
+  if constexpr (!Codec::kWrites) value = single;
+}
+
+template <typename Codec>
+void vector3(Codec& codec, Eigen::Vector3d& v) {
+  codec(v.x());
+  codec(v.y());
+  codec(v.z());
+}
+
+template <typename Codec>
+void pose3(Codec& codec, Pose3& pose) {
+  vector3(codec, pose.position);
+  codec(pose.rotation.x());
+  codec(pose.rotation.y());
+  codec(pose.rotation.z());
+  codec(pose.rotation.w());
+}
+
+template <typename Codec>
+void pose2(Codec& codec, Pose2& pose) {
+  Pose3 spatial = to_pose3(pose);
+  pose3(codec, spatial);
+  if constexpr (!Codec::kWrites) pose = to_pose2(spatial);
+}
+
+/// The covariance of x, y, yaw inside ROS's 6 x 6 of x, y, z, roll, pitch, yaw.
+template <typename Codec>
+void planar_covariance(Codec& codec, Eigen::Matrix3d& covariance) {
+  constexpr std::array<std::size_t, 3> kRows = {0, 1, 5};
+  std::array<double, 36> full{};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) full[6 * kRows[static_cast<std::size_t>(i)] + kRows[static_cast<std::size_t>(j)]] = covariance(i, j);
+  }
+  codec(full);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) covariance(i, j) = full[6 * kRows[static_cast<std::size_t>(i)] + kRows[static_cast<std::size_t>(j)]];
+  }
+}
+
+template <typename Codec>
+void twist3(Codec& codec, Twist3& twist) {
+  vector3(codec, twist.linear);
+  vector3(codec, twist.angular);
+}
+
+/// ROS's variable-length lists of messages.
+template <typename Codec, typename Element, typename Describe>
+void list(Codec& codec, std::vector<Element>& elements, const Describe& describe) {
+  auto count = static_cast<std::uint32_t>(elements.size());
+  codec(count);
+  if constexpr (!Codec::kWrites) elements.clear();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if constexpr (!Codec::kWrites) elements.emplace_back();
+    describe(elements[i]);
+  }
+}
+
+/// A field of a sensor_msgs/PointCloud2.
+struct CloudField {
+  std::string name;
+  std::uint32_t offset = 0;
+  std::uint8_t type = 0;
+  std::uint32_t count = 1;
+};
+inline constexpr std::uint8_t kFloat32 = 7, kUint16 = 4;
+
+/// What stands between a PointCloud2's header and its data.
+template <typename Codec>
+void cloud_layout(Codec& codec, std::uint32_t num_points, const std::uint32_t step, std::vector<CloudField> fields) {
+  std::uint32_t height = 1;
+  codec(height);
+  codec(num_points);
+  list(codec, fields, [&](CloudField& field) {
+    codec(field.name);
+    codec(field.offset);
+    codec(field.type);
+    codec(field.count);
+  });
+  bool is_big_endian = false;
+  std::uint32_t point_step = step, row_step = step * num_points;
+  codec(is_big_endian);
+  codec(point_step);
+  codec(row_step);
+  if (point_step != step) throw DecodeError("a point cloud of another layout than ours");
+}
+
+inline void read_head(Reader& reader, std::string& frame) {
+  Time stamp{};
+  time_field(reader, stamp);
+  reader(frame);
+}
+
+/// Hands the bytes to `read`. Throws DecodeError "not a <type>: ...".
+template <typename Read>
+void read_cdr(std::string_view bytes, const char* type, const Read& read) {
+  try {
+    FastBuffer buffer(const_cast<char*>(bytes.data()), bytes.size());  // only read from
+    Cdr cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR);
+    cdr.read_encapsulation();
+    Reader reader{cdr};
+    read(reader);
+  } catch (const eprosima::fastcdr::exception::Exception& error) {
+    throw DecodeError(std::string("not a ") + type + ": " + error.what());
+  }
+}
+
+/// Returns how many bytes it has written.
+template <typename Message>
+std::size_t serialize(Message& message, const RosNames& names, FastBuffer& buffer) {
+  Cdr cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR);
+  cdr.serialize_encapsulation();
+  Writer writer{cdr, names};
+  describe(writer, message);
+  return cdr.getSerializedDataLength();
+}
+
+}  // namespace patrol::io::ros
+
+namespace patrol::io {
+
+// Twice: Fast-CDR leaves its padding as it finds it, so the bytes must be zero before, and to that end be counted.
+template <typename Message>
+std::string encode(const Message& message, const RosNames& names) {
+  Message copy = message;
+  ros::FastBuffer counted;
+  std::string bytes(ros::serialize(copy, names, counted), '\0');
+  ros::FastBuffer buffer(bytes.data(), bytes.size());
+  ros::serialize(copy, names, buffer);
+  return bytes;
+}
+
+template <typename Message>
+Message decode(std::string_view bytes) {
+  Message message;
+  ros::read_cdr(bytes, kRosType<Message>, [&](ros::Reader& reader) { describe(reader, message); });
+  return message;
+}
+
+}  // namespace patrol::io
+
+/// Makes both for a message that is described above.
+#define PATROL_ROS_MESSAGE(Message)                                     \
+  template std::string encode(const Message&, const RosNames&);         \
+  template Message decode<Message>(std::string_view)
+
+/// Makes both for a sensor's message, with the fields of its ROS type; "" for a type of ros_definitions.cc.
+#define PATROL_ROS_SENSOR(Message, fields)            \
+  template <>                                         \
+  std::string_view ros_message_fields<Message>() {    \
+    return fields;                                    \
+  }                                                   \
+  PATROL_ROS_MESSAGE(Message)

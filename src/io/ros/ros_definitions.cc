@@ -1,0 +1,140 @@
+#include "io/ros/ros_definitions.h"
+
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "io/ros/ros_messages.h"
+
+namespace patrol::io {
+namespace {
+
+/// Fields of each type, as in ROS 2's common_interfaces; comments left out. Ours carry their units. Those of a sensor's own type are
+/// beside its codec (ros_message_fields).
+struct Definition {
+  std::string_view type, fields;
+};
+
+constexpr Definition kDefinitions[] = {
+    {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
+    {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
+    {"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
+    {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
+    {"geometry_msgs/Quaternion", "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n"},
+    {"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
+    {"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
+    {"geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
+    {"geometry_msgs/PoseWithCovarianceStamped", "std_msgs/Header header\ngeometry_msgs/PoseWithCovariance pose\n"},
+    {"geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"},
+    {"geometry_msgs/TwistStamped", "std_msgs/Header header\ngeometry_msgs/Twist twist\n"},
+    {"geometry_msgs/TwistWithCovariance", "geometry_msgs/Twist twist\nfloat64[36] covariance\n"},
+    {"geometry_msgs/Transform", "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"},
+    {"geometry_msgs/TransformStamped",
+     "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"},
+    {"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
+    {"sensor_msgs/PointField",
+     "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\nuint8 UINT32=6\nuint8 FLOAT32=7\n"
+     "uint8 FLOAT64=8\nstring name\nuint32 offset\nuint8 datatype\nuint32 count\n"},
+    {"sensor_msgs/PointCloud2",
+     "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\nbool is_bigendian\n"
+     "uint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n"},
+    {"sensor_msgs/NavSatStatus",
+     "int8 STATUS_NO_FIX=-1\nint8 STATUS_FIX=0\nint8 STATUS_SBAS_FIX=1\nint8 STATUS_GBAS_FIX=2\nint8 status\n"
+     "uint16 SERVICE_GPS=1\nuint16 SERVICE_GLONASS=2\nuint16 SERVICE_COMPASS=4\nuint16 SERVICE_GALILEO=8\nuint16 service\n"},
+    {"nav_msgs/Odometry",
+     "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
+     "geometry_msgs/TwistWithCovariance twist\n"},
+    {"nav_msgs/MapMetaData",
+     "builtin_interfaces/Time map_load_time\nfloat32 resolution\nuint32 width\nuint32 height\ngeometry_msgs/Pose origin\n"},
+    {"nav_msgs/OccupancyGrid", "std_msgs/Header header\nnav_msgs/MapMetaData info\nint8[] data\n"},
+    {"nav_msgs/Path", "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n"},
+    {"nav2_msgs/Particle", "geometry_msgs/Pose pose\nfloat64 weight\n"},
+    {"nav2_msgs/ParticleCloud", "std_msgs/Header header\nnav2_msgs/Particle[] particles\n"},
+    {"patrol_msgs/ScanCommand", "# One panoramic scan, now.\nstd_msgs/Header header\n"},
+    {"patrol_msgs/AntennaCommand", "# Turn the antenna there.\nstd_msgs/Header header\nfloat64 yaw_rad\nfloat64 pitch_rad\n"},
+    {"patrol_msgs/SoundingCommand", "# One sounding, now.\nstd_msgs/Header header\n"},
+    {"patrol_msgs/WarningCommand", "# Warning light and siren.\nstd_msgs/Header header\nbool light\nbool siren\n"},
+    {"patrol_msgs/LiningCell",
+     "# A ring's lining in one direction, against the reference scan; inwards is positive.\n"
+     "int32 ring\nfloat64 clock_deg\nfloat64 inward_m\nfloat64 std_m\nint32 points\n"},
+    {"patrol_msgs/ConvergenceLine", "# A chord between two marks of a ring; longer is positive.\nint32 ring\nstring name\nfloat64 change_m\nfloat64 std_m\n"},
+    {"patrol_msgs/RingFinding",
+     "uint8 NONE=0\nuint8 NOTICE=1\nuint8 WARNING=2\nuint8 ALARM=3\n"
+     "int32 ring\nfloat64 clock_deg\nfloat64 inward_m\nfloat64 std_m\nuint8 level\ngeometry_msgs/Point place\n"},
+    {"patrol_msgs/LiningResult",
+     "# The lining about a station, from one panoramic scan and the reference scan; pose of the body in map.\n"
+     "std_msgs/Header header\nstring station\ngeometry_msgs/Pose pose\nbool is_registered\nfloat64 registration_rms_m\n"
+     "float64 registration_share\nfloat64 correction_m\npatrol_msgs/LiningCell[] cells\npatrol_msgs/ConvergenceLine[] lines\n"
+     "patrol_msgs/RingFinding[] findings\n"},
+    {"patrol_msgs/WaterResult",
+     "# Water ahead of the face, from the soundings of one station (src/core/inspection_result.h).\n"
+     "uint8 NONE=0\nuint8 NOTICE=1\nuint8 WARNING=2\nuint8 ALARM=3\n"
+     "std_msgs/Header header\nstring station\ngeometry_msgs/Pose pose\nint32 soundings\nfloat64 antenna_error_deg\nfloat64 rock_spm\n"
+     "float64 evidence\nbool is_found\nuint8 level\ngeometry_msgs/Point place\nfloat64[9] covariance_m2\nfloat64 distance_m\n"
+     "float64 distance_low_m\nfloat64 distance_high_m\nfloat64 azimuth_deg\nfloat64 elevation_deg\nfloat64 radius_m\n"
+     "float64 radius_low_m\nfloat64 radius_high_m\n"},
+    {"patrol_msgs/LocalizationTrust",
+     "# trust 0 (lost) ... 1 (sure); standard deviation along the weakest direction, and that direction in map.\n"
+     "std_msgs/Header header\nfloat64 trust\nfloat64 weak_std_m\nfloat64 weak_direction_rad\nbool is_lost\n"},
+    {"patrol_msgs/Event",
+     "# Something that happened in the mission; pose is where the robot believed it was, target where that is; in map.\n"
+     "std_msgs/Header header\nstring kind\nstring subject\nstring text\nfloat64 value\ngeometry_msgs/Pose pose\n"
+     "geometry_msgs/Point target\n"},
+    {"patrol_msgs/SimState",
+     "# MuJoCo's qpos, and per mocap body x y z qw qx qy qz, for the replay.\n"
+     "std_msgs/Header header\nfloat64[] qpos\nfloat64[] mocap\n"},
+    {"patrol_msgs/Collision",
+     "# The robot's geom `first` touched `second`.\nstd_msgs/Header header\nstring first\nstring second\n"},
+};
+
+/// "sensor_msgs/msg/Imu" -> "sensor_msgs/Imu"; empty if it is no ROS 2 type name.
+std::string short_type(const std::string& type) {
+  const std::size_t middle = type.find("/msg/");
+  return middle == std::string::npos ? "" : type.substr(0, middle) + type.substr(middle + 4);
+}
+
+/// Returns the fields of a type of the table or of a sensor; empty if the type is unknown.
+std::string_view fields_of(std::string_view type) {
+  for (const Definition& definition : kDefinitions) {
+    if (definition.type == type) return definition.fields;
+  }
+  std::string_view fields;
+  Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
+    if (fields.empty() && short_type(kRosType<Message>) == type) fields = ros_message_fields<Message>();
+  });
+  return fields;
+}
+
+/// "sensor_msgs/Imu[]" -> "sensor_msgs/Imu"; empty for primitives.
+std::string used_type(const std::string& field_type) {
+  const std::string type = field_type.substr(0, field_type.find('['));
+  return type.find('/') == std::string::npos ? "" : type;
+}
+
+void append_used(const std::string& type, std::set<std::string>& done, std::string& text) {
+  std::istringstream lines{std::string(fields_of(type))};
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with('#')) continue;
+    const std::string used = used_type(line.substr(0, line.find(' ')));
+    if (used.empty() || !done.insert(used).second) continue;
+    text += fmt::format("{:=<80}\nMSG: {}\n{}", "", used, fields_of(used));
+    append_used(used, done, text);
+  }
+}
+
+}  // namespace
+
+std::string ros_definition(const std::string& type) {
+  const std::string short_name = short_type(type);
+  if (short_name.empty()) throw std::logic_error("not a ROS 2 type name: " + type);
+  std::string text(fields_of(short_name));
+  if (text.empty()) throw std::logic_error("no definition of " + type);
+  std::set<std::string> done;
+  append_used(short_name, done, text);
+  return text;
+}
+
+}  // namespace patrol::io

@@ -1,0 +1,186 @@
+// What the stack and the truth say, and what is read of messages without knowing them whole.
+#include "io/ros/ros_codec.h"
+
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace patrol::io::ros {
+
+template <typename Codec>
+void describe(Codec& codec, LocalizationConfidence& confidence) {
+  header(codec, confidence.stamp, frame_id::kMap);
+  codec(confidence.confidence);
+  codec(confidence.max_std_m);
+  codec(confidence.max_std_direction_rad);
+  codec(confidence.is_lost);
+}
+
+template <typename Codec>
+void odometry_fields(Codec& codec, Time& stamp, const char* frame, Pose3& pose, Eigen::Matrix3d& covariance, Twist3& twist) {
+  header(codec, stamp, frame);
+  std::string child = frame_id::kBody;
+  codec(child);
+  pose3(codec, pose);
+  planar_covariance(codec, covariance);
+  twist3(codec, twist);
+  std::array<double, 36> unstated{};
+  codec(unstated);
+}
+
+template <typename Codec>
+void describe(Codec& codec, OdometryEstimate& odometry) {
+  odometry_fields(codec, odometry.stamp, frame_id::kOdom, odometry.T_odom_body, odometry.planar_covariance, odometry.twist);
+}
+
+template <typename Codec>
+void describe(Codec& codec, GroundTruth& truth) {
+  Eigen::Matrix3d exact = Eigen::Matrix3d::Zero();
+  odometry_fields(codec, truth.stamp, frame_id::kWorld, truth.T_world_body, exact, truth.twist);
+}
+
+template <typename Codec>
+void describe(Codec& codec, PoseEstimate& estimate) {
+  header(codec, estimate.stamp, frame_id::kMap);
+  pose2(codec, estimate.T_map_body);
+  planar_covariance(codec, estimate.covariance);
+}
+
+template <typename Codec>
+void describe(Codec& codec, ParticleSet& particles) {
+  header(codec, particles.stamp, frame_id::kMap);
+  struct Particle {
+    Pose2 pose;
+    double weight = 0.0;
+  };
+  std::vector<Particle> rows;
+  for (std::size_t i = 0; i < particles.weights.size(); ++i) rows.push_back({particles.T_map_body[i], particles.weights[i]});
+  list(codec, rows, [&](Particle& particle) {
+    pose2(codec, particle.pose);
+    codec(particle.weight);
+  });
+  if constexpr (!Codec::kWrites) {
+    for (const Particle& particle : rows) {
+      particles.T_map_body.push_back(particle.pose);
+      particles.weights.push_back(particle.weight);
+    }
+  }
+}
+
+template <typename Codec>
+void describe(Codec& codec, MapUpdate& update) {
+  header(codec, update.stamp, frame_id::kMap);
+  GridGeometry geometry = update.map.geometry();
+  time_field(codec, update.stamp);
+  float_field(codec, geometry.resolution_m);
+  auto width = static_cast<std::uint32_t>(geometry.width), height = static_cast<std::uint32_t>(geometry.height);
+  codec(width);
+  codec(height);
+  Pose3 origin{.position = {geometry.origin_m.x(), geometry.origin_m.y(), 0.0}};
+  pose3(codec, origin);
+  std::vector<std::int8_t> cells = update.map.values();
+  codec(cells);
+  if constexpr (!Codec::kWrites) {
+    // A float32 cannot hold 0.05: back to the tenth of a millimetre that was meant.
+    geometry = {.resolution_m = std::round(geometry.resolution_m * 1e4) / 1e4, .width = static_cast<int>(width),
+                .height = static_cast<int>(height), .origin_m = origin.position.head<2>()};
+    if (cells.size() != geometry.size()) throw DecodeError("a map whose cells do not fit its size");
+    update.map = OccupancyGrid(geometry);
+    update.map.values() = std::move(cells);
+  }
+}
+
+template <typename Codec>
+void describe(Codec& codec, Path& path) {
+  header(codec, path.stamp, frame_id::kMap);
+  list(codec, path.T_map_body, [&](Pose2& pose) {
+    header(codec, path.stamp, frame_id::kMap);
+    pose2(codec, pose);
+  });
+}
+
+template <typename Codec>
+void describe(Codec& codec, VelocityCommand& command) {
+  header(codec, command.stamp, frame_id::kLevel);
+  Twist3 twist{.linear = {command.vx_mps, command.vy_mps, 0.0}, .angular = {0.0, 0.0, command.yaw_rate_radps}};
+  twist3(codec, twist);
+  command.vx_mps = twist.linear.x();
+  command.vy_mps = twist.linear.y();
+  command.yaw_rate_radps = twist.angular.z();
+}
+
+template <typename Codec>
+void describe(Codec& codec, Event& event) {
+  header(codec, event.stamp, frame_id::kMap);
+  std::string kind = kind_text(event);
+  codec(kind);
+  if constexpr (!Codec::kWrites) set_kind(event, kind);
+  codec(event.subject);
+  codec(event.text);
+  codec(event.value);
+  pose2(codec, event.T_map_body);
+  double height_m = 0.0;
+  codec(event.p_map_target.x());
+  codec(event.p_map_target.y());
+  codec(height_m);
+}
+
+template <typename Codec>
+void describe(Codec& codec, SimState& state) {
+  header(codec, state.stamp, frame_id::kWorld);
+  codec(state.qpos);
+  codec(state.mocap);
+}
+
+template <typename Codec>
+void describe(Codec& codec, Collision& collision) {
+  header(codec, collision.stamp, frame_id::kWorld);
+  codec(collision.first);
+  codec(collision.second);
+}
+
+template <typename Codec>
+void describe(Codec& codec, TransformSet& set) {
+  list(codec, set.transforms, [&](FrameTransform& transform) {
+    time_field(codec, transform.stamp);
+    codec(transform.parent);
+    codec(transform.child);
+    pose3(codec, transform.T_parent_child);
+  });
+}
+
+}  // namespace patrol::io::ros
+
+namespace patrol::io {
+
+OdometryFrames odometry_frames_of(std::string_view bytes) {
+  OdometryFrames frames;
+  ros::read_cdr(bytes, kRosType<OdometryEstimate>, [&](ros::Reader& reader) {
+    ros::read_head(reader, frames.frame);
+    reader(frames.child);
+  });
+  return frames;
+}
+
+std::string frame_id_of(std::string_view bytes) {
+  std::string frame;
+  ros::read_cdr(bytes, "message with a header", [&](ros::Reader& reader) { ros::read_head(reader, frame); });
+  return frame;
+}
+
+PATROL_ROS_MESSAGE(LocalizationConfidence);
+PATROL_ROS_MESSAGE(OdometryEstimate);
+PATROL_ROS_MESSAGE(PoseEstimate);
+PATROL_ROS_MESSAGE(UwbPoseEstimate);
+PATROL_ROS_MESSAGE(ParticleSet);
+PATROL_ROS_MESSAGE(MapUpdate);
+PATROL_ROS_MESSAGE(Path);
+PATROL_ROS_MESSAGE(VelocityCommand);
+PATROL_ROS_MESSAGE(Event);
+PATROL_ROS_MESSAGE(GroundTruth);
+PATROL_ROS_MESSAGE(SimState);
+PATROL_ROS_MESSAGE(Collision);
+PATROL_ROS_MESSAGE(TransformSet);
+
+}  // namespace patrol::io
+

@@ -1,0 +1,69 @@
+#include "io/trajectories/tum.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/files/atomic_file.h"
+#include "io/files/line_tokenizer.h"
+#include "io/files/line_reader.h"
+
+namespace patrol::io {
+namespace {
+
+constexpr double kUnitTol = 1e-3;  ///< tolerance of the norm of a quaternion: some files have only four digits
+
+StampedPose parse_pose(LineTokenizer fields) {
+  StampedPose entry{.stamp = fields.stamp("t"), .pose = {}};
+  Eigen::Vector3d& p = entry.pose.position;
+  for (int axis = 0; axis < 3; ++axis) p[axis] = fields.number("position");
+  const double x = fields.number("qx"), y = fields.number("qy"), z = fields.number("qz"), w = fields.number("qw");
+  if (!fields.is_empty()) throw ParseError("more than eight words");
+  entry.pose.rotation = Eigen::Quaterniond(w, x, y, z);
+  return entry;
+}
+
+StampedPose read_pose(const std::string& file, const LineReader::Line& line) {
+  try {
+    if (line.is_cut) throw ParseError("too long");
+    return parse_pose(LineTokenizer(line.text));
+  } catch (const ParseError&) {
+    throw input_error(file, line.number, "must be eight finite numbers: t x y z qx qy qz qw");
+  }
+}
+
+}  // namespace
+
+Trajectory load_tum(const std::filesystem::path& file, SameStamps same_stamps) {
+  LineReader lines(file);
+  Trajectory trajectory;
+  while (const auto line = lines.next()) {
+    if (LineTokenizer(line->text).is_empty() || line->text.front() == '#') continue;
+    StampedPose entry = read_pose(file.string(), *line);
+    const double length = entry.pose.rotation.norm();
+    if (std::abs(length - 1.0) > kUnitTol) throw input_error(file.string(), line->number, fmt::format("the quaternion has length {:.4g}, must be 1", length));
+    entry.pose.rotation.normalize();
+    if (!trajectory.empty() && entry.stamp <= trajectory.back().stamp) {
+      if (same_stamps == SameStamps::kKeepFirst && entry.stamp == trajectory.back().stamp) continue;
+      throw input_error(file.string(), line->number, fmt::format("stamp {} does not follow {}: stamps must grow from line to line",
+                                                                 format_stamp(entry.stamp), format_stamp(trajectory.back().stamp)));
+    }
+    trajectory.push_back(entry);
+  }
+  if (lines.read_error()) throw InputError(fmt::format("{}: {}", file.string(), *lines.read_error()));
+  if (trajectory.empty()) throw InputError(file.string() + ": holds no poses");
+  return trajectory;
+}
+
+void save_tum(const std::filesystem::path& file, const Trajectory& trajectory, const std::string& comment) {
+  std::string text = "# " + comment + "\n# t_s x_m y_m z_m qx qy qz qw\n";
+  for (const auto& [stamp, pose] : trajectory) {
+    const Eigen::Vector3d& p = pose.position;
+    const Eigen::Quaterniond& q = pose.rotation;
+    text += fmt::format("{} {:.9f} {:.9f} {:.9f} {:.12f} {:.12f} {:.12f} {:.12f}\n", format_stamp(stamp), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+  }
+  save_text(file, text);
+}
+
+}  // namespace patrol::io

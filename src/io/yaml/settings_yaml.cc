@@ -1,0 +1,188 @@
+#include "io/yaml/settings_yaml.h"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <numeric>
+#include <set>
+
+#include "io/yaml/yaml_document.h"
+
+namespace patrol::io {
+namespace {
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+/// Applies one "path=value" to the document and creates missing sections.
+void apply_override(YAML::Node root, const std::string& override) {
+  const std::size_t equals = override.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw InputError("--set " + override + ": must be path=value, e.g. sensors.lidar.range_noise_m=0.05");
+  }
+  const YAML::Node value = parse_yaml("--set " + override, override.substr(equals + 1), false);
+  const std::vector<std::string> path = split(override.substr(0, equals), '.');
+  YAML::Node node = root;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const bool is_last = i + 1 == path.size();
+    if (node.IsSequence()) {
+      std::size_t index = 0;
+      const auto [end, error] = std::from_chars(path[i].data(), path[i].data() + path[i].size(), index);
+      if (error != std::errc() || end != path[i].data() + path[i].size()) {
+        throw InputError("--set " + override + ": " + path[i] + " must be a number: the place in a list");
+      }
+      if (index >= node.size()) throw InputError(fmt::format("--set {}: the list has {} entries", override, node.size()));
+      if (is_last) node[index] = value;
+      else node.reset(node[index]);
+    } else {
+      if (node.IsDefined() && !node.IsNull() && !node.IsMap()) throw InputError("--set " + override + ": " + path[i] + " lies below a plain value");
+      if (is_last) node[path[i]] = value;
+      else {
+        if (!node[path[i]].IsDefined()) node[path[i]] = YAML::Node(YAML::NodeType::Map);
+        node.reset(node[path[i]]);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+// yaml-cpp counts lines from 0.
+int line_of(const YAML::Node& node) { return node.Mark().is_null() ? 0 : node.Mark().line + 1; }
+
+std::string closest_match(const std::string& word, const std::vector<std::string>& known) {
+  std::string nearest;
+  std::size_t least = std::max<std::size_t>(3, word.size() / 3 + 1);
+  for (const std::string& candidate : known) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < least) {
+      least = distance;
+      nearest = candidate;
+    }
+  }
+  return nearest;
+}
+
+void SettingsReader::fail(const YAML::Node& node, const std::string& key, const std::string& what) const {
+  throw input_error(file_, line_of(node), (key.empty() ? "" : key + ": ") + what);
+}
+
+void SettingsReader::finish() const {
+  if (!node_ || !node_.IsMap()) return;
+  std::set<std::string> seen;
+  for (const auto& entry : node_) {
+    const std::string name = entry.first.Scalar();
+    if (!seen.insert(name).second) fail(entry.first, key(name), "stands there twice");
+    if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+    const std::string nearest = closest_match(name, known_);
+    fail(entry.first, key(name),
+         fmt::format("unknown key{} (known: {})", nearest.empty() ? "" : "; did you mean " + nearest + "?", fmt::join(known_, ", ")));
+  }
+}
+
+void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key, bool& value) const {
+  if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value)) fail(node, key, "must be true or false");
+}
+
+void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key, int& value) const {
+  if (!node.IsScalar() || !YAML::convert<int>::decode(node, value)) {
+    fail(node, key, "must be a whole number" + (node.IsScalar() ? ", not " + node.Scalar() : ""));
+  }
+}
+
+void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key, std::uint64_t& value) const {
+  if (!node.IsScalar() || node.Scalar().starts_with('-') || !YAML::convert<std::uint64_t>::decode(node, value)) {
+    fail(node, key, "must be a whole number, not negative" + (node.IsScalar() ? ", not " + node.Scalar() : ""));
+  }
+}
+
+void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key, double& value) const {
+  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value)) {
+    fail(node, key, "must be a number" + (node.IsScalar() ? ", not " + node.Scalar() : ""));
+  }
+  if (!std::isfinite(value)) fail(node, key, "must be a finite number, not " + node.Scalar());
+}
+
+void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key, std::string& value) const {
+  if (!node.IsScalar()) fail(node, key, "must be a word");
+  value = node.Scalar();
+}
+
+void SettingsReader::read_expectations(const YAML::Node& node, const std::string& key, Expectations& value) const {
+  if (!node.IsMap()) fail(node, key, "must be a section of metrics");
+  for (const auto& entry : node) {
+    const std::string metric = entry.first.Scalar();
+    Expectation expectation;
+    if (bool wanted = false; entry.second.IsScalar() && YAML::convert<bool>::decode(entry.second, wanted)) {
+      expectation = {.min = wanted ? 1.0 : 0.0, .max = wanted ? 1.0 : 0.0, .is_boolean = true};
+    } else if (entry.second.IsMap()) {
+      SettingsReader band(file_, entry.second, key + "." + metric);
+      if (entry.second["min"].IsDefined()) band("min", expectation.min);
+      if (entry.second["max"].IsDefined()) band("max", expectation.max);
+      band.known_ = {"min", "max"};
+      band.finish();
+    } else {
+      read_scalar(entry.second, key + "." + metric, expectation.min);
+      expectation.max = expectation.min;
+    }
+    value[metric] = expectation;
+  }
+}
+
+void SettingsWriter::write_expectations(const Expectations& expectations) {
+  out_ << YAML::BeginMap;
+  for (const auto& [metric, expectation] : expectations) {
+    out_ << YAML::Key << metric << YAML::Value;
+    if (expectation.is_boolean) {
+      out_ << (expectation.min > 0.5);
+      continue;
+    }
+    out_ << YAML::Flow << YAML::BeginMap;
+    if (std::isfinite(expectation.min)) out_ << YAML::Key << "min" << YAML::Value << fmt::format("{}", expectation.min);
+    if (std::isfinite(expectation.max)) out_ << YAML::Key << "max" << YAML::Value << fmt::format("{}", expectation.max);
+    out_ << YAML::EndMap;
+  }
+  out_ << YAML::EndMap;
+}
+
+YAML::Node load_document(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  YAML::Node document = load_yaml(file);
+  if (!document.IsDefined() || document.IsNull()) {
+    throw InputError(file.string() + ": is empty: must be a map of keys and values, {} if it says nothing");
+  }
+  if (!document.IsMap()) throw InputError(file.string() + ": must be a map of keys and values");
+  for (const std::string& override : overrides) apply_override(document, override);
+  return document;
+}
+
+YAML::Node parse_overrides(const std::vector<std::string>& overrides) {
+  YAML::Node document(YAML::NodeType::Map);
+  for (const std::string& override : overrides) apply_override(document, override);
+  return document;
+}
+
+}  // namespace patrol::io

@@ -1,0 +1,195 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include "core/error.h"
+#include "core/settings.h"
+#include "io/files/atomic_file.h"
+#include "io/yaml/expectations.h"
+
+/// Conversion of settings structs (core/settings.h) from and to YAML. Errors name file, line, key and rule.
+namespace patrol::io {
+
+/// Reads a YAML document into a struct, field by field, and rejects remaining keys.
+class SettingsReader {
+ public:
+  SettingsReader(std::string file, YAML::Node node, std::string path) : file_(std::move(file)), node_(std::move(node)), path_(std::move(path)) {
+    if (node_ && !node_.IsNull() && !node_.IsMap()) fail(node_, path_, "must be a section of keys and values");
+  }
+
+  template <typename Value>
+  void operator()(const char* name, Value& value, const Limits& limits = {}) {
+    known_.emplace_back(name);
+    const YAML::Node child = node_ && node_.IsMap() ? node_[name] : YAML::Node(YAML::NodeType::Undefined);
+    if (!child.IsDefined()) return;
+    read(child, key(name), value, limits);
+  }
+
+  /// Throws InputError for unknown and duplicate keys.
+  void finish() const;
+
+  template <typename Settings>
+  static void read_section(const std::string& file, const YAML::Node& node, const std::string& path, Settings& settings) {
+    SettingsReader reader(file, node, path);
+    if constexpr (requires { Settings::of_preset(std::string()); }) {
+      if (node.IsMap() && node["preset"].IsDefined()) {
+        SettingsReader whole(file, node, path);
+        Only preset{whole, "preset"};
+        Settings::fields(settings, preset);
+        const bool is_enabled = settings.enabled;
+        settings = Settings::of_preset(settings.preset);
+        settings.enabled = is_enabled;
+      }
+    }
+    Settings::fields(settings, reader);
+    reader.finish();
+  }
+
+ private:
+  /// Visitor that reads only one field.
+  struct Only {
+    SettingsReader& reader;
+    std::string wanted;
+    template <typename Value>
+    void operator()(const char* name, Value& value, const Limits& limits = {}) {
+      if (name == wanted) reader(name, value, limits);
+    }
+  };
+
+  template <typename Value>
+  void read(const YAML::Node& node, const std::string& key, Value& value, const Limits& limits) const {
+    if constexpr (std::is_same_v<Value, Expectations>) {
+      read_expectations(node, key, value);
+    } else if constexpr (std::is_same_v<Value, std::string> || std::is_arithmetic_v<Value>) {
+      read_scalar(node, key, value);
+      if constexpr (!std::is_same_v<Value, bool>) {
+        using Checked = std::conditional_t<std::is_same_v<Value, std::string>, std::string, double>;
+        if (!allows(limits, static_cast<Checked>(value))) {
+          fail(node, key, fmt::format("{} is out of range: {}", node.Scalar(), describe_limits(limits)));
+        }
+      }
+    } else if constexpr (requires { value.begin(); }) {
+      if (!node.IsSequence()) fail(node, key, "must be a list");
+      value.clear();
+      for (std::size_t i = 0; i < node.size(); ++i) {
+        value.emplace_back();
+        read(node[i], fmt::format("{}.{}", key, i), value.back(), limits);
+      }
+    } else {
+      read_section(file_, node, key, value);
+    }
+  }
+
+  void read_scalar(const YAML::Node& node, const std::string& key, bool& value) const;
+  void read_scalar(const YAML::Node& node, const std::string& key, int& value) const;
+  void read_scalar(const YAML::Node& node, const std::string& key, std::uint64_t& value) const;
+  void read_scalar(const YAML::Node& node, const std::string& key, double& value) const;
+  void read_scalar(const YAML::Node& node, const std::string& key, std::string& value) const;
+  void read_expectations(const YAML::Node& node, const std::string& key, Expectations& value) const;
+  [[noreturn]] void fail(const YAML::Node& node, const std::string& key, const std::string& what) const;
+  std::string key(const std::string& name) const { return path_.empty() ? name : path_ + "." + name; }
+
+  std::string file_;
+  YAML::Node node_;
+  std::string path_;
+  std::vector<std::string> known_;
+};
+
+/// Writes all fields, including those with default values.
+class SettingsWriter {
+ public:
+  explicit SettingsWriter(YAML::Emitter& out) : out_(out) {}
+
+  template <typename Value>
+  void operator()(const char* name, const Value& value, const Limits& = {}) {
+    out_ << YAML::Key << name << YAML::Value;
+    write(value);
+  }
+
+  template <typename Settings>
+  static void write_section(YAML::Emitter& out, const Settings& settings) {
+    out << YAML::BeginMap;
+    SettingsWriter writer(out);
+    Settings::fields(settings, writer);
+    out << YAML::EndMap;
+  }
+
+ private:
+  template <typename Value>
+  void write(const Value& value) {
+    if constexpr (std::is_same_v<Value, Expectations>) {
+      write_expectations(value);
+    } else if constexpr (std::is_same_v<Value, double>) {
+      out_ << fmt::format("{}", value);
+    } else if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
+      out_ << value;
+    } else if constexpr (requires { value.begin(); }) {
+      out_ << YAML::BeginSeq;
+      for (const auto& element : value) write(element);
+      out_ << YAML::EndSeq;
+    } else {
+      write_section(out_, value);
+    }
+  }
+  void write_expectations(const Expectations& expectations);
+
+  YAML::Emitter& out_;
+};
+
+/// Loads a file and applies overrides ("a.b.0.c=value"). Throws InputError.
+YAML::Node load_document(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+
+/// Returns a document that contains only the overrides; all other values are defaults.
+YAML::Node parse_overrides(const std::vector<std::string>& overrides);
+
+/// Returns the line of a node in its file, starting at 1; 0 for nodes from overrides.
+int line_of(const YAML::Node& node);
+
+/// Reads a file with overrides into `settings`; keys that are missing keep their present values.
+template <typename Settings>
+void read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides, Settings& settings) {
+  SettingsReader::read_section(file.string(), load_document(file, overrides), "", settings);
+}
+
+template <typename Settings>
+Settings load_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  Settings settings;
+  read_settings(file, overrides, settings);
+  return settings;
+}
+
+/// Returns the defaults with the overrides of `--set`. Throws InputError with "--set" and the key.
+template <typename Settings>
+Settings parse_settings(const std::vector<std::string>& overrides) {
+  Settings settings;
+  SettingsReader::read_section("--set", parse_overrides(overrides), "", settings);
+  return settings;
+}
+
+/// Formats all fields as YAML, including defaults, preceded by an optional comment line.
+template <typename Settings>
+std::string to_yaml(const Settings& settings, const std::string& comment = "") {
+  YAML::Emitter out;
+  if (!comment.empty()) out << YAML::Comment(comment) << YAML::Newline;
+  SettingsWriter::write_section(out, settings);
+  return std::string(out.c_str()) + "\n";
+}
+
+template <typename Settings>
+void save_settings(const std::filesystem::path& file, const Settings& settings, const std::string& comment = "") {
+  save_text(file, to_yaml(settings, comment));
+}
+
+/// Returns the known word with the smallest edit distance to `word`; empty if none is similar.
+std::string closest_match(const std::string& word, const std::vector<std::string>& known);
+
+}  // namespace patrol::io

@@ -1,0 +1,56 @@
+#include "localize/slip_detector.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace patrol::localize {
+namespace {
+
+constexpr double kSigmas = 4.0;       // significance threshold for the roughness
+constexpr double kMaxLateness_s = 0.5;  // maximum delay of the belts behind the IMU
+
+}  // namespace
+
+void SlipDetector::reset() {
+  readings_.clear();
+}
+
+// Roughness: consecutive accelerations of a smooth ride are similar. Half their squared difference is the variance of
+// the rough part.
+void SlipDetector::add_acceleration(Time stamp, double dt_s, double acceleration_mps2) {
+  Sum sum = sums_.empty() ? Sum{} : sums_.back();
+  const double rough = acceleration_mps2 - last_acceleration_;
+  sum.stamp = stamp;
+  sum.speed_mps += acceleration_mps2 * dt_s;
+  sum.variance_m2ps2 += 0.5 * rough * rough * dt_s * dt_s;
+  last_acceleration_ = acceleration_mps2;
+  sums_.push_back(sum);
+  while (to_seconds(stamp - sums_.front().stamp) > kMaxLateness_s) sums_.pop_front();
+}
+
+std::optional<SlipDetector::Sum> SlipDetector::sum_at(Time stamp) const {
+  const auto after = std::lower_bound(sums_.begin(), sums_.end(), stamp,
+                                      [](const Sum& sum, Time when) { return sum.stamp < when; });
+  if (after == sums_.end() || (after == sums_.begin() && after->stamp > stamp)) return std::nullopt;
+  return *after;
+}
+
+std::optional<SlipEvidence> SlipDetector::add_speed(Time stamp, double belts_mps, double estimated_mps) {
+  const std::optional<Sum> sum = sum_at(stamp);
+  if (!sum) {
+    reset();
+    return std::nullopt;
+  }
+  readings_.push_back({*sum, belts_mps, estimated_mps});
+  while (to_seconds(stamp - readings_.front().sum.stamp) > settings_.window_s) readings_.pop_front();
+  const Reading& first = readings_.front();
+  const double felt = sum->speed_mps - first.sum.speed_mps;
+  const double disagreement = (belts_mps - first.belts_mps) - felt;
+  const double rough_std = std::sqrt(sum->variance_m2ps2 - first.sum.variance_m2ps2);
+  if (std::abs(disagreement) < settings_.threshold_mps + kSigmas * rough_std) return std::nullopt;
+  return SlipEvidence{.forward_mps = first.estimated_mps + felt,
+                      .disagreement_mps = disagreement,
+                      .duration_s = to_seconds(stamp - first.sum.stamp)};
+}
+
+}  // namespace patrol::localize

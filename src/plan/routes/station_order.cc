@@ -1,0 +1,245 @@
+#include "plan/routes/station_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "plan/routes/held_karp_bound.h"
+
+namespace patrol::plan {
+namespace {
+
+constexpr double kNoOrder = std::numeric_limits<double>::infinity();
+constexpr double kRounding = 1e-9;
+
+void check(const TourProblem& problem) {
+  const std::size_t count = problem.travel.size();
+  const auto refuse = [](const std::string& what) { throw InputError("tour: " + what); };
+  if (count == 0) refuse("there are no stations");
+  for (std::size_t i = 0; i < count; ++i) {
+    if (problem.travel[i].size() != count) refuse(fmt::format("row {} of travel has {} figures: must be {}", i, problem.travel[i].size(), count));
+    for (std::size_t j = 0; j < count; ++j) {
+      if (!(problem.travel[i][j] >= 0.0)) refuse(fmt::format("travel from {} to {} is {}: must be at least 0", i, j, problem.travel[i][j]));
+    }
+  }
+  if (!problem.stations.empty() && problem.stations.size() != count) refuse(fmt::format("{} stations are described: must be {}", problem.stations.size(), count));
+  for (std::size_t i = 0; i < problem.stations.size(); ++i) {
+    const TourProblem::Station& station = problem.stations[i];
+    if (!(station.service >= 0.0) || !(station.earliest >= 0.0) || !std::isfinite(station.service + station.earliest) || !(station.latest >= station.earliest)) {
+      refuse(fmt::format("station {} has service {} and window {} ... {}: must be at least 0, and in order", i, station.service, station.earliest, station.latest));
+    }
+  }
+  for (const auto& end : {problem.start, problem.end}) {
+    if (end && *end >= count) refuse(fmt::format("there is no station {}", *end));
+  }
+}
+
+/// Problem with defaults filled in.
+class Tour {
+ public:
+  explicit Tour(const TourProblem& problem) : problem_(problem), stations_(problem.stations) { stations_.resize(problem.travel.size()); }
+
+  std::size_t size() const { return stations_.size(); }
+  bool is_round() const { return problem_.start && problem_.start == problem_.end; }
+  bool is_start(std::size_t i) const { return problem_.start == i; }
+  bool is_end(std::size_t i) const { return problem_.end == i && !is_round(); }
+  bool is_fixed(std::size_t i) const { return is_start(i) || is_end(i); }
+  double travel(std::size_t from, std::size_t to) const { return problem_.travel[from][to]; }
+  int priority(std::size_t i) const { return stations_[i].priority; }
+  /// Departure time from a station that is reached at `reached`.
+  double leaves(std::size_t i, double reached) const { return std::max(reached, stations_[i].earliest) + stations_[i].service; }
+  double lateness(std::size_t i, double reached) const { return std::max(0.0, reached - stations_[i].latest - kRounding); }
+
+  /// Impossible legs, priority inversions, lateness, completion, compared in this order; lower is better.
+  using Score = std::tuple<int, int, double, double>;
+  Score score(const std::vector<std::size_t>& order) const {
+    int impossible = 0, inverted = 0;
+    double now = leaves(order[0], 0.0), late = lateness(order[0], 0.0);
+    const auto go = [&](std::size_t from, std::size_t to) {
+      if (std::isinf(travel(from, to))) ++impossible;
+      else now += travel(from, to);
+    };
+    int last = std::numeric_limits<int>::min();
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      if (k > 0) {
+        go(order[k - 1], order[k]);
+        late += lateness(order[k], now);
+        now = leaves(order[k], now);
+      }
+      if (is_fixed(order[k])) continue;
+      inverted += priority(order[k]) < last;
+      last = std::max(last, priority(order[k]));
+    }
+    if (is_round() && order.size() > 1) go(order.back(), order.front());
+    return {impossible, inverted, late, now};
+  }
+
+ private:
+  const TourProblem& problem_;
+  std::vector<TourProblem::Station> stations_;
+};
+
+/// Order with the minimum completion that meets every window; empty if there is none. `best[set * size + last]` is the
+/// departure time from `last` after all stations of the set.
+std::vector<std::size_t> exact_order(const Tour& tour) {
+  const std::size_t size = tour.size(), all = (std::size_t{1} << size) - 1;
+  std::vector<double> best((all + 1) * size, kNoOrder);
+  std::vector<std::uint8_t> before((all + 1) * size, 0);
+  std::vector<std::size_t> must_precede(size, 0);  // sets of stations
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t j = 0; j < size; ++j) {
+      const bool by_priority = !tour.is_fixed(i) && !tour.is_fixed(j) && tour.priority(j) < tour.priority(i);
+      if (i != j && (by_priority || tour.is_end(i) || tour.is_start(j))) must_precede[i] |= std::size_t{1} << j;
+    }
+    if (must_precede[i] == 0 && tour.lateness(i, 0.0) == 0.0) best[(std::size_t{1} << i) * size + i] = tour.leaves(i, 0.0);
+  }
+  for (std::size_t set = 1; set < all; ++set) {
+    for (std::size_t last = 0; last < size; ++last) {
+      const double left = best[set * size + last];
+      if (std::isinf(left)) continue;
+      for (std::size_t next = 0; next < size; ++next) {
+        if ((set >> next & 1u) != 0 || (must_precede[next] & ~set) != 0) continue;
+        const double reached = left + tour.travel(last, next);
+        if (std::isinf(reached) || tour.lateness(next, reached) > 0.0) continue;
+        const std::size_t there = (set | std::size_t{1} << next) * size + next;
+        if (tour.leaves(next, reached) < best[there]) best[there] = tour.leaves(next, reached), before[there] = static_cast<std::uint8_t>(last);
+      }
+    }
+  }
+  std::size_t last = size;
+  double soonest = kNoOrder;
+  for (std::size_t i = 0; i < size; ++i) {
+    // A closed tour begins at the only station that no station may precede.
+    double done = best[all * size + i];
+    for (std::size_t start = 0; start < size && size > 1; ++start) {
+      if (tour.is_round() && tour.is_start(start)) done += tour.travel(i, start);
+    }
+    if (done < soonest) soonest = done, last = i;
+  }
+  std::vector<std::size_t> order;
+  for (std::size_t set = all; last < size && set != 0;) {
+    order.push_back(last);
+    const std::size_t previous = before[set * size + last];
+    set &= ~(std::size_t{1} << last);
+    last = previous;
+  }
+  std::reverse(order.begin(), order.end());
+  return order;
+}
+
+/// Or-opt and 2-opt until neither improves: segments of one to three stations are moved, or any segment is reversed.
+class LocalSearch {
+ public:
+  LocalSearch(const Tour& tour, std::vector<std::size_t> order) : tour_(tour), order_(std::move(order)), score_(tour.score(order_)) {}
+
+  void run() {
+    while (improve()) {
+    }
+  }
+  const std::vector<std::size_t>& order() const { return order_; }
+  const Tour::Score& score() const { return score_; }
+
+ private:
+  bool improve() {
+    bool is_better = false;
+    const std::size_t first = tour_.is_start(order_.front()), end = order_.size() - tour_.is_end(order_.back());
+    for (std::size_t from = first; from < end; ++from) {
+      for (std::size_t to = from + 2; to <= end; ++to) {
+        is_better |= attempt([&](std::vector<std::size_t>& order) { std::reverse(at(order, from), at(order, to)); });
+      }
+      for (std::size_t length = 1; length <= 3 && from + length <= end; ++length) {
+        for (std::size_t to = first; to < from; ++to) {
+          is_better |= attempt([&](std::vector<std::size_t>& order) { std::rotate(at(order, to), at(order, from), at(order, from + length)); });
+        }
+        for (std::size_t to = from + length + 1; to <= end; ++to) {
+          is_better |= attempt([&](std::vector<std::size_t>& order) { std::rotate(at(order, from), at(order, from + length), at(order, to)); });
+        }
+      }
+    }
+    return is_better;
+  }
+
+  static std::vector<std::size_t>::iterator at(std::vector<std::size_t>& order, std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); }
+
+  template <typename Change>
+  bool attempt(Change change) {
+    candidate_ = order_;
+    change(candidate_);
+    const Tour::Score score = tour_.score(candidate_);
+    const auto& [impossible, inverted, late, completion] = score;
+    const auto& [impossible_now, inverted_now, late_now, completion_now] = score_;
+    // The improvement must exceed rounding, otherwise the search might cycle.
+    if (!(std::tuple(impossible, inverted, late + kRounding, 0.0) < std::tuple(impossible_now, inverted_now, late_now, 0.0)) &&
+        !(std::tuple(impossible, inverted) == std::tuple(impossible_now, inverted_now) && late <= late_now && completion < completion_now * (1.0 - kRounding))) {
+      return false;
+    }
+    order_.swap(candidate_);
+    score_ = score;
+    return true;
+  }
+
+  const Tour& tour_;
+  std::vector<std::size_t> order_, candidate_;
+  Tour::Score score_;
+};
+
+/// Random order within each priority; the fixed ends keep their positions.
+std::vector<std::size_t> random_order(const Tour& tour, RandomSequence random) {
+  std::vector<std::size_t> order(tour.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.index(i)]);
+  const auto rank = [&](std::size_t i) { return std::tuple(!tour.is_start(i), tour.is_end(i), tour.is_fixed(i) ? 0 : tour.priority(i)); };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+  return order;
+}
+
+/// Nearest-neighbor order from the first station of `order`, within the lowest remaining priority.
+std::vector<std::size_t> nearest_order(const Tour& tour, std::vector<std::size_t> order) {
+  const std::size_t end = order.size() - tour.is_end(order.back());
+  for (std::size_t k = 1; k < end; ++k) {
+    const auto rank = [&](std::size_t i) { return std::tuple(tour.priority(i), tour.travel(order[k - 1], i)); };
+    const auto left = order.begin() + static_cast<std::ptrdiff_t>(k);
+    std::iter_swap(left, std::min_element(left, order.begin() + static_cast<std::ptrdiff_t>(end), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); }));
+  }
+  return order;
+}
+
+std::vector<std::size_t> searched_order(const Tour& tour, int restarts, std::uint64_t seed) {
+  const RandomStream stream(seed, "plan/routes/tour");
+  std::optional<LocalSearch> best;
+  for (int restart = 0; restart < restarts; ++restart) {
+    const std::vector<std::size_t> drawn = random_order(tour, RandomSequence(stream, static_cast<std::uint64_t>(restart)));
+    LocalSearch search(tour, restart % 2 == 0 ? nearest_order(tour, drawn) : drawn);
+    search.run();
+    if (!best || search.score() < best->score()) best.emplace(search);
+  }
+  return best->order();
+}
+
+}  // namespace
+
+TourOrder order_tour(const TourProblem& problem, const TourOrderSettings& settings, std::uint64_t seed) {
+  validate(settings, "tour");
+  check(problem);
+  const Tour tour(problem);
+  TourOrder result;
+  if (tour.size() <= static_cast<std::size_t>(settings.exact_stations)) result.stations = exact_order(tour);
+  result.is_exact = !result.stations.empty();
+  if (!result.is_exact) result.stations = searched_order(tour, settings.restarts, seed);
+
+  const auto [impossible, inverted, late, completion] = tour.score(result.stations);
+  result.is_found = impossible == 0 && inverted == 0;
+  result.lateness = late;
+  result.completion = completion;
+  for (std::size_t k = 1; k < result.stations.size(); ++k) result.travel += tour.travel(result.stations[k - 1], result.stations[k]);
+  if (tour.is_round() && tour.size() > 1) result.travel += tour.travel(result.stations.back(), result.stations.front());
+  result.lower_bound = result.is_exact ? completion : tour_lower_bound(problem, completion, settings.bound_iterations);
+  return result;
+}
+
+}  // namespace patrol::plan

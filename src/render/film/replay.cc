@@ -1,0 +1,124 @@
+#include "render/film/replay.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/logs/run_log.h"
+#include "render/film/film.h"
+#include "render/film/find_highlights.h"
+#include "render/film/run_history.h"
+#include "render/frame_renderer.h"
+#include "render/snapshot_builder.h"
+#include "render/scene/scene_painter.h"
+
+namespace patrol::render {
+namespace {
+
+/// Log handlers that feed the follower and call `on_state` after each state.
+io::LogHandlers handlers_for(SnapshotBuilder& follower, std::function<void(Time)> on_state) {
+  const auto feed = [&follower](Time, const auto& message) { follower.add(message); };
+  io::LogHandlers handlers;
+  handlers.on<LaserScan>(feed);
+  handlers.on<OdometryEstimate>(feed);
+  handlers.on<PoseEstimate>(feed);
+  handlers.on<ParticleSet>(feed);
+  handlers.on<MapUpdate>(feed);
+  handlers.on<Path>(feed);
+  handlers.on<Event>(feed);
+  handlers.on<GasReading>(feed);
+  handlers.on<GroundTruth>(feed);
+  handlers.on<SimState>([&follower, on_state = std::move(on_state)](Time, const SimState& state) {
+    follower.add(state);
+    on_state(state.stamp);
+  });
+  return handlers;
+}
+
+/// Exception that interrupts the reading of a log when the progress callback returns false.
+struct Interrupted {};
+
+FreeDistance free_distance_in(const SnapshotBuilder& follower) {
+  return [&follower](const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m) {
+    return follower.free_distance_m(from_m, direction, max_m);
+  };
+}
+
+/// Camera rig that detects obstacles in the follower's world.
+CameraRig camera_on(const SnapshotBuilder& follower, CameraKind kind) {
+  const std::optional<Eigen::Vector3d> head_m = follower.head_m();
+  return head_m ? CameraRig(kind, free_distance_in(follower), *head_m) : CameraRig(kind, free_distance_in(follower));
+}
+
+FrameSettings frame_settings(const ReplaySettings& settings, const mjModel& view) {
+  return {.width = settings.width,
+          .height = settings.height,
+          .extinction_per_m = settings.dust.extinction_per_m(),
+          .gas = GasCloud(view, settings.leaks, settings.wind),
+          .renderer = settings.renderer};
+}
+
+void prepare(mjModel& view, const ReplaySettings& settings) {
+  set_replay_quality(view);
+  set_light(view, settings.light);
+}
+
+InputError no_states(const std::filesystem::path& log_mcap) {
+  return InputError(log_mcap.string() + ": the log has no states to replay (topic " + io::kTopic<SimState> +
+                    ")");
+}
+
+}  // namespace
+
+ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel model,
+                     const Pose2& T_world_map, const ReplaySettings& settings,
+                     const std::filesystem::path& out_mp4, const ReplayProgress& progress) {
+  if (!(settings.speed.fast > 0.0) || !(settings.speed.slow > 0.0) || !(settings.frames_per_second > 0.0)) {
+    throw InputError(fmt::format("speed = {}, slow = {}: must be greater than 0", settings.speed.fast, settings.speed.slow));
+  }
+  const mjModel& view = *model.view;
+  prepare(*model.view, settings);
+  const RunHistory history = read_run_history(log_mcap, view, T_world_map);
+  if (history.num_states == 0) throw no_states(log_mcap);
+  ShotPlan plan = plan_shots(history, find_highlights(history, T_world_map, settings.announced), settings.style, settings.speed);
+  const double length_s = std::max(plan.speed.length_s(), 1e-9);
+  ReplaySummary summary{.end = history.end, .num_chapters = static_cast<int>(plan.chapters.size())};
+
+  SnapshotBuilder follower(view, T_world_map);
+  if (settings.map) follower.add(MapUpdate{.stamp = {}, .map = *settings.map});
+  Director director(std::move(plan), camera_on(follower, settings.camera), free_distance_in(follower));
+  Film film(view, frame_settings(settings, view), settings.frames_per_second, std::move(director), out_mp4);
+  try {
+    summary.log_is_complete = io::read_run_log(log_mcap, handlers_for(follower, [&](Time) {
+                                                 film.add_snapshot(follower.snapshot());
+                                                 if (progress && !progress(std::min(1.0, film.length_s() / length_s))) throw Interrupted();
+                                               }));
+  } catch (const Interrupted&) {
+    summary.is_interrupted = true;
+    return summary;
+  }
+  film.finish();
+  summary.num_frames = film.num_frames();
+  return summary;
+}
+
+void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, const Pose2& T_world_map,
+           const ReplaySettings& settings, Time at, const std::filesystem::path& out_png) {
+  prepare(*model.view, settings);
+  SnapshotBuilder follower(*model.view, T_world_map);
+  if (settings.map) follower.add(MapUpdate{.stamp = {}, .map = *settings.map});
+  CameraRig rig = camera_on(follower, settings.camera);
+  std::optional<View> view;
+  const auto follow = [&](Time) {
+    view = rig.follow(follower.snapshot().T_world_body, 0.02 / settings.speed.fast);
+  };
+  io::read_run_log(log_mcap, handlers_for(follower, follow), Time::min(), at);
+  if (!view) throw no_states(log_mcap);
+  FrameRenderer painter(*model.view, frame_settings(settings, *model.view));
+  save_png(out_png, painter.paint(follower.snapshot(), *view).get());
+}
+
+}  // namespace patrol::render

@@ -1,0 +1,244 @@
+#include "sim/simulator/simulator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <mujoco/mujoco.h>
+
+#include "sim/locomotion/quadruped_drive.h"
+#include "sim/locomotion/track_drive.h"
+
+namespace patrol::sim {
+namespace {
+
+/// Contacts interrupted for less than this are one contact.
+constexpr Time kContactGap = std::chrono::milliseconds(500);
+
+bool begins_with_one_of(std::string_view name, std::initializer_list<std::string_view> prefixes) {
+  return std::any_of(prefixes.begin(), prefixes.end(), [&](std::string_view prefix) { return name.starts_with(prefix); });
+}
+
+std::string_view name_of(const mjModel& model, int geom) {
+  const char* name = mj_id2name(&model, mjOBJ_GEOM, geom);
+  return name == nullptr ? std::string_view() : name;
+}
+
+/// Returns the height of the highest point of a geom's bounding box in world, m.
+double top_m(const mjModel& model, const mjData& data, int geom) {
+  const mjtNum* box = model.geom_aabb + 6 * geom;  // center and half sizes, in the geom's frame
+  const mjtNum* up = data.geom_xmat + 9 * geom + 6;
+  double top = data.geom_xpos[3 * geom + 2];
+  for (int axis = 0; axis < 3; ++axis) top += up[axis] * box[axis] + std::abs(up[axis]) * box[3 + axis];
+  return top;
+}
+
+/// Returns whether a contact is normal walking or driving instead of a collision. `lowest_m`: height of the robot's
+/// lowest contact at this instant.
+///
+/// Worlds name the ground ("ground", "pavement", "carriageway", "dropped_kerb"); contacts with it are never collisions.
+/// Contacts with curb stones ("kerb") from above (normal within 45 degrees of the vertical) are not collisions either.
+/// Contacts with the side of a stone are accepted if it rises at most 15 cm above the robot's lowest contact, as street
+/// curbs do.
+bool is_footing(const mjModel& model, const mjData& data, const mjContact& contact, int geom, double lowest_m) {
+  constexpr double kMaxCurb_m = 0.15;
+  const std::string_view name = name_of(model, geom);
+  if (begins_with_one_of(name, {"ground", "pavement", "carriageway", "dropped_kerb"})) return true;
+  if (!name.starts_with("kerb")) return false;
+  const bool is_from_above = std::abs(contact.frame[2]) >= std::sqrt(0.5);  // frame: normal first
+  return is_from_above || top_m(model, data, geom) - lowest_m <= kMaxCurb_m;
+}
+
+std::string geom_name(const mjModel& model, int geom) {
+  if (const std::string_view name = name_of(model, geom); !name.empty()) return std::string(name);
+  const char* body = mj_id2name(&model, mjOBJ_BODY, model.geom_bodyid[geom]);
+  return fmt::format("geom {} of {}", geom, body == nullptr ? "?" : body);
+}
+
+std::unique_ptr<Locomotion> make_locomotion(const SimulatorSettings& settings, const RobotDescription& robot, mjModel& physics) {
+  if (!robot.tracks) return std::make_unique<QuadrupedDrive>(robot, settings.locomotion);
+  return std::make_unique<TrackDrive>(robot, settings.track_drive, settings.sensors.hall.ticks_per_rad(), physics);
+}
+
+AssembledModel assemble(const SimulatorSettings& settings) {
+  AssembledModel model = assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start, settings.props);
+  deform_lining(settings.lining_deformations, settings.lining, *model.view);
+  return model;
+}
+
+}  // namespace
+
+Simulator::Simulator(const SimulatorSettings& settings, const RobotDescription& robot, std::uint64_t seed,
+           const DepthImagerFactory& make_depth_imager)
+    : model_(assemble(settings)),
+      data_(make_data(*model_.physics)),
+      culler_(*model_.physics),
+      robot_body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)),
+      robot_radius_m_(robot.outline_radius_m()),
+      settings_(settings),
+      locomotion_(make_locomotion(settings, robot, *model_.physics)),
+      actors_(*model_.physics, settings.actors),
+      sensors_(settings.sensors, robot, *model_.physics, *model_.view,
+               GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed, make_depth_imager, settings.subsurface),
+      recorded_(settings.recorded),
+      tick_(from_seconds(model_.physics->opt.timestep)) {
+  if (!settings.drive.empty()) operator_.emplace(settings.driver, settings.drive, seed);
+  if (robot.antenna) antenna_.emplace(settings.sensors.antenna, *robot.antenna, *model_.physics, seed);
+  if (robot_body_ < 0) throw InputError(fmt::format("{}: no link named {}", settings.robot_urdf, frame_id::kBody));
+  std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
+  actors_.advance(now_, {.p_world = settings.T_world_start.position(), .radius_m = robot_radius_m_}, *data_);
+  mj_forward(model_.physics.get(), data_.get());
+  sensors_.step(*model_.physics, *data_, now_);
+}
+
+// Between steps, kinematics, forces and readings are those of `now_`; a step integrates the state and evaluates the
+// next one. The firmware's torques use readings that are one tick old, as on a real robot.
+void Simulator::step() {
+  const mjModel* model = model_.physics.get();
+  {
+    const auto timer = clock_.time_stage("locomotion");
+    const NewestReadings& newest = sensors_.newest();
+    locomotion_->step({.imu = newest.imu, .joints = newest.joints, .feet = newest.feet, .ticks = newest.ticks}, command_,
+                      *model_.physics, *data_);
+    if (antenna_) antenna_->step(*model_.physics, *data_);
+  }
+  {
+    const auto timer = clock_.time_stage("actors");
+    const GroundTruth robot = truth();
+    actors_.advance(now_ + tick_,
+                    {.p_world = robot.T_world_body.position.head<2>(),
+                     .v_world_mps = (robot.T_world_body.rotation * robot.twist.linear).head<2>(),
+                     .radius_m = robot_radius_m_},
+                    *data_);
+  }
+  {
+    const auto timer = clock_.time_stage("physics");
+    suppress_slip();
+    mj_Euler(model, data_.get());
+    now_ += tick_;
+    culler_.update(*data_);
+    mj_forward(model, data_.get());
+    throw_if_diverged();
+    record_collisions();
+  }
+  receive_teleop();
+  const auto timer = clock_.time_stage("sensors");
+  sensors_.step(*model, *data_, now_);
+  if (antenna_) {
+    if (const auto state = antenna_->read(*data_, now_)) sensors_.add(*state);
+  }
+}
+
+void Simulator::command(const InstrumentCommand& command) {
+  const auto* antenna = std::get_if<AntennaCommand>(&command);
+  if (antenna != nullptr && antenna_) antenna_->command(*antenna);
+  sensors_.command(command);
+}
+
+// MuJoCo's friction is soft: a standing robot creeps by micrometers and millidegrees per second, up to 0.07 degrees
+// during a scan in the tunnel. A parked robot does not creep. So the solver removes the residual slip while an
+// instrument needs the robot to stand still.
+void Simulator::suppress_slip() {
+  constexpr int kNoSlipIterations = 3;
+  const bool is_asked_to_stand = command_.vx_mps == 0.0 && command_.vy_mps == 0.0 && command_.yaw_rate_radps == 0.0;
+  model_.physics->opt.noslip_iterations = sensors_.is_busy() && is_asked_to_stand ? kNoSlipIterations : 0;
+}
+
+void Simulator::receive_teleop() {
+  if (operator_) {
+    if (const auto command = operator_->step(now_, to_pose2(truth().T_world_body), actors_.positions(), is_busy())) {
+      sensors_.add(*command);
+    }
+  }
+  while (num_replayed_ < recorded_.size() && recorded_[num_replayed_].stamp <= now_) {
+    sensors_.add(recorded_[num_replayed_++]);
+  }
+}
+
+void Simulator::teleport(const Pose2& T_world_body) {
+  mjModel& model = *model_.physics;
+  constexpr double kEyeAboveBase_m = 1.0;
+  const double max_ground_height_m = truth().T_world_body.position.z() + kEyeAboveBase_m;
+  const double ground_m = ground_height_m(model, *data_, model_.stance, T_world_body, max_ground_height_m);
+  const Pose3 pose = to_pose3(T_world_body, ground_m + model_.stance.height_m);
+
+  const int root = model.jnt_qposadr[model.body_jntadr[robot_body_]];
+  set_start_posture(model, data_->qpos);
+  std::copy_n(pose.position.data(), 3, data_->qpos + root);
+  const double quaternion[4] = {pose.rotation.w(), pose.rotation.x(), pose.rotation.y(), pose.rotation.z()};
+  std::copy_n(quaternion, 4, data_->qpos + root + 3);
+  for (mjtNum* rates : {data_->qvel, data_->qacc_warmstart, data_->qfrc_applied}) std::fill_n(rates, model.nv, 0.0);
+  std::fill_n(data_->ctrl, model.nu, 0.0);
+
+  locomotion_->restart();
+  mj_kinematics(&model, data_.get());
+  culler_.update(*data_);
+  mj_forward(&model, data_.get());
+}
+
+void Simulator::record_collisions() {
+  const mjModel& model = *model_.physics;
+  const auto is_robot = [&](int geom) { return model.body_rootid[model.geom_bodyid[geom]] == robot_body_; };
+  double lowest_m = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < data_->ncon; ++i) {
+    const mjContact& contact = data_->contact[i];
+    if (is_robot(contact.geom[0]) != is_robot(contact.geom[1])) lowest_m = std::min(lowest_m, contact.pos[2]);
+  }
+  for (int i = 0; i < data_->ncon; ++i) {
+    const mjContact& contact = data_->contact[i];
+    int robot_geom = contact.geom[0], other = contact.geom[1];
+    if (!is_robot(robot_geom)) std::swap(robot_geom, other);
+    if (!is_robot(robot_geom) || is_robot(other)) continue;
+    if (is_footing(model, *data_, contact, other, lowest_m)) continue;
+
+    const Collision collision{.stamp = now_, .first = geom_name(model, robot_geom), .second = geom_name(model, other)};
+    const std::string& thing = collision.second;
+    const auto known = std::find_if(contacts_.begin(), contacts_.end(),
+                                    [&](const auto& touch) { return touch.first == thing; });
+    if (known == contacts_.end()) {
+      contacts_.emplace_back(thing, now_);
+      collisions_.push_back(collision);
+    } else {
+      if (now_ - known->second > kContactGap) collisions_.push_back(collision);
+      known->second = now_;
+    }
+  }
+}
+
+void Simulator::throw_if_diverged() const {
+  for (int i = 0; i < model_.physics->nq; ++i) {
+    if (!std::isfinite(data_->qpos[i])) {
+      throw std::runtime_error(fmt::format("the physics diverged at {:.3f} s", to_seconds(now_)));
+    }
+  }
+}
+
+std::vector<SensorMessage> Simulator::take_messages() { return sensors_.take_due(now_); }
+
+GroundTruth Simulator::truth() const {
+  const mjtNum* position = data_->xpos + 3 * robot_body_;
+  const mjtNum* rotation = data_->xquat + 4 * robot_body_;
+  mjtNum velocity[6];  // angular, then linear part, in the body's frame
+  mj_objectVelocity(model_.physics.get(), data_.get(), mjOBJ_XBODY, robot_body_, velocity, 1);
+  return {.stamp = now_,
+          .T_world_body = {Eigen::Vector3d(position), Eigen::Quaterniond(rotation[0], rotation[1], rotation[2], rotation[3])},
+          .twist = {.linear = Eigen::Vector3d(velocity + 3), .angular = Eigen::Vector3d(velocity)}};
+}
+
+SimState Simulator::state() const {
+  SimState state{.stamp = now_, .qpos = {data_->qpos, data_->qpos + model_.physics->nq}, .mocap = {}};
+  for (int body = 0; body < model_.physics->nmocap; ++body) {
+    state.mocap.insert(state.mocap.end(), data_->mocap_pos + 3 * body, data_->mocap_pos + 3 * body + 3);
+    state.mocap.insert(state.mocap.end(), data_->mocap_quat + 4 * body, data_->mocap_quat + 4 * body + 4);
+  }
+  return state;
+}
+
+std::vector<Collision> Simulator::take_collisions() { return std::exchange(collisions_, {}); }
+
+}  // namespace patrol::sim

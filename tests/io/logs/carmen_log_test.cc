@@ -1,0 +1,353 @@
+#include "io/logs/carmen_log.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/geometry/angles.h"
+#include "core/error.h"
+#include "tests/support/gzip_file.h"
+#include "tests/support/pose_near.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::io::carmen_log_test {
+namespace {
+
+using namespace std::chrono_literals;
+using test::gzipped, test::Pose2Near, test::TemporaryFile, test::TemporaryFolder;
+using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testing::Pair, ::testing::StartsWith, ::testing::UnorderedElementsAre;
+
+constexpr double kExactTol = 1e-12;
+constexpr double kRoundedPi = 3.141593;  // as logs write it
+const ScanLogOptions kSkip{.skip_bad_lines = true, .carmen_laser = {}, .scan_topic = {}, .odometry_topic = {}};
+
+std::string repeated(const std::string& word, int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += " " + word;
+  return text;
+}
+
+/// "FLASER 4 1 2 3 4 <laser> <robot> <t> host 0"
+std::string flaser(const std::string& stamp, const std::string& laser = "1 2 0.5", const std::string& robot = "1 2 0.5",
+                   const std::string& ranges = "4 1 2 3 4") {
+  return "FLASER " + ranges + " " + laser + " " + robot + " " + stamp + " host 0.5\n";
+}
+
+std::string robotlaser(const std::string& geometry, int num_beams, const std::string& poses = "1 2 0.5 1 2 0.5", const std::string& remissions = "0") {
+  return fmt::format("ROBOTLASER1 {} {}{} {} {} 0.1 0.2 0.3 0.4 0.5 10.25 host 3\n", geometry, num_beams, repeated("1.5", num_beams), remissions, poses);
+}
+
+struct Read {
+  std::vector<RecordedScan> scans;
+  ScanLogSummary summary;
+};
+
+Read read(const std::string& text, const ScanLogOptions& options = {}) {
+  const TemporaryFile file("a.log", text);
+  const std::unique_ptr<ScanLog> log = open_scan_log(file.path(), options);
+  Read result;
+  while (std::optional<RecordedScan> scan = log->next()) result.scans.push_back(std::move(*scan));
+  EXPECT_EQ(log->progress(), 1.0);
+  result.summary = log->summary();
+  EXPECT_EQ(result.summary.num_scans, result.scans.size());
+  return result;
+}
+
+RecordedScan read_one(const std::string& text, const ScanLogOptions& options = {}) {
+  const Read result = read(text, options);
+  EXPECT_EQ(result.scans.size(), 1U);
+  return result.scans.empty() ? RecordedScan{} : result.scans.front();
+}
+
+std::string complaint_about(const std::string& text, const ScanLogOptions& options = {}) {
+  const TemporaryFile file("a.log", text);
+  try {
+    CarmenLog log(file.path(), options);
+    while (log.next()) {}
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    return what.substr(what.find("a.log"));
+  }
+  return "";
+}
+
+TEST(CarmenLog, ReadsFlaserWithItsStampRangesAndOdometry) {
+  const RecordedScan scan = read_one("# a comment\n" + flaser("976052857.222433", "1 2 0.5", "1 2 0.5"));
+  EXPECT_EQ(scan.scan.stamp, Time(976'052'857'222'433'000)) << "the ipc_timestamp, not the logger's";
+  EXPECT_THAT(scan.scan.ranges_m, ElementsAre(1.0F, 2.0F, 3.0F, 4.0F));
+  EXPECT_THAT(scan.T_odom_body, Pose2Near(Pose2{1.0, 2.0, 0.5}, kExactTol, kExactTol));
+  EXPECT_THAT(scan.T_body_lidar, Pose2Near(Pose2{}, 0.0, 0.0));
+  EXPECT_EQ(scan.scan.range_max_m, 80.0);
+}
+
+TEST(CarmenLog, ReadsGzipAsThePlainFile) {
+  const std::string text = flaser("1") + flaser("2") + flaser("3");
+  const Read packed = read(gzipped(text));
+  ASSERT_EQ(packed.scans.size(), 3U);
+  EXPECT_EQ(packed.scans[2].scan.stamp, 3s);
+}
+
+TEST(CarmenLog, AnEvenNumberOfOldBeamsStartsAtMinusNinetyAndEndsAStepBeforeNinety) {
+  for (const int n : {180, 360}) {
+    const LaserScan scan = read_one(flaser("1", "0 0 0", "0 0 0", std::to_string(n) + repeated("1", n))).scan;
+    EXPECT_NEAR(scan.angle_min_rad, -90.0 * kDegree, kExactTol);
+    EXPECT_NEAR(scan.angle_increment_rad, 180.0 / n * kDegree, kExactTol);
+  }
+}
+
+TEST(CarmenLog, AnOddNumberOfOldBeamsEndsAtNinety) {
+  for (const int n : {181, 361}) {
+    const LaserScan scan = read_one(flaser("1", "0 0 0", "0 0 0", std::to_string(n) + repeated("1", n))).scan;
+    EXPECT_NEAR(scan.angle_min_rad, -90.0 * kDegree, kExactTol);
+    EXPECT_NEAR(scan.angle_min_rad + (n - 1) * scan.angle_increment_rad, 90.0 * kDegree, kExactTol);
+  }
+}
+
+TEST(CarmenLog, TheResolutionParameterNarrowsTheFieldOfView) {
+  // A SICK LMS at 0.25 deg has 401 beams over 100 deg.
+  const LaserScan scan = read_one("PARAM laser_front_laser_resolution 0.25 0 host 0\n" + flaser("1", "0 0 0", "0 0 0", "401" + repeated("1", 401))).scan;
+  EXPECT_NEAR(scan.angle_increment_rad, 0.25 * kDegree, kExactTol);
+  EXPECT_NEAR(scan.angle_min_rad, -50.0 * kDegree, kExactTol);
+}
+
+TEST(CarmenLog, AnImpossibleResolutionParameterIsNotFollowed) {
+  for (const char* const resolution : {"0", "-1", "4"}) {  // 180 beams at 4 deg: two turns
+    const LaserScan scan =
+        read_one(fmt::format("PARAM laser_front_laser_resolution {}\n", resolution) + flaser("1", "0 0 0", "0 0 0", "180" + repeated("1", 180))).scan;
+    EXPECT_NEAR(scan.angle_increment_rad, kDegree, kExactTol) << resolution;
+  }
+}
+
+TEST(CarmenLog, AnOldMessageOf1081BeamsIsAHokuyosOver270Degrees) {
+  const LaserScan scan = read_one(flaser("1", "0 0 0", "0 0 0", "1081" + repeated("1", 1081))).scan;
+  EXPECT_NEAR(scan.angle_min_rad, -135.0 * kDegree, kExactTol);
+  EXPECT_NEAR(scan.angle_increment_rad, 0.25 * kDegree, kExactTol);
+}
+
+TEST(CarmenLog, ReadsRobotlaserWithItsOwnAngles) {
+  const RecordedScan scan = read_one(robotlaser("0 -1.570796 3.141593 0.017453 81.92 0.01 0", 181));
+  EXPECT_EQ(scan.scan.stamp, 10s + 250ms);
+  EXPECT_EQ(scan.scan.ranges_m.size(), 181U);
+  EXPECT_NEAR(scan.scan.angle_min_rad, -1.570796, kExactTol);
+  EXPECT_NEAR(scan.scan.angle_increment_rad, kRoundedPi / 180.0, kExactTol) << "exact where the field of view says more than six digits";
+  EXPECT_TRUE(scan.scan.intensities.empty());
+}
+
+TEST(CarmenLog, RobotlasersFieldOfViewMayCountBeamsOrGapsOrNeither) {
+  EXPECT_NEAR(read_one(robotlaser("0 -1.570796 3.141593 0.017453 80 0 0", 180)).scan.angle_increment_rad, kRoundedPi / 180.0, kExactTol);
+  EXPECT_NEAR(read_one(robotlaser("0 -1 2 0.01 80 0 0", 10)).scan.angle_increment_rad, 0.01, kExactTol);
+  EXPECT_NEAR(read_one(robotlaser("0 -1 2 0 80 0 0", 11)).scan.angle_increment_rad, 0.2, kExactTol);
+}
+
+TEST(CarmenLog, RobotlasersRemissionsAreIntensities) {
+  EXPECT_THAT(read_one(robotlaser("0 -1 2 1 80 0 0", 3, "0 0 0 0 0 0", "3 7 8 9.5")).scan.intensities, ElementsAre(7.0F, 8.0F, 9.5F));
+  EXPECT_TRUE(read_one(robotlaser("0 -1 2 1 80 0 0", 3, "0 0 0 0 0 0", "2 7 8")).scan.intensities.empty()) << "not one a beam";
+}
+
+TEST(CarmenLog, RangesFromTheSensorsMaximumOnAreNoReturns) {
+  const auto old = read_one(flaser("1", "0 0 0", "0 0 0", "8 79.99 80 81.83 1e30 inf 0 -1 nan")).scan.ranges_m;
+  const float inf = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(old[0], 79.99F);
+  for (const std::size_t beam : {1U, 2U, 3U, 4U}) EXPECT_EQ(old[beam], inf);
+  for (const std::size_t beam : {5U, 6U, 7U}) EXPECT_TRUE(std::isnan(old[beam]));
+  const LaserScan short_range = read_one("ROBOTLASER1 0 -1 2 1 8.1 0 0 3 8.09 8.1 50 0 0 0 0 0 0 0 0 0 0 0 0 1 host 1\n").scan;
+  EXPECT_THAT(short_range.ranges_m, ElementsAre(8.09F, inf, inf));
+  EXPECT_EQ(short_range.range_max_m, 8.1);
+  EXPECT_EQ(read_one("ROBOTLASER1 0 -1 2 1 0 0 0 3 8.09 8.1 50 0 0 0 0 0 0 0 0 0 0 0 0 1 host 1\n").scan.range_max_m, 80.0) << "a maximum of 0 says nothing";
+}
+
+TEST(CarmenLog, TheLidarsPlaceIsItsPoseSeenFromTheRobots) {
+  // The robot at (1, 2) looks along y; the lidar 0.3 m before it.
+  const RecordedScan scan = read_one(flaser("1", "1 2.3 1.570796", "1 2 1.570796"));
+  EXPECT_THAT(scan.T_odom_body, Pose2Near(Pose2{1.0, 2.0, 1.570796}, kExactTol, kExactTol)) << "the second pose is the robot's";
+  EXPECT_THAT(scan.T_body_lidar, Pose2Near(Pose2{0.3, 0.0, 0.0}, 1e-6, kExactTol));
+}
+
+TEST(CarmenLog, WhereBothPosesAreEqualTheParameterSaysTheLidarsPlace) {
+  const std::string parameters =
+      "PARAM robot_frontlaser_offset 0.08 0 host 0\nPARAM robot_frontlaser_side_offset -0.02\nPARAM robot_frontlaser_angular_offset 0.01\n";
+  EXPECT_THAT(read_one(parameters + flaser("1")).T_body_lidar, Pose2Near(Pose2{0.08, -0.02, 0.01}, kExactTol, kExactTol));
+}
+
+TEST(CarmenLog, ACorrectedFirstPoseIsNotFollowed) {
+  // The second pose is the odometry; the first was corrected afterwards and wanders off.
+  const Read result = read(flaser("1", "0 0 0", "0 0 0") + flaser("2", "1 0 0", "1.5 0 0.1") + flaser("3", "2 1 0", "3 0 0.2"));
+  for (const RecordedScan& scan : result.scans) EXPECT_THAT(scan.T_body_lidar, Pose2Near(Pose2{}, 0.0, 0.0));
+  EXPECT_THAT(result.scans[2].T_odom_body, Pose2Near(Pose2{3.0, 0.0, 0.2}, kExactTol, kExactTol));
+  EXPECT_THAT(result.summary.assumed, ElementsAre(Pair("scans: the lidar is where the first scan has it", 2U)));
+  EXPECT_THAT(read_one(flaser("1", "50 0 0", "0 0 0")).T_body_lidar, Pose2Near(Pose2{}, 0.0, 0.0)) << "no lidar sits 50 m before its robot";
+}
+
+TEST(CarmenLog, TheRearLidarLooksBackAndItsOffsetCountsBackwards) {
+  std::string line = flaser("1");
+  line.front() = 'R';
+  EXPECT_THAT(read_one("PARAM robot_rearlaser_offset 0.2 0 host 0\n" + line).T_body_lidar, Pose2Near(Pose2{-0.2, 0.0, std::numbers::pi}, kExactTol, kExactTol));
+}
+
+TEST(CarmenLog, RawlaserTakesTheNewestOdomBeforeIt) {
+  const std::string raw = "RAWLASER1 0 -1 2 1 80 0 0 3 1 2 3 0 {} host 1\n";
+  const std::string text = fmt::format(fmt::runtime(raw), 1) + "ODOM 1 2 0.5 0 0 0 1.5 host 1\n" + fmt::format(fmt::runtime(raw), 2) +
+                           "ODOM 3 4 0.6 0 0 0 2.5 host 1\n" + fmt::format(fmt::runtime(raw), 3);
+  const Read result = read(text);
+  ASSERT_EQ(result.scans.size(), 2U);
+  EXPECT_THAT(result.scans[0].T_odom_body, Pose2Near(Pose2{1.0, 2.0, 0.5}, kExactTol, kExactTol));
+  EXPECT_THAT(result.scans[1].T_odom_body, Pose2Near(Pose2{3.0, 4.0, 0.6}, kExactTol, kExactTol));
+  EXPECT_THAT(result.summary.skipped, ElementsAre(Pair("scans before the first ODOM", 1U)));
+}
+
+TEST(CarmenLog, OfSeveralLidarsTheOneThatSaysMostIsTakenOrTheOneAskedFor) {
+  std::string rear = flaser("3");
+  rear.front() = 'R';
+  const std::string text = "ODOM 9 9 0 0 0 0 0 host 0\nRAWLASER1 0 -1 2 1 80 0 0 3 1 2 3 0 5 host 1\n" + rear + flaser("1") + robotlaser("0 -1 2 1 80 0 0", 3);
+  EXPECT_EQ(read_one(text).scan.stamp, 10s + 250ms);
+  ScanLogOptions options;
+  options.carmen_laser = "RLASER";
+  const Read result = read(text, options);
+  EXPECT_EQ(result.scans.front().scan.stamp, 3s);
+  EXPECT_THAT(result.summary.ignored, UnorderedElementsAre(Pair("ODOM", 1U), Pair("RAWLASER1", 1U), Pair("FLASER", 1U), Pair("ROBOTLASER1", 1U)));
+}
+
+TEST(CarmenLog, OtherMessagesAreIgnoredAndCounted) {
+  const Read result = read("SYNC start 1 host 1\n" + flaser("1") + "TRUEPOS 0 0 0 0 0 0 1 host 1\n\n# c\nSYNC end 2 host 2\nWIFI-SCAN what ever\n\r\n");
+  EXPECT_THAT(result.summary.ignored, ElementsAre(Pair("SYNC", 2U), Pair("TRUEPOS", 1U), Pair("WIFI-SCAN", 1U)));
+  EXPECT_TRUE(result.summary.skipped.empty());
+  EXPECT_EQ(result.summary.num_read, 8U);
+  EXPECT_EQ(to_text(result.summary), "1 scans\nignored: 2 SYNC, 1 TRUEPOS, 1 WIFI-SCAN\n");
+}
+
+TEST(CarmenLog, LinesOutOfOrderArePutInOrderAndEqualStampsKept) {
+  const Read result = read(flaser("3") + flaser("1") + flaser("2", "5 5 0", "5 5 0") + flaser("2", "6 6 0", "6 6 0"));
+  std::vector<Time> stamps;
+  std::vector<double> x;
+  for (const RecordedScan& scan : result.scans) {
+    stamps.push_back(scan.scan.stamp);
+    x.push_back(scan.T_odom_body.x);
+  }
+  EXPECT_THAT(stamps, ElementsAre(1s, 2s, 2s, 3s));
+  EXPECT_THAT(x, ElementsAre(1, 5, 6, 1));
+  EXPECT_EQ(result.summary.num_reordered, 3U);
+  EXPECT_EQ(result.summary.num_same_stamp, 1U);
+}
+
+TEST(CarmenLog, AScanTooLateToPutInOrderIsRefusedOrSkipped) {
+  std::string text;
+  for (int i = 0; i < 40; ++i) text += flaser(std::to_string(100 + i));
+  text += flaser("1");
+  EXPECT_EQ(complaint_about(text), "a.log:41: FLASER: time goes back to 1.000000 s, but 107.000000 s was 32 scans ago: too late to put them in order");
+  const Read result = read(text, kSkip);
+  EXPECT_EQ(result.scans.size(), 40U);
+  EXPECT_THAT(result.summary.skipped, ElementsAre(Pair("scans whose time goes back", 1U)));
+}
+
+TEST(CarmenLog, WhatCannotBeReadIsNamedWithItsLine) {
+  const std::string good = flaser("1");
+  const auto complaint = [&](const std::string& bad) { return complaint_about(good + bad); };
+  const std::string miscounted = ": cut off, or wrongly counted";
+  EXPECT_EQ(complaint("FLASER 4 1 2 3\n"), "a.log:2: FLASER: holds 3 words after its number of readings, must be 13" + miscounted);
+  EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 2 0", "5 1 2 3 4")), "a.log:2: FLASER: holds 13 words after its number of readings, must be 14" + miscounted);
+  EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 2 0", "3 1 2 3 4")), "a.log:2: FLASER: holds 13 words after its number of readings, must be 12" + miscounted);
+  EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 2 0", "4 1 2 x 4")), "a.log:2: FLASER: range 'x' is not a number");
+  EXPECT_EQ(complaint(flaser("2", "1 2 nan", "1 2 0")), "a.log:2: FLASER: the laser's pose 'nan' is not a finite number");
+  EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 inf 0")), "a.log:2: FLASER: the robot's pose 'inf' is not a finite number");
+  EXPECT_EQ(complaint(flaser("nan")), "a.log:2: FLASER: ipc_timestamp 'nan' is not a time in seconds");
+  EXPECT_EQ(complaint("FLASER\n"), "a.log:2: FLASER: ends before num_readings");
+  EXPECT_EQ(complaint("FLASER 0 1 2 0 1 2 0 1 h 1\n"), "a.log:2: FLASER: num_readings '0' must be a whole number in 1 ... 10000");
+  EXPECT_EQ(complaint("FLASER 10001" + repeated("1", 10010) + "\n"), "a.log:2: FLASER: num_readings '10001' must be a whole number in 1 ... 10000");
+  EXPECT_EQ(complaint("FLASER -3 1\n"), "a.log:2: FLASER: num_readings '-3' must be a whole number in 1 ... 10000");
+  EXPECT_EQ(complaint("ODOM 1 2 nan 0 0 0 1 h 1\n"), "a.log:2: ODOM: the robot's pose 'nan' is not a finite number");
+  EXPECT_EQ(complaint("ODOM 1 2\n"), "a.log:2: ODOM: holds 2 words after its name, must be 9: cut off, or wrongly counted");
+  EXPECT_EQ(complaint("PARAM robot_frontlaser_offset far\n"), "a.log:2: PARAM: robot_frontlaser_offset 'far' is not a finite number");
+  EXPECT_EQ(complaint("PARAM\n"), "a.log:2: PARAM: ends before the parameter's name");
+  EXPECT_EQ(complaint(std::string("\x01\x00\xff garbage\n", 11)), "a.log:2: does not begin with a message's name, as FLASER or ODOM");
+  EXPECT_EQ(complaint("1.07 1.08 1.09\n"), "a.log:2: does not begin with a message's name, as FLASER or ODOM");
+  EXPECT_EQ(complaint("FLASER " + std::string(2'000'000, '1') + "\n"), "a.log:2: the line is longer than 1048576 bytes");
+}
+
+TEST(CarmenLog, WhatCannotBeReadOfTheNewMessagesIsNamedToo) {
+  const std::string laser = "ROBOTLASER1 0 -1 2 1 80 0 0 ", miscounted = ": cut off, or wrongly counted";
+  EXPECT_EQ(complaint_about(laser + "3 1 2 3 0 0 0 0 0 0 0 0 0 0 0 0 1 host\n"),
+            "a.log:1: ROBOTLASER1: holds 13 words after its remissions, must be 14" + miscounted);
+  EXPECT_EQ(complaint_about(laser + "300 1 2 3 0\n"), "a.log:1: ROBOTLASER1: holds 4 words after its 300 ranges: cut off, or wrongly counted");
+  EXPECT_EQ(complaint_about(laser + "3 1 2 3 9 1\n"), "a.log:1: ROBOTLASER1: holds 1 words after its 9 remissions: cut off, or wrongly counted");
+  EXPECT_EQ(complaint_about("ROBOTLASER1 0 -180 180 1 80 0 0 1 1 0\n"), "a.log:1: ROBOTLASER1: start_angle of -180 rad is more than a turn");
+  EXPECT_EQ(complaint_about("ROBOTLASER1 0 -1 nan 1 80 0 0 1 1 0\n"), "a.log:1: ROBOTLASER1: field_of_view 'nan' is not a finite number");
+  EXPECT_EQ(complaint_about("RAWLASER1 0 -1 2 1 80 0 0 1 1 0 1 h\n"), "a.log:1: RAWLASER1: holds 2 words after its remissions, must be 3" + miscounted);
+}
+
+TEST(CarmenLog, WithSkippingWhatCanBeReadIsUsedAndTheRestCounted) {
+  const std::string zeros(3'000'000, '\0');
+  const std::string text = flaser("1") + "FLASER 4 1 2\n" + flaser("2", "1 2 nan", "1 2 0") + zeros + "\n" + flaser("3") + "FLASER 4 1 2 3 4 1";
+  const Read result = read(text, kSkip);
+  ASSERT_EQ(result.scans.size(), 2U);
+  EXPECT_EQ(result.scans[1].scan.stamp, 3s);
+  EXPECT_THAT(result.summary.skipped, ElementsAre(Pair("lines that cannot be read", 4U)));
+  ASSERT_EQ(result.summary.warnings.size(), 4U);
+  EXPECT_THAT(result.summary.warnings[2], EndsWith("a.log:4: the line is longer than 1048576 bytes"));
+  EXPECT_THAT(to_text(result.summary), StartsWith("2 scans\nskipped: 4 lines that cannot be read\n  "));
+}
+
+TEST(CarmenLog, ACutOffGzipIsRefusedOrReadUpToTheCut) {
+  std::string text;
+  for (int i = 0; i < 2000; ++i) text += flaser(std::to_string(i), fmt::format("{} 2 0", i * 7919 % 10007), "1 2 0");
+  const std::string bytes = gzipped(text);
+  const std::string cut = bytes.substr(0, bytes.size() / 2);
+  EXPECT_THAT(complaint_about(cut, kSkip), "");
+  EXPECT_THAT(complaint_about(cut), ::testing::MatchesRegex("a.log:[0-9]+: FLASER.*"));
+  const Read result = read(cut, kSkip);
+  EXPECT_GT(result.scans.size(), 500U);
+  EXPECT_EQ(result.summary.skipped.at("file ends too early"), 1U);
+}
+
+TEST(CarmenLog, AFileWithoutScansSaysWhatItHolds) {
+  EXPECT_EQ(complaint_about(""), "a.log: holds no scan (0 read): FLASER or ROBOTLASER1 are read");
+  EXPECT_EQ(complaint_about("SYNC a 1 h 1\nODOM 1 2 0 0 0 0 1 h 1\n"), "a.log: holds no scan (2 read, 1 ODOM, 1 SYNC): FLASER or ROBOTLASER1 are read");
+  EXPECT_EQ(complaint_about("FLASER 4 1\n", kSkip), "a.log: holds no scan (1 read, 1 lines that cannot be read): FLASER or ROBOTLASER1 are read");
+}
+
+TEST(CarmenLog, TenGigabytesOfZeroBytesAreRefusedAtOnce) {
+  const TemporaryFolder folder;
+  test::write_bytes(folder / "a.log", "");
+  std::filesystem::resize_file(folder / "a.log", 10'000'000'000);  // sparse
+  try {
+    open_scan_log(folder / "a.log")->next();
+    FAIL() << "must throw";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), EndsWith("a.log:1: the line is longer than 1048576 bytes"));
+  }
+}
+
+TEST(CarmenLog, TenGigabytesOfZeroBytesAfterALogAreGivenUpAfterSixtyFourMegabytes) {
+  const TemporaryFolder folder;
+  test::write_bytes(folder / "a.log", flaser("1") + flaser("2"));
+  std::filesystem::resize_file(folder / "a.log", 10'000'000'000);  // sparse
+  const std::unique_ptr<ScanLog> log = open_scan_log(folder / "a.log", kSkip);
+  while (log->next()) {}
+  EXPECT_EQ(log->summary().num_scans, 2U);
+  EXPECT_THAT(log->summary().skipped, ElementsAre(Pair("file ends too early", 1U), Pair("lines that cannot be read", 1U)));
+}
+
+TEST(CarmenLog, NoMoreThanFiftyNamesAreToldApart) {
+  std::string text = flaser("1");
+  for (int i = 0; i < 100; ++i) text += fmt::format("NAME{} 1\n", i);
+  const Read result = read(text);
+  EXPECT_EQ(result.summary.ignored.size(), 51U);
+  EXPECT_EQ(result.summary.ignored.at("others"), 50U);
+}
+
+TEST(ScanLogOptions, AnUnknownLaserIsRefused) {
+  ScanLogOptions options;
+  options.carmen_laser = "SONAR";
+  try {
+    open_scan_log("a.log", options);
+    FAIL() << "must throw";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("log.carmen_laser = SONAR: must be one of "));
+  }
+}
+
+}  // namespace
+}  // namespace patrol::io::carmen_log_test

@@ -1,0 +1,54 @@
+#include "localize/slip_detector.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace patrol::localize::slip_watch_test {
+namespace {
+
+constexpr double kDt = 0.004;
+
+struct Drive {
+  SlipDetector watch;
+  int step = 0;
+
+  Drive() : watch({.window_s = 1.0, .threshold_mps = 0.2}) {}
+
+  /// Belts and body speed up for a time; the first evidence.
+  std::optional<SlipEvidence> speed_up(double belts_mps2, double body_mps2, double duration_s, double rough_mps2 = 0.0) {
+    std::optional<SlipEvidence> evidence;
+    double belts = 0.0;
+    for (double t = 0.0; t < duration_s && !evidence; t += kDt) {
+      ++step;
+      belts += belts_mps2 * kDt;
+      const double shock = step % 2 == 0 ? rough_mps2 : -rough_mps2;
+      watch.add_acceleration(from_seconds(step * kDt), kDt, body_mps2 + shock);
+      if (step % 5 == 0) evidence = watch.add_speed(from_seconds(step * kDt), belts, 0.0);
+    }
+    return evidence;
+  }
+};
+
+TEST(SlipDetector, BeltsThatTakeTheBodyAlongAreNoEvidence) {
+  EXPECT_FALSE(Drive().speed_up(1.0, 1.0, 1.5));
+  EXPECT_FALSE(Drive().speed_up(1.0, 0.9, 1.5)) << "a tenth is ordinary slip";
+}
+
+TEST(SlipDetector, BeltsAloneAtOneMetrePerSecondSquaredAreNoticedAtTwentyCentimetresPerSecond) {
+  const auto evidence = Drive().speed_up(1.0, 0.0, 1.0);
+  ASSERT_TRUE(evidence);
+  EXPECT_NEAR(evidence->disagreement_mps, 0.2, 0.021);  // a reading each 20 ms
+  EXPECT_NEAR(evidence->forward_mps, 0.0, 1e-9);
+}
+
+TEST(SlipDetector, TooGentleForTheWindowGoesUnnoticed) { EXPECT_FALSE(Drive().speed_up(0.15, 0.0, 3.0)); }
+
+TEST(SlipDetector, ARoughRideAsksForMore) {
+  // Half the square of 2 * 5 m/s2 each 4 ms: 0.028 m/s per step, 0.2 m/s over 0.2 s; four of these on top of 0.2.
+  EXPECT_FALSE(Drive().speed_up(1.0, 0.0, 0.4, 5.0));
+  EXPECT_TRUE(Drive().speed_up(1.0, 0.0, 0.4));
+}
+
+}  // namespace
+}  // namespace patrol::localize::slip_watch_test

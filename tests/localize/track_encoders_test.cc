@@ -1,0 +1,54 @@
+#include "localize/track_encoders.h"
+
+#include <gtest/gtest.h>
+
+namespace patrol::localize::belt_counters_test {
+namespace {
+
+using std::chrono::milliseconds;
+
+TrackEncoders make_counters() { return TrackEncoders({.meters_per_tick = 0.001, .max_acceleration_mps2 = 10.0}); }
+
+TEST(TrackEncoders, TenTicksOfAMillimetreInTwentyMillisecondsAreHalfAMetreASecond) {
+  TrackEncoders counters = make_counters();
+  EXPECT_FALSE(counters.add({milliseconds(0), 100, 200})) << "one reading is no way";
+  const auto belts = counters.add({milliseconds(20), 110, 194});
+  ASSERT_TRUE(belts);
+  EXPECT_DOUBLE_EQ(belts->speed.left_mps, 0.5);
+  EXPECT_DOUBLE_EQ(belts->speed.right_mps, -0.3);
+  EXPECT_DOUBLE_EQ(belts->speed.mean_mps(), 0.1);
+  EXPECT_DOUBLE_EQ(belts->speed.difference_mps(), -0.8);
+  EXPECT_DOUBLE_EQ(belts->step_mps, 0.05);
+  EXPECT_EQ(belts->middle(), milliseconds(10));
+}
+
+TEST(TrackEncoders, StandAfterThreeHundredMillisecondsWithoutATick) {
+  TrackEncoders counters = make_counters();
+  for (int i = 0; i <= 14; ++i) counters.add({milliseconds(20 * i), 5, 5});
+  EXPECT_FALSE(counters.is_stationary());
+  counters.add({milliseconds(300), 5, 5});
+  EXPECT_TRUE(counters.is_stationary());
+  counters.add({milliseconds(320), 5, 6});
+  EXPECT_FALSE(counters.is_stationary());
+}
+
+TEST(TrackEncoders, AJumpIsDisbelievedAndASpeedThatLastsIsNot) {
+  TrackEncoders counters = make_counters();
+  counters.add({milliseconds(0), 0, 0});
+  counters.add({milliseconds(20), 10, 10});
+  EXPECT_FALSE(counters.add({milliseconds(40), 100010, 100010})) << "5000 m/s";
+  EXPECT_TRUE(counters.add({milliseconds(60), 100020, 100020}));
+  int refused = 0;
+  for (int i = 4; i < 40; ++i) refused += counters.add({milliseconds(20 * i), 100020 + 100 * i, 100020 + 100 * i}) ? 0 : 1;
+  EXPECT_EQ(refused, 14) << "for 0.3 s a leap to 5 m/s";
+}
+
+TEST(TrackEncoders, NothingIsSaidAcrossAGapOfASecond) {
+  TrackEncoders counters = make_counters();
+  counters.add({milliseconds(0), 0, 0});
+  EXPECT_FALSE(counters.add({milliseconds(1000), 500, 500}));
+  EXPECT_TRUE(counters.add({milliseconds(1020), 510, 510}));
+}
+
+}  // namespace
+}  // namespace patrol::localize::belt_counters_test

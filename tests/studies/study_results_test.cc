@@ -1,0 +1,85 @@
+#include "studies/study_results.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "io/files/csv.h"
+
+namespace patrol::studies::study_results_test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+/// Two methods, of which the second is always 1 better, with noise that both share.
+Study two_methods() {
+  Study study{.name = "two", .title = "Two methods", .source = "a paper", .conditions = "None."};
+  study.figures = {{.name = "RMSE", .unit = "m", .is_compared = true}, {.name = "NEES", .unit = ""}, {.name = "time", .unit = "s", .is_of_the_clock = true}};
+  study.variants = {{.world = "flat", .method = "old", .particles = 10, .reference = 0, .published = {3.5}}, {.world = "flat", .method = "new", .particles = 10, .reference = 0}};
+  study.illustrate = [](std::uint64_t) { return std::vector<report::Section>{}; };
+  return study;
+}
+
+std::vector<StudySample> samples() { return {{{2.0, 5.0, 0.1}, {1.0, kNothing, 0.2}}, {{4.0, 7.0, 0.3}, {3.1, kNothing, 0.4}}, {{6.0, 9.0, 0.5}, {4.9, kNothing, 0.6}}}; }
+
+TEST(StudyResults, DifferencesArePairedBySeedSoThatSharedNoiseFallsOut) {
+  const StudyResults results = summarize(two_methods(), samples());
+  EXPECT_DOUBLE_EQ(results[0][0].mean, 4.0);
+  // Differences -1, -0.9, -1.1: mean -1, deviation 0.1; t(0.975, 2) = 4.303, half width 4.303 0.1 / sqrt 3 = 0.248.
+  ASSERT_TRUE(results[1][0].difference);
+  EXPECT_NEAR(results[1][0].difference->center, -1.0, 1e-12);
+  EXPECT_NEAR(results[1][0].difference->high, -1.0 + 0.2484, 1e-4);
+  EXPECT_EQ(verdict_of(results[1][0]), "lower");
+  // The means themselves, 4 and 3, have deviations of 2: side by side they would say nothing.
+  EXPECT_TRUE(results[0][0].interval->contains(3.0));
+}
+
+TEST(StudyResults, ZeroWithinTheIntervalIsNoDifferenceAndTheReferenceIsNotCompared) {
+  std::vector<StudySample> level = samples();
+  for (std::size_t seed = 0; seed < level.size(); ++seed) level[seed][1][0] = level[seed][0][0] + (seed == 0 ? 0.1 : -0.05);
+  const StudyResults results = summarize(two_methods(), level);
+  EXPECT_EQ(verdict_of(results[1][0]), "no difference");
+  EXPECT_EQ(verdict_of(results[0][0]), "");
+}
+
+TEST(StudyResults, TheClockStandsInATableOfItsOwnAndWhatIsNotMeasuredHasNoRow) {
+  const Study study = two_methods();
+  const StudyResults results = summarize(study, samples());
+  const std::string csv = io::to_csv(results_table(study, results));
+  EXPECT_THAT(csv, HasSubstr("flat,old,10,RMSE,m,3.5,3,4,"));
+  EXPECT_THAT(csv, HasSubstr("flat,old,10,NEES,,,3,7,"));
+  EXPECT_THAT(csv, Not(HasSubstr("flat,new,10,NEES")));
+  EXPECT_THAT(csv, Not(HasSubstr("time")));
+  EXPECT_THAT(io::to_csv(performance_table(study, results)), HasSubstr("flat,new,10,time,s,0.4"));
+  EXPECT_THAT(io::to_csv(samples_table(study, {1001, 1002, 1003}, samples())), HasSubstr("1002,flat,new,10,3.1,\r\n"));
+}
+
+TEST(StudyResults, OnAScreenPublishedFiguresStandBesideOurs) {
+  const Study study = two_methods();
+  const std::string text = results_text(study, summarize(study, samples()));
+  EXPECT_THAT(text, HasSubstr("3.5"));
+  EXPECT_THAT(text, HasSubstr("-1 [-1.25, -0.752]"));
+}
+
+TEST(Study, AnUnknownOneIsRefusedWithTheKnownNames) {
+  try {
+    make_study("golf");
+    FAIL();
+  } catch (const std::exception& error) {
+    EXPECT_THAT(error.what(), HasSubstr("there is no study 'golf' (known: ungm, landmarks-circle, "));
+  }
+}
+
+TEST(Study, EveryVariantsReferenceLiesInItsOwnWorld) {
+  for (const std::string& name : study_names()) {
+    const Study study = make_study(name);
+    for (const StudyVariant& variant : study.variants) EXPECT_EQ(study.variants[variant.reference].world, variant.world) << name << ": " << variant.method;
+  }
+}
+
+}  // namespace
+}  // namespace patrol::studies::study_results_test
