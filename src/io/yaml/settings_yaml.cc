@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "io/yaml/renamed_settings.h"
 #include "io/yaml/yaml_document.h"
 
 namespace patrol::io {
@@ -98,6 +99,7 @@ void SettingsReader::finish() const {
     const std::string name = entry.first.Scalar();
     if (!seen.insert(name).second) fail(entry.first, key(name), "stands there twice");
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+    if (const std::string now = renamed_setting(key(name)); now != key(name)) fail(entry.first, key(name), "renamed to " + now);
     const std::string nearest = closest_match(name, known_);
     fail(entry.first, key(name),
          fmt::format("unknown key{} (known: {})", nearest.empty() ? "" : "; did you mean " + nearest + "?", fmt::join(known_, ", ")));
