@@ -8,7 +8,7 @@
 namespace patrol::sim {
 
 std::vector<BeamReturn> ideal_scan(const LidarScene& scene, const Eigen::Vector3d& p_world_m, const IdealScanSettings& settings) {
-  const double least_cosine = std::cos(to_rad(settings.grazing_deg));
+  const double least_cosine = std::cos(to_rad(settings.max_incidence_deg));
   std::vector<BeamReturn> returns;
   for (int beam = 0; beam < settings.beams; ++beam) {
     const double angle = 2.0 * std::numbers::pi * beam / settings.beams;

@@ -26,13 +26,13 @@ double fraction_at(const LiningDeformationSettings& move, double clock_deg) {
 void check(const std::vector<LiningDeformationSettings>& moves, const std::optional<TunnelLining>& design) {
   for (std::size_t i = 0; i < moves.size(); ++i) {
     const LiningDeformationSettings& move = moves[i];
-    validate(move, fmt::format("lining.{}", i));
+    validate(move, fmt::format("lining_deformation.{}", i));
     const auto refuse = [&](const char* field, int ring, const std::string& why) {
-      throw InputError(fmt::format("lining.{}.{} = {}: {}", i, field, ring, why));
+      throw InputError(fmt::format("lining_deformation.{}.{} = {}: {}", i, field, ring, why));
     };
-    if (!design) refuse("first_ring", move.first_ring, "the mission's file describes no lining");
+    if (!design) refuse("first_ring", move.first_ring, "requires a lining in the mission file");
     if (move.last_ring < move.first_ring) refuse("last_ring", move.last_ring, fmt::format("must be at least first_ring, {}", move.first_ring));
-    if (move.last_ring > design->rings) refuse("last_ring", move.last_ring, fmt::format("the lining has {} rings", design->rings));
+    if (move.last_ring > design->rings) refuse("last_ring", move.last_ring, fmt::format("must be at most {}, the last ring of the lining", design->rings));
   }
 }
 
@@ -54,7 +54,7 @@ void deform_lining(const std::vector<LiningDeformationSettings>& moves, const st
   if (moves.empty()) return;
   const int geom = mj_name2id(&view, mjOBJ_GEOM, "lining");
   if (geom < 0 || view.geom_type[geom] != mjGEOM_MESH || view.geom_bodyid[geom] != 0) {
-    throw InputError("lining.0.first_ring: the world has no mesh named lining that could be moved");
+    throw InputError("lining_deformation.0.first_ring: requires a world with a mesh named lining");
   }
   const mjtNum* q = view.geom_quat + 4 * geom;
   const Pose3 T_world_mesh{Eigen::Vector3d(view.geom_pos + 3 * geom), Eigen::Quaterniond(q[0], q[1], q[2], q[3])};

@@ -17,9 +17,9 @@ namespace {
 /// Removes every geom that cannot be in contact. Masses are explicit in the files, so nothing else changes.
 void strip_visual_geoms(mjSpec& spec) { spec.compiler.discardvisual = 1; }
 
-SpecPtr load_world(const std::string& world_xml, const std::vector<StaticObstacleSettings>& props) {
+SpecPtr load_world(const std::string& world_xml, const std::vector<StaticObstacleSettings>& obstacles) {
   SpecPtr spec = load_spec(world_xml);
-  add_static_obstacles(*spec, props);
+  add_static_obstacles(*spec, obstacles);
   return spec;
 }
 
@@ -90,11 +90,11 @@ void set_start_posture(const mjModel& model, mjtNum* qpos) {
 }
 
 AssembledModel assemble_model(const std::string& world_xml, const std::string& robot_urdf, const Pose2& T_world_start,
-                              const std::vector<StaticObstacleSettings>& props) {
+                              const std::vector<StaticObstacleSettings>& obstacles) {
   AssembledModel assembled;
   assembled.stance = to_stance(robot_urdf);
-  const double height_m = start_height_m(world_xml, *load_world(world_xml, props), assembled.stance, T_world_start);
-  const SpecPtr view = load_world(world_xml, props), physics = load_world(world_xml, props);
+  const double height_m = start_height_m(world_xml, *load_world(world_xml, obstacles), assembled.stance, T_world_start);
+  const SpecPtr view = load_world(world_xml, obstacles), physics = load_world(world_xml, obstacles);
   for (mjSpec* spec : {view.get(), physics.get()}) add_robot(*spec, robot_urdf, to_pose3(T_world_start, height_m));
   strip_visual_geoms(*physics);
   enable_sleep(*physics);

@@ -182,9 +182,9 @@ TEST(ModelAssembly, TheTrackedRobotStartsAHandsBreadthAboveRubbleAndAboveAKerbUn
 TEST(ModelAssembly, PropsAreThereToBeTouchedAndSeen) {
   const test::TemporaryFile file("world.xml", make_flat_world());
   const AssembledModel model =
-      assemble_model(file.path(), kTrackedUrdf, {}, {StaticObstacleSettings{.kind = "kerb", .x_m = 2.0, .y_m = 0.0, .turn_deg = 0.0}});
-  EXPECT_GE(mj_name2id(model.physics.get(), mjOBJ_GEOM, "prop_1"), 0);
-  EXPECT_GE(mj_name2id(model.view.get(), mjOBJ_GEOM, "prop_1"), 0);
+      assemble_model(file.path(), kTrackedUrdf, {}, {StaticObstacleSettings{.kind = "kerb", .x_m = 2.0, .y_m = 0.0, .yaw_deg = 0.0}});
+  EXPECT_GE(mj_name2id(model.physics.get(), mjOBJ_GEOM, "static_obstacle_1"), 0);
+  EXPECT_GE(mj_name2id(model.view.get(), mjOBJ_GEOM, "static_obstacle_1"), 0);
 }
 
 TEST(ModelAssembly, AStartInsideAWallIsRefusedWithTheWallsName) {

@@ -88,10 +88,10 @@ TrackedDriveSettings TrackedDriveSettings::without_noise() {
           .vibration_mps2_rthz = 0.0,
           .gyro_noise_radps = 0.0,
           .gyro_bias_radps = 0.0,
-          .gyro_bias_walk_radps2_rthz = 0.0,
+          .gyro_bias_random_walk_radps_per_sqrt_s = 0.0,
           .accel_noise_mps2 = 0.0,
           .accel_bias_mps2 = 0.0,
-          .accel_bias_walk_mps3_rthz = 0.0,
+          .accel_bias_random_walk_mps2_per_sqrt_s = 0.0,
           .imu_scale = 0.0,
           .imu_misalignment_rad = 0.0,
           .gyro_resolution_radps = 0.0,
@@ -187,8 +187,8 @@ void TrackedDrive::place_body(double dt_s) {
 void TrackedDrive::measure_imu(const Eigen::Vector3d& omega_body, const Eigen::Vector3d& force_body) {
   const auto tick = static_cast<std::uint64_t>(imu_steps_);
   const double root_s = std::sqrt(settings_.imu_period_s);
-  gyro_bias_ += draw_vector(imu_noise_, tick, 0, settings_.gyro_bias_walk_radps2_rthz * root_s);
-  accel_bias_ += draw_vector(imu_noise_, tick, 3, settings_.accel_bias_walk_mps3_rthz * root_s);
+  gyro_bias_ += draw_vector(imu_noise_, tick, 0, settings_.gyro_bias_random_walk_radps_per_sqrt_s * root_s);
+  accel_bias_ += draw_vector(imu_noise_, tick, 3, settings_.accel_bias_random_walk_mps2_per_sqrt_s * root_s);
   const double vibration = settings_.vibration_mps2_rthz / root_s * std::abs(0.5 * (contact_.left_mps + contact_.right_mps));
   Eigen::Vector3d rate = gyro_distortion_ * omega_body + gyro_bias_ + draw_vector(imu_noise_, tick, 6, settings_.gyro_noise_radps);
   Eigen::Vector3d force = accel_distortion_ * force_body + accel_bias_ +

@@ -54,10 +54,10 @@ struct TrackedDriveSettings {
   // IMU: the defaults of sim/sensors/imu.h, sampled every other tick of 2 ms.
   double gyro_noise_radps = 2.3e-4 / 0.0447213595;
   double gyro_bias_radps = 0.002;
-  double gyro_bias_walk_radps2_rthz = 1e-5;
+  double gyro_bias_random_walk_radps_per_sqrt_s = 1e-5;
   double accel_noise_mps2 = 0.002 / 0.0447213595;
   double accel_bias_mps2 = 0.03;
-  double accel_bias_walk_mps3_rthz = 1e-4;
+  double accel_bias_random_walk_mps2_per_sqrt_s = 1e-4;
   double imu_scale = 0.001;
   double imu_misalignment_rad = 0.00087;
   double gyro_resolution_radps = 7e-4;

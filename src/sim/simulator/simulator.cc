@@ -66,7 +66,8 @@ std::unique_ptr<Locomotion> make_locomotion(const SimulatorSettings& settings, c
 }
 
 AssembledModel assemble(const SimulatorSettings& settings) {
-  AssembledModel model = assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start, settings.props);
+  AssembledModel model = assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start,
+                                        settings.static_obstacles);
   deform_lining(settings.lining_deformations, settings.lining, *model.view);
   return model;
 }
@@ -87,7 +88,7 @@ Simulator::Simulator(const SimulatorSettings& settings, const RobotDescription& 
                GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed, make_depth_imager, settings.subsurface),
       recorded_(settings.recorded),
       tick_(from_seconds(model_.physics->opt.timestep)) {
-  if (!settings.drive.empty()) operator_.emplace(settings.driver, settings.drive, seed);
+  if (!settings.teleop_route.empty()) operator_.emplace(settings.teleop_operator, settings.teleop_route, seed);
   if (robot.antenna) antenna_.emplace(settings.sensors.antenna, *robot.antenna, *model_.physics, seed);
   if (robot_body_ < 0) throw InputError(fmt::format("{}: no link named {}", settings.robot_urdf, frame_id::kBody));
   std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);

@@ -134,7 +134,7 @@ TEST_F(Replay, ShowsTheDustAndTheDimLightOfTheRun) {
   settings.dust = {.enabled = true, .visibility_m = 0.5};
   still(log, model(), {}, settings, 1s, folder / "dust.png");
   settings.dust.enabled = false;
-  settings.light.brightness_share = 0.5;
+  settings.light.intensity = 0.5;
   still(log, model(), {}, settings, 1s, folder / "dim.png");
   const Color clear = wall_color(load_png(folder / "clear.png")), dust = wall_color(load_png(folder / "dust.png")),
               dim = wall_color(load_png(folder / "dim.png"));

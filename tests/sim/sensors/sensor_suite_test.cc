@@ -100,23 +100,23 @@ SensorSuiteSettings with_uwb() {
   SensorSuiteSettings settings = quiet();
   settings.uwb.enabled = true;
   settings.uwb.rate_hz = 25.0;
-  settings.uwb.loss = 0.0;
+  settings.uwb.loss_probability = 0.0;
   settings.uwb.range_max_m = 100.0;
-  settings.uwb.blocked_loss = 0.0;
+  settings.uwb.nlos_loss_probability = 0.0;
   return settings;
 }
 
 SensorSuiteSettings with_ultrasonic() {
   SensorSuiteSettings settings = quiet();
   settings.ultrasonic.enabled = true;
-  settings.ultrasonic.dropout = 0.0;
+  settings.ultrasonic.dropout_probability = 0.0;
   return settings;
 }
 
 SensorSuiteSettings with_depth_camera() {
   SensorSuiteSettings settings = quiet();
   settings.depth_camera.enabled = true;
-  settings.depth_camera.dropout = 0.0;
+  settings.depth_camera.dropout_probability = 0.0;
   return settings;
 }
 
@@ -125,7 +125,7 @@ SensorSuiteSettings with_scanner() {
   settings.scanner.enabled = true;
   settings.scanner.step_deg = 5.0;
   settings.scanner.duration_s = 2.0;
-  settings.scanner.dropout = 0.0;
+  settings.scanner.dropout_probability = 0.0;
   return settings;
 }
 

@@ -154,7 +154,7 @@ TEST(Simulator, RingsOfAWorldWithoutALiningCannotBeMoved) {
   SimulatorSettings settings;
   settings.lining_deformations = {{.kind = "settlement", .first_ring = 2, .last_ring = 2, .inward_mm = 6.0}};
   EXPECT_THAT([&] { SmallTwin(kTrackedUrdf, make_flat_world(), settings); },
-              testing::ThrowsMessage<InputError>("lining.0.first_ring = 2: the mission's file describes no lining"));
+              testing::ThrowsMessage<InputError>("lining_deformation.0.first_ring = 2: requires a lining in the mission file"));
 }
 
 std::string kerb(double x_m, double height_m, double half_length_m = 0.09) {
