@@ -66,7 +66,7 @@ struct SensorTraits<FluidPressure> {
                                       .ros_type = "sensor_msgs/msg/FluidPressure",
                                       .summary = "barometer",
                                       .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "Pa", .drift_per_s = 5.0, .spike = 200.0}};
+                                      .fault = {.unit = "Pa", .drift_per_s = 5.0, .outlier = 200.0}};
 
   static void add_to_reading(FluidPressure& reading, double offset_pa) { reading.pressure_pa += offset_pa; }
   static std::vector<ErrorSource> error_sources() {

@@ -76,7 +76,7 @@ struct SensorTraits<DepthImage> {
                                       .ros_type = "patrol_msgs/msg/DepthImage",
                                       .summary = "infrared stereo depth camera",
                                       .timeout = SensorTimeout::kLidar,
-                                      .fault = {.unit = "m", .drift_per_s = 0.02, .spike = 0.5}};
+                                      .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 0.5}};
 
   static void add_to_reading(DepthImage& image, double offset_m) {
     for (std::uint16_t& depth_mm : image.depth_mm) {

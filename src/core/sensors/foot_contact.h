@@ -49,7 +49,7 @@ struct SensorTraits<FootContacts> {
                                       .timeout = SensorTimeout::kMotion,
                                       .freeze_check = FreezeCheck::kCommand,
                                       .is_read_by_firmware = true,
-                                      .fault = {.unit = "N", .drift_per_s = 10.0, .spike = 100.0}};
+                                      .fault = {.unit = "N", .drift_per_s = 10.0, .outlier = 100.0}};
 
   /// Adds to the main reading, the force on the first foot.
   static void add_to_reading(FootContacts& contacts, double offset_n) {

@@ -63,7 +63,7 @@ struct SensorTraits<GnssFix> {
                                       .ros_type = "sensor_msgs/msg/NavSatFix",
                                       .summary = "RTK GNSS receiver",
                                       .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "m", .drift_per_s = 0.2, .spike = 5.0}};
+                                      .fault = {.unit = "m", .drift_per_s = 0.2, .outlier = 5.0}};
 
   /// Adds to the main reading, the altitude.
   static void add_to_reading(GnssFix& fix, double offset_m) { fix.altitude_m += offset_m; }

@@ -56,7 +56,7 @@ struct SensorTraits<TrackTicks> {
                                       .freeze_check = FreezeCheck::kCommand,
                                       .is_required_to_drive = true,
                                       .is_read_by_firmware = true,
-                                      .fault = {.unit = "counts", .drift_per_s = 50.0, .spike = 500.0}};
+                                      .fault = {.unit = "counts", .drift_per_s = 50.0, .outlier = 500.0}};
 
   /// Adds to the main reading, the count of the left track.
   static void add_to_reading(TrackTicks& ticks, double offset_counts) { ticks.left += std::llround(offset_counts); }

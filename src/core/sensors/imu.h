@@ -66,7 +66,7 @@ struct SensorTraits<Imu> {
                                       .timeout = SensorTimeout::kMotion,
                                       .freeze_check = FreezeCheck::kOdometry,
                                       .is_read_by_firmware = true,
-                                      .fault = {.unit = "rad/s", .drift_per_s = 0.005, .spike = 1.0}};
+                                      .fault = {.unit = "rad/s", .drift_per_s = 0.005, .outlier = 1.0}};
 
   /// Adds to the main reading, the yaw rate.
   static void add_to_reading(Imu& imu, double offset_radps) { imu.angular_velocity_radps.z() += offset_radps; }

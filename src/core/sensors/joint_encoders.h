@@ -48,7 +48,7 @@ struct SensorTraits<JointState> {
                                       .freeze_check = FreezeCheck::kCommand,
                                       .is_required_to_drive = true,
                                       .is_read_by_firmware = true,
-                                      .fault = {.unit = "rad", .drift_per_s = 0.01, .spike = 0.3}};
+                                      .fault = {.unit = "rad", .drift_per_s = 0.01, .outlier = 0.3}};
 
   /// Adds to the main reading, the position of the first joint.
   static void add_to_reading(JointState& joints, double offset_rad) {

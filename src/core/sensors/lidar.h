@@ -95,7 +95,7 @@ struct SensorTraits<LaserScan> {
                                       .timeout = SensorTimeout::kLidar,
                                       .freeze_check = FreezeCheck::kOdometry,
                                       .is_required_to_drive = true,
-                                      .fault = {.unit = "m", .drift_per_s = 0.02, .spike = 1.0}};
+                                      .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 1.0}};
 
   static void add_to_reading(LaserScan& scan, double offset_m) {
     for (float& range_m : scan.ranges_m) range_m += static_cast<float>(offset_m);

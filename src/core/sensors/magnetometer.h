@@ -66,7 +66,7 @@ struct SensorTraits<MagneticField> {
                                       .ros_type = "sensor_msgs/msg/MagneticField",
                                       .summary = "three-axis magnetometer",
                                       .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "T", .drift_per_s = 1.0e-6, .spike = 3.0e-5}};
+                                      .fault = {.unit = "T", .drift_per_s = 1.0e-6, .outlier = 3.0e-5}};
 
   /// Adds to the main reading, the field along x.
   static void add_to_reading(MagneticField& reading, double offset_t) { reading.field_t.x() += offset_t; }

@@ -84,7 +84,7 @@ struct SensorTraits<PanoramicScan> {
                                       .ros_type = "sensor_msgs/msg/PointCloud2",
                                       .summary = "terrestrial laser scanner, on command",
                                       .trigger = SensorTrigger::kScanStation,
-                                      .fault = {.unit = "m", .drift_per_s = 0.001, .spike = 0.05}};
+                                      .fault = {.unit = "m", .drift_per_s = 0.001, .outlier = 0.05}};
 
   /// Adds to the main reading, the ranges of all points.
   static void add_to_reading(PanoramicScan& scan, double offset_m) {

@@ -53,7 +53,7 @@ struct SensorTraits<GasReading> {
                                       .ros_type = "patrol_msgs/msg/GasReading",
                                       .summary = "open-path laser methane meter",
                                       .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "ppm m", .drift_per_s = 20.0, .spike = 300.0}};
+                                      .fault = {.unit = "ppm m", .drift_per_s = 20.0, .outlier = 300.0}};
 
   static void add_to_reading(GasReading& gas, double offset_ppm_m) { gas.column_ppm_m += offset_ppm_m; }
 };

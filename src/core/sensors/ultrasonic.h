@@ -79,7 +79,7 @@ struct SensorTraits<UltrasonicRange> {
                                       .ros_type = "sensor_msgs/msg/Range",
                                       .summary = "ultrasonic ring",
                                       .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "m", .drift_per_s = 0.02, .spike = 0.5}};
+                                      .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 0.5}};
 
   static void add_to_reading(UltrasonicRange& range, double offset_m) { range.range_m += static_cast<float>(offset_m); }
 };

@@ -52,7 +52,7 @@ struct SensorTraits<UwbRange> {
                                       .ros_type = "patrol_msgs/msg/UwbRange",
                                       .summary = "ultra-wideband ranges to surveyed anchors",
                                       .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "m", .drift_per_s = 0.05, .spike = 3.0}};
+                                      .fault = {.unit = "m", .drift_per_s = 0.05, .outlier = 3.0}};
 
   static void add_to_reading(UwbRange& range, double offset_m) { range.range_m += offset_m; }
   static std::vector<ErrorSource> error_sources() {

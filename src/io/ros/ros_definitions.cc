@@ -76,9 +76,9 @@ constexpr Definition kDefinitions[] = {
      "float64 evidence\nbool is_found\nuint8 level\ngeometry_msgs/Point place\nfloat64[9] covariance_m2\nfloat64 distance_m\n"
      "float64 distance_low_m\nfloat64 distance_high_m\nfloat64 azimuth_deg\nfloat64 elevation_deg\nfloat64 radius_m\n"
      "float64 radius_low_m\nfloat64 radius_high_m\n"},
-    {"patrol_msgs/LocalizationTrust",
-     "# trust 0 (lost) ... 1 (sure); standard deviation along the weakest direction, and that direction in map.\n"
-     "std_msgs/Header header\nfloat64 trust\nfloat64 weak_std_m\nfloat64 weak_direction_rad\nbool is_lost\n"},
+    {"patrol_msgs/LocalizationConfidence",
+     "# Confidence 0 (lost) ... 1 (certain); largest principal standard deviation of the position, and its direction in map.\n"
+     "std_msgs/Header header\nfloat64 confidence\nfloat64 max_std_m\nfloat64 max_std_direction_rad\nbool is_lost\n"},
     {"patrol_msgs/Event",
      "# Something that happened in the mission; pose is where the robot believed it was, target where that is; in map.\n"
      "std_msgs/Header header\nstring kind\nstring subject\nstring text\nfloat64 value\ngeometry_msgs/Pose pose\n"

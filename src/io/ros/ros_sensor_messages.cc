@@ -1,4 +1,4 @@
-// What sensors and the person at the remote control say.
+// Codecs of sensor messages and teleoperation commands.
 #include "io/ros/ros_codec.h"
 
 #include <cmath>
@@ -230,8 +230,8 @@ PATROL_ROS_SENSOR(DepthImage,
                   "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\nuint8[] data\n"
                   "float64 fx_px\nfloat64 fy_px\nfloat64 cx_px\nfloat64 cy_px\n");
 PATROL_ROS_SENSOR(TeleopCommand,
-                  "# What the person at the remote control asks for. Buttons: this place is a goal; the robot goes on by itself.\n"
-                  "std_msgs/Header header\nfloat64 vx_mps\nfloat64 yaw_rate_radps\nbool mark\nbool hand_over\n");
+                  "# Teleoperation command. Buttons: save the current pose as a goal; switch to autonomous mode.\n"
+                  "std_msgs/Header header\nfloat64 vx_mps\nfloat64 yaw_rate_radps\nbool save_goal\nbool hand_over\n");
 
 }  // namespace patrol::io
 

@@ -91,7 +91,7 @@ def result(sequence, kind="pose", data=None, robot="spot-1", run="run_1", world=
             "made_utc": to_utc(sequence), "kind": kind, "data": data, **more}
 
 
-def event(sequence, kind="alarm", subject="well_1", text="Leak at well_1.", value=640.0, **more):
+def event(sequence, kind="gas_alarm", subject="well_1", text="Leak at well_1.", value=640.0, **more):
     data = {"kind": kind, "subject": subject, "text": text, "value": value, "pose": {"x": 0.0, "y": 0.0, "yaw": 0.0}, "position_m": [1.0, 2.0]}
     return result(sequence, "event", data, **more)
 

@@ -190,8 +190,8 @@ TEST(SensorSuite, ADepthCameraWithoutARendererIsRefusedInASentence) {
 TEST(SensorSuite, FaultsOfUltrasonicAndDepthCameraAreExecuted) {
   SensorSuiteSettings settings = with_ultrasonic();
   settings.depth_camera = with_depth_camera().depth_camera;
-  const Ride ride = stand(settings, 1.0, {fault("ultrasonic", "freeze", 0.1, 0.5), fault("depth_camera", "silence", 0.1, 0.5),
-                                          fault("depth_camera", "drift", 0.7, 0.3, 0.5), fault("uwb", "silence", 0.0, 1.0)});
+  const Ride ride = stand(settings, 1.0, {fault("ultrasonic", "freeze", 0.1, 0.5), fault("depth_camera", "dropout", 0.1, 0.5),
+                                          fault("depth_camera", "drift", 0.7, 0.3, 0.5), fault("uwb", "dropout", 0.0, 1.0)});
   EXPECT_TRUE(ride.faults[0].was_triggered);
   EXPECT_TRUE(ride.faults[1].was_triggered);
   EXPECT_TRUE(ride.faults[2].was_triggered);
@@ -219,7 +219,7 @@ TEST(SensorSuite, ItIsBusyFor2SecondsAScanAndWithoutAScannerNeverAndNothingComes
 
 TEST(SensorSuite, AScannersFaultsAreSilenceDelayAndADriftOfItsRanges) {
   const auto good = scans_of(with_scanner());
-  const auto silent = scans_of(with_scanner(), {fault("scanner", "silence", 0.0, 4.0)});
+  const auto silent = scans_of(with_scanner(), {fault("scanner", "dropout", 0.0, 4.0)});
   ASSERT_EQ(silent.size(), 1u);
   EXPECT_EQ(silent[0].stamp(), from_seconds(6.0));
   EXPECT_EQ(scans_of(with_scanner(), {fault("scanner", "delay", 0.0, 9.0, 1.5)})[0].at, from_seconds(5.0));
@@ -241,8 +241,8 @@ TEST(SensorSuite, AnEnabledSensorWithoutItsFrameIsRefusedByName) {
 
 TEST(SensorSuite, EveryFaultOfUwbIsExecutedAndOneOfASilentSensorIsNot) {
   const Ride ride = stand(with_uwb(), 2.0,
-                          {fault("uwb", "silence", 0.5, 0.1), fault("uwb", "drift", 1.0, 0.5), fault("hall", "silence", 0.0, 9.0),
-                           fault("uwb", "spikes", 1.0, 1.0), fault("remote", "silence", 0.0, 9.0)});
+                          {fault("uwb", "dropout", 0.5, 0.1), fault("uwb", "drift", 1.0, 0.5), fault("hall", "dropout", 0.0, 9.0),
+                           fault("uwb", "outliers", 1.0, 1.0), fault("teleop", "dropout", 0.0, 9.0)});
   ASSERT_EQ(ride.faults.size(), 5u);
   const std::vector<bool> executed = {true, true, false, true, false};
   for (std::size_t i = 0; i < executed.size(); ++i) EXPECT_EQ(ride.faults[i].was_triggered, executed[i]) << i;
@@ -280,7 +280,7 @@ TEST(SensorSuite, MagnetometerAndBarometerPublishAtTheirRatesWhenSwitchedOnAndAr
   SensorSuiteSettings settings = quiet();
   EXPECT_TRUE(stand(settings, 1.0).arrivals.empty());
   settings.magnetometer.enabled = settings.barometer.enabled = true;
-  const Ride ride = stand(settings, 1.999, {fault("barometer", "spikes", 0.0, 9.0, 1e6)});
+  const Ride ride = stand(settings, 1.999, {fault("barometer", "outliers", 0.0, 9.0, 1e6)});
   EXPECT_EQ(ride.of<MagneticField>().size(), 100u);
   EXPECT_EQ(ride.of<FluidPressure>().size(), 10u);
   EXPECT_EQ(ride.of<MagneticField>().front().at, from_seconds(0.01)) << "after its latency";
