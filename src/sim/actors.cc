@@ -139,7 +139,7 @@ Actors::Actors(const mjModel& model, const std::vector<ActorSettings>& settings)
     const std::string& name = actor_settings.name;
     const int body = mj_name2id(&model, mjOBJ_BODY, name.c_str());
     if (mocap_of(model, name) < 0) {
-      throw InputError(fmt::format("actors: name = {}: the world has no such actor (known: {})", name, known_actors(model)));
+      throw InputError(fmt::format("actors: unknown name '{}' (known: {})", name, known_actors(model)));
     }
     if (actor_settings.path.size() < 2) throw InputError(fmt::format("actors.{}.path: must have at least two points", name));
     Actor actor{.settings = actor_settings,
@@ -148,7 +148,7 @@ Actors::Actors(const mjModel& model, const std::vector<ActorSettings>& settings)
                           mocap_of(model, name + "_thigh_right"), mocap_of(model, name + "_shank_right")},
                 .base_height_m = 0.0,
                 .ground_m = {}};
-    if (actor.path.length_m() <= 0.0) throw InputError(fmt::format("actors.{}.path: has no length", name));
+    if (actor.path.length_m() <= 0.0) throw InputError(fmt::format("actors.{}.path: length is zero: must be positive", name));
     const Eigen::Vector3d placed(model.body_pos + 3 * body);
     actor.base_height_m = placed.z() - ground_at(model, *data, placed.head<2>(), 0.0);
     double ground = 0.0;

@@ -184,7 +184,9 @@ Triangles triangles_of(const mjModel& model, const PlacedGeom& placed) {
     case mjGEOM_HFIELD:
       return HeightFieldTriangles(model, model.geom_dataid[placed.geom]).make();
     default:
-      throw InputError(fmt::format("geom {}: the lidar cannot see shapes of this type", placed.geom));
+      throw InputError(fmt::format("geom {}: shape type not supported by the lidar: must be one of sphere, capsule, cylinder, "
+                                   "ellipsoid, box, plane, mesh, height field",
+                                   placed.geom));
   }
 }
 

@@ -110,7 +110,7 @@ class Boxes {
 
 struct LidarScene::Impl {
   explicit Impl(const mjModel& view) : model(view), device(rtcNewDevice("threads=1")) {
-    if (device == nullptr) throw std::runtime_error("Embree cannot start");
+    if (device == nullptr) throw std::runtime_error("Embree: device creation failed");
     static_scene = std::make_unique<EmbreeScene>(device, RTC_BUILD_QUALITY_HIGH);
     const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(&model), mj_deleteData);
     mj_kinematics(&model, data.get());

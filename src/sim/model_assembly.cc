@@ -35,17 +35,17 @@ double start_height_m(const std::string& world_xml, mjSpec& world, const Stance&
   }
 }
 
-void refuse_start_inside_something(const mjModel& model, const std::vector<double>& qpos, const Pose2& T_world_start) {
+void refuse_start_in_collision(const mjModel& model, const std::vector<double>& qpos, const Pose2& T_world_start) {
   const DataPtr data = make_data(model);
   std::copy(qpos.begin(), qpos.end(), data->qpos);
   mj_forward(&model, data.get());
-  constexpr double kTouchDepth_m = 0.02;
+  constexpr double kContactDepth_m = 0.02;
   for (int i = 0; i < data->ncon; ++i) {
     const mjContact& contact = data->contact[i];
-    if (contact.dist > -kTouchDepth_m) continue;
+    if (contact.dist > -kContactDepth_m) continue;
     const bool first_is_robot = model.geom_group[contact.geom[0]] == kGroupRobotCollision;
     const char* thing = mj_id2name(&model, mjOBJ_GEOM, contact.geom[first_is_robot ? 1 : 0]);
-    throw InputError(fmt::format("start pose ({:.2f}, {:.2f}) is inside {}", T_world_start.x, T_world_start.y,
+    throw InputError(fmt::format("start pose ({:.2f}, {:.2f}): in collision with {}", T_world_start.x, T_world_start.y,
                                  thing == nullptr ? "an obstacle" : thing));
   }
 }
@@ -71,7 +71,7 @@ double ground_height_m(const mjModel& model, const mjData& data, const Stance& s
     if (distance >= 0.0) nearest_m = std::min(nearest_m, distance);
   }
   if (!std::isfinite(nearest_m)) {
-    throw InputError(fmt::format("({:.2f}, {:.2f}): there is no ground below it", T_world_body.x, T_world_body.y));
+    throw InputError(fmt::format("({:.2f}, {:.2f}): no ground below", T_world_body.x, T_world_body.y));
   }
   return max_ground_height_m - nearest_m;
 }
@@ -104,7 +104,7 @@ AssembledModel assemble_model(const std::string& world_xml, const std::string& r
   assembled.start_qpos.assign(model.qpos0, model.qpos0 + model.nq);
   set_start_posture(model, assembled.start_qpos.data());
   stow_antenna(model, assembled.start_qpos.data());
-  refuse_start_inside_something(model, assembled.start_qpos, T_world_start);
+  refuse_start_in_collision(model, assembled.start_qpos, T_world_start);
   return assembled;
 }
 

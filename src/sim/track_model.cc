@@ -24,7 +24,7 @@ constexpr double kSprocketArmature_kgm2 = 0.25;
 void set(double* to, std::initializer_list<double> values) { std::copy(values.begin(), values.end(), to); }
 
 const urdf::Cylinder& wheel_shape(const urdf::Collision& wheel) {
-  if (wheel.geometry->type != urdf::Geometry::CYLINDER) throw InputError(wheel.name + ": a track's wheels must be cylinders");
+  if (wheel.geometry->type != urdf::Geometry::CYLINDER) throw InputError(wheel.name + ": wheels of a track must be cylinders");
   return static_cast<const urdf::Cylinder&>(*wheel.geometry);
 }
 
@@ -121,7 +121,7 @@ Stance stance_on_tracks(const urdf::ModelInterface& robot) {
   Stance stance{.height_m = 0.0, .support_points_m = {Eigen::Vector2d::Zero()}, .max_ground_height_m = 1.0};
   for (const char* name : {"left_track", "right_track"}) {
     const urdf::LinkConstSharedPtr track = robot.getLink(name);
-    if (!track) throw InputError("robot " + robot.getName() + ": there is no link named " + name);
+    if (!track) throw InputError("robot " + robot.getName() + ": link not found: " + name);
     const urdf::Vector3& origin = track->parent_joint->parent_to_joint_origin_transform.position;
     for (const urdf::CollisionSharedPtr& wheel : track->collision_array) {
       const urdf::Vector3& centre = wheel->origin.position;

@@ -256,7 +256,9 @@ TEST(LidarScene, AShapeWithoutSurfaceToCastAtIsRefusedByItsNumber) {
     LidarScene scene(*odd);
     FAIL() << "a signed distance field was taken";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "geom 0: the lidar cannot see shapes of this type");
+    EXPECT_STREQ(error.what(),
+                 "geom 0: shape type not supported by the lidar: must be one of sphere, capsule, cylinder, ellipsoid, box, plane, "
+                 "mesh, height field");
   }
 }
 

@@ -62,7 +62,7 @@ struct SensorTraits<Imu> {
   static constexpr SensorInfo kInfo = {.name = "imu",
                                       .topic = "/imu/data",
                                       .ros_type = "sensor_msgs/msg/Imu",
-                                      .summary = "inertial measuring unit",
+                                      .summary = "inertial measurement unit",
                                       .timeout = SensorTimeout::kMotion,
                                       .freeze_check = FreezeCheck::kOdometry,
                                       .is_read_by_firmware = true,

@@ -29,15 +29,15 @@ bool SensorTraits<LaserScan>::repeats(const LaserScan& now, const LaserScan& bef
     has_return = true;
     if (now.ranges_m[i] != before.ranges_m[i]) return false;
   }
-  return has_return;  // scans without returns are all alike: an empty field is no fault
+  return has_return;  // scans without returns are identical, which is not a fault
 }
 
 std::vector<ErrorSource> SensorTraits<LaserScan>::error_sources() {
   return {{"lidar: range noise", {"sensors.lidar.range_noise_m=0"}},
-          {"lidar: range steps", {"sensors.lidar.range_resolution_m=0"}},
-          {"lidar: beam direction", {"sensors.lidar.angle_noise_deg=0"}},
+          {"lidar: range quantization", {"sensors.lidar.range_resolution_m=0"}},
+          {"lidar: beam angle", {"sensors.lidar.angle_noise_deg=0"}},
           {"lidar: mixed pixels", {"sensors.lidar.beam_width_deg=0"}},
-          {"lidar: drop-outs", {"sensors.lidar.dropout=0", "sensors.lidar.grazing_deg=90", "sensors.lidar.dark_range_m=1000"}},
+          {"lidar: dropouts", {"sensors.lidar.dropout=0", "sensors.lidar.grazing_deg=90", "sensors.lidar.dark_range_m=1000"}},
           {"lidar: rain and dust", {"sensors.lidar.rain_rate=0", "sensors.dust.enabled=false"}},
           {"lidar: motion distortion", {"sensors.lidar.motion_distortion=false"}},
           {"lidar: tilt with the body", {"sensors.lidar.stabilized=true", "stack.leveling.stabilized=true"}}};

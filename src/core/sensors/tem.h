@@ -74,7 +74,7 @@ struct SensorTraits<TemSounding> {
                                       .topic = "/tem/sounding",
                                       .ros_type = "patrol_msgs/msg/TemSounding",
                                       .summary = "transient-electromagnetic water detector, on command",
-                                      .fault_matrix_exclusion_reason = "used only to sound for water, beyond the fault window of the matrix"};
+                                      .fault_matrix_exclusion_reason = "used only for TEM soundings, outside the fault window of the matrix"};
 
   static void add_to_reading(TemSounding& sounding, double offset_tps) {
     for (double& rate_tps : sounding.rate_tps) rate_tps += offset_tps;

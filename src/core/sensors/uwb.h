@@ -57,8 +57,8 @@ struct SensorTraits<UwbRange> {
   static void add_to_reading(UwbRange& range, double offset_m) { range.range_m += offset_m; }
   static std::vector<ErrorSource> error_sources() {
     return {{"UWB: range noise", {"sensors.uwb.range_noise_m=0"}},
-            {"UWB: bias by distance", {"sensors.uwb.bias_scale=0"}},
-            {"UWB: blocked paths", {"sensors.uwb.blocked_loss=0", "sensors.uwb.blocked_excess_m=0"}},
+            {"UWB: distance-dependent bias", {"sensors.uwb.bias_scale=0"}},
+            {"UWB: non-line-of-sight paths", {"sensors.uwb.blocked_loss=0", "sensors.uwb.blocked_excess_m=0"}},
             {"UWB: loss", {"sensors.uwb.loss=0"}}};
   }
 };

@@ -148,7 +148,7 @@ std::unique_ptr<Sensor> make_sensor<DepthImage>(const SensorContext& context) {
   if (!settings.enabled) return nullptr;
   validate(settings, "sensors.depth_camera");
   context.robot.T_body("depth_camera");  // throws if the robot has no such frame
-  if (!context.make_depth_imager) throw InputError("sensors.depth_camera is enabled, but there is no renderer for it here");
+  if (!context.make_depth_imager) throw InputError("sensors.depth_camera.enabled = true: requires a renderer, which this command lacks");
   constexpr double kNear_m = 0.05;  // minimum distance; closer surfaces belong to the housing
   return std::make_unique<DepthCameraOnBody>(
       context, context.make_depth_imager(context.view, make_lens(settings), kNear_m, 1.1 * settings.range_max_m));

@@ -16,7 +16,7 @@ FootContactSensor::FootContactSensor(const FootContactSettings& settings, const 
   for (const LegGeometry& leg : legs) {
     const std::string name = leg.name + "_foot";
     const int geom = mj_name2id(&model, mjOBJ_GEOM, name.c_str());
-    if (geom < 0) throw InputError("the robot's model has no foot geom " + name);
+    if (geom < 0) throw InputError("robot model: foot geom not found: " + name);
     offset_n_.push_back(settings.offset_std_n * offset.normal(0, foot_geoms_.size()));
     foot_geoms_.push_back(geom);
   }

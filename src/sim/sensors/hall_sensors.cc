@@ -10,7 +10,7 @@ namespace {
 
 int address_of(const mjModel& model, const std::string& joint_name) {
   const int joint = mj_name2id(&model, mjOBJ_JOINT, joint_name.c_str());
-  if (joint < 0) throw InputError("the robot's model has no joint " + joint_name);
+  if (joint < 0) throw InputError("robot model: joint not found: " + joint_name);
   return model.jnt_qposadr[joint];
 }
 

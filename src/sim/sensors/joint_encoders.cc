@@ -16,7 +16,7 @@ JointEncoders::JointEncoders(const JointEncoderSettings& settings, const mjModel
   validate(settings, "sensors.joint_encoders");
   for (const std::string& name : joint_names) {
     const int joint = mj_name2id(&model, mjOBJ_JOINT, name.c_str());
-    if (joint < 0) throw InputError("the robot's model has no joint " + name);
+    if (joint < 0) throw InputError("robot model: joint not found: " + name);
     qpos_.push_back(model.jnt_qposadr[joint]);
     dof_.push_back(model.jnt_dofadr[joint]);
   }

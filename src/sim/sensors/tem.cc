@@ -17,7 +17,7 @@ TemGateLayout reported_window(const TemSettings& settings) {
   const double step = std::pow(10.0, 1.0 / settings.gates_per_decade);
   for (double gate_s = settings.first_gate_s; gate_s <= settings.last_gate_s; gate_s *= step) window.gate_s.push_back(gate_s);
   if (window.gate_s.size() < 3) {
-    throw InputError(fmt::format("sensors.tem.last_gate_s = {}: leaves fewer than three gates after first_gate_s", settings.last_gate_s));
+    throw InputError(fmt::format("sensors.tem.last_gate_s = {}: must leave at least three gates after first_gate_s", settings.last_gate_s));
   }
   return window;
 }
@@ -141,7 +141,7 @@ class TemOnMount : public Sensor {
 template <>
 std::unique_ptr<Sensor> make_sensor<TemSounding>(const SensorContext& context) {
   if (!context.settings.tem.enabled) return nullptr;
-  if (!context.robot.antenna) throw InputError("robot " + context.robot.name + ": there is no link named tem_mount");
+  if (!context.robot.antenna) throw InputError("robot " + context.robot.name + ": link not found: tem_mount");
   return std::make_unique<TemOnMount>(context);
 }
 

@@ -74,10 +74,11 @@ UltrasonicRing::UltrasonicRing(const UltrasonicSettings& settings, const LidarSc
       dropout_(seed, "ultrasonic/dropout"),
       crosstalk_(seed, "ultrasonic/crosstalk") {
   validate(settings, "sensors.ultrasonic");
-  const double fastest_hz = speed_of_sound(settings.air_temperature_c) / (2.0 * settings.range_max_m);
-  if (settings.ping_rate_hz > fastest_hz) {
-    throw InputError(fmt::format("sensors.ultrasonic.ping_rate_hz = {}: must be at most {:.1f}, or an echo from range_max_m = {} "
-                                 "comes after the next ping", settings.ping_rate_hz, fastest_hz, settings.range_max_m));
+  const double max_rate_hz = speed_of_sound(settings.air_temperature_c) / (2.0 * settings.range_max_m);
+  if (settings.ping_rate_hz > max_rate_hz) {
+    throw InputError(fmt::format("sensors.ultrasonic.ping_rate_hz = {}: must be at most {:.1f}, so that an echo from "
+                                 "range_max_m = {} returns before the next ping",
+                                 settings.ping_rate_hz, max_rate_hz, settings.range_max_m));
   }
   for (int geom = 0; geom < scene.model().ngeom; ++geom) is_rough_.push_back(is_rough(scene.model(), geom, settings.rough_names));
 }

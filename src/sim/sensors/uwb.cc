@@ -86,7 +86,7 @@ Uwb::Uwb(const UwbSettings& settings, const mjModel& view, std::uint64_t seed)
       nlos_loss_(seed, "uwb/blocked_loss"),
       nlos_bias_(seed, "uwb/excess") {
   validate(settings, "sensors.uwb");
-  if (anchors_.empty()) throw InputError("sensors.uwb is enabled, but the world has no site named uwb_anchor_<number>");
+  if (anchors_.empty()) throw InputError("sensors.uwb.enabled = true: requires a world site named uwb_anchor_<number>");
 }
 
 const UwbAnchor* Uwb::next_in_range(const Eigen::Vector3d& p_world_antenna) {

@@ -90,7 +90,7 @@ Simulator::Simulator(const SimulatorSettings& settings, const RobotDescription& 
       tick_(from_seconds(model_.physics->opt.timestep)) {
   if (!settings.teleop_route.empty()) operator_.emplace(settings.teleop_operator, settings.teleop_route, seed);
   if (robot.antenna) antenna_.emplace(settings.sensors.antenna, *robot.antenna, *model_.physics, seed);
-  if (robot_body_ < 0) throw InputError(fmt::format("{}: no link named {}", settings.robot_urdf, frame_id::kBody));
+  if (robot_body_ < 0) throw InputError(fmt::format("{}: link not found: {}", settings.robot_urdf, frame_id::kBody));
   std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
   actors_.advance(now_, {.p_world = settings.T_world_start.position(), .radius_m = robot_radius_m_}, *data_);
   mj_forward(model_.physics.get(), data_.get());
@@ -214,7 +214,7 @@ void Simulator::record_collisions() {
 void Simulator::throw_if_diverged() const {
   for (int i = 0; i < model_.physics->nq; ++i) {
     if (!std::isfinite(data_->qpos[i])) {
-      throw std::runtime_error(fmt::format("the physics diverged at {:.3f} s", to_seconds(now_)));
+      throw std::runtime_error(fmt::format("physics diverged at {:.3f} s", to_seconds(now_)));
     }
   }
 }

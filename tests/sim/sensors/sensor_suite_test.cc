@@ -183,7 +183,7 @@ TEST(SensorSuite, ADepthCameraWithoutARendererIsRefusedInASentence) {
     stand(with_depth_camera(), 0.0, {}, make_robot(), {});
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "sensors.depth_camera is enabled, but there is no renderer for it here");
+    EXPECT_STREQ(error.what(), "sensors.depth_camera.enabled = true: requires a renderer, which this command lacks");
   }
 }
 
@@ -233,10 +233,10 @@ TEST(SensorSuite, AScannersFaultsAreSilenceDelayAndADriftOfItsRanges) {
 }
 
 TEST(SensorSuite, AnEnabledSensorWithoutItsFrameIsRefusedByName) {
-  EXPECT_EQ(error_response(with_scanner(), "scanner"), "robot carrier: there is no link named scanner");
-  EXPECT_EQ(error_response(with_uwb(), "uwb"), "robot carrier: there is no link named uwb");
-  EXPECT_EQ(error_response(with_ultrasonic(), "ultrasonic_0"), "robot carrier: there is no link named ultrasonic_0");
-  EXPECT_EQ(error_response(with_depth_camera(), "depth_camera"), "robot carrier: there is no link named depth_camera");
+  EXPECT_EQ(error_response(with_scanner(), "scanner"), "robot carrier: link not found: scanner");
+  EXPECT_EQ(error_response(with_uwb(), "uwb"), "robot carrier: link not found: uwb");
+  EXPECT_EQ(error_response(with_ultrasonic(), "ultrasonic_0"), "robot carrier: link not found: ultrasonic_0");
+  EXPECT_EQ(error_response(with_depth_camera(), "depth_camera"), "robot carrier: link not found: depth_camera");
 }
 
 TEST(SensorSuite, EveryFaultOfUwbIsExecutedAndOneOfASilentSensorIsNot) {

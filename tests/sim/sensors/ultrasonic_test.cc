@@ -253,11 +253,11 @@ std::string error_response(const UltrasonicSettings& settings, const RobotDescri
 }
 
 TEST(Ultrasonic, ARobotWithoutTransducersAndSlotsTooShortAreRefusedInASentence) {
-  EXPECT_EQ(error_response({}, make_ring({}, {})), "robot carrier: there is no link named ultrasonic_0");
+  EXPECT_EQ(error_response({}, make_ring({}, {})), "robot carrier: link not found: ultrasonic_0");
   UltrasonicSettings fast;
   fast.ping_rate_hz = 50.0;
   EXPECT_EQ(error_response(fast, make_ring()),
-            "sensors.ultrasonic.ping_rate_hz = 50: must be at most 42.5, or an echo from range_max_m = 4 comes after the next ping");
+            "sensors.ultrasonic.ping_rate_hz = 50: must be at most 42.5, so that an echo from range_max_m = 4 returns before the next ping");
 }
 
 }  // namespace

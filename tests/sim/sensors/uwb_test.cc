@@ -161,7 +161,7 @@ TEST(Uwb, AWorldWithoutAnchorsIsRefusedInASentence) {
     Uwb uwb({}, *world.model, 1);
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "sensors.uwb is enabled, but the world has no site named uwb_anchor_<number>");
+    EXPECT_STREQ(error.what(), "sensors.uwb.enabled = true: requires a world site named uwb_anchor_<number>");
   }
 }
 
