@@ -80,7 +80,7 @@ TEST_F(TwoSprockets, AWrongSettingOrAMissingJointIsNamed) {
   HallSettings settings;
   settings.missed_edge_probability = 1.5;
   EXPECT_THAT([&] { sensors(settings); }, testing::ThrowsMessage<InputError>(testing::HasSubstr(
-                                              "sensors.hall.missed_tick_probability = 1.5")));
+                                              "sensors.hall.missed_edge_probability = 1.5")));
   EXPECT_THAT([&] { HallSensors({}, *model_, {"left", "starboard"}, 1); },
               testing::ThrowsMessage<InputError>(testing::HasSubstr("starboard")));
 }
