@@ -10,8 +10,8 @@
 
 #include "core/geometry/angles.h"
 #include "tests/sim/rubble.h"
-#include "tests/support/tracked_twin.h"
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_tracked_robot.h"
+#include "tests/support/simulated_quadruped.h"
 
 namespace patrol::sim::tracks_test {
 namespace {

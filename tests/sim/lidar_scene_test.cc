@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "tests/sim/small_world.h"
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_quadruped.h"
 
 namespace patrol::sim::lidar_scene_test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "io/urdf.h"
 #include "sim/sensors/sensor_suite.h"
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_quadruped.h"
 
 namespace patrol::sim::fault_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_quadruped.h"
 
 #include <algorithm>
 #include <cmath>
