@@ -62,16 +62,16 @@ void deform_lining(const std::vector<LiningDeformationSettings>& moves, const st
   for (int corner = 0; corner < view.mesh_vertnum[mesh]; ++corner) {
     Eigen::Map<Eigen::Vector3f> in_mesh(view.mesh_vert + 3 * (view.mesh_vertadr[mesh] + corner));
     const Eigen::Vector3d p_world = T_world_mesh * in_mesh.cast<double>();
-    const TunnelCoordinates place = design->to_tunnel_coordinates(p_world);
-    const double clock_deg = design->clock_deg(place);
-    const double radius_m = std::hypot(place.left_m, place.height_m - design->crown_center_m);
+    const TunnelCoordinates coordinates = design->to_tunnel_coordinates(p_world);
+    const double clock_deg = design->clock_deg(coordinates);
+    const double radius_m = std::hypot(coordinates.left_m, coordinates.height_m - design->crown_center_m);
     if (std::abs(radius_m - design->radius_at(clock_deg)) > kIntradosTol_m) continue;
-    const double inward = inward_m(moves, design->ring_at(place.chainage_m), clock_deg);
+    const double inward = inward_m(moves, design->ring_at(coordinates.chainage_m), clock_deg);
     if (inward == 0.0) continue;
     const double scale = 1.0 - inward / radius_m;  // fraction of the distance from the half circle's center that remains
-    const Eigen::Vector2d moved = design->point_at(place.chainage_m, scale * place.left_m);
-    const Eigen::Vector3d p_moved(moved.x(), moved.y(), design->crown_center_m + scale * (place.height_m - design->crown_center_m));
-    in_mesh = (T_world_mesh.inverse() * p_moved).cast<float>();
+    const Eigen::Vector2d deformed = design->point_at(coordinates.chainage_m, scale * coordinates.left_m);
+    const Eigen::Vector3d p_deformed(deformed.x(), deformed.y(), design->crown_center_m + scale * (coordinates.height_m - design->crown_center_m));
+    in_mesh = (T_world_mesh.inverse() * p_deformed).cast<float>();
   }
 }
 

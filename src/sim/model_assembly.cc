@@ -44,9 +44,9 @@ void refuse_start_in_collision(const mjModel& model, const std::vector<double>& 
     const mjContact& contact = data->contact[i];
     if (contact.dist > -kContactDepth_m) continue;
     const bool first_is_robot = model.geom_group[contact.geom[0]] == kGroupRobotCollision;
-    const char* thing = mj_id2name(&model, mjOBJ_GEOM, contact.geom[first_is_robot ? 1 : 0]);
+    const char* object = mj_id2name(&model, mjOBJ_GEOM, contact.geom[first_is_robot ? 1 : 0]);
     throw InputError(fmt::format("start pose ({:.2f}, {:.2f}): in collision with {}", T_world_start.x, T_world_start.y,
-                                 thing == nullptr ? "an obstacle" : thing));
+                                 object == nullptr ? "an obstacle" : object));
   }
 }
 

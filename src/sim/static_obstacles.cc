@@ -91,9 +91,9 @@ void add_truck(mjsBody& body, const StaticObstacleSettings& obstacle, int number
   for (const TruckPart& part : truck_parts()) {
     const bool is_wheel = part.shape == TruckPart::Shape::kWheel;
     mjsGeom* geom = add_geom(body, is_wheel ? mjGEOM_CYLINDER : mjGEOM_BOX, obstacle, part.rgba);
-    geom->pos[0] += c * part.centre[0] - s * part.centre[1];
-    geom->pos[1] += s * part.centre[0] + c * part.centre[1];
-    geom->pos[2] = part.centre[2];
+    geom->pos[0] += c * part.center[0] - s * part.center[1];
+    geom->pos[1] += s * part.center[0] + c * part.center[1];
+    geom->pos[2] = part.center[2];
     std::copy(part.half.begin(), part.half.end(), geom->size);
     if (!is_wheel) continue;
     const double half = std::sqrt(0.5), w = geom->quat[0], z = geom->quat[3];  // the axis of a cylinder is z: rotate it

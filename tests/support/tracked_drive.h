@@ -42,10 +42,10 @@ struct TrackedDriveSettings {
   double slip_per_tilt = 0.14;  ///< and on slopes, by the sine of the tilt
   double slip_length_m = 3.0;
   double crab = 0.005;          ///< sideways, share of the way; wanders over the same length
-  double turn_ratio = 1.5;      ///< mean: distance of the tracks' centres of rotation over the gauge
+  double turn_ratio = 1.5;      ///< mean: distance of the tracks' centers of rotation over the gauge
   double turn_ratio_std = 0.15;
-  double turn_centre_x_m = 0.05;
-  double turn_centre_y_m = 0.02;
+  double icr_x_m = 0.05;
+  double icr_y_m = 0.02;
   double turn_length_rad = 2.0;
   double pitch_rad = 0.03;      ///< amplitude of the ground's waves
   double roll_rad = 0.02;
@@ -67,7 +67,7 @@ struct TrackedDriveSettings {
 };
 
 /// A tracked robot by kinematics alone, for tests of odometry. Each belt slips by a share of its way that wanders; the body turns
-/// about the tracks' instantaneous centres of rotation (Mandow et al., IROS 2007):
+/// about the tracks' instantaneous centers of rotation (Mandow et al., IROS 2007):
 ///   yaw rate = (r - l) / D,  ahead = (l y_l - r y_r) / (y_l - y_r) with y_l - y_r = D,  left = -x yaw rate, and a little crabbing.
 /// The ground waves gently under it. Friction below what the belts ask for limits what the body can follow.
 class TrackedDrive {

@@ -50,9 +50,9 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3
     azimuth_.emplace_back(std::cos(angle), std::sin(angle));
   }
   for (int ring = 0; ring < settings.rings; ++ring) {
-    const double share = settings.rings > 1 ? static_cast<double>(ring) / (settings.rings - 1) : 0.0;
+    const double fraction = settings.rings > 1 ? static_cast<double>(ring) / (settings.rings - 1) : 0.0;
     const double angle = kDegree * (settings.elevation_min_deg +
-                                    share * (settings.elevation_max_deg - settings.elevation_min_deg));
+                                    fraction * (settings.elevation_max_deg - settings.elevation_min_deg));
     elevation_.emplace_back(std::cos(angle), std::sin(angle));
   }
   begin_revolution();
@@ -184,8 +184,8 @@ Lidar::Return Lidar::mixed_pixel_return(const Pose3& T_world_lidar, const Eigen:
       settings_.beam_width_deg * kDegree * Eigen::Vector3d(-direction.y(), direction.x(), 0.0);
   double light = 0.0, light_range = 0.0, light_intensity = 0.0;
   for (int i = 0; i < kRays; ++i) {
-    const double share = (i + 0.5) / kRays - 0.5;
-    const Return part = trace(T_world_lidar, (direction + share * sideways).normalized());
+    const double fraction = (i + 0.5) / kRays - 0.5;
+    const Return part = trace(T_world_lidar, (direction + fraction * sideways).normalized());
     if (!(std::abs(part.range_m - middle.range_m) < kPulseLength_m)) continue;
     const double returned = part.intensity / (part.range_m * part.range_m);
     light += returned;

@@ -113,21 +113,21 @@ void PanoramicScanner::fire_column(int column, const Pose3& T_world_scanner) {
   const std::size_t rows = elevation_.size();
   const auto beam = [&](std::size_t row) { return static_cast<std::uint64_t>(column) * rows + row; };
   std::vector<Eigen::Vector3d> aimed(rows);
-  std::vector<Return> seen(rows);
+  std::vector<Return> ideal(rows);
   const double angle_std_rad = settings_.angle_noise_std_deg * kDegree;
   for (std::size_t row = 0; row < rows; ++row) {
     const auto error = angle_noise_.normals(scan_->number, beam(row));
     aimed[row] = direction(column, row, angle_std_rad * error[0], angle_std_rad * error[1]);
-    seen[row] = trace(T_world_scanner, aimed[row]);
+    ideal[row] = trace(T_world_scanner, aimed[row]);
   }
   auto& [one_ago, two_ago] = scan_->before_m[static_cast<std::size_t>(column) < azimuth_.size() ? 0 : 1];
   for (std::size_t row = 0; row < rows; ++row) {
-    const double range_m = seen[row].range_m;
-    const double upwards = row == 0 || row + 1 == rows ? 0.0 : range_curvature_m(seen[row - 1].range_m, range_m, seen[row + 1].range_m);
+    const double range_m = ideal[row].range_m;
+    const double upwards = row == 0 || row + 1 == rows ? 0.0 : range_curvature_m(ideal[row - 1].range_m, range_m, ideal[row + 1].range_m);
     const double sideways = 2.0 * range_curvature_m(range_m, one_ago[row], two_ago[row]);
     two_ago[row] = std::exchange(one_ago[row], range_m);
     const bool is_at_edge = settings_.beam_divergence_rad > 0.0 && std::max(upwards, sideways) > min_edge_curvature_m(range_m);
-    const Return beam_return = is_at_edge ? mixed_pixel_return(T_world_scanner, aimed[row], range_m) : seen[row];
+    const Return beam_return = is_at_edge ? mixed_pixel_return(T_world_scanner, aimed[row], range_m) : ideal[row];
     if (beam_return.range_m > settings_.range_max_m || beam_return.range_m < settings_.range_min_m) continue;
     if (settings_.dropout_probability > 0.0 && dropout_.uniform(scan_->number, beam(row)) < settings_.dropout_probability) continue;
     const double measured_m = beam_return.range_m + scan_->range_offset_m + range_std_m(beam_return) * range_noise_.normal(scan_->number, beam(row));
@@ -161,9 +161,9 @@ PanoramicScanner::Return PanoramicScanner::mixed_pixel_return(const Pose3& T_wor
     for (const double j : {-1.0, 1.0}) {
       const Return part = trace(T_world_scanner, (direction + quarter_rad * (i * aside + j * across)).normalized());
       if (!std::isfinite(part.range_m)) continue;
-      const double share = part.light / (part.range_m * part.range_m);
-      returned += share;
-      range_sum += share * part.range_m;
+      const double weight = part.light / (part.range_m * part.range_m);
+      returned += weight;
+      range_sum += weight * part.range_m;
       light_sum += 0.25 * part.light;
     }
   }

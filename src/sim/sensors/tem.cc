@@ -30,13 +30,13 @@ TemGateLayout shift(TemGateLayout window, double shift_s) {
 /// Returns the decay of the steel response, normalized to 1 at 10 us.
 double steel_decay(double time_s) {
   struct Part {
-    double share, tau_s;
+    double weight, tau_s;
   };
   constexpr std::array<Part, 3> kParts = {{{0.70, 15e-6}, {0.22, 60e-6}, {0.08, 250e-6}}};
   double now = 0.0, at_10us = 0.0;
   for (const Part& part : kParts) {
-    now += part.share * std::exp(-time_s / part.tau_s);
-    at_10us += part.share * std::exp(-10e-6 / part.tau_s);
+    now += part.weight * std::exp(-time_s / part.tau_s);
+    at_10us += part.weight * std::exp(-10e-6 / part.tau_s);
   }
   return now / at_10us;
 }

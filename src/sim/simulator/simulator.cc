@@ -143,7 +143,7 @@ void Simulator::command(const InstrumentCommand& command) {
 
 // MuJoCo's friction is soft: a standing robot creeps by micrometers and millidegrees per second, up to 0.07 degrees
 // during a scan in the tunnel. A parked robot does not creep. So the solver removes the residual slip while an
-// instrument needs the robot to stand still.
+// instrument needs a stationary robot.
 void Simulator::suppress_slip() {
   constexpr int kNoSlipIterations = 3;
   const bool is_asked_to_stand = command_.vx_mps == 0.0 && command_.vy_mps == 0.0 && command_.yaw_rate_radps == 0.0;
@@ -198,11 +198,11 @@ void Simulator::record_collisions() {
     if (is_footing(model, *data_, contact, other, lowest_m)) continue;
 
     const Collision collision{.stamp = now_, .first = geom_name(model, robot_geom), .second = geom_name(model, other)};
-    const std::string& thing = collision.second;
+    const std::string& object = collision.second;
     const auto known = std::find_if(contacts_.begin(), contacts_.end(),
-                                    [&](const auto& touch) { return touch.first == thing; });
+                                    [&](const auto& contact_pair) { return contact_pair.first == object; });
     if (known == contacts_.end()) {
-      contacts_.emplace_back(thing, now_);
+      contacts_.emplace_back(object, now_);
       collisions_.push_back(collision);
     } else {
       if (now_ - known->second > kContactGap) collisions_.push_back(collision);
