@@ -93,7 +93,7 @@ inline LiningResult sample_lining() {
           .T_map_body = {1.0, 2.0, 0.5},
           .is_registered = true,
           .registration_rms_m = 0.002,
-          .registration_share = 0.75,
+          .registration_inlier_ratio = 0.75,
           .correction_m = 0.04,
           .cells = {{.ring = 12, .clock_deg = 95.0, .inward_m = 0.003, .std_m = 0.0002, .points = 340}},
           .lines = {{.ring = 12, .name = "9-3", .change_m = -0.006, .std_m = 0.0003}},

@@ -38,7 +38,7 @@ TEST(Result, ComesBackFromItsJson) {
 TEST(Result, AListIsABatch) { EXPECT_EQ(results_from_json("[" + to_json(pose_result(0)) + "," + to_json(pose_result(1)) + "]").size(), 2U); }
 
 TEST(Result, EachFieldIsHeldToItsRule) {
-  EXPECT_EQ(refusal_with("/schema", "patrol-result/2"), "result: schema must be patrol-result/1");
+  EXPECT_EQ(refusal_with("/schema", "patrol-result/1"), "result: schema must be patrol-result/2");
   EXPECT_EQ(refusal_with("/robot", ""), "result: robot must have 1 ... 200 bytes");
   EXPECT_EQ(refusal_with("/id", std::string(201, 'x')), "result: id must have 1 ... 200 bytes");
   EXPECT_EQ(refusal_with("/run", "a\nb"), "result: run must be a word");

@@ -87,7 +87,7 @@ TEST_F(Platform, UnknownPathsAre404AndOtherMethods405) {
 }
 
 TEST_F(Platform, AWrongBodyIs400AndNothingIsKept) {
-  for (const char* body : {"", "{}", "[{}]", "null", "[[[", "{\"schema\": \"patrol-result/1\"}"}) {
+  for (const char* body : {"", "{}", "[{}]", "null", "[[[", "{\"schema\": \"patrol-result/2\"}"}) {
     const HttpResponse answer = ask("POST", "/api/results", body);
     EXPECT_EQ(answer.status, 400) << body;
     EXPECT_EQ(Json::parse(answer.body)["error"].get<std::string>().find('\n'), std::string::npos);
