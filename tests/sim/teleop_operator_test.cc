@@ -7,7 +7,7 @@
 
 #include "core/geometry/angles.h"
 
-namespace patrol::sim::remote_operator_test {
+namespace patrol::sim::teleop_operator_test {
 namespace {
 
 constexpr double kTick_s = 0.02;
@@ -103,4 +103,4 @@ TEST(TeleopOperator, KeepsWithinTwentyCentimetresOfAStraightLegWithAReactionTime
 }
 
 }  // namespace
-}  // namespace patrol::sim::remote_operator_test
+}  // namespace patrol::sim::teleop_operator_test

@@ -19,7 +19,7 @@ struct Belts {
   double left_mps = 0.0;
   double right_mps = 0.0;
 };
-/// At a time; a driver with eyes may look where the body is.
+/// Command of an operator at a time; may depend on the pose of the body.
 using BeltProgram = std::function<Belts(double time_s, const Pose3& T_world_body)>;
 
 /// Straight stretches, curves and turns on the spot, about 0.4 m/s on average, with halts; the first 3 s it stands.
