@@ -62,7 +62,7 @@ class BadInput(TunnelRun):
 
     def refuse_recorded(self, name, rows, *says):
         with self.subTest(name):
-            self.refuse(["remote.csv", *says], "mapping", f"remote={{recorded: {self.write('remote.csv', rows)}}}")
+            self.refuse(["teleop.csv", *says], "mapping", f"remote={{recorded: {self.write('teleop.csv', rows)}}}")
 
     def refuse_drive(self, name, content, *says):
         with self.subTest(name):
@@ -217,7 +217,7 @@ class BadInput(TunnelRun):
                 self.refuse(says, "inspection_round", f"references={self.folder}")
 
     def test_a_map_and_a_drive_that_makes_one(self):
-        self.refuse(["map", "remote control"], "mapping", "map=map/map.yaml")
+        self.refuse(["map", "teleop"], "mapping", "map=map/map.yaml")
 
 
 class NoRoute(TunnelRun):

@@ -47,15 +47,15 @@ class Unobserved final : public RunObserver {
 Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files);
 
 /// Static obstacles of the scenario: the listed ones and the randomly scattered ones.
-std::vector<sim::StaticObstacleSettings> props_of(const Scenario& scenario);
+std::vector<sim::StaticObstacleSettings> all_static_obstacles(const Scenario& scenario);
 
 /// Creates the simulator. Throws InputError if the settings of the scenario are inconsistent.
-sim::Simulator make_twin(const Scenario& scenario, const ScenarioFiles& files);
+sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files);
 /// Creates the stack. Throws InputError if the settings of the scenario are inconsistent.
 stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files);
 
 /// Runs simulator and stack in a closed loop until the mission ends, and writes everything to `log_mcap`.
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& twin, stack::Stack& stack,
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator, stack::Stack& stack,
                     const std::filesystem::path& log_mcap, RunObserver& observer);
 
 }  // namespace patrol::app

@@ -119,7 +119,7 @@ TEST(FindMoments, WhatIsAnnouncedTakesItsPlaceInTime) {
   RunHistory history = quiet_minute();
   history.collisions.push_back({10s, "trunk", "wall"});
   const std::vector<Highlight> moments =
-      moments_of(history, {{20s, HighlightKind::kFault, "Fault: silence of lidar"}, {5s, HighlightKind::kFault, "early"}, {99s, HighlightKind::kFault, "after the end"}});
+      moments_of(history, {{20s, HighlightKind::kFault, "Fault: dropout of lidar"}, {5s, HighlightKind::kFault, "early"}, {99s, HighlightKind::kFault, "after the end"}});
   ASSERT_EQ(moments.size(), 3u);
   EXPECT_EQ(moments[0].title, "early");
   EXPECT_EQ(moments[1].kind, HighlightKind::kCollision);
