@@ -58,7 +58,7 @@ Limits one_of(const Table& table) {
 inline std::string describe_limits(const Limits& limits) {
   if (!limits.allowed.empty()) return fmt::format("must be one of {}", fmt::join(limits.allowed, ", "));
   const bool has_min = std::isfinite(limits.min), has_max = std::isfinite(limits.max);
-  if (has_min && has_max) return fmt::format("must lie in {} ... {}", limits.min, limits.max);
+  if (has_min && has_max) return fmt::format("must be in [{}, {}]", limits.min, limits.max);
   if (has_min) return fmt::format("must be at least {}", limits.min);
   if (has_max) return fmt::format("must be at most {}", limits.max);
   return "must be finite";

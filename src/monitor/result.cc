@@ -40,7 +40,7 @@ void check_point(const JsonObject& object, const char* key) { object.numbers(key
 void check_map(const std::string& location, const Json& data) {
   const JsonObject object(location, data, {"width", "height", "resolution_m", "origin_m", "png_base64"});
   for (const char* side : {"width", "height"}) {
-    if (object.integer(side) < 1 || object.integer(side) > kMaxMapSide_px) object.fail(fmt::format("{} must lie in 1 ... {}", side, kMaxMapSide_px));
+    if (object.integer(side) < 1 || object.integer(side) > kMaxMapSide_px) object.fail(fmt::format("{} must be in [1, {}]", side, kMaxMapSide_px));
   }
   if (object.number("resolution_m") <= 0.0) object.fail("resolution_m must be positive");
   check_point(object, "origin_m");

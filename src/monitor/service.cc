@@ -67,7 +67,7 @@ std::int64_t count(const HttpRequest& request, const char* name, std::int64_t ot
   const std::string text = parameter(request, name);
   if (text.empty()) return otherwise;
   const auto value = whole(text);
-  if (!value || *value > 1'000'000'000'000) throw InputError(fmt::format("{} must be a whole number", name));
+  if (!value || *value > 1'000'000'000'000) throw InputError(fmt::format("{} must be an integer", name));
   return *value;
 }
 

@@ -15,7 +15,7 @@ namespace {
 class PoseLookup {
  public:
   PoseLookup(const Trajectory& T_map_body, const RelationSettings& settings)
-      : trajectory_(T_map_body), max_dt_(from_seconds(settings.max_dt_s)), T_body_reference_{settings.ref_x_m, 0.0, 0.0} {}
+      : trajectory_(T_map_body), max_dt_(from_seconds(settings.max_dt_s)), T_body_reference_{settings.reference_x_m, 0.0, 0.0} {}
 
   const Pose2& T_map_reference(Time stamp) {
     const auto known = found_.find(stamp);

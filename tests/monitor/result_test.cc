@@ -41,9 +41,9 @@ TEST(Result, EachFieldIsHeldToItsRule) {
   EXPECT_EQ(refusal_with("/schema", "patrol-result/2"), "result: schema must be patrol-result/1");
   EXPECT_EQ(refusal_with("/robot", ""), "result: robot must have 1 ... 200 bytes");
   EXPECT_EQ(refusal_with("/id", std::string(201, 'x')), "result: id must have 1 ... 200 bytes");
-  EXPECT_EQ(refusal_with("/run", "a\nb"), "result: run must be a word");
-  EXPECT_EQ(refusal_with("/robot", "a\xc2\x9b" "31m"), "result: robot must be a word");  // C1: starts a sequence as ESC [ does
-  EXPECT_EQ(refusal_with("/robot", "a\x7f"), "result: robot must be a word");
+  EXPECT_EQ(refusal_with("/run", "a\nb"), "result: run must be a string");
+  EXPECT_EQ(refusal_with("/robot", "a\xc2\x9b" "31m"), "result: robot must be a string");  // C1: starts a sequence as ESC [ does
+  EXPECT_EQ(refusal_with("/robot", "a\x7f"), "result: robot must be a string");
   EXPECT_EQ(refusal_with("/robot", "Gr\xc3\xb6\xc3\x9f" "e"), "");
   EXPECT_EQ(refusal_with("/sequence", -1), "result: sequence must not be negative");
   EXPECT_EQ(refusal_with("/time_s", "1"), "result: time_s must be a number");
@@ -56,8 +56,8 @@ TEST(Result, EachFieldIsHeldToItsRule) {
 
 TEST(Result, WhatIsNoJsonIsRefusedInOneLine) {
   EXPECT_EQ(refusal_of(""), "body:1: is not JSON: ends too early");
-  EXPECT_EQ(refusal_of("{\"id\": 1, \"id\": 2}"), "body: id stands there twice");
-  EXPECT_EQ(refusal_of("[" + std::string(30, '[')), "body: [0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0]: lies more than 20 levels deep");
+  EXPECT_EQ(refusal_of("{\"id\": 1, \"id\": 2}"), "body: id: duplicate key");
+  EXPECT_EQ(refusal_of("[" + std::string(30, '[')), "body: [0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0]: more than 20 nested levels");
   EXPECT_NE(refusal_of("\"\xff\""), "");
   EXPECT_NE(refusal_of("[1, 2]"), "");
 }

@@ -53,7 +53,7 @@ render::Frame picture_of(const LocalizabilityMap& map, const std::string& where)
 }  // namespace
 
 ExitCode localizability_command(const LocalizabilityOptions& options) {
-  if (!(options.step_m >= 0.05 && options.step_m <= 10.0)) throw InputError(fmt::format("--step-m {}: must lie in 0.05 ... 10", options.step_m));
+  if (!(options.step_m >= 0.05 && options.step_m <= 10.0)) throw InputError(fmt::format("--step-m {}: must be in [0.05, 10]", options.step_m));
   const Scenario scenario = load_scenario(options.scenario, options.overrides);
   const LocalizabilityMap map = map_localizability(scenario, load_scenario_files(scenario, find_data_root(options.scenario)), options.step_m);
   const OutputLock lock = begin_output(options.out, kLocalizability);

@@ -31,7 +31,7 @@ std::pair<int, int> parse_size(const std::string& text) {
 }
 
 double checked_speed(const char* option, double speed) {
-  if (!(speed > 0.0 && speed <= 1000.0)) throw InputError(fmt::format("{} {}: must lie in 0 ... 1000", option, speed));
+  if (!(speed > 0.0 && speed <= 1000.0)) throw InputError(fmt::format("{} {}: must be in [0, 1000]", option, speed));
   return speed;
 }
 

@@ -66,12 +66,12 @@ std::unique_ptr<RunObserver> observer_of(const RunOptions& options, const std::s
 }
 
 std::unique_ptr<Reporter> reporter_of(const RunOptions& options, const Scenario& scenario, const std::string& name, const std::filesystem::path& root) {
-  if (!options.report_to) return nullptr;
+  if (!options.monitor_url) return nullptr;
   const ReportedRun run{.robot = options.robot_name.value_or(fmt::format("{}-{}", scenario.robot, scenario.seed)),
                         .run = new_run_name(name, scenario.seed),
                         .world = scenario.world,
                         .scenario = name};
-  return std::make_unique<Reporter>(root, run, platform_from(*options.report_to, options.report_token_file));
+  return std::make_unique<Reporter>(root, run, platform_from(*options.monitor_url, options.monitor_token_file));
 }
 
 std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario& scenario, const std::string& name, const std::filesystem::path& root,
@@ -113,7 +113,7 @@ ExitCode run_command(const RunOptions& options) {
   std::unique_ptr<RunObserver> observer = observer_of(options, name);
   const std::optional<RunVerdict> verdict = run_reported(options, scenario, name, root, reporter.get(), *observer);
   observer.reset();  // restores the screen
-  if (reporter) say_what_was_sent(*reporter, *options.report_to, root);
+  if (reporter) say_what_was_sent(*reporter, *options.monitor_url, root);
   if (!verdict) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", root.string());
     return ExitCode::kProgramFailed;

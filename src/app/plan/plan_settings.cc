@@ -54,7 +54,7 @@ void set_robot(const std::string& robot, const std::filesystem::path& data_root,
 }
 
 void set_disc(double radius_m, PlanSetup& setup) {
-  if (!(radius_m >= 0.01 && radius_m <= 10.0)) throw InputError(fmt::format("--radius-m: {}: must lie in 0.01 ... 10", radius_m));
+  if (!(radius_m >= 0.01 && radius_m <= 10.0)) throw InputError(fmt::format("--radius-m: {}: must be in [0.01, 10]", radius_m));
   setup.body = {.name = fmt::format("a disc of {} m", radius_m), .footprint = outline_of_disc(radius_m)};
   setup.settings.routes.cost_weight = plan::GlobalPlannerSettings().family.cost_weight;
 }

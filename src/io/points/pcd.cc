@@ -48,7 +48,7 @@ void read_values(FileText& text, const std::string& key, LineTokenizer& fields, 
   } else if (key == "DATA") {
     header.data = fields.word("DATA");
   } else if (key != "VERSION" && key != "VIEWPOINT") {
-    text.refuse("is no line of a PCD header");
+    text.refuse("is not a line of a PCD header");
   }
 }
 
@@ -69,7 +69,7 @@ void set_types(FileText& text, PcdHeader& header) {
   }
   for (std::size_t i = 0; i < header.columns.size(); ++i) {
     const auto type = type_of(header.types[i], header.sizes[i]);
-    if (!type) text.refuse(fmt::format("TYPE and SIZE of field {} do not go together", i + 1));
+    if (!type) text.refuse(fmt::format("TYPE and SIZE of field {} are inconsistent", i + 1));
     header.columns[i].type = *type;
   }
 }

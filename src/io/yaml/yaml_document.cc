@@ -19,7 +19,7 @@ class LimitChecker final : public YAML::EventHandler {
   LimitChecker(const std::string& place, bool has_lines) : place_(place), has_lines_(has_lines) {}
 
   void OnDocumentStart(const YAML::Mark& mark) override {
-    if (++num_documents_ > 1) fail(mark, "holds more after its first YAML document: one document is allowed");
+    if (++num_documents_ > 1) fail(mark, "more than one YAML document: only one is allowed");
   }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { add_leaf(mark, anchor); }
@@ -52,7 +52,7 @@ class LimitChecker final : public YAML::EventHandler {
 
   void add(const YAML::Mark& mark, std::size_t num_nodes) {
     num_nodes_ += num_nodes;
-    if (num_nodes_ > kMaxYamlNodes) fail(mark, fmt::format("holds too many values: at most {} are read", kMaxYamlNodes));
+    if (num_nodes_ > kMaxYamlNodes) fail(mark, fmt::format("too many values: at most {} are allowed", kMaxYamlNodes));
   }
 
   void open(const YAML::Mark& mark, YAML::anchor_t anchor) {

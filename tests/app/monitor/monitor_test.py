@@ -44,7 +44,7 @@ class Refusals(PlatformCase):
         for body in ("", "{", "null", "7", "[[]]", "\x00", json.dumps(event(1))[:-1], json.dumps({**event(1), "extra": 1}), json.dumps([event(1), {**event(2), "time_s": "now"}])):
             self.refuse(400, "POST", "/api/results", body.encode(), token)
         self.refuse(400, "POST", "/api/results", b'{"id": "\xff\xfe"}', token)
-        self.refuse(400, "POST", "/api/results", json.dumps(event(1)).replace("640.0", "1e999"), token, says="too large a number")
+        self.refuse(400, "POST", "/api/results", json.dumps(event(1)).replace("640.0", "1e999"), token, says="number out of range")
         self.refuse(400, "POST", "/api/results", json.dumps([event(i) for i in range(1001)]), token, says="at most 1000 results")
 
     def test_an_oversized_body_with_and_without_its_size(self):
@@ -60,7 +60,7 @@ class Refusals(PlatformCase):
             self.refuse(405, method, path, token=self.platform.token)
 
     def test_a_parameter_that_is_no_number(self):
-        self.refuse(400, "GET", "/api/changes?since=x", says="since must be a whole number")
+        self.refuse(400, "GET", "/api/changes?since=x", says="since must be an integer")
         self.refuse(400, "GET", "/api/history?before=-1")
 
     def test_slow_clients_are_given_up_and_keep_nobody_waiting(self):

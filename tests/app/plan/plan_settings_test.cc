@@ -61,8 +61,8 @@ TEST(PlanSettings, WhatIsWrongIsNamed) {
   EXPECT_NE(unknown_planner.find("planner: fly is out of range: must be one of astar, dijkstra, theta_star"), std::string::npos) << unknown_planner;
   EXPECT_EQ(complaint({.map = "m.yaml", .robot = "wheeled"}), "--robot: there is no robot 'wheeled' (known: quadruped, tracked)");
   EXPECT_EQ(complaint({.map = "m.yaml", .robot = "tracked", .radius_m = 0.3}), "--robot and --radius-m: only one of them can be followed");
-  EXPECT_EQ(complaint({.map = "m.yaml", .radius_m = 0.0}), "--radius-m: 0: must lie in 0.01 ... 10");
-  EXPECT_EQ(complaint({.map = "m.yaml", .radius_m = std::nan("")}), "--radius-m: nan: must lie in 0.01 ... 10");
+  EXPECT_EQ(complaint({.map = "m.yaml", .radius_m = 0.0}), "--radius-m: 0: must be in [0.01, 10]");
+  EXPECT_EQ(complaint({.map = "m.yaml", .radius_m = std::nan("")}), "--radius-m: nan: must be in [0.01, 10]");
   EXPECT_EQ(complaint({.map = "m.yaml", .planner = "any_angle_optimum", .smooth = true}).substr(0, 9), "--smooth:");
   EXPECT_NE(complaint({.map = "m.yaml", .planner = "any_angle_optimum", .robot = "tracked"}).find("routes.cost_weight"), std::string::npos);
   EXPECT_NE(complaint(options_of({"unknown=maybe"})).find("unknown: maybe"), std::string::npos) << complaint(options_of({"unknown=maybe"}));

@@ -51,7 +51,7 @@ TEST(Light, LessThanNoneOfItIsRefused) {
     validate(LightSettings{.brightness_share = -0.1}, "light");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "light.brightness_share = -0.1: must lie in 0 ... 1");
+    EXPECT_STREQ(error.what(), "light.brightness_share = -0.1: must be in [0, 1]");
   }
 }
 

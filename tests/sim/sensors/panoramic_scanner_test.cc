@@ -437,7 +437,7 @@ TEST(PanoramicScanner, AStepOfNothingIsRefusedByItsName) {
     PanoramicScanner scanner(settings, world.scene, {}, 1);
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "sensors.scanner.step_deg = 0: must lie in 0.09 ... 10");
+    EXPECT_STREQ(error.what(), "sensors.scanner.step_deg = 0: must be in [0.09, 10]");
   }
 }
 

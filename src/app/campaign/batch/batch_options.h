@@ -9,7 +9,7 @@ namespace patrol::app {
 /// Options of the commands that make several runs.
 struct BatchOptions {
   int jobs = 0;                 ///< parallel runs; 0: one per core
-  double run_limit_s = 3600.0;  ///< wall-clock limit of a run
+  double run_timeout_s = 3600.0;  ///< wall-clock limit of a run
   std::string keep = "none";    ///< run directories to keep: none, failed, all
 };
 

@@ -43,7 +43,7 @@ std::optional<std::vector<double>> arguments(const std::string& text, const std:
     double number = 0.0;
     const auto [rest, error] = std::from_chars(values.data() + begin, values.data() + end, number);
     if (error != std::errc() || rest != values.data() + end || !std::isfinite(number)) {
-      fail(text, fmt::format("'{}' is not a number; the form is {}:{}", values.substr(begin, end - begin), word, shape));
+      fail(text, fmt::format("'{}' is not a number: must be {}:{}", values.substr(begin, end - begin), word, shape));
     }
     numbers.push_back(number);
     begin = end + 1;
@@ -54,7 +54,7 @@ std::optional<std::vector<double>> arguments(const std::string& text, const std:
 
 std::vector<std::string> spaced(const std::string& text, const std::vector<double>& range, bool in_ratios) {
   const double from = range[0], to = range[1];
-  if (range[2] < 2.0 || range[2] > 10000.0 || range[2] != std::floor(range[2])) fail(text, "N must be a whole number in 2 ... 10000");
+  if (range[2] < 2.0 || range[2] > 10000.0 || range[2] != std::floor(range[2])) fail(text, "N must be an integer in [2, 10000]");
   if (in_ratios && (from <= 0.0 || to <= 0.0)) fail(text, "both ends must be greater than 0");
   const int count = static_cast<int>(range[2]);
   std::vector<std::string> values;
@@ -90,7 +90,7 @@ Axis parse_axis(const std::string& text) {
     axis.kind = kind;
     axis.first = numbers[0], axis.second = numbers[1];
     if (kind == Axis::Kind::kNormal && axis.second < 0.0) fail(text, "the standard deviation is negative");
-    if (kind != Axis::Kind::kNormal && axis.second < axis.first) fail(text, "HIGH is less than LOW");
+    if (kind != Axis::Kind::kNormal && axis.second < axis.first) fail(text, "HIGH must not be less than LOW");
     if (kind == Axis::Kind::kLogUniform && axis.first <= 0.0) fail(text, "LOW must be greater than 0");
   };
   if (const auto range = arguments(text, values, "range", 3, "FROM:TO:N")) axis.values = spaced(text, *range, false);
@@ -103,7 +103,7 @@ Axis parse_axis(const std::string& text) {
   std::set<std::string> seen;
   for (const std::string& value : axis.values) {
     if (value.empty()) fail(text, "a value is empty");
-    if (!seen.insert(value).second) fail(text, fmt::format("{} stands there twice", value));
+    if (!seen.insert(value).second) fail(text, fmt::format("duplicate value '{}'", value));
   }
   return axis;
 }
@@ -112,7 +112,7 @@ std::vector<Variant> cross(const std::vector<Axis>& axes) {
   std::set<std::string> paths;
   std::vector<Variant> variants(1);
   for (const Axis& axis : axes) {
-    if (!paths.insert(axis.path).second) throw InputError(fmt::format("--vary {}: stands there twice", axis.path));
+    if (!paths.insert(axis.path).second) throw InputError(fmt::format("--vary {}: specified twice", axis.path));
     if (axis.is_drawn()) continue;
     std::vector<Variant> longer;
     for (const Variant& variant : variants) {

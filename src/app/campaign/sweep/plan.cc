@@ -46,13 +46,13 @@ SweepManifest plan_sweep(const SweepOptions& options) {
   for (const std::string& text : options.vary) axes.push_back(parse_axis(text));
   SweepManifest manifest = begin_manifest(SweepKind::kSweep, options);
   manifest.variants = cross(axes);
-  manifest.stop = {.when_decided = options.stop_when_decided, .margin = options.margin};
+  manifest.stop = {.when_decided = options.early_stop, .margin = options.margin};
   for (const Axis& axis : axes) manifest.paths.push_back(axis.path);
   plan_runs(options.scenario, axes, manifest);
   return manifest;
 }
 
-SweepManifest plan_budget(const BudgetOptions& options) {
+SweepManifest plan_error_budget(const ErrorBudgetOptions& options) {
   SweepManifest manifest = begin_manifest(SweepKind::kBudget, options);
   manifest.variants.push_back({.name = "as it is", .overrides = {}});
   if (manifest.seeds.size() < 2) throw InputError("--seeds: a budget needs two at least: one says nothing of the spread");
@@ -74,7 +74,7 @@ SweepManifest plan_budget(const BudgetOptions& options) {
   return manifest;
 }
 
-SweepManifest plan_faults(const FaultsOptions& options) {
+SweepManifest plan_fault_matrix(const FaultMatrixOptions& options) {
   SweepManifest manifest = begin_manifest(SweepKind::kFaults, options);
   manifest.paths = {"faults"};
   manifest.variants.push_back({.name = "no fault", .overrides = {"faults=[]"}});

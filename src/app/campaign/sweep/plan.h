@@ -10,9 +10,9 @@ namespace patrol::app {
 SweepManifest plan_sweep(const SweepOptions& options);
 
 /// Plans an error budget: the scenario as it is, without each of its error sources (imperfections.h), and without all.
-SweepManifest plan_budget(const BudgetOptions& options);
+SweepManifest plan_error_budget(const ErrorBudgetOptions& options);
 
 /// Plans a fault matrix: the scenario as it is, and with each fault of its sensors (fault_matrix.h).
-SweepManifest plan_faults(const FaultsOptions& options);
+SweepManifest plan_fault_matrix(const FaultMatrixOptions& options);
 
 }  // namespace patrol::app

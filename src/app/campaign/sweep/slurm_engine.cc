@@ -64,7 +64,7 @@ class SlurmJob {
 std::string shard_command(const SweepOptions& options, const std::filesystem::path& program, const std::string& shard) {
   std::string command = fmt::format("{} sweep {} --seeds {} --jobs {} --keep {} --run-limit-s {} --out {} --shard {}",
                                     shell_quoted(program.string()), shell_quoted(std::filesystem::absolute(options.scenario).string()),
-                                    shell_quoted(options.seeds), std::max(1, options.batch.jobs), options.batch.keep, options.batch.run_limit_s,
+                                    shell_quoted(options.seeds), std::max(1, options.batch.jobs), options.batch.keep, options.batch.run_timeout_s,
                                     shell_quoted(std::filesystem::absolute(options.out).string()), shard);
   const auto add = [&command](const char* option, const std::vector<std::string>& values) {
     for (const std::string& value : values) command += fmt::format(" {} {}", option, shell_quoted(value));

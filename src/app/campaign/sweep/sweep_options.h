@@ -16,7 +16,7 @@ struct SweepOptions {
   std::vector<std::string> vary;       ///< axis.h
   std::string seeds = "10";            ///< "N": 1 ... N; or "A..B"
   std::vector<std::string> metrics = {"pose.ate_rmse_m", "pose.heading_rmse_deg", "map.nearest_mean_m", "mission.completed"};
-  bool stop_when_decided = false;
+  bool early_stop = false;
   double margin = 0.0;
   BatchOptions batch;
   std::string shard;                   ///< "i/n"; empty: all
@@ -28,7 +28,7 @@ struct SweepOptions {
 };
 
 /// Options of `patrol budget`.
-struct BudgetOptions {
+struct ErrorBudgetOptions {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;
   std::string seeds = "5";
@@ -38,7 +38,7 @@ struct BudgetOptions {
 };
 
 /// Options of `patrol faults`.
-struct FaultsOptions {
+struct FaultMatrixOptions {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;
   std::string seeds = "1";

@@ -11,7 +11,7 @@
 
 namespace patrol::app {
 
-ExitCode send_command(const SendOptions& options) {
+ExitCode upload_command(const UploadOptions& options) {
   if (!std::filesystem::exists(options.run / "outbox.jsonl")) throw InputError(fmt::format("{}: has no results to send: there is no outbox.jsonl", options.run.string()));
   Outbox outbox(options.run);
   Sender sender(outbox, platform_from(options.to, options.token_file));

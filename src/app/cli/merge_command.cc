@@ -13,7 +13,7 @@ std::string asked_of(const SweepDirectory& directory) { return io::load_text(ope
 
 }  // namespace
 
-ExitCode collect_command(const std::filesystem::path& root, const std::vector<std::filesystem::path>& parts) {
+ExitCode merge_command(const std::filesystem::path& root, const std::vector<std::filesystem::path>& parts) {
   std::vector<SweepDirectory> sources;
   for (const std::filesystem::path& part : parts) sources.push_back({part});
   const bool is_new = !std::filesystem::exists(SweepDirectory{root}.manifest()) && !parts.empty();
