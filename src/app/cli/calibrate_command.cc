@@ -19,10 +19,10 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kCalibrating = {.name = "calibration of a log",
-                                 .unfinished = "The log has not been calibrated.",
-                                 .made = {"calibration.yaml", "stretches.csv", "metrics.json", "settings.yaml"},
-                                 .proof = "settings.yaml",
-                                 .kept = {"*.part"}};
+                                 .marker_text = "The log has not been calibrated.",
+                                 .outputs = {"calibration.yaml", "stretches.csv", "metrics.json", "settings.yaml"},
+                                 .required_file = "settings.yaml",
+                                 .preserved = {"*.part"}};
 
 /// Settings of `patrol calibrate --set`.
 struct LogCalibrationSettings {

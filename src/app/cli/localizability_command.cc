@@ -16,17 +16,17 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kLocalizability = {.name = "map of localisability",
-                                    .unfinished = "Not every place has been looked from.",
-                                    .made = {"localizability.csv", "localizability.png", "*.part"},
-                                    .proof = "localizability.csv",
-                                    .kept = {}};
+                                    .marker_text = "Not every place has been looked from.",
+                                    .outputs = {"localizability.csv", "localizability.png", "*.part"},
+                                    .required_file = "localizability.csv",
+                                    .preserved = {}};
 
 /// Maps a standard deviation to a logarithmic scale from 0.1 mm to 1 m.
 double share_of(double std_m) { return std::log10(std::clamp(std_m, 1e-4, 1.0)) / 4.0 + 1.0; }
 
 io::Table table_of(const LocalizabilityMap& map) {
   io::Table table{.name = "localizability", .columns = {"x_m", "y_m", "weak_std_m", "weak_direction_deg", "strong_std_m", "returns"}, .rows = {}};
-  for (const LocalizablePlace& place : map.positions) {
+  for (const LocalizabilitySample& place : map.positions) {
     table.rows.push_back({place.p_world_m.x(), place.p_world_m.y(), place.truth.max_std_m, to_deg(place.truth.max_std_direction_rad),
                           place.truth.min_std_m, static_cast<std::int64_t>(place.truth.num_returns)});
   }
@@ -41,7 +41,7 @@ render::Frame picture_of(const LocalizabilityMap& map, const std::string& where)
                        .note = fmt::format("standard deviation along the weak direction; strokes: that direction, where it is more than {:g} cm",
                                            100.0 * score::Localizability::kDegenerate_m),
                        .scale = {{0.0, "0.1 mm"}, {0.25, "1 mm"}, {0.5, "1 cm"}, {0.75, "10 cm"}, {1.0, "1 m, more"}}};
-  for (const LocalizablePlace& place : map.positions) {
+  for (const LocalizabilitySample& place : map.positions) {
     heat.positions.push_back({.p_m = place.p_world_m,
                            .color_fraction = share_of(place.truth.max_std_m),
                            .has_stroke = place.truth.is_degenerate(),
@@ -62,7 +62,7 @@ ExitCode localizability_command(const LocalizabilityOptions& options) {
   complete_output(options.out);
 
   std::vector<double> weak_m;
-  for (const LocalizablePlace& place : map.positions) weak_m.push_back(place.truth.max_std_m);
+  for (const LocalizabilitySample& place : map.positions) weak_m.push_back(place.truth.max_std_m);
   const auto num_degenerate = std::count_if(map.positions.begin(), map.positions.end(), [](const auto& place) { return place.truth.is_degenerate(); });
   fmt::print("{} places, {:g} m apart: one scan leaves {:.4f} m unknown along its weak direction at the median, {:.4f} m at the 95th percentile;\n",
              map.positions.size(), options.step_m, score::percentile(weak_m, 0.5), score::percentile(weak_m, 0.95));

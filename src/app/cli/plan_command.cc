@@ -67,7 +67,7 @@ struct Ground {
   bool is_blocked(const Eigen::Vector2d& p_m) const { return costs.at(costs.geometry().cell_at(p_m)) == plan::kLethalCost; }
 
   /// Message for a blocked point: "--to: 3, 4 is occupied; the nearest free cell is 2.5, 4, 0.50 m away".
-  std::string why_blocked(const std::string& key, const Eigen::Vector2d& p_m) const {
+  std::string blocked_message(const std::string& key, const Eigen::Vector2d& p_m) const {
     const std::string place = fmt::format("{}: {} {}", key, map.text_of(p_m), blocked_reason(occupancy, setup.settings.costmap, p_m));
     const std::optional<Cell> free = nearest_free(costs, p_m);
     if (!free) return place + "; no cell of the map is free";
@@ -101,8 +101,8 @@ ExitCode plan_one(const PlanOptions& options) {
   const GridGeometry& grid = ground.costs.geometry();
   const RouteReport report{.map = ground.map, .map_name = ground.map_name, .setup = ground.setup, .costs = ground.costs,
                            .p_from_m = ground.p_from_m, .p_to_m = p_to_m,
-                           .figures = figures_of_route(ground.costs, grid.cell_at(ground.p_from_m), grid.cell_at(p_to_m), ground.setup.settings)};
-  const plan::Route& route = report.figures.route;
+                           .metrics = evaluate_route(ground.costs, grid.cell_at(ground.p_from_m), grid.cell_at(p_to_m), ground.setup.settings)};
+  const plan::Route& route = report.metrics.route;
   const bool is_found = route.status == plan::PlanStatus::kFound;
   if (options.out) {
     const OutputLock lock = begin_output(*options.out, kPlanOutput);
@@ -114,8 +114,8 @@ ExitCode plan_one(const PlanOptions& options) {
     complete_output(*options.out);
   }
   fmt::print("{}", to_text(report));
-  if (route.status == plan::PlanStatus::kStartBlocked) fmt::print("{}\n", ground.why_blocked("--from", ground.p_from_m));
-  if (!is_found && ground.is_blocked(p_to_m)) fmt::print("{}\n", ground.why_blocked("--to", p_to_m));
+  if (route.status == plan::PlanStatus::kStartBlocked) fmt::print("{}\n", ground.blocked_message("--from", ground.p_from_m));
+  if (!is_found && ground.is_blocked(p_to_m)) fmt::print("{}\n", ground.blocked_message("--to", p_to_m));
   if (options.out) fmt::print("{}\n", (*options.out / "route.png").string());
   return is_found ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }
@@ -148,10 +148,10 @@ ExitCode plan_stations(const PlanOptions& options) {
     complete_output(*options.out);
   }
   fmt::print("{}", to_text(report));
-  if (ground.is_blocked(ground.p_from_m)) fmt::print("{}\n", ground.why_blocked("--from", ground.p_from_m));
+  if (ground.is_blocked(ground.p_from_m)) fmt::print("{}\n", ground.blocked_message("--from", ground.p_from_m));
   for (const std::size_t place : tour->unreachable) {
     const Eigen::Vector2d p_m = place <= stops.size() ? stops[place - 1].p_m : *p_end_m;
-    if (ground.is_blocked(p_m)) fmt::print("{}\n", ground.why_blocked(place_name(report, place), p_m));
+    if (ground.is_blocked(p_m)) fmt::print("{}\n", ground.blocked_message(place_name(report, place), p_m));
   }
   if (options.out) fmt::print("{}\n", (*options.out / "route.png").string());
   return tour->order.is_found && tour->unreachable.empty() && tour->order.lateness <= 0.0 ? ExitCode::kDone : ExitCode::kExpectationMissed;

@@ -47,14 +47,14 @@ render::ReplaySettings replay_settings(const ReplayOptions& options) {
 }
 
 /// Highlights at the start of faults. They come from the scenario because the log does not contain them.
-std::vector<render::Highlight> fault_moments(const std::vector<sim::FaultSettings>& faults) {
-  std::vector<render::Highlight> moments;
+std::vector<render::Highlight> fault_highlights(const std::vector<sim::FaultSettings>& faults) {
+  std::vector<render::Highlight> highlights;
   for (const sim::FaultSettings& fault : faults) {
-    moments.push_back({.at = from_seconds(fault.start_s),
+    highlights.push_back({.at = from_seconds(fault.start_s),
                        .kind = render::HighlightKind::kFault,
                        .title = fmt::format("Fault: {} of {} for {:g} s", fault.kind, fault.sensor, fault.duration_s)});
   }
-  return moments;
+  return highlights;
 }
 
 }  // namespace
@@ -68,14 +68,14 @@ ExitCode replay_command(const ReplayOptions& options) {
   settings.light = scenario.light;
   settings.leaks = scenario.leaks;
   settings.wind = scenario.wind;
-  settings.announced = fault_moments(scenario.faults);
+  settings.announced = fault_highlights(scenario.faults);
   settings.map = files.map;
   const RunRecord record = read_run_record(directory.log());
   if (!record.has_estimate()) throw InputError(fmt::format("{}: ended before the robot had an estimate", directory.log().string()));
   const Pose2 T_world_map =
       files.map ? files.T_site_start : score::align_at_start(record.T_map_body, record.T_world_body);
   sim::AssembledModel model =
-      sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), start_in_world(scenario, files), props_of(scenario));
+      sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), start_in_world(scenario, files), static_obstacles_of(scenario));
 
   if (options.still_s) {
     const Time at = from_seconds(*options.still_s);

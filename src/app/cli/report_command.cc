@@ -23,7 +23,7 @@ report::Page page_of(const std::filesystem::path& root, const std::filesystem::p
   const SweepDirectory directory = open_sweep_directory(root);
   const SweepManifest manifest = load_manifest(directory.manifest());
   const SweepRows rows = load_rows(manifest, directory.store());
-  const SweepProgress progress = progress_of(manifest, rows);
+  const SweepProgress progress = evaluate_progress(manifest, rows);
   if (progress.needed.empty()) return sweep_page(manifest, rows, progress);
   throw InputError(fmt::format("{}: {} of {} runs have no result yet: there is nothing to report", root.string(), progress.needed.size(), progress.counted.size()));
 }

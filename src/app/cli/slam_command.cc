@@ -30,10 +30,10 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kMapping = {.name = "mapping of a log",
-                             .unfinished = "The log has not been mapped to its end.",
-                             .made = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o", "performance.csv", "metrics.json", "settings.yaml", "report.html"},
-                             .proof = "settings.yaml",
-                             .kept = {"*.part"}};
+                             .marker_text = "The log has not been mapped to its end.",
+                             .outputs = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o", "performance.csv", "metrics.json", "settings.yaml", "report.html"},
+                             .required_file = "settings.yaml",
+                             .preserved = {"*.part"}};
 
 /// Settings of `patrol slam --set`.
 struct LogMappingSettings {

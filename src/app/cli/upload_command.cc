@@ -14,8 +14,8 @@ namespace patrol::app {
 ExitCode upload_command(const UploadOptions& options) {
   if (!std::filesystem::exists(options.run / "outbox.jsonl")) throw InputError(fmt::format("{}: has no results to send: there is no outbox.jsonl", options.run.string()));
   Outbox outbox(options.run);
-  Sender sender(outbox, platform_from(options.to, options.token_file));
-  const std::size_t num_refused = outbox.num_refused(), num_before = outbox.num_waiting();
+  Sender sender(outbox, make_monitor_server(options.to, options.token_file));
+  const std::size_t num_rejected = outbox.num_rejected(), num_before = outbox.num_pending();
   const InterruptGuard interrupt;
   ProgressBar bar;
 
@@ -24,8 +24,8 @@ ExitCode upload_command(const UploadOptions& options) {
     outcome = sender.send_next();
     if (outcome == Sender::Outcome::kSent) {
       progress_s = wall_seconds();
-      bar.show(fmt::format("sending: {} of {} results wait", outbox.num_waiting(), num_before));
-    } else if (outcome == Sender::Outcome::kRefusedToken) {
+      bar.show(fmt::format("sending: {} of {} results wait", outbox.num_pending(), num_before));
+    } else if (outcome == Sender::Outcome::kInvalidToken) {
       throw InputError(fmt::format("{}: {}", options.to, sender.why()));
     } else if (outcome == Sender::Outcome::kUnreachable) {
       if (interrupt.is_interrupted() || wall_seconds() - progress_s > options.limit_s) break;
@@ -34,13 +34,13 @@ ExitCode upload_command(const UploadOptions& options) {
     if (interrupt.is_interrupted()) break;
   }
 
-  const std::size_t waiting = outbox.num_waiting(), refused = outbox.num_refused() - num_refused;
-  if (refused > 0) fmt::print(stderr, "patrol: {} refused {} results: they lie in {}\n", options.to, refused, (options.run / "outbox.refused.jsonl").string());
-  if (waiting > 0) {
-    fmt::print(stderr, "patrol: {} results still wait in {}: {}\n", waiting, outbox.file().string(), sender.why());
+  const std::size_t num_pending = outbox.num_pending(), num_rejected = outbox.num_rejected() - num_rejected;
+  if (num_rejected > 0) fmt::print(stderr, "patrol: {} refused {} results: they lie in {}\n", options.to, num_rejected, (options.run / "outbox.refused.jsonl").string());
+  if (num_pending > 0) {
+    fmt::print(stderr, "patrol: {} results still wait in {}: {}\n", num_pending, outbox.file().string(), sender.why());
     return ExitCode::kProgramFailed;
   }
-  fmt::print("sent: {} results to {}\n", num_before - refused, options.to);
+  fmt::print("sent: {} results to {}\n", num_before - num_rejected, options.to);
   return ExitCode::kDone;
 }
 

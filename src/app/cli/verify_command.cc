@@ -17,10 +17,10 @@ ExitCode verify_command(const std::filesystem::path& run) {
   const TemporaryFolder again("verify");
   const std::filesystem::path log = again.path() / "log.mcap";
   fmt::print(stderr, "verify: running {} again, seed {}\n", directory.scenario().string(), scenario.seed);
-  sim::Simulator twin = make_twin(scenario, files);
+  sim::Simulator simulator = make_simulator(scenario, files);
   stack::Stack stack = make_stack(scenario, files);
-  Unobserved nobody;
-  run_loop(scenario, files, twin, stack, log, nobody);
+  NullObserver nobody;
+  run_loop(scenario, files, simulator, stack, log, nobody);
 
   const std::optional<io::LogDifference> difference = io::first_difference(directory.log(), log);
   if (!difference) {

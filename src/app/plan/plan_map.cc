@@ -51,12 +51,12 @@ Eigen::Vector2d PlanMap::place(const std::string& key, double x, double y) const
   return p_m;
 }
 
-Eigen::Vector2d PlanMap::named(const Eigen::Vector2d& p_m) const {
+Eigen::Vector2d PlanMap::to_user(const Eigen::Vector2d& p_m) const {
   return is_moving_ai() ? Eigen::Vector2d(p_m.x() - 0.5, geometry().height - 0.5 - p_m.y()) : p_m;
 }
 
 std::string PlanMap::text_of(const Eigen::Vector2d& p_m) const {
-  const Eigen::Vector2d p = named(p_m);
+  const Eigen::Vector2d p = to_user(p_m);
   return is_moving_ai() ? fmt::format("{}, {}", p.x(), p.y()) : fmt::format("{:.2f}, {:.2f}", p.x(), p.y());
 }
 

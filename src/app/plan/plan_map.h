@@ -30,7 +30,7 @@ class PlanMap {
   Eigen::Vector2d place(const std::string& key, const std::string& text) const;
   Eigen::Vector2d place(const std::string& key, double x, double y) const;
   /// Converts a position to the user's coordinates.
-  Eigen::Vector2d named(const Eigen::Vector2d& p_m) const;
+  Eigen::Vector2d to_user(const Eigen::Vector2d& p_m) const;
   std::string text_of(const Eigen::Vector2d& p_m) const;
 
  private:

@@ -48,7 +48,7 @@ std::optional<std::string> failure_of(const SolvedProblem& solved, const plan::R
   const io::MovingAiProblem& problem = solved.problem;
   if (solved.status == plan::PlanStatus::kNoneFound) return "no route was found";
   if (!solved.is_found()) return "there is no route: the file says there is";
-  if (const auto fault = find_fault(costs, route, problem.start, problem.goal, planner == "any_angle_optimum")) return "the route " + *fault;
+  if (const auto fault = validate_route(costs, route, problem.start, problem.goal, planner == "any_angle_optimum")) return "the route " + *fault;
   if (must_agree(planner) && !solved.agrees()) return fmt::format("is {:.6f} cells long, published {:.6f}", solved.length, problem.optimal_length);
   if (is_any_angle(planner) && solved.length > problem.optimal_length + solved.published_tol()) {
     return fmt::format("is {:.6f} cells long, longer than {:.6f} over eight neighbours", solved.length, problem.optimal_length);

@@ -11,7 +11,7 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::size_t kMostFailuresPrinted = 20;
+constexpr std::size_t kMaxFailuresPrinted = 20;
 
 struct Summary {
   std::size_t num_found = 0, num_agree = 0;
@@ -61,9 +61,9 @@ std::string to_text(const ProblemReport& report) {
                       1e3 * summary.processor_s / static_cast<double>(count), summary.processor_s, failed);
   std::size_t num_printed = 0;
   for (const SolvedProblem& solved : report.solved) {
-    if (solved.failure && num_printed++ < kMostFailuresPrinted) text += fmt::format("  {}:{}: {}\n", report.file_name, solved.problem.line, *solved.failure);
+    if (solved.failure && num_printed++ < kMaxFailuresPrinted) text += fmt::format("  {}:{}: {}\n", report.file_name, solved.problem.line, *solved.failure);
   }
-  if (failed > kMostFailuresPrinted) text += fmt::format("  and {} more\n", failed - kMostFailuresPrinted);
+  if (failed > kMaxFailuresPrinted) text += fmt::format("  and {} more\n", failed - kMaxFailuresPrinted);
   return text;
 }
 

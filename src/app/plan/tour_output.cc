@@ -87,7 +87,7 @@ std::string to_text(const TourReport& report) {
   }
   text += fmt::format("ways         {} planned, {:.2f} ms each\n", tour.num_routes, 1e3 * tour.processor_s / std::max(1, tour.num_routes));
   if (!tour.unreachable.empty()) {
-    text += fmt::format("UNREACHABLE  {}{}\n", fmt::join(unreachable_names(report), ", "), tour.is_proved ? "" : ": this planner may miss a way");
+    text += fmt::format("UNREACHABLE  {}{}\n", fmt::join(unreachable_names(report), ", "), tour.is_proven ? "" : ": this planner may miss a way");
   }
   return text;
 }
@@ -104,7 +104,7 @@ io::Metrics to_json(const TourReport& report) {
                       {"leaves_s", visit.leaves_s},
                       {"late_s", visit.late_s}});
   }
-  const auto figure = [&](double value) { return tour.order.is_found ? io::Metrics(value) : io::Metrics(nullptr); };
+  const auto value_or_null = [&](double value) { return tour.order.is_found ? io::Metrics(value) : io::Metrics(nullptr); };
   return {{"map", report.map_name},
           {"grid", grid_json(report.map, report.costs, report.setup.body)},
           {"planner", report.setup.settings.planner},
@@ -113,12 +113,12 @@ io::Metrics to_json(const TourReport& report) {
           {"tour",
            {{"is_found", tour.order.is_found},
             {"is_exact", tour.order.is_exact},
-            {fmt::format("length_{}", unit), figure(length_m(tour))},
-            {"completion_s", figure(tour.order.completion)},
-            {"waiting_s", figure(waiting_s(tour))},
-            {"lateness_s", figure(tour.order.lateness)},
-            {"lower_bound_s", figure(tour.order.lower_bound)},
-            {"gap", figure(tour.order.gap())},
+            {fmt::format("length_{}", unit), value_or_null(length_m(tour))},
+            {"completion_s", value_or_null(tour.order.completion)},
+            {"waiting_s", value_or_null(waiting_s(tour))},
+            {"lateness_s", value_or_null(tour.order.lateness)},
+            {"lower_bound_s", value_or_null(tour.order.lower_bound)},
+            {"gap", value_or_null(tour.order.gap())},
             {"unreachable", unreachable_names(report)}}},
           {"visits", visits},
           {"performance", {{"num_ways", tour.num_routes}, {"processor_s", tour.processor_s}}}};
@@ -128,7 +128,7 @@ io::Table tour_table(const TourReport& report) {
   const std::string unit = report.map.unit();
   io::Table table{.name = "tour", .columns = {"name", "x_" + unit, "y_" + unit, "way_" + unit, "arrives_s", "waits_s", "leaves_s", "late_s"}, .rows = {}};
   for (const TourVisit& visit : report.tour.visits) {
-    const Eigen::Vector2d p = report.map.named(place_of(report, visit.place));
+    const Eigen::Vector2d p = report.map.to_user(place_of(report, visit.place));
     table.rows.push_back({place_name(report, visit.place), p.x(), p.y(), visit.leg_m, visit.arrives_s, visit.waits_s, visit.leaves_s, visit.late_s});
   }
   return table;

@@ -29,7 +29,7 @@ struct TourPlan {
   plan::TourOrder order;              ///< order of the reachable stations, by their own indices
   std::vector<TourVisit> visits;      ///< in order, from the start to the end, or back to the start
   std::vector<std::size_t> unreachable;  ///< places without a path from the start
-  bool is_proved = true;                 ///< whether unreachability is proven; false with an incomplete planner
+  bool is_proven = true;                 ///< whether unreachability is proven; false with an incomplete planner
   std::vector<Eigen::Vector2d> points_m; ///< the whole path, in the grid's frame
   int num_routes = 0;                 ///< number of planned paths
   double processor_s = 0.0;           ///< processor time of planning

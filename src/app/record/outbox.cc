@@ -90,9 +90,9 @@ void Outbox::mark_sent(const Batch& batch) {
 
 void Outbox::set_aside(const std::string& result) { std::ofstream(refused_file(root_), std::ios::binary | std::ios::app) << result << "\n"; }
 
-std::size_t Outbox::num_waiting() const { return num_waiting_results(root_); }
-std::size_t Outbox::num_refused() const { return num_lines(refused_file(root_), 0); }
+std::size_t Outbox::num_pending() const { return num_pending_results(root_); }
+std::size_t Outbox::num_rejected() const { return num_lines(refused_file(root_), 0); }
 
-std::size_t num_waiting_results(const std::filesystem::path& root) { return num_lines(root / "outbox.jsonl", sent_bytes(root)); }
+std::size_t num_pending_results(const std::filesystem::path& root) { return num_lines(root / "outbox.jsonl", sent_bytes(root)); }
 
 }  // namespace patrol::app

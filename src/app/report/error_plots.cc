@@ -42,7 +42,7 @@ class Plots {
   explicit Plots(const RunContents& run) : axis_{.label = "time, s", .max = run.end_s()}, marks_(marks_of(run)), spans_(spans_of(run)) {}
 
   report::EventTimeline lanes(const RunContents& run) const {
-    return {.title = "Events", .axis = axis_, .lanes = lanes_of(run), .spans = spans_};
+    return {.title = "Events", .axis = axis_, .lanes = make_lanes(run), .spans = spans_};
   }
   LinePlot lines(const std::string& title, const std::string& unit, std::vector<Curve> curves) const {
     return {.title = title, .unit = unit, .axis = axis_, .max = {}, .curves = std::move(curves), .marks = marks_, .spans = spans_};
@@ -54,9 +54,9 @@ class Plots {
   std::vector<report::PlotSpan> spans_;
 };
 
-LinePlot trust_plot(const Plots& plots, const std::vector<LocalizationConfidence>& trusts) {
-  Curve confidence{.name = "0 lost, 1 sure", .ink = SeriesColor::kTrust, .points = {}};
-  for (const LocalizationConfidence& one : trusts) confidence.points.emplace_back(to_seconds(one.stamp), one.confidence);
+LinePlot confidence_plot(const Plots& plots, const std::vector<LocalizationConfidence>& confidences) {
+  Curve confidence{.name = "0 lost, 1 sure", .ink = SeriesColor::kConfidence, .points = {}};
+  for (const LocalizationConfidence& one : confidences) confidence.points.emplace_back(to_seconds(one.stamp), one.confidence);
   LinePlot plot = plots.lines("Localisation's trust in itself", "", {confidence});
   plot.max = 1.05;
   return plot;
@@ -87,7 +87,7 @@ std::vector<report::Block> error_blocks(const RunContents& run) {
   blocks.emplace_back(plots.lines("Position error", "m", {position_curve("estimate", SeriesColor::kEstimate, estimate), bound_curve("its own 2σ", record, position_std_m)}));
   blocks.emplace_back(unaided_plot(plots, run));
   blocks.emplace_back(plots.lines("Heading error", "°", {heading_curve("estimate", SeriesColor::kEstimate, estimate), bound_curve("its own 2σ", record, heading_std_deg)}));
-  if (!record.confidences.empty()) blocks.emplace_back(trust_plot(plots, record.confidences));
+  if (!record.confidences.empty()) blocks.emplace_back(confidence_plot(plots, record.confidences));
   report::TextBlock note;
   note.text = "Map and world are joined at the start; nothing is fitted afterwards. 2σ: of the position, twice the root of the sum of both variances. "
               "Lines: troubles, recoveries, relocalisations; shaded: faults, and where the robot says that it is lost.";

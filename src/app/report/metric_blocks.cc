@@ -17,7 +17,7 @@ namespace {
 using report::Tone;
 
 /// Cell with a metric of an entry in fixed decimals, which aligns the decimal points of a column.
-report::TableCell figure_cell(const io::Metrics& entry, const std::string& path, int decimals, double factor = 1.0) {
+report::TableCell metric_cell(const io::Metrics& entry, const std::string& path, int decimals, double factor = 1.0) {
   const std::optional<double> value = io::metric_at(entry, path);
   return value ? report::TableCell{fmt::format("{:.{}f}", factor * *value, decimals)} : report::TableCell{"–", Tone::kFaint};
 }
@@ -48,10 +48,10 @@ report::BoxPlot box_plot(const io::Metrics& metrics, const std::string& metric, 
 }
 
 std::vector<report::TableCell> goal_row(const std::string& name, const io::Metrics& goal) {
-  std::vector<report::TableCell> row = {{name}, figure_cell(goal, "arrivals", 0), figure_cell(goal, "failed", 0)};
+  std::vector<report::TableCell> row = {{name}, metric_cell(goal, "arrivals", 0), metric_cell(goal, "failed", 0)};
   if (goal.value("failed", 0) > 0) row.back().tone = Tone::kBad;
-  for (const char* statistic : {"mean", "std", "max"}) row.push_back(figure_cell(goal, fmt::format("position_error_m.{}", statistic), 2, 100.0));
-  for (const char* statistic : {"mean", "std", "max"}) row.push_back(figure_cell(goal, fmt::format("heading_error_deg.{}", statistic), 2));
+  for (const char* statistic : {"mean", "std", "max"}) row.push_back(metric_cell(goal, fmt::format("position_error_m.{}", statistic), 2, 100.0));
+  for (const char* statistic : {"mean", "std", "max"}) row.push_back(metric_cell(goal, fmt::format("heading_error_deg.{}", statistic), 2));
   return row;
 }
 
@@ -82,10 +82,10 @@ std::vector<report::Block> station_blocks(const io::Metrics& metrics) {
     const bool is_reached = station.value("reached", false);
     table.rows.push_back({{station.value("name", "")},
                           is_reached ? report::TableCell{"yes", Tone::kGood} : report::TableCell{"NO", Tone::kBad},
-                          figure_cell(station, "position_error_m", 1, 100.0),
-                          figure_cell(station, "heading_error_deg", 2),
-                          figure_cell(station, "stand_error_m", 1, 100.0),
-                          figure_cell(station, "map_error_m", 1, 100.0)});
+                          metric_cell(station, "position_error_m", 1, 100.0),
+                          metric_cell(station, "heading_error_deg", 2),
+                          metric_cell(station, "stand_error_m", 1, 100.0),
+                          metric_cell(station, "map_error_m", 1, 100.0)});
   }
   return {table, report::TextBlock{"On arrival: error of the robot's own pose and heading; where it truly stood, from where the survey wants it; "
                                    "how far the map's surroundings have to be moved to fit the world."}};
@@ -120,11 +120,11 @@ std::vector<report::Block> leak_blocks(const io::Metrics& metrics) {
   for (const io::Metrics& finding : metrics["inspection"]["findings"]) {
     const bool is_leak = finding.contains("leak") && finding["leak"].is_string();
     table.rows.push_back({{finding.value("station", "")},
-                          figure_cell(finding, "column_ppm_m", 0),
-                          figure_cell(finding, "x_m", 2),
-                          figure_cell(finding, "y_m", 2),
+                          metric_cell(finding, "column_ppm_m", 0),
+                          metric_cell(finding, "x_m", 2),
+                          metric_cell(finding, "y_m", 2),
                           is_leak ? report::TableCell{finding["leak"].get<std::string>(), Tone::kGood} : report::TableCell{"false alarm", Tone::kBad},
-                          figure_cell(finding, "position_error_m", 1, 100.0)});
+                          metric_cell(finding, "position_error_m", 1, 100.0)});
   }
   return {table};
 }
@@ -139,23 +139,23 @@ std::vector<report::Block> lining_blocks(const io::Metrics& metrics) {
     const bool is_found = ring.value("is_found", false), has_moved = std::abs(ring.value("true_peak_mm", 0.0)) > 0.0;
     table.rows.push_back({{ring.value("station", "")},
                           {fmt::format("{}", ring.value("ring", 0))},
-                          figure_cell(ring, "true_peak_mm", 1),
-                          figure_cell(ring, "reported_mm", 2),
-                          figure_cell(ring, "error_mm", 2),
-                          figure_cell(ring, "place_error_m", 1, 100.0),
+                          metric_cell(ring, "true_peak_mm", 1),
+                          metric_cell(ring, "reported_mm", 2),
+                          metric_cell(ring, "error_mm", 2),
+                          metric_cell(ring, "place_error_m", 1, 100.0),
                           !is_found ? report::TableCell{"missed", Tone::kBad} : has_moved ? report::TableCell{"found", Tone::kGood} : report::TableCell{"false finding", Tone::kBad}});
   }
-  const auto figure = [&](const char* name) { return io::metric_at(lining, name).value_or(0.0); };
+  const auto value = [&](const char* name) { return io::metric_at(lining, name).value_or(0.0); };
   return {table, report::TextBlock{fmt::format("{:.0f} of {:.0f} scans were laid on their references. {:.0f} cells (a ring's part in ten degrees): RMS error {:.2f} mm; {:.1f} % of their "
                                                "95 % intervals hold the truth.",
-                                               figure("registered"), figure("stations"), figure("cells"), figure("cell_rmse_mm"), 100.0 * figure("cell_coverage_95"))}};
+                                               value("registered"), value("stations"), value("cells"), value("cell_rmse_mm"), 100.0 * value("cell_coverage_95"))}};
 }
 
 std::vector<report::Block> water_blocks(const io::Metrics& metrics) {
   if (!io::metric_at(metrics, "inspection.water.stations")) return {};
   const io::Metrics& water = metrics["inspection"]["water"];
-  const auto figure = [&](const char* name) { return io::metric_at(water, name).value_or(0.0); };
-  const std::string summary = fmt::format("Bodies of water ahead of the face: {:.0f}; found: {:.0f}; false alarms: {:.0f}.", figure("bodies"), figure("found"), figure("false_alarms"));
+  const auto value = [&](const char* name) { return io::metric_at(water, name).value_or(0.0); };
+  const std::string summary = fmt::format("Bodies of water ahead of the face: {:.0f}; found: {:.0f}; false alarms: {:.0f}.", value("bodies"), value("found"), value("false_alarms"));
   if (!is_list(water, "findings")) return {report::TextBlock{summary}};
   report::TableBlock table{.caption = "Water ahead of the face",
                            .columns = {{"soundings"}, {"off by, m", true}, {"of that along the way, m", true}, {"radius off by, m", true}, {"interval"}, {""}},
@@ -164,9 +164,9 @@ std::vector<report::Block> water_blocks(const io::Metrics& metrics) {
     const bool is_true = finding.value("is_true", false);
     const bool holds = is_true && finding.value("distance_holds", false);
     table.rows.push_back({{finding.value("name", "")},
-                          figure_cell(finding, "position_error_m", 2),
-                          figure_cell(finding, "ahead_error_m", 2),
-                          figure_cell(finding, "radius_error_m", 2),
+                          metric_cell(finding, "position_error_m", 2),
+                          metric_cell(finding, "ahead_error_m", 2),
+                          metric_cell(finding, "radius_error_m", 2),
                           {holds ? "holds the distance" : "does not hold it", holds ? Tone::kGood : Tone::kBad},
                           is_true ? report::TableCell{"found", Tone::kGood} : report::TableCell{"false alarm", Tone::kBad}});
   }
@@ -186,11 +186,11 @@ std::vector<report::Block> inspection_blocks(const io::Metrics& metrics) {
 std::vector<report::Block> performance_blocks(const io::Metrics& metrics) {
   if (!metrics.contains("performance") || !metrics["performance"].contains("parts_s")) return {};
   const io::Metrics& performance = metrics["performance"];
-  const auto figure = [&](const char* name) { return io::metric_at(performance, name).value_or(0.0); };
+  const auto value = [&](const char* name) { return io::metric_at(performance, name).value_or(0.0); };
   report::BarBlock bars{.caption = fmt::format("Wall time by part: {:.1f} s in all, {:.1f} s of processor time, {:.1f} simulated s per s, {:.0f} MB at most",
-                                               figure("wall_s"), figure("cpu_s"), figure("real_time_factor"), figure("peak_memory_mb")),
+                                               value("wall_s"), value("cpu_s"), value("real_time_factor"), value("peak_memory_mb")),
                         .bars = {}};
-  double rest_s = figure("wall_s");
+  double rest_s = value("wall_s");
   for (const auto& [part, seconds] : performance["parts_s"].items()) {
     const double part_s = seconds.get<double>();
     rest_s -= part_s;

@@ -15,13 +15,13 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::uintmax_t kLargestEmbedded = 6u << 20;  // bytes: limit of common mail gateways
+constexpr std::uintmax_t kMaxEmbedded_bytes = 6u << 20;  // bytes: limit of common mail gateways
 
 using Blocks = std::vector<report::Block>;
 
-Blocks figure_blocks(const RunContents& run) {
+Blocks key_metric_blocks(const RunContents& run) {
   if (run.metrics.empty()) return {};
-  return {key_figures(run.metrics), all_metrics(run.metrics, check_expectations(run.scenario.expect, run.metrics))};
+  return {key_metrics(run.metrics), all_metrics(run.metrics, check_expectations(run.scenario.expect, run.metrics))};
 }
 
 Blocks settings_blocks(const RunContents& run) {
@@ -37,7 +37,7 @@ Blocks settings_blocks(const RunContents& run) {
 Blocks replay_blocks(const RunContents& run, const std::filesystem::path& page_file) {
   const std::filesystem::path video = run.directory.root / "replay.mp4";
   if (!std::filesystem::exists(video)) return {};
-  if (std::filesystem::file_size(video) <= kLargestEmbedded) {
+  if (std::filesystem::file_size(video) <= kMaxEmbedded_bytes) {
     return {report::VideoBlock{.mp4 = io::load_text(video), .url = "", .caption = "Rendered from the log by patrol replay"}};
   }
   const bool is_beside = std::filesystem::absolute(page_file).lexically_normal().parent_path() ==
@@ -63,11 +63,11 @@ report::Page run_page(const RunContents& run, const std::filesystem::path& page_
                     .title = fmt::format("{} in the {}, seed {}", run.name, run.scenario.world, run.scenario.seed),
                     .facts = facts_of(run),
                     .sections = {{.title = "", .blocks = {verdict_of(run)}}},
-                    .footer = fmt::format("Made by patrol report {} from the run's directory alone. Its scenario.yaml: {}.", PATROL_VERSION, run.made_by)};
+                    .footer = fmt::format("Made by patrol report {} from the run's directory alone. Its scenario.yaml: {}.", PATROL_VERSION, run.origin_comment)};
   const auto add = [&](const std::string& title, Blocks blocks) {
     if (!blocks.empty()) page.sections.push_back({title, std::move(blocks)});
   };
-  add("Key figures", figure_blocks(run));
+  add("Key figures", key_metric_blocks(run));
   add("Replay", replay_blocks(run, page_file));
   add("Map", map_blocks(run));
   add("Error over time", error_blocks(run));

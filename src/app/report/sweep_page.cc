@@ -24,7 +24,7 @@ report::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRow
   const std::vector<std::string> names = short_names(manifest);
   std::vector<std::string> better, worse;
   for (std::size_t variant = 1; variant < manifest.variants.size(); ++variant) {
-    const VariantFigure figure = compare(manifest, rows, metric, progress.num_seeds[variant], level_of(manifest))[variant];
+    const VariantMetric figure = compare(manifest, rows, metric, progress.num_seeds[variant], confidence_level(manifest))[variant];
     if (figure.verdict == "lower") better.push_back(names[variant]);
     if (figure.verdict == "higher") worse.push_back(names[variant]);
   }
@@ -48,8 +48,8 @@ report::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRow
 
 report::VerdictBlock budget_verdict(const std::vector<Budget>& budgets, const SweepRows& rows, const SweepProgress& progress) {
   report::VerdictBlock verdict;
-  const bool has_owner = !budgets.empty() && !budgets.front().shares.empty() && budgets.front().shares.front().share && !budgets.front().shares.front().share->contains(0.0);
-  verdict.word = has_owner ? budgets.front().shares.front().name : "No single owner";
+  const bool has_owner = !budgets.empty() && !budgets.front().contributions.empty() && budgets.front().contributions.front().value && !budgets.front().contributions.front().value->contains(0.0);
+  verdict.word = has_owner ? budgets.front().contributions.front().name : "No single owner";
   for (const Budget& budget : budgets) verdict.reason += budget_finding(budget) + " ";
   verdict.reason += not_done(rows, progress);
   return verdict;
@@ -73,9 +73,9 @@ report::TableBlock fault_table(const SweepManifest& manifest, const std::vector<
                                        {std::to_string(row.seed)},
                                        {executed_text(row), row.is_not_executed() ? Tone::kWarning : Tone::kPlain},
                                        {std::string(text_of(row.outcome)), tone_of(row.outcome)},
-                                       {row.num_noticed ? fmt::format("{:.0f}", *row.num_noticed) : "–"},
+                                       {row.num_detected ? fmt::format("{:.0f}", *row.num_detected) : "–"},
                                        {row.end}};
-    for (const auto& figure : row.figures) cells.push_back({figure ? fmt::format("{:.4g}", *figure) : "–"});
+    for (const auto& figure : row.values) cells.push_back({figure ? fmt::format("{:.4g}", *figure) : "–"});
     table.rows.push_back(cells);
   }
   return table;

@@ -47,7 +47,7 @@ std::vector<report::TableCell> kidnap_row(const RunContents& run, const KidnapSe
 std::string missed_text(const std::vector<CheckedExpectation>& checks) {
   std::vector<std::string> texts;
   for (const CheckedExpectation& check : checks) {
-    if (!check.is_met) texts.push_back(missed(check));
+    if (!check.is_met) texts.push_back(describe_missed(check));
   }
   if (texts.empty()) return "";
   return fmt::format("{} of {} expectations missed: {}.", texts.size(), checks.size(), fmt::join(texts, "; "));

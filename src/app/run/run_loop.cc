@@ -43,7 +43,7 @@ sim::SimulatorSettings simulator_settings(const Scenario& scenario, const Scenar
           .sensors = scenario.sensors,
           .locomotion = scenario.locomotion,
           .track_drive = scenario.track_drive,
-          .props = props_of(scenario),
+          .props = static_obstacles_of(scenario),
           .lining = files.route.lining,  // site is world
           .lining_deformations = scenario.lining,
           .actors = scenario.actors,
@@ -71,14 +71,14 @@ Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files) {
                                     to_rad(scenario.start.turn_deg)};
 }
 
-std::vector<sim::StaticObstacleSettings> props_of(const Scenario& scenario) {
+std::vector<sim::StaticObstacleSettings> static_obstacles_of(const Scenario& scenario) {
   std::vector<sim::StaticObstacleSettings> props = scenario.props;
   const std::vector<sim::StaticObstacleSettings> scattered = sim::scatter_low_obstacles(scenario.low_obstacles, scenario.seed);
   props.insert(props.end(), scattered.begin(), scattered.end());
   return props;
 }
 
-sim::Simulator make_twin(const Scenario& scenario, const ScenarioFiles& files) {
+sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files) {
   return sim::Simulator(simulator_settings(scenario, files), files.robot, scenario.seed, render::make_depth_renderer);
 }
 
@@ -93,7 +93,7 @@ stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
                             .seed = scenario.seed});
 }
 
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& twin, stack::Stack& stack,
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator, stack::Stack& stack,
                     const std::filesystem::path& log_mcap, RunObserver& observer) {
   const auto wall_start = std::chrono::steady_clock::now();
   const double cpu_start = cpu_seconds();
@@ -105,7 +105,7 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::S
   Schedule progress_due(2.0);
   const Time limit = from_seconds(scenario.time_limit_s);
   double distance_m = 0.0;
-  Eigen::Vector3d last_position = twin.truth().T_world_body.position;
+  Eigen::Vector3d last_position = simulator.truth().T_world_body.position;
   RunOutcome outcome;
   std::vector<KidnapSettings> kidnaps = scenario.kidnaps;
   std::stable_sort(kidnaps.begin(), kidnaps.end(), [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
@@ -116,70 +116,70 @@ RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::S
       std::visit(Overloaded{[&](const auto& content) { log.write(now, content); },
                             [&]<InstrumentOrder Command>(const Command& order) {
                               log.write(now, order);
-                              twin.command(order);
+                              simulator.command(order);
                             }},
                  message);
-      observer.see(message);
+      observer.on_message(message);
     }
   };
 
   observer.begin(files);
   for (bool running = true; running;) {
-    const Time now = twin.now();
-    for (const SensorMessage& message : twin.take_messages()) {
+    const Time now = simulator.now();
+    for (const SensorMessage& message : simulator.take_messages()) {
       {
         const auto timer = clock.time_stage("log");
         log.write(now, message);
       }
       stack.handle(message);
     }
-    if (twin.has_fallen()) {
+    if (simulator.has_fallen()) {
       stack.handle_fall(now);
       outcome.end = RunEnd::kFall;
     }
     stack.step(now);
     write_stack_messages(now);
-    twin.set_command(stack.command());
+    simulator.set_command(stack.command());
 
     const auto is_kidnapped = [&](const KidnapSettings& kidnap) { return from_seconds(kidnap.at_s) <= now; };
     while (outcome.num_kidnaps < kidnaps.size() && is_kidnapped(kidnaps[outcome.num_kidnaps])) {
       const KidnapSettings& kidnap = kidnaps[outcome.num_kidnaps++];
-      twin.teleport({kidnap.x_m, kidnap.y_m, to_rad(kidnap.heading_deg)});
+      simulator.teleport({kidnap.x_m, kidnap.y_m, to_rad(kidnap.heading_deg)});
     }
-    const GroundTruth truth = twin.truth();
-    for (const Collision& collision : twin.take_collisions()) log.write(now, collision);
+    const GroundTruth truth = simulator.truth();
+    for (const Collision& collision : simulator.take_collisions()) log.write(now, collision);
     if (truth_due.is_due(now)) {
       distance_m += (truth.T_world_body.position - last_position).head<2>().norm();
       last_position = truth.T_world_body.position;
       log.write(now, truth);
-      observer.see(truth);
+      observer.on_ground_truth(truth);
     }
-    if (state_due.is_due(now)) log.write(now, twin.state());
+    if (state_due.is_due(now)) log.write(now, simulator.state());
 
     running = !stack.mission_is_over() && now < limit;
     if (now >= limit) outcome.end = RunEnd::kTimeLimit;
-    if (progress_due.is_due(now) && !observer.go_on(now, distance_m)) {
+    if (progress_due.is_due(now) && !observer.keep_running(now, distance_m)) {
       outcome.end = RunEnd::kInterrupted;
       running = false;
     }
-    if (running) twin.step();
+    if (running) simulator.step();
   }
 
-  const MapUpdate final_map = stack.final_map(twin.now());
-  log.write(twin.now(), final_map);
-  observer.see(stack::StackMessage(final_map));
+  const MapUpdate final_map = stack.final_map(simulator.now());
+  log.write(simulator.now(), final_map);
+  observer.on_message(stack::StackMessage(final_map));
   log.close();
-  outcome.duration = twin.now();
-  outcome.faults = twin.sensors().faults();
+  outcome.duration = simulator.now();
+  outcome.faults = simulator.sensors().faults();
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
   outcome.cpu_s = cpu_seconds() - cpu_start;
-  for (const StageProfiler* part : {&twin.clock(), &stack.clock(), &std::as_const(clock)}) {
-    for (const auto& [name, seconds] : part->seconds()) outcome.seconds_by_part[name] += seconds;
+  for (const StageProfiler* part : {&simulator.clock(), &stack.clock(), &std::as_const(clock)}) {
+    for (const auto& [name, seconds] : part->seconds()) outcome.seconds_by_stage[name] += seconds;
   }
   // Expensive sensors are stages of their own.
-  for (const auto& [name, seconds] : twin.sensors().clock().seconds()) {
-    outcome.seconds_by_part[name] += seconds;
-    outcome.seconds_by_part["sensors"] -= seconds;
+  for (const auto& [name, seconds] : simulator.sensors().clock().seconds()) {
+    outcome.seconds_by_stage[name] += seconds;
+    outcome.seconds_by_stage["sensors"] -= seconds;
   }
   return outcome;
 }

@@ -15,7 +15,7 @@
 namespace patrol::app {
 
 /// Event declared by a scenario: a fault or a kidnap.
-struct DeclaredEvent {
+struct InjectedEvent {
   std::string what;          ///< "fault imu freeze at 12 s"
   bool was_triggered = false;
 };
@@ -52,7 +52,7 @@ struct RunVerdict {
   std::string message;  ///< reason for a status other than kDone, one line
   io::Metrics metrics;  ///< metrics.json; empty for a run without a score
   std::vector<CheckedExpectation> checks;
-  std::vector<DeclaredEvent> events;
+  std::vector<InjectedEvent> events;
 
   ExitCode code() const { return exit_code_of(end); }
 };
@@ -70,7 +70,7 @@ RunVerdict verdict_of(const RunOutcome& outcome, const std::vector<KidnapSetting
                       std::vector<CheckedExpectation> checks);
 
 /// Description of a missed expectation: "pose.ate_rmse_m is 0.2, expected <= 0.1".
-std::string missed(const CheckedExpectation& check);
+std::string describe_missed(const CheckedExpectation& check);
 
 io::Metrics to_json(const RunVerdict& verdict);
 /// Throws std::exception if `json` is not a verdict.

@@ -12,7 +12,7 @@ namespace patrol::app {
 namespace {
 
 /// Station of a panoramic scan: subject of the first scan-taken event from its stamp on; none without such an event.
-std::optional<std::string> station_of(const PanoramicScan& scan, const RunRecord& record) {
+std::optional<std::string> find_station(const PanoramicScan& scan, const RunRecord& record) {
   const auto taken = std::find_if(record.events.begin(), record.events.end(),
                                   [&](const Event& event) { return event.kind == EventKind::kScanTaken && event.stamp >= scan.stamp; });
   return taken == record.events.end() ? std::nullopt : std::optional(taken->subject);
@@ -37,7 +37,7 @@ std::vector<io::StationScan> station_scans(const std::filesystem::path& log_mcap
   if (!scenario.sensors.scanner.enabled) return scans;
   io::LogHandlers handlers;
   handlers.on<PanoramicScan>([&](Time, const PanoramicScan& scan) {
-    const std::optional<std::string> station = station_of(scan, record);
+    const std::optional<std::string> station = find_station(scan, record);
     if (!station || std::any_of(scans.begin(), scans.end(), [&](const io::StationScan& known) { return known.station == *station; })) return;
     const auto place = to_tunnel_coordinates(scan, *station, record, files.robot.tracks ? files.robot.tracks->body_height_m : 0.0);
     if (!place) return;

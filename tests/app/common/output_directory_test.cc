@@ -24,10 +24,10 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 const OutputKind kKind = {.name = "survey",
-                          .unfinished = "Not yet.",
-                          .made = {"table.csv", "plot_*.png", "work/deep/*.txt", "work/*.part"},
-                          .proof = "table.csv",
-                          .kept = {"results"}};
+                          .marker_text = "Not yet.",
+                          .outputs = {"table.csv", "plot_*.png", "work/deep/*.txt", "work/*.part"},
+                          .required_file = "table.csv",
+                          .preserved = {"results"}};
 
 std::vector<std::string> names_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
@@ -159,7 +159,7 @@ TEST(OutputDirectory, OneProcessAtATimeWritesThereAndAKilledOneDoesNotBlock) {
 
 TEST(OutputDirectory, OneThatIsSharedTakesSeveral) {
   OutputKind shared = kKind;
-  shared.is_shared = true;
+  shared.is_concurrent = true;
   const TemporaryFolder folder;
   const Writer first(folder / "out", shared);
   const OutputLock lock = begin_output(folder / "out", shared);

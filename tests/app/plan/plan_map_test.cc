@@ -30,15 +30,15 @@ class PlanMapTest : public ::testing::Test {
 TEST_F(PlanMapTest, PlacesOfAMapServerMapAreMetresInItsFrame) {
   const PlanMap map(folder / "m.yaml");
   EXPECT_EQ(map.place("--from", " -0.75 , 3.25"), Eigen::Vector2d(-0.75, 3.25));
-  EXPECT_EQ(map.named({-0.75, 3.25}), Eigen::Vector2d(-0.75, 3.25));
+  EXPECT_EQ(map.to_user({-0.75, 3.25}), Eigen::Vector2d(-0.75, 3.25));
   EXPECT_EQ(map.text_of({-0.75, 3.25}), "-0.75, 3.25");
 }
 
 TEST_F(PlanMapTest, PlacesOfAMovingAiMapAreCellsFromTheUpperLeft) {
   const PlanMap map(folder / "m.map");
   EXPECT_EQ(map.place("--from", "2,0"), Eigen::Vector2d(2.5, 1.5));
-  EXPECT_EQ(map.named({2.5, 1.5}), Eigen::Vector2d(2.0, 0.0));
-  EXPECT_EQ(map.named({2.0, 1.0}), Eigen::Vector2d(1.5, 0.5));  // a corner
+  EXPECT_EQ(map.to_user({2.5, 1.5}), Eigen::Vector2d(2.0, 0.0));
+  EXPECT_EQ(map.to_user({2.0, 1.0}), Eigen::Vector2d(1.5, 0.5));  // a corner
   EXPECT_EQ(map.text_of({2.5, 1.5}), "2, 0");
 }
 

@@ -8,7 +8,7 @@ namespace {
 using report::TableBlock;
 
 TEST(KeyMetrics, AreInTheUnitOfTheirSizeAndOnlyWhatWasMeasured) {
-  const report::KeyMetrics figures = key_figures(io::Metrics::parse(R"({"pose": {"ate_rmse_m": 0.0026, "ate_max_m": 0.023, "heading_rmse_deg": null},
+  const report::KeyMetrics figures = key_metrics(io::Metrics::parse(R"({"pose": {"ate_rmse_m": 0.0026, "ate_max_m": 0.023, "heading_rmse_deg": null},
       "stations": [{"reached": true}, {"reached": false}], "goals": []})"));
   ASSERT_EQ(figures.figures.size(), 2u);
   EXPECT_EQ(figures.figures[0].value + figures.figures[0].unit, "2.6mm");

@@ -9,9 +9,9 @@
 
 namespace patrol::app {
 BatchSettings batch_settings(const BatchOptions& options) {
-  constexpr int kMostJobs = 1024;
-  if (options.jobs < 0 || options.jobs > kMostJobs) {
-    throw InputError(fmt::format("--jobs {}: must be in [0, {}]; 0: one for each core", options.jobs, kMostJobs));
+  constexpr int kMaxJobs = 1024;
+  if (options.jobs < 0 || options.jobs > kMaxJobs) {
+    throw InputError(fmt::format("--jobs {}: must be in [0, {}]; 0: one for each core", options.jobs, kMaxJobs));
   }
   if (!(options.run_timeout_s > 0.0)) throw InputError("--run-limit-s: must be greater than 0");
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));

@@ -12,7 +12,7 @@ struct TaskEnd {
   int exit_code = 0;
   int signal = 0;             ///< signal that killed the process; 0 if it exited
   bool is_over_time = false;  ///< killed by the pool at the time limit
-  std::string last_words;     ///< last line of its standard error
+  std::string last_stderr_line;     ///< last line of its standard error
 };
 
 struct ProcessPoolSettings {

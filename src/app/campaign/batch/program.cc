@@ -40,7 +40,7 @@ ProgramResult run_program(const std::vector<std::string>& words) {
   return result;
 }
 
-std::string shell_quoted(const std::string& word) {
+std::string quote_for_shell(const std::string& word) {
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";

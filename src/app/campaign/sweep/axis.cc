@@ -59,8 +59,8 @@ std::vector<std::string> spaced(const std::string& text, const std::vector<doubl
   const int count = static_cast<int>(range[2]);
   std::vector<std::string> values;
   for (int i = 0; i < count; ++i) {
-    const double share = static_cast<double>(i) / (count - 1);
-    const double value = in_ratios ? from * std::pow(to / from, share) : from + (to - from) * share;
+    const double fraction = static_cast<double>(i) / (count - 1);
+    const double value = in_ratios ? from * std::pow(to / from, fraction) : from + (to - from) * fraction;
     // Twelve digits: 0.3, not 0.30000000000000004.
     values.push_back(fmt::format("{:.12g}", i == 0 ? from : i + 1 == count ? to : value));
   }
@@ -69,7 +69,7 @@ std::vector<std::string> spaced(const std::string& text, const std::vector<doubl
 
 }  // namespace
 
-std::string Axis::draw(std::uint64_t seed) const {
+std::string Axis::sample(std::uint64_t seed) const {
   const RandomStream stream(seed, "sweep/" + path);
   double value = 0.0;
   if (kind == Kind::kUniform) value = first + (second - first) * stream.uniform(0);
@@ -86,7 +86,7 @@ Axis parse_axis(const std::string& text) {
   const std::string values = text.substr(equals + 1);
   if (values.empty()) fail(text, "has no values");
 
-  const auto drawn = [&](Axis::Kind kind, const std::vector<double>& numbers) {
+  const auto random = [&](Axis::Kind kind, const std::vector<double>& numbers) {
     axis.kind = kind;
     axis.first = numbers[0], axis.second = numbers[1];
     if (kind == Axis::Kind::kNormal && axis.second < 0.0) fail(text, "the standard deviation is negative");
@@ -95,9 +95,9 @@ Axis parse_axis(const std::string& text) {
   };
   if (const auto range = arguments(text, values, "range", 3, "FROM:TO:N")) axis.values = spaced(text, *range, false);
   else if (const auto ratios = arguments(text, values, "logrange", 3, "FROM:TO:N")) axis.values = spaced(text, *ratios, true);
-  else if (const auto limits = arguments(text, values, "uniform", 2, "LOW:HIGH")) drawn(Axis::Kind::kUniform, *limits);
-  else if (const auto logs = arguments(text, values, "loguniform", 2, "LOW:HIGH")) drawn(Axis::Kind::kLogUniform, *logs);
-  else if (const auto moments = arguments(text, values, "normal", 2, "MEAN:STANDARD_DEVIATION")) drawn(Axis::Kind::kNormal, *moments);
+  else if (const auto limits = arguments(text, values, "uniform", 2, "LOW:HIGH")) random(Axis::Kind::kUniform, *limits);
+  else if (const auto logs = arguments(text, values, "loguniform", 2, "LOW:HIGH")) random(Axis::Kind::kLogUniform, *logs);
+  else if (const auto moments = arguments(text, values, "normal", 2, "MEAN:STANDARD_DEVIATION")) random(Axis::Kind::kNormal, *moments);
   else axis.values = split_values(values);
 
   std::set<std::string> seen;
@@ -108,12 +108,12 @@ Axis parse_axis(const std::string& text) {
   return axis;
 }
 
-std::vector<Variant> cross(const std::vector<Axis>& axes) {
+std::vector<Variant> cartesian_product(const std::vector<Axis>& axes) {
   std::set<std::string> paths;
   std::vector<Variant> variants(1);
   for (const Axis& axis : axes) {
     if (!paths.insert(axis.path).second) throw InputError(fmt::format("--vary {}: specified twice", axis.path));
-    if (axis.is_drawn()) continue;
+    if (axis.is_random()) continue;
     std::vector<Variant> longer;
     for (const Variant& variant : variants) {
       for (const std::string& value : axis.values) {

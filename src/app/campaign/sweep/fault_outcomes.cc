@@ -32,18 +32,18 @@ std::vector<FaultRow> fault_rows(const SweepManifest& manifest, const SweepRows&
     const PlannedRun& run = manifest.runs[i];
     const RunVerdict& verdict = *rows[i];
     FaultRow& row = faults.emplace_back(FaultRow{.name = manifest.variants[run.variant].name,
-                                                 .fault = fault_of(manifest.variants[run.variant].name),
+                                                 .fault = parse_variant_name(manifest.variants[run.variant].name),
                                                  .seed = run.seed,
                                                  .was_triggered = was_triggered(verdict),
                                                  .outcome = outcome_of(verdict),
-                                                 .num_noticed = io::metric_at(verdict.metrics, "mission.sensor_faults_noticed"),
+                                                 .num_detected = io::metric_at(verdict.metrics, "mission.sensor_faults_noticed"),
                                                  .end = std::string(name_of(verdict.end)),
                                                  .message = verdict.message,
-                                                 .figures = {},
-                                                 .without = {}});
+                                                 .values = {},
+                                                 .baseline_values = {}});
     for (const std::string& metric : manifest.metrics) {
-      row.figures.push_back(io::metric_at(verdict.metrics, metric));
-      row.without.push_back(io::metric_at(rows[i - run.variant]->metrics, metric));
+      row.values.push_back(io::metric_at(verdict.metrics, metric));
+      row.baseline_values.push_back(io::metric_at(rows[i - run.variant]->metrics, metric));
     }
   }
   return faults;

@@ -40,9 +40,9 @@ struct FaultRow {
   std::uint64_t seed = 1;
   std::optional<bool> was_triggered;  ///< empty for the run without a fault
   FaultOutcome outcome = FaultOutcome::kNoResult;
-  std::optional<double> num_noticed;  ///< number of events in which the robot reported a faulty sensor
+  std::optional<double> num_detected;  ///< number of events in which the robot reported a faulty sensor
   std::string end, message;
-  std::vector<std::optional<double>> figures, without;  ///< [metric], this run and the run without fault of this seed
+  std::vector<std::optional<double>> values, baseline_values;  ///< [metric], this run and the run without fault of this seed
 
   bool is_not_executed() const { return was_triggered.has_value() && !*was_triggered; }
 };

@@ -35,7 +35,7 @@ OrderedJson json_of(const SweepManifest& manifest) {
   }
   for (const PlannedRun& run : manifest.runs) {
     json["runs"].push_back(
-        {{"variant", run.variant}, {"seed", run.seed}, {"overrides", run.overrides}, {"address", run.address}});
+        {{"variant", run.variant}, {"seed", run.seed}, {"overrides", run.overrides}, {"address", run.hash}});
   }
   return json;
 }
@@ -57,7 +57,7 @@ SweepManifest manifest_of(const OrderedJson& json) {
     manifest.runs.push_back({.variant = run.at("variant"),
                              .seed = run.at("seed"),
                              .overrides = run.at("overrides"),
-                             .address = run.at("address")});
+                             .hash = run.at("address")});
     if (manifest.runs.back().variant >= manifest.variants.size()) throw InputError("a run names a variant that there is not");
   }
   for (const auto& [key, is_empty] : {std::pair("metrics", manifest.metrics.empty()), std::pair("seeds", manifest.seeds.empty()),

@@ -15,7 +15,7 @@ struct PlannedRun {
   std::size_t variant = 0;
   std::uint64_t seed = 1;
   std::vector<std::string> overrides;  ///< overrides of the variant, then those sampled for the seed: "path=value"
-  std::string address;                 ///< content hash of the result (run_address.h)
+  std::string hash;                 ///< content hash of the result (run_hash.h)
 };
 
 /// Condition for stopping before all seeds are run.

@@ -12,11 +12,11 @@ namespace {
 
 // Several processes may share one directory: files being written by another one (*.part) stay.
 const OutputKind kSweep = {.name = "sweep",
-                           .unfinished = "Not every run of this sweep has ended: tables come at the end. The same command goes on.",
-                           .made = {"runs.csv", "comparison.csv", "budget.csv", "faults.csv", "faults.md", "sweep.sqlite", "report.html"},
-                           .proof = "sweep.json",
-                           .kept = {"sweep.json", "runs", "work", "slurm", "*.part"},
-                           .is_shared = true};
+                           .marker_text = "Not every run of this sweep has ended: tables come at the end. The same command goes on.",
+                           .outputs = {"runs.csv", "comparison.csv", "budget.csv", "faults.csv", "faults.md", "sweep.sqlite", "report.html"},
+                           .required_file = "sweep.json",
+                           .preserved = {"sweep.json", "runs", "work", "slurm", "*.part"},
+                           .is_concurrent = true};
 
 }  // namespace
 

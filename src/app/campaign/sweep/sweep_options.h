@@ -17,7 +17,7 @@ struct SweepOptions {
   std::string seeds = "10";            ///< "N": 1 ... N; or "A..B"
   std::vector<std::string> metrics = {"pose.ate_rmse_m", "pose.heading_rmse_deg", "map.nearest_mean_m", "mission.completed"};
   bool early_stop = false;
-  double margin = 0.0;
+  double equivalence_margin = 0.0;
   BatchOptions batch;
   std::string shard;                   ///< "i/n"; empty: all
   std::string engine = "local";
@@ -54,7 +54,7 @@ struct Shard {
   std::size_t index = 0;  ///< from 0
   std::size_t count = 1;
 
-  bool holds(std::size_t run) const { return run % count == index; }
+  bool contains(std::size_t run) const { return run % count == index; }
 };
 
 /// Parses the seeds. Throws InputError with the option's name.

@@ -41,7 +41,7 @@ std::vector<std::pair<std::string, std::string>> properties_of(const std::filesy
 }
 
 /// Result name in characters that are valid in every file system.
-std::string address_of(std::size_t index, std::string name) {
+std::string key_of(std::size_t index, std::string name) {
   std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-'; }, '_');
   return fmt::format("{:04}_{}", index + 1, name);
 }
@@ -74,7 +74,7 @@ std::vector<TestedScenario> find_scenarios(const std::filesystem::path& scenario
     const std::string name = (is_alone ? file.filename() : file.lexically_relative(scenarios)).replace_extension().generic_string();
     tested.push_back({.name = name,
                       .file = file,
-                      .address = address_of(tested.size(), name),
+                      .key = key_of(tested.size(), name),
                       .properties = properties_of(file, overrides, build),
                       .verdict = {}});
   }

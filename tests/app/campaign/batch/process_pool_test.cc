@@ -65,7 +65,7 @@ TEST(ProcessPool, LastWordsAreTheLastLineOfStandardError) {
     std::abort();
     return 0;
   });
-  EXPECT_EQ(ends.at(0).last_words, "the world has no floor");
+  EXPECT_EQ(ends.at(0).last_stderr_line, "the world has no floor");
   EXPECT_EQ(ends.at(0).signal, SIGABRT);
 }
 

@@ -16,7 +16,7 @@ TEST(FaultTables, SaysWhatBecameOfEachFaultAndWhatItCost) {
   manifest.variants = {{.name = "no fault", .overrides = {}}, {.name = "imu: drift", .overrides = {}}, {.name = "uwb: freeze", .overrides = {}}};
   manifest.seeds = {1};
   manifest.metrics = {"pose.ate_rmse_m"};
-  for (std::size_t i = 0; i < 3; ++i) manifest.runs.push_back({.variant = i, .seed = 1, .overrides = {}, .address = ""});
+  for (std::size_t i = 0; i < 3; ++i) manifest.runs.push_back({.variant = i, .seed = 1, .overrides = {}, .hash = ""});
   SweepRows rows = {fault_verdict(RunStatus::kDone, true, 0), fault_verdict(RunStatus::kTimeLimit, false, 0), fault_verdict(RunStatus::kDone, true, 0, false)};
   rows[0]->events.clear();
   rows[1]->metrics["pose"]["ate_rmse_m"] = 0.3;
@@ -36,7 +36,7 @@ TEST(FaultTables, ADocumentHasSensorsDownKindsAcrossAndTheWorstOfTheSeeds) {
   SweepRows rows;
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     for (std::size_t variant = 0; variant < 3; ++variant) {
-      manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .address = ""});
+      manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .hash = ""});
       rows.push_back(fault_verdict(RunStatus::kDone, true, 0));
     }
   }

@@ -39,16 +39,16 @@ ErrorBudgetOptions budget_of(const char* scenario) {
 
 TEST(PlanSweep, EveryRunHasAnAddressOfItsOwnAndItIsTheSameNextTime) {
   const SweepManifest manifest = plan_sweep(street({"sensors.lidar.range_noise_m=0.01,0.03"}));
-  std::set<std::string> addresses;
-  for (const PlannedRun& run : manifest.runs) addresses.insert(run.address);
-  EXPECT_EQ(addresses.size(), 4u);
-  EXPECT_EQ(plan_sweep(street({"sensors.lidar.range_noise_m=0.01,0.03"})).runs[3].address, manifest.runs[3].address);
+  std::set<std::string> hashes;
+  for (const PlannedRun& run : manifest.runs) hashes.insert(run.hash);
+  EXPECT_EQ(hashes.size(), 4u);
+  EXPECT_EQ(plan_sweep(street({"sensors.lidar.range_noise_m=0.01,0.03"})).runs[3].hash, manifest.runs[3].hash);
 }
 
 TEST(PlanSweep, TheSameSettingsHaveTheSameAddressHoweverTheyAreSaid) {
   SweepOptions said = street({});
   said.overrides = {"sensors.lidar.range_noise_m=0.030"};
-  EXPECT_EQ(plan_sweep(said).runs[0].address, plan_sweep(street({"sensors.lidar.range_noise_m=0.03"})).runs[0].address);
+  EXPECT_EQ(plan_sweep(said).runs[0].hash, plan_sweep(street({"sensors.lidar.range_noise_m=0.03"})).runs[0].hash);
 }
 
 TEST(PlanSweep, ADrawIsCommonToTheVariantsOfASeed) {
@@ -69,10 +69,10 @@ TEST(PlanSweep, AMissionFromElsewhereIsKnownByWhatStandsInIt) {
   SweepOptions elsewhere = street({});
   elsewhere.overrides = {"mission=" + (folder / "mission.json").string()};
   io::save_text(folder / "mission.json", mission);
-  const std::string address = plan_sweep(elsewhere).runs[0].address;
-  EXPECT_EQ(plan_sweep(elsewhere).runs[0].address, address);
+  const std::string hash = plan_sweep(elsewhere).runs[0].hash;
+  EXPECT_EQ(plan_sweep(elsewhere).runs[0].hash, hash);
   io::save_text(folder / "mission.json", mission + " ");
-  EXPECT_NE(plan_sweep(elsewhere).runs[0].address, address);
+  EXPECT_NE(plan_sweep(elsewhere).runs[0].hash, hash);
 }
 
 TEST(PlanSweep, AMissionThatIsMissingIsRefusedBeforeAnythingRuns) {

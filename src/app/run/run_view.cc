@@ -1,4 +1,4 @@
-#include "app/run/watch_frame.h"
+#include "app/run/run_view.h"
 
 #include <algorithm>
 #include <array>
@@ -103,7 +103,7 @@ const char* arrow_of(double yaw_rad) {
   return kArrows[static_cast<std::size_t>((eighth % 8 + 8) % 8)];
 }
 
-std::string map_text(const WatchedRun& run, int columns, int rows) {
+std::string map_text(const RunView& run, int columns, int rows) {
   const Eigen::Vector2d center_m = run.estimate ? run.estimate->T_map_body.position() : Eigen::Vector2d::Zero();
   DotMap dots(columns, rows, center_m);
   for (int row = 0; row < run.map.geometry().height; ++row) {
@@ -119,7 +119,7 @@ std::string map_text(const WatchedRun& run, int columns, int rows) {
   return dots.text();
 }
 
-std::string figures_text(const WatchedRun& run) {
+std::string values_text(const RunView& run) {
   std::string text = fmt::format("{:+.2f} m/s {:+.2f} rad/s", run.command.vx_mps, run.command.yaw_rate_radps);
   if (run.estimate && run.truth) {
     const Pose2 error = run.truth->inverse() * run.estimate->T_map_body;
@@ -133,9 +133,9 @@ std::string figures_text(const WatchedRun& run) {
 
 }  // namespace
 
-std::string watch_frame(const WatchedRun& run, int columns, int rows) {
+std::string render_run_view(const RunView& run, int columns, int rows) {
   std::string text = fmt::format("\033[1m{}\033[0m   {:.1f} s simulated, {:.1f} times real time   {:.1f} m{}{}{}", run.name, to_seconds(run.now),
-                                 run.real_time_factor, run.distance_m, kLineEnd, figures_text(run), kLineEnd);
+                                 run.real_time_factor, run.distance_m, kLineEnd, values_text(run), kLineEnd);
   text += map_text(run, columns, std::max(1, rows - 2 - kNumEvents - 1));
   for (int i = 0; i < kNumEvents; ++i) {
     const std::size_t first = run.events.size() > kNumEvents ? run.events.size() - kNumEvents : 0;
