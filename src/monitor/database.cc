@@ -82,7 +82,7 @@ Database::Database(const std::filesystem::path& file) {
     execute("PRAGMA synchronous = FULL");
     execute("PRAGMA cache_size = -8000");  // KiB
   } catch (const std::runtime_error& error) {
-    throw InputError(fmt::format("{}: cannot be opened: {}", file.string(), error.what()));
+    throw InputError(fmt::format("{}: cannot open: {}", file.string(), error.what()));
   }
 }
 

@@ -176,7 +176,7 @@ class Entry {
           .run();
     }
     for (const RingFinding& finding : lining.findings) {
-      const std::string text = fmt::format("Ring {} has moved {:.1f} mm inwards (standard deviation {:.1f} mm) at {:.0f} degrees.", finding.ring,
+      const std::string text = fmt::format("Ring {} moved {:.1f} mm inward (standard deviation {:.1f} mm) at {:.0f} degrees.", finding.ring,
                                            1e3 * finding.inward_m, 1e3 * finding.std_m, finding.clock_deg);
       add_finding(finding.level, "lining", fmt::format("ring {}", finding.ring), text, finding.p_map.head<2>());
     }

@@ -35,7 +35,7 @@ int checked(int code, const char* doing) {
 
 template <typename Pointer>
 Pointer* made(Pointer* pointer, const char* what) {
-  if (pointer == nullptr) throw std::runtime_error(fmt::format("video: libav gives no {}", what));
+  if (pointer == nullptr) throw std::runtime_error(fmt::format("video: libav: cannot allocate {}", what));
   return pointer;
 }
 
@@ -105,7 +105,7 @@ struct VideoWriter::Encoder {
 };
 
 void VideoWriter::Encoder::open(int width, int height, double frames_per_second, const std::vector<Chapter>& chapters) {
-  checked(avformat_alloc_output_context2(&container, nullptr, "mp4", temporary.c_str()), "no MP4 writer");
+  checked(avformat_alloc_output_context2(&container, nullptr, "mp4", temporary.c_str()), "cannot create the MP4 writer");
   container->flags |= AVFMT_FLAG_BITEXACT;
   const AVCodec* kind = avcodec_find_encoder_by_name("libx264");
   const bool is_h264 = kind != nullptr;
@@ -129,7 +129,7 @@ void VideoWriter::Encoder::open(int width, int height, double frames_per_second,
     codec->flags |= AV_CODEC_FLAG_QSCALE;
     codec->global_quality = 4 * FF_QP2LAMBDA;
   }
-  checked(avcodec_open2(codec, kind, nullptr), "the encoder does not start");
+  checked(avcodec_open2(codec, kind, nullptr), "cannot start the encoder");
 
   stream = made(avformat_new_stream(container, nullptr), "stream");
   stream->time_base = codec->time_base;
@@ -143,30 +143,30 @@ void VideoWriter::Encoder::open(int width, int height, double frames_per_second,
   av_dict_set(&options, "movflags", "+faststart", 0);
   const int code = avformat_write_header(container, &options);
   av_dict_free(&options);
-  checked(code, "the file's head");
+  checked(code, "file header");
 
   scaler = made(sws_getContext(width, height, AV_PIX_FMT_RGB24, width, height, AV_PIX_FMT_YUV420P,
                                SWS_POINT | SWS_ACCURATE_RND | SWS_BITEXACT, nullptr, nullptr, nullptr),
-                "colour conversion");
+                "color conversion");
   use_bt709(scaler);
   picture = made(av_frame_alloc(), "picture");
   picture->format = AV_PIX_FMT_YUV420P;
   picture->width = width;
   picture->height = height;
-  checked(av_frame_get_buffer(picture, 0), "no memory for a picture");
+  checked(av_frame_get_buffer(picture, 0), "cannot allocate a picture");
   packet = made(av_packet_alloc(), "packet");
 }
 
 void VideoWriter::Encoder::encode(const AVFrame* frame) {
-  checked(avcodec_send_frame(codec, frame), "a frame is refused");
+  checked(avcodec_send_frame(codec, frame), "frame rejected by the encoder");
   for (;;) {
     const int code = avcodec_receive_packet(codec, packet);
     if (code == AVERROR(EAGAIN) || code == AVERROR_EOF) return;
-    checked(code, "a frame cannot be encoded");
+    checked(code, "cannot encode a frame");
     packet->duration = 1;
     av_packet_rescale_ts(packet, codec->time_base, stream->time_base);
     packet->stream_index = stream->index;
-    checked(av_interleaved_write_frame(container, packet), "a frame cannot be written");
+    checked(av_interleaved_write_frame(container, packet), "cannot write a frame");
   }
 }
 
@@ -184,9 +184,9 @@ VideoWriter::~VideoWriter() = default;
 void VideoWriter::add(const Frame& frame) {
   Encoder& encoder = *encoder_;
   if (frame.width() != encoder.codec->width || frame.height() != encoder.codec->height) {
-    throw std::runtime_error("video: a frame is not of the video's size");
+    throw std::runtime_error("video: frame size differs from the video size");
   }
-  checked(av_frame_make_writable(encoder.picture), "no memory for a picture");
+  checked(av_frame_make_writable(encoder.picture), "cannot allocate a picture");
   const std::uint8_t* rows[1] = {frame.bytes()};
   const int stride[1] = {3 * frame.width()};
   sws_scale(encoder.scaler, rows, stride, 0, frame.height(), encoder.picture->data,
@@ -198,8 +198,8 @@ void VideoWriter::add(const Frame& frame) {
 void VideoWriter::finish() {
   Encoder& encoder = *encoder_;
   encoder.encode(nullptr);
-  checked(av_write_trailer(encoder.container), "the file's end");
-  checked(avio_closep(&encoder.container->pb), "the file cannot be closed");
+  checked(av_write_trailer(encoder.container), "file trailer");
+  checked(avio_closep(&encoder.container->pb), "cannot close the file");
   std::error_code error;
   std::filesystem::rename(encoder.temporary, encoder.file, error);
   if (error) throw InputError(encoder.file.string() + ": cannot be written: " + error.message());
@@ -208,7 +208,7 @@ void VideoWriter::finish() {
 VideoInfo inspect_video(const std::filesystem::path& file) {
   AVFormatContext* opened = nullptr;
   if (avformat_open_input(&opened, file.c_str(), nullptr, nullptr) < 0) {
-    throw InputError(file.string() + ": cannot be read as a video");
+    throw InputError(file.string() + ": cannot read as a video");
   }
   const auto close = [](AVFormatContext* context) { avformat_close_input(&context); };
   const std::unique_ptr<AVFormatContext, decltype(close)> container(opened, close);

@@ -80,8 +80,8 @@ double upper_median(std::vector<double> values) {
 
 RelationError relation_error(const Trajectory& T_map_body, const std::vector<PoseRelation>& relations, const RelationSettings& settings) {
   validate(settings, "relations");
-  if (T_map_body.empty()) throw InputError("the estimate holds no poses");
-  if (relations.empty()) throw InputError("there are no relations to score");
+  if (T_map_body.empty()) throw InputError("estimate: no poses");
+  if (relations.empty()) throw InputError("relations: none to score");
   PoseLookup lookup(T_map_body, settings);
   std::vector<double> trans_m, rot_deg;
   for (const PoseRelation& relation : relations) {

@@ -48,12 +48,12 @@ class CellWalk {
 };
 
 std::vector<Eigen::Vector2d> thin_out(const Trajectory& T_world_body, double spacing_m) {
-  std::vector<Eigen::Vector2d> places;
+  std::vector<Eigen::Vector2d> positions;
   for (const StampedPose& entry : T_world_body) {
     const Eigen::Vector2d p = entry.pose.position.head<2>();
-    if (places.empty() || (p - places.back()).norm() >= spacing_m) places.push_back(p);
+    if (positions.empty() || (p - positions.back()).norm() >= spacing_m) positions.push_back(p);
   }
-  return places;
+  return positions;
 }
 
 void mark_neighborhood(ReferenceMap& reference, Cell hit) {

@@ -144,7 +144,7 @@ struct UploadOptions {
   std::filesystem::path run;
   std::string to;
   std::optional<std::filesystem::path> token_file;
-  double limit_s = 30.0;  ///< timeout without progress
+  double timeout_s = 30.0;  ///< timeout without progress
 };
 /// Uploads the pending results of a run to the monitoring server.
 ExitCode upload_command(const UploadOptions& options);

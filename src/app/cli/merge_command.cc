@@ -21,7 +21,7 @@ ExitCode merge_command(const std::filesystem::path& root, const std::vector<std:
   const SweepManifest manifest = load_manifest(first.manifest());
   for (const SweepDirectory& source : sources) {
     if (load_request(source) == load_request(first)) continue;
-    throw InputError(fmt::format("{}: was asked for something else than {}", source.manifest().string(), first.manifest().string()));
+    throw InputError(fmt::format("{}: is not a shard of {}", source.manifest().string(), first.manifest().string()));
   }
 
   const SweepDirectory directory = begin_sweep_directory(root, manifest);
@@ -32,7 +32,7 @@ ExitCode merge_command(const std::filesystem::path& root, const std::vector<std:
   }
   const SweepProgress progress = evaluate_progress(manifest, load_rows(manifest, directory.store()));
   if (!progress.needed.empty()) {
-    throw InputError(fmt::format("{}: {} of {} runs have no result yet; it stays incomplete", root.string(), progress.needed.size(),
+    throw InputError(fmt::format("{}: {} of {} runs are missing", root.string(), progress.needed.size(),
                                  progress.counted.size()));
   }
   return finish_sweep(directory, manifest);

@@ -32,7 +32,7 @@ class ProgressLine final : public RunObserver {
   explicit ProgressLine(const std::string& name) : name_(name) {}
 
   bool keep_running(Time now, double distance_m) override {
-    bar_.show(fmt::format("{}  {:6.1f} s simulated  {:6.1f} m walked", name_, to_seconds(now), distance_m));
+    bar_.show(fmt::format("{}  {:6.1f} s simulated  {:6.1f} m traveled", name_, to_seconds(now), distance_m));
     return !interrupt_.is_interrupted();
   }
 
@@ -81,7 +81,7 @@ std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario
   ObserverGroup observers({&screen, reporter});
   try {
     std::optional<RunVerdict> verdict = run_once(scenario, name, data_root, root, observers);
-    if (!verdict) reporter->finish("interrupted", "somebody stopped it");
+    if (!verdict) reporter->finish("interrupted", "interrupted by user");
     else reporter->finish(verdict->code() == ExitCode::kDone ? "finished" : "failed", verdict->message.empty() ? std::string(name_of(verdict->end)) : verdict->message);
     return verdict;
   } catch (const std::exception& error) {
@@ -92,13 +92,13 @@ std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario
 
 void report_delivery(const Reporter& reporter, const std::string& to, const std::filesystem::path& root) {
   if (reporter.num_rejected() > 0) {
-    fmt::print(stderr, "patrol: {} refused {} results: they lie in {}\n", to, reporter.num_rejected(), (root / "outbox.refused.jsonl").string());
+    fmt::print(stderr, "patrol: {} rejected {} results, kept in {}\n", to, reporter.num_rejected(), (root / "outbox.refused.jsonl").string());
   }
   if (const std::size_t num_pending = reporter.num_pending(); num_pending > 0) {
-    fmt::print(stderr, "patrol: {} results wait in {} ({}); send them with: patrol send {} --to {}\n", num_pending,
+    fmt::print(stderr, "patrol: {} results not delivered, kept in {} ({}); upload with: patrol upload {} --monitor-url {}\n", num_pending,
                (root / "outbox.jsonl").string(), reporter.last_error(), root.string(), to);
   } else {
-    fmt::print(stderr, "patrol: {} has all {} results\n", to, reporter.num_results());
+    fmt::print(stderr, "patrol: {} received all {} results\n", to, reporter.num_results());
   }
 }
 
@@ -121,7 +121,7 @@ ExitCode run_command(const RunOptions& options) {
 
   fmt::print("{}\n", score_table(verdict->metrics, verdict->checks));
   if (const std::string goals = goal_table(verdict->metrics); !goals.empty()) fmt::print("{}\n", goals);
-  for (const InjectedEvent& event : verdict->events) fmt::print("{}: {}\n", event.what, event.was_triggered ? "executed" : "NOT EXECUTED");
+  for (const InjectedEvent& event : verdict->events) fmt::print("{}: {}\n", event.name, event.was_triggered ? "triggered" : "not triggered");
   fmt::print("run directory: {}\n", root.string());
   return verdict->code();
 }

@@ -97,7 +97,7 @@ bool run_seeds(const studies::Study& study, const std::vector<std::uint64_t>& se
 ExitCode study_command(const StudyOptions& options) {
   const studies::Study study = make_study(options.name);
   const std::vector<std::uint64_t> seeds = held_out_seeds(options.seeds.value_or(std::to_string(study.default_seeds)));
-  const BatchSettings settings = batch_settings({.jobs = options.jobs, .run_timeout_s = options.seed_timeout_s, .keep = "none"});
+  const BatchSettings settings = batch_settings({.jobs = options.jobs, .run_timeout_s = options.seed_timeout_s, .keep_runs = "none"});
 
   const OutputLock lock = begin_output(options.out, kStudy);
   io::save_metrics(options.out / "study.json", {{"study", study.name}, {"seeds", seeds}});

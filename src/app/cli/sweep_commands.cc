@@ -14,11 +14,11 @@ namespace {
 void check(const SweepOptions& options) {
   if (options.engine != "local" && options.engine != "slurm") throw InputError(fmt::format("--engine {}: must be local or slurm", options.engine));
   if (options.early_stop && (!options.shard.empty() || options.engine == "slurm")) {
-    throw InputError("--stop-when-decided: cannot be shared out, since what is still to do depends on what all have found");
+    throw InputError("--early-stop: not compatible with --shard and --engine slurm: decisions depend on all results");
   }
-  if (options.engine == "slurm" && !options.shard.empty()) throw InputError("--shard: the engine slurm makes the shards itself (--slurm-tasks)");
-  if (options.metrics.empty()) throw InputError("--metric: at least one is compared");
-  if (!(options.margin >= 0.0)) throw InputError("--margin: must not be negative");
+  if (options.engine == "slurm" && !options.shard.empty()) throw InputError("--shard: not compatible with --engine slurm, which has --slurm-tasks");
+  if (options.metrics.empty()) throw InputError("--metric: at least one is required");
+  if (!(options.equivalence_margin >= 0.0)) throw InputError("--equivalence-margin: must not be negative");
   if (options.slurm_tasks < 1 || options.slurm_tasks > 100'000) throw InputError("--slurm-tasks: must be in [1, 100000]");
 }
 

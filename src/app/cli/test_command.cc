@@ -16,7 +16,7 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kTest = {.name = "test",
-                          .marker_text = "Not every scenario has ended.",
+                          .marker_text = "Incomplete: not every scenario has ended.",
                           .outputs = {"junit.xml", "tests.csv", "summary.md", "report.html", "runs/[0-9][0-9][0-9][0-9]_*", "work/*-*-*", "*.part"},
                           .required_file = "junit.xml",
                           .preserved = {}};
@@ -42,7 +42,7 @@ ExitCode test_command(const TestOptions& options) {
   const BatchSettings settings = batch_settings(options.batch);
   std::vector<TestedScenario> tested = find_scenarios(options.scenarios, options.overrides);
   if (tested.empty()) {
-    fmt::print(stderr, "patrol: {}: holds no scenario (*.yaml): nothing was executed\n", options.scenarios.string());
+    fmt::print(stderr, "patrol: {}: contains no scenario (*.yaml); nothing executed\n", options.scenarios.string());
     return ExitCode::kNothingExecuted;
   }
   const OutputLock lock = begin_output(options.out, kTest);

@@ -35,7 +35,7 @@ bool is_folder_of(const std::string& name, const std::vector<std::string>& patte
 }
 
 InputError cannot_be_written(const std::filesystem::path& root, int error) {
-  return InputError(fmt::format("{}: cannot be written to: {}", root.string(), std::strerror(error)));
+  return InputError(fmt::format("{}: cannot write: {}", root.string(), std::strerror(error)));
 }
 
 /// Lists the entries that may be removed. Throws InputError if there are any others.
@@ -54,13 +54,13 @@ EarlierOutput earlier_output(const std::filesystem::path& root, const OutputKind
     } else if (type == std::filesystem::file_type::regular && is_among(name, kind.outputs)) {
       earlier.files.push_back(entry->path());
     } else if (entry->path() != incomplete_marker(root)) {  // checked when it is opened
-      throw InputError(fmt::format("{}: holds {}, which is not part of a {}; name an empty or new directory", root.string(), name, kind.name));
+      throw InputError(fmt::format("{}: contains '{}', which is not an output of '{}'; choose an empty or new directory", root.string(), name, kind.name));
     }
   }
-  if (error) throw InputError(fmt::format("{}: cannot be read: {}", root.string(), error.message()));
+  if (error) throw InputError(fmt::format("{}: cannot read: {}", root.string(), error.message()));
   const auto exists = [&](const std::filesystem::path& file) { return std::filesystem::is_regular_file(std::filesystem::symlink_status(file)); };
   if (!earlier.files.empty() && !exists(incomplete_marker(root)) && !exists(root / kind.required_file)) {
-    throw InputError(fmt::format("{}: holds {}, but no {} of an earlier {}; name an empty or new directory", root.string(),
+    throw InputError(fmt::format("{}: contains {}, but no {} of an earlier {}; choose an empty or new directory", root.string(),
                                  earlier.files.front().lexically_relative(root).generic_string(), kind.required_file, kind.name));
   }
   return earlier;
@@ -74,7 +74,7 @@ OutputLock open_marker(const std::filesystem::path& root, int& descriptor) {
   OutputLock lock(descriptor);
   struct stat status {};
   const bool is_plain = descriptor >= 0 && ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink <= 1;
-  if (!is_plain) throw InputError(fmt::format("{}: is not a plain file; remove it, or name another directory", marker.string()));
+  if (!is_plain) throw InputError(fmt::format("{}: must be a regular file; remove it or choose another directory", marker.string()));
   return lock;
 }
 
@@ -96,11 +96,11 @@ OutputLock take_marker(const std::filesystem::path& root, const OutputKind& kind
     whole.l_whence = SEEK_SET;
     if (::fcntl(descriptor, F_SETLK, &whole) != 0) {
       if (errno != EACCES && errno != EAGAIN) throw cannot_be_written(root, errno);
-      throw InputError(fmt::format("{}: another process writes a {} there; name another directory, or wait", root.string(), kind.name));
+      throw InputError(fmt::format("{}: in use by another process that writes a {}; wait or choose another directory", root.string(), kind.name));
     }
     if (has_marker_name(root, descriptor)) return lock;
   }
-  throw InputError(fmt::format("{}: other processes write there; name another directory", root.string()));
+  throw InputError(fmt::format("{}: in use by other processes; choose another directory", root.string()));
 }
 
 void write_marker(const std::filesystem::path& root, const OutputKind& kind, int descriptor) {
@@ -125,7 +125,7 @@ std::filesystem::path incomplete_marker(const std::filesystem::path& root) { ret
 OutputLock begin_output(const std::filesystem::path& root, const OutputKind& kind) {
   std::error_code error;
   std::filesystem::create_directories(root, error);
-  if (error) throw InputError(fmt::format("{}: cannot be made a directory: {}", root.string(), error.message()));
+  if (error) throw InputError(fmt::format("{}: cannot create the directory: {}", root.string(), error.message()));
   earlier_output(root, kind);  // throws before anything is written
   int descriptor = -1;
   OutputLock lock = take_marker(root, kind, descriptor);

@@ -34,7 +34,7 @@ MonitorServer make_monitor_server(const std::string& url, const std::optional<st
     server.token = token;
     monitor::check_token("PATROL_TOKEN", server.token);
   } else {
-    throw InputError(fmt::format("{}: a token is needed: name its file (the platform has it in DIR/token), or set PATROL_TOKEN", url));
+    throw InputError(fmt::format("{}: access token required: name its file (DIR/token of the monitoring server) or set PATROL_TOKEN", url));
   }
   return server;
 }
@@ -96,9 +96,9 @@ void Delivery::wake() {
   changed_.notify_all();
 }
 
-bool Delivery::wait_until_empty(double limit_s) {
+bool Delivery::wait_until_empty(double timeout_s) {
   std::unique_lock lock(mutex_);
-  return changed_.wait_for(lock, milliseconds(limit_s), [this] { return is_empty_; });
+  return changed_.wait_for(lock, milliseconds(timeout_s), [this] { return is_empty_; });
 }
 
 std::string Delivery::last_error() const {
@@ -113,12 +113,12 @@ void Delivery::run() {
     has_news_ = false;
     lock.unlock();
     Sender::Outcome outcome = Sender::Outcome::kUnreachable;
-    std::string why;
+    std::string reason;
     try {
       outcome = sender_.send_next();
-      why = sender_.why();
+      reason = sender_.last_error();
     } catch (const std::exception& error) {  // the disk is full, or the response is not one of a monitoring server
-      why = error.what();
+      reason = error.what();
     }
     lock.lock();
     if (outcome == Sender::Outcome::kSent) {
@@ -130,7 +130,7 @@ void Delivery::run() {
       changed_.wait(lock, [this] { return is_stopping_ || has_news_; });
       changed_.wait_for(lock, milliseconds(settings_.gather_s), [this] { return is_stopping_; });
     } else {
-      last_error_ = why;
+      last_error_ = reason;
       changed_.wait_for(lock, milliseconds(pause_s), [this] { return is_stopping_; });
       pause_s = std::min(settings_.max_pause_s, 2.0 * pause_s);
     }

@@ -41,7 +41,7 @@ class Sender {
   /// Sends the next batch. A batch that the server rejects is halved until a single result remains, which is set aside.
   Outcome send_next();
   /// Reason why the last batch was not accepted.
-  const std::string& why() const { return last_error_; }
+  const std::string& last_error() const { return last_error_; }
 
  private:
   void set_aside_conflicts(const Outbox::Batch& batch, const std::string& response);
@@ -67,7 +67,7 @@ class Delivery {
   /// Notifies the background thread of new results.
   void wake();
   /// Waits until the outbox is empty; false after the time limit.
-  bool wait_until_empty(double limit_s);
+  bool wait_until_empty(double timeout_s);
   std::string last_error() const;
 
  private:

@@ -51,13 +51,13 @@ std::string to_text(const ProblemReport& report) {
   const std::size_t count = report.solved.size(), failed = num_failed(report);
   std::string text = fmt::format("{}: {} problems by {}\nroutes             {} found, each checked against every lethal cell\n", report.file_name, count,
                                  report.settings.planner, summary.num_found);
-  text += fmt::format("published lengths  {} agree to their last digit{}, worst difference {:.3g} cells\n", summary.num_agree,
-                      must_agree(report.settings.planner) ? "" : " (need not)", summary.worst_difference);
+  text += fmt::format("published lengths  {} agree to the last digit{}, worst difference {:.3g} cells\n", summary.num_agree,
+                      must_agree(report.settings.planner) ? "" : " (not expected)", summary.worst_difference);
   if (!summary.ratios.empty()) {
-    text += fmt::format("length / optimum   mean {:.6f}, median {:.6f}, least {:.6f}, worst {:.6f}\n", mean_of(summary.ratios),
+    text += fmt::format("length / optimum   mean {:.6f}, median {:.6f}, minimum {:.6f}, maximum {:.6f}\n", mean_of(summary.ratios),
                         score::percentile(summary.ratios, 0.5), *std::min_element(summary.ratios.begin(), summary.ratios.end()), *std::max_element(summary.ratios.begin(), summary.ratios.end()));
   }
-  text += fmt::format("processor time     {:.3f} ms a problem, {:.2f} s in all\nchecks failed      {}\n",
+  text += fmt::format("processor time     {:.3f} ms per problem, {:.2f} s in total\nchecks failed      {}\n",
                       1e3 * summary.processor_s / static_cast<double>(count), summary.processor_s, failed);
   std::size_t num_printed = 0;
   for (const SolvedProblem& solved : report.solved) {

@@ -102,7 +102,7 @@ std::optional<std::string> validate_route(const Grid<plan::Cost>& costs, const p
   std::vector<Point> points;
   for (const Eigen::Vector2d& p : route.points) {
     const std::optional<Point> point = to_half_cell_point(p);
-    if (!point) return fmt::format("turns at {}, {}, no centre and no corner of a cell", p.x(), p.y());
+    if (!point) return fmt::format("turns at {}, {}: must be a cell center or corner", p.x(), p.y());
     points.push_back(*point);
   }
   if (points.empty() || points.front() != center_of(start) || points.back() != center_of(goal)) return "does not lead from the start to the goal";

@@ -15,7 +15,7 @@ namespace {
 
 void smooth(const Grid<plan::Cost>& costs, const PlanSettings& settings, plan::Route& route) {
   const double cost_weight = settings.routes.cost_weight;
-  route.points = plan::smooth_route(costs, cost_weight, settings.kept_clearance_m / costs.geometry().resolution_m, route.points);
+  route.points = plan::smooth_route(costs, cost_weight, settings.min_clearance_m / costs.geometry().resolution_m, route.points);
   route.clearance = plan::clearance_of(costs, route.points);
   route.length = route.cost = 0.0;
   for (std::size_t i = 1; i < route.points.size(); ++i) {
@@ -24,8 +24,8 @@ void smooth(const Grid<plan::Cost>& costs, const PlanSettings& settings, plan::R
   }
 }
 
-bool is_too_large(const Grid<plan::Cost>& costs, std::int64_t most_passable) {
-  return static_cast<std::int64_t>(costs.geometry().size()) > 8 * most_passable || num_passable(costs) > most_passable;
+bool is_too_large(const Grid<plan::Cost>& costs, std::int64_t max_passable) {
+  return static_cast<std::int64_t>(costs.geometry().size()) > 8 * max_passable || num_passable(costs) > max_passable;
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ RouteMetrics evaluate_route(const Grid<plan::Cost>& costs, Cell start, Cell goal
   const double cost_weight = settings.routes.cost_weight;
   if (cost_weight > 0.0) metrics.octile_cost = GridSearch(GridSearch::Method::kAstar, cost_weight).plan(costs, start, goal).cost;
   if (settings.planner == "any_angle_optimum") metrics.any_angle_length = metrics.route.length;
-  else if (is_too_large(costs, settings.any_angle_most_cells)) metrics.is_any_angle_skipped = true;
+  else if (is_too_large(costs, settings.max_any_angle_cells)) metrics.is_any_angle_skipped = true;
   else metrics.any_angle_length = plan::AnyAngleOptimum().plan(costs, start, goal).length;
   return metrics;
 }

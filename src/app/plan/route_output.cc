@@ -9,7 +9,7 @@
 namespace patrol::app {
 
 const OutputKind kPlanOutput = {.name = "plan",
-                                .marker_text = "The plan was not finished.",
+                                .marker_text = "Incomplete plan.",
                                 .outputs = {"route.csv", "tour.csv", "problems.csv", "plan.json", "settings.yaml", "route.png", "*.part"},
                                 .required_file = "settings.yaml",
                                 .preserved = {}};
@@ -22,8 +22,8 @@ std::string turns_text(int num_turns) { return fmt::format("{} turn{}", num_turn
 
 std::string compared(double value, double best) {
   const double percent = 100.0 * gap(value, best);
-  if (std::abs(percent) < 0.005) return "the route's";
-  return fmt::format("the route's is {:.2f} % {}", std::abs(percent), percent > 0.0 ? "more" : "less");
+  if (std::abs(percent) < 0.005) return "equal to the route";
+  return fmt::format("route {:.2f} % {}", std::abs(percent), percent > 0.0 ? "more" : "less");
 }
 
 /// Lines on the optimal routes of this grid.
@@ -40,8 +40,8 @@ std::string references_text(const RouteReport& report) {
   if (metrics.octile_cost) text += line("  cheapest, cost", *metrics.octile_cost, metrics.route.cost);
   if (metrics.any_angle_length) text += line("any-angle optimum", *metrics.any_angle_length, metrics.route.length);
   if (metrics.is_any_angle_skipped) {
-    const std::int64_t most = report.setup.settings.any_angle_most_cells;
-    text += fmt::format("any-angle optimum  not looked for: it may take long with more than {} passable cells, or {} in all (any_angle_most_cells)\n",
+    const std::int64_t most = report.setup.settings.max_any_angle_cells;
+    text += fmt::format("any-angle optimum  skipped: more than {} passable cells, or {} in total (max_any_angle_cells)\n",
                         most, 8 * most);
   }
   return text;
@@ -83,11 +83,11 @@ std::string to_text(const RouteReport& report) {
   std::string text = fmt::format("{} from {} to {}\n{}\n", report.setup.settings.planner, report.map.text_of(report.p_from_m),
                                  report.map.text_of(report.p_to_m), grid_text(report.map_name, report.map, report.costs, report.setup.body));
   text += fmt::format("status             {}{}{}\n", status_name(route.status), is_found && report.setup.settings.smooth ? ", smoothed" : "",
-                      route.status == plan::PlanStatus::kNoneFound ? ": this planner may miss one" : "");
+                      route.status == plan::PlanStatus::kNoneFound ? ": this planner is not complete" : "");
   if (is_found) {
     text += fmt::format("length             {:.3f} {}, {} points, {}\n", cell * route.length, unit, route.points.size(), turns_text(metrics.num_turns));
     if (weight > 0.0) text += fmt::format("cost               {:.3f} {}: a cell at the highest passable cost counts as {}\n", cell * route.cost, unit, 1.0 + weight);
-    text += fmt::format("clearance          {}{:.3f} {} to what is lethal\n", route.clearance >= plan::kMaxClearance ? "at least " : "", cell * route.clearance, unit);
+    text += fmt::format("clearance          {}{:.3f} {} to lethal cells\n", route.clearance >= plan::kMaxClearance ? "at least " : "", cell * route.clearance, unit);
   }
   text += fmt::format("iterations         {}", route.num_iterations);
   if (const int settled = plan::iterations_to_within(route.history, kSettled)) text += fmt::format(", within 1 % of the final value from {} on", settled);
@@ -112,7 +112,7 @@ io::Metrics to_json(const RouteReport& report) {
   const bool is_found = route.status == plan::PlanStatus::kFound;
   const auto key = [&](const char* name) { return fmt::format("{}_{}", name, report.map.unit()); };
   const auto value_or_null = [](bool is_known, auto value) { return is_known ? io::Metrics(value) : io::Metrics(nullptr); };
-  const auto place = [&](const Eigen::Vector2d& p_m) { return io::Metrics{report.map.to_user(p_m).x(), report.map.to_user(p_m).y()}; };
+  const auto point_json = [&](const Eigen::Vector2d& p_m) { return io::Metrics{report.map.to_user(p_m).x(), report.map.to_user(p_m).y()}; };
   const auto best = [&](const std::optional<double>& value) { return value ? io::Metrics(cell * *value) : io::Metrics(nullptr); };
   const auto gap_to = [&](double value, const std::optional<double>& reference) {
     return is_found && reference ? io::Metrics(gap(value, *reference)) : io::Metrics(nullptr);
@@ -121,8 +121,8 @@ io::Metrics to_json(const RouteReport& report) {
           {"grid", grid_json(report.map, report.costs, report.setup.body)},
           {"planner", report.setup.settings.planner},
           {"seed", report.setup.settings.seed},
-          {key("from"), place(report.p_from_m)},
-          {key("to"), place(report.p_to_m)},
+          {key("from"), point_json(report.p_from_m)},
+          {key("to"), point_json(report.p_to_m)},
           {"status", status_name(route.status)},
           {"route",
            {{key("length"), value_or_null(is_found, cell * route.length)},

@@ -108,7 +108,7 @@ class Sheet {
     };
     add(kObstacle, "obstacle");
     add(kInflated, "lethal by inflation");
-    add(kDear, "dearer: near to an obstacle, or unknown");
+    add(kDear, "higher cost: near an obstacle, or unknown");
     add(kUnknownGround, "unknown");
     add(kRoute, "route");
   }

@@ -21,15 +21,15 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// Paths between all pairs of places.
 class PairwisePaths {
  public:
-  PairwisePaths(const Grid<plan::Cost>& costs, std::vector<Cell> places, const PlanSettings& settings)
-      : costs_(costs), places_(std::move(places)), settings_(settings), planner_(plan::make_route_planner(settings.planner, settings.routes, settings.seed)) {}
+  PairwisePaths(const Grid<plan::Cost>& costs, std::vector<Cell> nodes, const PlanSettings& settings)
+      : costs_(costs), nodes_(std::move(nodes)), settings_(settings), planner_(plan::make_route_planner(settings.planner, settings.routes, settings.seed)) {}
 
-  std::size_t size() const { return places_.size(); }
+  std::size_t size() const { return nodes_.size(); }
 
   /// Plans the path of a pair for both directions, from the place with the lower index.
   void plan(std::size_t from, std::size_t to) {
     const auto key = std::minmax(from, to);
-    paths_[key] = plan_route(*planner_, costs_, places_[key.first], places_[key.second], settings_);
+    paths_[key] = plan_route(*planner_, costs_, nodes_[key.first], nodes_[key.second], settings_);
   }
   double length_m(std::size_t from, std::size_t to) const {
     if (from == to) return 0.0;
@@ -46,7 +46,7 @@ class PairwisePaths {
 
  private:
   const Grid<plan::Cost>& costs_;
-  std::vector<Cell> places_;
+  std::vector<Cell> nodes_;
   const PlanSettings& settings_;
   std::unique_ptr<plan::RoutePlanner> planner_;
   std::map<std::pair<std::size_t, std::size_t>, plan::Route> paths_;
@@ -60,18 +60,18 @@ bool plan_paths(PairwisePaths& paths, const std::vector<std::pair<std::size_t, s
     if (guard.is_interrupted()) return false;
     if (const double now_s = wall_seconds(); now_s - shown_s > 0.1) {
       shown_s = now_s;
-      bar.show(fmt::format("{} of {} ways", i + 1, pairs.size()));
+      bar.show(fmt::format("{} of {} paths", i + 1, pairs.size()));
     }
   }
   return true;
 }
 
 /// Tour problem of the reachable places; `places[i]` is its station i.
-plan::TourProblem problem_of(const PairwisePaths& paths, const std::vector<std::size_t>& places, const std::vector<TourStop>& stops, bool has_end, double speed_mps) {
-  plan::TourProblem problem{.start = 0, .end = has_end ? places.size() - 1 : 0};
-  for (const std::size_t from : places) {
+plan::TourProblem problem_of(const PairwisePaths& paths, const std::vector<std::size_t>& nodes, const std::vector<TourStop>& stops, bool has_end, double speed_mps) {
+  plan::TourProblem problem{.start = 0, .end = has_end ? nodes.size() - 1 : 0};
+  for (const std::size_t from : nodes) {
     problem.travel.emplace_back();
-    for (const std::size_t to : places) problem.travel.back().push_back(paths.length_m(from, to) / speed_mps);
+    for (const std::size_t to : nodes) problem.travel.back().push_back(paths.length_m(from, to) / speed_mps);
     const bool is_stop = from > 0 && from <= stops.size();
     const io::TourStation station = is_stop ? stops[from - 1].station : io::TourStation{};
     problem.stations.push_back({.service = station.service_s, .earliest = station.earliest_s, .latest = station.latest_s, .priority = station.priority});
@@ -83,7 +83,7 @@ std::vector<TourVisit> visits_of(const PairwisePaths& paths, const std::vector<s
   std::vector<TourVisit> visits;
   double now_s = 0.0;
   for (std::size_t k = 0; k < route.size(); ++k) {
-    TourVisit visit{.place = route[k], .leg_m = k == 0 ? 0.0 : paths.length_m(route[k - 1], route[k])};
+    TourVisit visit{.node = route[k], .leg_m = k == 0 ? 0.0 : paths.length_m(route[k - 1], route[k])};
     const io::TourStation station = route[k] > 0 && route[k] <= stops.size() ? stops[route[k] - 1].station : io::TourStation{};
     visit.arrives_s = now_s + visit.leg_m / speed_mps;
     visit.waits_s = std::max(0.0, station.earliest_s - visit.arrives_s);
@@ -109,30 +109,30 @@ std::optional<TourPlan> plan_tour(const Grid<plan::Cost>& costs, const Eigen::Ve
   TourPlan tour;
   const double processor_s = process_seconds();
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (std::size_t place = 1; place < paths.size(); ++place) pairs.emplace_back(0, place);
+  for (std::size_t node = 1; node < paths.size(); ++node) pairs.emplace_back(0, node);
   if (!plan_paths(paths, pairs, guard, bar)) return std::nullopt;
   tour.num_routes = static_cast<int>(pairs.size());
   tour.processor_s = process_seconds() - processor_s;
-  std::vector<std::size_t> places = {0};
-  for (std::size_t place = 1; place < paths.size(); ++place) {
-    (std::isinf(paths.length_m(0, place)) ? tour.unreachable : places).push_back(place);
-    tour.is_proven = tour.is_proven && paths.is_proven(0, place);
+  std::vector<std::size_t> nodes = {0};
+  for (std::size_t node = 1; node < paths.size(); ++node) {
+    (std::isinf(paths.length_m(0, node)) ? tour.unreachable : nodes).push_back(node);
+    tour.is_proven = tour.is_proven && paths.is_proven(0, node);
   }
   const bool has_end = p_end_m.has_value();
-  if (places.size() == 1 || (has_end && places.back() != paths.size() - 1)) return tour;
+  if (nodes.size() == 1 || (has_end && nodes.back() != paths.size() - 1)) return tour;
   pairs.clear();
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    for (std::size_t j = i + 1; j < places.size(); ++j) pairs.emplace_back(places[i], places[j]);
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    for (std::size_t j = i + 1; j < nodes.size(); ++j) pairs.emplace_back(nodes[i], nodes[j]);
   }
   if (!plan_paths(paths, pairs, guard, bar)) return std::nullopt;
   tour.num_routes += static_cast<int>(pairs.size());
   tour.processor_s = process_seconds() - processor_s;
 
   bar.show("the order of the stations");
-  tour.order = plan::order_tour(problem_of(paths, places, stops, has_end, settings.speed_mps), settings.tour, settings.seed);
+  tour.order = plan::order_tour(problem_of(paths, nodes, stops, has_end, settings.speed_mps), settings.tour, settings.seed);
   if (!tour.order.is_found) return tour;
   std::vector<std::size_t> route;
-  for (const std::size_t station : tour.order.stations) route.push_back(places[station]);
+  for (const std::size_t station : tour.order.stations) route.push_back(nodes[station]);
   if (!has_end) route.push_back(0);
   tour.visits = visits_of(paths, route, stops, settings.speed_mps);
   for (std::size_t k = 1; k < route.size(); ++k) {

@@ -20,7 +20,7 @@ struct TourStop {
 
 /// Visit of a planned tour. Times are from the tour's start.
 struct TourVisit {
-  std::size_t place = 0;  ///< 0: start, 1 ... n: stops, n + 1: end, if it differs from the start
+  std::size_t node = 0;  ///< 0: start, 1 ... n: stops, n + 1: end, if it differs from the start
   double leg_m = 0.0;     ///< length of the path to it
   double arrives_s = 0.0, waits_s = 0.0, leaves_s = 0.0, late_s = 0.0;
 };

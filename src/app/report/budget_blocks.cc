@@ -53,34 +53,34 @@ std::string with_interval(const score::Interval& value, const report::Unit& unit
 }  // namespace
 
 std::vector<report::Block> budget_blocks(const Budget& budget) {
-  if (!is_whole(budget)) return {report::TextBlock{"Too few runs gave this figure."}};
+  if (!is_whole(budget)) return {report::TextBlock{"Too few runs with this metric."}};
   const report::Unit unit = report::unit_of(budget.metric);
   Waterfall waterfall(budget);
-  waterfall.total("as it is", *budget.baseline);
-  report::TableBlock table{.caption = "", .columns = {{"imperfection"}, {"seeds", true}, {fmt::format("share, {}", unit.name), true}, {""}}, .rows = {}};
+  waterfall.total("baseline", *budget.baseline);
+  report::TableBlock table{.caption = "", .columns = {{"error source"}, {"seeds", true}, {fmt::format("contribution, {}", unit.name), true}, {""}}, .rows = {}};
   for (const Contribution& contribution : budget.contributions) {
     if (!contribution.value) continue;
     waterfall.step(contribution.name, *contribution.value);
     const bool is_clear = !contribution.value->contains(0.0);
     table.rows.push_back({{contribution.name}, {std::to_string(contribution.num_pairs)}, {with_interval(*contribution.value, unit)},
-                          {is_clear ? "" : "interval holds zero", Tone::kFaint}});
+                          {is_clear ? "" : "interval contains zero", Tone::kFaint}});
   }
   waterfall.step("interaction", *budget.interaction);
   waterfall.total("all ideal", *budget.ideal);
-  table.rows.push_back({{"sum of the shares"}, {""}, {with_interval(*budget.sum, unit)}, {""}});
+  table.rows.push_back({{"sum of the contributions"}, {""}, {with_interval(*budget.sum, unit)}, {""}});
   table.rows.push_back({{"interaction"}, {""}, {with_interval(*budget.interaction, unit)}, {""}});
   return {std::move(waterfall).chart(), table,
-          report::TextBlock{"A contribution is the figure with all imperfections less the figure without this one, paired by seed, with its 95 % interval. Interaction: "
-                            "what all take away together, less the sum of the shares; imperfections that hide or feed each other."}};
+          report::TextBlock{"Contribution: baseline minus the metric without this error source, paired by seed, with 95 % interval. Interaction: "
+                            "effect of removing all minus the sum of the contributions."}};
 }
 
 std::string budget_finding(const Budget& budget) {
-  if (!is_whole(budget) || budget.contributions.empty() || !budget.contributions.front().value) return fmt::format("{}: too few runs gave it.", budget.metric);
+  if (!is_whole(budget) || budget.contributions.empty() || !budget.contributions.front().value) return fmt::format("{}: too few runs with this metric.", budget.metric);
   const report::Unit unit = report::unit_of(budget.metric);
   const Contribution& first = budget.contributions.front();
   const std::string whole = fmt::format("{:.3g} {}", unit.factor * budget.baseline->center, unit.name);
-  if (first.value->contains(0.0)) return fmt::format("{}: of {}, no imperfection owns a contribution whose interval leaves out zero.", budget.metric, whole);
-  return fmt::format("{}: of {}, {} owns {:.3g} {}.", budget.metric, whole, first.name, unit.factor * first.value->center, unit.name);
+  if (first.value->contains(0.0)) return fmt::format("{}: no error source contributes significantly to {} (95 %).", budget.metric, whole);
+  return fmt::format("{}: {}: {} contributes {:.3g} {}.", budget.metric, whole, first.name, unit.factor * first.value->center, unit.name);
 }
 
 }  // namespace patrol::app

@@ -47,7 +47,7 @@ std::vector<std::string> short_names(const SweepManifest& manifest) {
 
 std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, const std::string& metric) {
   const report::Unit unit = report::unit_of(metric);
-  const auto figures = flatten_metrics(manifest, rows, metric);
+  const auto seed_values = flatten_metrics(manifest, rows, metric);
   const std::vector<std::string> names = short_names(manifest);
   report::BoxPlot boxes{.caption = "Every run, median and quartiles", .unit = unit.name, .boxes = {}};
   report::WaterfallChart differences{.caption = fmt::format("Difference from {}, paired by seed, {:g} % intervals", names.front(), 100.0 * confidence_level(manifest)),
@@ -61,7 +61,7 @@ std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, cons
     const VariantMetric entry = compare(manifest, rows, metric, progress.num_seeds[variant], confidence_level(manifest))[variant];
     std::vector<double> values;
     for (std::size_t seed = 0; seed < progress.num_seeds[variant]; ++seed) {
-      if (figures[seed][variant]) values.push_back(*figures[seed][variant]);
+      if (seed_values[seed][variant]) values.push_back(*seed_values[seed][variant]);
     }
     if (!values.empty()) boxes.boxes.push_back(report::box_of(name, values, unit));
     if (entry.difference) {
@@ -87,7 +87,7 @@ std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, cons
 
 report::CollapsibleTables run_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
   const std::vector<std::string> names = short_names(manifest);
-  report::TableBlock table{.caption = "", .columns = {{"variant"}, {"seed", true}, {"end"}, {"exit code", true}, {"why"}}, .rows = {}};
+  report::TableBlock table{.caption = "", .columns = {{"variant"}, {"seed", true}, {"end"}, {"exit code", true}, {"reason"}}, .rows = {}};
   std::vector<std::size_t> order = progress.counted;
   std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return rows[i]->code() != ExitCode::kDone; });
   for (const std::size_t i : order) {

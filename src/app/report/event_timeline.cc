@@ -13,11 +13,11 @@ namespace {
 using report::SeriesColor;
 using report::PlotMark;
 
-const std::string kLostText = "The robot says that it is lost.";
+const std::string kLostText = "Localization reported lost.";
 
 /// Whether the marks of this lane are also shown in error curves.
 bool is_marked_in_plots(const report::EventTimeline::Lane& lane) {
-  return lane.marks.front().ink == SeriesColor::kAlarm || lane.name == name_of(EventKind::kRecovery) || lane.name == name_of(EventKind::kRelocalized);
+  return lane.marks.front().color == SeriesColor::kAlarm || lane.name == name_of(EventKind::kRecovery) || lane.name == name_of(EventKind::kRelocalized);
 }
 
 report::EventTimeline::Lane& lane_named(std::vector<report::EventTimeline::Lane>& lanes, const std::string& name) {
@@ -32,8 +32,8 @@ std::string text_of(const Event& event) { return event.text.empty() ? kind_text(
 
 std::vector<report::EventTimeline::Lane> make_lanes(const RunContents& run) {
   std::vector<report::EventTimeline::Lane> lanes;
-  const auto add = [&](const std::string& lane, SeriesColor ink, double at_s, const std::string& text) {
-    lane_named(lanes, lane).marks.push_back({.x = at_s, .text = text, .ink = ink});
+  const auto add = [&](const std::string& lane, SeriesColor color, double at_s, const std::string& text) {
+    lane_named(lanes, lane).marks.push_back({.x = at_s, .text = text, .color = color});
   };
   for (const Event& event : run.record.events) {
     add(kind_text(event), is_failure(event.kind) ? SeriesColor::kAlarm : SeriesColor::kEvent, to_seconds(event.stamp), text_of(event));
@@ -43,7 +43,7 @@ std::vector<report::EventTimeline::Lane> make_lanes(const RunContents& run) {
   }
   for (const KidnapSettings& kidnap : run.scenario.kidnaps) {
     if (!was_triggered(kidnap, run.record.T_world_body)) continue;
-    add("kidnap", SeriesColor::kAlarm, kidnap.at_s, fmt::format("The robot is lifted to ({:.1f}, {:.1f}) m.", kidnap.x_m, kidnap.y_m));
+    add("kidnap", SeriesColor::kAlarm, kidnap.at_s, fmt::format("Kidnapped to ({:.1f}, {:.1f}) m.", kidnap.x_m, kidnap.y_m));
   }
   return lanes;
 }

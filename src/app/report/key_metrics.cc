@@ -40,9 +40,9 @@ void add_accuracy(KeyMetricTable& table) {
   }
   if (const auto rmse_deg = table.at("pose.heading_rmse_deg")) table.add("Heading error, RMS", report::angle(*rmse_deg), "");
   if (const auto mean_m = table.at("map.nearest_mean_m")) {
-    table.add("Map to nearest surface", report::length(*mean_m), fmt::format("{:.0f} % of what could be seen is mapped", 100.0 * table.at("map.coverage").value_or(0.0)));
+    table.add("Map to nearest surface", report::length(*mean_m), fmt::format("{:.0f} % of the observable surfaces mapped", 100.0 * table.at("map.coverage").value_or(0.0)));
   }
-  if (const auto rmse_m = table.at("odometry.ate_rmse_m")) table.add("Odometry alone, RMS", report::length(*rmse_m), "the same without map");
+  if (const auto rmse_m = table.at("odometry.ate_rmse_m")) table.add("Odometry alone, RMS", report::length(*rmse_m), "without map");
 }
 
 void add_goals(KeyMetricTable& table) {
@@ -67,7 +67,7 @@ void add_mission(KeyMetricTable& table) {
     table.add("Collisions", {fmt::format("{:.0f}", *collisions), ""}, table.at("mission.fell").value_or(0.0) > 0.5 ? "and the robot fell" : "");
   }
   if (const auto distance_m = table.at("mission.distance_m")) {
-    table.add("Way", report::length(*distance_m), fmt::format("in {:.1f} s", table.at("mission.duration_s").value_or(0.0)));
+    table.add("Distance", report::length(*distance_m), fmt::format("in {:.1f} s", table.at("mission.duration_s").value_or(0.0)));
   }
   if (const auto factor = table.at("performance.real_time_factor")) {
     table.add("Simulated s per wall s", {fmt::format("{:.1f}", *factor), ""}, "");

@@ -26,10 +26,10 @@ io::JunitCase expectation_case(const std::string& name, const CheckedExpectation
 
 io::JunitCase event_case(const std::string& name, const InjectedEvent& event) {
   return {.class_name = name,
-          .name = event.what,
+          .name = event.name,
           .time_s = 0.0,
           .result = event.was_triggered ? io::JunitResult::kPassed : io::JunitResult::kSkipped,
-          .message = event.was_triggered ? "" : "NOT EXECUTED",
+          .message = event.was_triggered ? "" : "not triggered",
           .details = ""};
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 /// Header comment of a resolved scenario.
 std::string origin_comment(const std::string& name) {
-  return fmt::format("{}, every default written out, by patrol {} with MuJoCo {}", name, PATROL_VERSION, mj_versionString());
+  return fmt::format("{}, all settings with defaults, patrol {}, MuJoCo {}", name, PATROL_VERSION, mj_versionString());
 }
 
 io::Metrics performance_of(const RunOutcome& outcome) {

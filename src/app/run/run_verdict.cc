@@ -8,10 +8,10 @@ namespace {
 std::vector<InjectedEvent> events_of(const RunOutcome& outcome, const std::vector<KidnapSettings>& kidnaps) {
   std::vector<InjectedEvent> events;
   for (const sim::FaultStatus& report : outcome.faults) {
-    events.push_back({.what = name_of(report.fault), .was_triggered = report.was_triggered});
+    events.push_back({.name = name_of(report.fault), .was_triggered = report.was_triggered});
   }
   for (std::size_t i = 0; i < kidnaps.size(); ++i) {
-    events.push_back({.what = name_of(kidnaps[i]), .was_triggered = i < outcome.num_kidnaps});
+    events.push_back({.name = name_of(kidnaps[i]), .was_triggered = i < outcome.num_kidnaps});
   }
   return events;
 }
@@ -61,7 +61,7 @@ io::Metrics to_json(const RunVerdict& verdict) {
                                     {"is_met", check.is_met}});
   }
   for (const InjectedEvent& event : verdict.events) {
-    json["events"].push_back({{"what", event.what}, {"is_executed", event.was_triggered}});
+    json["events"].push_back({{"name", event.name}, {"was_triggered", event.was_triggered}});
   }
   return json;
 }
@@ -80,7 +80,7 @@ RunVerdict verdict_from_json(const io::Metrics& json) {
                               .is_met = check.at("is_met")});
   }
   for (const io::Metrics& event : json.at("events")) {
-    verdict.events.push_back({.what = event.at("what"), .was_triggered = event.at("is_executed")});
+    verdict.events.push_back({.name = event.at("name"), .was_triggered = event.at("was_triggered")});
   }
   return verdict;
 }

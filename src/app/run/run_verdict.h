@@ -16,7 +16,7 @@ namespace patrol::app {
 
 /// Event declared by a scenario: a fault or a kidnap.
 struct InjectedEvent {
-  std::string what;          ///< "fault imu freeze at 12 s"
+  std::string name;          ///< "fault imu freeze at 12 s"
   bool was_triggered = false;
 };
 
@@ -38,8 +38,8 @@ inline constexpr std::array kRunStatuses = std::to_array<RunStatusRow>({
     {RunStatus::kTimeLimit, "time limit", "The simulated time reached its limit", ExitCode::kTimeLimit},
     {RunStatus::kWrongInput, "wrong input", "No score: the scenario or one of its files is invalid", ExitCode::kWrongInput},
     {RunStatus::kFailed, "failed", "No score: the simulation or the program failed", ExitCode::kProgramFailed},
-    {RunStatus::kCrashed, "crashed", "No score: the process of the run died", ExitCode::kProgramFailed},
-    {RunStatus::kWallTimeLimit, "wall time limit", "No score: the process of the run reached its limit of wall time", ExitCode::kTimeLimit},
+    {RunStatus::kCrashed, "crashed", "No score: the process of the run crashed", ExitCode::kProgramFailed},
+    {RunStatus::kWallTimeLimit, "wall time limit", "No score: the process of the run reached its wall-clock timeout", ExitCode::kTimeLimit},
 });
 static_assert(is_in_order(kRunStatuses));
 

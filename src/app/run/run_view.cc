@@ -124,17 +124,17 @@ std::string values_text(const RunView& run) {
   if (run.estimate && run.truth) {
     const Pose2 error = run.truth->inverse() * run.estimate->T_map_body;
     const Eigen::Matrix3d& covariance = run.estimate->covariance;
-    text += fmt::format("   error {:.3f} m {:.2f}°   its own 2σ {:.3f} m", error.position().norm(), to_deg(std::abs(error.yaw)),
+    text += fmt::format("   error {:.3f} m {:.2f}°   estimated 2σ {:.3f} m", error.position().norm(), to_deg(std::abs(error.yaw)),
                         2.0 * std::sqrt(covariance(0, 0) + covariance(1, 1)));
   }
-  if (run.confidence) text += fmt::format("   trust {:.2f}{}", run.confidence->confidence, run.confidence->is_lost ? " LOST" : "");
+  if (run.confidence) text += fmt::format("   confidence {:.2f}{}", run.confidence->confidence, run.confidence->is_lost ? " LOST" : "");
   return text;
 }
 
 }  // namespace
 
 std::string render_run_view(const RunView& run, int columns, int rows) {
-  std::string text = fmt::format("\033[1m{}\033[0m   {:.1f} s simulated, {:.1f} times real time   {:.1f} m{}{}{}", run.name, to_seconds(run.now),
+  std::string text = fmt::format("\033[1m{}\033[0m   {:.1f} s simulated, {:.1f}x real time   {:.1f} m{}{}{}", run.name, to_seconds(run.now),
                                  run.real_time_factor, run.distance_m, kLineEnd, values_text(run), kLineEnd);
   text += map_text(run, columns, std::max(1, rows - 2 - kNumEvents - 1));
   for (int i = 0; i < kNumEvents; ++i) {
@@ -148,7 +148,7 @@ std::string render_run_view(const RunView& run, int columns, int rows) {
     }
     text += kLineEnd;
   }
-  return text + fmt::format("{}→ estimate {}◆ truth {}⠒ planned {}⠒ driven\033[0m\033[K", color_of(Layer::kRobot), color_of(Layer::kTruth), color_of(Layer::kPath),
+  return text + fmt::format("{}→ estimate {}◆ truth {}⠒ planned {}⠒ traveled\033[0m\033[K", color_of(Layer::kRobot), color_of(Layer::kTruth), color_of(Layer::kPath),
                             color_of(Layer::kDriven));
 }
 

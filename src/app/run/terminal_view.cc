@@ -26,7 +26,7 @@ winsize terminal_size() {
 }  // namespace
 
 TerminalView::TerminalView(const std::string& name) {
-  if (::isatty(STDOUT_FILENO) != 1) throw InputError("--watch: needs a terminal to draw on");
+  if (::isatty(STDOUT_FILENO) != 1) throw InputError("--watch: standard output must be a terminal");
   run_.name = name;
   fmt::print("\033[?1049h\033[?25l\033[2J");  // alternate screen, hidden cursor
 }

@@ -66,7 +66,7 @@ const std::vector<studies::StudyFigure> kPlannerFigures = {{.name = "longer than
                                            {.name = "over any-angle", .unit = "%"},
                                            {.name = "clearance", .unit = "cells"},
                                            {.name = "steps", .unit = "1000"},
-                                           {.name = "time", .unit = "ms", .is_processor_time = true}};
+                                           {.name = "time", .unit = "ms", .is_of_the_clock = true}};
 
 struct Planned {
   plan::Route route;

@@ -41,8 +41,8 @@ const std::vector<studies::StudyFigure> kStreetFigures = {{.name = "box 1", .uni
                                            {.name = "well 3", .unit = "m", .is_compared = true},
                                            {.name = "map to nearest surface", .unit = "m"},
                                            {.name = "pose RMSE", .unit = "m"},
-                                           {.name = "time", .unit = "s", .is_processor_time = true},
-                                           {.name = "memory", .unit = "MB", .is_processor_time = true}};
+                                           {.name = "time", .unit = "s", .is_of_the_clock = true},
+                                           {.name = "memory", .unit = "MB", .is_of_the_clock = true}};
 
 struct Mapped {
   Trajectory T_map_body;

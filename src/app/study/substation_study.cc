@@ -40,8 +40,8 @@ const std::vector<studies::StudyFigure> kSubstationFigures = {{.name = "map to n
                                            {.name = "loop closures", .unit = ""},
                                            {.name = "loop precision", .unit = ""},
                                            {.name = "loop recall", .unit = ""},
-                                           {.name = "time", .unit = "s", .is_compared = true, .is_processor_time = true},
-                                           {.name = "memory", .unit = "MB", .is_compared = true, .is_processor_time = true}};
+                                           {.name = "time", .unit = "s", .is_compared = true, .is_of_the_clock = true},
+                                           {.name = "memory", .unit = "MB", .is_compared = true, .is_of_the_clock = true}};
 
 StudyRun drive(const char* scenario, std::uint64_t seed, const TemporaryFolder& folder) { return run_for_study(scenario, kWithoutOwnMapping, seed, folder.path()); }
 

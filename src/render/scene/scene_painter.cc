@@ -18,7 +18,7 @@ namespace {
 Eigen::Vector3d to_eigen(const float v[3]) { return {v[0], v[1], v[2]}; }
 
 Color to_color(const float rgba[4]) {
-  const auto byte = [](float share) { return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(share, 0.0f, 1.0f))); };
+  const auto byte = [](float value) { return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f))); };
   return {byte(rgba[0]), byte(rgba[1]), byte(rgba[2])};
 }
 
@@ -59,9 +59,9 @@ double shadow_weight(const mjvLight& lamp, const Eigen::Vector3d& focus, double 
   return smooth_step(kEdge_rad, kEdge_rad + kFade_rad, reach_rad - off_axis_rad) * smooth_step(0.0, kFade_m, second_nearest_m - ray.norm());
 }
 
-void scale_light(mjvLight& light, double share) {
+void scale_light(mjvLight& light, double weight) {
   for (float* color : {light.ambient, light.diffuse, light.specular}) {
-    for (int i = 0; i < 3; ++i) color[i] *= static_cast<float>(share);
+    for (int i = 0; i < 3; ++i) color[i] *= static_cast<float>(weight);
   }
 }
 
@@ -144,16 +144,16 @@ void SceneRenderer::select_shadow_light(const View& view) {
     if (other != lamp) second_m = std::min(second_m, away_m(*other));
   }
   const double reach_deg = static_cast<double>(lamp->cutoff * model_.vis.map.shadowscale);
-  double share = shadow_weight(*lamp, view.focus, to_rad(reach_deg), second_m);
+  double weight = shadow_weight(*lamp, view.focus, to_rad(reach_deg), second_m);
   const bool has_room = scene_.nlight < kMaxLights;
-  if (!has_room) share = std::round(share);
-  if (share == 0.0) return;
+  if (!has_room) weight = std::round(weight);
+  if (weight == 0.0) return;
   has_shadow_lamp_ = true;
-  if (share < 1.0) {
+  if (weight < 1.0) {
     mjvLight& rest = scene_.lights[scene_.nlight++];
     rest = *lamp;
-    scale_light(rest, 1.0 - share);
-    scale_light(*lamp, share);
+    scale_light(rest, 1.0 - weight);
+    scale_light(*lamp, weight);
   }
   lamp->castshadow = 1;
 }

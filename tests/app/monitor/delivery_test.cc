@@ -34,7 +34,7 @@ class LivePlatform {
   LivePlatform& operator=(const LivePlatform&) = delete;
 
   int port() const { return server_.port(); }
-  MonitorServer address(const std::string& token = kToken) const { return {.url = {.host = "127.0.0.1", .port = std::to_string(port())}, .token = token}; }
+  MonitorServer monitor_server(const std::string& token = kToken) const { return {.url = {.host = "127.0.0.1", .port = std::to_string(port())}, .token = token}; }
 
  private:
   monitor::Store store_;
@@ -62,7 +62,7 @@ class DeliveryTo : public testing::Test {
 TEST_F(DeliveryTo, APlatformThatIsThereEmptiesTheOutbox) {
   {
     const LivePlatform server(data_.path());
-    Delivery delivery(outbox_, server.address());
+    Delivery delivery(outbox_, server.monitor_server());
     add(0, 30);
     delivery.wake();
     EXPECT_TRUE(delivery.wait_until_empty(20.0));
@@ -90,7 +90,7 @@ TEST_F(DeliveryTo, APlatformThatIsAwayGetsAllWhenItIsBack) {
 TEST_F(DeliveryTo, ResultsWhoseAnswerWasLostAreKnown) {
   const LivePlatform server(data_.path());
   add(0, 3);
-  Sender sender(outbox_, server.address());
+  Sender sender(outbox_, server.monitor_server());
   const Outbox::Batch batch = outbox_.next(10, 10'000);
   EXPECT_EQ(sender.send_next(), Sender::Outcome::kSent);
   outbox_.mark_sent({.results = {}, .end = 0});  // as if the answer had never come
@@ -103,9 +103,9 @@ TEST_F(DeliveryTo, ResultsWhoseAnswerWasLostAreKnown) {
 TEST_F(DeliveryTo, AWrongTokenKeepsAllInTheOutbox) {
   const LivePlatform server(data_.path());
   add(0, 3);
-  Sender sender(outbox_, server.address("another-0123456789"));
+  Sender sender(outbox_, server.monitor_server("another-0123456789"));
   EXPECT_EQ(sender.send_next(), Sender::Outcome::kInvalidToken);
-  EXPECT_EQ(sender.why(), "401 this is not the token");
+  EXPECT_EQ(sender.last_error(), "401 invalid token");
   EXPECT_EQ(outbox_.num_pending(), 3U);
 }
 
@@ -119,7 +119,7 @@ TEST_F(DeliveryTo, WhatIsRefusedForGoodIsSetAsideAndTheRestArrives) {
     outbox_.add(event_result(6, "note", std::string(150, 'x')));
     outbox_.add(event_result(7, "note", std::string(15'000, 'x')));  // above this platform's limit
     add(8, 12);
-    Sender sender(outbox_, server.address());
+    Sender sender(outbox_, server.monitor_server());
     for (int i = 0; i < 50 && sender.send_next() == Sender::Outcome::kSent; ++i) {
     }
     EXPECT_EQ(outbox_.num_pending(), 0U);
@@ -132,7 +132,7 @@ TEST_F(DeliveryTo, AConflictIsSetAside) {
   const LivePlatform server(data_.path());
   outbox_.add(pose_result(0, 1.0));
   outbox_.add(pose_result(0, 2.0));
-  Sender sender(outbox_, server.address());
+  Sender sender(outbox_, server.monitor_server());
   while (sender.send_next() == Sender::Outcome::kSent) {
   }
   EXPECT_EQ(outbox_.num_rejected(), 1U);

@@ -106,7 +106,7 @@ class Output(unittest.TestCase):
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]
-        command = f'exec "{PATROL}" monitor --port {port} --data "{self.path / "data"}" {redirection}'
+        command = f'exec "{PATROL}" monitor --port {port} --data-dir "{self.path / "data"}" {redirection}'
         process = subprocess.Popen(["sh", "-c", command], **more)
         self.addCleanup(lambda: (process.kill(), process.wait()))
         return process, port
@@ -161,13 +161,13 @@ class Lives(unittest.TestCase):
         self.addCleanup(lambda: self.platform.kill())
 
     def test_a_second_one_on_the_same_directory_is_refused(self):
-        done = subprocess.run([PATROL, "monitor", "--port", "0", "--data", self.path / "data"], capture_output=True, text=True, timeout=20)
+        done = subprocess.run([PATROL, "monitor", "--port", "0", "--data-dir", self.path / "data"], capture_output=True, text=True, timeout=20)
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("another patrol monitor serves this directory", done.stderr)
+        self.assertIn("in use by another patrol monitor", done.stderr)
         self.assertEqual(len(done.stderr.splitlines()), 1)
 
     def test_a_port_that_is_taken_is_refused(self):
-        done = subprocess.run([PATROL, "monitor", "--port", str(self.platform.port), "--data", self.path / "other"], capture_output=True, text=True, timeout=20)
+        done = subprocess.run([PATROL, "monitor", "--port", str(self.platform.port), "--data-dir", self.path / "other"], capture_output=True, text=True, timeout=20)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("Address already in use", done.stderr)
 

@@ -1,4 +1,4 @@
-/// A robot that only reports, for tests of the platform: the class that `patrol run --report-to` uses, told made-up messages. One of the
+/// A robot that only reports, for tests of the platform: the class that `patrol run --monitor-url` uses, with made-up messages. One of the
 /// tunnel scans the lining and sounds for water, any other measures gas.
 ///
 /// usage: reporting_robot URL TOKEN_FILE DIRECTORY ROBOT WORLD SECONDS RESULTS_PER_S
@@ -129,11 +129,11 @@ class Drive {
   int stations_ = 0;
 };
 
-int report(const std::string& address, const std::string& token, const std::filesystem::path& root, const std::string& robot, const std::string& world, double seconds, double rate_hz) {
+int report(const std::string& url, const std::string& token, const std::filesystem::path& root, const std::string& robot, const std::string& world, double seconds, double rate_hz) {
   const bool is_tunnel = world == "tunnel";
   const auto variant = static_cast<unsigned>(std::hash<std::string>()(robot + root.string()) % 97);
   std::filesystem::create_directories(root);
-  app::Reporter reporter(root, {.robot = robot, .run = app::new_run_name("made_up", variant), .world = world, .scenario = "made_up"}, app::make_monitor_server(address, token),
+  app::Reporter reporter(root, {.robot = robot, .run = app::new_run_name("made_up", variant), .world = world, .scenario = "made_up"}, app::make_monitor_server(url, token),
                          {.pose_period_s = 0.0, .map_period_s = seconds / 4.0, .drain_timeout_s = 60.0});
   reporter.begin(survey(is_tunnel));
   Drive drive(reporter, is_tunnel, seconds, variant);

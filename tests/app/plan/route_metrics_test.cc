@@ -39,7 +39,7 @@ TEST(RouteMetrics, NoRouteHasNoReferences) {
 
 TEST(RouteMetrics, TheAnyAngleOptimumIsLeftOutOfLargeGrids) {
   PlanSettings settings;
-  settings.any_angle_most_cells = 15;
+  settings.max_any_angle_cells = 15;
   const auto metrics_on = [&](const std::vector<std::string>& drawing) { return evaluate_route(draw(drawing), {0, 0}, {4, 0}, settings); };
   EXPECT_FALSE(metrics_on({".....", ".....", "....."}).is_any_angle_skipped);
   EXPECT_TRUE(metrics_on({"......", "......", "......"}).is_any_angle_skipped);

@@ -77,7 +77,7 @@ TEST(SweepPage, AFaultMatrixSaysHowManyWereUnsafe) {
 
 TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
   SmallSweep budget(0.0, SweepKind::kBudget);
-  budget.manifest.variants = {{.name = "as it is", .overrides = {}}, {.name = "lidar: range noise", .overrides = {}}, {.name = "all ideal", .overrides = {}}};
+  budget.manifest.variants = {{.name = "baseline", .overrides = {}}, {.name = "lidar: range noise", .overrides = {}}, {.name = "all ideal", .overrides = {}}};
   budget.manifest.runs.clear();
   budget.rows.clear();
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {

@@ -54,7 +54,7 @@ TEST(WatchFrame, TellsTheErrorOfTheEstimateBesideItsOwnDeviation) {
   run.truth = Pose2{0.3, 0.4, 0.0};
   const std::string frame = render_run_view(run, kColumns, kRows);
   EXPECT_THAT(frame, HasSubstr("error 0.500 m"));
-  EXPECT_THAT(frame, HasSubstr("its own 2σ 0.060 m"));
+  EXPECT_THAT(frame, HasSubstr("estimated 2σ 0.060 m"));
 }
 
 TEST(WatchFrame, TheNewestEventsStay) {

@@ -61,7 +61,7 @@ TEST(Pcd, WhatIsNoPcdIsRefusedWithItsLine) {
   EXPECT_EQ(complaint_about(header(kOnePoint, "binary_compressed")), "c.pcd:11: DATA must be ascii or binary");
   EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y\nSIZE 4 4\nTYPE F F\n")), "c.pcd:10: the points have no z");
   EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y z\nSIZE 4 4\nTYPE F F F\n")), "c.pcd:10: FIELDS has 3 words, SIZE 2 and TYPE 3");
-  EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y z\nSIZE 4 4 3\nTYPE F F F\n")), "c.pcd:10: TYPE and SIZE of field 3 do not go together");
+  EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y z\nSIZE 4 4 3\nTYPE F F F\n")), "c.pcd:10: TYPE and SIZE of field 3 are inconsistent");
   EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x\nCOUNT 1 1\n")), "c.pcd:4: COUNT has more words than FIELDS");
 }
 

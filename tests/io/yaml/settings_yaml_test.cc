@@ -257,9 +257,9 @@ TEST(Overrides, AreComplainedAboutLikeTheFile) {
   EXPECT_THAT(complaint_about("leaks: [{at: a}]\n", {"leaks.1.at=b"}),
               HasSubstr("--set leaks.1.at=b: the list has 1 entries"));
   EXPECT_THAT(complaint_about("leaks: [{at: a}]\n", {"leaks.first.at=b"}),
-              HasSubstr("must be a number: the place in a list"));
+              HasSubstr("must be a list index"));
   EXPECT_THAT(complaint_about("leaks: [{at: a}]\n", {"leaks.0x.at=b"}),
-              HasSubstr("must be a number: the place in a list"));
+              HasSubstr("must be a list index"));
   EXPECT_THAT(complaint_about("seed: 1\n", {"seed.x=b"}), HasSubstr("is a child of a scalar"));
   EXPECT_EQ(complaint_about("seed: 1\n", {"leaks=[]x"}), "--set leaks=[]x: more than one YAML document: only one is allowed");
 }

@@ -28,13 +28,13 @@ using File = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
 
 class Child {
  public:
-  Child(std::size_t number, double limit_s, const std::function<int(std::size_t)>& task)
-      : task_(number), stderr_file_(std::tmpfile(), std::fclose), deadline_(Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit_s))) {
-    if (!stderr_file_) throw std::runtime_error(fmt::format("no temporary file: {}", std::strerror(errno)));
+  Child(std::size_t number, double timeout_s, const std::function<int(std::size_t)>& task)
+      : task_(number), stderr_file_(std::tmpfile(), std::fclose), deadline_(Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timeout_s))) {
+    if (!stderr_file_) throw std::runtime_error(fmt::format("cannot create a temporary file: {}", std::strerror(errno)));
     std::fflush(nullptr);  // otherwise both processes would write the buffer
     const pid_t parent = ::getpid();
     pid_ = ::fork();
-    if (pid_ < 0) throw std::runtime_error(fmt::format("no process: {}", std::strerror(errno)));
+    if (pid_ < 0) throw std::runtime_error(fmt::format("cannot start a process: {}", std::strerror(errno)));
     if (pid_ == 0) run_child(parent, task);
     pidfd_ = static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0));  // not pidfd_open: glibc 2.36 declares it for C only
   }
@@ -120,7 +120,7 @@ bool run_in_processes(std::size_t num_tasks, const ProcessPoolSettings& settings
   for (std::size_t next = 0; next < num_tasks || !children.empty();) {
     if (!keep_going()) return false;  // destructors kill the children
     while (next < num_tasks && static_cast<int>(children.size()) < settings.num_processes) {
-      children.push_back(std::make_unique<Child>(next++, settings.limit_s, task));
+      children.push_back(std::make_unique<Child>(next++, settings.timeout_s, task));
     }
     wait_for_any(children);
     for (auto child = children.begin(); child != children.end();) {

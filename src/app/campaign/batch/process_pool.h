@@ -17,7 +17,7 @@ struct TaskEnd {
 
 struct ProcessPoolSettings {
   int num_processes = 1;
-  double limit_s = 3600.0;  ///< wall-clock limit of a task
+  double timeout_s = 3600.0;  ///< wall-clock limit of a task
 };
 
 /// Runs tasks 0 ... num_tasks - 1, each in a process of its own that is forked from this one. Crashes, leaks, hangs and

@@ -13,7 +13,7 @@ std::optional<RunVerdict> ResultStore::load(const std::string& key) const {
   try {
     return verdict_from_json(json);
   } catch (const std::exception& error) {
-    throw InputError(fmt::format("{}: is not a run's result: {}", file(key).string(), error.what()));
+    throw InputError(fmt::format("{}: invalid run result: {}", file(key).string(), error.what()));
   }
 }
 

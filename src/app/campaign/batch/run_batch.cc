@@ -20,8 +20,8 @@ namespace {
 RunVerdict verdict_of_run(const BatchRun& run, const std::filesystem::path& work) {
   try {
     const Scenario scenario = load_scenario(run.scenario, run.overrides);
-    NullObserver nobody;
-    return run_once(scenario, run.scenario.stem().string(), find_data_root(run.scenario), work, nobody).value();
+    NullObserver observer;
+    return run_once(scenario, run.scenario.stem().string(), find_data_root(run.scenario), work, observer).value();
   } catch (const InputError& error) {
     return {.end = RunStatus::kWrongInput, .message = error.what(), .metrics = {}, .checks = {}, .events = {}};
   } catch (const std::exception& error) {
@@ -30,9 +30,9 @@ RunVerdict verdict_of_run(const BatchRun& run, const std::filesystem::path& work
 }
 
 /// Verdict on a run whose process died without one.
-RunVerdict verdict_of_crash(const TaskEnd& end, double limit_s) {
+RunVerdict verdict_of_crash(const TaskEnd& end, double timeout_s) {
   if (end.is_over_time) {
-    return {.end = RunStatus::kWallTimeLimit, .message = fmt::format("after {:g} s", limit_s), .metrics = {}, .checks = {}, .events = {}};
+    return {.end = RunStatus::kWallTimeLimit, .message = fmt::format("after {:g} s", timeout_s), .metrics = {}, .checks = {}, .events = {}};
   }
   const std::string how = end.signal != 0 ? fmt::format("signal {} ({})", end.signal, ::strsignal(end.signal))
                                           : fmt::format("exit status {}", end.exit_code);
@@ -85,13 +85,13 @@ class Batch {
       return;
     }
     if (!store_.has(run.key)) {
-      store_.save(run.key, verdict_of_crash(end, settings_.pool.limit_s));
+      store_.save(run.key, verdict_of_crash(end, settings_.pool.timeout_s));
       keep_or_remove(run.key, ExitCode::kProgramFailed);
     }
     const RunVerdict verdict = store_.load(run.key).value();
     ++num_done_;
     if (verdict.code() == ExitCode::kDone) return;
-    ++num_not_fine_;
+    ++num_failed_;
     bar_.print_line(fmt::format("{}: {}: {}", run.label, name_of(verdict.end), verdict.message));
   }
 
@@ -109,7 +109,7 @@ class Batch {
   void show() {
     const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
     const double left_s = num_done_ == 0 ? 0.0 : elapsed_s / static_cast<double>(num_done_) * static_cast<double>(runs_.size() - num_done_);
-    bar_.show(fmt::format("{} of {} runs, {} not as expected{}", num_done_, runs_.size(), num_not_fine_,
+    bar_.show(fmt::format("{} of {} runs, {} failed{}", num_done_, runs_.size(), num_failed_,
                           num_done_ == 0 ? "" : fmt::format(", about {:.0f} min left", std::ceil(left_s / 60.0))));
   }
 
@@ -119,7 +119,7 @@ class Batch {
   ResultStore store_;
   std::vector<std::size_t> pending_;
   std::set<std::size_t> killed_once_;
-  std::size_t num_done_ = 0, num_not_fine_ = 0;
+  std::size_t num_done_ = 0, num_failed_ = 0;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   ProgressBar bar_;
   InterruptGuard interrupt_;

@@ -40,7 +40,7 @@ WorkFolder::WorkFolder(const std::filesystem::path& root)
     : folder_(root / "work"), prefix_(fmt::format("{}-{}-", host_name(), ::getpid())) {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
-  if (error) throw InputError(fmt::format("{}: cannot be made a directory: {}", folder_.string(), error.message()));
+  if (error) throw InputError(fmt::format("{}: cannot create the directory: {}", folder_.string(), error.message()));
   remove_stale(folder_, host_name(), ::getpid());
 }
 

@@ -84,12 +84,12 @@ Axis parse_axis(const std::string& text) {
   Axis axis;
   axis.path = text.substr(0, equals);
   const std::string values = text.substr(equals + 1);
-  if (values.empty()) fail(text, "has no values");
+  if (values.empty()) fail(text, "must have at least one value");
 
   const auto random = [&](Axis::Kind kind, const std::vector<double>& numbers) {
     axis.kind = kind;
     axis.first = numbers[0], axis.second = numbers[1];
-    if (kind == Axis::Kind::kNormal && axis.second < 0.0) fail(text, "the standard deviation is negative");
+    if (kind == Axis::Kind::kNormal && axis.second < 0.0) fail(text, "the standard deviation must not be negative");
     if (kind != Axis::Kind::kNormal && axis.second < axis.first) fail(text, "HIGH must not be less than LOW");
     if (kind == Axis::Kind::kLogUniform && axis.first <= 0.0) fail(text, "LOW must be greater than 0");
   };
@@ -102,7 +102,7 @@ Axis parse_axis(const std::string& text) {
 
   std::set<std::string> seen;
   for (const std::string& value : axis.values) {
-    if (value.empty()) fail(text, "a value is empty");
+    if (value.empty()) fail(text, "empty value");
     if (!seen.insert(value).second) fail(text, fmt::format("duplicate value '{}'", value));
   }
   return axis;
@@ -124,7 +124,7 @@ std::vector<Variant> cartesian_product(const std::vector<Axis>& axes) {
     variants = std::move(longer);
   }
   for (Variant& variant : variants) {
-    variant.name = variant.overrides.empty() ? "as it is" : fmt::format("{}", fmt::join(variant.overrides, ", "));
+    variant.name = variant.overrides.empty() ? "baseline" : fmt::format("{}", fmt::join(variant.overrides, ", "));
   }
   return variants;
 }

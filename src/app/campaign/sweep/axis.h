@@ -34,7 +34,7 @@ Axis parse_axis(const std::string& text);
 
 /// Variant of the scenario in a sweep.
 struct Variant {
-  std::string name;                    ///< "path=a, other=b"; "as it is" without overrides
+  std::string name;                    ///< "path=a, other=b"; "baseline" without overrides
   std::vector<std::string> overrides;  ///< "path=value"
 };
 

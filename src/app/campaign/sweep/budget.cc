@@ -55,8 +55,8 @@ std::string bar(double from, double to, double full) {
   return text;
 }
 
-std::string line(const std::string& name, const std::optional<score::Interval>& interval, const std::string& drawn) {
-  return fmt::format("  {:<28} {:<40} {}\n", name, numbers(interval), drawn);
+std::string line(const std::string& name, const std::optional<score::Interval>& interval, const std::string& picture) {
+  return fmt::format("  {:<28} {:<40} {}\n", name, numbers(interval), picture);
 }
 
 }  // namespace
@@ -86,23 +86,23 @@ Budget make_budget(const SweepManifest& manifest, const SweepRows& rows, const s
 
 std::string budget_text(const Budget& budget) {
   std::string text = fmt::format("{}\n", budget.metric);
-  if (!budget.baseline || !budget.ideal || !budget.interaction) return text + "  too few runs gave it\n";
+  if (!budget.baseline || !budget.ideal || !budget.interaction) return text + "  too few runs with this metric\n";
   double highest = budget.baseline->center, level = highest;
   for (const Contribution& contribution : budget.contributions) {
     level -= contribution.value ? contribution.value->center : 0.0;
     highest = std::max(highest, level);
   }
   level = budget.baseline->center;
-  text += line("as it is", budget.baseline, bar(0.0, level, highest));
+  text += line("baseline", budget.baseline, bar(0.0, level, highest));
   for (const Contribution& contribution : budget.contributions) {
     const double next = level - (contribution.value ? contribution.value->center : 0.0);
     const bool is_clear = contribution.value && !contribution.value->contains(0.0);
-    text += line(contribution.name, contribution.value, bar(level, next, highest) + (is_clear ? "" : "  interval holds zero"));
+    text += line(contribution.name, contribution.value, bar(level, next, highest) + (is_clear ? "" : "  interval contains zero"));
     level = next;
   }
   text += line("interaction", budget.interaction, bar(level, budget.ideal->center, highest));
   text += line("all ideal", budget.ideal, bar(0.0, budget.ideal->center, highest));
-  return text + fmt::format("  sum of the shares {}\n", numbers(budget.sum));
+  return text + fmt::format("  sum of the contributions {}\n", numbers(budget.sum));
 }
 
 io::Table budget_table(const std::vector<Budget>& budgets) {
@@ -119,7 +119,7 @@ io::Table budget_table(const std::vector<Budget>& budgets) {
       cells[4] = interval->low;
       cells[5] = interval->high;
     };
-    add("as it is", {}, budget.baseline);
+    add("baseline", {}, budget.baseline);
     for (const Contribution& contribution : budget.contributions) add(contribution.name, contribution.num_pairs, contribution.value);
     add("sum", {}, budget.sum);
     add("interaction", {}, budget.interaction);

@@ -35,7 +35,7 @@ Budget make_budget(const SweepManifest& manifest, const SweepRows& rows, const s
 /// Waterfall chart as text: from the baseline, contribution by contribution, to the ideal value.
 std::string budget_text(const Budget& budget);
 
-/// Table of all budgets: one row per contribution, and rows "as it is", "sum", "interaction", "all ideal".
+/// Table of all budgets: one row per contribution, and rows "baseline", "sum", "interaction", "all ideal".
 io::Table budget_table(const std::vector<Budget>& budgets);
 
 }  // namespace patrol::app

@@ -70,14 +70,14 @@ std::vector<std::size_t> interim_analyses(std::size_t num_seeds) {
 }
 
 double confidence_level(const SweepManifest& manifest) {
-  return 1.0 - kError / (manifest.stop.when_decided ? static_cast<double>(interim_analyses(manifest.seeds.size()).size()) : 1.0);
+  return 1.0 - kError / (manifest.stop.is_early ? static_cast<double>(interim_analyses(manifest.seeds.size()).size()) : 1.0);
 }
 
 SweepProgress evaluate_progress(const SweepManifest& manifest, const SweepRows& rows) {
   SweepProgress progress;
   const std::size_t all = manifest.seeds.size();
   std::vector<std::size_t> num_seeds(manifest.variants.size(), all);
-  if (!manifest.stop.when_decided) {
+  if (!manifest.stop.is_early) {
     add_needed(manifest, rows, num_seeds, progress);
     return progress;
   }
@@ -90,7 +90,7 @@ SweepProgress evaluate_progress(const SweepManifest& manifest, const SweepRows& 
     add_needed(manifest, rows, num_seeds, progress);
     if (!progress.needed.empty()) return progress;
     for (const VariantMetric& entry : compare(manifest, rows, manifest.metrics.front(), analysis, confidence_level(manifest))) {
-      if (entry.variant > 0 && is_decided(entry, manifest.stop.margin)) is_undecided[entry.variant] = false;
+      if (entry.variant > 0 && is_decided(entry, manifest.stop.equivalence_margin)) is_undecided[entry.variant] = false;
     }
     if (std::none_of(is_undecided.begin() + 1, is_undecided.end(), [](bool open) { return open; })) return progress;
   }

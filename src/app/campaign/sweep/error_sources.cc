@@ -39,12 +39,12 @@ std::vector<std::string> latency_overrides() {
 
 std::vector<ScenarioErrorSource> other_error_sources() {
   return {
-      {"belts: slip (friction 2)", {"track_drive.friction=2"}, has_tracks},
+      {"tracks: slip (friction 2)", {"track_drive.friction=2"}, has_tracks},
       {"latency of all sensors", latency_overrides()},
       {"people and vehicles", {"actors=[]"}},
       {"faults", {"faults=[]"}},
-      {"put down off the start", {"start.ahead_m=0", "start.left_m=0", "start.turn_deg=0"}},
-      {"map: cells of 5 cm (2.5 cm)", {"stack.slam.resolution_m=0.025", "stack.graph.tracking.resolution_m=0.025"}},
+      {"start pose error", {"start.ahead_m=0", "start.left_m=0", "start.turn_deg=0"}},
+      {"map resolution 5 cm (2.5 cm)", {"stack.slam.resolution_m=0.025", "stack.graph.tracking.resolution_m=0.025"}},
   };
 }
 

@@ -20,8 +20,8 @@ struct PlannedRun {
 
 /// Condition for stopping before all seeds are run.
 struct EarlyStop {
-  bool when_decided = false;
-  double margin = 0.0;  ///< in units of the first metric: smaller differences are treated as equal
+  bool is_early = false;
+  double equivalence_margin = 0.0;  ///< in units of the first metric: smaller differences are treated as equal
 };
 
 /// Command of a sweep, which determines its variants. Budget: the first is the scenario as it is, the last has every

@@ -46,7 +46,7 @@ SweepManifest plan_sweep(const SweepOptions& options) {
   for (const std::string& text : options.vary) axes.push_back(parse_axis(text));
   SweepManifest manifest = begin_manifest(SweepKind::kSweep, options);
   manifest.variants = cartesian_product(axes);
-  manifest.stop = {.when_decided = options.early_stop, .margin = options.margin};
+  manifest.stop = {.is_early = options.early_stop, .equivalence_margin = options.equivalence_margin};
   for (const Axis& axis : axes) manifest.paths.push_back(axis.path);
   plan_runs(options.scenario, axes, manifest);
   return manifest;
@@ -54,8 +54,8 @@ SweepManifest plan_sweep(const SweepOptions& options) {
 
 SweepManifest plan_error_budget(const ErrorBudgetOptions& options) {
   SweepManifest manifest = begin_manifest(SweepKind::kBudget, options);
-  manifest.variants.push_back({.name = "as it is", .overrides = {}});
-  if (manifest.seeds.size() < 2) throw InputError("--seeds: a budget needs two at least: one says nothing of the spread");
+  manifest.variants.push_back({.name = "baseline", .overrides = {}});
+  if (manifest.seeds.size() < 2) throw InputError("--seeds: an error budget needs at least two seeds");
   const Scenario scenario = load_scenario(options.scenario, options.overrides);
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
   const auto changes_it = [&](const ScenarioErrorSource& source) {

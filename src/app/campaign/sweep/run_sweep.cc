@@ -23,7 +23,7 @@ void run_sweep(const std::filesystem::path& scenario, const SweepManifest& manif
     }
     if (runs.empty()) return;
     if (!run_batch(runs, settings, directory.root)) {
-      throw std::runtime_error(fmt::format("interrupted; {} is incomplete, the same command goes on", directory.root.string()));
+      throw std::runtime_error(fmt::format("interrupted; {} is incomplete, repeat the command to continue", directory.root.string()));
     }
   }
 }

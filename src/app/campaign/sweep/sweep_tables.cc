@@ -56,7 +56,7 @@ io::Table runs_table(const SweepManifest& manifest, const SweepRows& rows, const
   const std::vector<std::string> paths = paths_of(rows, progress.counted);
   io::Table table{.name = "runs", .columns = {"variant"}, .rows = {}};
   table.columns.insert(table.columns.end(), manifest.paths.begin(), manifest.paths.end());
-  for (const char* column : {"seed", "address", "end", "exit_code", "message"}) table.columns.emplace_back(column);
+  for (const char* column : {"seed", "hash", "end", "exit_code", "message"}) table.columns.emplace_back(column);
   table.columns.insert(table.columns.end(), paths.begin(), paths.end());
 
   for (const std::size_t i : progress.counted) {
@@ -114,7 +114,7 @@ std::string comparison_text(const SweepManifest& manifest, const SweepRows& rows
   const auto all = comparisons(manifest, rows, progress);
   for (std::size_t metric = 0; metric < all.size(); ++metric) {
     text += fmt::format("{}\n  {:<{}}  {:>5}  {:>32}  {:>5}  {:>34}\n", manifest.metrics[metric], "variant", width, "runs",
-                        "mean [95 %]", "pairs", "difference to the first");
+                        "mean [95 %]", "pairs", "difference from the first");
     for (const VariantMetric& entry : all[metric]) {
       const std::string mean = entry.interval ? fmt::format("{:.4g} [{:.4g}, {:.4g}]", entry.mean, entry.interval->low, entry.interval->high)
                                : entry.num_runs > 0 ? fmt::format("{:.4g}", entry.mean) : "-";
@@ -124,8 +124,8 @@ std::string comparison_text(const SweepManifest& manifest, const SweepRows& rows
     }
     text += "\n";
   }
-  if (manifest.stop.when_decided) {
-    text += fmt::format("differences: intervals for {} looks (Bonferroni)\n", interim_analyses(manifest.seeds.size()).size());
+  if (manifest.stop.is_early) {
+    text += fmt::format("differences: intervals for {} interim analyses (Bonferroni)\n", interim_analyses(manifest.seeds.size()).size());
   }
   return text;
 }

@@ -18,7 +18,7 @@ bool is_scenario(const std::filesystem::path& file) { return file.extension() ==
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& scenarios) {
   std::error_code ignored;
   if (std::filesystem::is_regular_file(scenarios, ignored)) return {scenarios};
-  if (!std::filesystem::is_directory(scenarios, ignored)) throw InputError(fmt::format("{}: there is no such file or folder", scenarios.string()));
+  if (!std::filesystem::is_directory(scenarios, ignored)) throw InputError(fmt::format("{}: not found", scenarios.string()));
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(scenarios)) {  // follows no folder links
     if (entry.is_regular_file(ignored) && is_scenario(entry.path())) files.push_back(entry.path());
@@ -111,7 +111,7 @@ std::string tests_summary(const std::vector<TestedScenario>& tested) {
   const auto num_failed = static_cast<std::ptrdiff_t>(tested.size()) - num_passed;
   std::string text = num_failed == 0 ? fmt::format("# All {} scenarios passed\n", num_passed)
                                      : fmt::format("# {} of {} scenarios did not pass\n", num_failed, tested.size());
-  const std::string head = "\n| result | scenario | s | what |\n| --- | --- | ---: | --- |\n";
+  const std::string head = "\n| result | scenario | s | reason |\n| --- | --- | ---: | --- |\n";
   if (num_failed > 0) {
     text += head;
     for (const TestedScenario& one : tested) {

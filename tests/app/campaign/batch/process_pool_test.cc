@@ -51,7 +51,7 @@ TEST(ProcessPool, ACrashIsOnesOwn) {
 }
 
 TEST(ProcessPool, AHangIsKilledAtItsLimit) {
-  const auto ends = run(2, {.num_processes = 2, .limit_s = 0.3}, [](std::size_t task) {
+  const auto ends = run(2, {.num_processes = 2, .timeout_s = 0.3}, [](std::size_t task) {
     if (task == 0) std::this_thread::sleep_for(milliseconds(60000));
     return 0;
   });

@@ -107,7 +107,7 @@ TEST(Cross, TwoMethodsAndThreeNoisesAreSixVariantsTheFirstAxisSlowest) {
 
 TEST(Cross, NothingVariedIsOneVariant) {
   ASSERT_EQ(cartesian_product({}).size(), 1u);
-  EXPECT_EQ(cartesian_product({}).front().name, "as it is");
+  EXPECT_EQ(cartesian_product({}).front().name, "baseline");
 }
 
 TEST(Cross, AnAxisTwiceIsRefused) { EXPECT_THROW(cartesian_product({parse_axis("a=1,2"), parse_axis("a=3,4")}), InputError); }

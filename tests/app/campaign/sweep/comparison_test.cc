@@ -102,12 +102,12 @@ TEST(Progress, WithoutEarlyStoppingEveryRunIsNeededAndCounts) {
 }
 
 TEST(Progress, FirstFiveSeedsAreNeededBeforeALook) {
-  const SweepManifest manifest = manifest_of(2, 20, {.when_decided = true, .margin = 0.0});
+  const SweepManifest manifest = manifest_of(2, 20, {.is_early = true, .equivalence_margin = 0.0});
   EXPECT_THAT(evaluate_progress(manifest, SweepRows(40)).needed, SizeIs(10));
 }
 
 TEST(Progress, AClearDifferenceStopsAfterFiveSeedsAndAnUnclearOneGoesOn) {
-  const SweepManifest manifest = manifest_of(3, 20, {.when_decided = true, .margin = 0.0});
+  const SweepManifest manifest = manifest_of(3, 20, {.is_early = true, .equivalence_margin = 0.0});
   const RandomStream noise(1, "comparison_test");
   SweepRows rows = rows_of(manifest, [&](std::size_t variant, std::uint64_t seed) { return (variant == 1 ? 10.0 : 0.0) + 0.1 * noise.normal(seed, variant); });
   for (std::size_t i = 15; i < rows.size(); ++i) rows[i].reset();  // five seeds of three variants were run
@@ -117,7 +117,7 @@ TEST(Progress, AClearDifferenceStopsAfterFiveSeedsAndAnUnclearOneGoesOn) {
 }
 
 TEST(Progress, WithinTheMarginEqualIsDecidedToo) {
-  const SweepManifest manifest = manifest_of(2, 20, {.when_decided = true, .margin = 1.0});
+  const SweepManifest manifest = manifest_of(2, 20, {.is_early = true, .equivalence_margin = 1.0});
   const RandomStream noise(1, "comparison_test");
   SweepRows rows = rows_of(manifest, [&](std::size_t variant, std::uint64_t seed) { return 0.01 * noise.normal(seed, variant); });
   for (std::size_t i = 10; i < rows.size(); ++i) rows[i].reset();
@@ -128,7 +128,7 @@ TEST(Progress, WithinTheMarginEqualIsDecidedToo) {
 
 TEST(Progress, LookingOftenFindsDifferencesBetweenEqualsInAtMostFivePercentOfSweeps) {
   constexpr int kSweeps = 2000;
-  const SweepManifest manifest = manifest_of(2, 40, {.when_decided = true, .margin = 0.0});
+  const SweepManifest manifest = manifest_of(2, 40, {.is_early = true, .equivalence_margin = 0.0});
   int stopped = 0;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     const RandomStream noise(static_cast<std::uint64_t>(sweep), "comparison_test");

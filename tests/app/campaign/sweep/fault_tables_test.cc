@@ -23,9 +23,9 @@ TEST(FaultTables, SaysWhatBecameOfEachFaultAndWhatItCost) {
 
   const io::Table table = faults_table(manifest, rows);
   EXPECT_EQ(table.rows[1][3], io::TableValue("stopped"));
-  EXPECT_EQ(table.rows[2][2], io::TableValue("NOT EXECUTED"));
+  EXPECT_EQ(table.rows[2][2], io::TableValue("not triggered"));
   EXPECT_NEAR(std::get<double>(table.rows[1].back()), 0.2, 1e-12);
-  EXPECT_THAT(faults_text(manifest, rows), HasSubstr("3 runs: 2 survived, 1 stopped; 1 faults NOT EXECUTED."));
+  EXPECT_THAT(faults_text(manifest, rows), HasSubstr("3 runs: 2 survived, 1 stopped; 1 faults not triggered."));
 }
 
 TEST(FaultTables, ADocumentHasSensorsDownKindsAcrossAndTheWorstOfTheSeeds) {
@@ -42,8 +42,8 @@ TEST(FaultTables, ADocumentHasSensorsDownKindsAcrossAndTheWorstOfTheSeeds) {
   }
   rows[4] = fault_verdict(RunStatus::kTimeLimit, false, 0);
   rows[4]->metrics["pose"]["ate_rmse_m"] = 0.3;
-  EXPECT_THAT(faults_markdown(manifest, rows), HasSubstr("| pose.ate_rmse_m | drift | freeze |\n| --- | --- | --- |\n| no fault: survived 0.1, noticed |\n"
-                                                         "| imu | **stopped** 0.2, noticed | survived 0.1, noticed |\n"));
+  EXPECT_THAT(faults_markdown(manifest, rows), HasSubstr("| pose.ate_rmse_m | drift | freeze |\n| --- | --- | --- |\n| no fault: survived 0.1, detected |\n"
+                                                         "| imu | **stopped** 0.2, detected | survived 0.1, detected |\n"));
 }
 
 }  // namespace

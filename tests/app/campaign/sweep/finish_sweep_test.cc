@@ -10,12 +10,12 @@
 namespace patrol::app::finish_sweep_test {
 namespace {
 
-/// Two seeds of "as it is", "no noise" and "all ideal", with results of their own.
+/// Two seeds of "baseline", "no noise" and "all ideal", with results of their own.
 SweepManifest small_budget(const std::string& scenario) {
   SweepManifest manifest;
   manifest.kind = SweepKind::kBudget;
   manifest.scenario = scenario;
-  manifest.variants = {{.name = "as it is", .overrides = {}}, {.name = "no noise", .overrides = {}}, {.name = "all ideal", .overrides = {}}};
+  manifest.variants = {{.name = "baseline", .overrides = {}}, {.name = "no noise", .overrides = {}}, {.name = "all ideal", .overrides = {}}};
   manifest.seeds = {1, 2};
   manifest.metrics = {"pose.ate_rmse_m"};
   for (std::size_t run = 0; run < 6; ++run) {

@@ -41,7 +41,7 @@ TEST(RunsTable, IsTheSameWhateverTheClockSaid) {
     return io::to_csv(runs_table(manifest, rows, evaluate_progress(manifest, rows)));
   };
   EXPECT_EQ(csv(1.0), csv(2.0));
-  EXPECT_THAT(csv(1.0), HasSubstr("variant,a,drawn,seed,address,end,exit_code,message,mission.completed,pose.ate_rmse_m\r\n"
+  EXPECT_THAT(csv(1.0), HasSubstr("variant,a,drawn,seed,hash,end,exit_code,message,mission.completed,pose.ate_rmse_m\r\n"
                                   "a=1,1,0.5,1,x,done,0,,1,0.1\r\n"));
 }
 
