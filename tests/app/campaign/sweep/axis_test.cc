@@ -89,7 +89,7 @@ TEST(Axis, WhatIsWrongIsSaid) {
   EXPECT_THAT(message_of("a=1,2,1"), HasSubstr("duplicate value '1'"));
   EXPECT_THAT(message_of("a=range:0:1"), HasSubstr("range:FROM:TO:N"));
   EXPECT_THAT(message_of("a=range:0:x:3"), HasSubstr("'x' is not a number"));
-  EXPECT_THAT(message_of("a=range:0:1:1"), HasSubstr("2 ... 10000"));
+  EXPECT_THAT(message_of("a=range:0:1:1"), HasSubstr("[2, 10000]"));
   EXPECT_THAT(message_of("a=logrange:0:1:3"), HasSubstr("greater than 0"));
   EXPECT_THAT(message_of("a=uniform:1:0"), HasSubstr("HIGH must not be less than LOW"));
   EXPECT_THAT(message_of("a=loguniform:0:1"), HasSubstr("LOW must be greater than 0"));
