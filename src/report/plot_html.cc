@@ -67,11 +67,11 @@ std::string legend_html(const std::vector<Curve>& curves) {
 
 /// Note about decimated curves, empty if all points are drawn.
 std::string decimation_note(const std::vector<Curve>& curves) {
-  std::size_t most = 0;
-  for (const Curve& curve : curves) most = std::max(most, curve.points.size());
-  if (most <= 2 * kNumSegments) return "";
+  std::size_t max_samples = 0;
+  for (const Curve& curve : curves) max_samples = std::max(max_samples, curve.points.size());
+  if (max_samples <= 2 * kNumSegments) return "";
   return fmt::format("<span class=\"thinned\" title=\"Minimum and maximum of each of {} segments\">min/max of {} samples</span>",
-                     kNumSegments, most);
+                     kNumSegments, max_samples);
 }
 
 std::string plot_html(const char* kind, const std::string& title, const std::string& legend, const Json& data) {

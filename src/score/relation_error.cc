@@ -47,8 +47,8 @@ class PoseLookup {
   /// Interpolates linearly in x, y and yaw, the yaw along the shorter arc.
   Pose2 between(const StampedPose& before, const StampedPose& after, Time stamp) const {
     const Pose2 a = reference_at(before), b = reference_at(after);
-    const double share = to_seconds(stamp - before.stamp) / to_seconds(after.stamp - before.stamp);
-    return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), wrap_angle(a.yaw + share * wrap_angle(b.yaw - a.yaw))};
+    const double fraction = to_seconds(stamp - before.stamp) / to_seconds(after.stamp - before.stamp);
+    return {a.x + fraction * (b.x - a.x), a.y + fraction * (b.y - a.y), wrap_angle(a.yaw + fraction * wrap_angle(b.yaw - a.yaw))};
   }
 
   const Trajectory& trajectory_;

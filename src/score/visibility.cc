@@ -84,9 +84,9 @@ ReferenceMap mark_observable(OccupancyGrid reference, const Trajectory& T_world_
   // Adjacent rays are two cells apart at full range; `mark_neighborhood` fills the gap.
   const double step_rad = 2.0 * geometry.resolution_m / max_range_m;
   const int num_rays = static_cast<int>(std::ceil(2.0 * std::numbers::pi / step_rad));
-  for (const Eigen::Vector2d& place : thin_out(T_world_body, spacing_m)) {
+  for (const Eigen::Vector2d& p_world : thin_out(T_world_body, spacing_m)) {
     for (int ray = 0; ray < num_rays; ++ray) {
-      mark_ray(marked, place, 2.0 * std::numbers::pi * ray / num_rays, max_range_m);
+      mark_ray(marked, p_world, 2.0 * std::numbers::pi * ray / num_rays, max_range_m);
     }
   }
   return marked;

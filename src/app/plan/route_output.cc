@@ -40,9 +40,9 @@ std::string references_text(const RouteReport& report) {
   if (metrics.octile_cost) text += line("  cheapest, cost", *metrics.octile_cost, metrics.route.cost);
   if (metrics.any_angle_length) text += line("any-angle optimum", *metrics.any_angle_length, metrics.route.length);
   if (metrics.is_any_angle_skipped) {
-    const std::int64_t most = report.setup.settings.max_any_angle_cells;
+    const std::int64_t max_cells = report.setup.settings.max_any_angle_cells;
     text += fmt::format("any-angle optimum  skipped: more than {} passable cells, or {} in total (max_any_angle_cells)\n",
-                        most, 8 * most);
+                        max_cells, 8 * max_cells);
   }
   return text;
 }

@@ -112,7 +112,7 @@ std::string map_text(const RunView& run, int columns, int rows) {
       if (run.map.at({col, row}) >= kOccupiedFrom) dots.put(run.map.geometry().center_of({col, row}), Layer::kWall);
     }
   }
-  for (const Eigen::Vector2d& p_m : run.driven_m) dots.put(p_m, Layer::kDriven);
+  for (const Eigen::Vector2d& p_m : run.traveled_m) dots.put(p_m, Layer::kDriven);
   for (std::size_t i = 1; i < run.path.size(); ++i) put_line(dots, run.path[i - 1].position(), run.path[i].position(), Layer::kPath);
   if (run.truth) dots.put_sign(run.truth->position(), Layer::kTruth, "◆");
   if (run.estimate) dots.put_sign(run.estimate->T_map_body.position(), Layer::kRobot, arrow_of(run.estimate->T_map_body.yaw));

@@ -20,7 +20,7 @@ struct RunView {
   std::optional<PoseEstimate> estimate;
   std::optional<Pose2> truth;
   std::vector<Pose2> path;              ///< planned path
-  std::vector<Eigen::Vector2d> driven_m;  ///< trajectory, by the robot's own estimate
+  std::vector<Eigen::Vector2d> traveled_m;  ///< trajectory, by the robot's own estimate
   std::optional<LocalizationConfidence> confidence;
   VelocityCommand command;
   std::deque<Event> events;             ///< newest last

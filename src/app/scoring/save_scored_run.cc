@@ -20,8 +20,8 @@ void save_trajectories(const RunDirectory& directory, const RunRecord& record) {
 
 /// Saves the commands of a teleoperated drive, for repetition, and the goals that were saved.
 void save_drive(const RunDirectory& directory, const Scenario& scenario, const RunRecord& record) {
-  if (record.remote.empty()) return;
-  io::save_teleop(directory.remote(), record.remote);
+  if (record.teleop.empty()) return;
+  io::save_teleop(directory.teleop(), record.teleop);
   std::vector<SavedGoal> goals;
   for (const Event& event : record.events) {
     if (event.kind != EventKind::kGoalMarked) continue;

@@ -12,8 +12,8 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::int64_t kMostPlyPoints = 1'000'000'000;
-constexpr std::size_t kMostPlyProperties = 1000;
+constexpr std::int64_t kMaxPlyPoints = 1'000'000'000;
+constexpr std::size_t kMaxPlyProperties = 1000;
 
 const std::map<std::string_view, NumberType> kPlyTypes = {
     {"char", NumberType::kInt8},      {"int8", NumberType::kInt8},     {"uchar", NumberType::kUint8},   {"uint8", NumberType::kUint8},
@@ -38,7 +38,7 @@ PointColumn read_property(FileText& text, LineTokenizer& fields) {
 
 void read_element(FileText& text, LineTokenizer& fields, PlyHeader& header) {
   const std::string_view name = fields.word("name");
-  const std::int64_t count = fields.integer("count", 0, kMostPlyPoints);
+  const std::int64_t count = fields.integer("count", 0, kMaxPlyPoints);
   if (header.num_elements++ > 0) return;
   if (name != "vertex") text.refuse("the first element must be vertex");
   header.num_points = static_cast<std::size_t>(count);
@@ -57,7 +57,7 @@ bool read_header_line(FileText& text, std::string_view line, PlyHeader& header) 
   } else if (key == "property") {
     if (header.num_elements == 0) text.refuse("property before the first element");
     if (header.num_elements > 1) return false;
-    if (header.columns.size() >= kMostPlyProperties) text.refuse(fmt::format("vertex has more than {} properties", kMostPlyProperties));
+    if (header.columns.size() >= kMaxPlyProperties) text.refuse(fmt::format("vertex has more than {} properties", kMaxPlyProperties));
     header.columns.push_back(read_property(text, fields));
   } else if (key != "comment" && key != "obj_info") {
     text.refuse("is not a line of a PLY header");

@@ -77,11 +77,11 @@ int line_of(const YAML::Node& node) { return node.Mark().is_null() ? 0 : node.Ma
 
 std::string closest_match(const std::string& word, const std::vector<std::string>& known) {
   std::string nearest;
-  std::size_t least = std::max<std::size_t>(3, word.size() / 3 + 1);
+  std::size_t min_distance = std::max<std::size_t>(3, word.size() / 3 + 1);
   for (const std::string& candidate : known) {
     const std::size_t distance = edit_distance(word, candidate);
-    if (distance < least) {
-      least = distance;
+    if (distance < min_distance) {
+      min_distance = distance;
       nearest = candidate;
     }
   }

@@ -60,9 +60,9 @@ void add_events(const RunHistory& history, const Pose2& T_world_map, Highlights&
   for (const Event& event : history.events) {
     const std::optional<HighlightKind> kind = moment_of(event.kind);
     if (!kind) continue;
-    Highlight moment{.at = event.stamp, .kind = *kind, .title = title_of(event)};
-    if (*kind == HighlightKind::kAlarm) moment.p_world_subject = T_world_map * event.p_map_target;
-    highlights.push_back(std::move(moment));
+    Highlight highlight{.at = event.stamp, .kind = *kind, .title = title_of(event)};
+    if (*kind == HighlightKind::kAlarm) highlight.p_world_subject = T_world_map * event.p_map_target;
+    highlights.push_back(std::move(highlight));
   }
 }
 
@@ -145,7 +145,7 @@ std::vector<Highlight> find_highlights(const RunHistory& history, const Pose2& T
   add_max_error(history, settings, highlights);
   add_kidnaps(history, settings, highlights);
   add_corrections(history, settings, highlights);
-  std::erase_if(highlights, [&](const Highlight& moment) { return moment.at < history.begin || moment.at > history.end; });
+  std::erase_if(highlights, [&](const Highlight& highlight) { return highlight.at < history.begin || highlight.at > history.end; });
   std::ranges::stable_sort(highlights, {}, &Highlight::at);
   return highlights;
 }

@@ -26,7 +26,7 @@ Scene scene_of(std::vector<Highlight>::const_iterator from, std::vector<Highligh
   std::ranges::stable_sort(main_highlights, {}, &Highlight::kind);
   if (main_highlights.size() > kMaxTitles) main_highlights.resize(kMaxTitles);
   std::ranges::stable_sort(main_highlights, {}, &Highlight::at);
-  for (const Highlight& moment : main_highlights) scene.titles.push_back(moment.title);
+  for (const Highlight& highlight : main_highlights) scene.titles.push_back(highlight.title);
   return scene;
 }
 
@@ -46,9 +46,9 @@ std::vector<Scene> scenes_of(const std::vector<Highlight>& highlights, TimeSpan 
   return scenes;
 }
 
-ShotKind shot_kind(const Highlight& moment) {
-  if (moment.p_world_subject) return ShotKind::kTwoSubjects;
-  switch (moment.kind) {
+ShotKind shot_kind(const Highlight& highlight) {
+  if (highlight.p_world_subject) return ShotKind::kTwoSubjects;
+  switch (highlight.kind) {
     case HighlightKind::kKidnap:
     case HighlightKind::kLost:
     case HighlightKind::kRelocalized:
@@ -69,12 +69,12 @@ std::vector<Shot> shots_of(std::vector<Scene> scenes, const Trajectory& T_world_
   const Pose3 last = T_world_body.empty() ? Pose3{} : T_world_body.back().pose;
   std::vector<Shot> shots;
   for (const Scene& scene : scenes) {
-    const Highlight& moment = scene.main_highlight;
+    const Highlight& highlight = scene.main_highlight;
     shots.push_back({.span = scene.span,
-                     .kind = shot_kind(moment),
+                     .kind = shot_kind(highlight),
                      .caption = scene.titles,
-                     .T_world_body = pose_at(T_world_body, moment.at).value_or(last),
-                     .p_world_subject = moment.p_world_subject});
+                     .T_world_body = pose_at(T_world_body, highlight.at).value_or(last),
+                     .p_world_subject = highlight.p_world_subject});
   }
   return shots;
 }

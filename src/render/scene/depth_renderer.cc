@@ -183,7 +183,7 @@ int DepthRenderer::num_near_faces() const {
 }
 
 /// Sets the geom's pose from the pose of its body.
-void DepthRenderer::place(Shape& shape, const mjData& data) const {
+void DepthRenderer::update_pose(Shape& shape, const mjData& data) const {
   if (shape.body == 0) return;
   const Eigen::Map<const RowMajor3> R_world_body(data.xmat + 9 * shape.body);
   const Eigen::Vector3d position = Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * shape.body) + R_world_body * shape.position;
@@ -235,7 +235,7 @@ void DepthRenderer::draw(const mjData& data, const Pose3& T_world_camera, sim::I
   aim(camera);
   scene_.ngeom = 0;
   for (Shape& shape : shapes_) {
-    place(shape, data);
+    update_pose(shape, data);
     limit_infinite_plane(shape, camera);
     if (is_in_view(shape, camera)) scene_.geoms[scene_.ngeom++] = shape.drawn;
   }

@@ -123,9 +123,9 @@ void SceneRenderer::center_light(const View& view) {
   if (sun == nullptr) return select_shadow_light(view);
   const Eigen::Vector3d rays = to_eigen(sun->dir);
   const Eigen::Vector3d on_ground(rays.x(), rays.y(), 0.0);
-  const Eigen::Vector3d place =
+  const Eigen::Vector3d p_light =
       view.focus - kSunDistance_m * rays - kTowardsSun * shadow_half_width_m_ * on_ground.normalized();
-  for (int axis = 0; axis < 3; ++axis) sun->pos[axis] = static_cast<float>(place[axis]);
+  for (int axis = 0; axis < 3; ++axis) sun->pos[axis] = static_cast<float>(p_light[axis]);
 }
 
 // Underground, shadows come from lamps. A frame has time for one shadow map: that of the nearest lamp. For partly dark

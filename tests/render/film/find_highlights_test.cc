@@ -24,8 +24,8 @@ RunHistory quiet_minute() {
 
 std::vector<Time> instants(const std::vector<Highlight>& highlights, HighlightKind kind) {
   std::vector<Time> at;
-  for (const Highlight& moment : highlights) {
-    if (moment.kind == kind) at.push_back(moment.at);
+  for (const Highlight& highlight : highlights) {
+    if (highlight.kind == kind) at.push_back(highlight.at);
   }
   return at;
 }
@@ -110,7 +110,7 @@ TEST(FindMoments, EventsComeWithTheirOwnWords) {
   say(40s, EventKind::kLocalizationLost, "", "The robot does not know where it is.", 0.0);
   const std::vector<Highlight> highlights = find_highlights(history, {10.0, 0.0, 0.0});
   std::vector<std::string> titles;
-  for (const Highlight& moment : highlights) titles.push_back(moment.title);
+  for (const Highlight& highlight : highlights) titles.push_back(highlight.title);
   EXPECT_THAT(titles, ElementsAre("At goal 1", "Leak at box 2: 4070 ppm m of methane", "Docked at the charging post", "Localization lost"));
   EXPECT_EQ(*highlights[1].p_world_subject, Eigen::Vector2d(13.0, 1.0)) << "a place in the map, brought to world";
 }

@@ -97,7 +97,7 @@ Axis parse_axis(const std::string& text) {
   else if (const auto ratios = arguments(text, values, "logrange", 3, "FROM:TO:N")) axis.values = spaced(text, *ratios, true);
   else if (const auto limits = arguments(text, values, "uniform", 2, "LOW:HIGH")) random(Axis::Kind::kUniform, *limits);
   else if (const auto logs = arguments(text, values, "loguniform", 2, "LOW:HIGH")) random(Axis::Kind::kLogUniform, *logs);
-  else if (const auto moments = arguments(text, values, "normal", 2, "MEAN:STANDARD_DEVIATION")) random(Axis::Kind::kNormal, *moments);
+  else if (const auto parameters = arguments(text, values, "normal", 2, "MEAN:STANDARD_DEVIATION")) random(Axis::Kind::kNormal, *parameters);
   else axis.values = split_values(values);
 
   std::set<std::string> seen;

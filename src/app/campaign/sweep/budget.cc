@@ -48,8 +48,8 @@ std::string numbers(const std::optional<score::Interval>& interval) {
 /// Text bar from `from` to `to` on a scale of `full`.
 std::string bar(double from, double to, double full) {
   constexpr double kWidth = 30.0;
-  const auto place = [&](double value) { return static_cast<std::size_t>(std::lround(kWidth * std::clamp(value / full, 0.0, 1.0))); };
-  const std::size_t begin = place(std::min(from, to)), end = std::max(place(std::max(from, to)), begin + 1);
+  const auto bar_cell = [&](double value) { return static_cast<std::size_t>(std::lround(kWidth * std::clamp(value / full, 0.0, 1.0))); };
+  const std::size_t begin = bar_cell(std::min(from, to)), end = std::max(bar_cell(std::max(from, to)), begin + 1);
   std::string text(begin, ' ');
   for (std::size_t i = begin; i < end; ++i) text += to <= from ? "█" : "▒";
   return text;

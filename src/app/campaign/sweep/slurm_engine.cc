@@ -102,7 +102,7 @@ ExitCode sweep_on_slurm(const SweepOptions& options, const SweepDirectory& direc
                                            directory.root.string(), missing.size(), submissions));
     }
     job.submit(options, shards_with_work(missing, options.slurm_tasks));
-    bar.say(fmt::format("job {}: {} runs in shards {}", job.id(), missing.size(), shards_with_work(missing, options.slurm_tasks)));
+    bar.print_line(fmt::format("job {}: {} runs in shards {}", job.id(), missing.size(), shards_with_work(missing, options.slurm_tasks)));
     ++submissions;
   }
 }
