@@ -65,21 +65,5 @@ TEST(StudyResults, OnAScreenPublishedFiguresStandBesideOurs) {
   EXPECT_THAT(text, HasSubstr("-1 [-1.25, -0.752]"));
 }
 
-TEST(Study, AnUnknownOneIsRefusedWithTheKnownNames) {
-  try {
-    make_study("golf");
-    FAIL();
-  } catch (const std::exception& error) {
-    EXPECT_THAT(error.what(), HasSubstr("there is no study 'golf' (known: ungm, landmarks-circle, "));
-  }
-}
-
-TEST(Study, EveryVariantsReferenceLiesInItsOwnWorld) {
-  for (const std::string& name : study_names()) {
-    const Study study = make_study(name);
-    for (const StudyVariant& variant : study.variants) EXPECT_EQ(study.variants[variant.reference].world, variant.world) << name << ": " << variant.method;
-  }
-}
-
 }  // namespace
 }  // namespace patrol::studies::study_results_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "studies/landmarks/ekf_slam.h"
-#include "tests/slam/landmarks/circle_world.h"
+#include "tests/studies/landmarks/circle_world.h"
 #include "tests/support/pose_near.h"
 
 namespace patrol::studies::batch_least_squares_test {

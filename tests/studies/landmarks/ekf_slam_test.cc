@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "core/geometry/angles.h"
-#include "tests/slam/landmarks/circle_world.h"
+#include "tests/studies/landmarks/circle_world.h"
 #include "tests/support/pose_near.h"
 
 namespace patrol::studies::ekf_slam_test {

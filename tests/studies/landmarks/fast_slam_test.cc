@@ -6,7 +6,7 @@
 
 #include "core/geometry/angles.h"
 #include "studies/landmarks/ekf_slam.h"
-#include "tests/slam/landmarks/circle_world.h"
+#include "tests/studies/landmarks/circle_world.h"
 #include "tests/support/pose_near.h"
 
 namespace patrol::studies::fast_slam_test {

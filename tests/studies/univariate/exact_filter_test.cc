@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "tests/slam/univariate/growth_runs.h"
+#include "tests/studies/univariate/growth_runs.h"
 
 namespace patrol::studies::exact_filter_test {
 namespace {

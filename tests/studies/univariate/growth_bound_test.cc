@@ -9,11 +9,11 @@
 #include "studies/univariate/exact_filter.h"
 #include "studies/univariate/growth_filter.h"
 #include "studies/univariate/quasi_filter.h"
-#include "tests/slam/univariate/growth_runs.h"
+#include "tests/studies/univariate/growth_runs.h"
 
 /// The exact filter bounds all that see observations alone. What is significantly better has seen more than that, as the figures of [Cui21],
 /// table 1, must have.
-namespace patrol::slam::growth_bound_test {
+namespace patrol::studies::growth_bound_test {
 namespace {
 
 constexpr std::size_t kSeeds = 40;
@@ -22,8 +22,8 @@ std::vector<double> exact_errors() {
   return errors_of([](std::uint64_t, const GrowthRun&) { return std::make_unique<ExactFilter>(GrowthModel()); }, GrowthModel(), kSeeds);
 }
 
-std::vector<double> swarm_errors(int particles, const ParticleFilterSettings& settings) {
-  return errors_of([&](std::uint64_t seed, const GrowthRun&) { return std::make_unique<GrowthFilter>(particles, GrowthModel(), make_components(settings), seed); },
+std::vector<double> swarm_errors(int particles, const slam::ParticleFilterSettings& settings) {
+  return errors_of([&](std::uint64_t seed, const GrowthRun&) { return std::make_unique<GrowthFilter>(particles, GrowthModel(), slam::make_components(settings), seed); },
                    GrowthModel(), kSeeds);
 }
 
@@ -41,7 +41,7 @@ TEST(GrowthBound, NoFilterLiesSignificantlyBelowIt) {
   for (const int particles : {50, 150}) {
     EXPECT_FALSE(is_below_bound(swarm_errors(particles, {.resample_threshold = 1.0}), bound)) << "PF " << particles;
     EXPECT_FALSE(is_below_bound(swarm_errors(particles, {.optimizer = "ba", .optimizer_iterations = 1}), bound)) << "BA " << particles;
-    EXPECT_FALSE(is_below_bound(swarm_errors(particles, published_ifa_settings()), bound)) << "IFA as printed " << particles;
+    EXPECT_FALSE(is_below_bound(swarm_errors(particles, slam::published_ifa_settings()), bound)) << "IFA as printed " << particles;
     EXPECT_FALSE(is_below_bound(swarm_errors(particles, {.optimizer = "ifa", .optimizer_iterations = 1, .firefly_absorption = 1.0}), bound))
         << "IFA " << particles;
     EXPECT_FALSE(is_below_bound(quasi_errors(particles), bound)) << "quasi " << particles;
@@ -67,7 +67,7 @@ class LeakingOptimizer : public SwarmOptimizer {
 
 TEST(GrowthBound, CatchesAFilterThatIsToldATwentiethOfTheTrueState) {
   const auto leaking = [](std::uint64_t seed, const GrowthRun& run) {
-    ParticleFilterComponents parts = make_components({.resample_threshold = 1.0});
+    ParticleFilterComponents parts = slam::make_components({.resample_threshold = 1.0});
     parts.optimizer = std::make_shared<LeakingOptimizer>(run.states, 0.05);
     return std::make_unique<GrowthFilter>(150, GrowthModel(), parts, seed);
   };
@@ -82,4 +82,4 @@ TEST(GrowthBound, OursWithAHundredAndFiftyParticlesIsWithinThreePercentOfIt) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::growth_bound_test
+}  // namespace patrol::studies::growth_bound_test

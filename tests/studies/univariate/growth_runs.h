@@ -10,7 +10,7 @@
 #include "studies/univariate/growth_model.h"
 #include "studies/univariate/univariate_filter.h"
 
-namespace patrol::slam {
+namespace patrol::studies {
 
 inline std::vector<UnivariateEstimate> filter_all(UnivariateFilter& filter, const std::vector<double>& observations) {
   std::vector<UnivariateEstimate> estimates;
@@ -58,4 +58,4 @@ inline MeanInterval paired_difference(const std::vector<double>& a, const std::v
   return {.mean = mean, .low = mean - half_width, .high = mean + half_width};
 }
 
-}  // namespace patrol::slam
+}  // namespace patrol::studies

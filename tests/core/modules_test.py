@@ -5,7 +5,7 @@ other in a cycle.
 
 The checks themselves are tested on small source trees with planted violations.
 
-usage: rooms_test.py SOURCE_DIR
+usage: modules_test.py SOURCE_DIR
 """
 import pathlib
 import re
