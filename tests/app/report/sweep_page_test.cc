@@ -90,7 +90,7 @@ TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
   EXPECT_EQ(budget.verdict().word, "lidar: range noise");
   const report::Page page = budget.page();
   const auto& spans = std::get<report::WaterfallChart>(page.sections[1].blocks[0]).spans;
-  ASSERT_EQ(spans.size(), 4u);  // as it is, the share, the interaction, all ideal
+  ASSERT_EQ(spans.size(), 4u);  // baseline, the contribution, the interaction, all ideal
   EXPECT_NEAR(spans[1].from, spans[0].to, 1e-9);
   EXPECT_NEAR(spans[2].from, spans[1].to, 1e-9);
   EXPECT_NEAR(spans[2].to, spans[3].to, 1e-9);

@@ -17,7 +17,7 @@ struct Contribution {
   std::optional<score::Interval> value;    ///< baseline minus metric without this error source; 95 %, paired by seed
 };
 
-/// Error budget of one metric. The manifest's first variant is the scenario as it is (baseline), the last one has every
+/// Error budget of one metric. The manifest's first variant is the unchanged scenario (baseline), the last one has every
 /// error source removed, the others one each.
 struct Budget {
   std::string metric;

@@ -24,7 +24,7 @@ struct EarlyStop {
   double equivalence_margin = 0.0;  ///< in units of the first metric: smaller differences are treated as equal
 };
 
-/// Command of a sweep, which determines its variants. Budget: the first is the scenario as it is, the last has every
+/// Command of a sweep, which determines its variants. Budget: the first is the unchanged scenario, the last has every
 /// error source removed. Fault matrix: the first has no fault.
 enum class SweepKind { kSweep, kBudget, kFaults };
 

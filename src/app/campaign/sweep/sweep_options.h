@@ -27,7 +27,7 @@ struct SweepOptions {
   std::filesystem::path out = "out/sweep";
 };
 
-/// Options of `patrol budget`.
+/// Options of `patrol error-budget`.
 struct ErrorBudgetOptions {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;
@@ -37,7 +37,7 @@ struct ErrorBudgetOptions {
   std::filesystem::path out = "out/budget";
 };
 
-/// Options of `patrol faults`.
+/// Options of `patrol fault-matrix`.
 struct FaultMatrixOptions {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;
