@@ -100,7 +100,7 @@ class ExitCodes(unittest.TestCase):
         done = self.run_patrol("time_limit_s: 0.1\n")
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
-        self.assertIn("another process writes a run there", done.stderr)
+        self.assertIn("in use by another process that writes a run", done.stderr)
         self.assertTrue((self.out / "log.mcap").exists())
         run.kill()
         run.communicate(timeout=60)

@@ -53,9 +53,9 @@ TEST(LoadTeleopRoute, NamesTheWaypointAndTheKey) {
             "d.json: waypoints[0]: unknown key revers; did you mean reverse?");
   EXPECT_EQ(drive_complaint(R"([{"position": [1, 2], "reverse": 1}])"), "d.json: waypoints[0]: reverse must be true or false");
   EXPECT_EQ(drive_complaint(R"([{"position": [1, 2], "mark_heading_deg": 361}])"),
-            "d.json: waypoints[0]: mark_heading_deg must lie in -360 ... 360");
+            "d.json: waypoints[0]: mark_heading_deg must be in [-360, 360]");
   EXPECT_EQ(drive_complaint(R"([{"position": [1, 2]}, {"position": [1e300, 2]}])"),
-            "d.json: waypoints[1]: position lies more than 1000 m from the one before");
+            "d.json: waypoints[1]: position is more than 1000 m from the one before");
 }
 
 TEST(LoadTeleop, WhatWasSavedIsReadBack) {
@@ -75,7 +75,7 @@ TEST(LoadTeleop, WhatWasSavedIsReadBack) {
 TEST(LoadTeleop, NamesTheLine) {
   EXPECT_EQ(complaint("r.csv", "t,v\n", load_teleop),
             "r.csv:1: the first line must be time_s,vx_mps,yaw_rate_radps,mark,hand_over");
-  EXPECT_EQ(remote_complaint(""), "r.csv: holds no command");
+  EXPECT_EQ(remote_complaint(""), "r.csv: contains no commands");
   EXPECT_EQ(remote_complaint("0,1,2,0\n"), "r.csv:2: must be 5 numbers with commas between, time_s,vx_mps,yaw_rate_radps,mark,hand_over");
   EXPECT_EQ(remote_complaint("0,1,nan,0,0\n"), "r.csv:2: yaw_rate_radps = nan: must be a number");
   EXPECT_EQ(remote_complaint("0,fast,0,0,0\n"), "r.csv:2: vx_mps = fast: must be a number");
@@ -88,10 +88,10 @@ TEST(LoadTeleop, NamesTheLine) {
 }
 
 TEST(LoadTeleop, NumbersBeyondAnyDriveAreRefused) {
-  EXPECT_EQ(remote_complaint("-1,0,0,0,0\n"), "r.csv:2: time_s = -1: must lie in 0 ... 86400");
-  EXPECT_EQ(remote_complaint("1e300,0,0,0,0\n"), "r.csv:2: time_s = 1e+300: must lie in 0 ... 86400") << "no integer of nanoseconds";
-  EXPECT_EQ(remote_complaint("0,1e300,0,0,0\n"), "r.csv:2: vx_mps = 1e+300: must lie in -100 ... 100");
-  EXPECT_EQ(remote_complaint("0,0,-101,0,0\n"), "r.csv:2: yaw_rate_radps = -101: must lie in -100 ... 100");
+  EXPECT_EQ(remote_complaint("-1,0,0,0,0\n"), "r.csv:2: time_s = -1: must be in [0, 86400]");
+  EXPECT_EQ(remote_complaint("1e300,0,0,0,0\n"), "r.csv:2: time_s = 1e+300: must be in [0, 86400]") << "no integer of nanoseconds";
+  EXPECT_EQ(remote_complaint("0,1e300,0,0,0\n"), "r.csv:2: vx_mps = 1e+300: must be in [-100, 100]");
+  EXPECT_EQ(remote_complaint("0,0,-101,0,0\n"), "r.csv:2: yaw_rate_radps = -101: must be in [-100, 100]");
 }
 
 }  // namespace

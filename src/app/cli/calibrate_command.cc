@@ -19,10 +19,10 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kCalibrating = {.name = "calibration of a log",
-                                 .unfinished = "The log has not been calibrated.",
-                                 .made = {"calibration.yaml", "stretches.csv", "metrics.json", "settings.yaml"},
-                                 .proof = "settings.yaml",
-                                 .kept = {"*.part"}};
+                                 .marker_text = "The log has not been calibrated.",
+                                 .outputs = {"calibration.yaml", "stretches.csv", "metrics.json", "settings.yaml"},
+                                 .required_file = "settings.yaml",
+                                 .preserved = {"*.part"}};
 
 /// Settings of `patrol calibrate --set`.
 struct LogCalibrationSettings {
@@ -126,7 +126,7 @@ std::string table_text(const slam::CalibrationResult& result) {
 
 ExitCode calibrate_command(const CalibrateOptions& options) {
   std::vector<std::string> overrides = options.overrides;
-  if (options.skip_bad_lines) overrides.push_back("log.skip_bad_lines=true");
+  if (options.skip_invalid) overrides.push_back("log.skip_bad_lines=true");
   const auto settings = io::parse_settings<LogCalibrationSettings>(overrides);
   std::optional<CalibratedLog> log;
   for (int pass = 1; pass <= settings.passes; ++pass) {

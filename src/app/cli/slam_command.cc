@@ -30,10 +30,10 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kMapping = {.name = "mapping of a log",
-                             .unfinished = "The log has not been mapped to its end.",
-                             .made = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o", "performance.csv", "metrics.json", "settings.yaml", "report.html"},
-                             .proof = "settings.yaml",
-                             .kept = {"*.part"}};
+                             .marker_text = "The log has not been mapped to its end.",
+                             .outputs = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o", "performance.csv", "metrics.json", "settings.yaml", "report.html"},
+                             .required_file = "settings.yaml",
+                             .preserved = {"*.part"}};
 
 /// Settings of `patrol slam --set`.
 struct LogMappingSettings {
@@ -126,7 +126,7 @@ ExitCode slam_command(const SlamOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.method) overrides.push_back("slam.method=" + *options.method);
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
-  if (options.skip_bad_lines) overrides.push_back("log.skip_bad_lines=true");
+  if (options.skip_invalid) overrides.push_back("log.skip_bad_lines=true");
   LogMappingSettings settings;
   if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
   io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);

@@ -24,10 +24,10 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kStudy = {.name = "study",
-                           .unfinished = "Not every seed of this study has been run: tables come at the end. The same command goes on.",
-                           .made = {"results.csv", "runs.csv", "performance.csv", "report.html"},
-                           .proof = "study.json",
-                           .kept = {"study.json", "seeds", "*.part"}};
+                           .marker_text = "Not every seed of this study has been run: tables come at the end. The same command goes on.",
+                           .outputs = {"results.csv", "runs.csv", "performance.csv", "report.html"},
+                           .required_file = "study.json",
+                           .preserved = {"study.json", "seeds", "*.part"}};
 
 /// Parses seeds. "N": the first N after those used for tuning; or "A..B".
 std::vector<std::uint64_t> held_out_seeds(const std::string& text) {
@@ -85,7 +85,7 @@ bool run_seeds(const studies::Study& study, const std::vector<std::uint64_t>& se
   };
   const auto on_end = [&](const TaskEnd& end) {
     if (end.exit_code != 0 || end.signal != 0) {
-      throw std::runtime_error(fmt::format("study {}: seed {} failed: {}", study.name, missing[end.task], end.last_words));
+      throw std::runtime_error(fmt::format("study {}: seed {} failed: {}", study.name, missing[end.task], end.last_stderr_line));
     }
     bar.show(fmt::format("study {}: {} of {} seeds", study.name, ++num_done, seeds.size()));
   };
@@ -97,7 +97,7 @@ bool run_seeds(const studies::Study& study, const std::vector<std::uint64_t>& se
 ExitCode study_command(const StudyOptions& options) {
   const studies::Study study = make_study(options.name);
   const std::vector<std::uint64_t> seeds = held_out_seeds(options.seeds.value_or(std::to_string(study.default_seeds)));
-  const BatchSettings settings = batch_settings({.jobs = options.jobs, .run_limit_s = options.seed_limit_s, .keep = "none"});
+  const BatchSettings settings = batch_settings({.jobs = options.jobs, .run_timeout_s = options.seed_timeout_s, .keep_runs = "none"});
 
   const OutputLock lock = begin_output(options.out, kStudy);
   io::save_metrics(options.out / "study.json", {{"study", study.name}, {"seeds", seeds}});

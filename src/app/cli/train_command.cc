@@ -16,7 +16,7 @@
 namespace patrol::app {
 namespace {
 
-/// Settings of `patrol train-neighbours --set`.
+/// Settings of `patrol train-neighbors --set`.
 struct TrainingSettings {
   std::uint64_t seed = 1;
   slam::PlanarScanSettings scan;

@@ -38,7 +38,7 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   handlers.on<WaterResult>([&](Time, const WaterResult& result) { record.waters.push_back(result); });
   handlers.on<MapUpdate>([&](Time, const MapUpdate& update) { record.map = update.map; });
   record.is_complete = io::read_run_log(log_mcap, handlers);
-  if (record.T_world_body.empty()) throw InputError(fmt::format("{}: holds no ground truth", log_mcap.string()));
+  if (record.T_world_body.empty()) throw InputError(fmt::format("{}: contains no ground truth", log_mcap.string()));
   return record;
 }
 

@@ -7,7 +7,7 @@
 
 namespace patrol::app {
 
-/// Path of the classifier of neighboring submaps below the data root; written by `patrol train-neighbours`, read by
+/// Path of the classifier of neighboring submaps below the data root; written by `patrol train-neighbors`, read by
 /// mapping.
 inline constexpr const char* kNeighbourModel = "models/submap_neighbours.json";
 

@@ -13,9 +13,9 @@ namespace patrol::app {
 namespace {
 
 void save_trajectories(const RunDirectory& directory, const RunRecord& record) {
-  io::save_tum(directory.estimate(), record.T_map_body, "base_link in map, as the stack believed");
-  io::save_tum(directory.truth(), record.T_world_body, "base_link in world, as it was");
-  io::save_tum(directory.odometry(), record.T_odom_body, "base_link in odom, by legs or tracks and IMU alone");
+  io::save_tum(directory.estimate(), record.T_map_body, "base_link in map, estimated by the stack");
+  io::save_tum(directory.truth(), record.T_world_body, "base_link in world, ground truth");
+  io::save_tum(directory.odometry(), record.T_odom_body, "base_link in odom, odometry only");
 }
 
 /// Saves the commands of a teleoperated drive, for repetition, and the goals that were saved.

@@ -25,7 +25,7 @@ StudyRun run_for_study(const std::string& scenario, const std::vector<std::strin
   all.push_back(fmt::format("seed={}", seed));
   StudyRun run{.scenario = load_scenario(root / scenario, all), .files = {}, .log = {}, .record = {}, .truth = {}};
   run.files = load_scenario_files(run.scenario, root);
-  Unobserved nobody;
+  NullObserver nobody;
   run_once(run.scenario, "study", root, folder, nobody);
   run.log = RunDirectory{folder}.log();
   run.record = read_run_record(run.log);

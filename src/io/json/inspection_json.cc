@@ -34,13 +34,13 @@ int count_of(const JsonObject& object, const char* key) {
 
 int ring_of(const JsonObject& object) {
   const int ring = object.integer("ring");
-  if (ring < 1 || ring > kMaxRings) object.fail(fmt::format("ring must lie in 1 ... {}", kMaxRings));
+  if (ring < 1 || ring > kMaxRings) object.fail(fmt::format("ring must be in [1, {}]", kMaxRings));
   return ring;
 }
 
 double clock_of(const JsonObject& object) {
   const double clock_deg = object.number("clock_deg");
-  if (clock_deg < 0.0 || clock_deg > 360.0) object.fail("clock_deg must lie in 0 ... 360");
+  if (clock_deg < 0.0 || clock_deg > 360.0) object.fail("clock_deg must be in [0, 360]");
   return clock_deg;
 }
 
@@ -50,7 +50,7 @@ WarningLevel level_of(const JsonObject& object) {
 
 Time stamp_of(const JsonObject& object) {
   const Json& stamp = object.member("stamp_ns");
-  if (!stamp.is_number_integer()) object.fail("stamp_ns must be a whole number");
+  if (!stamp.is_number_integer()) object.fail("stamp_ns must be an integer");
   return Time{stamp.get<std::int64_t>()};
 }
 

@@ -39,7 +39,7 @@ void check_unique(const std::string& file, const std::vector<Station>& stations)
   std::set<int> numbers;
   for (std::size_t i = 0; i < stations.size(); ++i) {
     const auto refuse = [&](const std::string& what) {
-      throw InputError(fmt::format("{}: stations[{}]: {} stands there twice", file, i, what));
+      throw InputError(fmt::format("{}: stations[{}]: {}: duplicate", file, i, what));
     };
     if (!names.insert(stations[i].name).second) refuse("name " + stations[i].name);
     if (!numbers.insert(stations[i].number).second) refuse(fmt::format("number {}", stations[i].number));
@@ -57,7 +57,7 @@ std::vector<UwbAnchor> read_anchors(const std::string& place, const Json& json) 
     const JsonObject reader(fmt::format("{}: anchors[{}]", place, i), json[i], {"number", "position"});
     const std::vector<double> p = reader.numbers("position", 3);
     anchors.push_back({.number = reader.integer("number"), .p_m = {p[0], p[1], p[2]}});
-    if (!numbers.insert(anchors.back().number).second) reader.fail(fmt::format("number {} stands there twice", anchors.back().number));
+    if (!numbers.insert(anchors.back().number).second) reader.fail(fmt::format("number {}: duplicate", anchors.back().number));
   }
   return anchors;
 }

@@ -105,7 +105,11 @@ constexpr auto kRenamed = std::to_array<RenamedKey>({
 
     // Stack: missions and inspection.
 
-    // Monitor.
+    // Monitor, rendering; patrol plan without navigation.
+    {"light.brightness_share", "light.intensity"},
+    {"kept_clearance_m", "min_clearance_m"},
+    {"any_angle_most_cells", "max_any_angle_cells"},
+    {"unknown", "allow_unknown"},
 });
 
 /// Returns the present path of a key whose parents carry their present names.

@@ -150,7 +150,7 @@ class Slam(unittest.TestCase):
     def test_what_can_be_read_of_a_damaged_log_is_used_when_asked_for(self):
         damaged = self.folder / "skipped.log"
         damaged.write_text("\n".join(self.lines[:40] + [self.lines[40][:300]] + self.lines[41:]) + "\n")
-        out = self.map("skipped", "--skip-bad-lines", log=damaged)
+        out = self.map("skipped", "--skip-invalid", log=damaged)
         metrics = json.loads((out / "metrics.json").read_text())
         self.assertEqual((metrics["log"]["scans"], metrics["log"]["skipped"]), (len(self.poses) - 1, 1))
 

@@ -24,7 +24,7 @@ class Platform:
         environment = {name: value for name, value in os.environ.items() if name != "PATROL_TOKEN"}
         with open(self.log, "a") as log:
             at = log.tell()
-            self.process = subprocess.Popen([self.patrol, "monitor", "--port", str(self.port), "--data", self.folder], stderr=log, env=environment)
+            self.process = subprocess.Popen([self.patrol, "monitor", "--port", str(self.port), "--data-dir", self.folder], stderr=log, env=environment)
         for _ in range(300):
             said = re.search(r"monitoring at http://127.0.0.1:(\d+)/", self.log.read_text()[at:])
             if said:

@@ -95,14 +95,14 @@ TEST(InspectionJson, WhatIsWrongIsNamedWithItsPlaceAndRule) {
     json[Json::json_pointer(pointer)] = value;
     return error_response(lining_from_json, json);
   };
-  EXPECT_EQ(broken("/cells/0/ring", 0), "result.data.cells[0]: ring must lie in 1 ... 100000");
-  EXPECT_EQ(broken("/cells/0/clock_deg", 361), "result.data.cells[0]: clock_deg must lie in 0 ... 360");
+  EXPECT_EQ(broken("/cells/0/ring", 0), "result.data.cells[0]: ring must be in [1, 100000]");
+  EXPECT_EQ(broken("/cells/0/clock_deg", 361), "result.data.cells[0]: clock_deg must be in [0, 360]");
   EXPECT_EQ(broken("/cells/0/std_m", -1), "result.data.cells[0]: std_m must not be negative");
   EXPECT_EQ(broken("/findings/0/level", "red"), "result.data.findings[0]: level = red: must be one of none, notice, warning, alarm");
   EXPECT_EQ(broken("/findings/0/position_m", {1, 2}), "result.data.findings[0]: position_m must be a list of 3 numbers");
   EXPECT_EQ(broken("/lines", "none"), "result.data: lines must be a list");
   EXPECT_EQ(broken("/registered", 1), "result.data: registered must be true or false");
-  EXPECT_EQ(broken("/stamp_ns", 1.5), "result.data: stamp_ns must be a whole number");
+  EXPECT_EQ(broken("/stamp_ns", 1.5), "result.data: stamp_ns must be an integer");
   EXPECT_EQ(broken("/pose/z", 1.5), "result.data.pose: unknown key z; did you mean x?");
 }
 

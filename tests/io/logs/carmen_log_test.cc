@@ -255,9 +255,9 @@ TEST(CarmenLog, WhatCannotBeReadIsNamedWithItsLine) {
   EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 inf 0")), "a.log:2: FLASER: the robot's pose 'inf' is not a finite number");
   EXPECT_EQ(complaint(flaser("nan")), "a.log:2: FLASER: ipc_timestamp 'nan' is not a time in seconds");
   EXPECT_EQ(complaint("FLASER\n"), "a.log:2: FLASER: ends before num_readings");
-  EXPECT_EQ(complaint("FLASER 0 1 2 0 1 2 0 1 h 1\n"), "a.log:2: FLASER: num_readings '0' must be a whole number in 1 ... 10000");
-  EXPECT_EQ(complaint("FLASER 10001" + repeated("1", 10010) + "\n"), "a.log:2: FLASER: num_readings '10001' must be a whole number in 1 ... 10000");
-  EXPECT_EQ(complaint("FLASER -3 1\n"), "a.log:2: FLASER: num_readings '-3' must be a whole number in 1 ... 10000");
+  EXPECT_EQ(complaint("FLASER 0 1 2 0 1 2 0 1 h 1\n"), "a.log:2: FLASER: num_readings '0' must be an integer in [1, 10000]");
+  EXPECT_EQ(complaint("FLASER 10001" + repeated("1", 10010) + "\n"), "a.log:2: FLASER: num_readings '10001' must be an integer in [1, 10000]");
+  EXPECT_EQ(complaint("FLASER -3 1\n"), "a.log:2: FLASER: num_readings '-3' must be an integer in [1, 10000]");
   EXPECT_EQ(complaint("ODOM 1 2 nan 0 0 0 1 h 1\n"), "a.log:2: ODOM: the robot's pose 'nan' is not a finite number");
   EXPECT_EQ(complaint("ODOM 1 2\n"), "a.log:2: ODOM: holds 2 words after its name, must be 9: cut off, or wrongly counted");
   EXPECT_EQ(complaint("PARAM robot_frontlaser_offset far\n"), "a.log:2: PARAM: robot_frontlaser_offset 'far' is not a finite number");

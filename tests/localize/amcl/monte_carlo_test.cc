@@ -334,7 +334,7 @@ TEST(MonteCarlo, RefusesAMapThatIsNone) {
 TEST(MonteCarlo, RefusesSettingsOutOfRange) {
   MonteCarloSettings settings;
   settings.likelihood_field.hit_std_m = 0.0;
-  EXPECT_EQ(complaint_about(test::tunnel_map(), settings), "localization.likelihood_field.hit_std_m = 0: must lie in 0.01 ... 2");
+  EXPECT_EQ(complaint_about(test::tunnel_map(), settings), "localization.likelihood_field.hit_std_m = 0: must be in [0.01, 2]");
   settings = {};
   settings.sensor_model = "crystal_ball";
   EXPECT_EQ(complaint_about(test::tunnel_map(), settings), "localization.sensor_model = crystal_ball: must be one of likelihood_field, beam");

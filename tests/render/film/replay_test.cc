@@ -80,7 +80,7 @@ TEST_F(Replay, OfAStoryIsSlowAtItsMomentsAndHasThemForChapters) {
   EXPECT_EQ(summary.num_frames, 10);
   const VideoInfo info = inspect_video(film);
   ASSERT_EQ(info.chapters.size(), 1u);
-  EXPECT_EQ(info.chapters[0].title, "Largest position error: 0.050 m; Fault: dropout of lidar");
+  EXPECT_EQ(info.chapters[0].title, "Maximum position error: 0.050 m; Fault: dropout of lidar");
   settings.style = FilmStyle::kContinuous;
   EXPECT_EQ(replay(log, model(), {}, settings, film).num_frames, 3);
 }

@@ -182,7 +182,7 @@ TEST(NdtSettings, RefusesANonsenseSettingByName) {
     validate(settings, "ndt");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "ndt.cells_m.1 = 0: must lie in 0.05 ... 100");
+    EXPECT_STREQ(error.what(), "ndt.cells_m.1 = 0: must be in [0.05, 100]");
   }
 }
 

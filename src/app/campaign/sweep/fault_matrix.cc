@@ -57,7 +57,7 @@ std::vector<sim::FaultSettings> fault_matrix(const Scenario& scenario, const Sce
 
 std::string variant_name(const sim::FaultSettings& fault) { return fmt::format("{}{}{}", fault.sensor, kBetween, fault.kind); }
 
-FaultVariant fault_of(const std::string& variant_name) {
+FaultVariant parse_variant_name(const std::string& variant_name) {
   const std::size_t between = variant_name.find(kBetween);
   if (between == std::string::npos) return {.sensor = variant_name, .kind = ""};
   return {.sensor = variant_name.substr(0, between), .kind = variant_name.substr(between + kBetween.size())};

@@ -21,7 +21,7 @@ struct FaultVariant {
   std::string kind;    ///< empty without a fault
 };
 
-FaultVariant fault_of(const std::string& variant_name);
+FaultVariant parse_variant_name(const std::string& variant_name);
 
 /// Override that sets the fault: "faults=[{...}]".
 std::string fault_override(const sim::FaultSettings& fault);

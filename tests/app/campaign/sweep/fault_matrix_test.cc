@@ -17,10 +17,10 @@ TEST(FaultMatrix, AFaultBecomesTheSettingThatDeclaresIt) {
 }
 
 TEST(FaultMatrix, AVariantsNameIsReadBackAsSensorAndKind) {
-  const FaultVariant fault = fault_of(variant_name({.sensor = "joint_encoders", .kind = "clock_offset", .start_s = 12.0, .duration_s = 8.0, .magnitude = 0.2}));
+  const FaultVariant fault = parse_variant_name(variant_name({.sensor = "joint_encoders", .kind = "clock_offset", .start_s = 12.0, .duration_s = 8.0, .magnitude = 0.2}));
   EXPECT_EQ(fault.sensor, "joint_encoders");
   EXPECT_EQ(fault.kind, "clock_offset");
-  EXPECT_EQ(fault_of("no fault").kind, "");
+  EXPECT_EQ(parse_variant_name("no fault").kind, "");
 }
 
 /// Switches every sensor on.

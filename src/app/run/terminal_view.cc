@@ -1,4 +1,4 @@
-#include "app/run/terminal_watch.h"
+#include "app/run/terminal_view.h"
 
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -25,30 +25,30 @@ winsize terminal_size() {
 
 }  // namespace
 
-TerminalWatch::TerminalWatch(const std::string& name) {
-  if (::isatty(STDOUT_FILENO) != 1) throw InputError("--watch: needs a terminal to draw on");
+TerminalView::TerminalView(const std::string& name) {
+  if (::isatty(STDOUT_FILENO) != 1) throw InputError("--watch: standard output must be a terminal");
   run_.name = name;
   fmt::print("\033[?1049h\033[?25l\033[2J");  // alternate screen, hidden cursor
 }
 
-TerminalWatch::~TerminalWatch() {
+TerminalView::~TerminalView() {
   fmt::print("\033[?25h\033[?1049l");
   std::fflush(stdout);
 }
 
-void TerminalWatch::begin(const ScenarioFiles& files) {
+void TerminalView::begin(const ScenarioFiles& files) {
   if (!files.map) return;
   run_.map = *files.map;
   T_world_map_ = files.T_site_start;
 }
 
-void TerminalWatch::see(const stack::StackMessage& message) {
+void TerminalView::on_message(const stack::StackMessage& message) {
   std::visit(Overloaded{
                  [&](const PoseEstimate& estimate) {
                    run_.estimate = estimate;
                    if (!T_world_map_ && T_world_body_) T_world_map_ = *T_world_body_ * estimate.T_map_body.inverse();
                    const Eigen::Vector2d p_m = estimate.T_map_body.position();
-                   if (run_.driven_m.empty() || (p_m - run_.driven_m.back()).norm() > kDrivenSpacing_m) run_.driven_m.push_back(p_m);
+                   if (run_.traveled_m.empty() || (p_m - run_.traveled_m.back()).norm() > kDrivenSpacing_m) run_.traveled_m.push_back(p_m);
                  },
                  [&](const MapUpdate& update) { run_.map = update.map; },
                  [&](const Path& path) { run_.path = path.T_map_body; },
@@ -63,18 +63,18 @@ void TerminalWatch::see(const stack::StackMessage& message) {
              message);
 }
 
-void TerminalWatch::see(const GroundTruth& truth) { T_world_body_ = to_pose2(truth.T_world_body); }
+void TerminalView::on_ground_truth(const GroundTruth& truth) { T_world_body_ = to_pose2(truth.T_world_body); }
 
-bool TerminalWatch::go_on(Time now, double distance_m) {
+bool TerminalView::keep_running(Time now, double distance_m) {
   const auto wall = std::chrono::steady_clock::now();
-  if (wall - drawn_ < kFramePeriod) return !interrupt_.is_interrupted();
-  drawn_ = wall;
+  if (wall - last_frame_ < kFramePeriod) return !interrupt_.is_interrupted();
+  last_frame_ = wall;
   run_.now = now;
   run_.distance_m = distance_m;
   run_.real_time_factor = to_seconds(now) / std::max(1e-3, std::chrono::duration<double>(wall - begin_).count());
   if (T_world_map_ && T_world_body_) run_.truth = T_world_map_->inverse() * *T_world_body_;
   const winsize size = terminal_size();
-  fmt::print("\033[H{}", watch_frame(run_, size.ws_col, size.ws_row));
+  fmt::print("\033[H{}", render_run_view(run_, size.ws_col, size.ws_row));
   std::fflush(stdout);
   return !interrupt_.is_interrupted();
 }

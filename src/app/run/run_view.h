@@ -11,7 +11,7 @@
 namespace patrol::app {
 
 /// State of a running simulation for display; poses in map.
-struct WatchedRun {
+struct RunView {
   std::string name;
   Time now{};
   double distance_m = 0.0;
@@ -20,7 +20,7 @@ struct WatchedRun {
   std::optional<PoseEstimate> estimate;
   std::optional<Pose2> truth;
   std::vector<Pose2> path;              ///< planned path
-  std::vector<Eigen::Vector2d> driven_m;  ///< trajectory, by the robot's own estimate
+  std::vector<Eigen::Vector2d> traveled_m;  ///< trajectory, by the robot's own estimate
   std::optional<LocalizationConfidence> confidence;
   VelocityCommand command;
   std::deque<Event> events;             ///< newest last
@@ -29,6 +29,6 @@ struct WatchedRun {
 /// Renders the state for a terminal, `columns` x `rows` characters, with ANSI colors: values, the map around the robot,
 /// the newest events. The map has north up and 2 x 4 dots per character. Lines end in "\033[K\r\n", so that a frame
 /// overwrites the previous one.
-std::string watch_frame(const WatchedRun& run, int columns, int rows);
+std::string render_run_view(const RunView& run, int columns, int rows);
 
 }  // namespace patrol::app

@@ -1,4 +1,4 @@
-#include "app/run/watch_frame.h"
+#include "app/run/run_view.h"
 
 #include <algorithm>
 #include <array>
@@ -103,7 +103,7 @@ const char* arrow_of(double yaw_rad) {
   return kArrows[static_cast<std::size_t>((eighth % 8 + 8) % 8)];
 }
 
-std::string map_text(const WatchedRun& run, int columns, int rows) {
+std::string map_text(const RunView& run, int columns, int rows) {
   const Eigen::Vector2d center_m = run.estimate ? run.estimate->T_map_body.position() : Eigen::Vector2d::Zero();
   DotMap dots(columns, rows, center_m);
   for (int row = 0; row < run.map.geometry().height; ++row) {
@@ -112,30 +112,30 @@ std::string map_text(const WatchedRun& run, int columns, int rows) {
       if (run.map.at({col, row}) >= kOccupiedFrom) dots.put(run.map.geometry().center_of({col, row}), Layer::kWall);
     }
   }
-  for (const Eigen::Vector2d& p_m : run.driven_m) dots.put(p_m, Layer::kDriven);
+  for (const Eigen::Vector2d& p_m : run.traveled_m) dots.put(p_m, Layer::kDriven);
   for (std::size_t i = 1; i < run.path.size(); ++i) put_line(dots, run.path[i - 1].position(), run.path[i].position(), Layer::kPath);
   if (run.truth) dots.put_sign(run.truth->position(), Layer::kTruth, "◆");
   if (run.estimate) dots.put_sign(run.estimate->T_map_body.position(), Layer::kRobot, arrow_of(run.estimate->T_map_body.yaw));
   return dots.text();
 }
 
-std::string figures_text(const WatchedRun& run) {
+std::string values_text(const RunView& run) {
   std::string text = fmt::format("{:+.2f} m/s {:+.2f} rad/s", run.command.vx_mps, run.command.yaw_rate_radps);
   if (run.estimate && run.truth) {
     const Pose2 error = run.truth->inverse() * run.estimate->T_map_body;
     const Eigen::Matrix3d& covariance = run.estimate->covariance;
-    text += fmt::format("   error {:.3f} m {:.2f}°   its own 2σ {:.3f} m", error.position().norm(), to_deg(std::abs(error.yaw)),
+    text += fmt::format("   error {:.3f} m {:.2f}°   estimated 2σ {:.3f} m", error.position().norm(), to_deg(std::abs(error.yaw)),
                         2.0 * std::sqrt(covariance(0, 0) + covariance(1, 1)));
   }
-  if (run.confidence) text += fmt::format("   trust {:.2f}{}", run.confidence->confidence, run.confidence->is_lost ? " LOST" : "");
+  if (run.confidence) text += fmt::format("   confidence {:.2f}{}", run.confidence->confidence, run.confidence->is_lost ? " LOST" : "");
   return text;
 }
 
 }  // namespace
 
-std::string watch_frame(const WatchedRun& run, int columns, int rows) {
-  std::string text = fmt::format("\033[1m{}\033[0m   {:.1f} s simulated, {:.1f} times real time   {:.1f} m{}{}{}", run.name, to_seconds(run.now),
-                                 run.real_time_factor, run.distance_m, kLineEnd, figures_text(run), kLineEnd);
+std::string render_run_view(const RunView& run, int columns, int rows) {
+  std::string text = fmt::format("\033[1m{}\033[0m   {:.1f} s simulated, {:.1f}x real time   {:.1f} m{}{}{}", run.name, to_seconds(run.now),
+                                 run.real_time_factor, run.distance_m, kLineEnd, values_text(run), kLineEnd);
   text += map_text(run, columns, std::max(1, rows - 2 - kNumEvents - 1));
   for (int i = 0; i < kNumEvents; ++i) {
     const std::size_t first = run.events.size() > kNumEvents ? run.events.size() - kNumEvents : 0;
@@ -148,7 +148,7 @@ std::string watch_frame(const WatchedRun& run, int columns, int rows) {
     }
     text += kLineEnd;
   }
-  return text + fmt::format("{}→ estimate {}◆ truth {}⠒ planned {}⠒ driven\033[0m\033[K", color_of(Layer::kRobot), color_of(Layer::kTruth), color_of(Layer::kPath),
+  return text + fmt::format("{}→ estimate {}◆ truth {}⠒ planned {}⠒ traveled\033[0m\033[K", color_of(Layer::kRobot), color_of(Layer::kTruth), color_of(Layer::kPath),
                             color_of(Layer::kDriven));
 }
 
