@@ -95,18 +95,6 @@ constexpr auto kRenamed = std::to_array<RenamedKey>({
     {"lining", "lining_deformation"},
     {"water", "water_bodies"},
     {"light.brightness_share", "light.intensity"},
-
-    // Stack: odometry and localization.
-
-    // Stack: SLAM; patrol slam, calibrate, train-neighbors.
-
-    // Stack: navigation and docking; patrol plan.
-    {"stack.plan", "stack.navigation"},
-
-    // Stack: missions and inspection.
-
-    // Monitor, rendering; patrol plan without navigation.
-    {"light.brightness_share", "light.intensity"},
     {"kept_clearance_m", "min_clearance_m"},
     {"any_angle_most_cells", "max_any_angle_cells"},
     {"unknown", "allow_unknown"},
