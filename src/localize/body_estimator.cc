@@ -30,14 +30,14 @@ bool is_complete(const JointState& joints) {
 }
 
 InertialFilter::Settings filter_settings(const BodyEstimatorSettings& s) {
-  return {.gyro_noise_radps_per_sqrt_hz = s.gyro_noise_radps_per_sqrt_hz,
+  return {.gyro_noise_density_radps_per_sqrt_hz = s.gyro_noise_density_radps_per_sqrt_hz,
           .gyro_bias_std_radps = s.gyro_bias_std_radps,
-          .gyro_bias_walk_radps_per_sqrt_s = s.gyro_bias_walk_radps_per_sqrt_s,
-          .accel_noise_mps2_per_sqrt_hz = s.accel_noise_mps2_per_sqrt_hz,
+          .gyro_bias_random_walk_radps_per_sqrt_s = s.gyro_bias_random_walk_radps_per_sqrt_s,
+          .accel_noise_density_mps2_per_sqrt_hz = s.accel_noise_density_mps2_per_sqrt_hz,
           .accel_bias_std_mps2 = s.accel_bias_std_mps2,
-          .accel_bias_walk_mps2_per_sqrt_s = s.accel_bias_walk_mps2_per_sqrt_s,
-          .way_std_m_per_sqrt_m = s.way_std_m_per_sqrt_m,
-          .turn_std_rad_per_sqrt_rad = s.turn_std_rad_per_sqrt_rad};
+          .accel_bias_random_walk_mps2_per_sqrt_s = s.accel_bias_random_walk_mps2_per_sqrt_s,
+          .position_random_walk_m_per_sqrt_m = s.position_random_walk_m_per_sqrt_m,
+          .yaw_random_walk_rad_per_sqrt_rad = s.yaw_random_walk_rad_per_sqrt_rad};
 }
 
 Pose3 imu_pose(const RobotDescription& robot) {
@@ -46,7 +46,7 @@ Pose3 imu_pose(const RobotDescription& robot) {
 }
 
 const BodyEstimatorSettings& checked(const BodyEstimatorSettings& settings) {
-  validate(settings, "odometry");
+  validate(settings, "odometry.legged");
   return settings;
 }
 
@@ -56,14 +56,14 @@ BodyEstimator::BodyEstimator(const RobotDescription& robot, const BodyEstimatorS
     : robot_(robot),
       settings_(checked(settings)),
       imu_(imu_pose(robot), {.standstill = {.window_s = settings.standstill_window_s,
-                                            .gyro_noise_radps_per_sqrt_hz = settings.gyro_noise_radps_per_sqrt_hz,
+                                            .gyro_noise_density_radps_per_sqrt_hz = settings.gyro_noise_density_radps_per_sqrt_hz,
                                             .foot_std_m = settings.standstill_foot_std_m},
-                             .history_s = settings.history_s,
-                             .extrapolation_s = settings.extrapolation_s}),
-      contact_({.contact_on_n = settings.touch_force_n,
-                .contact_off_n = settings.release_force_n,
-                .full_weight_n = settings.full_force_n,
-                .settle_s = settings.contact_settle_s}) {
+                             .buffer_s = settings.buffer_s,
+                             .max_extrapolation_s = settings.max_extrapolation_s}),
+      contact_({.contact_on_n = settings.contact_on_force_n,
+                .contact_off_n = settings.contact_off_force_n,
+                .full_weight_n = settings.full_weight_force_n,
+                .settling_time_s = settings.contact_settling_time_s}) {
   if (robot.legs.size() != kNumLegs) {
     throw InputError(
         fmt::format("robot {} has {} legs: leg odometry needs {}", robot.name, robot.legs.size(), kNumLegs));
@@ -134,7 +134,7 @@ void BodyEstimator::take_pending() {
   while (!pending_.is_empty()) {
     LegSample sample = pending_.oldest();
     const Time newest = pending_.newest().stamp;
-    const bool imu_is_late = to_seconds(newest - sample.stamp) > settings_.imu_patience_s;
+    const bool imu_is_late = to_seconds(newest - sample.stamp) > settings_.imu_timeout_s;
     if (sample.stamp > imu_.now() && !imu_is_late) return;
     if (!sample.weights) {
       if (std::max(imu_.now(), newest) - sample.stamp < kContactPatience) return;
@@ -196,7 +196,7 @@ StanceFeet BodyEstimator::lowest_feet(const LegSample& sample) const {
     ground = std::min(ground, all.feet[static_cast<std::size_t>(leg)].p_contact.dot(up));
   }
   for (StanceFoot foot : all) {
-    if (foot.p_contact.dot(up) - ground > settings_.geometric_stance_m) continue;
+    if (foot.p_contact.dot(up) - ground > settings_.stance_height_tolerance_m) continue;
     foot.weight = kGeometricTrust;
     lowest.push_back(foot);
   }

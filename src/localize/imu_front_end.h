@@ -20,17 +20,17 @@ class ImuFrontEnd {
  public:
   struct Settings {
     StationaryGyroBiasEstimator::Settings standstill;
-    double history_s;
-    double extrapolation_s;  ///< beyond the newest motion
+    double buffer_s;
+    double max_extrapolation_s;  ///< beyond the newest motion
   };
   /// Result of a reading: without effect; filter started; gap bridged without the reading; filter propagated by it.
   enum class Step { kIgnored, kStarted, kBridged, kPropagated };
 
   ImuFrontEnd(const Pose3& T_body_imu, const Settings& settings)
       : mount_(T_body_imu),
-        history_(static_cast<std::size_t>(settings.history_s * kAssumedRate_hz)),
+        history_(static_cast<std::size_t>(settings.buffer_s * kAssumedRate_hz)),
         bias_meter_(settings.standstill),
-        extrapolation_s_(settings.extrapolation_s) {}
+        max_extrapolation_s_(settings.max_extrapolation_s) {}
 
   /// Reading at the body's origin; none, and counted as rejected, if it is implausible, not newer than the filter's state, or frozen while the
   /// robot moves.
@@ -94,12 +94,12 @@ class ImuFrontEnd {
             .planar_covariance = filter_->planar_covariance()};
   }
 
-  /// Pose of the body at an instant of the history, or up to `extrapolation_s` after it; none outside of that.
+  /// Pose of the body at an instant of the history, or up to `max_extrapolation_s` after it; none outside of that.
   std::optional<Pose3> T_odom_body_at(Time stamp) const {
     if (history_.empty()) return std::nullopt;
     if (stamp <= history_.newest()) return history_.pose_at(stamp);
     const double ahead_s = to_seconds(stamp - history_.newest());
-    if (ahead_s > extrapolation_s_) return std::nullopt;
+    if (ahead_s > max_extrapolation_s_) return std::nullopt;
     // Straight on, turning about the vertical: the wobble of a walk does not carry on.
     const TrunkMotion& motion = history_.newest_motion();
     const Eigen::Quaterniond& rotation = motion.T_odom_body.rotation;
@@ -128,7 +128,7 @@ class ImuFrontEnd {
   Time now_{};
   MotionHistory history_;
   StationaryGyroBiasEstimator bias_meter_;
-  double extrapolation_s_;
+  double max_extrapolation_s_;
   Time last_velocity_hold_{};
   FrozenReadings<6> frozen_;
   bool is_silent_ = false;

@@ -15,7 +15,7 @@ ContactWeights ContactDetector::update(Time stamp, const std::array<double, kNum
     const bool was_loaded = is_loaded_[leg];
     is_loaded_[leg] = force_n[leg] > (was_loaded ? settings_.contact_off_n : settings_.contact_on_n);
     if (is_loaded_[leg] && !was_loaded) loaded_since_[leg] = stamp;
-    const bool has_settled = is_loaded_[leg] && to_seconds(stamp - loaded_since_[leg]) >= settings_.settle_s;
+    const bool has_settled = is_loaded_[leg] && to_seconds(stamp - loaded_since_[leg]) >= settings_.settling_time_s;
     weights[leg] = has_settled ? std::clamp(force_n[leg] / settings_.full_weight_n, 0.0, 1.0) : 0.0;
   }
   return weights;

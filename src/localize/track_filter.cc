@@ -36,8 +36,8 @@ TrackFilter::TrackFilter(const Settings& settings, const InertialSample& first) 
   set_std(Error::kGyroBias, settings.gyro_bias_std_radps);
   set_std(Error::kAccelBias, settings.accel_bias_std_mps2);
   P_(kScale, kScale) = std::pow(settings.scale_std, 2);
-  P_(kIcr, kIcr) = std::pow(settings.turn_centre_x_std_m, 2);
-  P_(kIcr + 1, kIcr + 1) = std::pow(settings.turn_centre_y_std_m, 2);
+  P_(kIcr, kIcr) = std::pow(settings.icr_x_std_m, 2);
+  P_(kIcr + 1, kIcr + 1) = std::pow(settings.icr_y_std_m, 2);
 }
 
 void TrackFilter::predict(double dt_s, const InertialSample& sample) {
@@ -56,12 +56,12 @@ void TrackFilter::predict(double dt_s, const InertialSample& sample) {
   const auto add_noise = [&](int block, double density) {
     P_.diagonal().segment<3>(block).array() += dt_s * density * density;
   };
-  add_noise(Error::kRotation, settings_.gyro_noise_radps_per_sqrt_hz);
-  add_noise(Error::kVelocity, settings_.accel_noise_mps2_per_sqrt_hz);
-  add_noise(Error::kGyroBias, settings_.gyro_bias_walk_radps_per_sqrt_s);
-  add_noise(Error::kAccelBias, settings_.accel_bias_walk_mps2_per_sqrt_s);
+  add_noise(Error::kRotation, settings_.gyro_noise_density_radps_per_sqrt_hz);
+  add_noise(Error::kVelocity, settings_.accel_noise_density_mps2_per_sqrt_hz);
+  add_noise(Error::kGyroBias, settings_.gyro_bias_random_walk_radps_per_sqrt_s);
+  add_noise(Error::kAccelBias, settings_.accel_bias_random_walk_mps2_per_sqrt_s);
   P_(Error::kRotation + 2, Error::kRotation + 2) +=
-      dt_s * std::abs(omega.z()) * std::pow(settings_.turn_std_rad_per_sqrt_rad, 2);
+      dt_s * std::abs(omega.z()) * std::pow(settings_.yaw_random_walk_rad_per_sqrt_rad, 2);
 }
 
 void TrackFilter::coast(double dt_s, double yaw_rate_radps) {
@@ -87,10 +87,10 @@ void TrackFilter::propagate_slip(double way_m, double turn_rad, double slip_std)
     P_.col(row) *= a;
     P_(row, row) += (1.0 - a * a) * std * std;
   };
-  decay(kSlip, slip_, std::exp(-way_m / settings_.slip_length_m), slip_std);
-  const double a_turn = std::exp(-turn_rad / settings_.turn_centre_length_rad);
-  decay(kIcr, icr_m_.x(), a_turn, settings_.turn_centre_x_std_m);
-  decay(kIcr + 1, icr_m_.y(), a_turn, settings_.turn_centre_y_std_m);
+  decay(kSlip, slip_, std::exp(-way_m / settings_.slip_correlation_m), slip_std);
+  const double a_turn = std::exp(-turn_rad / settings_.icr_correlation_rad);
+  decay(kIcr, icr_m_.x(), a_turn, settings_.icr_x_std_m);
+  decay(kIcr + 1, icr_m_.y(), a_turn, settings_.icr_y_std_m);
 }
 
 // With p = p_true - dp, omega = omega_true + dbg and s = scale + slip = s_true - ds, the innovation

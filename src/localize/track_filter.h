@@ -22,18 +22,18 @@ namespace patrol::localize {
 class TrackFilter {
  public:
   struct Settings {
-    double gyro_noise_radps_per_sqrt_hz;
+    double gyro_noise_density_radps_per_sqrt_hz;
     double gyro_bias_std_radps;  ///< at power-on
-    double gyro_bias_walk_radps_per_sqrt_s;
-    double accel_noise_mps2_per_sqrt_hz;
+    double gyro_bias_random_walk_radps_per_sqrt_s;
+    double accel_noise_density_mps2_per_sqrt_hz;
     double accel_bias_std_mps2;  ///< at power-on
-    double accel_bias_walk_mps2_per_sqrt_s;
-    double turn_std_rad_per_sqrt_rad;  ///< gyro scale factor and misalignment, during rotation
+    double accel_bias_random_walk_mps2_per_sqrt_s;
+    double yaw_random_walk_rad_per_sqrt_rad;  ///< gyro scale factor and misalignment, during rotation
     double scale_std;
-    double slip_length_m;           ///< correlation length of slip, in belt distance
-    double turn_centre_x_std_m;     ///< longitudinal offset: lateral slip during rotation
-    double turn_centre_y_std_m;     ///< lateral offset: different traction of the two sides
-    double turn_centre_length_rad;  ///< correlation angle of the turn center
+    double slip_correlation_m;           ///< correlation length of slip, in belt distance
+    double icr_x_std_m;     ///< longitudinal offset: lateral slip during rotation
+    double icr_y_std_m;     ///< lateral offset: different traction of the two sides
+    double icr_correlation_rad;  ///< correlation angle of the turn center
     double height_m;                ///< height of the body origin above the ground
   };
 

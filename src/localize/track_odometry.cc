@@ -21,7 +21,7 @@ constexpr double kAgreement_mps = 0.15;      // of belts and IMU, after their di
 constexpr Time kAgreement = std::chrono::milliseconds(300);  // and how long it must last
 
 const TrackOdometrySettings& checked(const TrackOdometrySettings& settings) {
-  validate(settings, "odometry");
+  validate(settings, "odometry.tracked");
   return settings;
 }
 
@@ -31,18 +31,18 @@ const RobotDescription& checked(const RobotDescription& robot) {
 }
 
 TrackFilter::Settings filter_settings(const TrackOdometrySettings& s, const TrackGeometry& tracks) {
-  return {.gyro_noise_radps_per_sqrt_hz = s.gyro_noise_radps_per_sqrt_hz,
+  return {.gyro_noise_density_radps_per_sqrt_hz = s.gyro_noise_density_radps_per_sqrt_hz,
           .gyro_bias_std_radps = s.gyro_bias_std_radps,
-          .gyro_bias_walk_radps_per_sqrt_s = s.gyro_bias_walk_radps_per_sqrt_s,
-          .accel_noise_mps2_per_sqrt_hz = s.accel_noise_mps2_per_sqrt_hz,
+          .gyro_bias_random_walk_radps_per_sqrt_s = s.gyro_bias_random_walk_radps_per_sqrt_s,
+          .accel_noise_density_mps2_per_sqrt_hz = s.accel_noise_density_mps2_per_sqrt_hz,
           .accel_bias_std_mps2 = s.accel_bias_std_mps2,
-          .accel_bias_walk_mps2_per_sqrt_s = s.accel_bias_walk_mps2_per_sqrt_s,
-          .turn_std_rad_per_sqrt_rad = s.turn_std_rad_per_sqrt_rad,
+          .accel_bias_random_walk_mps2_per_sqrt_s = s.accel_bias_random_walk_mps2_per_sqrt_s,
+          .yaw_random_walk_rad_per_sqrt_rad = s.yaw_random_walk_rad_per_sqrt_rad,
           .scale_std = s.scale_std,
-          .slip_length_m = s.slip_length_m,
-          .turn_centre_x_std_m = s.turn_centre_x_std_m,
-          .turn_centre_y_std_m = s.turn_centre_y_std_m,
-          .turn_centre_length_rad = s.turn_centre_length_rad,
+          .slip_correlation_m = s.slip_correlation_m,
+          .icr_x_std_m = s.icr_x_std_m,
+          .icr_y_std_m = s.icr_y_std_m,
+          .icr_correlation_rad = s.icr_correlation_rad,
           .height_m = tracks.body_height_m};
 }
 
@@ -64,12 +64,12 @@ TrackOdometry::TrackOdometry(const RobotDescription& robot, const TrackOdometryS
       metres_per_tick_(2.0 * std::numbers::pi * robot.tracks->sprocket_radius_m / settings.ticks_per_sprocket_turn),
       track_ends_(track_ends(*robot.tracks)),
       imu_(robot.T_body("imu"), {.standstill = {.window_s = settings.standstill_window_s,
-                                                .gyro_noise_radps_per_sqrt_hz = settings.gyro_noise_radps_per_sqrt_hz,
+                                                .gyro_noise_density_radps_per_sqrt_hz = settings.gyro_noise_density_radps_per_sqrt_hz,
                                                 .foot_std_m = kStandstillCreep_m},
-                                 .history_s = settings.history_s,
-                                 .extrapolation_s = settings.extrapolation_s}),
+                                 .buffer_s = settings.buffer_s,
+                                 .max_extrapolation_s = settings.max_extrapolation_s}),
       slip_watch_({.window_s = settings.slip_window_s, .threshold_mps = settings.slip_disagreement_mps}),
-      counters_({.meters_per_tick = metres_per_tick_, .max_acceleration_mps2 = settings.max_belt_acceleration_mps2}) {}
+      counters_({.meters_per_tick = metres_per_tick_, .max_acceleration_mps2 = settings.max_track_acceleration_mps2}) {}
 
 void TrackOdometry::add(const Imu& imu) {
   const std::optional<InertialSample> sample = imu_.accept(imu, !counters_.is_stationary());
@@ -103,7 +103,7 @@ void TrackOdometry::advance(Time stamp, const InertialSample& sample) {
     slip_watch_.add_acceleration(stamp, to_seconds(stamp - before), imu_.filter()->forward_acceleration_mps2());
   }
   watch_standstill(sample);
-  has_settled_ = has_settled_ || to_seconds(stamp - started_) > settings_.start_patience_s;
+  has_settled_ = has_settled_ || to_seconds(stamp - started_) > settings_.init_timeout_s;
   imu_.remember();
   if (last_speed_update_ && ticks_are_silent()) hold_velocity();
 }
@@ -117,7 +117,7 @@ void TrackOdometry::take_pending() {
   while (!pending_.is_empty()) {
     const TrackTicks ticks = pending_.oldest();
     if (ticks.stamp > imu_.now()) {
-      if (to_seconds(pending_.newest().stamp - imu_.now()) <= settings_.imu_patience_s) return;
+      if (to_seconds(pending_.newest().stamp - imu_.now()) <= settings_.imu_timeout_s) return;
       coast_to(ticks);
     }
     pending_.pop_oldest();
@@ -131,7 +131,7 @@ void TrackOdometry::coast_to(const TrackTicks& ticks) {
   if (const auto& last = counters_.last()) {
     const auto turn_ticks = static_cast<double>((ticks.right - last->right) - (ticks.left - last->left));
     yaw_rate = turn_ticks * metres_per_tick_ / to_seconds(ticks.stamp - last->stamp) /
-               (robot_.tracks->gauge_m * settings_.turn_ratio);
+               (robot_.tracks->gauge_m * settings_.skid_ratio);
   }
   imu_.coast_to(ticks.stamp, yaw_rate);
 }
@@ -157,7 +157,7 @@ void TrackOdometry::use_ticks(const TrackTicks& ticks) {
 }
 
 double TrackOdometry::yaw_rate_disagreement_radps(const EncoderInterval& belts, const TrunkMotion& then) const {
-  const double by_belts = belts.smooth.difference_mps() / (robot_.tracks->gauge_m * settings_.turn_ratio);
+  const double by_belts = belts.smooth.difference_mps() / (robot_.tracks->gauge_m * settings_.skid_ratio);
   return std::abs(by_belts - then.omega_body.z());
 }
 
@@ -214,7 +214,7 @@ void TrackOdometry::watch_standstill(const InertialSample& sample) {
   if (reading->bias_radps.cwiseAbs().maxCoeff() > kMaxBiasSigmas * settings_.gyro_bias_std_radps) return;
   imu_.filter()->correct_gyro_bias(reading->bias_radps, reading->variance);
   imu_.filter()->end_slip(0.0, settings_.slip_std);
-  if (has_settled_ || to_seconds(imu_.now() - counters_.stationary_since()) < settings_.settle_s) return;
+  if (has_settled_ || to_seconds(imu_.now() - counters_.stationary_since()) < settings_.settling_time_s) return;
   imu_.filter()->set_origin();
   imu_.forget_history();
   has_settled_ = true;

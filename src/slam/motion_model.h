@@ -17,11 +17,11 @@ struct MotionModelSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("along_std_m_per_m", self.longitudinal_std_m_per_m, at_least(0.0));
-    visit("across_std_m_per_m", self.lateral_std_m_per_m, at_least(0.0));
-    visit("turn_std_rad_per_rad", self.yaw_std_rad_per_rad, at_least(0.0));
-    visit("turn_std_rad_per_m", self.yaw_std_rad_per_m, at_least(0.0));
-    visit("turn_std_rad_per_s", self.yaw_std_rad_per_s, at_least(0.0));
+    visit("longitudinal_std_m_per_m", self.longitudinal_std_m_per_m, at_least(0.0));
+    visit("lateral_std_m_per_m", self.lateral_std_m_per_m, at_least(0.0));
+    visit("yaw_std_rad_per_rad", self.yaw_std_rad_per_rad, at_least(0.0));
+    visit("yaw_std_rad_per_m", self.yaw_std_rad_per_m, at_least(0.0));
+    visit("yaw_std_rad_per_s", self.yaw_std_rad_per_s, at_least(0.0));
     visit("min_std_m", self.min_std_m, between(1e-6, 1.0));
     visit("min_std_rad", self.min_std_rad, between(1e-6, 1.0));
   }

@@ -19,8 +19,8 @@ struct RangeUpdateSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("enabled", self.enabled);
     visit("range_std_m", self.range_std_m, between(0.001, 10.0));
-    visit("gate_std", self.gate_sigma, between(0.5, 100.0));
-    visit("gate_excess_std", self.nlos_gate_sigma, between(0.5, 100.0));
+    visit("gate_sigma", self.gate_sigma, between(0.5, 100.0));
+    visit("nlos_gate_sigma", self.nlos_gate_sigma, between(0.5, 100.0));
   }
 };
 

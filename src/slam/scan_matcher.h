@@ -34,7 +34,7 @@ struct ScanMatcherSettings {
     visit("kernel_m", self.kernel_m, between(1e-3, 10.0));
     visit("surface_radius_cells", self.surface_radius_cells, between(1, 10));
     visit("max_iterations", self.max_iterations, between(1, 100));
-    visit("min_matched_share", self.min_inlier_ratio, between(0.0, 1.0));
+    visit("min_inlier_ratio", self.min_inlier_ratio, between(0.0, 1.0));
     visit("search_window_m", self.search_window_m, between(0.0, 5.0));
     visit("search_window_rad", self.search_window_rad, between(0.0, 1.6));
     visit("search_points", self.search_points, between(3, 10000));

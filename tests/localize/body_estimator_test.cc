@@ -286,7 +286,7 @@ TEST(BodyEstimator, TiltedImuMountIsUndone) {
 
 TEST(BodyEstimator, ErrorsAreAsLargeAsTheCovarianceSays) {
   // NEES of x, y, yaw after half a minute over 12 walks: chi-square of 36 degrees of freedom, divided by 12.
-  // 95 % band of the mean: 21.3 / 12 ... 54.4 / 12. The lower end is not asked for: `way_std_m_per_sqrt_m`
+  // 95 % band of the mean: 21.3 / 12 ... 54.4 / 12. The lower end is not asked for: `position_random_walk_m_per_sqrt_m`
   // stands for slip and terrain, which this robot does not have, so the filter is too modest here.
   double sum = 0.0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
@@ -316,12 +316,12 @@ TEST(BodyEstimator, RobotWithoutLegsIsRefusedByName) {
 
 TEST(BodyEstimator, SettingOutOfRangeIsRefusedByName) {
   BodyEstimatorSettings settings;
-  settings.history_s = 0.0;
+  settings.buffer_s = 0.0;
   try {
     BodyEstimator estimator(make_quadruped(), settings);
     FAIL() << "a history of 0 s was accepted";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("odometry.history_s"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("odometry.legged.buffer_s"), std::string::npos);
   }
 }
 

@@ -144,8 +144,8 @@ TEST(DockDetector, SaysNothingFromTooFarAndOfAnEmptyScan) {
 TEST(DockDetector, RefusesAProfileOfOnePointAndSettingsThatBreakTheirRule) {
   EXPECT_THAT([] { DockDetector({}, {{0.5, 0.0}}); },
               ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("the dock's profile has 1 points")));
-  EXPECT_THAT([] { DockDetector({.min_explained = 2.0}, make_dock_profile()); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("dock_detector.min_explained = 2")));
+  EXPECT_THAT([] { DockDetector({.min_inlier_ratio = 2.0}, make_dock_profile()); },
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("docking.detector.min_inlier_ratio = 2")));
 }
 
 }  // namespace

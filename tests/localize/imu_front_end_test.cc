@@ -13,19 +13,19 @@ using namespace std::chrono_literals;
 using FrontEnd = ImuFrontEnd<InertialFilter>;
 
 InertialFilter make_filter(const InertialSample& first) {
-  return {{.gyro_noise_radps_per_sqrt_hz = 2e-4,
+  return {{.gyro_noise_density_radps_per_sqrt_hz = 2e-4,
            .gyro_bias_std_radps = 5e-3,
-           .gyro_bias_walk_radps_per_sqrt_s = 1e-5,
-           .accel_noise_mps2_per_sqrt_hz = 0.1,
+           .gyro_bias_random_walk_radps_per_sqrt_s = 1e-5,
+           .accel_noise_density_mps2_per_sqrt_hz = 0.1,
            .accel_bias_std_mps2 = 0.05,
-           .accel_bias_walk_mps2_per_sqrt_s = 1e-3,
-           .way_std_m_per_sqrt_m = 0.01,
-           .turn_std_rad_per_sqrt_rad = 0.003},
+           .accel_bias_random_walk_mps2_per_sqrt_s = 1e-3,
+           .position_random_walk_m_per_sqrt_m = 0.01,
+           .yaw_random_walk_rad_per_sqrt_rad = 0.003},
           first};
 }
 
 FrontEnd make_front_end() {
-  return {{}, {.standstill = {.window_s = 1.0, .gyro_noise_radps_per_sqrt_hz = 2e-4, .foot_std_m = 3e-5}, .history_s = 2.0, .extrapolation_s = 0.15}};
+  return {{}, {.standstill = {.window_s = 1.0, .gyro_noise_density_radps_per_sqrt_hz = 2e-4, .foot_std_m = 3e-5}, .buffer_s = 2.0, .max_extrapolation_s = 0.15}};
 }
 
 /// Reading at rest; `noise` makes it differ from others.

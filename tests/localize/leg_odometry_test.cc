@@ -18,7 +18,7 @@ LegSample standing_pose() {
 }
 
 TEST(ContactDetector, CountsAFootOnceItsTouchDownIsOverAndUntilItIsReleased) {
-  ContactDetector detector({.contact_on_n = 15.0, .contact_off_n = 8.0, .full_weight_n = 40.0, .settle_s = 0.010});
+  ContactDetector detector({.contact_on_n = 15.0, .contact_off_n = 8.0, .full_weight_n = 40.0, .settling_time_s = 0.010});
   const auto at = [&](int ms, double force) {
     return detector.update(std::chrono::milliseconds(ms), {force, 0.0, 0.0, 0.0})[0];
   };

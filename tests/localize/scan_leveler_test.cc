@@ -100,7 +100,7 @@ TEST(ScanLeveler, ScansOfAStabilizedLidarAreExactOnceItIsKnown) {
   // What a lidar on a gimbal sees: from where the wobbling body carries it, but level.
   const auto level_lidar = [](Time stamp) { return std::optional(remove_tilt(wobbling(stamp) * kLidar) * kLidar.inverse()); };
   const LaserScan scan = scan_room(level_lidar, Time{0}, 3200, -10.0);
-  EXPECT_LT(worst_wall_error(*ScanLeveler(kLidar, {.stabilized = true}).level(scan, PoseLookup(wobbling), 0.3)), 0.001);
+  EXPECT_LT(worst_wall_error(*ScanLeveler(kLidar, {.gimbal_stabilized = true}).level(scan, PoseLookup(wobbling), 0.3)), 0.001);
   EXPECT_GT(worst_wall_error(*ScanLeveler(kLidar, {}).level(scan, PoseLookup(wobbling), 0.3)), 0.001);
 }
 
@@ -173,7 +173,7 @@ TEST(ScanLeveler, RangesFollowRep117) {
                        .time_increment_s = 1e-4,
                        .ranges_m = {kInf, -kInf, std::numeric_limits<float>::quiet_NaN(), 3.0F, 0.1F},
                        .intensities = {}};
-  const auto level = ScanLeveler(kLidar, {.no_return_free_m = 7.0}).level(scan, still, 0.3);
+  const auto level = ScanLeveler(kLidar, {.no_return_clearing_range_m = 7.0}).level(scan, still, 0.3);
   ASSERT_TRUE(level);
   ASSERT_EQ(level->beams.size(),
             2U);  // no return: free; too close, invalid: nothing; 3 m: hit; 0.1 m: the robot itself

@@ -13,18 +13,18 @@ constexpr double kDt = 0.004;
 const InertialSample kAtRest{.force_mps2 = {0.0, 0.0, 9.81}};
 
 TrackFilter::Settings quiet() {
-  return {.gyro_noise_radps_per_sqrt_hz = 1e-4,
+  return {.gyro_noise_density_radps_per_sqrt_hz = 1e-4,
           .gyro_bias_std_radps = 1e-3,
-          .gyro_bias_walk_radps_per_sqrt_s = 1e-6,
-          .accel_noise_mps2_per_sqrt_hz = 0.02,
+          .gyro_bias_random_walk_radps_per_sqrt_s = 1e-6,
+          .accel_noise_density_mps2_per_sqrt_hz = 0.02,
           .accel_bias_std_mps2 = 0.01,
-          .accel_bias_walk_mps2_per_sqrt_s = 1e-4,
-          .turn_std_rad_per_sqrt_rad = 0.0,
+          .accel_bias_random_walk_mps2_per_sqrt_s = 1e-4,
+          .yaw_random_walk_rad_per_sqrt_rad = 0.0,
           .scale_std = 0.02,
-          .slip_length_m = 2.0,
-          .turn_centre_x_std_m = 0.05,
-          .turn_centre_y_std_m = 0.02,
-          .turn_centre_length_rad = 2.0,
+          .slip_correlation_m = 2.0,
+          .icr_x_std_m = 0.05,
+          .icr_y_std_m = 0.02,
+          .icr_correlation_rad = 2.0,
           .height_m = 0.0};
 }
 

@@ -315,7 +315,7 @@ TEST(TrackOdometry, ARobotWithoutTracksOrImuIsRefusedWithASentence) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "robot tracked has no tracks: track odometry needs them");
   }
-  EXPECT_THROW(TrackOdometry(make_tracked_robot(), {.slip_length_m = 0.0}), InputError);
+  EXPECT_THROW(TrackOdometry(make_tracked_robot(), {.slip_correlation_m = 0.0}), InputError);
 }
 
 }  // namespace

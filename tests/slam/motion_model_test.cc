@@ -88,7 +88,7 @@ TEST(MotionModelSettings, RefuseANegativeSpreadByName) {
     validate(settings, "slam.motion");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "slam.motion.across_std_m_per_m = -0.1: must be at least 0");
+    EXPECT_STREQ(error.what(), "slam.motion.lateral_std_m_per_m = -0.1: must be at least 0");
   }
 }
 

@@ -29,7 +29,7 @@ RoomWorld make_corridor() {
 }
 
 constexpr RoomWorld::ScanOptions kNoisyLidar{
-    .beams = 1600, .range_max_m = 30.0, .no_return_free_m = 6.0, .range_std_m = 0.01};
+    .beams = 1600, .range_max_m = 30.0, .no_return_clearing_range_m = 6.0, .range_std_m = 0.01};
 
 /// A map of the room from five scans with 1 cm of noise at known poses.
 GridMap make_map(const RoomWorld& room) {

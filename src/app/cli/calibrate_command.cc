@@ -20,7 +20,7 @@ namespace {
 
 const OutputKind kCalibrating = {.name = "calibration of a log",
                                  .unfinished = "The log has not been calibrated.",
-                                 .made = {"calibration.yaml", "stretches.csv", "metrics.json", "settings.yaml"},
+                                 .made = {"calibration.yaml", "segments.csv", "metrics.json", "settings.yaml"},
                                  .proof = "settings.yaml",
                                  .kept = {"*.part"}};
 
@@ -29,7 +29,7 @@ struct LogCalibrationSettings {
   int passes = 2;  ///< passes over the log; each uses the calibration of the one before
   io::ScanLogOptions log;
   slam::PlanarScanSettings scan;
-  slam::MotionSegmentSettings stretches;
+  slam::MotionSegmentSettings segments;
   slam::CalibratorSettings calibrator;
 
   template <typename Self, typename Visitor>
@@ -37,7 +37,7 @@ struct LogCalibrationSettings {
     visit("passes", self.passes, between(1, 10));
     visit("log", self.log);
     visit("scan", self.scan);
-    visit("stretches", self.stretches);
+    visit("segments", self.segments);
     visit("calibrator", self.calibrator);
   }
 };
@@ -55,7 +55,7 @@ std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, c
   const InterruptGuard guard;
   ProgressBar bar;
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(file, settings.log);
-  slam::MotionSegmenter pairs(settings.stretches, settings.scan, known);
+  slam::MotionSegmenter pairs(settings.segments, settings.scan, known);
   std::optional<Pose2> T_body_lidar;
   const bool is_whole = read_scans(*log, name, guard, bar, [&](const RecordedScan& recorded) {
     if (!T_body_lidar) T_body_lidar = recorded.T_body_lidar;
@@ -72,8 +72,8 @@ std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, c
 }
 
 /// Table of the motion of each segment by odometry and by scan matching, with its error, which shows rejected segments.
-io::Table stretch_table(const CalibratedLog& log) {
-  io::Table table{.name = "stretches",
+io::Table segment_table(const CalibratedLog& log) {
+  io::Table table{.name = "segments",
                   .columns = {"begin_s", "end_s", "odometry_x_m", "odometry_y_m", "odometry_yaw_rad", "lidar_x_m", "lidar_y_m", "lidar_yaw_rad", "error_std"},
                   .rows = {}};
   for (std::size_t k = 0; k < log.pairs.size(); ++k) {
@@ -141,7 +141,7 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
   }
   const slam::CalibrationResult& result = log->result;
   io::save_settings(options.out / "calibration.yaml", result.calibration(), "from " + options.log.filename().string() + "; for patrol slam --calibration");
-  io::save_csv(options.out / "stretches.csv", stretch_table(*log));
+  io::save_csv(options.out / "segments.csv", segment_table(*log));
   io::save_metrics(options.out / "metrics.json", metrics_of(*log));
   io::save_settings(options.out / "settings.yaml", settings);
   complete_output(options.out);

@@ -44,7 +44,7 @@ struct FirstPass {
 
 /// Runs the first pass over a log. Errors in the file are ignored here and reported by the actual pass.
 FirstPass run_first_pass(const std::filesystem::path& file, ScanLogOptions options) {
-  options.skip_bad_lines = true;
+  options.skip_invalid = true;
   options.no_return_m = kMaxNoReturn_m;
   const std::unique_ptr<ScanLog> log = make_log(file, options, {});
   NoReturnDetector finder;
@@ -63,9 +63,9 @@ FirstPass run_first_pass(const std::filesystem::path& file, ScanLogOptions optio
 
 /// Returns the options changed by the results of the first pass, which are also described in `found`.
 ScanLogOptions apply_first_pass(const FirstPass& first_pass, ScanLogOptions options, std::vector<std::string>& found) {
-  if (options.finds_no_return && first_pass.no_return && first_pass.no_return->range_m <= options.no_return_m) {
+  if (options.detect_no_return && first_pass.no_return && first_pass.no_return->range_m <= options.no_return_m) {
     options.no_return_m = first_pass.no_return->range_m * (1.0 - 1e-6);  // margin for the rounded digits in the file
-    found.push_back(fmt::format("{:.4g} m is no return: {} readings from {} places are it to the bit (log.finds_no_return)", first_pass.no_return->range_m,
+    found.push_back(fmt::format("{:.4g} m is no return: {} readings from {} places are it to the bit (log.detect_no_return)", first_pass.no_return->range_m,
                                 first_pass.no_return->num_readings, first_pass.no_return->num_positions));
   }
   if (options.imu != "auto") return options;
@@ -83,7 +83,7 @@ void ScanLog::count_ignored(const std::string& name) {
 }
 
 void ScanLog::reject_or_skip(const ScanLogOptions& options, const std::string& reason, const std::string& warning) {
-  if (!options.skip_bad_lines) throw InputError(warning);
+  if (!options.skip_invalid) throw InputError(warning);
   count_skipped(reason, warning);
 }
 
@@ -131,7 +131,7 @@ std::string to_text(const ScanLogSummary& summary) {
 
 std::unique_ptr<ScanLog> open_scan_log(const std::filesystem::path& file, const ScanLogOptions& options) {
   validate(options, "log");
-  const bool needs_look = options.finds_no_return || options.imu != "off";
+  const bool needs_look = options.detect_no_return || options.imu != "off";
   const FirstPass first_pass = needs_look ? run_first_pass(file, options) : FirstPass{};
   std::vector<std::string> found;
   std::unique_ptr<ScanLog> log = make_log(file, apply_first_pass(first_pass, options, found), first_pass.gyro_bias_radps);

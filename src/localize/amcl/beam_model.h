@@ -24,10 +24,10 @@ struct BeamModelSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("hit_share", self.z_hit, between(0.01, 1.0));
-    visit("short_share", self.z_short, between(0.0, 1.0));
-    visit("max_share", self.z_max, between(0.0, 1.0));
-    visit("random_share", self.z_rand, between(1e-4, 1.0));
+    visit("z_hit", self.z_hit, between(0.01, 1.0));
+    visit("z_short", self.z_short, between(0.0, 1.0));
+    visit("z_max", self.z_max, between(0.0, 1.0));
+    visit("z_rand", self.z_rand, between(1e-4, 1.0));
     visit("hit_std_m", self.hit_std_m, between(0.01, 2.0));
     visit("short_mean_m", self.short_mean_m, between(0.1, 1000.0));
     visit("max_range_m", self.max_range_m, between(1.0, 1000.0));

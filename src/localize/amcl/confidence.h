@@ -21,15 +21,15 @@ struct ConfidenceSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("sure_std_m", self.std_at_confidence_1_m, between(0.0, 100.0));
-    visit("doubtful_std_m", self.std_at_confidence_half_m, between(0.0, 100.0));
-    visit("hopeless_std_m", self.std_at_confidence_0_m, between(0.0, 100.0));
-    visit("good_fit", self.full_confidence_fit, between(0.0, 1.0));
-    visit("bad_fit", self.zero_confidence_fit, between(0.0, 1.0));
-    visit("decided_weight", self.full_confidence_cluster_weight, between(0.0, 1.0));
-    visit("undecided_weight", self.zero_confidence_cluster_weight, between(0.0, 1.0));
-    visit("found_above", self.found_threshold, between(0.0, 1.0));
-    visit("lost_below", self.lost_threshold, between(0.0, 1.0));
+    visit("std_at_confidence_1_m", self.std_at_confidence_1_m, between(0.0, 100.0));
+    visit("std_at_confidence_half_m", self.std_at_confidence_half_m, between(0.0, 100.0));
+    visit("std_at_confidence_0_m", self.std_at_confidence_0_m, between(0.0, 100.0));
+    visit("full_confidence_fit", self.full_confidence_fit, between(0.0, 1.0));
+    visit("zero_confidence_fit", self.zero_confidence_fit, between(0.0, 1.0));
+    visit("full_confidence_cluster_weight", self.full_confidence_cluster_weight, between(0.0, 1.0));
+    visit("zero_confidence_cluster_weight", self.zero_confidence_cluster_weight, between(0.0, 1.0));
+    visit("found_threshold", self.found_threshold, between(0.0, 1.0));
+    visit("lost_threshold", self.lost_threshold, between(0.0, 1.0));
   }
 };
 

@@ -17,13 +17,13 @@ struct DivergenceMonitorSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("slow_rate", self.alpha_slow, between(1e-4, 1.0));
-    visit("fast_rate", self.alpha_fast, between(1e-3, 1.0));
+    visit("alpha_slow", self.alpha_slow, between(1e-4, 1.0));
+    visit("alpha_fast", self.alpha_fast, between(1e-3, 1.0));
     visit("fast_over_slow", self.fast_over_slow, between(1.0, 10.0));
-    visit("range_rate", self.alpha_range, between(1e-3, 1.0));
+    visit("alpha_range", self.alpha_range, between(1e-3, 1.0));
     visit("min_scan_fit", self.min_scan_fit, between(0.0, 1.0));
     visit("min_range_fit", self.min_range_fit, between(0.0, 1.0));
-    visit("max_injection", self.max_injection_fraction, between(0.0, 1.0));
+    visit("max_injection_fraction", self.max_injection_fraction, between(0.0, 1.0));
   }
 };
 

@@ -23,8 +23,8 @@ struct KldSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("bin_m", self.bin_m, between(0.01, 10.0));
     visit("bin_rad", self.bin_rad, between(0.01, 3.2));
-    visit("max_error", self.max_kl_divergence, between(1e-4, 1.0));
-    visit("quantile", self.normal_quantile, between(0.0, 6.0));
+    visit("max_kl_divergence", self.max_kl_divergence, between(1e-4, 1.0));
+    visit("normal_quantile", self.normal_quantile, between(0.0, 6.0));
     visit("min_particles", self.min_particles, between(1, 1000000));
     visit("max_particles", self.max_particles, between(1, 1000000));
   }

@@ -22,7 +22,7 @@ struct LikelihoodFieldSettings {
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("hit_std_m", self.hit_std_m, between(0.01, 2.0));
-    visit("random_share", self.z_rand, between(1e-4, 0.5));
+    visit("z_rand", self.z_rand, between(1e-4, 0.5));
     visit("max_beams", self.max_beams, between(10, 10000));
   }
 };

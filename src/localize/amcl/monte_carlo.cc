@@ -81,7 +81,7 @@ void MonteCarloLocalizer::set_initial_pose(const Pose2& T_map_body, const Eigen:
   while (cloud_.size() < static_cast<std::size_t>(kld_particles(bins.size(), settings_.kld))) {
     const std::array<double, 4> unit = start_noise_.normals(starts_, cloud_.size());
     const Pose2 pose = slam::perturbed(T_map_body, L * Eigen::Vector3d(unit[0], unit[1], unit[2]));
-    cloud_.add(pose, settings_.odometry.way_scale_std * unit[3]);
+    cloud_.add(pose, settings_.odometry.scale_std * unit[3]);
     bins.add(pose);
   }
 }
@@ -129,7 +129,7 @@ void MonteCarloLocalizer::start_from(const LevelScan& scan, const Pose2& T_odom_
   const auto count = static_cast<std::size_t>(std::max(settings_.kld.min_particles, settings_.kld.max_particles));
   const std::vector<Pose2> poses = sample_poses(global_localization(scan, T_odom_body), count, start_noise_, starts_);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    cloud_.add(poses[i], settings_.odometry.way_scale_std * start_noise_.normals(starts_, count + i)[3]);
+    cloud_.add(poses[i], settings_.odometry.scale_std * start_noise_.normals(starts_, count + i)[3]);
   }
   is_globally_started_ = false;
   last_search_ = scan.stamp;

@@ -66,15 +66,15 @@ struct MonteCarloSettings {
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("sensor_model", self.sensor_model, one_of(sensor_models()));
-    visit("independent_beams", self.effective_beams, between(1.0, 10000.0));
-    visit("scan_fit_tol", self.scan_fit_tolerance, between(0.0, 1.0));
+    visit("effective_beams", self.effective_beams, between(1.0, 10000.0));
+    visit("scan_fit_tolerance", self.scan_fit_tolerance, between(0.0, 1.0));
     visit("update_distance_m", self.update_distance_m, between(0.0, 10.0));
     visit("update_angle_rad", self.update_angle_rad, between(0.0, 3.2));
     visit("update_period_s", self.update_period_s, between(0.0, 1000.0));
     visit("max_tilt_rad", self.max_tilt_rad, between(0.0, 1.6));
     visit("resample_threshold", self.resample_threshold, between(0.0, 1.0));
-    visit("min_particles_when_lost", self.min_particles_lost, between(1, 1000000));
-    visit("range_memory_s", self.range_buffer_s, between(0.0, 100.0));
+    visit("min_particles_lost", self.min_particles_lost, between(1, 1000000));
+    visit("range_buffer_s", self.range_buffer_s, between(0.0, 100.0));
     visit("search_period_s", self.search_period_s, between(0.0, 1000.0));
     visit("max_logged_particles", self.max_logged_particles, between(0, 1000000));
     visit("odometry", self.odometry);
@@ -82,10 +82,10 @@ struct MonteCarloSettings {
     visit("beam", self.beam);
     visit("kld", self.kld);
     visit("ranges", self.ranges);
-    visit("refinement", self.scan_refinement);
-    visit("search", self.global_localization);
-    visit("fit", self.divergence_monitor);
-    visit("trust", self.confidence);
+    visit("scan_refinement", self.scan_refinement);
+    visit("global_localization", self.global_localization);
+    visit("divergence_monitor", self.divergence_monitor);
+    visit("confidence", self.confidence);
   }
 };
 

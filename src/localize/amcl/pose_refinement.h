@@ -32,12 +32,12 @@ struct PoseRefinementSettings {
     visit("point_std_m", self.point_std_m, between(1e-4, 1.0));
     visit("point_angle_std_rad", self.point_angle_std_rad, between(0.0, 0.1));
     visit("kernel_m", self.kernel_m, between(1e-3, 10.0));
-    visit("likelihood_gain", self.likelihood_tempering, between(1e-4, 1.0));
-    visit("min_facing", self.min_incidence_sine, between(0.0, 0.9));
+    visit("likelihood_tempering", self.likelihood_tempering, between(1e-4, 1.0));
+    visit("min_incidence_sine", self.min_incidence_sine, between(0.0, 0.9));
     visit("map_std_m", self.map_std_m, between(0.0, 1.0));
     visit("map_std_rad", self.map_std_rad, between(0.0, 0.1));
     visit("max_iterations", self.max_iterations, between(1, 100));
-    visit("min_matched_share", self.min_inlier_ratio, between(0.0, 1.0));
+    visit("min_inlier_ratio", self.min_inlier_ratio, between(0.0, 1.0));
   }
 };
 

@@ -18,9 +18,9 @@ struct RangeLikelihoodSettings {
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("range_std_m", self.range_std_m, between(0.005, 5.0));
-    visit("blocked_share", self.nlos_probability, between(0.0, 0.4));
-    visit("blocked_excess_m", self.nlos_bias_m, between(0.01, 10.0));
-    visit("outlier_share", self.outlier_probability, between(1e-6, 0.4));
+    visit("nlos_probability", self.nlos_probability, between(0.0, 0.4));
+    visit("nlos_bias_m", self.nlos_bias_m, between(0.01, 10.0));
+    visit("outlier_probability", self.outlier_probability, between(1e-6, 0.4));
   }
 };
 

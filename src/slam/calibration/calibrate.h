@@ -32,15 +32,15 @@ struct CalibratorSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("min_stretches", self.min_segments, between(6, 1e6));
+    visit("min_segments", self.min_segments, between(6, 1e6));
     visit("odometry", self.odometry);
-    visit("outlier_std", self.outlier_sigma, between(3.0, 100.0));
+    visit("outlier_sigma", self.outlier_sigma, between(3.0, 100.0));
     visit("max_iterations", self.max_iterations, between(1, 10000));
     visit("max_std_lidar_m", self.max_std_lidar_m, at_least(0.0));
     visit("max_std_lidar_rad", self.max_std_lidar_rad, at_least(0.0));
     visit("max_std_distance_scale", self.max_std_distance_scale, at_least(0.0));
-    visit("max_std_turn_scale", self.max_std_rotation_scale, at_least(0.0));
-    visit("max_std_steering_rad_per_m", self.max_std_steering_bias_rad_per_m, at_least(0.0));
+    visit("max_std_rotation_scale", self.max_std_rotation_scale, at_least(0.0));
+    visit("max_std_steering_bias_rad_per_m", self.max_std_steering_bias_rad_per_m, at_least(0.0));
   }
 };
 

@@ -33,13 +33,13 @@ struct Calibration {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("places_lidar", self.override_lidar_pose);
+    visit("override_lidar_pose", self.override_lidar_pose);
     visit("lidar_x_m", self.lidar_x_m, between(-100.0, 100.0));
     visit("lidar_y_m", self.lidar_y_m, between(-100.0, 100.0));
     visit("lidar_yaw_rad", self.lidar_yaw_rad, between(-7.0, 7.0));
     visit("distance_scale", self.distance_scale, between(0.01, 100.0));
-    visit("turn_scale", self.rotation_scale, between(0.01, 100.0));
-    visit("steering_rad_per_m", self.steering_bias_rad_per_m, between(-10.0, 10.0));
+    visit("rotation_scale", self.rotation_scale, between(0.01, 100.0));
+    visit("steering_bias_rad_per_m", self.steering_bias_rad_per_m, between(-10.0, 10.0));
   }
 };
 

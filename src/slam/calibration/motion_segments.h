@@ -34,15 +34,15 @@ struct MotionSegmentSettings {
   /// Standard deviation of the systematic error of a match, independent of the number of points.
   double match_std_m = 0.002;
   double match_std_rad = 0.0005;
-  ScanTrackerSettings tracking;
+  ScanTrackerSettings scan_odometry;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("stretch_m", self.length_m, between(0.01, 100.0));
-    visit("stretch_rad", self.rotation_rad, between(0.01, 3.0));
+    visit("length_m", self.length_m, between(0.01, 100.0));
+    visit("rotation_rad", self.rotation_rad, between(0.01, 3.0));
     visit("match_std_m", self.match_std_m, between(1e-5, 1.0));
     visit("match_std_rad", self.match_std_rad, between(1e-6, 1.0));
-    visit("tracking", self.tracking);
+    visit("scan_odometry", self.scan_odometry);
   }
 };
 

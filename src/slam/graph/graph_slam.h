@@ -19,7 +19,7 @@
 namespace patrol::slam {
 
 struct GraphSlamSettings {
-  ScanTrackerSettings tracking;
+  ScanTrackerSettings scan_odometry;
   // Odometry drift between consecutive submaps, for the prediction of loop closures.
   double drift_std_m_per_m = 0.02;
   double drift_std_rad_per_m = 0.004;
@@ -27,7 +27,7 @@ struct GraphSlamSettings {
   int max_loop_candidates = 4;  ///< maximum number of older submaps that each new one is matched with, nearest first
   /// Maximum distance between the mean positions of two submaps, plus two standard deviations.
   double max_loop_distance_m = 10.0;
-  SubmapMatcherSettings loops;
+  SubmapMatcherSettings loop_closure;
   PoseGraphSolverSettings solver;
   /// Standard deviation of the systematic error of a match, independent of the number of points.
   double edge_std_m = 0.01;
@@ -50,29 +50,29 @@ struct GraphSlamSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("tracking", self.tracking);
+    visit("scan_odometry", self.scan_odometry);
     visit("drift_std_m_per_m", self.drift_std_m_per_m, at_least(0.0));
     visit("drift_std_rad_per_m", self.drift_std_rad_per_m, at_least(0.0));
     visit("drift_std_rad_per_rad", self.drift_std_rad_per_rad, at_least(0.0));
     visit("max_loop_candidates", self.max_loop_candidates, between(0, 1000));
     visit("max_loop_distance_m", self.max_loop_distance_m, at_least(0.0));
-    visit("loops", self.loops);
+    visit("loop_closure", self.loop_closure);
     visit("solver", self.solver);
     visit("edge_std_m", self.edge_std_m, between(1e-5, 1.0));
     visit("edge_std_rad", self.edge_std_rad, between(1e-6, 1.0));
-    visit("open_share", self.min_eigenvalue_ratio, between(0.0, 1.0));
-    visit("refinement_rounds", self.refinement_iterations, between(0, 100));
+    visit("min_eigenvalue_ratio", self.min_eigenvalue_ratio, between(0.0, 1.0));
+    visit("refinement_iterations", self.refinement_iterations, between(0, 100));
     visit("max_refinement_submaps", self.max_refinement_submaps, between(1, 100));
-    visit("min_refinement_share", self.min_refinement_inlier_ratio, between(0.0, 1.0));
+    visit("min_refinement_inlier_ratio", self.min_refinement_inlier_ratio, between(0.0, 1.0));
     visit("max_refinement_m", self.max_refinement_m, at_least(0.0));
     visit("max_refinement_rad", self.max_refinement_rad, at_least(0.0));
     visit("cached_submaps", self.cached_submaps, between(1, 10000));
     visit("min_hits_occupied", self.min_hits_occupied, between(1, 1000));
-    visit("min_hit_share_occupied", self.min_occupied_hit_ratio, between(0.0, 1.0));
+    visit("min_occupied_hit_ratio", self.min_occupied_hit_ratio, between(0.0, 1.0));
     visit("max_tilt_rad", self.max_tilt_rad, between(0.0, 1.6));
-    visit("redraw_shift_m", self.map_update_threshold_m, at_least(0.0));
+    visit("map_update_threshold_m", self.map_update_threshold_m, at_least(0.0));
     visit("ranges", self.ranges);
-    visit("range_keyframes", self.range_smoothing_period_keyframes, between(1, 1000));
+    visit("range_smoothing_period_keyframes", self.range_smoothing_period_keyframes, between(1, 1000));
   }
 };
 

@@ -15,8 +15,8 @@ struct PoseGraphSolverSettings {
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("max_iterations", self.max_iterations, between(1, 1000));
-    visit("doubts_loops", self.robust_loop_closures);
-    visit("loop_kernel", self.loop_closure_loss_scale, at_least(0.1));
+    visit("robust_loop_closures", self.robust_loop_closures);
+    visit("loop_closure_loss_scale", self.loop_closure_loss_scale, at_least(0.1));
   }
 };
 

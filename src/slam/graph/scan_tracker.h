@@ -37,7 +37,7 @@ struct ScanTrackerSettings {
     visit("keyframe_angle_rad", self.keyframe_angle_rad, between(0.0, 3.2));
     visit("initial_keyframes", self.initial_keyframes, between(1, 1000));
     visit("submap_keyframes", self.submap_keyframes, between(4, 10000));
-    visit("likelihood_gain", self.likelihood_tempering, between(0.0, 1.0));
+    visit("likelihood_tempering", self.likelihood_tempering, between(0.0, 1.0));
     visit("motion", self.motion);
     visit("matching", self.matching);
     visit("integration", self.integration);

@@ -30,12 +30,12 @@ struct SubmapMatcherSettings {
     visit("max_window_m", self.max_window_m, between(0.1, 100.0));
     visit("max_window_rad", self.max_window_rad, between(0.01, 3.2));
     visit("search_points", self.search_points, between(10, 100000));
-    visit("min_known_share", self.min_overlap_ratio, between(0.0, 1.0));
-    visit("min_matched_share", self.min_inlier_ratio, between(0.0, 1.0));
+    visit("min_overlap_ratio", self.min_overlap_ratio, between(0.0, 1.0));
+    visit("min_inlier_ratio", self.min_inlier_ratio, between(0.0, 1.0));
     visit("min_matched_length_m", self.min_matched_length_m, at_least(0.0));
-    visit("ambiguity", self.max_second_best_ratio, between(0.0, 1.0));
-    visit("ambiguity_distance_m", self.min_second_best_distance_m, at_least(0.0));
-    visit("ambiguity_angle_rad", self.min_second_best_angle_rad, at_least(0.0));
+    visit("max_second_best_ratio", self.max_second_best_ratio, between(0.0, 1.0));
+    visit("min_second_best_distance_m", self.min_second_best_distance_m, at_least(0.0));
+    visit("min_second_best_angle_rad", self.min_second_best_angle_rad, at_least(0.0));
   }
 };
 

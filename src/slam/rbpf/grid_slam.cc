@@ -14,7 +14,7 @@ namespace patrol::slam {
 namespace {
 
 ParticleFilterComponents components_from(const GridSlamSettings& settings) {
-  validate(settings, "slam");
+  validate(settings, "slam.rbpf");
   if (settings.optimizer != "none" && settings.proposal != "motion") {
     throw InputError("slam.optimizer = " + settings.optimizer + ": moves what is drawn from odometry, which slam.proposal: motion asks for");
   }

@@ -49,13 +49,13 @@ struct GridSlamSettings {
     visit("resolution_m", self.resolution_m, between(0.01, 1.0));
     visit("max_extent_m", self.max_extent_m, between(1.0, 5000.0));
     visit("min_hits_occupied", self.min_hits_occupied, between(1, 1000));
-    visit("min_hit_share_occupied", self.min_occupied_hit_ratio, between(0.0, 1.0));
+    visit("min_occupied_hit_ratio", self.min_occupied_hit_ratio, between(0.0, 1.0));
     visit("keyframe_distance_m", self.keyframe_distance_m, between(0.0, 10.0));
     visit("keyframe_angle_rad", self.keyframe_angle_rad, between(0.0, 3.2));
     visit("max_tilt_rad", self.max_tilt_rad, between(0.0, 1.6));
     visit("initial_keyframes", self.initial_keyframes, between(1, 1000));
     visit("particles", self.particles, between(1, 10000));
-    visit("likelihood_gain", self.likelihood_tempering, between(0.0, 1.0));
+    visit("likelihood_tempering", self.likelihood_tempering, between(0.0, 1.0));
     visit("proposal", self.proposal, one_of({"scan_match", "motion"}));
     visit("optimizer", self.optimizer, one_of(optimizers()));
     visit("resample_threshold", self.resample_threshold, between(0.0, 1.0));

@@ -30,13 +30,13 @@ static_assert(is_in_order(kRbpfOdometries));
 /// quality. A robot of this program has odometry of known quality: its stack uses the odometry as given and fewer particles.
 struct ScanOdometryRbpfSettings {
   std::string odometry = "scan_matched";  ///< odometry that predicts the particles (`kRbpfOdometries`)
-  ScanTrackerSettings tracking;           ///< matching from scan to scan, with `odometry: scan_matched`
+  ScanTrackerSettings scan_odometry;           ///< matching from scan to scan, with `odometry: scan_matched`
   GridSlamSettings filter = default_filter_settings();
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("odometry", self.odometry, one_of(kRbpfOdometries));
-    visit("tracking", self.tracking);
+    visit("scan_odometry", self.scan_odometry);
     GridSlamSettings::fields(self.filter, visit);
   }
 };

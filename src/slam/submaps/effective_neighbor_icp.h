@@ -27,14 +27,14 @@ struct IcpSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("use_effective_neighbours", self.use_effective_neighbors);
+    visit("use_effective_neighbors", self.use_effective_neighbors);
     visit("min_threshold_m", self.min_threshold_m, at_least(0.0));
     visit("max_threshold_m", self.max_threshold_m, at_least(0.0));
-    visit("refine_on_lines", self.point_to_line);
+    visit("point_to_line", self.point_to_line);
     visit("line_threshold_m", self.line_threshold_m, between(1e-3, 10.0));
     visit("line_kernel_m", self.line_kernel_m, between(1e-3, 10.0));
     visit("max_iterations", self.max_iterations, between(1, 100000));
-    visit("step_tol_m", self.step_tolerance_m, between(0.0, 1.0));
+    visit("step_tolerance_m", self.step_tolerance_m, between(0.0, 1.0));
     visit("min_pairs", self.min_pairs, between(2, 100000));
     visit("point_std_m", self.point_std_m, between(1e-4, 10.0));
     visit("normal_radius_m", self.normal_radius_m, between(1e-3, 10.0));

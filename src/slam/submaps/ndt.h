@@ -27,7 +27,7 @@ struct NdtSettings {
     visit("min_std_per_cell", self.min_std_per_cell, between(0.001, 1.0));
     visit("max_points", self.max_points, between(3, 1000000));
     visit("max_iterations", self.max_iterations, between(1, 10000));
-    visit("step_tol_per_cell", self.step_tolerance_per_cell, between(1e-9, 0.1));
+    visit("step_tolerance_per_cell", self.step_tolerance_per_cell, between(1e-9, 0.1));
   }
 };
 

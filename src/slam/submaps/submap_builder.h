@@ -21,7 +21,7 @@ struct SubmapBuilderSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("max_way_m", self.max_distance_m, between(1.0, 1000.0));
+    visit("max_distance_m", self.max_distance_m, between(1.0, 1000.0));
     visit("max_keyframes", self.max_keyframes, between(2, 100000));
     visit("filter", self.filter);
   }

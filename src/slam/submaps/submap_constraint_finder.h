@@ -27,12 +27,12 @@ struct SubmapConstraintSettings {
     visit("min_margin", self.min_margin, between(-1.0, 1.0));
     visit("max_fine_shift_m", self.max_fine_shift_m, at_least(0.0));
     visit("max_fine_shift_rad", self.max_fine_shift_rad, at_least(0.0));
-    visit("min_agreement", self.min_overlap_consistency, between(0.0, 1.0));
+    visit("min_overlap_consistency", self.min_overlap_consistency, between(0.0, 1.0));
     visit("max_window_m", self.max_window_m, between(0.1, 100.0));
     visit("max_window_rad", self.max_window_rad, between(0.01, 3.2));
-    visit("rival_share", self.max_second_best_ratio, between(0.0, 1.0));
-    visit("rival_distance_m", self.min_second_best_distance_m, at_least(0.0));
-    visit("rival_angle_rad", self.min_second_best_angle_rad, at_least(0.0));
+    visit("max_second_best_ratio", self.max_second_best_ratio, between(0.0, 1.0));
+    visit("min_second_best_distance_m", self.min_second_best_distance_m, at_least(0.0));
+    visit("min_second_best_angle_rad", self.min_second_best_angle_rad, at_least(0.0));
   }
 };
 

@@ -29,7 +29,7 @@ struct SubmapDescriptorSettings {
     visit("distance_bin_m", self.distance_bin_m, between(0.01, 100.0));
     visit("distance_bins", self.distance_bins, between(2, 10000));
     visit("direction_bins", self.direction_bins, between(4, 720));
-    visit("seen_cell_m", self.observed_cell_m, between(0.05, 10.0));
+    visit("observed_cell_m", self.observed_cell_m, between(0.05, 10.0));
     visit("ndt", self.ndt);
   }
 };

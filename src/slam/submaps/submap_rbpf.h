@@ -16,7 +16,7 @@
 namespace patrol::slam {
 
 struct SubmapRbpfSettings {
-  ScanTrackerSettings tracking;
+  ScanTrackerSettings scan_odometry;
   SubmapBuilderSettings submaps;
   SubmapSurfaceSettings surfaces;
   SubmapConstraintSettings constraints;
@@ -36,20 +36,20 @@ struct SubmapRbpfSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("tracking", self.tracking);
+    visit("scan_odometry", self.scan_odometry);
     visit("submaps", self.submaps);
     visit("surfaces", self.surfaces);
-    visit("joints", self.constraints);
+    visit("constraints", self.constraints);
     visit("drift_std_m_per_m", self.drift_std_m_per_m, between(1e-6, 10.0));
     visit("drift_std_rad_per_m", self.drift_std_rad_per_m, between(1e-6, 10.0));
     visit("drift_std_rad_per_rad", self.drift_std_rad_per_rad, at_least(0.0));
     visit("max_candidates", self.max_candidates, between(0, 10000));
-    visit("joint_gain", self.likelihood_tempering, between(0.0, 1.0));
-    visit("joint_std_m", self.constraint_std_m, between(1e-5, 1.0));
-    visit("joint_std_rad", self.constraint_std_rad, between(1e-6, 1.0));
+    visit("likelihood_tempering", self.likelihood_tempering, between(0.0, 1.0));
+    visit("constraint_std_m", self.constraint_std_m, between(1e-5, 1.0));
+    visit("constraint_std_rad", self.constraint_std_rad, between(1e-6, 1.0));
     visit("solver", self.solver);
     visit("min_hits_occupied", self.min_hits_occupied, between(1, 1000));
-    visit("min_hit_share_occupied", self.min_occupied_hit_ratio, between(0.0, 1.0));
+    visit("min_occupied_hit_ratio", self.min_occupied_hit_ratio, between(0.0, 1.0));
   }
 };
 

@@ -19,9 +19,9 @@ struct SubmapSurfaceSettings {
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("min_points", self.min_points, between(3, 100000));
-    visit("shape", self.descriptor);
+    visit("descriptor", self.descriptor);
     visit("icp", self.icp);
-    visit("facing_radius_m", self.free_space_radius_m, between(0.05, 2.0));
+    visit("free_space_radius_m", self.free_space_radius_m, between(0.05, 2.0));
     visit("pyramid_cell_m", self.pyramid_cell_m, between(0.02, 1.0));
   }
 };

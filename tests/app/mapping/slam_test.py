@@ -155,7 +155,7 @@ class Slam(unittest.TestCase):
         self.assertEqual((metrics["log"]["scans"], metrics["log"]["skipped"]), (len(self.poses) - 1, 1))
 
     def test_a_wrong_method_and_a_wrong_setting_are_refused(self):
-        for more, says in [(("--method", "magic"), "graph"), (("--set", "slam.graph.trackin.x=1"), "tracking"), (("--set", "slam.rbpf.particles=0"), "particles")]:
+        for more, says in [(("--method", "magic"), "graph"), (("--set", "slam.graph.scan_odometri.x=1"), "scan_odometry"), (("--set", "slam.rbpf.particles=0"), "particles")]:
             done = self.patrol("slam", self.log, "--out", self.folder / "wrong", *more, code=2)
             self.assertIn(says, done.stderr)
             self.assertFalse((self.folder / "wrong").exists())

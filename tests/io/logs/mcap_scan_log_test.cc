@@ -239,7 +239,7 @@ constexpr double kLastScanTurnRad = 0.5 * (14.9 - 3.0);
 ScanLogOptions with_imu(const std::string& imu) {
   ScanLogOptions options;
   options.imu = imu;
-  options.finds_no_return = false;  // every scan of these files is the same
+  options.detect_no_return = false;  // every scan of these files is the same
   return options;
 }
 
@@ -290,13 +290,13 @@ TEST_F(McapScans, AScanTooLateToPutInOrderIsRefusedOrSkipped) {
   writer.close();
   EXPECT_EQ(complaint(), "log.mcap: /scan: time goes back to 0.050000 s, but 0.800000 s was 32 scans ago: too late to put them in order");
   ScanLogOptions options;
-  options.skip_bad_lines = true;
+  options.skip_invalid = true;
   EXPECT_EQ(read(options).scans.size(), 40U);
 }
 
 TEST_F(McapScans, MessagesThatCannotBeReadAreRefusedOrSkipped) {
   ScanLogOptions skip;
-  skip.skip_bad_lines = true;
+  skip.skip_invalid = true;
   writer.write("/odom", 0s, odometry_at(0s));
   writer.write("/scan", 0s, scan_at(500ms));
   const std::string whole = encode(scan_at(600ms));
@@ -367,7 +367,7 @@ TEST_F(McapScans, ADamagedChunkIsRefusedOrLeftOut) {
   write_bytes(file, bytes);
   EXPECT_THAT(complaint(), ::testing::MatchesRegex("log.mcap: byte [0-9]+: .*"));
   ScanLogOptions skip;
-  skip.skip_bad_lines = true;
+  skip.skip_invalid = true;
   const Read result = read(skip);
   EXPECT_THAT(result.scans.size(), ::testing::AllOf(::testing::Ge(360U), ::testing::Lt(400U))) << "no more than two chunks of 20 scans are lost";
   EXPECT_EQ(result.scans.back().scan.stamp, 399 * 50ms);
@@ -383,7 +383,7 @@ TEST_F(McapScans, DamageThatHidesTheNextRecordEndsTheFile) {
   const std::string bytes = read_bytes(file);
   write_bytes(file, bytes.substr(0, bytes.size() / 2) + std::string(100'000, '\0') + bytes.substr(bytes.size() / 2));
   ScanLogOptions skip;
-  skip.skip_bad_lines = true;
+  skip.skip_invalid = true;
   const Read result = read(skip);
   EXPECT_GT(result.scans.size(), 100U);
   EXPECT_LT(result.scans.size(), 300U);

@@ -88,7 +88,7 @@ TEST(NoReturn, ALogThatSaysEightMetresForNoReturnIsReadAsSuchUnlessAskedNotTo) {
   ASSERT_EQ(log->summary().found.size(), 1U);
   EXPECT_TRUE(log->summary().found[0].starts_with("8 m is no return: ")) << log->summary().found[0];
   ScanLogOptions as_it_is;
-  as_it_is.finds_no_return = false;
+  as_it_is.detect_no_return = false;
   const std::unique_ptr<ScanLog> plain = open_scan_log(file.path(), as_it_is);
   EXPECT_EQ(plain->next()->scan.ranges_m[90], 8.0F);
   EXPECT_TRUE(plain->summary().found.empty());

@@ -116,6 +116,6 @@ inline std::vector<Eigen::Vector2d> office_rounds(int rounds) {
 }
 
 /// As old laser scanners saw: a beam a degree, centimetre noise.
-inline constexpr RoomWorld::ScanOptions kOldLidar{.beams = 360, .range_max_m = 30.0, .no_return_free_m = 6.0, .range_std_m = 0.01};
+inline constexpr RoomWorld::ScanOptions kOldLidar{.beams = 360, .range_max_m = 30.0, .no_return_clearing_range_m = 6.0, .range_std_m = 0.01};
 
 }  // namespace patrol::test

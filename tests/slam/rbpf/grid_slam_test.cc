@@ -233,7 +233,7 @@ TEST(GridSlam, RefusesASettingByName) {
     GridSlam slam(with_particles(0), 1);
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "slam.particles = 0: must lie in 1 ... 10000");
+    EXPECT_STREQ(error.what(), "slam.rbpf.particles = 0: must lie in 1 ... 10000");
   }
 }
 

@@ -44,7 +44,7 @@ TEST(ScanOdometryRbpf, FollowsTenMetresToThreeCentimetresAndKeepsAPoseForEverySc
 
 // With `odometry: given` the filter sees the odometry itself: no matching from scan to scan comes before.
 TEST(ScanOdometryRbpf, WithGivenOdometryIsTheFilterAlone) {
-  ScanOdometryRbpfSettings settings{.odometry = "given", .tracking = {}};
+  ScanOdometryRbpfSettings settings{.odometry = "given", .scan_odometry = {}};
   ScanOdometryRbpf rbpf(settings, 1);
   TrajectoryRbpf filter(settings.filter, 1);
   map_drive(rbpf);
