@@ -66,7 +66,7 @@ BodyEstimator::BodyEstimator(const RobotDescription& robot, const BodyEstimatorS
                 .settling_time_s = settings.contact_settling_time_s}) {
   if (robot.legs.size() != kNumLegs) {
     throw InputError(
-        fmt::format("robot {} has {} legs: leg odometry needs {}", robot.name, robot.legs.size(), kNumLegs));
+        fmt::format("robot {}: {} legs: legged odometry requires {}", robot.name, robot.legs.size(), kNumLegs));
   }
 }
 

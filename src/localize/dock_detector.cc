@@ -35,7 +35,7 @@ DockDetector::DockDetector(const DockDetectorSettings& settings, std::vector<Eig
     : settings_(settings), profile_m_(std::move(profile_m)) {
   validate(settings_, "docking.detector");
   if (profile_m_.size() < 2) {
-    throw InputError(fmt::format("the dock's profile has {} points: it must have at least 2", profile_m_.size()));
+    throw InputError(fmt::format("dock profile: {} points: must be at least 2", profile_m_.size()));
   }
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& p : profile_m_) box.extend(p);

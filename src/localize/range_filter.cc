@@ -17,11 +17,11 @@ const RangeFilterSettings& checked(const RangeFilterSettings& settings) {
   validate(settings, "uwb_filter");
   const std::vector<double>& distances = settings.bias_distance_m;
   if (distances.size() != settings.bias_m.size()) {
-    throw InputError(fmt::format("uwb.bias_m has {} values: must have one for each of the {} of uwb.bias_distance_m",
+    throw InputError(fmt::format("uwb_filter.bias_m: {} values: must be {}, one per entry of uwb_filter.bias_distance_m",
                                  settings.bias_m.size(), distances.size()));
   }
   if (std::adjacent_find(distances.begin(), distances.end(), std::greater_equal<>()) != distances.end()) {
-    throw InputError("uwb.bias_distance_m: must grow from value to value");
+    throw InputError("uwb_filter.bias_distance_m: must be strictly increasing");
   }
   return settings;
 }
@@ -30,7 +30,7 @@ std::map<int, UwbAnchor> by_number(const std::vector<UwbAnchor>& anchors) {
   std::map<int, UwbAnchor> numbered;
   for (const UwbAnchor& anchor : anchors) {
     if (!numbered.emplace(anchor.number, anchor).second) {
-      throw InputError(fmt::format("uwb anchor {} is surveyed twice: each number must stand for one anchor", anchor.number));
+      throw InputError(fmt::format("uwb anchor {}: duplicate number", anchor.number));
     }
   }
   return numbered;

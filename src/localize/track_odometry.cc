@@ -26,7 +26,7 @@ const TrackOdometrySettings& checked(const TrackOdometrySettings& settings) {
 }
 
 const RobotDescription& checked(const RobotDescription& robot) {
-  if (!robot.tracks) throw InputError(fmt::format("robot {} has no tracks: track odometry needs them", robot.name));
+  if (!robot.tracks) throw InputError(fmt::format("robot {}: has no tracks: tracked odometry requires a tracked robot", robot.name));
   return robot;
 }
 

@@ -310,7 +310,7 @@ TEST(BodyEstimator, RobotWithoutLegsIsRefusedByName) {
     BodyEstimator estimator(cart, {});
     FAIL() << "a robot without legs was accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "robot cart has 0 legs: leg odometry needs 4");
+    EXPECT_STREQ(error.what(), "robot cart: 0 legs: legged odometry requires 4");
   }
 }
 

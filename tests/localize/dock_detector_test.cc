@@ -143,7 +143,7 @@ TEST(DockDetector, SaysNothingFromTooFarAndOfAnEmptyScan) {
 
 TEST(DockDetector, RefusesAProfileOfOnePointAndSettingsThatBreakTheirRule) {
   EXPECT_THAT([] { DockDetector({}, {{0.5, 0.0}}); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("the dock's profile has 1 points")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("dock profile: 1 points")));
   EXPECT_THAT([] { DockDetector({.min_inlier_ratio = 2.0}, make_dock_profile()); },
               ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("docking.detector.min_inlier_ratio = 2")));
 }

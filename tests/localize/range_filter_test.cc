@@ -254,7 +254,7 @@ TEST(RangeFilter, BadSettingsAndDoubleAnchorsAreNamed) {
     RangeFilter({}, {{.number = 4}, {.number = 4}}, {});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "uwb anchor 4 is surveyed twice: each number must stand for one anchor");
+    EXPECT_STREQ(error.what(), "uwb anchor 4: duplicate number");
   }
 }
 

@@ -313,7 +313,7 @@ TEST(TrackOdometry, ARobotWithoutTracksOrImuIsRefusedWithASentence) {
     TrackOdometry odometry(robot, {});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "robot tracked has no tracks: track odometry needs them");
+    EXPECT_STREQ(error.what(), "robot tracked: has no tracks: tracked odometry requires a tracked robot");
   }
   EXPECT_THROW(TrackOdometry(make_tracked_robot(), {.slip_correlation_m = 0.0}), InputError);
 }

@@ -70,7 +70,7 @@ TEST(Study, AnUnknownOneIsRefusedWithTheKnownNames) {
     make_study("golf");
     FAIL();
   } catch (const std::exception& error) {
-    EXPECT_THAT(error.what(), HasSubstr("there is no study 'golf' (known: ungm, landmarks-circle, "));
+    EXPECT_THAT(error.what(), HasSubstr("unknown study 'golf' (known: ungm, landmarks-circle, "));
   }
 }
 

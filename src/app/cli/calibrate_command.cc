@@ -19,7 +19,7 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kCalibrating = {.name = "calibration of a log",
-                                 .unfinished = "The log has not been calibrated.",
+                                 .unfinished = "The calibration is incomplete.",
                                  .made = {"calibration.yaml", "segments.csv", "metrics.json", "settings.yaml"},
                                  .proof = "settings.yaml",
                                  .kept = {"*.part"}};
@@ -105,19 +105,19 @@ std::string table_text(const slam::CalibrationResult& result) {
     const char* unit;
     int decimals;
   };
-  constexpr std::array<Row, 6> kRows = {{{"lidar ahead of the body", 1.0, "m", 4},
-                                         {"lidar to its left", 1.0, "m", 4},
-                                         {"lidar turned to the left", kDegPerRad, "deg", 3},
-                                         {"true way over odometry's", 1.0, "", 5},
-                                         {"true turn over odometry's", 1.0, "", 5},
-                                         {"steering to the left", kDegPerRad, "deg/m", 3}}};
+  constexpr std::array<Row, 6> kRows = {{{"lidar x in body", 1.0, "m", 4},
+                                         {"lidar y in body", 1.0, "m", 4},
+                                         {"lidar yaw in body", kDegPerRad, "deg", 3},
+                                         {"distance scale", 1.0, "", 5},
+                                         {"rotation scale", 1.0, "", 5},
+                                         {"steering bias", kDegPerRad, "deg/m", 3}}};
   std::string text = fmt::format("{:<26} {:>10} {:>11} {:>9}\n", "", "in the log", "calibrated", "std");
   for (std::size_t i = 0; i < kRows.size(); ++i) {
     const Row& row = kRows[i];
     const slam::CalibratedParameter& parameter = result.parameters[i];
     const auto number = [&](double value) { return fmt::format("{:.{}f}", row.factor * value, row.decimals); };
     text += fmt::format("{:<26} {:>10} {:>11} {:>9} {}\n", row.name, number(parameter.before), parameter.is_observable ? number(parameter.value) : "-", number(parameter.std),
-                        parameter.is_observable ? row.unit : fmt::format("{} not observable: as it was", row.unit));
+                        parameter.is_observable ? row.unit : fmt::format("{} not observable: unchanged", row.unit));
   }
   return text;
 }
@@ -146,7 +146,7 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
   io::save_settings(options.out / "settings.yaml", settings);
   complete_output(options.out);
 
-  fmt::print("{}{} stretches of the way, {} of them rejected (odometry slipped or lied, or the match was wrong){}\n{}{}\n", io::to_text(log->summary), result.num_segments,
+  fmt::print("{}{} segments, {} of them rejected (wheel slip, odometry error or wrong match){}\n{}{}\n", io::to_text(log->summary), result.num_segments,
              result.num_rejected, result.converged ? "" : "; not converged", table_text(result), (options.out / "calibration.yaml").string());
   return result.converged ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }

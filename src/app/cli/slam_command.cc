@@ -30,7 +30,7 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kMapping = {.name = "mapping of a log",
-                             .unfinished = "The log has not been mapped to its end.",
+                             .unfinished = "The log is not completely mapped.",
                              .made = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o", "performance.csv", "metrics.json", "settings.yaml", "report.html"},
                              .proof = "settings.yaml",
                              .kept = {"*.part"}};
@@ -98,7 +98,7 @@ bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::st
     mapped.cost.add(mapped.stamps.size(), mapped.way_m);
   });
   if (!is_whole) return false;
-  bar.show(fmt::format("{}  {} scans, at the end once more over all of them", name, mapped.stamps.size()));
+  bar.show(fmt::format("{}  {} scans, final optimization", name, mapped.stamps.size()));
   mapper.finish();
   return !guard.is_interrupted();
 }

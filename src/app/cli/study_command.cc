@@ -24,7 +24,7 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kStudy = {.name = "study",
-                           .unfinished = "Not every seed of this study has been run: tables come at the end. The same command goes on.",
+                           .unfinished = "Not all seeds have run; the tables follow at the end. Rerun the same command to continue.",
                            .made = {"results.csv", "runs.csv", "performance.csv", "report.html"},
                            .proof = "study.json",
                            .kept = {"study.json", "seeds", "*.part"}};
@@ -102,7 +102,7 @@ ExitCode study_command(const StudyOptions& options) {
   const OutputLock lock = begin_output(options.out, kStudy);
   io::save_metrics(options.out / "study.json", {{"study", study.name}, {"seeds", seeds}});
   const SampleStore store(options.out / "seeds", study);
-  if (!run_seeds(study, seeds, store, settings.pool)) throw std::runtime_error(fmt::format("interrupted; {} is incomplete, the same command goes on", options.out.string()));
+  if (!run_seeds(study, seeds, store, settings.pool)) throw std::runtime_error(fmt::format("interrupted; {} is incomplete; rerun the same command to continue", options.out.string()));
 
   std::vector<studies::StudySample> samples;
   for (const std::uint64_t seed : seeds) samples.push_back(store.load(seed).value());

@@ -46,7 +46,7 @@ std::optional<slam::LabeledFeatures> examples_of(const std::vector<std::filesyst
     const std::size_t before = examples.labels.size();
     slam::add_neighbor_examples(track->slam, track->T_world_submap, settings.submap_rbpf.surfaces, settings.examples, settings.seed + before, examples);
     const auto joinable = std::count(examples.labels.begin() + static_cast<std::ptrdiff_t>(before), examples.labels.end(), 1);
-    bar.say(fmt::format("{}: {} submaps, {} examples, {} of them neighbours", run.string(), track->T_world_submap.size(), examples.labels.size() - before, joinable));
+    bar.say(fmt::format("{}: {} submaps, {} examples, {} of them neighbors", run.string(), track->T_world_submap.size(), examples.labels.size() - before, joinable));
   }
   return examples;
 }
@@ -83,15 +83,15 @@ ExitCode train_command(const TrainOptions& options) {
   const std::optional<slam::LabeledFeatures> training = examples_of(options.runs, settings, guard);
   const std::optional<slam::LabeledFeatures> held_out = training ? examples_of(options.held_out, settings, guard) : std::nullopt;
   if (!training || !held_out) {
-    fmt::print(stderr, "patrol: interrupted; nothing is written\n");
+    fmt::print(stderr, "patrol: interrupted; nothing written\n");
     return ExitCode::kProgramFailed;
   }
   const slam::BoostingResult boosted = slam::train_adaboost(*training, settings.boosting);
   io::save_boosted_stumps(options.out, boosted.model);
-  fmt::print("{} stumps; of the training examples {:.2f} % wrong, the bound says at most {:.2f} %\n", boosted.model.stumps.size(), 100.0 * boosted.training_error,
+  fmt::print("{} stumps; training error {:.2f} %, bound {:.2f} %\n", boosted.model.stumps.size(), 100.0 * boosted.training_error,
              100.0 * std::min(1.0, boosted.error_bound));
   print_recognition("training", boosted.model, *training);
-  if (!held_out->labels.empty()) print_recognition("held out", boosted.model, *held_out);
+  if (!held_out->labels.empty()) print_recognition("validation", boosted.model, *held_out);
   fmt::print("{}\n", options.out.string());
   return ExitCode::kDone;
 }

@@ -23,7 +23,7 @@ std::vector<Pose2> true_poses(const Trajectory& T_world_body, const std::vector<
   std::vector<Pose2> poses;
   for (const std::size_t scan : scans) {
     const std::optional<Pose3> pose = pose_at(T_world_body, stamps[scan]);
-    if (!pose) throw InputError(fmt::format("the truth does not reach to the scan at {:.3f} s", to_seconds(stamps[scan])));
+    if (!pose) throw InputError(fmt::format("ground truth does not cover the scan at {:.3f} s", to_seconds(stamps[scan])));
     poses.push_back(to_pose2(*pose));
   }
   return poses;

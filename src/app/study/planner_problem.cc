@@ -31,7 +31,7 @@ struct DrivableWorld {
 
 DrivableWorld load_world(const std::string& name) {
   const auto* const known = std::find_if(kScenarios.begin(), kScenarios.end(), [&](const auto& scenario) { return name == scenario.first; });
-  if (known == kScenarios.end()) throw InputError("there is no world '" + name + "' to plan in");
+  if (known == kScenarios.end()) throw InputError("unknown world '" + name + "'");
   const std::filesystem::path root = find_data_root("");
   const Scenario scenario = load_scenario(root / known->second, {});
   const ScenarioFiles files = load_scenario_files(scenario, root);
@@ -43,7 +43,7 @@ DrivableWorld load_world(const std::string& name) {
   DrivableWorld world{.costs = costmap.cost(), .reachable = {}};
   for (plan::Cost& cost : world.costs.values()) cost = cost == plan::kLethalCost ? plan::kLethalCost : plan::kFreeCost;
   const std::optional<Cell> start = plan::nearest_passable(world.costs, files.T_site_start.position(), 1.0);
-  if (!start) throw InputError("the robot of the world '" + name + "' starts in an obstacle");
+  if (!start) throw InputError("world '" + name + "': the robot starts in collision");
   world.reachable = plan::reachable_cells(world.costs, *start);
   return world;
 }
@@ -65,7 +65,7 @@ PlannerProblem world_problem(const std::string& world, std::uint64_t seed) {
     if (std::hypot(goal.col - start.col, goal.row - start.row) < far) continue;
     return {.costs = std::move(drivable.costs), .start = start, .goal = goal};
   }
-  throw InputError("no two places of the world '" + world + "' are far enough apart");
+  throw InputError("world '" + world + "': no two positions are far enough apart");
 }
 
 }  // namespace patrol::app

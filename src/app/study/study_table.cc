@@ -30,7 +30,7 @@ studies::Study make_study(const std::string& name) {
   for (const auto& [known, make] : kStudies) {
     if (name == known) return make();
   }
-  throw InputError(fmt::format("there is no study '{}' (known: {})", name, fmt::join(study_names(), ", ")));
+  throw InputError(fmt::format("unknown study '{}' (known: {})", name, fmt::join(study_names(), ", ")));
 }
 
 std::vector<std::string> study_names() {

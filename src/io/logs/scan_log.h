@@ -54,7 +54,7 @@ struct ScanLogSummary {
   std::vector<std::string> warnings;           ///< first errors of skipped records, each with its position
 };
 
-/// Formats the statistics of a file without scans: "12 lines, 3 SYNC, 4 lines that cannot be read".
+/// Formats the statistics of a file without scans: "12 lines, 3 SYNC, 4 unreadable lines".
 std::string counted(const ScanLogSummary& summary);
 
 /// Formats the statistics in a few lines for a terminal.
@@ -90,9 +90,9 @@ class ScanLog {
   /// Throws InputError(complaint), or counts it if `skip_invalid` is set.
   void reject_or_skip(const ScanLogOptions& options, const std::string& reason, const std::string& warning);
   void count_skipped(const std::string& reason, const std::string& warning);
-  /// Adds a scan to the sorter; rejects or skips one that is too late for sorting. `place`: prefix of the error
+  /// Adds a scan to the sorter; rejects or skips one that is too late for sorting. `location`: prefix of the error
   /// message.
-  void sort_in(ScanSorter& sorter, RecordedScan scan, const ScanLogOptions& options, const std::string& place);
+  void sort_in(ScanSorter& sorter, RecordedScan scan, const ScanLogOptions& options, const std::string& location);
   void count_returned(const RecordedScan& scan);
 
   ScanLogSummary summary_;

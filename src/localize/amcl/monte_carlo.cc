@@ -27,9 +27,9 @@ constexpr Time kRangesBeforeStart = std::chrono::seconds(2);  // maximum age of 
 
 const OccupancyGrid& checked(const OccupancyGrid& map) {
   const auto& cells = map.values();
-  if (cells.empty()) throw InputError("localisation: the map has no cells");
-  if (std::none_of(cells.begin(), cells.end(), is_free)) throw InputError("localisation: the map has no free cell to stand on");
-  if (std::none_of(cells.begin(), cells.end(), is_occupied)) throw InputError("localisation: the map has no occupied cell to see");
+  if (cells.empty()) throw InputError("localization: map: has no cells");
+  if (std::none_of(cells.begin(), cells.end(), is_free)) throw InputError("localization: map: has no free cell");
+  if (std::none_of(cells.begin(), cells.end(), is_occupied)) throw InputError("localization: map: has no occupied cell");
   return map;
 }
 

@@ -205,7 +205,7 @@ Calibration CalibrationResult::calibration() const {
 
 CalibrationResult calibrate(const std::vector<MotionSegment>& pairs, const Pose2& T_body_lidar_before, const CalibratorSettings& settings) {
   if (pairs.size() < static_cast<std::size_t>(settings.min_segments)) {
-    throw InputError(fmt::format("too little to calibrate from: {} stretches of the way, must be at least {}", pairs.size(), settings.min_segments));
+    throw InputError(fmt::format("calibration needs at least {} motion segments, got {}", settings.min_segments, pairs.size()));
   }
   const Vector6 before{T_body_lidar_before.x, T_body_lidar_before.y, T_body_lidar_before.yaw, 1.0, 1.0, 0.0};
   const Vector6 max_std{settings.max_std_lidar_m,        settings.max_std_lidar_m,    settings.max_std_lidar_rad,

@@ -49,7 +49,7 @@ GridGeometry covering_lattice(const std::vector<Eigen::Vector2d>& points, double
   }
   const Eigen::Array2d first = (low.array() / spacing_m).floor(), last = (high.array() / spacing_m).floor() + 1.0;
   const double most = (last - first).maxCoeff() + 1.0;
-  if (most > kMaxNodes) throw InputError(fmt::format("ndt: the points need {} nodes of {} m in a row: at most {}", most, spacing_m, kMaxNodes));
+  if (most > kMaxNodes) throw InputError(fmt::format("ndt: lattice of {} nodes of {} m along an axis: must be at most {}", most, spacing_m, kMaxNodes));
   return {.resolution_m = spacing_m,
           .width = static_cast<int>(last.x() - first.x()) + 1,
           .height = static_cast<int>(last.y() - first.y()) + 1,

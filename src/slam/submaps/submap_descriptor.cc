@@ -70,7 +70,7 @@ std::vector<double> direction_histogram(const std::vector<Eigen::Vector2d>& poin
 }  // namespace
 
 SubmapDescriptor describe_submap(const std::vector<Eigen::Vector2d>& points_submap, const GridMap& map, const SubmapDescriptorSettings& settings) {
-  if (points_submap.size() < 3) throw InputError(fmt::format("submap: has {} surface points: must have at least 3", points_submap.size()));
+  if (points_submap.size() < 3) throw InputError(fmt::format("submap: {} surface points: must be at least 3", points_submap.size()));
   const Eigen::Vector2d center = mean_of(points_submap);
   std::vector<Eigen::Vector2d> points = subsample(points_submap, settings.max_points);
   std::vector<double> distances = distance_histogram(points, settings);

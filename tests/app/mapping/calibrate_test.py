@@ -62,7 +62,7 @@ class Calibrate(unittest.TestCase):
             found = metrics["calibration"][name]
             self.assertTrue(found["observable"], name)
             self.assertLess(abs(found["value"] - truth), max(4 * found["std"], 0.01 if name.endswith("_m") and "lidar" in name else 0.003), (name, found))
-        self.assertIn("true turn over odometry's", text)
+        self.assertIn("rotation scale", text)
         self.assertEqual(len((out / "segments.csv").read_text().splitlines()), 1 + metrics["stretches"]["count"])
 
     def test_mapping_with_the_calibration_puts_odometry_right(self):
@@ -103,7 +103,7 @@ class Calibrate(unittest.TestCase):
         short.write_text("\n".join(self.lines[:30]) + "\n")
         damaged.write_text("\n".join(self.lines[:40]) + "\n" + self.lines[40][:300] + "\n")
         wrong.write_text("rotation_scal: 1.1\n")
-        self.refuse("calibrate", short, says="short.log: too little to calibrate from")
+        self.refuse("calibrate", short, says="short.log: calibration needs at least")
         self.refuse("calibrate", damaged, says="damaged.log:41")
         self.refuse("calibrate", self.folder / "absent.log", says="absent.log")
         self.refuse("calibrate", self.log, "--set", "passes=0", says="passes")

@@ -73,7 +73,7 @@ class Slam(unittest.TestCase):
     def test_the_page_shows_the_map_and_what_scans_cost(self):
         out = self.map("page")
         html = (out / "report.html").read_text()
-        for text in ["mapped by graph", "What scans cost as the map grew", "estimated path"]:
+        for text in ["mapped by graph", "Computation time per scan", "estimated path"]:
             self.assertIn(text, html)
         self.patrol("report", out, "--out", self.folder / "copy.html")
         self.assertEqual((self.folder / "copy.html").read_text(), html)
@@ -100,10 +100,10 @@ class Slam(unittest.TestCase):
         log = self.folder / "eight.log"
         log.write_text("\n".join(carmen_lines(self.poses, max_range=8.0, no_return="8.00")) + "\n")
         done = self.patrol("slam", log, "--out", self.folder / "eight")
-        self.assertIn("found: 8 m is no return", done.stdout)
+        self.assertIn("detected: 8 m encodes no return", done.stdout)
         self.assertLess(max(self.errors_m(self.folder / "eight")), 0.06)
         done = self.patrol("slam", log, "--out", self.folder / "walls", "--set", "log.finds_no_return=false")
-        self.assertNotIn("found", done.stdout)
+        self.assertNotIn("detected", done.stdout)
         self.assertGreater(max(self.errors_m(self.folder / "walls")), 0.06)
 
     def test_relations_score_the_estimate(self):

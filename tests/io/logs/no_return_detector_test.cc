@@ -86,7 +86,7 @@ TEST(NoReturn, ALogThatSaysEightMetresForNoReturnIsReadAsSuchUnlessAskedNotTo) {
   const std::unique_ptr<ScanLog> log = open_scan_log(file.path());
   EXPECT_EQ(log->next()->scan.ranges_m[90], kInfinity);
   ASSERT_EQ(log->summary().found.size(), 1U);
-  EXPECT_TRUE(log->summary().found[0].starts_with("8 m is no return: ")) << log->summary().found[0];
+  EXPECT_TRUE(log->summary().found[0].starts_with("8 m encodes no return: ")) << log->summary().found[0];
   ScanLogOptions as_it_is;
   as_it_is.detect_no_return = false;
   const std::unique_ptr<ScanLog> plain = open_scan_log(file.path(), as_it_is);

@@ -326,9 +326,9 @@ std::string complaint_about(const OccupancyGrid& map, const MonteCarloSettings& 
 }
 
 TEST(MonteCarlo, RefusesAMapThatIsNone) {
-  EXPECT_EQ(complaint_about({}), "localisation: the map has no cells");
-  EXPECT_EQ(complaint_about(OccupancyGrid({.width = 5, .height = 5}, kUnknown)), "localisation: the map has no free cell to stand on");
-  EXPECT_EQ(complaint_about(OccupancyGrid({.width = 5, .height = 5}, kFree)), "localisation: the map has no occupied cell to see");
+  EXPECT_EQ(complaint_about({}), "localization: map: has no cells");
+  EXPECT_EQ(complaint_about(OccupancyGrid({.width = 5, .height = 5}, kUnknown)), "localization: map: has no free cell");
+  EXPECT_EQ(complaint_about(OccupancyGrid({.width = 5, .height = 5}, kFree)), "localization: map: has no occupied cell");
 }
 
 TEST(MonteCarlo, RefusesSettingsOutOfRange) {

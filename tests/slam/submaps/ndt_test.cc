@@ -116,8 +116,8 @@ TEST(NdtGrid, PointsThatAreNotNumbersOrTooFarApartAreRefused) {
     }
     return "";
   };
-  EXPECT_EQ(complaint({{0.0, 0.0}, {std::nan(""), 1.0}}), "a point is (nan, 1): must be finite");
-  EXPECT_EQ(complaint({{0.0, 0.0}, {1e9, 1.0}}), "ndt: the points need 2000000002 nodes of 0.5 m in a row: at most 4000");
+  EXPECT_EQ(complaint({{0.0, 0.0}, {std::nan(""), 1.0}}), "point (nan, 1): must be finite");
+  EXPECT_EQ(complaint({{0.0, 0.0}, {1e9, 1.0}}), "ndt: lattice of 2000000002 nodes of 0.5 m along an axis: must be at most 4000");
 }
 
 // Positions to 5 cm, for walls sampled every 10 cm with 1 cm of noise.

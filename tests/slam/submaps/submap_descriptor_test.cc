@@ -72,7 +72,7 @@ TEST(SubmapDescriptor, OfTwoPointsIsRefused) {
     describe_submap({{0, 0}, {1, 1}}, kNoMap, {});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "submap: has 2 surface points: must have at least 3");
+    EXPECT_STREQ(error.what(), "submap: 2 surface points: must be at least 3");
   }
 }
 
