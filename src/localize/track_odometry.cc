@@ -61,7 +61,7 @@ StanceFeet track_ends(const TrackGeometry& tracks) {
 TrackOdometry::TrackOdometry(const RobotDescription& robot, const TrackOdometrySettings& settings)
     : robot_(checked(robot)),
       settings_(checked(settings)),
-      metres_per_tick_(2.0 * std::numbers::pi * robot.tracks->sprocket_radius_m / settings.ticks_per_sprocket_turn),
+      meters_per_tick_(2.0 * std::numbers::pi * robot.tracks->sprocket_radius_m / settings.ticks_per_sprocket_turn),
       track_ends_(track_ends(*robot.tracks)),
       imu_(robot.T_body("imu"), {.standstill = {.window_s = settings.standstill_window_s,
                                                 .gyro_noise_density_radps_per_sqrt_hz = settings.gyro_noise_density_radps_per_sqrt_hz,
@@ -69,7 +69,7 @@ TrackOdometry::TrackOdometry(const RobotDescription& robot, const TrackOdometryS
                                  .buffer_s = settings.buffer_s,
                                  .max_extrapolation_s = settings.max_extrapolation_s}),
       slip_watch_({.window_s = settings.slip_window_s, .threshold_mps = settings.slip_disagreement_mps}),
-      counters_({.meters_per_tick = metres_per_tick_, .max_acceleration_mps2 = settings.max_track_acceleration_mps2}) {}
+      counters_({.meters_per_tick = meters_per_tick_, .max_acceleration_mps2 = settings.max_track_acceleration_mps2}) {}
 
 void TrackOdometry::add(const Imu& imu) {
   const std::optional<InertialSample> sample = imu_.accept(imu, !counters_.is_stationary());
@@ -130,7 +130,7 @@ void TrackOdometry::coast_to(const TrackTicks& ticks) {
   double yaw_rate = imu_.filter()->yaw_rate_radps();
   if (const auto& last = counters_.last()) {
     const auto turn_ticks = static_cast<double>((ticks.right - last->right) - (ticks.left - last->left));
-    yaw_rate = turn_ticks * metres_per_tick_ / to_seconds(ticks.stamp - last->stamp) /
+    yaw_rate = turn_ticks * meters_per_tick_ / to_seconds(ticks.stamp - last->stamp) /
                (robot_.tracks->gauge_m * settings_.skid_ratio);
   }
   imu_.coast_to(ticks.stamp, yaw_rate);
@@ -238,7 +238,7 @@ std::optional<Pose3> TrackOdometry::T_odom_body_at(Time stamp) const {
 }
 
 // With the belts heard, the velocity's quick errors (steps of the counters, shocks) average out within a tenth of a second; what
-// lasts is slip and the turn's centre, unless the IMU knows better.
+// lasts is slip and the turn's center, unless the IMU knows better.
 Eigen::Vector3d TrackOdometry::twist_std() const {
   if (!imu_.filter()) return Eigen::Vector3d::Zero();
   constexpr int kVelocity = InertialError::kVelocity, kBias = InertialError::kGyroBias + 2;

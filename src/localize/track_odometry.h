@@ -111,7 +111,7 @@ struct TrackOdometryHealth {
 ///
 /// Messages may come late or not at all: counters wait for the IMU of their instant (up to `imu_timeout_s`, then the belts carry
 /// on alone), and are compared with the state remembered from the middle of their interval. When belts and body agree again after a
-/// loss of grip, what the IMU has drifted meanwhile is taken back: odom then shifts by decimetres, once. Not handled: a robot that is carried,
+/// loss of grip, what the IMU has drifted meanwhile is taken back: odom then shifts by decimeters, once. Not handled: a robot that is carried,
 /// and belts that lose their grip so gently that the accelerometer cannot feel it (below `slip_disagreement_mps` in
 /// `slip_window_s`).
 class TrackOdometry {
@@ -154,7 +154,7 @@ class TrackOdometry {
 
   RobotDescription robot_;
   TrackOdometrySettings settings_;
-  double metres_per_tick_;
+  double meters_per_tick_;
   StanceFeet track_ends_;  ///< these stand still while the belts do
   ImuFrontEnd<TrackFilter> imu_;
 

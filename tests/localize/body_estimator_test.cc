@@ -68,7 +68,7 @@ TEST(BodyEstimator, DoesNotTakeItsTiltFromARobotInFreeFall) {
   EXPECT_LT(std::acos(estimator.filter()->up_in_body().z()), 0.1 * kDegree);
 }
 
-TEST(BodyEstimator, WithoutNoiseWalkOfTwentyMetresIsExactToOnePerMille) {
+TEST(BodyEstimator, WithoutNoiseWalkOfTwentyMetersIsExactToOnePerMille) {
   WalkingRobot robot(make_quadruped(), stand_then_walk(1.0, {.vx_mps = 0.8}),
                      WalkingRobotSettings::without_noise(), 1);
   BodyEstimator estimator(make_quadruped(), {});

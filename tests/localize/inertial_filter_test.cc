@@ -81,7 +81,7 @@ TEST(InertialFilter, BiasReadingMovesBiasByTheRatioOfVariances) {
   EXPECT_NEAR(filter.gyro_bias_radps().z(), 0.0015, 1e-12);
 }
 
-// A bias found late explains half a metre of the way so far; odom is dead reckoning and stays where it is (REP 105).
+// A bias found late explains half a meter of the way so far; odom is dead reckoning and stays where it is (REP 105).
 TEST(InertialFilter, BiasReadingMovesNeitherPlaceNorHeading) {
   InertialFilter filter(quiet(), {.rate_radps = {0, 0, 0.01}, .force_mps2 = kAtRest});
   for (int i = 0; i < 5000; ++i) {  // 20 s at 1 m/s

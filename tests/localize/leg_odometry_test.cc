@@ -33,7 +33,7 @@ TEST(ContactDetector, CountsAFootOnceItsTouchDownIsOverAndUntilItIsReleased) {
 }
 
 TEST(StanceFoot, ShankTurningOverItsBallMovesTheContactByRadiusTimesRate) {
-  // The knee alone turns at 1 rad/s: the foot's centre moves with the shank, 0.213 m below the knee; the
+  // The knee alone turns at 1 rad/s: the foot's center moves with the shank, 0.213 m below the knee; the
   // contact is 0.02 m farther from the knee along the vertical.
   const RobotDescription robot = test::make_quadruped();
   LegSample sample;

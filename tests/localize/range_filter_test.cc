@@ -105,7 +105,7 @@ TunnelRun drive_tunnel(std::uint64_t seed, const TunnelSetting& setting) {
 /// Bounds that hold 95 % of the mean of 20 chi-square values of three degrees of freedom.
 constexpr double kLowNees = 40.48 / 20.0, kHighNees = 83.30 / 20.0;
 
-TEST(RangeFilter, OverTheWholeTunnelErrsLessThanFifteenCentimetresWithThirtyPercentBlocked) {
+TEST(RangeFilter, OverTheWholeTunnelErrsLessThanFifteenCentimetersWithThirtyPercentBlocked) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const TunnelRun run = drive_tunnel(seed, {.nlos_probability = 0.3});
     EXPECT_LT(run.max_error_m, 0.15) << "seed " << seed;
@@ -143,7 +143,7 @@ TEST(RangeFilter, WithBlockedRangesTheNeesStaysWithinItsBounds) {
   EXPECT_LT(end_nees / 20.0, kHighNees);
 }
 
-TEST(RangeFilter, AStartTwoMetresOffIsDoubtedAndFoundAgain) {
+TEST(RangeFilter, AStartTwoMetersOffIsDoubtedAndFoundAgain) {
   const TunnelRun run = drive_tunnel(1, {.nlos_probability = 0.3, .until_s = 43.0, .start_error_m = 2.0});
   EXPECT_GT(run.max_error_m, 1.9);
   EXPECT_GE(run.num_resets, 1U);
@@ -186,7 +186,7 @@ TEST(RangeFilter, OneRangeIsWeighedAsKalmanSays) {
   EXPECT_NEAR(estimate.covariance(1, 1), 1.0, 1e-6) << "an anchor ahead says nothing of the side";
 }
 
-TEST(RangeFilter, HalfAMetreTooLongIsBlockedAndHalfAMetreTooShortIsAnOutlier) {
+TEST(RangeFilter, HalfAMeterTooLongIsBlockedAndHalfAMeterTooShortIsAnOutlier) {
   Standing standing(0.01);
   EXPECT_EQ(standing.read(10.5).status, RangeStatus::kTooLong);
   EXPECT_EQ(standing.read(9.5).status, RangeStatus::kTooShort);

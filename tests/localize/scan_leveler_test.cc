@@ -74,7 +74,7 @@ double worst_wall_error(const LevelScan& level) {
   return worst;
 }
 
-TEST(ScanLeveler, WallsOfARoomAreExactToAMillimetreWhileWalkingAndTurning) {
+TEST(ScanLeveler, WallsOfARoomAreExactToAMillimeterWhileWalkingAndTurning) {
   const ScanLeveler leveler(kLidar, {});
   for (const double start_s : {0.0, 0.13, 0.29}) {
     const LaserScan scan = scan_room(wobbling, from_seconds(start_s), 3200, -10.0);
@@ -87,7 +87,7 @@ TEST(ScanLeveler, WallsOfARoomAreExactToAMillimetreWhileWalkingAndTurning) {
   }
 }
 
-TEST(ScanLeveler, WithoutTheMotionTheSameWallsAreHalfAMetreOff) {
+TEST(ScanLeveler, WithoutTheMotionTheSameWallsAreHalfAMeterOff) {
   const ScanLeveler leveler(kLidar, {});
   const LaserScan scan = scan_room(wobbling, Time{0}, 3200, -10.0);
   const Time end = scan.stamp + from_seconds(3199 * scan.time_increment_s);
@@ -135,7 +135,7 @@ TEST(ScanLeveler, GroundInFrontOfATippedRobotIsNoObstacleAndFreeUpToTheBand) {
   }
 }
 
-TEST(ScanLeveler, KerbOfTwelveCentimetresIsNoObstacleAndAWallOfTwentyIs) {
+TEST(ScanLeveler, KerbOfTwelveCentimetersIsNoObstacleAndAWallOfTwentyIs) {
   const double pitch = 0.1;
   const PoseLookup tipped = [=](Time) { return Pose3{{0, 0, 0}, quaternion_from_rpy(0, pitch, 0)}; };
   const auto level_hit_at_height = [&](double height_m) {

@@ -53,7 +53,7 @@ TEST(StationaryGyroBiasEstimator, VarianceIsThatOfGyroNoiseAndFeet) {
   EXPECT_NEAR(reading->variance.z(), gyro + feet, 0.02 * (gyro + feet));
 }
 
-TEST(StationaryGyroBiasEstimator, FootThatSlipsFiveMillimetresSpoilsTheWindow) {
+TEST(StationaryGyroBiasEstimator, FootThatSlipsFiveMillimetersSpoilsTheWindow) {
   EXPECT_FALSE(
       stand([](double) { return 0.0; }, Eigen::Vector3d::Zero(), [](double t) { return 0.005 * t; }));
 }

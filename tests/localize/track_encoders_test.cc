@@ -9,7 +9,7 @@ using std::chrono::milliseconds;
 
 TrackEncoders make_counters() { return TrackEncoders({.meters_per_tick = 0.001, .max_acceleration_mps2 = 10.0}); }
 
-TEST(TrackEncoders, TenTicksOfAMillimetreInTwentyMillisecondsAreHalfAMetreASecond) {
+TEST(TrackEncoders, TenTicksOfAMillimeterInTwentyMillisecondsAreHalfAMeterASecond) {
   TrackEncoders counters = make_counters();
   EXPECT_FALSE(counters.add({milliseconds(0), 100, 200})) << "one reading is no way";
   const auto belts = counters.add({milliseconds(20), 110, 194});

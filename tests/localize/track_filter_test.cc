@@ -104,14 +104,14 @@ TEST(TrackFilter, CovarianceStaysPositiveThroughDriveAndLossOfGrip) {
   EXPECT_GT(solver.eigenvalues().minCoeff(), -1e-12);
 }
 
-TEST(TrackFilter, TheTurnsCentreFiveCentimetresBehindDragsTheBodySideways) {
+TEST(TrackFilter, TheTurnsCenterFiveCentimetersBehindDragsTheBodySideways) {
   TrackFilter filter(quiet(), kAtRest);
   const InertialSample turning{.rate_radps = {0, 0, 0.5}, .force_mps2 = {0, 0, 9.81}};
   for (int step = 1; step <= 250; ++step) {
     filter.predict(kDt, turning);
     if (step % 5 == 0) filter.correct_speed(0.02, 0.0, filter.motion(), {0.005, 0.005, 0.005});
   }
-  // Turning on the spot by 0.5 rad/s, 0.05 m of centre leave 0.025 m/s to the left, and 0.02 m leave 0.01 m/s ahead.
+  // Turning on the spot by 0.5 rad/s, 0.05 m of center leave 0.025 m/s to the left, and 0.02 m leave 0.01 m/s ahead.
   EXPECT_NEAR(std::sqrt(filter.systematic_velocity_variance().y()), 0.025, 0.005);
   EXPECT_NEAR(std::sqrt(filter.systematic_velocity_variance().x()), 0.010, 0.002);
 }

@@ -101,7 +101,7 @@ TEST(TrackOdometry, DriftsLessThanOnePercentAndAFifthOfCountersAlone) {
   EXPECT_LT(by_filter, 0.2 * by_counters);
 }
 
-TEST(TrackOdometry, WithoutNoiseATourOfThirtySevenMetresIsExactToOneCentimetre) {
+TEST(TrackOdometry, WithoutNoiseATourOfThirtySevenMetersIsExactToOneCentimeter) {
   const TrackedDriveSettings quiet = TrackedDriveSettings::without_noise();
   TrackedDrive drive(make_tracked_robot(), make_tour(), quiet, 1);
   TrackOdometry odometry(make_tracked_robot(), {.ticks_per_sprocket_turn = quiet.ticks_per_sprocket_turn});
@@ -232,7 +232,7 @@ TEST(TrackOdometry, AFrozenImuCountsAsSilent) {
   EXPECT_GT(odometry.health().rejected_messages, 200U);
 }
 
-TEST(TrackOdometry, CountersFortyMillisecondsLateChangeTheEndOfThirtySecondsByLessThanFiveCentimetres) {
+TEST(TrackOdometry, CountersFortyMillisecondsLateChangeTheEndOfThirtySecondsByLessThanFiveCentimeters) {
   TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 8);
   TrackOdometry punctual(make_tracked_robot(), {}), late(make_tracked_robot(), {});
   std::deque<TrackTicks> under_way;
@@ -273,7 +273,7 @@ TEST(TrackOdometry, RepeatedOldAndBrokenMessagesAreRejectedAndChangeNothing) {
   EXPECT_EQ(pestered.health().rejected_messages, 2U * 2000U + 400U);
 }
 
-TEST(TrackOdometry, CountersThatStartAnewAtZeroCostNoMetres) {
+TEST(TrackOdometry, CountersThatStartAnewAtZeroCostNoMeters) {
   TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 10);
   TrackOdometry odometry(make_tracked_robot(), {});
   run(drive, odometry, 8.0);

@@ -17,7 +17,7 @@ LevelScan scan_of(const std::vector<Eigen::Vector2f>& ends, bool are_hits = true
   return scan;
 }
 
-TEST(SelectMatchPoints, NeighboursWithinTheSpacingBecomeTheirMean) {
+TEST(SelectMatchPoints, NeighborsWithinTheSpacingBecomeTheirMean) {
   const auto points =
       downsample_scan(scan_of({{1.0F, 0.0F}, {1.0F, 0.04F}, {1.0F, 0.08F}, {1.0F, 0.2F}}), 0.1, 100);
   ASSERT_EQ(points.size(), 2U);

@@ -17,7 +17,7 @@ GridMap wall_from_below() {
   return map;
 }
 
-TEST(SurfacePoints, AreTheMeansOfTheHitsTenCentimetresApart) {
+TEST(SurfacePoints, AreTheMeansOfTheHitsTenCentimetersApart) {
   const std::vector<Eigen::Vector2d> points = surface_points(wall_from_below());
   ASSERT_EQ(points.size(), 40U);
   for (std::size_t i = 0; i < points.size(); ++i) {

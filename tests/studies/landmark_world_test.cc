@@ -17,7 +17,7 @@ double way_m(const LandmarkRun& run) {
   return way;
 }
 
-TEST(GardenWorld, OneLapOfARadiusOf7MetresIs44MetresAndEndsWhereItBegan) {
+TEST(GardenWorld, OneLapOfARadiusOf7MetersIs44MetersAndEndsWhereItBegan) {
   for (const bool is_circle : {true, false}) {
     const LandmarkRun run = simulate(garden_world("S5", is_circle), 1);
     EXPECT_NEAR(run.truth.back().position().norm(), 0.0, is_circle ? 0.15 : 0.3);
@@ -44,7 +44,7 @@ TEST(GardenWorld, OdometryErrsByTheStatedNoiseAndByABiasOf2DegreesPerSecond) {
   EXPECT_NEAR(turn.std(), 5.0 * kDegree, 4.0 * 5.0 * kDegree / std::sqrt(2.0 * count));
 }
 
-TEST(GardenWorld, EverySightIsOfALandmarkWithin10MetresAndErrsByHalfAMetreAnd5Degrees) {
+TEST(GardenWorld, EverySightIsOfALandmarkWithin10MetersAndErrsByHalfAMeterAnd5Degrees) {
   const LandmarkWorld world = garden_world("M", true);
   const LandmarkRun run = simulate(world, 3);
   test::Moments range, bearing;
@@ -75,7 +75,7 @@ TEST(CampusWorld, TheCarSteersAtMost30DegreesAnd20DegreesPerSecondAndDrives600Me
   EXPECT_NEAR(way_m(run), 600.0, 2.0);  // chords of 0.6 m, the first step left out
 }
 
-TEST(CampusWorld, TheWayStaysWithin100By80MetresAndGoesClockwise) {
+TEST(CampusWorld, TheWayStaysWithin100By80MetersAndGoesClockwise) {
   const LandmarkWorld world = campus_world(false, 3.0, 8000);
   const LandmarkRun run = simulate(world, 1);
   Eigen::AlignedBox2d extent;

@@ -131,9 +131,9 @@ ExitCode slam_command(const SlamOptions& options) {
   if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
   io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
-  BoostedStumps neighbours;
-  if (needs_neighbor_model(settings.slam.method)) neighbours = neighbours_for(settings.slam.method, find_data_root(""));
-  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbours, settings.seed);
+  BoostedStumps neighbors;
+  if (needs_neighbor_model(settings.slam.method)) neighbors = load_neighbor_model(settings.slam.method, find_data_root(""));
+  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbors, settings.seed);
 
   const double wall_s = wall_seconds(), thread_s = thread_cpu_time_s();
   MappedLog mapped;

@@ -16,7 +16,7 @@
 namespace patrol::app {
 namespace {
 
-/// Settings of `patrol train-neighbours --set`.
+/// Settings of `patrol train-neighbors --set`.
 struct TrainingSettings {
   std::uint64_t seed = 1;
   slam::PlanarScanSettings scan;
@@ -51,17 +51,17 @@ std::optional<slam::LabeledFeatures> examples_of(const std::vector<std::filesyst
   return examples;
 }
 
-struct Recognised {
+struct Recognized {
   double precision = 0.0, recall = 0.0;
 };
 
-Recognised recognised_at(double min_margin, const BoostedStumps& model, const slam::LabeledFeatures& examples) {
+Recognized recognized_at(double min_margin, const BoostedStumps& model, const slam::LabeledFeatures& examples) {
   int right = 0, wrong = 0, missed = 0;
   for (std::size_t i = 0; i < examples.labels.size(); ++i) {
-    const bool is_taken = model.margin(examples.examples[i]) > min_margin, is_neighbour = examples.labels[i] > 0;
-    right += is_taken && is_neighbour ? 1 : 0;
-    wrong += is_taken && !is_neighbour ? 1 : 0;
-    missed += !is_taken && is_neighbour ? 1 : 0;
+    const bool is_taken = model.margin(examples.examples[i]) > min_margin, is_neighbor = examples.labels[i] > 0;
+    right += is_taken && is_neighbor ? 1 : 0;
+    wrong += is_taken && !is_neighbor ? 1 : 0;
+    missed += !is_taken && is_neighbor ? 1 : 0;
   }
   const auto share = [](int part, int rest) { return part + rest > 0 ? static_cast<double>(part) / (part + rest) : 1.0; };
   return {.precision = share(right, wrong), .recall = share(right, missed)};
@@ -70,8 +70,8 @@ Recognised recognised_at(double min_margin, const BoostedStumps& model, const sl
 void print_recognition(const char* of, const BoostedStumps& model, const slam::LabeledFeatures& examples) {
   fmt::print("{}, {} examples:\n  margin above   precision   recall\n", of, examples.labels.size());
   for (const double margin : {0.0, 0.1, 0.2, 0.3, 0.4}) {
-    const Recognised recognised = recognised_at(margin, model, examples);
-    fmt::print("  {:12.1f}   {:9.4f}   {:6.4f}\n", margin, recognised.precision, recognised.recall);
+    const Recognized recognized = recognized_at(margin, model, examples);
+    fmt::print("  {:12.1f}   {:9.4f}   {:6.4f}\n", margin, recognized.precision, recognized.recall);
   }
 }
 

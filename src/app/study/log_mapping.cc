@@ -34,7 +34,7 @@ std::vector<Pose2> true_poses(const Trajectory& T_world_body, const std::vector<
 MappedRun map_log_of(const StudyRun& run, const std::string& method) {
   slam::MapperSettings settings;
   settings.method = method;
-  const BoostedStumps neighbors = neighbours_for(method, find_data_root(""));
+  const BoostedStumps neighbors = load_neighbor_model(method, find_data_root(""));
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(run.log, {});
   MappedRun mapped;
   std::vector<Time> stamps;

@@ -183,7 +183,7 @@ studies::Study planner_study() {
               .title = "Planners of routes: ants of [Li22] and the others",
               .source = "[Li22], figures 1 to 4, which carry no numbers that can be read",
               .conditions = "Every seed draws each grid anew, or the ends on a world's map (its surfaces at the lidar's height in cells of 0.2 m, inflated by its robot's footprint). "
-                            "Eight neighbours, no corner cut; lengths in cells. Ants: 80 in 200 iterations; swarms: two of 40 in 200; Q-learning: 5000 episodes; none beyond 50 million "
+                            "Eight neighbors, no corner cut; lengths in cells. Ants: 80 in 200 iterations; swarms: two of 40 in 200; Q-learning: 5000 episodes; none beyond 50 million "
                             "steps. The improved ants are the paper's, whose routes are pulled tight before they count (ours). Over any-angle: than the shortest way there is, which touches corners. Default settings throughout, chosen on generated grids of other seeds. A planner that is improved later and one that is done at once both need few iterations to "
                             "1 % of their own final value: iterations to A*'s length and 3 %, over the seeds that get there, tell them apart. Q-learning and swarms are of the kinds that the paper "
                             "compares with; their papers are not known to us.",

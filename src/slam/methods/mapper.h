@@ -73,7 +73,7 @@ class Mapper {
   virtual std::vector<std::size_t> node_scan_indices() const = 0;
 };
 
-/// Builds the method of that name. `neighbours` classifies pairs of submaps, for methods that need it.
+/// Builds the method of that name. `neighbors` classifies pairs of submaps, for methods that need it.
 /// Throws InputError when a setting breaks its rule.
 std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, const BoostedStumps& neighbors, std::uint64_t seed);
 

@@ -65,7 +65,7 @@ struct SubmapRbpfSettings {
 /// predicted correctly. Memory: the particle maps are freed with their submap; scans and surfaces are kept.
 class SubmapRbpf {
  public:
-  /// `neighbours` classifies submap pairs by their features (pair_features.h). Throws InputError if a setting is
+  /// `neighbors` classifies submap pairs by their features (pair_features.h). Throws InputError if a setting is
   /// invalid.
   SubmapRbpf(const SubmapRbpfSettings& settings, BoostedStumps neighbors, std::uint64_t seed);
 

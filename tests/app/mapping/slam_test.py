@@ -54,7 +54,7 @@ class Slam(unittest.TestCase):
             found.append(math.hypot(float(row[1]) - tx, float(row[2]) - ty))
         return found
 
-    def test_all_methods_follow_to_centimetres_where_odometry_is_metres_off(self):
+    def test_all_methods_follow_to_centimeters_where_odometry_is_meters_off(self):
         for method, limit_m in [("graph", 0.04), ("submap_rbpf", 0.12), ("rbpf", 0.12)]:
             out = self.map(method, "--method", method)
             self.assertLess(max(self.errors_m(out)), limit_m, method)
@@ -96,7 +96,7 @@ class Slam(unittest.TestCase):
             for name in ["estimate.tum", "map.pgm", "pose_graph.g2o"]:
                 self.assertEqual((outs[0] / name).read_bytes(), (outs[1] / name).read_bytes(), name)
 
-    def test_eight_metres_for_no_return_are_found_and_are_no_wall(self):
+    def test_eight_meters_for_no_return_are_found_and_are_no_wall(self):
         log = self.folder / "eight.log"
         log.write_text("\n".join(carmen_lines(self.poses, max_range=8.0, no_return="8.00")) + "\n")
         done = self.patrol("slam", log, "--out", self.folder / "eight")

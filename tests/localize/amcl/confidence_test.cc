@@ -21,7 +21,7 @@ LocalizationEvidence evidence(double weak_m, double direction_rad = 0.0) {
 
 double trust_of(const LocalizationEvidence& evidence) { return assess_confidence({}, evidence, false, {}).confidence; }
 
-TEST(Trust, IsOneToFiveCentimetresHalfAtTwentyFiveAndNothingAtOneMetre) {
+TEST(Trust, IsOneToFiveCentimetersHalfAtTwentyFiveAndNothingAtOneMeter) {
   EXPECT_NEAR(trust_of(evidence(0.03)), 1.0, 1e-9);
   EXPECT_NEAR(trust_of(evidence(0.05)), 1.0, 1e-9);
   EXPECT_NEAR(trust_of(evidence(0.15)), 0.75, 1e-9);

@@ -65,8 +65,8 @@ TEST(IncrementalMap, IsDrawnAnewWhenAKeyframeHasMovedFartherThanIsBorne) {
   EXPECT_EQ(hits_in(moved), hits_in(IncrementalMap({}).render(drive.keyframes, drive.poses, 0.0)));
 }
 
-// A hundredth of a radian swings what is ten metres away by 0.1 m.
-TEST(IncrementalMap, ATurnCountsByWhatItMovesTenMetresAway) {
+// A hundredth of a radian swings what is ten meters away by 0.1 m.
+TEST(IncrementalMap, ATurnCountsByWhatItMovesTenMetersAway) {
   Drive drive;
   drive.go_to(0.0), drive.go_to(0.5);
   IncrementalMap live({});

@@ -58,7 +58,7 @@ TEST(SolvePoseGraph, ThreeMeasurementsShareTheirContradictionEqually) {
   EXPECT_NEAR(solution.final_cost, 0.5 * 3.0 * 0.1 * 0.1, 1e-9);
 }
 
-TEST(SolvePoseGraph, EdgesWithoutErrorBringARingOfFortyBackFromMetresOff) {
+TEST(SolvePoseGraph, EdgesWithoutErrorBringARingOfFortyBackFromMetersOff) {
   const PoseGraph truth = make_ring(40);
   PoseGraph graph = truth;
   graph.edges.push_back(true_edge(truth, 39, 0, Kind::kMatch));
@@ -79,7 +79,7 @@ TEST(SolvePoseGraph, TheFirstNodeStaysWhereItIs) {
 }
 
 // Five loop closures are right, one joins two places 20 m apart. As a plain edge it tears the ring apart.
-TEST(SolvePoseGraph, OneFalseClosureAmongSixMovesNoNodeByTwoCentimetresAndWithoutItsKernelByMetres) {
+TEST(SolvePoseGraph, OneFalseClosureAmongSixMovesNoNodeByTwoCentimetersAndWithoutItsKernelByMeters) {
   const PoseGraph truth = make_ring(40);
   for (const Kind kind : {Kind::kLoop, Kind::kMatch}) {
     PoseGraph graph = truth;
@@ -105,7 +105,7 @@ TEST(SolvePoseGraph, AnEdgeToANodeThatIsNotThereThrows) {
   EXPECT_THROW(solve(graph, {}), std::invalid_argument);
 }
 
-/// A metre apart along x; edges say `step_m`.
+/// A meter apart along x; edges say `step_m`.
 PoseGraph make_line(int num_nodes, double step_m) {
   PoseGraph graph;
   for (int i = 0; i < num_nodes; ++i) {

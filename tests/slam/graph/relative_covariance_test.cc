@@ -15,7 +15,7 @@ constexpr double kExactTol = 1e-12;
 
 Eigen::Matrix3d diagonal(double x, double y, double yaw) { return Eigen::Vector3d(x, y, yaw).asDiagonal(); }
 
-/// Places a metre apart along x.
+/// Places a meter apart along x.
 std::vector<Pose2> make_line(int count) {
   std::vector<Pose2> line;
   for (int i = 0; i < count; ++i) line.push_back({static_cast<double>(i), 0.0, 0.0});
@@ -33,7 +33,7 @@ TEST(CarriedOn, AHeadingsDoubtSwingsTheWayAndTheWaysOwnIsTurnedWithIt) {
 }
 
 // Step i of n errs by a yaw that moves the end sideways by its rest: the variance is sigma^2 (1^2 + ... + (n-1)^2) + n q.
-TEST(PositionsFrom, AHeadingThatWandersOverTenMetresSpreadsTheEndAsTheSumOfSquares) {
+TEST(PositionsFrom, AHeadingThatWandersOverTenMetersSpreadsTheEndAsTheSumOfSquares) {
   std::vector<CovarianceEdge> covariance_edges;
   for (int i = 0; i < 10; ++i) covariance_edges.push_back({i, i + 1, diagonal(0.01, 0.02, 0.001)});
   const PoseGaussian end = shortest_path_distributions(0, make_line(11), covariance_edges)[10];

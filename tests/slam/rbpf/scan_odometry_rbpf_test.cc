@@ -34,7 +34,7 @@ double worst_error_m(const std::vector<Pose2>& path) {
   return worst;
 }
 
-TEST(ScanOdometryRbpf, FollowsTenMetresToThreeCentimetresAndKeepsAPoseForEveryScan) {
+TEST(ScanOdometryRbpf, FollowsTenMetersToThreeCentimetersAndKeepsAPoseForEveryScan) {
   ScanOdometryRbpf rbpf({}, 1);
   map_drive(rbpf);
   EXPECT_EQ(rbpf.path().size(), short_drive().size());
@@ -55,7 +55,7 @@ TEST(ScanOdometryRbpf, WithGivenOdometryIsTheFilterAlone) {
   EXPECT_THROW(ScanOdometryRbpf(settings, 1), InputError);
 }
 
-TEST(MakeMapper, EveryMethodFollowsTenMetresToFourCentimetres) {
+TEST(MakeMapper, EveryMethodFollowsTenMetersToFourCentimeters) {
   for (const std::string& method : names_of(mapping_methods())) {
     MapperSettings settings;
     settings.method = method;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kExactTol = 1e-12;  // algebra
 
-/// Points in the square of 2 m about the origin, labelled by a rule; `flips` of them wrongly.
+/// Points in the square of 2 m about the origin, labeled by a rule; `flips` of them wrongly.
 LabeledFeatures make_square(int count, const std::function<bool(double, double)>& is_positive, double flips = 0.0) {
   const RandomStream random(7, "test/adaboost");
   LabeledFeatures training{.names = {"x", "y"}, .examples = {}, .labels = {}};
@@ -57,7 +57,7 @@ TEST(AdaBoost, ThreeStumpsSeparateWhatNoneDoesAlone) {
   EXPECT_EQ(num_wrong(result.model, training), 0);
 }
 
-TEST(AdaBoost, ABoxInASquareIsLearntWithoutAMistakeByThirtyStumps) {
+TEST(AdaBoost, ABoxInASquareIsLearnedWithoutAMistakeByThirtyStumps) {
   const LabeledFeatures training = make_square(400, in_box);
   const BoostingResult result = train_adaboost(training, {.rounds = 30});
   EXPECT_EQ(result.training_error, 0.0);

@@ -90,7 +90,7 @@ TEST(NdtGrid, TheScoreHasNoJumps) {
   const Points source = test::yard_source_right_of(-100.0);
   const NdtGrid grid(test::yard_target_left_of(100.0), 1.0, 0.15);
   double before = grid.score(source, kTruth).value;
-  for (int i = 1; i <= 2000; ++i) {  // 726 points; the steepest slope of a normal 0.15 m wide is 0.61 / 0.15 per metre, of a weight 2 per metre
+  for (int i = 1; i <= 2000; ++i) {  // 726 points; the steepest slope of a normal 0.15 m wide is 0.61 / 0.15 per meter, of a weight 2 per meter
     const double value = grid.score(source, {kTruth.x + 1e-3 * i, kTruth.y, kTruth.yaw}).value;
     EXPECT_LT(std::abs(value - before), 726 * 1e-3 * (0.61 / 0.15 + 2.0));
     before = value;
@@ -121,14 +121,14 @@ TEST(NdtGrid, PointsThatAreNotNumbersOrTooFarApartAreRefused) {
 }
 
 // Positions to 5 cm, for walls sampled every 10 cm with 1 cm of noise.
-TEST(AlignNdt, TheBasinIsThreeMetresAndTwentyDegreesWhereAllOverlaps) {
+TEST(AlignNdt, TheBasinIsThreeMetersAndTwentyDegreesWhereAllOverlaps) {
   const Points target = test::yard_target_left_of(100.0), source = test::yard_source_right_of(-100.0);
   EXPECT_GT(overlap(target, source), 0.99);
   EXPECT_EQ(num_found(target, source, 3.0, 20.0 * kDegree), 18);
   EXPECT_LT(num_found(target, source, 6.0, 60.0 * kDegree), 9) << "it ends somewhere";
 }
 
-TEST(AlignNdt, TheBasinIsOneMetreAndTenDegreesWhereAThirdOverlapsAndMostlyTwoMetres) {
+TEST(AlignNdt, TheBasinIsOneMeterAndTenDegreesWhereAThirdOverlapsAndMostlyTwoMeters) {
   const Points target = test::yard_target_left_of(3.0), source = test::yard_source_right_of(-3.0);
   EXPECT_NEAR(overlap(target, source), 0.30, 0.01);
   EXPECT_EQ(num_found(target, source, 1.0, 10.0 * kDegree), 18);

@@ -47,7 +47,7 @@ TEST(SubmapDescriptor, WhatDoesNotDependOnTheFrameStaysWhenItMoves) {
 }
 
 TEST(SubmapDescriptor, DirectionsTurnWithTheFrame) {
-  const Points points = sample_walls(make_yard(), {}, {.spacing_m = 0.11});  // none just so far apart as a neighbourhood reaches
+  const Points points = sample_walls(make_yard(), {}, {.spacing_m = 0.11});  // none just so far apart as a neighborhood reaches
   const SubmapDescriptor here = describe_submap(points, kNoMap, {});
   // 25 degrees are five bins of 5.
   const SubmapDescriptor turned = describe_submap(moved(points, {1.0, 2.0, 25.0 * kDegree}), kNoMap, {});

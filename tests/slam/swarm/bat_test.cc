@@ -10,7 +10,7 @@ using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphe
 const BatOptimizer kBats({.iterations = 50});
 
 // A bat judges only when it is loud enough for its draw: at most 20 x 51.
-TEST(BatOptimizer, FindsAShiftedSphereToTwoCentimetresInAtMost1020Judgements) {
+TEST(BatOptimizer, FindsAShiftedSphereToTwoCentimetersInAtMost1020Judgements) {
   EXPECT_LE(run_trial(kBats, for_all(sphere), 20, 1).num_judgements, 20 * 51);
   EXPECT_LT(worst_distance(kBats, sphere), 0.02);
 }

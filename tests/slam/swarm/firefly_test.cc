@@ -10,12 +10,12 @@ using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphe
 const FireflyOptimizer kFireflies({.iterations = 50});
 const ImprovedFireflyOptimizer kImproved({.iterations = 50});
 
-TEST(FireflyOptimizer, FindsAShiftedSphereToThreeCentimetresIn1020Judgements) {
+TEST(FireflyOptimizer, FindsAShiftedSphereToThreeCentimetersIn1020Judgements) {
   EXPECT_EQ(run_trial(kFireflies, for_all(sphere), 20, 1).num_judgements, 20 * 51);
   EXPECT_LT(worst_distance(kFireflies, sphere), 0.03);
 }
 
-// All fly to the brightest: where it is in the wrong bump, its step of half a metre at most does not lead out.
+// All fly to the brightest: where it is in the wrong bump, its step of half a meter at most does not lead out.
 TEST(FireflyOptimizer, FindsAckleysFunnelInSixOfTenSeeds) { EXPECT_GE(successes(kFireflies, ackley, 0.03), 6); }
 
 TEST(FireflyOptimizer, FollowsRosenbrocksBentValleyInHalfOfTheSeeds) { EXPECT_GE(successes(kFireflies, rosenbrock, 0.2), 5); }
@@ -48,7 +48,7 @@ TEST(FireflyOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_jud
 
 TEST(FireflyOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kFireflies); }
 
-TEST(ImprovedFireflyOptimizer, FindsAShiftedSphereToThreeCentimetresIn1020Judgements) {
+TEST(ImprovedFireflyOptimizer, FindsAShiftedSphereToThreeCentimetersIn1020Judgements) {
   EXPECT_EQ(run_trial(kImproved, for_all(sphere), 20, 1).num_judgements, 20 * 51);
   EXPECT_LT(worst_distance(kImproved, sphere), 0.03);
 }

@@ -10,7 +10,7 @@ using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphe
 const SandCatOptimizer kCats(50, false);
 const SandCatOptimizer kImproved(50, true);
 
-TEST(SandCatOptimizer, FindsAShiftedSphereToFiveCentimetresIn1020Judgements) {
+TEST(SandCatOptimizer, FindsAShiftedSphereToFiveCentimetersIn1020Judgements) {
   EXPECT_EQ(run_trial(kCats, for_all(sphere), 20, 1).num_judgements, 20 * 51);
   EXPECT_LT(worst_distance(kCats, sphere), 0.05);
 }
@@ -26,7 +26,7 @@ TEST(SandCatOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_jud
 TEST(SandCatOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kCats); }
 
 // One for the mutation of each generation, and S = ceil(19 sin(pi t / 100)) for those who stand in.
-TEST(ImprovedSandCatOptimizer, FindsAShiftedSphereToFiveCentimetresIn1708Judgements) {
+TEST(ImprovedSandCatOptimizer, FindsAShiftedSphereToFiveCentimetersIn1708Judgements) {
   int num_inherited = 0;
   for (int t = 1; t <= 50; ++t) num_inherited += static_cast<int>(std::ceil(19.0 * std::sin(std::numbers::pi * t / 100.0)));
   EXPECT_EQ(num_inherited, 638);

@@ -27,7 +27,7 @@ inline double rosenbrock(const Position& p) {
   return -(100.0 * (y - x * x) * (y - x * x) + (1.0 - x) * (1.0 - x));
 }
 
-/// A funnel with a bump about every metre (Ackley 1987).
+/// A funnel with a bump about every meter (Ackley 1987).
 inline double ackley(const Position& p) {
   const Eigen::Vector2d d = p - kOptimum;
   const double bumps = 0.5 * (std::cos(2.0 * std::numbers::pi * d.x()) + std::cos(2.0 * std::numbers::pi * d.y()));
@@ -83,7 +83,7 @@ int successes(const SwarmOptimizer& optimizer, Function function, double tol) {
   return count;
 }
 
-// What every optimiser promises.
+// What every optimizer promises.
 
 inline void expect_nobody_worse(const SwarmOptimizer& optimizer) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {

@@ -9,7 +9,7 @@ using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphe
 
 const WhaleOptimizer kWhales(50);
 
-TEST(WhaleOptimizer, FindsAShiftedSphereToAMillimetreIn1020Judgements) {
+TEST(WhaleOptimizer, FindsAShiftedSphereToAMillimeterIn1020Judgements) {
   EXPECT_EQ(run_trial(kWhales, for_all(sphere), 20, 1).num_judgements, 20 * 51);
   EXPECT_LT(worst_distance(kWhales, sphere), 1e-3);
 }
