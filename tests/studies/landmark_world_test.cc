@@ -61,7 +61,7 @@ TEST(GardenWorld, EverySightIsOfALandmarkWithin10MetersAndErrsByHalfAMeterAnd5De
   EXPECT_NEAR(bearing.std(), 5.0 * kDegree, 0.02 * 5.0 * kDegree * 2.0);
 }
 
-TEST(CampusWorld, TheCarSteersAtMost30DegreesAnd20DegreesPerSecondAndDrives600Metres) {
+TEST(CampusWorld, TheCarSteersAtMost30DegreesAnd20DegreesPerSecondAndDrives600Meters) {
   const LandmarkWorld world = campus_world(false, 3.0, 8000);
   ASSERT_EQ(world.landmarks_m.size(), 31u);
   for (std::size_t k = 0; k < world.controls.size(); ++k) {

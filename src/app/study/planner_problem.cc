@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kProblemCell_m = 0.05;
 constexpr double kPlanningCell_m = 0.2;
-constexpr double kFarShare = 1.0 / 3.0;  ///< fraction of the diagonal
+constexpr double kMinDistanceFraction = 1.0 / 3.0;  ///< fraction of the diagonal
 constexpr std::uint64_t kMaxDraws = 1000;
 
 constexpr std::array<std::pair<const char*, const char*>, 3> kScenarios = {
@@ -58,7 +58,7 @@ PlannerProblem generated_problem(const std::string& kind, int size_cells, std::u
 PlannerProblem world_problem(const std::string& world, std::uint64_t seed) {
   DrivableWorld drivable = load_world(world);
   const GridGeometry& grid = drivable.costs.geometry();
-  const double far = kFarShare * std::hypot(grid.width, grid.height);
+  const double far = kMinDistanceFraction * std::hypot(grid.width, grid.height);
   RandomSequence random(RandomStream(seed, "study/planners/" + world), 0);
   for (std::uint64_t draw = 0; draw < kMaxDraws; ++draw) {
     const Cell start = drivable.reachable[random.index(drivable.reachable.size())], goal = drivable.reachable[random.index(drivable.reachable.size())];
