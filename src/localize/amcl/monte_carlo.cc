@@ -39,7 +39,6 @@ const MonteCarloSettings& checked(const MonteCarloSettings& settings) {
 }
 
 using Model = std::unique_ptr<SensorModel>;
-using SensorModelFactory = NamedFactory<Model(const MonteCarloSettings&, const OccupancyGrid&, const LineField&)>;
 
 constexpr std::array kSensorModels = std::to_array<SensorModelFactory>({
     {"likelihood_field", "Distance of each beam's end to the nearest surface of the map",

@@ -1,5 +1,7 @@
 #include "stack/settings/stack_settings.h"
 
+#include "slam/methods/mapper.h"
+
 namespace patrol::stack {
 
 slam::GraphSlamSettings default_graph_settings() {
