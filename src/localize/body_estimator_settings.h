@@ -4,35 +4,33 @@
 
 namespace patrol::localize {
 
-/// Defaults fit a MEMS IMU of robotics grade and encoders at 250 Hz.
+/// Settings of the legged odometry. The defaults fit a MEMS IMU of robotics grade and encoders at 250 Hz.
 struct BodyEstimatorSettings {
   // IMU.
   double gyro_noise_density_radps_per_sqrt_hz = 2e-4;
-  double gyro_bias_std_radps = 5e-3;  ///< at switch-on
+  double gyro_bias_std_radps = 5e-3;  ///< standard deviation of the bias at power-on
   double gyro_bias_random_walk_radps_per_sqrt_s = 1e-5;
-  double accel_noise_density_mps2_per_sqrt_hz = 0.1;  ///< what sampling the shocks of walking adds included
-  double accel_bias_std_mps2 = 0.05;          ///< at switch-on
+  double accel_noise_density_mps2_per_sqrt_hz = 0.1;  ///< includes the aliasing of walking shocks
+  double accel_bias_std_mps2 = 0.05;                  ///< standard deviation of the bias at power-on
   double accel_bias_random_walk_mps2_per_sqrt_s = 1e-3;
   // Legs.
-  double contact_on_force_n = 15.0;      ///< a foot is loaded above
-  double contact_off_force_n = 8.0;     ///< and no longer loaded below
-  double full_weight_force_n = 30.0;       ///< a foot is trusted in full above, in proportion below
-  double contact_settling_time_s = 0.012;  ///< after touch-down
-  double foot_velocity_std_mps = 0.06;
-  double slip_speed_mps = 0.15;  ///< a foot this far from what the IMU predicts is losing trust
-  double stance_height_tolerance_m =
-      0.012;  ///< without foot sensors the lowest feet, up to this above the lowest, stand
-  // Standing.
-  double standstill_window_s = 1.0;
-  double standstill_foot_std_m = 3e-5;
-  // What no single reading shows.
+  double contact_on_force_n = 15.0;           ///< contact starts above this force
+  double contact_off_force_n = 8.0;           ///< contact ends below this force
+  double full_weight_force_n = 30.0;          ///< full weight above this force, proportional to the force below
+  double contact_settling_time_s = 0.012;     ///< time after touch-down before a foot is used
+  double foot_velocity_std_mps = 0.06;        ///< standard deviation of the velocity of a stance foot
+  double slip_speed_mps = 0.15;               ///< a foot with a larger difference from the IMU prediction is down-weighted
+  double stance_height_tolerance_m = 0.012;   ///< without foot sensors: feet up to this above the lowest are in stance
+  // Standstill.
+  double standstill_window_s = 1.0;     ///< window of one gyro bias measurement
+  double standstill_foot_std_m = 3e-5;  ///< standard deviation of a foot position at rest
+  // Errors that are not white noise of a reading.
   double position_random_walk_m_per_sqrt_m = 0.01;
   double yaw_random_walk_rad_per_sqrt_rad = 0.003;
   // Faults.
-  double imu_timeout_s =
-      0.1;  ///< how long the legs wait for a late IMU before the estimator goes on without
-  double buffer_s = 2.0;
-  double max_extrapolation_s = 0.15;  ///< beyond the newest IMU reading
+  double imu_timeout_s = 0.1;         ///< maximum delay of the IMU behind the joints before it is bridged
+  double buffer_s = 2.0;              ///< length of the motion history
+  double max_extrapolation_s = 0.15;  ///< maximum time after the newest IMU reading for which a pose is given
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

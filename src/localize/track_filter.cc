@@ -16,11 +16,11 @@ constexpr double kTrackStartTiltStd_rad = 0.05;
 constexpr double kTrackStartVelocityStd_mps = 0.05;
 constexpr double kTrackGate = 16.27;     // 99.9 % of chi-square, three degrees of freedom
 constexpr double kLostSpeedStd_mps = 0.1;
-constexpr double kBeltSmoothing_s = 1.0;
+constexpr double kTrackSmoothing_s = 1.0;
 constexpr double kPoseCorrectionTime_s = 0.5;       // after a loss of traction; the first readings contain nearly all information
 constexpr int kPoseRows[4] = {Error::kPosition, Error::kPosition + 1, Error::kPosition + 2, Error::kRotation + 2};
 // Process noise without an IMU.
-constexpr double kTrackCoastYawRateStd = 0.05;  // rad/sqrt(s): yaw rate from the belts
+constexpr double kTrackCoastYawRateStd = 0.05;  // rad/sqrt(s): yaw rate from the tracks
 constexpr double kTrackCoastTiltStd = 0.03;     // rad/sqrt(s)
 constexpr double kTrackCoastVelocityStd = 1.0;  // m/s/sqrt(s)
 
@@ -48,7 +48,7 @@ void TrackFilter::predict(double dt_s, const InertialSample& sample) {
 
   const InertialStep step = integrate(motion_, dt_s, omega, force);
   forward_acceleration_mps2_ = (step.after.v_body - motion_.v_body).x() / dt_s;
-  smooth_belts_mps_ += dt_s * forward_acceleration_mps2_;
+  smooth_track_mps_ += dt_s * forward_acceleration_mps2_;
   motion_ = step.after;
   motion_.omega_body = sample.rate_radps - gyro_bias_;
 
@@ -98,16 +98,16 @@ void TrackFilter::propagate_slip(double way_m, double turn_rad, double slip_std)
 //
 // The speed u that multiplies slip must not share the noise of the reading. Encoder steps of 1 to 2 mm would otherwise
 // bias the scale by several percent. It is therefore smoothed over one second and predicted with the IMU in between.
-void TrackFilter::correct_speed(double dt_s, double belts_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps) {
-  smooth_belts_mps_ += std::min(1.0, dt_s / kBeltSmoothing_s) * (belts_mps - smooth_belts_mps_);
+void TrackFilter::correct_speed(double dt_s, double track_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps) {
+  smooth_track_mps_ += std::min(1.0, dt_s / kTrackSmoothing_s) * (track_mps - smooth_track_mps_);
   const Eigen::Vector3d p(icr_m_.x(), icr_m_.y(), -settings_.height_m);
   const Eigen::Vector3d innovation =
-      Eigen::Vector3d(belts_mps - (scale_ + slip_) * smooth_belts_mps_, 0.0, 0.0) - then.v_body - then.omega_body.cross(p);
+      Eigen::Vector3d(track_mps - (scale_ + slip_) * smooth_track_mps_, 0.0, 0.0) - then.v_body - then.omega_body.cross(p);
 
   Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
   H.middleCols<3>(Error::kVelocity).setIdentity();
   H.middleCols<3>(Error::kGyroBias) = cross_matrix(p);
-  H(0, kScale) = H(0, kSlip) = smooth_belts_mps_;
+  H(0, kScale) = H(0, kSlip) = smooth_track_mps_;
   H.middleCols<2>(kIcr) = cross_matrix(then.omega_body).leftCols<2>();
 
   const Gain W = P_ * H.transpose();
@@ -142,9 +142,9 @@ void TrackFilter::start_slip(double forward_mps, double way_std_m) {
   P_.block<3, 3>(Error::kPosition, Error::kPosition) += along * along.transpose();
 }
 
-void TrackFilter::end_slip(double belts_mps, double slip_std) {
+void TrackFilter::end_slip(double track_mps, double slip_std) {
   pose_correction_time_s_ = std::min(pose_correction_time_s_, kPoseCorrectionTime_s);
-  smooth_belts_mps_ = belts_mps;
+  smooth_track_mps_ = track_mps;
   slip_ = 0.0;
   decorrelate_state(kSlip, slip_std * slip_std);
 }
@@ -204,7 +204,7 @@ void TrackFilter::apply_error(const Eigen::Matrix<double, kSize, 1>& error) {
 
 // v = ((1 - scale - slip) u, 0) - omega x p
 Eigen::Vector2d TrackFilter::systematic_velocity_variance() const {
-  const double u = smooth_belts_mps_, omega = motion_.omega_body.z();
+  const double u = smooth_track_mps_, omega = motion_.omega_body.z();
   const Eigen::Vector4d ahead(-u, -u, 0.0, omega), left(0.0, 0.0, -omega, 0.0);
   const Eigen::Matrix4d P = P_.bottomRightCorner<4, 4>();
   return {ahead.dot(P * ahead), left.dot(P * left)};

@@ -15,24 +15,24 @@
 
 namespace patrol::localize {
 
-/// How the odometry fares, for the log and for whoever must decide whether to drive on.
+/// Health of the tracked odometry, for the log and for the sensor monitor.
 struct TrackOdometryHealth {
-  bool imu_is_silent = false;     ///< going on by the belts alone
-  bool ticks_are_silent = false;  ///< going on by the IMU alone: nothing heard, or nothing that can be believed
-  bool grip_is_lost = false;      ///< belts and body do not go alike (or the counters are frozen): going on by the IMU
+  bool imu_timed_out = false;       ///< the estimate is propagated by the tracks alone
+  bool encoders_timed_out = false;  ///< the estimate is propagated by the IMU alone: no encoder reading was accepted
+  bool is_slipping = false;         ///< track and body speeds disagree, or the encoders are frozen: IMU alone
   double gyro_z_bias_std_radps = 0.0;
-  std::uint64_t rejected_messages = 0;  ///< not finite, frozen, implausible, or older than what was already used
-  std::uint64_t slip_events = 0;
+  std::uint64_t num_rejected_messages = 0;  ///< not finite, frozen, implausible, or outdated
+  std::uint64_t num_slip_events = 0;
 };
 
-/// Where the body of a tracked robot is in `odom`, from the counters of its belts and an IMU: TrackFilter fed with messages. The
-/// estimate is at its newest reading; odom starts, level, where the robot has first stood for a while.
+/// Tracked odometry: pose of the body in `odom` from track encoders and IMU (track_filter.h), at the newest reading.
+/// The origin of odom is the gravity-aligned pose after the first standstill.
 ///
-/// Messages may come late or not at all: counters wait for the IMU of their instant (up to `imu_timeout_s`, then the belts carry
-/// on alone), and are compared with the state remembered from the middle of their interval. When belts and body agree again after a
-/// loss of grip, what the IMU has drifted meanwhile is taken back: odom then shifts by decimeters, once. Not handled: a robot that is carried,
-/// and belts that lose their grip so gently that the accelerometer cannot feel it (below `slip_disagreement_mps` in
-/// `slip_window_s`).
+/// Messages may be late or missing. Encoder readings wait for the IMU reading of their stamp, at most `imu_timeout_s`;
+/// then the tracks alone propagate the estimate. They are compared with the motion history at the middle of their
+/// interval. When tracks and body agree again after a loss of traction, the drift of the IMU is corrected, so that odom
+/// shifts once by decimeters. Not handled: a robot that is carried, and a loss of traction with an acceleration below
+/// `slip_disagreement_mps` in `slip_window_s`.
 class TrackOdometry {
  public:
   /// Throws InputError for a robot without tracks or without a frame `imu`.
@@ -41,55 +41,55 @@ class TrackOdometry {
   void add(const Imu& imu);
   void add(const TrackTicks& ticks);
 
-  /// None before the robot has stood for `settling_time_s`, or `init_timeout_s` have passed.
+  /// Returns nullopt before a standstill of `settling_time_s` or the end of `init_timeout_s`.
   std::optional<OdometryEstimate> estimate() const;
-  /// The body at an instant of the last seconds, or slightly after the newest; none outside of that.
+  /// Returns the pose at a stamp within the motion history or slightly after it; otherwise nullopt.
   std::optional<Pose3> T_odom_body_at(Time stamp) const;
-  /// Standard deviation of what is wrong with the velocity for longer than moments, in body: ahead m/s, to the left m/s, yaw rate
-  /// rad/s. These errors last (scale, slip, bias): what they add to a pose grows with the way, not with its root.
+  /// Returns the standard deviation of the systematic velocity errors (scale, slip, bias), in body: forward m/s,
+  /// left m/s, yaw rate rad/s. The pose error that they cause grows with the distance, not with its square root.
   Eigen::Vector3d twist_std() const;
-  /// Of the body's origin above the ground, m, by the robot's geometry.
+  /// Returns the height of the body origin above the ground by the geometry of the robot, m.
   double height_above_ground_m() const { return robot_.tracks->body_height_m; }
 
   TrackOdometryHealth health() const;
-  /// The filter behind; none before the first IMU reading.
+  /// Returns the filter; nullopt before the first IMU reading.
   const std::optional<TrackFilter>& filter() const { return imu_.filter(); }
 
  private:
   void advance(Time stamp, const InertialSample& sample);
   void coast_to(const TrackTicks& ticks);
-  /// Uses the counters that are due.
-  void take_pending();
+  /// Processes the encoder readings that are due.
+  void process_pending();
   void use_ticks(const TrackTicks& ticks);
-  double yaw_rate_disagreement_radps(const EncoderInterval& belts, const TrunkMotion& then) const;
-  double usual_slip_std(double yaw_rate_radps, double disagreement_radps) const;
-  Eigen::Vector3d speed_std(const EncoderInterval& belts, const TrunkMotion& then, double disagreement_radps) const;
-  /// Whether the belts say what the body does.
-  bool watch_grip(const EncoderInterval& belts);
-  /// With the belts at rest: bias, slip, and whether the odometry may begin.
-  void watch_standstill(const InertialSample& sample);
-  void hold_velocity();
-  bool ticks_are_silent() const;
+  double yaw_rate_disagreement_radps(const EncoderInterval& interval, const TrunkMotion& then) const;
+  double stationary_slip_std(double yaw_rate_radps, double disagreement_radps) const;
+  Eigen::Vector3d speed_std(const EncoderInterval& interval, const TrunkMotion& then, double disagreement_radps) const;
+  /// Updates the slip state; returns whether the track speeds are usable.
+  bool update_slip_state(const EncoderInterval& interval);
+  /// Estimates the gyro bias with the tracks at rest, ends slip, and sets the origin after the first standstill.
+  void update_standstill(const InertialSample& sample);
+  void limit_velocity();
+  bool encoders_timed_out() const;
 
   RobotDescription robot_;
   TrackOdometrySettings settings_;
   double meters_per_tick_;
-  StanceFeet track_ends_;  ///< these stand still while the belts do
+  StanceFeet track_ends_;  ///< at rest while the tracks are
   ImuFrontEnd<TrackFilter> imu_;
 
   Time started_{};
   bool has_settled_ = false;
-  SlipDetector slip_watch_;
+  SlipDetector slip_detector_;
 
-  TrackEncoders counters_;
+  TrackEncoders encoders_;
   PendingReadings<TrackTicks> pending_;  ///< waiting for the IMU
   std::optional<Time> last_speed_update_;
-  Eigen::Vector3d last_speed_ = Eigen::Vector3d::Zero();  ///< of the body, when the belts were last believed, m/s
+  Eigen::Vector3d last_speed_ = Eigen::Vector3d::Zero();  ///< body velocity at the last accepted encoder reading, m/s
 
   // Faults.
-  bool grip_is_lost_ = false;
-  std::optional<Time> agree_since_;  ///< belts and IMU, after that
-  std::uint64_t slip_events_ = 0;
+  bool is_slipping_ = false;
+  std::optional<Time> agree_since_;  ///< start of the agreement of tracks and IMU after slip
+  std::uint64_t num_slip_events_ = 0;
 };
 
 }  // namespace patrol::localize

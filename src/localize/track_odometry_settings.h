@@ -4,47 +4,48 @@
 
 namespace patrol::localize {
 
-/// Defaults fit a MEMS IMU of robotics grade and tracks on rock, gravel and concrete.
+/// Settings of the tracked odometry. The defaults fit a MEMS IMU of robotics grade and tracks on rock, gravel and
+/// concrete.
 struct TrackOdometrySettings {
   // IMU.
-  double gyro_noise_density_radps_per_sqrt_hz = 3.5e-4;  ///< of readings taken at 250 Hz, not averaged in between
-  double gyro_bias_std_radps = 5e-3;             ///< at switch-on
+  double gyro_noise_density_radps_per_sqrt_hz = 3.5e-4;  ///< noise density of readings sampled at 250 Hz, unfiltered
+  double gyro_bias_std_radps = 5e-3;                     ///< standard deviation of the bias at power-on
   double gyro_bias_random_walk_radps_per_sqrt_s = 1e-5;
-  double accel_noise_density_mps2_per_sqrt_hz = 0.05;  ///< the shocks of driving included
-  double accel_bias_std_mps2 = 0.05;           ///< at switch-on
+  double accel_noise_density_mps2_per_sqrt_hz = 0.05;  ///< includes the vibration of driving
+  double accel_bias_std_mps2 = 0.05;                   ///< standard deviation of the bias at power-on
   double accel_bias_random_walk_mps2_per_sqrt_s = 1e-3;
-  double yaw_random_walk_rad_per_sqrt_rad = 0.002;  ///< the gyro's scale and misalignment
-  // What the counters are, and how far the belts are to be believed.
-  double ticks_per_sprocket_turn = 720.0;  ///< edges of the motor's Hall sensors, by the gear
-  double skid_ratio = 1.5;             ///< yaw rate by the belts' difference over the gauge, to the true one: scrub
-  double speed_std_mps = 0.01;         ///< of the mean belt speed, straight on
-  double scrub_std = 0.02;             ///< and more by this share of the belts' difference,
-  double acceleration_std_s = 0.01;    ///< by this time of their acceleration,
-  double disagreement_std_m = 0.05;    ///< and by this length of what their yaw rate and the gyro's differ
-  double lateral_std_mps = 0.02;       ///< nothing goes sideways,
-  double lateral_std_m = 0.02;         ///< except on turns: by this length of the yaw rate
-  double vertical_std_mps = 0.05;
-  // Slip.
-  double scale_std = 0.01;                   ///< of the belts' way: wear, tension; constant
-  double slip_std = 0.015;                   ///< share of the way, straight on in the plane
-  double slip_std_per_radps = 0.05;          ///< more on turns,
-  double slip_std_per_tilt = 0.1;            ///< on slopes, by the sine of the tilt,
-  double slip_std_per_disagreement = 0.05;   ///< and when belts and gyro differ on the yaw rate, by rad/s
-  double slip_correlation_m = 3.0;                ///< over which the ground changes
-  double icr_x_std_m = 0.05;
-  double icr_y_std_m = 0.02;
-  double icr_correlation_rad = 2.0;
-  double slip_window_s = 1.0;                ///< belts and accelerometer are compared over
-  double slip_disagreement_mps = 0.2;        ///< belts that gain so much more than the body have lost their grip
-  // Standing.
-  double settling_time_s = 1.5;        ///< at rest, before the first estimate
-  double init_timeout_s = 6.0;  ///< then an estimate is given without any rest
-  double standstill_window_s = 1.0;
+  double yaw_random_walk_rad_per_sqrt_rad = 0.002;  ///< gyro scale factor and misalignment, during rotation
+  // Track encoders and the standard deviation of the track speed, whose terms add in quadrature.
+  double ticks_per_sprocket_turn = 720.0;  ///< edges of the Hall sensors of the motor, through the gear
+  double skid_ratio = 1.5;           ///< track speed difference over the gauge, relative to the true yaw rate: scrub
+  double speed_std_mps = 0.01;       ///< mean track speed during straight motion
+  double scrub_std = 0.02;           ///< additional term per difference of the track speeds
+  double acceleration_std_s = 0.01;  ///< additional term per acceleration of the tracks
+  double disagreement_std_m = 0.05;  ///< additional term per disagreement of the yaw rates of tracks and gyro
+  double lateral_std_mps = 0.02;     ///< lateral velocity, which is zero on average
+  double lateral_std_m = 0.02;       ///< additional lateral term per yaw rate
+  double vertical_std_mps = 0.05;    ///< vertical velocity, which is zero on average
+  // Slip. The terms of its standard deviation add in quadrature.
+  double scale_std = 0.01;                  ///< constant relative error of the track distance: wear, tension
+  double slip_std = 0.015;                  ///< slip per distance, straight motion on level ground
+  double slip_std_per_radps = 0.05;         ///< additional term per yaw rate
+  double slip_std_per_tilt = 0.1;           ///< additional term per sine of the tilt, on slopes
+  double slip_std_per_disagreement = 0.05;  ///< additional term per disagreement of the yaw rates, rad/s
+  double slip_correlation_m = 3.0;          ///< correlation length of slip: distance over which the ground changes
+  double icr_x_std_m = 0.05;                ///< longitudinal offset of the instantaneous center of rotation (ICR)
+  double icr_y_std_m = 0.02;                ///< lateral offset of the ICR
+  double icr_correlation_rad = 2.0;         ///< correlation angle of the ICR
+  double slip_window_s = 1.0;               ///< window over which tracks and accelerometer are compared
+  double slip_disagreement_mps = 0.2;       ///< speed gain of the tracks over the body that indicates loss of traction
+  // Standstill.
+  double settling_time_s = 1.5;      ///< time at rest before the first estimate
+  double init_timeout_s = 6.0;       ///< time after which an estimate is published without any rest
+  double standstill_window_s = 1.0;  ///< window of one gyro bias measurement
   // Faults.
-  double imu_timeout_s = 0.1;   ///< how long the belts wait for a late IMU before the odometry goes on without
-  double max_track_acceleration_mps2 = 10.0;  ///< beyond, the counters are not believed
-  double buffer_s = 2.0;
-  double max_extrapolation_s = 0.15;  ///< beyond the newest reading
+  double imu_timeout_s = 0.1;                ///< maximum delay of the IMU behind the encoders before it is bridged
+  double max_track_acceleration_mps2 = 10.0;  ///< encoder readings with larger accelerations are rejected
+  double buffer_s = 2.0;                     ///< length of the motion history
+  double max_extrapolation_s = 0.15;         ///< maximum time after the newest reading for which a pose is given
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -7,7 +7,7 @@ namespace patrol::slam {
 namespace {
 
 /// Fraction of a small motion at constant velocity.
-Pose2 interpolate_motion(const Pose2& motion, double share) { return {share * motion.x, share * motion.y, share * motion.yaw}; }
+Pose2 interpolate_motion(const Pose2& motion, double fraction) { return {fraction * motion.x, fraction * motion.y, fraction * motion.yaw}; }
 
 }  // namespace
 

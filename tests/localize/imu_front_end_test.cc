@@ -46,7 +46,7 @@ TEST(ImuFrontEnd, RejectsImplausibleOldAndFrozenReadings) {
   EXPECT_EQ(add(imu, resting(1s)), FrontEnd::Step::kStarted);
   EXPECT_FALSE(imu.accept(resting(1s, 1e-3), false)) << "not newer";
   EXPECT_FALSE(imu.accept(resting(2s, std::numeric_limits<double>::quiet_NaN()), false));
-  EXPECT_EQ(imu.rejected_messages(), 2U);
+  EXPECT_EQ(imu.num_rejected_messages(), 2U);
   for (int i = 0; i < 10; ++i) imu.accept(resting(2s), true);
   EXPECT_FALSE(imu.accept(resting(2s), true)) << "frozen while the robot moves";
   EXPECT_TRUE(imu.accept(resting(2s), false)) << "at rest it may repeat";
@@ -67,11 +67,11 @@ TEST(ImuFrontEnd, BridgesGapsAndIsSilentOnlyUntilTheNextReading) {
   EXPECT_EQ(add(imu, resting(1004ms)), FrontEnd::Step::kPropagated);
   EXPECT_EQ(add(imu, resting(1055ms)), FrontEnd::Step::kBridged);
   imu.coast_to(1100ms, 0.3);
-  EXPECT_TRUE(imu.is_silent());
+  EXPECT_TRUE(imu.has_timed_out());
   EXPECT_EQ(imu.now(), Time(1100ms));
   EXPECT_NEAR(to_yaw(imu.estimate().T_odom_body.rotation), 0.045 * 0.3, 1e-9);
   add(imu, resting(1104ms));
-  EXPECT_FALSE(imu.is_silent());
+  EXPECT_FALSE(imu.has_timed_out());
 }
 
 TEST(ImuFrontEnd, PosesAreRememberedAndExtrapolatedForALittle) {
@@ -91,11 +91,11 @@ TEST(ImuFrontEnd, PosesAreRememberedAndExtrapolatedForALittle) {
 TEST(ImuFrontEnd, TheVelocityIsHeldOnceAPeriod) {
   FrontEnd imu = make_front_end();
   add(imu, resting(1s));
-  EXPECT_TRUE(imu.is_velocity_hold_due(100ms));
+  EXPECT_TRUE(imu.is_velocity_limit_due(100ms));
   imu.coast_to(1090ms, 0.0);
-  EXPECT_FALSE(imu.is_velocity_hold_due(100ms));
+  EXPECT_FALSE(imu.is_velocity_limit_due(100ms));
   imu.coast_to(1100ms, 0.0);
-  EXPECT_TRUE(imu.is_velocity_hold_due(100ms));
+  EXPECT_TRUE(imu.is_velocity_limit_due(100ms));
 }
 
 }  // namespace

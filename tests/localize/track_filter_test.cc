@@ -29,12 +29,12 @@ TrackFilter::Settings quiet() {
 }
 
 /// Steady at a speed for a time, belts heard each 20 ms.
-void drive(TrackFilter& filter, double belts_mps, double duration_s, double slip_std) {
+void drive(TrackFilter& filter, double track_mps, double duration_s, double slip_std) {
   for (int step = 1; step <= std::lround(duration_s / kDt); ++step) {
     filter.predict(kDt, kAtRest);
     if (step % 5 != 0) continue;
-    filter.propagate_slip(std::abs(belts_mps) * 0.02, 0.0, slip_std);
-    filter.correct_speed(0.02, belts_mps, filter.motion(), {0.005, 0.005, 0.005});
+    filter.propagate_slip(std::abs(track_mps) * 0.02, 0.0, slip_std);
+    filter.correct_speed(0.02, track_mps, filter.motion(), {0.005, 0.005, 0.005});
   }
 }
 

@@ -25,12 +25,12 @@ std::vector<double> distances_traveled(const std::vector<Pose2>& T_world_node) {
   return traveled_m;
 }
 
-double ratio(std::size_t part, std::size_t whole) { return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 1.0; }
+double ratio_or_one(std::size_t part, std::size_t whole) { return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 1.0; }
 
 }  // namespace
 
-double LoopClosureAccuracy::precision() const { return ratio(right, right + wrong); }
-double LoopClosureAccuracy::recall() const { return ratio(closed, returns); }
+double LoopClosureAccuracy::precision() const { return ratio_or_one(right, right + wrong); }
+double LoopClosureAccuracy::recall() const { return ratio_or_one(closed, returns); }
 
 LoopClosureAccuracy evaluate_loop_closures(const PoseGraph& graph, const std::vector<Pose2>& T_world_node) {
   LoopClosureAccuracy truth;

@@ -18,7 +18,7 @@ class DivergenceMonitor {
   /// Adds the likelihood of a scan, averaged over the particles, relative to the maximum, 0 ... 1.
   void add_scan_likelihood(double likelihood);
   /// Adds the fraction of a scan on surfaces of the map, 0 ... 1.
-  void add_scan_fit(double share) { scan_fit_ += settings_.alpha_fast * (share - scan_fit_); }
+  void add_scan_fit(double fraction) { scan_fit_ += settings_.alpha_fast * (fraction - scan_fit_); }
   /// Adds the likelihood of a range relative to the maximum, 0 ... 1.
   void add_range(double likelihood) { range_fit_ += settings_.alpha_range * (likelihood - range_fit_); }
   /// Clears all averages after the pose was set externally.

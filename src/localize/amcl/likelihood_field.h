@@ -19,7 +19,7 @@ struct BeamEnds {
   std::size_t size() const { return x_m.size(); }
 };
 
-/// Selects at most `max_beams` hits, evenly spread over the scan.
+/// Selects at most `max_beams` hits, spread uniformly over the scan.
 BeamEnds select_beam_ends(const LevelScan& scan, int max_beams);
 
 /// Likelihood-field model [Thrun05, table 6.3]: the likelihood of a beam's end at distance d from the nearest surface

@@ -184,14 +184,14 @@ RefinedPose MonteCarloLocalizer::update_weights(const LevelScan& scan, const std
 
 int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2& T_odom_body) {
   const bool may_search = !last_search_ || to_seconds(scan.stamp - *last_search_) >= settings_.search_period_s;
-  const double share = may_search ? divergence_monitor_.injection_fraction() : 0.0;
+  const double injected_fraction = may_search ? divergence_monitor_.injection_fraction() : 0.0;
   const std::vector<double> weights = normalized_weights(cloud_.log_weights);
   const auto count = static_cast<double>(cloud_.size());
   const std::size_t needed = particles_needed(weights);
   const bool is_wasteful = static_cast<double>(needed) < kMaxNeededFraction * count;
-  if (share > 0.0 || is_wasteful || effective_sample_size(weights) < settings_.resample_threshold * count) resample(weights, needed);
+  if (injected_fraction > 0.0 || is_wasteful || effective_sample_size(weights) < settings_.resample_threshold * count) resample(weights, needed);
 
-  const auto num_injected = static_cast<std::size_t>(share * static_cast<double>(cloud_.size()));
+  const auto num_injected = static_cast<std::size_t>(injected_fraction * static_cast<double>(cloud_.size()));
   if (num_injected == 0) return 0;
   last_search_ = scan.stamp;
   const std::vector<Pose2> poses = sample_poses(global_localization(scan, T_odom_body), num_injected, injection_noise_, updates_);

@@ -218,9 +218,9 @@ std::vector<Pose2> GraphSlam::path() const {
       const Pose2 offset = keyframes_[k].T_local_body.inverse() * path_[i].T_local_body;
       return offset.position().norm() + std::abs(offset.yaw);
     };
-    const double to_before = distance(before), to_after = distance(after), share = to_before + to_after > 0.0 ? to_before / (to_before + to_after) : 0.0;
-    T_map_body.push_back({from_before.x + share * (from_after.x - from_before.x), from_before.y + share * (from_after.y - from_before.y),
-                          wrap_angle(from_before.yaw + share * wrap_angle(from_after.yaw - from_before.yaw))});
+    const double to_before = distance(before), to_after = distance(after), fraction = to_before + to_after > 0.0 ? to_before / (to_before + to_after) : 0.0;
+    T_map_body.push_back({from_before.x + fraction * (from_after.x - from_before.x), from_before.y + fraction * (from_after.y - from_before.y),
+                          wrap_angle(from_before.yaw + fraction * wrap_angle(from_after.yaw - from_before.yaw))});
   }
   return T_map_body;
 }

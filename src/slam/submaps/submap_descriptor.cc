@@ -27,7 +27,7 @@ double radius_about(const Eigen::Vector2d& center, const std::vector<Eigen::Vect
 
 void normalize(std::vector<double>& histogram) {
   const double sum = std::accumulate(histogram.begin(), histogram.end(), 0.0);
-  for (double& share : histogram) share = sum > 0.0 ? share / sum : 1.0 / static_cast<double>(histogram.size());
+  for (double& bin : histogram) bin = sum > 0.0 ? bin / sum : 1.0 / static_cast<double>(histogram.size());
 }
 
 /// Distributes `weight` linearly over the two bins around `place`, which is in bins from the center of the first bin.
