@@ -136,8 +136,8 @@ DockDetector::Fit DockDetector::search(const std::vector<Beam>& beams, const Eig
     for (int j = -kCoarseSteps; j <= kCoarseSteps; ++j) {
       for (int k = -kCoarseSteps; k <= kCoarseSteps; ++k) {
         const double step_m = settings_.search_m / kCoarseSteps, step_rad = settings_.search_rad / kCoarseSteps;
-        const Pose2 turned = step_pose(T_level_expected, 2, k * step_rad / kRadPerMeter);
-        const Pose2 T = step_pose(step_pose(turned, 0, i * step_m), 1, j * step_m);
+        const Pose2 rotated = step_pose(T_level_expected, 2, k * step_rad / kRadPerMeter);
+        const Pose2 T = step_pose(step_pose(rotated, 0, i * step_m), 1, j * step_m);
         candidates.push_back({T, support(beams, origin_m, T, kCoarseWidth_m)});
       }
     }

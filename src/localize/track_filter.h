@@ -11,10 +11,10 @@ namespace patrol::localize {
 ///
 ///   scale        relative track distance error (wear, tension): constant; positive if the encoders read too much
 ///   slip         longitudinal slip ratio; Gauss-Markov process over distance
-///   turn center  (x, y) in body, m: mean of the instantaneous centers of rotation of the tracks [Mandow07], the point
+///   ICR          (x, y) in body, m: mean of the instantaneous centers of rotation of the tracks [Mandow07], the point
 ///                that moves straight ahead while the body rotates; Gauss-Markov process over rotation
 ///
-/// The tracks measure the velocity of the turn center p at ground level: v + omega x p = ((1 - scale - slip) u, 0, 0),
+/// The tracks measure the velocity of the ICR p at ground level: v + omega x p = ((1 - scale - slip) u, 0, 0),
 /// with u the mean track speed. The yaw rate is that of the gyro, because the difference of the track speeds is dominated
 /// by scrub. Yaw and position are not measured, and later estimates do not correct them: odom must not jump. (After a
 /// kilometer a tiny change of scale would repeatedly shift the position by a centimeter.) Exception: the drift of the
@@ -33,7 +33,7 @@ class TrackFilter {
     double slip_correlation_m;           ///< correlation length of slip, in track distance
     double icr_x_std_m;     ///< longitudinal offset: lateral slip during rotation
     double icr_y_std_m;     ///< lateral offset: different traction of the two sides
-    double icr_correlation_rad;  ///< correlation angle of the turn center
+    double icr_correlation_rad;  ///< correlation angle of the ICR
     double height_m;                ///< height of the body origin above the ground
   };
 
@@ -45,11 +45,11 @@ class TrackFilter {
   /// Predicts without IMU: velocity and tilt are constant, the yaw rate is that of the tracks.
   void coast(double dt_s, double yaw_rate_radps);
 
-  /// Propagates slip and turn center over a track motion. `slip_std`: stationary standard deviation of slip on this
+  /// Propagates slip and ICR over a track motion. `slip_std`: stationary standard deviation of slip on this
   /// ground in this maneuver.
   void propagate_slip(double way_m, double turn_rad, double slip_std);
   /// Corrects with the track speed over `dt_s`, during which the body motion was `then`. `std_mps`: standard deviations
-  /// of the velocity of the turn center, in body. An innovation beyond the 99.9 % bound is down-weighted instead of
+  /// of the velocity of the ICR, in body. An innovation beyond the 99.9 % bound is down-weighted instead of
   /// rejected.
   void correct_speed(double dt_s, double track_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps);
   /// Corrects with a velocity estimate, when no better measurement is available.
@@ -79,7 +79,7 @@ class TrackFilter {
   static constexpr int kScale = InertialError::kSize, kSlip = kScale + 1, kIcr = kSlip + 1, kSize = kIcr + 2;
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   const Covariance& covariance() const { return P_; }
-  /// Returns the variance of the longitudinal and lateral velocity from scale, slip and turn center, (m/s)2.
+  /// Returns the variance of the longitudinal and lateral velocity from scale, slip and ICR, (m/s)2.
   Eigen::Vector2d systematic_velocity_variance() const;
   /// Returns the covariance of x, y, yaw in odom.
   Eigen::Matrix3d planar_covariance() const;

@@ -58,10 +58,10 @@ Pose2 campus_start() {
 std::vector<Eigen::Vector2d> campus_landmarks() {
   std::vector<Eigen::Vector2d> landmarks_m = {{5.0, 8.0}};
   for (std::size_t i = 0; i < kCampusWaypoints_m.size(); ++i) {
-    const Eigen::Vector2d from = kCampusWaypoints_m[i], way = kCampusWaypoints_m[(i + 1) % kCampusWaypoints_m.size()] - from;
-    const Eigen::Vector2d left = Eigen::Vector2d(-way.y(), way.x()).normalized();
-    landmarks_m.push_back(from + 0.5 * way + 7.0 * left);
-    landmarks_m.push_back(from + 0.25 * way - 9.0 * left);
+    const Eigen::Vector2d from = kCampusWaypoints_m[i], along = kCampusWaypoints_m[(i + 1) % kCampusWaypoints_m.size()] - from;
+    const Eigen::Vector2d left = Eigen::Vector2d(-along.y(), along.x()).normalized();
+    landmarks_m.push_back(from + 0.5 * along + 7.0 * left);
+    landmarks_m.push_back(from + 0.25 * along - 9.0 * left);
   }
   return landmarks_m;
 }

@@ -51,11 +51,11 @@ struct CalibratedLog {
 };
 
 /// Calibrates in one pass over the log; none if interrupted.
-std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, const LogCalibrationSettings& settings, const slam::Calibration& known, const std::string& name) {
+std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, const LogCalibrationSettings& settings, const slam::Calibration& prior, const std::string& name) {
   const InterruptGuard guard;
   ProgressBar bar;
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(file, settings.log);
-  slam::MotionSegmenter pairs(settings.segments, settings.scan, known);
+  slam::MotionSegmenter pairs(settings.segments, settings.scan, prior);
   std::optional<Pose2> T_body_lidar;
   const bool is_whole = read_scans(*log, name, guard, bar, [&](const RecordedScan& recorded) {
     if (!T_body_lidar) T_body_lidar = recorded.T_body_lidar;
@@ -130,8 +130,8 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
   const auto settings = io::parse_settings<LogCalibrationSettings>(overrides);
   std::optional<CalibratedLog> log;
   for (int pass = 1; pass <= settings.passes; ++pass) {
-    const slam::Calibration known = log ? log->result.calibration() : slam::Calibration{};
-    log = calibrate_once(options.log, settings, known, fmt::format("{}, {} of {}", options.log.filename().string(), pass, settings.passes));
+    const slam::Calibration prior = log ? log->result.calibration() : slam::Calibration{};
+    log = calibrate_once(options.log, settings, prior, fmt::format("{}, {} of {}", options.log.filename().string(), pass, settings.passes));
     if (!log) break;
   }
   const OutputLock lock = begin_output(options.out, kCalibrating);  // not earlier: a damaged log must leave no output

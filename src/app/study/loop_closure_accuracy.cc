@@ -33,16 +33,16 @@ double LoopClosureAccuracy::precision() const { return ratio_or_one(right, right
 double LoopClosureAccuracy::recall() const { return ratio_or_one(closed, returns); }
 
 LoopClosureAccuracy evaluate_loop_closures(const PoseGraph& graph, const std::vector<Pose2>& T_world_node) {
-  LoopClosureAccuracy truth;
+  LoopClosureAccuracy accuracy;
   const std::vector<double> traveled_m = distances_traveled(T_world_node);
   std::vector<bool> is_closed(T_world_node.size(), false);
   for (const PoseGraphEdge& edge : graph.edges) {
     if (edge.kind != PoseGraphEdge::Kind::kLoop || std::abs(edge.to - edge.from) <= 1) continue;
     if (!is_right(edge, T_world_node)) {
-      ++truth.wrong;
+      ++accuracy.wrong;
       continue;
     }
-    ++truth.right;
+    ++accuracy.right;
     const auto older = static_cast<std::size_t>(std::min(edge.from, edge.to)), newer = static_cast<std::size_t>(std::max(edge.from, edge.to));
     if (traveled_m[newer] - traveled_m[older] > kMinPath_m) is_closed[newer] = true;
   }
@@ -51,10 +51,10 @@ LoopClosureAccuracy evaluate_loop_closures(const PoseGraph& graph, const std::ve
     for (std::size_t older = 0; older < newer && traveled_m[newer] - traveled_m[older] > kMinPath_m && !has_returned; ++older) {
       has_returned = (T_world_node[newer].position() - T_world_node[older].position()).norm() < kReturn_m;
     }
-    truth.returns += has_returned ? 1 : 0;
-    truth.closed += has_returned && is_closed[newer] ? 1 : 0;
+    accuracy.returns += has_returned ? 1 : 0;
+    accuracy.closed += has_returned && is_closed[newer] ? 1 : 0;
   }
-  return truth;
+  return accuracy;
 }
 
 }  // namespace patrol::app

@@ -19,7 +19,7 @@ namespace {
 constexpr double kProblemCell_m = 0.05;
 constexpr double kPlanningCell_m = 0.2;
 constexpr double kMinDistanceFraction = 1.0 / 3.0;  ///< fraction of the diagonal
-constexpr std::uint64_t kMaxDraws = 1000;
+constexpr std::uint64_t kMaxAttempts = 1000;
 
 constexpr std::array<std::pair<const char*, const char*>, 3> kScenarios = {
     {{"street", "worlds/street/scenarios/patrol.yaml"}, {"tunnel", "worlds/tunnel/scenarios/navigate.yaml"}, {"substation", "worlds/substation/scenarios/mapping.yaml"}}};
@@ -30,10 +30,10 @@ struct DrivableWorld {
 };
 
 DrivableWorld load_world(const std::string& name) {
-  const auto* const known = std::find_if(kScenarios.begin(), kScenarios.end(), [&](const auto& scenario) { return name == scenario.first; });
-  if (known == kScenarios.end()) throw InputError("unknown world '" + name + "'");
+  const auto* const found = std::find_if(kScenarios.begin(), kScenarios.end(), [&](const auto& scenario) { return name == scenario.first; });
+  if (found == kScenarios.end()) throw InputError("unknown world '" + name + "' (known: street, tunnel, substation)");
   const std::filesystem::path root = find_data_root("");
-  const Scenario scenario = load_scenario(root / known->second, {});
+  const Scenario scenario = load_scenario(root / found->second, {});
   const ScenarioFiles files = load_scenario_files(scenario, root);
   plan::CostmapSettings settings = scenario.stack.plan.costmap;
   settings.resolution_m = kPlanningCell_m;
@@ -60,7 +60,7 @@ PlannerProblem world_problem(const std::string& world, std::uint64_t seed) {
   const GridGeometry& grid = drivable.costs.geometry();
   const double far = kMinDistanceFraction * std::hypot(grid.width, grid.height);
   RandomSequence random(RandomStream(seed, "study/planners/" + world), 0);
-  for (std::uint64_t draw = 0; draw < kMaxDraws; ++draw) {
+  for (std::uint64_t attempt = 0; attempt < kMaxAttempts; ++attempt) {
     const Cell start = drivable.reachable[random.index(drivable.reachable.size())], goal = drivable.reachable[random.index(drivable.reachable.size())];
     if (std::hypot(goal.col - start.col, goal.row - start.row) < far) continue;
     return {.costs = std::move(drivable.costs), .start = start, .goal = goal};

@@ -27,8 +27,8 @@ constexpr std::array<std::pair<const char*, studies::Study (*)()>, 8> kStudies =
 }  // namespace
 
 studies::Study make_study(const std::string& name) {
-  for (const auto& [known, make] : kStudies) {
-    if (name == known) return make();
+  for (const auto& [study_name, make] : kStudies) {
+    if (name == study_name) return make();
   }
   throw InputError(fmt::format("unknown study '{}' (known: {})", name, fmt::join(study_names(), ", ")));
 }

@@ -29,7 +29,7 @@ class PoseBins {
 
  private:
   struct Key {
-    int col, row, turn;
+    int col, row, heading;
     friend bool operator==(const Key&, const Key&) = default;
   };
   struct Hash {

@@ -225,14 +225,14 @@ std::size_t MonteCarloLocalizer::particles_needed(const std::vector<double>& wei
   std::vector<double> cumulative(weights.size());
   std::partial_sum(weights.begin(), weights.end(), cumulative.begin());
   PoseBins bins(settings_.kld);
-  std::size_t drawn = 0;
-  while (drawn < static_cast<std::size_t>(kld_particles(bins.size(), settings_.kld))) {
-    const double pointer = resampling_noise_.uniform(updates_, ++drawn);
+  std::size_t num_samples = 0;
+  while (num_samples < static_cast<std::size_t>(kld_particles(bins.size(), settings_.kld))) {
+    const double pointer = resampling_noise_.uniform(updates_, ++num_samples);
     const auto parent = std::lower_bound(cumulative.begin(), cumulative.end() - 1, pointer) - cumulative.begin();
     bins.add(cloud_.T_map_body[static_cast<std::size_t>(parent)]);
   }
-  const auto least = static_cast<std::size_t>(is_lost_ ? settings_.min_particles_lost : 0);
-  return std::max(drawn, least);
+  const auto min_samples = static_cast<std::size_t>(is_lost_ ? settings_.min_particles_lost : 0);
+  return std::max(num_samples, min_samples);
 }
 
 GlobalSearch::Candidates MonteCarloLocalizer::global_localization(const LevelScan& scan, const Pose2& T_odom_body) const {

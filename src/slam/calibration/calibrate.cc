@@ -123,15 +123,15 @@ class Calibrator {
   /// Uses only components that matching constrains better than odometry; elsewhere the tracker followed odometry, so
   /// the residual is too small.
   void estimate_noise() {
-    std::vector<double> moves, turns;
+    std::vector<double> translation_errors, rotation_errors;
     for (const MotionResidual& residual : residuals_) {
       for (Eigen::Index i = 0; i < 3; ++i) {
         if (residual.lidar_covariance(i, i) > residual.odometry_covariance(i, i)) continue;
-        (i < 2 ? moves : turns).push_back(std::abs(residual.error[i]) / std::sqrt(residual.odometry_covariance(i, i)));
+        (i < 2 ? translation_errors : rotation_errors).push_back(std::abs(residual.error[i]) / std::sqrt(residual.odometry_covariance(i, i)));
       }
     }
-    if (!moves.empty()) translation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * median(std::move(moves)));
-    if (!turns.empty()) rotation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * median(std::move(turns)));
+    if (!translation_errors.empty()) translation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * median(std::move(translation_errors)));
+    if (!rotation_errors.empty()) rotation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * median(std::move(rotation_errors)));
   }
 
   void update_weights(bool is_early) {

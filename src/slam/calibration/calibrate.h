@@ -81,8 +81,8 @@ struct CalibrationResult {
 ///   no weight (wheel slip, logs with reversed direction). The scales of the translational and rotational odometry
 ///   noise are estimated in each iteration (median of the absolute residuals).
 /// - A parameter whose standard deviation exceeds the limit of the settings keeps its value and is excluded, the worst
-///   first. Without turns, the lever arm is unobservable. On a circle, steering and turn scale cannot be separated: the
-///   turn scale is then correct only if the steering is.
+///   first. Without rotation, the lever arm is unobservable. On a circle, steering and rotation scale cannot be separated: the
+///   rotation scale is then correct only if the steering is.
 /// - Standard deviations follow from the scores of groups of consecutive segments, and thus also hold for errors longer
 ///   than a segment (White's sandwich estimator, clustered). With fewer than twenty groups they follow from the
 ///   curvature alone. They do not cover odometry errors outside the model; in that case segments of other lengths give

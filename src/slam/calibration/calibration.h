@@ -12,7 +12,7 @@ namespace patrol::slam {
 /// For an odometry increment from scan to scan, m is its translation in the frame of its mean heading, so that the
 /// chord of an arc lies along x. The increment becomes
 ///
-///   translation  distance_scale * m      rotation  rotation_scale * turn + steering_bias_rad_per_m * m_x
+///   translation  distance_scale * m      rotation  rotation_scale * yaw_change + steering_bias_rad_per_m * m_x
 ///
 /// These are the three parameters of a differential drive with wrong wheel radii and wheel base [Censi13, eq. 1].
 /// Deviation from [Censi13]: the translation of unequal wheels during a turn in place is omitted. It cannot be

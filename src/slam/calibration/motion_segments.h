@@ -47,7 +47,7 @@ struct MotionSegmentSettings {
 };
 
 /// Divides a log into segments. The lidar is tracked in its own frame by scan matching (scan_tracker.h), with odometry
-/// as initial guess, corrected by the prior calibration `known`. The covariance of a segment includes the matches only.
+/// as initial guess, corrected by the prior calibration `prior`. The covariance of a segment includes the matches only.
 /// Along a featureless corridor it is large, so that the odometry that the tracker follows there has no weight.
 class MotionSegmenter {
  public:
