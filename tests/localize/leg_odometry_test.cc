@@ -82,7 +82,7 @@ TEST(FuseFeet, NoFootNoAnswer) {
   EXPECT_FALSE(yaw_rate_from_feet(none));
 }
 
-TEST(HeightByFeet, IsTheLegsLengthAndTheFootsRadius) {
+TEST(HeightFromFeet, IsTheLegsLengthAndTheFootsRadius) {
   // Thigh and shank at +-0.8 rad from the vertical: 2 * 0.213 * cos(0.8) + 0.02 = 0.3168 m.
   const RobotDescription robot = test::make_quadruped();
   StanceFeet feet;

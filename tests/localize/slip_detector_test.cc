@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace patrol::localize::slip_watch_test {
+namespace patrol::localize::slip_detector_test {
 namespace {
 
 constexpr double kDt = 0.004;
@@ -51,4 +51,4 @@ TEST(SlipDetector, ARoughRideAsksForMore) {
 }
 
 }  // namespace
-}  // namespace patrol::localize::slip_watch_test
+}  // namespace patrol::localize::slip_detector_test

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace patrol::localize::standstill_test {
+namespace patrol::localize::stationary_gyro_bias_test {
 namespace {
 
 constexpr double kSmallAngleTol = 1e-6;  // rad/s; the rigid fit is linear in angles of a milliradian
@@ -63,4 +63,4 @@ TEST(StationaryGyroBiasEstimator, TurningRobotIsNotStanding) {
 }
 
 }  // namespace
-}  // namespace patrol::localize::standstill_test
+}  // namespace patrol::localize::stationary_gyro_bias_test

@@ -11,7 +11,7 @@
 namespace patrol::studies::landmark_world_test {
 namespace {
 
-double way_m(const LandmarkRun& run) {
+double distance_m(const LandmarkRun& run) {
   double way = 0.0;
   for (std::size_t k = 1; k < run.truth.size(); ++k) way += (run.truth[k].position() - run.truth[k - 1].position()).norm();
   return way;
@@ -22,7 +22,7 @@ TEST(GardenWorld, OneLapOfARadiusOf7MetersIs44MetersAndEndsWhereItBegan) {
     const LandmarkRun run = simulate(garden_world("S5", is_circle), 1);
     EXPECT_NEAR(run.truth.back().position().norm(), 0.0, is_circle ? 0.15 : 0.3);
     if (is_circle) {
-      EXPECT_NEAR(way_m(run), 2.0 * std::numbers::pi * 7.0, 0.15);
+      EXPECT_NEAR(distance_m(run), 2.0 * std::numbers::pi * 7.0, 0.15);
     }
   }
 }
@@ -72,7 +72,7 @@ TEST(CampusWorld, TheCarSteersAtMost30DegreesAnd20DegreesPerSecondAndDrives600Me
   }
   const LandmarkRun run = simulate(world, 1);
   EXPECT_EQ(run.truth.size(), 1000u);
-  EXPECT_NEAR(way_m(run), 600.0, 2.0);  // chords of 0.6 m, the first step left out
+  EXPECT_NEAR(distance_m(run), 600.0, 2.0);  // chords of 0.6 m, the first step left out
 }
 
 TEST(CampusWorld, TheWayStaysWithin100By80MetersAndGoesClockwise) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::app::loop_truth_test {
+namespace patrol::app::loop_closure_accuracy_test {
 namespace {
 
 /// Out 40 m and back, a node every 10 m: nodes 5 to 8 stand where 3 to 0 stood.
@@ -50,4 +50,4 @@ TEST(JudgeLoops, ATurnedClosureIsWrong) {
 }
 
 }  // namespace
-}  // namespace patrol::app::loop_truth_test
+}  // namespace patrol::app::loop_closure_accuracy_test

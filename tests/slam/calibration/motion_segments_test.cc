@@ -8,7 +8,7 @@
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam::motion_pairs_test {
+namespace patrol::slam::motion_segments_test {
 namespace {
 
 /// What a lidar sees in a world of walls, all round.
@@ -133,4 +133,4 @@ TEST(MotionSegmenter, ADriveThroughAnOfficeCalibratesItsLidarAndWheels) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::motion_pairs_test
+}  // namespace patrol::slam::motion_segments_test

@@ -4,7 +4,7 @@
 
 #include "tests/slam/graph/office_world.h"
 
-namespace patrol::slam::live_map_test {
+namespace patrol::slam::incremental_map_test {
 namespace {
 
 /// Scans along a room of 8 m x 4 m.
@@ -84,4 +84,4 @@ TEST(IncrementalMap, ATurnCountsByWhatItMovesTenMetersAway) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::live_map_test
+}  // namespace patrol::slam::incremental_map_test

@@ -173,7 +173,7 @@ TEST(SolvePoseGraph, NodesBeforeTheFirstFreeOneStayAndTheOthersAreSolvedBesideTh
   for (int i = 5; i < 8; ++i) EXPECT_NEAR(graph.T_map_node[static_cast<std::size_t>(i)].x, 4.0 + 1.1 * (i - 4), 1e-6);
 }
 
-TEST(EdgeError, IsInTheFrameOfItsFirstNodeAndWrapsTheAngle) {
+TEST(EdgeResidual, IsInTheFrameOfItsFirstNodeAndWrapsTheAngle) {
   const std::vector<Pose2> nodes = {{1.0, 1.0, 0.5 * std::numbers::pi}, {1.0, 4.0, -3.0}};
   const PoseGraphEdge edge{.from = 0, .to = 1, .T_from_to = {2.5, 0.1, 1.7}, .information = Eigen::Vector3d(1.0, 4.0, 9.0).asDiagonal()};
   const Eigen::Vector3d error = edge_residual(edge, nodes);

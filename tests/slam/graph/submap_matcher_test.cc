@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/slam/graph/drawn_submap.h"
+#include "tests/slam/graph/rendered_submap.h"
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
 

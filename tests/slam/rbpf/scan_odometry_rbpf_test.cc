@@ -8,7 +8,7 @@
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam::tracked_rbpf_test {
+namespace patrol::slam::scan_odometry_rbpf_test {
 namespace {
 
 const std::vector<test::DriveStep>& short_drive() {
@@ -83,4 +83,4 @@ TEST(TrajectoryNode, AWayOfAMillionStepsIsLetGo) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::tracked_rbpf_test
+}  // namespace patrol::slam::scan_odometry_rbpf_test

@@ -186,7 +186,7 @@ TEST(NdtSettings, RefusesANonsenseSettingByName) {
   }
 }
 
-TEST(Thinned, KeepsEveryThirdOfThree) {
+TEST(Subsample, KeepsEveryThirdOfThree) {
   const Points points{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}};
   EXPECT_EQ(subsample(points, 2), (Points{{0, 0}, {3, 0}}));
   EXPECT_EQ(subsample(points, 6), points);

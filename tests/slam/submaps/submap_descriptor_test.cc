@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/support/submap_points.h"
 
-namespace patrol::slam::submap_shape_test {
+namespace patrol::slam::submap_descriptor_test {
 namespace {
 
 using test::make_yard, test::sample_walls;
@@ -91,4 +91,4 @@ TEST(CircularCorrelation, FindsATurnAndSaysNothingOfEvenHistograms) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::submap_shape_test
+}  // namespace patrol::slam::submap_descriptor_test

@@ -10,7 +10,7 @@ namespace {
 
 using test::agreeing_neighbors, test::map_by_submaps, test::SubmapDrive;
 
-int num_joints(const SubmapRbpf& slam, int min_apart) {
+int num_constraints(const SubmapRbpf& slam, int min_apart) {
   int constraints = 0;
   for (const SubmapRbpf::Comparison& comparison : slam.comparisons()) constraints += comparison.result.constraint && comparison.source - comparison.target >= min_apart ? 1 : 0;
   return constraints;
@@ -20,7 +20,7 @@ int num_joints(const SubmapRbpf& slam, int min_apart) {
 TEST(SubmapRbpf, ARoundOfTheOfficeClosesToFiveCentimeters) {
   const SubmapDrive mapped = map_by_submaps(test::make_office(), test::office_rounds(1), {}, {}, agreeing_neighbors());
   EXPECT_LT(mapped.rms_error_m(), 0.05);
-  EXPECT_GE(num_joints(mapped.slam, 8), 1);
+  EXPECT_GE(num_constraints(mapped.slam, 8), 1);
   EXPECT_EQ(mapped.slam.path().size(), mapped.drive.size());
   EXPECT_GT(mapped.slam.map().geometry().size(), 100'000U);
 }
@@ -33,7 +33,7 @@ TEST(SubmapRbpf, EveryJointOfTwoRoundsIsTrueToADecimeter) {
     const Pose2 T_target_source = T_world_submap[static_cast<std::size_t>(comparison.target)].inverse() * T_world_submap[static_cast<std::size_t>(comparison.source)];
     EXPECT_THAT(comparison.result.constraint->T_target_source, test::Pose2Near(T_target_source, 0.1, 0.02)) << comparison.target << " " << comparison.source;
   }
-  EXPECT_GT(num_joints(mapped.slam, 8), 8);
+  EXPECT_GT(num_constraints(mapped.slam, 8), 8);
 }
 
 // Ten drives up and down among doors three meters apart: a false joint would shift by a door.
@@ -54,7 +54,7 @@ TEST(SubmapRbpf, AmongIdenticalDoorsNoFalseJointIsMadeInTenDrives) {
 TEST(SubmapRbpf, WithoutAModelNobodyIsANeighbor) {
   const SubmapDrive mapped = map_by_submaps(test::make_office(), {{8.0, 4.2}, {30.0, 4.2}, {10.0, 4.2}}, {}, {}, {});
   EXPECT_GT(mapped.slam.comparisons().size(), 1U);
-  EXPECT_EQ(num_joints(mapped.slam, 0), 0);
+  EXPECT_EQ(num_constraints(mapped.slam, 0), 0);
 }
 
 TEST(SubmapRbpf, ASubmapIsClosedWhenTheWayIsFullAndTheNextBeginsThere) {

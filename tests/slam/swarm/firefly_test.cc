@@ -10,8 +10,8 @@ using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphe
 const FireflyOptimizer kFireflies({.iterations = 50});
 const ImprovedFireflyOptimizer kImproved({.iterations = 50});
 
-TEST(FireflyOptimizer, FindsAShiftedSphereToThreeCentimetersIn1020Judgements) {
-  EXPECT_EQ(run_trial(kFireflies, for_all(sphere), 20, 1).num_judgements, 20 * 51);
+TEST(FireflyOptimizer, FindsAShiftedSphereToThreeCentimetersIn1020Evaluations) {
+  EXPECT_EQ(run_trial(kFireflies, for_all(sphere), 20, 1).num_evaluations, 20 * 51);
   EXPECT_LT(worst_distance(kFireflies, sphere), 0.03);
 }
 
@@ -44,12 +44,12 @@ TEST(FireflyOptimizer, LeavesNobodyWorse) { test::expect_nobody_worse(kFireflies
 
 TEST(FireflyOptimizer, AFlatFitnessMovesNobody) { test::expect_flat_fitness_moves_nobody(kFireflies); }
 
-TEST(FireflyOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_judge(kFireflies); }
+TEST(FireflyOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_fitness(kFireflies); }
 
 TEST(FireflyOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kFireflies); }
 
-TEST(ImprovedFireflyOptimizer, FindsAShiftedSphereToThreeCentimetersIn1020Judgements) {
-  EXPECT_EQ(run_trial(kImproved, for_all(sphere), 20, 1).num_judgements, 20 * 51);
+TEST(ImprovedFireflyOptimizer, FindsAShiftedSphereToThreeCentimetersIn1020Evaluations) {
+  EXPECT_EQ(run_trial(kImproved, for_all(sphere), 20, 1).num_evaluations, 20 * 51);
   EXPECT_LT(worst_distance(kImproved, sphere), 0.03);
 }
 
@@ -74,7 +74,7 @@ TEST(ImprovedFireflyOptimizer, LeavesNobodyWorse) { test::expect_nobody_worse(kI
 
 TEST(ImprovedFireflyOptimizer, AFlatFitnessMovesNobody) { test::expect_flat_fitness_moves_nobody(kImproved); }
 
-TEST(ImprovedFireflyOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_judge(kImproved); }
+TEST(ImprovedFireflyOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_fitness(kImproved); }
 
 TEST(ImprovedFireflyOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kImproved); }
 
