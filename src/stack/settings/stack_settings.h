@@ -8,16 +8,16 @@
 #include "core/settings.h"
 #include "stack/mission/gas_mission.h"
 #include "stack/mission/tunnel_mission.h"
-#include "localize/amcl/monte_carlo.h"
-#include "localize/body_estimator.h"
-#include "localize/dock_detector.h"
-#include "localize/range_filter.h"
-#include "localize/scan_leveler.h"
-#include "localize/track_odometry.h"
+#include "localize/amcl/monte_carlo_settings.h"
+#include "localize/body_estimator_settings.h"
+#include "localize/dock_detector_settings.h"
+#include "localize/range_filter_settings.h"
+#include "localize/scan_leveler_settings.h"
+#include "localize/track_odometry_settings.h"
 #include "plan/control/docking.h"
 #include "plan/navigation/navigator.h"
 #include "stack/sensors/sensor_monitor.h"
-#include "slam/methods/mapper.h"
+#include "slam/methods/mapper_settings.h"
 
 namespace patrol::stack {
 

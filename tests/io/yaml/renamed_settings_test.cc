@@ -21,6 +21,23 @@ TEST(RenamedSettings, KeysOfSeveralSensorsAreRenamedInEach) {
   EXPECT_EQ(renamed_setting("remote.driver.meets_robot"), "teleop.operator.wait_for_robot");
 }
 
+TEST(RenamedSettings, SlamKeysAreRenamedBelowEveryRoot) {
+  EXPECT_EQ(renamed_setting("stack.slam.graph.tracking.likelihood_gain"),
+            "stack.slam.graph.scan_odometry.likelihood_tempering");
+  EXPECT_EQ(renamed_setting("slam.graph.loops.ambiguity"), "slam.graph.loop_closure.max_second_best_ratio");
+  EXPECT_EQ(renamed_setting("submap_rbpf.joints.rival_share"), "submap_rbpf.constraints.max_second_best_ratio");
+  EXPECT_EQ(renamed_setting("stretches.tracking.matching.min_matched_share"),
+            "segments.scan_odometry.matching.min_inlier_ratio");
+  EXPECT_EQ(renamed_setting("turn_scale"), "rotation_scale");
+  EXPECT_EQ(renamed_setting("calibration.turn_scale"), "calibration.rotation_scale");
+}
+
+TEST(RenamedSettings, ParticleFilterAndLeggedOdometryMoveOneLevelDown) {
+  EXPECT_EQ(renamed_setting("stack.slam.motion.across_std_m_per_m"), "stack.slam.rbpf.motion.lateral_std_m_per_m");
+  EXPECT_EQ(renamed_setting("stack.slam.rbpf.particles"), "stack.slam.rbpf.particles");
+  EXPECT_EQ(renamed_setting("stack.odometry.touch_force_n"), "stack.odometry.legged.contact_on_force_n");
+}
+
 TEST(RenamedSettings, KeysThatKeepTheirNameAreReturnedUnchanged) {
   EXPECT_EQ(renamed_setting("stack.navigation.costmap"), "stack.navigation.costmap");
   EXPECT_EQ(renamed_setting("planner"), "planner");
