@@ -13,7 +13,7 @@ namespace {
 
 TemGateLayout reported_window(const TemSettings& settings) {
   validate(settings, "sensors.tem");
-  TemGateLayout window{.gate_s = {}, .ramp_s = settings.ramp_s, .gate_width = settings.gate_width};
+  TemGateLayout window{.gate_s = {}, .ramp_s = settings.ramp_s, .gate_width = settings.relative_gate_width};
   const double step = std::pow(10.0, 1.0 / settings.gates_per_decade);
   for (double gate_s = settings.first_gate_s; gate_s <= settings.last_gate_s; gate_s *= step) window.gate_s.push_back(gate_s);
   if (window.gate_s.size() < 3) {
