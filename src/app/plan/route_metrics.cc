@@ -16,11 +16,11 @@ namespace {
 void smooth(const Grid<plan::Cost>& costs, const PlanSettings& settings, plan::Route& route) {
   const double cost_weight = settings.routes.cost_weight;
   route.points = plan::smooth_route(costs, cost_weight, settings.kept_clearance_m / costs.geometry().resolution_m, route.points);
-  route.clearance = plan::clearance_of(costs, route.points);
+  route.clearance = plan::compute_clearance(costs, route.points);
   route.length = route.cost = 0.0;
   for (std::size_t i = 1; i < route.points.size(); ++i) {
     route.length += (route.points[i] - route.points[i - 1]).norm();
-    route.cost += plan::line_price(costs, plan::cost_factors(cost_weight), plan::cell_of(route.points[i - 1]), plan::cell_of(route.points[i])).value();
+    route.cost += plan::line_cost(costs, plan::cost_factors(cost_weight), plan::cell_of(route.points[i - 1]), plan::cell_of(route.points[i])).value();
   }
 }
 
@@ -60,9 +60,9 @@ RouteFigures figures_of_route(const Grid<plan::Cost>& costs, Cell start, Cell go
   figures.octile_length = octile.length;
   const double cost_weight = settings.routes.cost_weight;
   if (cost_weight > 0.0) figures.octile_cost = GridSearch(GridSearch::Method::kAstar, cost_weight).plan(costs, start, goal).cost;
-  if (settings.planner == "any_angle_optimum") figures.any_angle_length = figures.route.length;
+  if (settings.planner == "visibility_graph") figures.any_angle_length = figures.route.length;
   else if (is_too_large(costs, settings.any_angle_most_cells)) figures.is_any_angle_left_out = true;
-  else figures.any_angle_length = plan::AnyAngleOptimum().plan(costs, start, goal).length;
+  else figures.any_angle_length = plan::VisibilityGraphPlanner().plan(costs, start, goal).length;
   return figures;
 }
 

@@ -66,13 +66,13 @@ void check(const ScannerPoint& point) {
 
 }  // namespace
 
-std::vector<DownsampledPoint> downsample(const std::vector<ScannerPoint>& points, double spacing_m, double near_m) {
+std::vector<DownsampledPoint> downsample(const std::vector<ScannerPoint>& points, double spacing_m, double min_range_m) {
   std::vector<Beam> beams;
   beams.reserve(points.size());
   for (const ScannerPoint& point : points) {
     check(point);
     const Beam beam = beam_of(point, static_cast<std::uint32_t>(&point - points.data()), spacing_m);
-    if (static_cast<double>(beam.range_m) >= near_m) beams.push_back(beam);
+    if (static_cast<double>(beam.range_m) >= min_range_m) beams.push_back(beam);
   }
   std::ranges::sort(beams);
   std::vector<DownsampledPoint> downsampled;

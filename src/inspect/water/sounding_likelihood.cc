@@ -107,7 +107,7 @@ SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings, co
       Eigen::Index column = 2;
       for (const double decay_s : kSteelDecay_s) {
         const double steel =
-            settings.steel_rate * std::exp((kSteelReferenceTime_s - gate_s[static_cast<std::size_t>(gate)]) / decay_s) * inverse_std_[row];
+            settings.steel_response * std::exp((kSteelReferenceTime_s - gate_s[static_cast<std::size_t>(gate)]) / decay_s) * inverse_std_[row];
         nuisances_(row, column++) = steel;
         nuisances_.block<1, 6>(row, column) = settings.steel_anisotropy * steel * products(axis).transpose();
         column += 6;

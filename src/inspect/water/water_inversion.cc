@@ -129,7 +129,7 @@ void move(std::vector<Particle>& particles, double temperature, const WaterSetti
   constexpr double kWidths[] = {1.6, 0.8, 0.3};
   const Eigen::Matrix<double, 6, 6> factor = covariance_factor(particles);
   for (Particle& particle : particles) {
-    for (int step = 0; step < settings.moves; ++step) {
+    for (int step = 0; step < settings.mcmc_steps; ++step) {
       Parameters normals;
       for (double& normal : normals) normal = random.normal();
       const double level = std::log(random.uniform());

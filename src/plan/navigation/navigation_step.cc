@@ -2,40 +2,40 @@
 
 namespace patrol::plan {
 
-const char* sentence_of(NavigationTrouble trouble) {
-  switch (trouble) {
-    case NavigationTrouble::kNone:
+const char* describe(NavigationFailure failure) {
+  switch (failure) {
+    case NavigationFailure::kNone:
       return "";
-    case NavigationTrouble::kStartBlocked:
+    case NavigationFailure::kStartBlocked:
       return "The robot stands too near to an obstacle to set off.";
-    case NavigationTrouble::kGoalBlocked:
+    case NavigationFailure::kGoalBlocked:
       return "The goal lies in an obstacle or too near to one.";
-    case NavigationTrouble::kNoRoute:
+    case NavigationFailure::kNoRoute:
       return "There is no route to the goal.";
-    case NavigationTrouble::kNoneFound:
+    case NavigationFailure::kNotFound:
       return "The planner finds no route to the goal.";
-    case NavigationTrouble::kPathBlocked:
+    case NavigationFailure::kPathBlocked:
       return "Something stands in the way.";
-    case NavigationTrouble::kStuck:
+    case NavigationFailure::kNoProgress:
       return "The robot moves and gets nowhere.";
   }
   return "";
 }
 
-NavigationTrouble trouble_of(PlanStatus status) {
+NavigationFailure to_failure(PlanStatus status) {
   switch (status) {
     case PlanStatus::kStartBlocked:
-      return NavigationTrouble::kStartBlocked;
+      return NavigationFailure::kStartBlocked;
     case PlanStatus::kGoalBlocked:
-      return NavigationTrouble::kGoalBlocked;
+      return NavigationFailure::kGoalBlocked;
     case PlanStatus::kNoRoute:
-      return NavigationTrouble::kNoRoute;
-    case PlanStatus::kNoneFound:
-      return NavigationTrouble::kNoneFound;
+      return NavigationFailure::kNoRoute;
+    case PlanStatus::kNotFound:
+      return NavigationFailure::kNotFound;
     case PlanStatus::kFound:
       break;
   }
-  return NavigationTrouble::kNone;
+  return NavigationFailure::kNone;
 }
 
 }  // namespace patrol::plan

@@ -23,7 +23,7 @@ namespace patrol::slam {
 class Mapper;
 struct MapperSettings;
 
-/// Row of the table of SLAM methods, for runs (`stack.mapping`) and recorded logs (`patrol slam --method`).
+/// Row of the table of SLAM methods, for runs (`stack.slam.method`) and recorded logs (`patrol slam --method`).
 struct MappingMethod {
   std::string_view name;     ///< text in settings and on the command line
   std::string_view summary;  ///< one line of documentation

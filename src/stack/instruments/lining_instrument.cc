@@ -39,11 +39,11 @@ void LiningInstrument::begin(const InspectionOrder& order, Time now) {
 
 InspectionProgress LiningInstrument::step(const InspectionContext& context) {
   const Time now = context.now;
-  if (!has_requested_scan_ && now - order_start_ >= from_seconds(settings_.scan_settle_s)) {
+  if (!has_requested_scan_ && now - order_start_ >= from_seconds(settings_.scan_settling_time_s)) {
     has_requested_scan_ = true;
     context.output.publish(ScanCommand{now});
   }
-  if (now - order_start_ > from_seconds(settings_.scan_patience_s)) return {.feedback = InspectionFeedback::kFailed};
+  if (now - order_start_ > from_seconds(settings_.scan_timeout_s)) return {.feedback = InspectionFeedback::kFailed};
   if (!new_scan_) return {};
   const auto [scan, place] = *std::exchange(new_scan_, std::nullopt);
   return {.feedback = evaluate(context, scan, place)};

@@ -47,7 +47,7 @@ std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const R
     return make_on_map(*start.map);
   }
   if (start.map) refuse("a map is given, and another would be made: leave the key map empty, or choose monte_carlo");
-  auto slam = std::make_unique<SlamLocalizer>(make_mapper(settings, start.neighbor_model, seed), site_in_map.anchors, T_body_uwb);
+  auto slam = std::make_unique<SlamLocalizer>(slam::make_mapper(settings.slam, start.neighbor_model, seed), site_in_map.anchors, T_body_uwb);
   if (method == "slam") return slam;
   if (!start.has_mapping_drive) refuse("there is no drive by remote control that makes the map: choose slam");
   return std::make_unique<MapThenLocalize>(std::move(slam), make_on_map);

@@ -13,7 +13,7 @@ namespace {
 /// Odometry from IMU, joint encoders and foot forces.
 class LeggedOdometry final : public OdometrySource {
  public:
-  LeggedOdometry(const RobotDescription& robot, const StackSettings& settings) : estimator_(robot, settings.odometry) {}
+  LeggedOdometry(const RobotDescription& robot, const StackSettings& settings) : estimator_(robot, settings.odometry.legged) {}
 
   void add(const SensorMessage& message) override {
     if (const auto* imu = std::get_if<Imu>(&message)) estimator_.add(*imu);
@@ -42,7 +42,7 @@ class LeggedOdometry final : public OdometrySource {
 class TrackedOdometry final : public OdometrySource {
  public:
   TrackedOdometry(const RobotDescription& robot, const StackSettings& settings)
-      : odometry_(robot, settings.track_odometry) {}
+      : odometry_(robot, settings.odometry.tracked) {}
 
   void add(const SensorMessage& message) override {
     if (const auto* imu = std::get_if<Imu>(&message)) odometry_.add(*imu);

@@ -8,16 +8,16 @@
 namespace patrol::stack {
 
 GasRules gas_rules(const GasMissionSettings& settings) {
-  return {.settle_s = settings.settle_s,
-          .measure_s = settings.measure_s,
-          .max_measure_s = settings.max_measure_s,
+  return {.settling_time_s = settings.settling_time_s,
+          .measurement_duration_s = settings.measurement_duration_s,
+          .measurement_timeout_s = settings.measurement_timeout_s,
           .min_readings = settings.min_readings,
           .alarm_column_ppm_m = settings.alarm_column_ppm_m};
 }
 
 GasMission::GasMission(const GasMissionSettings& settings, Route route_in_map, std::string order_text)
     : settings_(settings), route_(std::move(route_in_map)), order_text_(std::move(order_text)) {
-  validate(settings, "mission");
+  validate(settings, "gas_mission");
   if (route_.stations.empty()) throw InputError("the route has no station");
 }
 
@@ -65,7 +65,7 @@ Event GasMission::abort(Time now, EventKind kind, const std::string& text) {
 }
 
 void GasMission::wait(MissionOutput& output) {
-  if (now_ < from_seconds(settings_.start_wait_s)) return;
+  if (now_ < from_seconds(settings_.init_wait_s)) return;
   std::vector<std::string> names;
   for (const Station& station : route_.stations) names.push_back(station.name);
   const std::string stations = fmt::format("The mission starts: {} stations, {}.", names.size(), fmt::join(names, ", "));
@@ -117,11 +117,11 @@ void GasMission::next_station(MissionOutput& output) {
 
 NavigationGoal GasMission::goal_at(const Station& station) const {
   NavigationGoal goal{.T_map_body = station.T_route_body,
-                      .position_tol_m = std::min(settings_.position_tol_m, station.accuracy_m),
-                      .yaw_tol_rad = settings_.yaw_tol_rad};
+                      .position_tolerance_m = std::min(settings_.position_tolerance_m, station.accuracy_m),
+                      .yaw_tolerance_rad = settings_.yaw_tolerance_rad};
   if (station.type == StationType::kPass) {
-    goal.position_tol_m = station.accuracy_m;
-    goal.yaw_tol_rad = std::numbers::pi;
+    goal.position_tolerance_m = station.accuracy_m;
+    goal.yaw_tolerance_rad = std::numbers::pi;
   }
   return goal;
 }

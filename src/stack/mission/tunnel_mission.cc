@@ -9,15 +9,15 @@
 namespace patrol::stack {
 
 GoalType TunnelMissionSettings::goal_type(std::size_t index) const {
-  if (index >= mark_types.size()) return GoalType::kStop;
-  if (const auto* row = find_named(kGoalTypes, std::string_view(mark_types).substr(index, 1))) return row->value;
-  throw InputError(fmt::format("tour.mark_types = {}: must be made of the letters {}", mark_types, fmt::join(names_of(kGoalTypes), ", ")));
+  if (index >= goal_types.size()) return GoalType::kStop;
+  if (const auto* row = find_named(kGoalTypes, std::string_view(goal_types).substr(index, 1))) return row->value;
+  throw InputError(fmt::format("tour.mark_types = {}: must be made of the letters {}", goal_types, fmt::join(names_of(kGoalTypes), ", ")));
 }
 
 TunnelMission::TunnelMission(const TunnelMissionSettings& settings, std::vector<SavedGoal> goals, bool has_teleop, bool has_map)
-    : settings_(settings), goals_(std::move(goals)), has_teleop_(has_teleop), has_map_(has_map), is_docked_(settings.starts_docked && !settings.starts_at_survey) {
-  validate(settings, "tour");
-  for (std::size_t i = 0; i < settings.mark_types.size(); ++i) settings.goal_type(i);
+    : settings_(settings), goals_(std::move(goals)), has_teleop_(has_teleop), has_map_(has_map), is_docked_(settings.start_docked && !settings.start_at_survey) {
+  validate(settings, "tunnel_mission");
+  for (std::size_t i = 0; i < settings.goal_types.size(); ++i) settings.goal_type(i);
   if (goals_.empty() && !has_teleop) throw InputError("tour: there is no goal, and no remote control to mark one");
 }
 
@@ -74,8 +74,8 @@ Task TunnelMission::task() const {
   const bool stops = goal.type != GoalType::kVia;
   task.motion = Motion::kNavigate;
   task.goal = {.T_map_body = goal.T_map_body,
-               .position_tol_m = stops ? std::min(settings_.position_tol_m, goal.accuracy_m) : goal.accuracy_m,
-               .yaw_tol_rad = stops ? settings_.yaw_tol_rad : std::numbers::pi};
+               .position_tolerance_m = stops ? std::min(settings_.position_tolerance_m, goal.accuracy_m) : goal.accuracy_m,
+               .yaw_tolerance_rad = stops ? settings_.yaw_tolerance_rad : std::numbers::pi};
   return task;
 }
 
@@ -90,9 +90,9 @@ bool TunnelMission::monitor_localization(const MissionInput& input, MissionOutpu
   if (!lost_since_) {
     lost_since_ = now_;
     output.events.push_back(event(EventKind::kLocalizationLost, "", "The robot does not know where it is: it stands and looks."));
-  } else if (now_ - *lost_since_ > from_seconds(settings_.lost_patience_s)) {
+  } else if (now_ - *lost_since_ > from_seconds(settings_.relocalization_timeout_s)) {
     output.events.push_back(event(EventKind::kLocalizationFailed, "", fmt::format("The robot cannot tell where it is after {:.0f} s of looking.",
-                                                                     settings_.lost_patience_s)));
+                                                                     settings_.relocalization_timeout_s)));
     ++num_failed_;
     finish(output);
   }
@@ -100,7 +100,7 @@ bool TunnelMission::monitor_localization(const MissionInput& input, MissionOutpu
 }
 
 void TunnelMission::wait(MissionOutput& output) {
-  if (now_ < from_seconds(settings_.start_wait_s) || now_ < *first_step_ + from_seconds(settings_.start_look_s)) return;
+  if (now_ < from_seconds(settings_.init_wait_s) || now_ < *first_step_ + from_seconds(settings_.first_scan_wait_s)) return;
   if (!has_teleop_ || has_map_) return start_run(output);
   last_teleop_ = now_;
   enter(Phase::kTeleop);
@@ -114,7 +114,7 @@ void TunnelMission::teleoperate(const MissionInput& input, MissionOutput& output
     goal_ = goals_.size() - 1;
     output.events.push_back(event(EventKind::kGoalMarked, goal_name(), fmt::format("Marked {}.", goal_name())));
   }
-  const bool is_off = now_ - last_teleop_ > from_seconds(settings_.remote_silence_s);
+  const bool is_off = now_ - last_teleop_ > from_seconds(settings_.teleop_timeout_s);
   if (!is_off && !(input.teleop && input.teleop->hand_over)) return;
   output.is_map_complete = true;
   output.events.push_back(event(EventKind::kMappingCompleted, "", fmt::format("The map is made; {} goals are marked.", goals_.size())));
@@ -140,7 +140,7 @@ void TunnelMission::drive(const MissionInput& input, MissionOutput& output) {
 }
 
 void TunnelMission::stand(MissionOutput& output) {
-  if (now_ - phase_start_ < from_seconds(settings_.stand_s)) return;
+  if (now_ - phase_start_ < from_seconds(settings_.dwell_s)) return;
   output.events.push_back(event(EventKind::kGoalReached, goal_name(), fmt::format("At {}.", goal_name()), run_));
   if (goals_[goal_].type == GoalType::kScan) return enter(Phase::kScanning);
   if (goals_[goal_].type != GoalType::kOperator || !has_teleop_ || !has_map_) return next_goal(output);
@@ -165,7 +165,7 @@ void TunnelMission::await_teleop(const MissionInput& input, MissionOutput& outpu
     return enter(Phase::kSounding);
   }
   const bool is_over = input.teleop && input.teleop->hand_over;
-  if (!is_over && now_ - last_teleop_ <= from_seconds(settings_.driver_patience_s)) return;
+  if (!is_over && now_ - last_teleop_ <= from_seconds(settings_.operator_timeout_s)) return;
   if (!is_over) ++num_failed_;
   output.events.push_back(event(EventKind::kTeleopEnded, goal_name(), is_over ? "The robot goes on by itself." : "Nobody drives: the robot goes on by itself."));
   next_goal(output);
@@ -194,19 +194,19 @@ void TunnelMission::dock(const MissionInput& input, MissionOutput& output) {
 }
 
 void TunnelMission::start_run(MissionOutput& output) {
-  if (run_ >= settings_.navigations || goals_.empty()) return finish(output);
+  if (run_ >= settings_.num_runs || goals_.empty()) return finish(output);
   ++run_;
   goal_ = 0;
   output.relocalization = relocalization();
   output.events.push_back(event(EventKind::kNavigationStarted, fmt::format("navigation_{}", run_),
-                                fmt::format("Navigation {} of {}: {} goals.", run_, settings_.navigations, goals_.size()),
+                                fmt::format("Navigation {} of {}: {} goals.", run_, settings_.num_runs, goals_.size()),
                                 run_));
   enter(is_docked_ ? Phase::kUndocking : Phase::kDriving);
 }
 
 Relocalization TunnelMission::relocalization() const {
-  if (settings_.starts_at_survey) return Relocalization::kNone;
-  return settings_.starts_docked ? Relocalization::kAtDock : Relocalization::kAnywhere;
+  if (settings_.start_at_survey) return Relocalization::kNone;
+  return settings_.start_docked ? Relocalization::kAtDock : Relocalization::kAnywhere;
 }
 
 void TunnelMission::next_goal(MissionOutput& output) {
@@ -216,7 +216,7 @@ void TunnelMission::next_goal(MissionOutput& output) {
 }
 
 void TunnelMission::end_run(MissionOutput& output) {
-  if (settings_.docks) return enter(Phase::kDocking);
+  if (settings_.dock_after_run) return enter(Phase::kDocking);
   start_run(output);
 }
 

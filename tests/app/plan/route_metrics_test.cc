@@ -44,7 +44,7 @@ TEST(RouteFigures, TheAnyAngleOptimumIsLeftOutOfLargeGrids) {
   EXPECT_FALSE(figures_on({".....", ".....", "....."}).is_any_angle_left_out);
   EXPECT_TRUE(figures_on({"......", "......", "......"}).is_any_angle_left_out);
   EXPECT_TRUE(figures_on({"....." + std::string(200, '#')}).is_any_angle_left_out);  // few passable, but more than 8 * 15 in all
-  settings.planner = "any_angle_optimum";
+  settings.planner = "visibility_graph";
   EXPECT_NEAR(figures_on({"......", "......", "......"}).any_angle_length.value(), 4.0, kExactTol);  // it is there anyway
 }
 

@@ -18,7 +18,7 @@ const Eigen::Vector3d kTowards = Eigen::Vector3d(1.0, 0.2, -0.1).normalized();
 WaterSettings quick() {
   WaterSettings settings;
   settings.particles = 250;
-  settings.moves = 5;
+  settings.mcmc_steps = 5;
   return settings;
 }
 
