@@ -30,7 +30,7 @@ std::unique_ptr<Mission> make_gas_mission(const StackSettings& settings, const R
 
 void validate_goals(const std::vector<SavedGoal>& goals, const RobotDescription& robot, const Route& site_in_map) {
   if (std::none_of(goals.begin(), goals.end(), [](const SavedGoal& goal) { return goal.type == GoalType::kScan; })) return;
-  if (!site_in_map.lining) throw InputError("tour: a goal is of type D, but the site's survey has no lining");
+  if (!site_in_map.lining) throw InputError("tunnel_mission: goal of type D requires a lining in the site survey");
   robot.T_body("scanner");
 }
 
@@ -39,10 +39,10 @@ std::unique_ptr<Mission> make_tunnel_mission(const StackSettings& settings, cons
   auto mission = std::make_unique<TunnelMission>(settings.tunnel_mission, start.goals, start.has_teleop, start.map.has_value());
   validate_goals(start.goals, robot, site_in_map);
   if (!start.map && !start.has_teleop && settings.localizer == "automatic") {
-    throw InputError("tour: there is no map, and no remote control to make one");
+    throw InputError("tunnel_mission: requires a map or a teleoperated mapping drive");
   }
   const bool needs_dock = settings.tunnel_mission.dock_after_run || (settings.tunnel_mission.start_docked && !settings.tunnel_mission.start_at_survey);
-  if (needs_dock && !site_in_map.dock) throw InputError("tour: docks, but the site's survey has no dock");
+  if (needs_dock && !site_in_map.dock) throw InputError("tunnel_mission.dock_after_run: requires a dock in the site survey");
   return mission;
 }
 

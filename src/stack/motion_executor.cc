@@ -65,7 +65,7 @@ VelocityCommand MotionExecutor::navigate(Time now, const std::optional<Navigatio
   plan::NavigationStep step = navigator_.step(now, T_map_body);
   if (step.replanned) output.publish(Path{now, step.path});
   if (step.is_detour)
-    output.publish_event(now, T_map_body, EventKind::kReplan, "Something stands on the path: a new one is planned.");
+    output.publish_event(now, T_map_body, EventKind::kReplan, "Path blocked: replanning.");
   if (!step.text.empty()) output.publish_event(now, T_map_body, EventKind::kNavigation, step.text);
   if (!step.recovery.empty()) output.publish_event(now, T_map_body, EventKind::kRecovery, step.recovery);
   navigation_ = step.status;

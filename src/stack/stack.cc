@@ -93,7 +93,7 @@ void Stack::monitor_sensors(Time now, const Pose2& T_odom_body) {
   }
   if (!parts_.sensor_monitor.must_abort(now) || mission_is_over()) return;
   output_.publish(parts_.mission->abort(now, EventKind::kSensorFailed,
-                                        "A sensor that driving needs did not come back: the mission is over."));
+                                        "Required sensor did not recover: mission aborted."));
 }
 
 VelocityCommand Stack::control(const Period& period) {

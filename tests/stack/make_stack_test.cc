@@ -97,13 +97,13 @@ TEST(MakeStack, RefusesPartsThatDoNotGoTogether) {
   settings = {};
   settings.localizer = "monte_carlo";
   EXPECT_THAT([&] { make_stack(settings, quadruped, route_with_a_station(), {}); },
-              ThrowsMessage<InputError>(HasSubstr("stack.localizer = monte_carlo: there is no map")));
+              ThrowsMessage<InputError>(HasSubstr("stack.localizer = monte_carlo: requires a map")));
   settings.localizer = "slam";
   EXPECT_THAT([&] { make_stack(settings, quadruped, route_with_a_station(), {.map = map_of_small_room()}); },
-              ThrowsMessage<InputError>(HasSubstr("stack.localizer = slam: a map is given")));
+              ThrowsMessage<InputError>(HasSubstr("stack.localizer = slam: would replace the given map")));
   settings.localizer = "slam_then_monte_carlo";
   EXPECT_THAT([&] { make_stack(settings, quadruped, route_with_a_station(), {}); },
-              ThrowsMessage<InputError>(HasSubstr("no drive by remote control")));
+              ThrowsMessage<InputError>(HasSubstr("requires a teleoperated mapping drive")));
 }
 
 TEST(MakeStack, RefusesAGasStationWithoutAMethaneMeterAndADockingWithoutADock) {
@@ -117,7 +117,7 @@ TEST(MakeStack, RefusesAGasStationWithoutAMethaneMeterAndADockingWithoutADock) {
       [&] {
         make_stack(settings, robot, {}, {.map = map_of_small_room(), .goals = {{.number = 1, .T_map_body = {}}}});
       },
-      ThrowsMessage<InputError>(HasSubstr("no dock")));
+      ThrowsMessage<InputError>(HasSubstr("requires a dock")));
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ Beam beam_of(const ScannerPoint& point, std::uint32_t index, double spacing_m) {
 void check(const ScannerPoint& point) {
   for (const float value : {point.x, point.y, point.z}) {
     if (!(std::abs(value) <= kMaxRange_m)) {
-      throw InputError(fmt::format("a scan's point is ({}, {}, {}): must be finite and within {} m", point.x, point.y, point.z, kMaxRange_m));
+      throw InputError(fmt::format("scan point ({}, {}, {}): must be finite and within {} m", point.x, point.y, point.z, kMaxRange_m));
     }
   }
 }

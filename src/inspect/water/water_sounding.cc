@@ -16,7 +16,7 @@ double uniform_step(int index, int count, double max) { return count == 1 ? 0.0 
 
 void check_joint_limit(const char* name, double angle_deg, const JointLimit& limit) {
   if (-angle_deg * kDegree >= limit.lower_rad && angle_deg * kDegree <= limit.upper_rad) return;
-  throw InputError(fmt::format("stack.water.sounding.{} = {}: the mount reaches {:.1f} ... {:.1f} deg", name, angle_deg,
+  throw InputError(fmt::format("stack.inspection.water.sounding.{} = {}: outside the range of the mount: must be in [{:.1f}, {:.1f}] deg", name, angle_deg,
                                limit.lower_rad / kDegree, limit.upper_rad / kDegree));
 }
 
@@ -34,7 +34,7 @@ AntennaPose pose_of(const AntennaState& state) { return {state.yaw_rad, state.pi
 }  // namespace
 
 std::vector<AntennaPose> antenna_poses(const WaterSoundingSettings& settings, const AntennaGeometry& antenna) {
-  validate(settings, "stack.water.sounding");
+  validate(settings, "stack.inspection.water.sounding");
   check_joint_limit("max_yaw_deg", settings.max_yaw_deg, antenna.yaw);
   check_joint_limit("max_pitch_deg", settings.max_pitch_deg, antenna.pitch);
   std::vector<AntennaPose> poses;

@@ -25,7 +25,7 @@ void Docking::dock(Time now) {
   pose_filter_.reset();
   start_ = now;
   num_attempts_ = 1;
-  enter(Phase::kDetect, "Looking for the charging post.");
+  enter(Phase::kDetect, "Searching for the charging post.");
 }
 
 void Docking::undock(Time now, const Pose2& T_odom_body) {
@@ -66,15 +66,15 @@ DockingStep Docking::step(Time now, const Pose2& T_odom_body) {
   VelocityCommand command;
   if (phase_ == Phase::kUndock) command = drive_out(T_odom_body);
   if (status() == DockingStatus::kDocking || status() == DockingStatus::kUndocking) {
-    if (now - start_ > from_seconds(settings_.timeout_s)) enter(Phase::kFailed, "Docking took too long.");
+    if (now - start_ > from_seconds(settings_.timeout_s)) enter(Phase::kFailed, "Docking failed: timeout.");
   }
   if (status() == DockingStatus::kDocking) {
     const double detection_age_s = to_seconds(now - std::max(start_, pose_filter_.last_stamp()));
     if (detection_age_s > settings_.detection_timeout_s) {
-      enter(Phase::kFailed, "The charging post is not to be seen.");
+      enter(Phase::kFailed, "Docking failed: charging post not detected.");
     } else if (pose_filter_.num_detections() >= settings_.min_detections && detection_age_s <= settings_.max_detection_gap_s) {
       const Pose2 T_docked_body = pose_filter_.T_odom_docked()->inverse() * T_odom_body;
-      if (phase_ == Phase::kDetect) enter(Phase::kTurn, "The charging post is found.");
+      if (phase_ == Phase::kDetect) enter(Phase::kTurn, "Charging post detected.");
       if (phase_ == Phase::kTurn) command = turn_to_line(T_docked_body);
       if (phase_ == Phase::kDriveIn) command = drive_in(now, T_docked_body);
       if (phase_ == Phase::kCheck) check_docked(now, T_docked_body);
@@ -142,13 +142,13 @@ VelocityCommand Docking::back_up(const Pose2& T_docked_body) {
 VelocityCommand Docking::drive_out(const Pose2& T_odom_body) {
   const Pose2 T_left_body = T_odom_left_.inverse() * T_odom_body;
   if (-T_left_body.x < settings_.undock_distance_m) return follow_line(settings_.line, T_left_body, -settings_.max_speed_mps);
-  enter(Phase::kFree, "Clear of the charging post.");
+  enter(Phase::kFree, "Left the charging post.");
   return {};
 }
 
 void Docking::retry() {
-  if (++num_attempts_ > settings_.max_attempts) return enter(Phase::kFailed, "The robot could not get in line with the charging post.");
-  enter(Phase::kBackUp, "Off the line to the charging post: backing up to try again.");
+  if (++num_attempts_ > settings_.max_attempts) return enter(Phase::kFailed, "Docking failed: no alignment with the charging post.");
+  enter(Phase::kBackUp, "Docking: outside the approach corridor, backing up to retry.");
 }
 
 void Docking::enter(Phase phase, const char* text) {

@@ -5,18 +5,23 @@
 namespace patrol::plan {
 namespace {
 
-using Settings = LocalPlannerSettings;
-using Planner = std::unique_ptr<LocalPlanner>;
+using LocalPlannerFactory = NamedFactory<std::unique_ptr<LocalPlanner>(const LocalPlannerSettings&)>;
 
-constexpr std::array kLocalPlanners = std::to_array<NamedFactory<Planner(const Settings&)>>({
-    {"dwa", "Dynamic window approach over forward simulated arcs",
-     [](const Settings& settings) -> Planner { return std::make_unique<DynamicWindow>(settings.dwa); }},
-    {"dwa_liu21", "Dynamic window approach as printed in [Liu21]",
-     [](const Settings& settings) -> Planner { return std::make_unique<DwaLiu21>(settings.dwa_liu21); }},
+std::unique_ptr<LocalPlanner> make_dwa(const LocalPlannerSettings& settings) {
+  return std::make_unique<DynamicWindow>(settings.dwa);
+}
+
+std::unique_ptr<LocalPlanner> make_dwa_liu21(const LocalPlannerSettings& settings) {
+  return std::make_unique<DwaLiu21>(settings.dwa_liu21);
+}
+
+constexpr std::array kLocalPlanners = std::to_array<LocalPlannerFactory>({
+    {"dwa", "Dynamic window approach over forward simulated arcs", make_dwa},
+    {"dwa_liu21", "Dynamic window approach as printed in [Liu21]", make_dwa_liu21},
 });
 
 }  // namespace
 
-std::span<const NamedFactory<Planner(const Settings&)>> local_planners() { return kLocalPlanners; }
+std::span<const LocalPlannerFactory> local_planners() { return kLocalPlanners; }
 
 }  // namespace patrol::plan

@@ -7,17 +7,17 @@ const char* describe(NavigationFailure failure) {
     case NavigationFailure::kNone:
       return "";
     case NavigationFailure::kStartBlocked:
-      return "The robot stands too near to an obstacle to set off.";
+      return "Start pose is in collision.";
     case NavigationFailure::kGoalBlocked:
-      return "The goal lies in an obstacle or too near to one.";
+      return "Goal pose is in collision.";
     case NavigationFailure::kNoRoute:
-      return "There is no route to the goal.";
+      return "No path to the goal exists.";
     case NavigationFailure::kNotFound:
-      return "The planner finds no route to the goal.";
+      return "Planner failed to find a path (planner is not complete).";
     case NavigationFailure::kPathBlocked:
-      return "Something stands in the way.";
+      return "Path is blocked.";
     case NavigationFailure::kNoProgress:
-      return "The robot moves and gets nowhere.";
+      return "Robot is not making progress.";
   }
   return "";
 }

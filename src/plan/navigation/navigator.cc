@@ -104,7 +104,7 @@ void Navigator::check_end(Time now, const Pose2& T_map_body) {
     failure_ = NavigationFailure::kNone;
   } else if (state_ != State::kFailed && must_abort(now)) {
     state_ = State::kFailed;
-    text_ = std::string("The goal is given up. ") + describe(failure_);
+    text_ = std::string("Navigation aborted: ") + describe(failure_);
   }
 }
 

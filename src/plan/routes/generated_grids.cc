@@ -98,7 +98,7 @@ GeneratedGrid generate_grid(const GeneratedGridSettings& settings, std::uint64_t
     else generate_maze(settings, random, grid);
     if (are_connected(grid.costs, grid.start, grid.goal)) return grid;
   }
-  throw InputError(fmt::format("grid: no way between the corners in {} draws of {} x {} cells, {}", kMaxSamples, size, size, settings.kind));
+  throw InputError(fmt::format("grid: corners not connected in {} samples of {} x {} cells, {}", kMaxSamples, size, size, settings.kind));
 }
 
 }  // namespace patrol::plan

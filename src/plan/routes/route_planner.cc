@@ -105,7 +105,7 @@ std::vector<Cell> reachable_cells(const Grid<Cost>& costs, Cell start) {
 
 std::array<double, 256> cost_factors(double cost_weight) {
   if (!(cost_weight >= 0.0 && cost_weight <= kMaxCostWeight)) {
-    throw InputError(fmt::format("cost_weight = {}: must lie in 0 ... {}", cost_weight, kMaxCostWeight));
+    throw InputError(fmt::format("cost_weight = {}: must be in [0, {}]", cost_weight, kMaxCostWeight));
   }
   std::array<double, 256> factors;
   for (std::size_t cost = 0; cost < factors.size(); ++cost) {

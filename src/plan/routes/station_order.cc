@@ -20,22 +20,22 @@ constexpr double kRounding = 1e-9;
 void check(const TourProblem& problem) {
   const std::size_t count = problem.travel.size();
   const auto refuse = [](const std::string& what) { throw InputError("tour: " + what); };
-  if (count == 0) refuse("there are no stations");
+  if (count == 0) refuse("no stations: must be at least 1");
   for (std::size_t i = 0; i < count; ++i) {
-    if (problem.travel[i].size() != count) refuse(fmt::format("row {} of travel has {} figures: must be {}", i, problem.travel[i].size(), count));
+    if (problem.travel[i].size() != count) refuse(fmt::format("row {} of travel has {} values: must be {}", i, problem.travel[i].size(), count));
     for (std::size_t j = 0; j < count; ++j) {
       if (!(problem.travel[i][j] >= 0.0)) refuse(fmt::format("travel from {} to {} is {}: must be at least 0", i, j, problem.travel[i][j]));
     }
   }
-  if (!problem.stations.empty() && problem.stations.size() != count) refuse(fmt::format("{} stations are described: must be {}", problem.stations.size(), count));
+  if (!problem.stations.empty() && problem.stations.size() != count) refuse(fmt::format("{} station descriptions: must be {}", problem.stations.size(), count));
   for (std::size_t i = 0; i < problem.stations.size(); ++i) {
     const TourProblem::Station& station = problem.stations[i];
     if (!(station.service >= 0.0) || !(station.earliest >= 0.0) || !std::isfinite(station.service + station.earliest) || !(station.latest >= station.earliest)) {
-      refuse(fmt::format("station {} has service {} and window {} ... {}: must be at least 0, and in order", i, station.service, station.earliest, station.latest));
+      refuse(fmt::format("station {} has service {} and window [{}, {}]: must be at least 0 and in order", i, station.service, station.earliest, station.latest));
     }
   }
   for (const auto& end : {problem.start, problem.end}) {
-    if (end && *end >= count) refuse(fmt::format("there is no station {}", *end));
+    if (end && *end >= count) refuse(fmt::format("unknown station {}: must be in [0, {}]", *end, count - 1));
   }
 }
 

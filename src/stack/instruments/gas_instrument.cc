@@ -24,7 +24,7 @@ InspectionProgress GasInstrument::step(const InspectionContext& context) {
   }
   if (context.now < from + from_seconds(std::max(rules_.measurement_duration_s, rules_.measurement_timeout_s))) return {};
   return {.feedback = InspectionFeedback::kFailed,
-          .failure = fmt::format("The methane meter gave {} readings at {}, {} are needed.", measurement_.count(),
+          .failure = fmt::format("Too few methane readings: {} at {}, at least {} required.", measurement_.count(),
                                  order_.station, rules_.min_readings)};
 }
 

@@ -63,7 +63,7 @@ std::unique_ptr<OdometrySource> make_odometry_source(const StackSettings& settin
   if (settings.odometry_source == "tracked") return std::make_unique<TrackedOdometry>(robot, settings);
   if (robot.legs.empty()) {
     throw InputError(
-        fmt::format("stack.odometry_source = {}: the robot {} has no legs", settings.odometry_source, robot.name));
+        fmt::format("stack.odometry_source = {}: robot {} has no legs", settings.odometry_source, robot.name));
   }
   return std::make_unique<LeggedOdometry>(robot, settings);
 }

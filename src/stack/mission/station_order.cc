@@ -56,15 +56,15 @@ StationOrder order_stations(const Route& route_in_map, const RobotDescription& r
   for (const Eigen::Vector2d& place : positions) costmap.include(place, kMapMargin_m);
   plan::GlobalPlanner planner(navigation.global_planner, seed);
   const plan::TourOrder order = plan::solve_station_order(problem_of(route_in_map.stations, lengths_between(positions, costmap, planner), mission), {}, seed);
-  if (!order.is_found) return {.stations = route_in_map.stations, .text = "No order reaches all stations: the given one is kept."};
+  if (!order.is_found) return {.stations = route_in_map.stations, .text = "No order reaches all stations: given order kept."};
 
   StationOrder ordered;
   for (const std::size_t place : order.stations) {
     if (place > 0) ordered.stations.push_back(route_in_map.stations[place - 1]);
   }
-  ordered.text = fmt::format("In this order they should take {:.0f} s{}; {}.", order.completion,
-                             order.lateness > 0.0 ? fmt::format(", with {:.0f} s of lateness that cannot be helped", order.lateness) : "",
-                             order.is_exact ? "none is sooner" : fmt::format("the soonest may be up to {:.1f} % sooner", 100.0 * order.gap()));
+  ordered.text = fmt::format("Expected duration in this order: {:.0f} s{}; {}.", order.completion,
+                             order.lateness > 0.0 ? fmt::format(", with an unavoidable delay of {:.0f} s", order.lateness) : "",
+                             order.is_exact ? "optimal" : fmt::format("the optimum is at most {:.1f} % faster", 100.0 * order.gap()));
   return ordered;
 }
 

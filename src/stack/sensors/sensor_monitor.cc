@@ -54,13 +54,13 @@ std::vector<SensorChange> SensorMonitor::step(Time now, const Pose2& T_odom_body
     if (info.is_required_to_drive && state != State::kFine) can_drive = false;
     if (std::exchange(sensor.state, state) == state) continue;
     const auto add = [&](const char* what) {
-      changes.push_back({.sensor = info.name, .has_recovered = state == State::kFine, .text = fmt::format("The {} {}.", info.name, what)});
+      changes.push_back({.sensor = info.name, .has_recovered = state == State::kFine, .text = fmt::format("Sensor {} {}.", info.name, what)});
     };
     switch (state) {
-      case State::kFine: add("is back"); break;
-      case State::kTimedOut: add("is silent or late"); break;
-      case State::kWrongClock: add("has a wrong clock"); break;
-      case State::kFrozen: add("repeats itself"); break;
+      case State::kFine: add("has recovered"); break;
+      case State::kTimedOut: add("timed out"); break;
+      case State::kWrongClock: add("has timestamps in the future"); break;
+      case State::kFrozen: add("is frozen (repeated readings)"); break;
     }
   }
   if (can_drive) halted_since_.reset();

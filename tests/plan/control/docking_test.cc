@@ -133,7 +133,7 @@ TEST(Docking, AGyroBiasOfAThousandthOfARadianPerSecondDoesNotMakeItMiss) {
     const DockRun run = run_docking(c);
     EXPECT_EQ(run.status, DockingStatus::kDocked) << "seed " << seed;
     EXPECT_LE(run.T_docked_body.position().norm(), 0.02) << "seed " << seed;
-    EXPECT_THAT(run.texts, ::testing::Not(::testing::Contains(::testing::HasSubstr("try again")))) << "seed " << seed;
+    EXPECT_THAT(run.texts, ::testing::Not(::testing::Contains(::testing::HasSubstr("to retry")))) << "seed " << seed;
   }
 }
 
@@ -151,7 +151,7 @@ TEST(Docking, OffTheLineNearThePostBacksUpAndTriesAgain) {
   const DockRun run = run_docking(c);
   EXPECT_EQ(run.status, DockingStatus::kDocked);
   EXPECT_LE(run.T_docked_body.position().norm(), 0.02);
-  EXPECT_THAT(run.texts, ::testing::Contains(::testing::HasSubstr("backing up to try again")));
+  EXPECT_THAT(run.texts, ::testing::Contains(::testing::HasSubstr("backing up to retry")));
 }
 
 TEST(Docking, StandsWhileThePostIsHiddenAndGoesOn) {
@@ -169,7 +169,7 @@ TEST(Docking, SaysThatThePostIsNotToBeSeen) {
   const DockRun run = run_docking(c);
   EXPECT_EQ(run.status, DockingStatus::kFailed);
   EXPECT_NEAR(run.time_s, DockingSettings{}.detection_timeout_s, 0.2);
-  EXPECT_EQ(run.texts.back(), "The charging post is not to be seen.");
+  EXPECT_EQ(run.texts.back(), "Docking failed: charging post not detected.");
   EXPECT_EQ(run.T_docked_body.x, -1.3);  // it has not moved blindly
 }
 
@@ -208,7 +208,7 @@ TEST(Docking, RefusesSettingsThatBreakTheirRule) {
   DockingSettings settings;
   settings.max_attempts = 0;
   EXPECT_THAT([&] { Docking{settings}; },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("docking.max_tries = 0")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("docking.max_attempts = 0")));
 }
 
 }  // namespace

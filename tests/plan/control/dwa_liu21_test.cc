@@ -134,7 +134,7 @@ TEST(DwaLiu21, StopsBeforeABlockOnThePath) {
 
 TEST(DwaLiu21, RefusesSettingsThatBreakTheirRule) {
   EXPECT_THAT([] { DwaLiu21({.window_s = 0.0}); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("paper_dwa.window_s = 0")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("dwa_liu21.window_s = 0")));
 }
 
 }  // namespace

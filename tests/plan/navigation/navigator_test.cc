@@ -214,13 +214,13 @@ TEST(Navigator, TellsAGoalInAWallFromOneWithoutARoute) {
   EXPECT_EQ(in_wall.end, NavigationStatus::kFailed);
   EXPECT_EQ(in_wall.failure, NavigationFailure::kGoalBlocked);
   EXPECT_THAT(in_wall.texts,
-              ::testing::ElementsAre("The goal lies in an obstacle or too near to one.",
-                                     "The goal is given up. The goal lies in an obstacle or too near to one."));
+              ::testing::ElementsAre("Goal pose is in collision.",
+                                     "Navigation aborted: Goal pose is in collision."));
   EXPECT_NEAR(in_wall.time_s, 5.0, 1.0);
   const DriveRecord behind = drive(navigator, room, {-2.0, 0.0, 0.0}, make_goal({3.0, 0.0, 0.0}), 30.0);
   EXPECT_EQ(behind.end, NavigationStatus::kFailed);
   EXPECT_EQ(behind.failure, NavigationFailure::kNoRoute);
-  EXPECT_EQ(behind.texts.back(), "The goal is given up. There is no route to the goal.");
+  EXPECT_EQ(behind.texts.back(), "Navigation aborted: No path to the goal exists.");
   const DriveRecord walled_in = drive(navigator, room, {-4.0, 0.0, 0.0}, make_goal({-1.0, 3.0, 0.0}), 30.0);
   EXPECT_EQ(walled_in.failure, NavigationFailure::kNoRoute);
   const DriveRecord free = drive(navigator, room, {-2.0, 0.0, 0.0}, make_goal({-1.0, 2.9, 0.0}), 30.0);
@@ -240,7 +240,7 @@ TEST(Navigator, LooksAroundAsARecovery) {
       make_goal({12.0, 0.0, 0.0}), 90.0);
   EXPECT_EQ(record.end, NavigationStatus::kArrived);
   EXPECT_GE(record.recoveries.size(), 1u);
-  EXPECT_THAT(record.recoveries, ::testing::Each("Recovery: the robot looks around."));
+  EXPECT_THAT(record.recoveries, ::testing::Each("Recovery: spinning in place."));
   EXPECT_GT(record.turned_rad, 2.0 * pi);
 }
 
@@ -350,7 +350,7 @@ TEST(Navigator, SaysThatItsPlannerFoundNothingWhereThatProvesNothing) {
   navigator.set_goal(make_goal({4.0, 0.0, 0.0}));
   const NavigationStep step = navigator.step(Time{}, {-4.0, 0.0, 0.0});
   EXPECT_EQ(step.failure, NavigationFailure::kNotFound);
-  EXPECT_EQ(step.text, "The planner finds no route to the goal.");
+  EXPECT_EQ(step.text, "Planner failed to find a path (planner is not complete).");
 }
 
 TEST(Navigator, GivesTheSameCommandsAgain) {
@@ -371,7 +371,7 @@ TEST(Navigator, RefusesARobotWithoutAnOutlineAndSettingsThatBreakTheirRule) {
   NavigatorSettings settings;
   settings.goal_approach_distance_m = -1.0;
   EXPECT_THAT([&] { Navigator(settings, make_robot(), {}); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("plan.approach_m = -1")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("navigation.goal_approach_distance_m = -1")));
 }
 
 }  // namespace

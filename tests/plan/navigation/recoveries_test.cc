@@ -30,7 +30,7 @@ NavigatorSettings make_settings(const std::vector<std::string>& recoveries) {
   settings.recovery.behaviors = recoveries;
   settings.blocked_timeout_s = 3.0;
   settings.recovery.back_up_duration_s = 2.0;
-  settings.recovery.back_up_duration_speed_mps = 0.1;
+  settings.recovery.back_up_speed_mps = 0.1;
   settings.turn_in_place_rate_radps = 0.5;
   settings.recovery.max_attempts = 4;
   return settings;
@@ -86,14 +86,14 @@ TEST(RecoverySequence, TakesTheBehaviorsInTurnUpToItsLimit) {
   RecoverySequence sequence(make_settings({"wait", "back_up"}));
   std::vector<std::string> sentences;
   for (int i = 0; i < 4; ++i) sentences.push_back(sequence.begin_next(10s, {}, costmap));
-  EXPECT_THAT(sentences, ::testing::ElementsAre("Recovery: the robot waits.", "Recovery: the robot backs up.",
-                                                "Recovery: the robot waits.", "Recovery: the robot backs up."));
+  EXPECT_THAT(sentences, ::testing::ElementsAre("Recovery: waiting.", "Recovery: backing up.",
+                                                "Recovery: waiting.", "Recovery: backing up."));
   EXPECT_FALSE(sequence.is_exhausted());
   sequence.begin_next(10s, {}, costmap);
   EXPECT_TRUE(sequence.is_exhausted());
   sequence.reset();
   EXPECT_FALSE(sequence.is_exhausted());
-  EXPECT_STREQ(sequence.begin_next(10s, {}, costmap), "Recovery: the robot waits.");
+  EXPECT_STREQ(sequence.begin_next(10s, {}, costmap), "Recovery: waiting.");
 }
 
 TEST(RecoverySequence, EndsARecoveryThatHasNoRoom) {
@@ -107,7 +107,7 @@ TEST(RecoverySequence, EndsARecoveryThatHasNoRoom) {
 
 TEST(Recoveries, UnknownNamesAreRefusedWithThoseAllowed) {
   EXPECT_THAT([] { make_recovery("jump", make_settings({})); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("must be one of wait, clear, back_up, look_around")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("must be one of wait, clear_costmap, back_up, spin")));
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ TEST(DualSwarmPso, ImproveOnTheFirstParticles) {
 }
 
 TEST(DualSwarmPso, RefusesNoParticles) {
-  EXPECT_THAT([] { DualSwarmPso({.particles = 0}, 0.0, 0); }, ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("two_swarms.particles = 0")));
+  EXPECT_THAT([] { DualSwarmPso({.particles = 0}, 0.0, 0); }, ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("dual_swarm_pso.particles = 0")));
 }
 
 }  // namespace

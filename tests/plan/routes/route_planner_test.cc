@@ -138,7 +138,7 @@ TEST_P(EveryPlanner, GivesTheSameRouteAgainWithTwoThreadsAndWhateverItPlannedBef
 
 // The corridor's middle third costs 1 + 4 in each cell: 3 + 3 x 5 for cells 3, 4, 5 of 0 ... 8, whose ends count half: 8 + 3 x 4 = 20.
 TEST_P(EveryPlanner, PricesARouteByTheCostsItCrosses) {
-  if (GetParam() == "visibility_graph") return;  // it knows no costs, and refuses a weight (below)
+  if (GetParam() == "visibility_graph") return;  // it must be 0 for visibility_graph, and refuses a weight (below)
   const Route route = make(GetParam(), 4.0)->plan(draw({"...999..."}), {0, 0}, {8, 0});
   ASSERT_EQ(route.status, PlanStatus::kFound);
   EXPECT_NEAR(route.length, 8.0, kExactTol);
@@ -155,7 +155,7 @@ TEST(RoutePlanners, AreEightOfWhichARobotDrivesBySeven) {
 TEST(RoutePlanners, RefuseAWrongNameAndACostWeightForTheOptimum) {
   using ::testing::HasSubstr, ::testing::ThrowsMessage;
   EXPECT_THAT([] { make_route_planner("ants", {}, 0); }, ThrowsMessage<InputError>(HasSubstr("planner = ants: must be one of astar, dijkstra")));
-  EXPECT_THAT([] { make_route_planner("visibility_graph", {.cost_weight = 1.0}, 0); }, ThrowsMessage<InputError>(HasSubstr("knows no costs")));
+  EXPECT_THAT([] { make_route_planner("visibility_graph", {.cost_weight = 1.0}, 0); }, ThrowsMessage<InputError>(HasSubstr("must be 0 for visibility_graph")));
   EXPECT_THAT([] { cost_factors(-1.0); }, ThrowsMessage<InputError>(HasSubstr("cost_weight = -1")));
 }
 

@@ -47,10 +47,10 @@ TEST(FindMoments, TheLargestErrorIsOne) {
 
 TEST(FindMoments, ALiningAlarmIsOneAndLooksAtTheRing) {
   RunHistory history = quiet_minute();
-  history.events.push_back({.stamp = 20s, .kind = EventKind::kLiningAlarm, .subject = "ring_31", .text = "Ring 31 has moved inwards by 12.0 mm.", .T_map_body = {}, .p_map_target = {3.0, 4.0}});
+  history.events.push_back({.stamp = 20s, .kind = EventKind::kLiningAlarm, .subject = "ring_31", .text = "Ring 31 has moved inward by 12.0 mm.", .T_map_body = {}, .p_map_target = {3.0, 4.0}});
   const std::vector<Highlight> moments = moments_of(history);
   ASSERT_THAT(instants(moments, HighlightKind::kAlarm), ElementsAre(20s));
-  EXPECT_EQ(moments[0].title, "Ring 31 has moved inwards by 12.0 mm");
+  EXPECT_EQ(moments[0].title, "Ring 31 has moved inward by 12.0 mm");
   EXPECT_EQ(moments[0].p_world_subject, Eigen::Vector2d(3.0, 4.0));
 }
 

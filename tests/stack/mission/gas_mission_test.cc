@@ -158,7 +158,7 @@ TEST(GasMission, WalksMeasuresAndCompletesInOrder) {
 
 TEST(GasMission, NamesItsStationsWhenItStarts) {
   GasRound mission(make_settings(), make_route(), {}, "They should take 9 s.");
-  EXPECT_EQ(run(mission, clean_air).find(EventKind::kMissionStarted).text, "The mission starts: 3 stations, first, second, home. They should take 9 s.");
+  EXPECT_EQ(run(mission, clean_air).find(EventKind::kMissionStarted).text, "Mission started: 3 stations, first, second, home. They should take 9 s.");
 }
 
 // It arrives after three seconds and measures one and a half; the second station opens at the tenth.
@@ -398,7 +398,7 @@ TEST(GasMission, RefusesAnEmptyRouteAndSettingsThatBreakTheirRule) {
   GasMissionSettings settings = make_settings();
   settings.min_readings = 0;
   EXPECT_THAT([&] { GasRound(settings, make_route(), {}); },
-              ::testing::ThrowsMessage<InputError>(HasSubstr("mission.min_readings = 0")));
+              ::testing::ThrowsMessage<InputError>(HasSubstr("gas_mission.min_readings = 0")));
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ TEST(TunnelMission, AGoalWithoutAWayIsReportedAndLeftOut) {
   robot.navigation = NavigationFeedback::kFailed;
   robot.run(100.0);
   EXPECT_EQ(robot.count(EventKind::kGoalFailed), 2);
-  EXPECT_EQ(robot.events.back().text, "2 things went wrong on the way.");
+  EXPECT_EQ(robot.events.back().text, "Tasks failed: 2.");
   EXPECT_EQ(robot.count(EventKind::kMissionFailed), 1);
   EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 0);
 }
