@@ -41,7 +41,7 @@ WaterResult sound_and_invert(const Truth& truth, bool has_water, std::uint64_t s
   // Half of the robot's own particles and moves, for the sake of the test's seconds.
   inspect::WaterSettings settings;
   settings.particles = 250;
-  settings.moves = 4;
+  settings.mcmc_steps = 4;
   const AntennaGeometry antenna = test::antenna_mount();
   std::vector<sim::WaterBodySettings> water;
   if (has_water) {

@@ -138,7 +138,7 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
   if (!scenario.references.empty()) {
     for (const std::filesystem::path& file : io::station_scan_files(world / scenario.references)) files.push_back(file);
   }
-  if (needs_neighbor_model(scenario.stack.mapping)) files.push_back(data_root / kNeighborModel);
+  if (needs_neighbor_model(scenario.stack.slam.method)) files.push_back(data_root / kNeighborModel);
   return files;
 }
 
@@ -162,7 +162,7 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
     files.goals = io::load_nav(file);
     stack::validate_goals(file.string(), files.goals, files.map);
   }
-  files.neighbor_model = load_neighbor_model(scenario.stack.mapping, data_root);
+  files.neighbor_model = load_neighbor_model(scenario.stack.slam.method, data_root);
   if (!scenario.references.empty()) files.references = io::load_station_scans(files.world_xml.parent_path() / scenario.references);
   const TeleopSettings& teleop = scenario.teleop;
   if (!teleop.route.empty() && !teleop.recorded.empty()) {

@@ -27,7 +27,7 @@ void save_drive(const RunDirectory& directory, const Scenario& scenario, const R
     if (event.kind != EventKind::kGoalSaved) continue;
     goals.push_back({.number = static_cast<int>(goals.size()) + 1,
                      .T_map_body = event.T_map_body,
-                     .type = scenario.stack.tour.goal_type(goals.size())});
+                     .type = scenario.stack.tunnel_mission.goal_type(goals.size())});
   }
   if (!goals.empty()) io::save_nav(directory.nav(), goals);
 }

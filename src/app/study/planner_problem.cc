@@ -35,10 +35,10 @@ DrivableWorld load_world(const std::string& name) {
   const std::filesystem::path root = find_data_root("");
   const Scenario scenario = load_scenario(root / found->second, {});
   const ScenarioFiles files = load_scenario_files(scenario, root);
-  plan::CostmapSettings settings = scenario.stack.plan.costmap;
+  plan::CostmapSettings settings = scenario.stack.navigation.costmap;
   settings.resolution_m = kPlanningCell_m;
-  settings.crosses_unknown = false;
-  plan::Costmap costmap(settings, plan::Footprint(files.robot.footprint_m, scenario.stack.plan.footprint_rows), files.route.keep_out_lines);
+  settings.allow_unknown = false;
+  plan::Costmap costmap(settings, plan::Footprint(files.robot.footprint_m, scenario.stack.navigation.footprint_rows), files.route.keep_out_lines);
   costmap.set_map(world_surfaces(files, kProblemCell_m).surfaces);
   DrivableWorld world{.costs = costmap.cost(), .reachable = {}};
   for (plan::Cost& cost : world.costs.values()) cost = cost == plan::kLethalCost ? plan::kLethalCost : plan::kFreeCost;

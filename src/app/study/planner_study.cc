@@ -48,15 +48,15 @@ struct PlannerMethod {
 
 /// Methods; all others are compared with the first. The last two are lower bounds, over eight neighbors and over all
 /// paths.
-constexpr std::array<PlannerMethod, 9> kPlannerMethods = {{{"improved ant colony (this work)", "ant_colony", true, SeriesColor::kEstimate},
-                                                    {"ant colony [Li22]", "ant_colony", true, SeriesColor::kEvent, false},
-                                                    {"ant system", "plain_ant_colony", true, SeriesColor::kOdometry},
-                                                    {"dual swarm", "two_swarms", true, SeriesColor::kRanges},
+constexpr std::array<PlannerMethod, 9> kPlannerMethods = {{{"improved ant colony (this work)", "ant_colony_li22", true, SeriesColor::kEstimate},
+                                                    {"ant colony [Li22]", "ant_colony_li22", true, SeriesColor::kEvent, false},
+                                                    {"ant system", "ant_system", true, SeriesColor::kOdometry},
+                                                    {"dual swarm", "dual_swarm_pso", true, SeriesColor::kRanges},
                                                     {"Q-learning", "q_learning", true, SeriesColor::kAlarm},
                                                     {"Theta*", "theta_star", false, SeriesColor::kEvent},
                                                     {"Dijkstra", "dijkstra", false, SeriesColor::kTrust},
                                                     {"A*", "astar", false, SeriesColor::kTruth},
-                                                    {"any-angle optimum", "any_angle_optimum", false, SeriesColor::kBound}}};
+                                                    {"any-angle optimum", "visibility_graph", false, SeriesColor::kBound}}};
 constexpr std::size_t kAstar = 7, kOptimum = 8;
 
 const std::vector<studies::StudyMetric> kPlannerMetrics = {{.name = "longer than A*", .unit = "%", .is_compared = true},
@@ -75,7 +75,7 @@ struct Planned {
 
 Planned plan_by(const PlannerMethod& method, const PlannerProblem& problem, std::uint64_t seed) {
   plan::RoutePlannerSettings settings{.max_steps_millions = kMaxStepsMillions};
-  settings.improved_colony.tightens = method.tightens;
+  settings.improved_colony.shorten_paths = method.tightens;
   settings.ant_colony.threads = 1;  // seeds run in parallel
   const auto planner = plan::make_route_planner(method.name, settings, seed);
   const double start_s = thread_cpu_time_s();
@@ -99,7 +99,7 @@ std::vector<std::vector<double>> flatten_metrics(const std::array<Planned, kPlan
     const plan::Route& route = all[m].route;
     const bool is_found = route.status == plan::PlanStatus::kFound, iterates = kPlannerMethods[m].iterates && is_found;
     metrics.push_back({is_found ? 100.0 * (route.length / astar - 1.0) : kNoPlannerMetric,
-                       iterates ? plan::iterations_to_within(route.history, 0.01) : kNoPlannerMetric,
+                       iterates ? plan::iterations_to_convergence(route.history, 0.01) : kNoPlannerMetric,
                        iterates ? iterations_to_length(route.history, 1.03 * astar) : kNoPlannerMetric,
                        is_found ? 100.0 : 0.0,
                        is_found ? 100.0 * (route.length / optimum - 1.0) : kNoPlannerMetric,
@@ -154,7 +154,7 @@ report::MapBlock routes_on(const PlannerProblem& problem, const std::array<Plann
   block.picture = report::map_picture({.built = map, .T_world_map = {}, .truth = {}, .error_m = {}}, shown);
   for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) {
     if (m != kOptimum && !kPlannerMethods[m].iterates) continue;
-    block.paths.push_back({kPlannerMethods[m].title, kPlannerMethods[m].ink, {plan::to_metres(grid, all[m].route.points)}});
+    block.paths.push_back({kPlannerMethods[m].title, kPlannerMethods[m].ink, {plan::to_meters(grid, all[m].route.points)}});
   }
   for (const auto& [label, cell] : {std::pair("start", problem.start), std::pair("goal", problem.goal)}) {
     block.marks.push_back({.label = label, .ink = SeriesColor::kTruth, .p_m = grid.center_of(cell)});

@@ -52,10 +52,10 @@ struct Mapped {
 
 Mapped map_by(const GridMethod& method, const StudyRun& patrol) {
   stack::StackSettings settings = patrol.scenario.stack;
-  settings.mapping = method.mapping;
-  settings.slam.filter.proposal = method.proposal;
-  settings.slam.filter.optimizer = method.optimizer;
-  settings.slam.filter.particles = method.particles;
+  settings.slam.method = method.mapping;
+  settings.slam.rbpf.filter.proposal = method.proposal;
+  settings.slam.rbpf.filter.optimizer = method.optimizer;
+  settings.slam.rbpf.filter.particles = method.particles;
   const double before_mb = heap_mb();
   LogMapper mapper(settings, patrol.files.robot, patrol.scenario.seed);
   mapper.map(patrol.log);

@@ -18,9 +18,11 @@ slam::GraphSlamSettings default_graph_settings() {
 
 slam::ScanOdometryRbpfSettings default_rbpf_settings() { return {.odometry = "given", .scan_odometry = {}, .filter = {}}; }
 
-std::unique_ptr<slam::Mapper> make_mapper(const StackSettings& settings, const BoostedStumps& neighbor_model, std::uint64_t seed) {
-  return slam::make_mapper(
-      {.method = settings.mapping, .graph = settings.graph, .rbpf = settings.slam, .submap_rbpf = settings.submap_rbpf}, neighbor_model, seed);
+slam::MapperSettings default_slam_settings() {
+  slam::MapperSettings settings;
+  settings.graph = default_graph_settings();
+  settings.rbpf = default_rbpf_settings();
+  return settings;
 }
 
 }  // namespace patrol::stack

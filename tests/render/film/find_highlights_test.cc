@@ -47,10 +47,10 @@ TEST(FindMoments, TheLargestErrorIsOne) {
 
 TEST(FindMoments, ALiningAlarmIsOneAndLooksAtTheRing) {
   RunHistory history = quiet_minute();
-  history.events.push_back({.stamp = 20s, .kind = EventKind::kLiningAlarm, .subject = "ring_31", .text = "Ring 31 has moved inwards by 12.0 mm.", .T_map_body = {}, .p_map_target = {3.0, 4.0}});
+  history.events.push_back({.stamp = 20s, .kind = EventKind::kLiningAlarm, .subject = "ring_31", .text = "Ring 31 has moved inward by 12.0 mm.", .T_map_body = {}, .p_map_target = {3.0, 4.0}});
   const std::vector<Highlight> highlights = moments_of(history);
   ASSERT_THAT(instants(highlights, HighlightKind::kAlarm), ElementsAre(20s));
-  EXPECT_EQ(highlights[0].title, "Ring 31 has moved inwards by 12.0 mm");
+  EXPECT_EQ(highlights[0].title, "Ring 31 has moved inward by 12.0 mm");
   EXPECT_EQ(highlights[0].p_world_subject, Eigen::Vector2d(3.0, 4.0));
 }
 
