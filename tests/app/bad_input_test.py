@@ -150,7 +150,7 @@ class BadInput(unittest.TestCase):
         self.refuse_run(SHORT, "--set", "leaks.0.at=nowhere", says=["nowhere"])
 
     def test_costmap_coarser_than_the_map(self):
-        self.refuse_run(SHORT, "--set", "stack.graph.tracking.resolution_m=0.2", says=["costmap.resolution_m", "0.2"])
+        self.refuse_run(SHORT, "--set", "stack.slam.graph.scan_odometry.resolution_m=0.2", says=["costmap.resolution_m", "0.2"])
 
     def test_robot_without_the_methane_meters_frame(self):
         root = pathlib.Path(self.folder.name)

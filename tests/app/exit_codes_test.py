@@ -75,7 +75,7 @@ class ExitCodes(unittest.TestCase):
 
     def start_long_run(self):
         """A run that has begun to write, and goes on for 300 simulated seconds."""
-        run = subprocess.Popen([PATROL, "run", self.scenario(""), "--set", "stack.mission.start_wait_s=300", "--out", self.out],
+        run = subprocess.Popen([PATROL, "run", self.scenario(""), "--set", "stack.gas_mission.init_wait_s=300", "--out", self.out],
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=SOURCE)
         deadline = time.monotonic() + 60
         while not (self.out / "log.mcap").exists() and time.monotonic() < deadline:

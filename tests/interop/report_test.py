@@ -143,7 +143,7 @@ class SweepReport(PageCase, unittest.TestCase):
     def make_page(cls):
         scenario = standing_still(cls.path)
         sweep = cls.path / "sweep"
-        subprocess.run([PATROL, "sweep", scenario, "--vary", "sensors.lidar.range_noise_m=0.0,0.05", "--seeds", "2", "--out", sweep], check=True,
+        subprocess.run([PATROL, "sweep", scenario, "--vary", "sensors.lidar.range_noise_std_m=0.0,0.05", "--seeds", "2", "--out", sweep], check=True,
                        capture_output=True, timeout=120, cwd=SOURCE)
         return report(sweep, cls.path / "report.html")
 

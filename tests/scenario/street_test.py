@@ -34,13 +34,13 @@ class Street(unittest.TestCase):
         self.assertGreater(self.metrics()["navigation"]["paths"], 2)
 
     def test_arrives_by_a_star(self):
-        self.assert_arrives("stack.plan.global=astar")
+        self.assert_arrives("stack.navigation.global_planner.method=astar")
 
     def test_arrives_by_the_ants_and_later_than_by_a_star(self):
         """On a computer a hundred times slower the colony's search takes seconds, in which the robot stands; A* takes it few."""
-        self.assert_arrives("stack.plan.global=ant_colony", "stack.plan.routes.ant_colony.ants=20", "stack.plan.steps_per_s=1e5")
+        self.assert_arrives("stack.navigation.global_planner.method=ant_colony_li22", "stack.navigation.global_planner.ant_colony.ants=20", "stack.navigation.planner_cells_per_s=1e5")
         by_ants = self.metrics()["mission"]["duration_s"]
-        self.assert_arrives("stack.plan.global=astar", "stack.plan.steps_per_s=1e5")
+        self.assert_arrives("stack.navigation.global_planner.method=astar", "stack.navigation.planner_cells_per_s=1e5")
         self.assertGreater(by_ants, self.metrics()["mission"]["duration_s"] + 1.0)
 
     def test_drives_to_marked_goals_on_a_known_map(self):
@@ -53,7 +53,7 @@ class Street(unittest.TestCase):
         self.assertEqual((self.out / "map.pgm").read_bytes(), (SOURCE / "worlds/street/map/map.pgm").read_bytes())
 
     def test_stays_where_it_is_when_its_planner_finds_nothing(self):
-        done = self.run_patrol("short", "stack.plan.global=q_learning", "stack.plan.routes.q_learning.episodes=1", "stack.plan.no_route_s=3")
+        done = self.run_patrol("short", "stack.navigation.global_planner.method=q_learning", "stack.navigation.global_planner.q_learning.episodes=1", "stack.navigation.no_path_timeout_s=3")
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         metrics = self.metrics()
         self.assertFalse(metrics["mission"]["completed"])

@@ -38,7 +38,7 @@ class Substation(unittest.TestCase):
     def test_hits_a_breaker_that_stands_in_its_way(self):
         drive = pathlib.Path(self.folder.name) / "into_a_breaker.json"
         drive.write_text(json.dumps({"version": 1, "frame": "site", "waypoints": [{"position": [62.0, 51.8]}, {"position": [65.5, 51.8]}]}))
-        self.run_patrol("--set", f"remote.drive={drive}", "--set", "time_limit_s=20")
+        self.run_patrol("--set", f"teleop.route={drive}", "--set", "time_limit_s=20")
         self.assertGreater(self.metrics()["mission"]["collisions"], 0)
 
 

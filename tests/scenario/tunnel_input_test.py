@@ -229,7 +229,7 @@ class NoRoute(TunnelRun):
     def drive_to(self, x, y, map_file="map/map.yaml"):
         goals = self.write("nav.json", [self.goal(1, x, y), self.goal(2, -8.0, -2.0)])
         return self.run_patrol("navigate", f"map={map_file}", f"goals={goals}", "actors=[]", "time_limit_s=60",
-                               "stack.plan.no_route_s=3", "stack.tour.docks=false",
+                               "stack.navigation.no_path_timeout_s=3", "stack.tunnel_mission.dock_after_run=false",
                                "expect={mission.completed: true, mission.collisions: 0}", timeout=300)
 
     def events(self):

@@ -126,7 +126,7 @@ std::string table_text(const slam::CalibrationResult& result) {
 
 ExitCode calibrate_command(const CalibrateOptions& options) {
   std::vector<std::string> overrides = options.overrides;
-  if (options.skip_invalid) overrides.push_back("log.skip_bad_lines=true");
+  if (options.skip_invalid) overrides.push_back("log.skip_invalid=true");
   const auto settings = io::parse_settings<LogCalibrationSettings>(overrides);
   std::optional<CalibratedLog> log;
   for (int pass = 1; pass <= settings.passes; ++pass) {

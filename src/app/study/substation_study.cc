@@ -16,7 +16,7 @@ namespace patrol::app {
 namespace {
 
 /// The mapping on the robot is unused during teleoperation; one particle saves computation time.
-const std::vector<std::string> kWithoutOwnMapping = {"stack.slam.particles=1"};
+const std::vector<std::string> kWithoutOwnMapping = {"stack.slam.rbpf.particles=1"};
 
 struct LogMethod {
   std::string name;

@@ -70,10 +70,10 @@ struct SensorTraits<FluidPressure> {
 
   static void add_to_reading(FluidPressure& reading, double offset_pa) { reading.pressure_pa += offset_pa; }
   static std::vector<ErrorSource> error_sources() {
-    return {{"barometer: noise", {"sensors.barometer.noise_pa=0", "sensors.barometer.resolution_pa=0"}},
-            {"barometer: offset", {"sensors.barometer.offset_pa=0"}},
+    return {{"barometer: noise", {"sensors.barometer.noise_std_pa=0", "sensors.barometer.resolution_pa=0"}},
+            {"barometer: offset", {"sensors.barometer.offset_std_pa=0"}},
             {"barometer: drift and temperature",
-             {"sensors.barometer.drift_pa=0", "sensors.barometer.temperature_coefficient_pa_per_k=0"}}};
+             {"sensors.barometer.drift_std_pa=0", "sensors.barometer.temperature_coefficient_std_pa_per_k=0"}}};
   }
 };
 

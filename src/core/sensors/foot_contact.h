@@ -59,7 +59,7 @@ struct SensorTraits<FootContacts> {
   static bool is_fitted(const RobotDescription& robot) { return !robot.legs.empty(); }
   static std::vector<ErrorSource> error_sources() {
     return {{"foot contact: noise",
-             {"sensors.foot_contact.noise_n=0", "sensors.foot_contact.offset_n=0", "sensors.foot_contact.resolution_n=0"}}};
+             {"sensors.foot_contact.noise_std_n=0", "sensors.foot_contact.offset_std_n=0", "sensors.foot_contact.resolution_n=0"}}};
   }
 };
 

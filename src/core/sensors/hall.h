@@ -65,7 +65,7 @@ struct SensorTraits<TrackTicks> {
   }
   static bool is_fitted(const RobotDescription& robot) { return robot.tracks.has_value(); }
   static std::vector<ErrorSource> error_sources() {
-    return {{"Hall counters: missed edges", {"sensors.hall.missed_tick_probability=0"}}};
+    return {{"Hall counters: missed edges", {"sensors.hall.missed_edge_probability=0"}}};
   }
 };
 

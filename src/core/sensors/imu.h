@@ -75,12 +75,12 @@ struct SensorTraits<Imu> {
   }
   static std::vector<ErrorSource> error_sources() {
     return {{"gyro",
-             {"sensors.imu.gyro_noise_radps_rthz=0", "sensors.imu.gyro_bias_radps=0", "sensors.imu.gyro_bias_walk_radps2_rthz=0",
+             {"sensors.imu.gyro_noise_density_radps_per_sqrt_hz=0", "sensors.imu.gyro_bias_std_radps=0", "sensors.imu.gyro_bias_random_walk_radps_per_sqrt_s=0",
               "sensors.imu.gyro_resolution_radps=0"}},
             {"accelerometer",
-             {"sensors.imu.accel_noise_mps2_rthz=0", "sensors.imu.accel_bias_mps2=0", "sensors.imu.accel_bias_walk_mps3_rthz=0",
+             {"sensors.imu.accel_noise_density_mps2_per_sqrt_hz=0", "sensors.imu.accel_bias_std_mps2=0", "sensors.imu.accel_bias_random_walk_mps2_per_sqrt_s=0",
               "sensors.imu.accel_resolution_mps2=0"}},
-            {"IMU: scale and alignment", {"sensors.imu.scale_error=0", "sensors.imu.misalignment_deg=0"}}};
+            {"IMU: scale and alignment", {"sensors.imu.scale_error_std=0", "sensors.imu.misalignment_std_deg=0"}}};
   }
 };
 

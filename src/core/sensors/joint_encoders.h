@@ -57,7 +57,7 @@ struct SensorTraits<JointState> {
   static bool repeats(const JointState& now, const JointState& before) { return now.position_rad == before.position_rad; }
   static bool is_fitted(const RobotDescription& robot) { return !robot.legs.empty(); }
   static std::vector<ErrorSource> error_sources() {
-    return {{"joint encoders: counts", {"sensors.joint_encoders.counts_per_turn=1000000"}}};
+    return {{"joint encoders: counts", {"sensors.joint_encoders.counts_per_revolution=1000000"}}};
   }
 };
 

@@ -71,9 +71,9 @@ struct SensorTraits<MagneticField> {
   /// Adds to the main reading, the field along x.
   static void add_to_reading(MagneticField& reading, double offset_t) { reading.field_t.x() += offset_t; }
   static std::vector<ErrorSource> error_sources() {
-    return {{"magnetometer: noise", {"sensors.magnetometer.noise_t=0", "sensors.magnetometer.resolution_t=0"}},
+    return {{"magnetometer: noise", {"sensors.magnetometer.noise_std_t=0", "sensors.magnetometer.resolution_t=0"}},
             {"magnetometer: hard and soft iron",
-             {"sensors.magnetometer.hard_iron_t=0", "sensors.magnetometer.soft_iron=0"}},
+             {"sensors.magnetometer.hard_iron_std_t=0", "sensors.magnetometer.soft_iron_std=0"}},
             {"magnetometer: steel nearby", {"sensors.magnetometer.steel_fill=0"}}};
   }
 };

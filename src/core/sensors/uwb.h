@@ -56,10 +56,10 @@ struct SensorTraits<UwbRange> {
 
   static void add_to_reading(UwbRange& range, double offset_m) { range.range_m += offset_m; }
   static std::vector<ErrorSource> error_sources() {
-    return {{"UWB: range noise", {"sensors.uwb.range_noise_m=0"}},
+    return {{"UWB: range noise", {"sensors.uwb.range_noise_std_m=0"}},
             {"UWB: distance-dependent bias", {"sensors.uwb.bias_scale=0"}},
-            {"UWB: non-line-of-sight paths", {"sensors.uwb.blocked_loss=0", "sensors.uwb.blocked_excess_m=0"}},
-            {"UWB: loss", {"sensors.uwb.loss=0"}}};
+            {"UWB: non-line-of-sight paths", {"sensors.uwb.nlos_loss_probability=0", "sensors.uwb.nlos_bias_m=0"}},
+            {"UWB: loss", {"sensors.uwb.loss_probability=0"}}};
   }
 };
 

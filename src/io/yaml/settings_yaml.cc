@@ -43,7 +43,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
 void apply_override(YAML::Node root, const std::string& override) {
   const std::size_t equals = override.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw InputError("--set " + override + ": must be path=value, e.g. sensors.lidar.range_noise_m=0.05");
+    throw InputError("--set " + override + ": must be path=value, e.g. sensors.lidar.range_noise_std_m=0.05");
   }
   const YAML::Node value = parse_yaml("--set " + override, override.substr(equals + 1), false);
   const std::vector<std::string> path = split(override.substr(0, equals), '.');

@@ -102,7 +102,7 @@ class Slam(unittest.TestCase):
         done = self.patrol("slam", log, "--out", self.folder / "eight")
         self.assertIn("detected: 8 m encodes no return", done.stdout)
         self.assertLess(max(self.errors_m(self.folder / "eight")), 0.06)
-        done = self.patrol("slam", log, "--out", self.folder / "walls", "--set", "log.finds_no_return=false")
+        done = self.patrol("slam", log, "--out", self.folder / "walls", "--set", "log.detect_no_return=false")
         self.assertNotIn("detected", done.stdout)
         self.assertGreater(max(self.errors_m(self.folder / "walls")), 0.06)
 

@@ -99,7 +99,7 @@ TEST(Scenario, DataLieWhereTheEnvironmentSays) {
 TEST(Scenario, ResolvedAndReadAgainIsTheSame) {
   const TemporaryFolder folder;
   const std::filesystem::path file = kSource / "worlds/street/scenarios/short.yaml";
-  const auto first = load_scenario(file, {"seed=7", "sensors.lidar.range_noise_m=0.05"});
+  const auto first = load_scenario(file, {"seed=7", "sensors.lidar.range_noise_std_m=0.05"});
   save_scenario(folder / "a.yaml", first, "");
   const auto second = load_scenario(folder / "a.yaml");
   save_scenario(folder / "b.yaml", second, "");

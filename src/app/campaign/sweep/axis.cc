@@ -80,7 +80,7 @@ std::string Axis::sample(std::uint64_t seed) const {
 
 Axis parse_axis(const std::string& text) {
   const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) fail(text, "must be path=a,b,c, e.g. sensors.lidar.range_noise_m=0.01,0.03");
+  if (equals == std::string::npos || equals == 0) fail(text, "must be path=a,b,c, e.g. sensors.lidar.range_noise_std_m=0.01,0.03");
   Axis axis;
   axis.path = text.substr(0, equals);
   const std::string values = text.substr(equals + 1);

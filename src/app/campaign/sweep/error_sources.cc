@@ -43,8 +43,8 @@ std::vector<ScenarioErrorSource> other_error_sources() {
       {"latency of all sensors", latency_overrides()},
       {"people and vehicles", {"actors=[]"}},
       {"faults", {"faults=[]"}},
-      {"start pose error", {"start.ahead_m=0", "start.left_m=0", "start.turn_deg=0"}},
-      {"map resolution 5 cm (2.5 cm)", {"stack.slam.resolution_m=0.025", "stack.graph.tracking.resolution_m=0.025"}},
+      {"start pose error", {"start.ahead_m=0", "start.left_m=0", "start.yaw_deg=0"}},
+      {"map resolution 5 cm (2.5 cm)", {"stack.slam.rbpf.resolution_m=0.025", "stack.slam.graph.scan_odometry.resolution_m=0.025"}},
   };
 }
 

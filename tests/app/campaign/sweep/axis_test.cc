@@ -26,7 +26,7 @@ std::string message_of(const std::string& text) {
 }
 
 TEST(Axis, AListKeepsItsValuesAsTheyWereWritten) {
-  const Axis axis = parse_axis("stack.slam.particles=10,20,50");
+  const Axis axis = parse_axis("stack.slam.rbpf.particles=10,20,50");
   EXPECT_EQ(axis.path, "stack.slam.particles");
   EXPECT_THAT(axis.values, ElementsAre("10", "20", "50"));
   EXPECT_FALSE(axis.is_random());

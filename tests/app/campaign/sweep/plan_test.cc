@@ -38,28 +38,28 @@ ErrorBudgetOptions budget_of(const char* scenario) {
 }
 
 TEST(PlanSweep, EveryRunHasAnAddressOfItsOwnAndItIsTheSameNextTime) {
-  const SweepManifest manifest = plan_sweep(street({"sensors.lidar.range_noise_m=0.01,0.03"}));
+  const SweepManifest manifest = plan_sweep(street({"sensors.lidar.range_noise_std_m=0.01,0.03"}));
   std::set<std::string> hashes;
   for (const PlannedRun& run : manifest.runs) hashes.insert(run.hash);
   EXPECT_EQ(hashes.size(), 4u);
-  EXPECT_EQ(plan_sweep(street({"sensors.lidar.range_noise_m=0.01,0.03"})).runs[3].hash, manifest.runs[3].hash);
+  EXPECT_EQ(plan_sweep(street({"sensors.lidar.range_noise_std_m=0.01,0.03"})).runs[3].hash, manifest.runs[3].hash);
 }
 
 TEST(PlanSweep, TheSameSettingsHaveTheSameAddressHoweverTheyAreSaid) {
   SweepOptions said = street({});
-  said.overrides = {"sensors.lidar.range_noise_m=0.030"};
-  EXPECT_EQ(plan_sweep(said).runs[0].hash, plan_sweep(street({"sensors.lidar.range_noise_m=0.03"})).runs[0].hash);
+  said.overrides = {"sensors.lidar.range_noise_std_m=0.030"};
+  EXPECT_EQ(plan_sweep(said).runs[0].hash, plan_sweep(street({"sensors.lidar.range_noise_std_m=0.03"})).runs[0].hash);
 }
 
 TEST(PlanSweep, ADrawIsCommonToTheVariantsOfASeed) {
-  const SweepManifest manifest = plan_sweep(street({"stack.slam.particles=10,20", "sensors.lidar.range_noise_m=uniform:0.01:0.05"}));
+  const SweepManifest manifest = plan_sweep(street({"stack.slam.rbpf.particles=10,20", "sensors.lidar.range_noise_std_m=uniform:0.01:0.05"}));
   EXPECT_EQ(manifest.runs[0].overrides.back(), manifest.runs[1].overrides.back());
   EXPECT_NE(manifest.runs[0].overrides.back(), manifest.runs[2].overrides.back());
 }
 
 TEST(PlanSweep, AWrongKeyOrValueIsRefusedBeforeAnythingRuns) {
   EXPECT_THROW(plan_sweep(street({"sensors.lidar.range_nose_m=0.01,0.03"})), InputError);
-  EXPECT_THROW(plan_sweep(street({"sensors.lidar.range_noise_m=0.01,-0.03"})), InputError);
+  EXPECT_THROW(plan_sweep(street({"sensors.lidar.range_noise_std_m=0.01,-0.03"})), InputError);
 }
 
 // The path is the same, the file is another.
@@ -95,7 +95,7 @@ TEST(PlanBudget, ATrackedRobotHasNoLegs) {
 
 TEST(PlanBudget, WhatAScenarioDoesNotHaveIsNotTakenAway) {
   ErrorBudgetOptions options = budget_of("street/scenarios/short.yaml");
-  options.overrides = {"sensors.lidar.range_noise_m=0"};
+  options.overrides = {"sensors.lidar.range_noise_std_m=0"};
   EXPECT_THAT(variants_of(plan_error_budget(options)), Not(Contains("lidar: range noise")));
 }
 

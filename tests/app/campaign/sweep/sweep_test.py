@@ -45,7 +45,7 @@ class Sweep(SweepCase):
     def test_a_row_is_what_patrol_run_measures(self):
         row = self.rows(self.unbroken)[3]
         out = self.path / "one"
-        subprocess.run([PATROL, "run", self.scenario, "--seed", "2", "--set", "sensors.lidar.range_noise_m=0.05", "--out", out],
+        subprocess.run([PATROL, "run", self.scenario, "--seed", "2", "--set", "sensors.lidar.range_noise_std_m=0.05", "--out", out],
                        check=True, capture_output=True, cwd=SOURCE)
         metrics = json.loads((out / "metrics.json").read_text())
         self.assertEqual(float(row["pose.ate_rmse_m"]), metrics["pose"]["ate_rmse_m"])

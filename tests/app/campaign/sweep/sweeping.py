@@ -12,7 +12,7 @@ TABLES = ("runs.csv", "comparison.csv", "sweep.sqlite")
 
 
 class SweepCase(unittest.TestCase):
-    vary = ("--vary", "sensors.lidar.range_noise_m=0.0,0.05", "--seeds", "2")
+    vary = ("--vary", "sensors.lidar.range_noise_std_m=0.0,0.05", "--seeds", "2")
 
     @classmethod
     def setUpClass(cls):
