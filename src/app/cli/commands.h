@@ -108,7 +108,7 @@ struct TrainOptions {
   std::vector<std::filesystem::path> runs;      ///< run directories for training
   std::vector<std::filesystem::path> validation;  ///< run directories for validation
   std::vector<std::string> overrides;
-  std::filesystem::path out = "submap_neighbours.json";
+  std::filesystem::path out = "submap_neighbors.json";
 };
 /// Trains the classifier of neighboring submaps (`--method submap_rbpf`).
 ExitCode train_command(const TrainOptions& options);
@@ -142,7 +142,7 @@ ExitCode monitor_command(const MonitorOptions& options);
 
 struct UploadOptions {
   std::filesystem::path run;
-  std::string to;
+  std::string monitor_url;
   std::optional<std::filesystem::path> token_file;
   double timeout_s = 30.0;  ///< timeout without progress
 };
