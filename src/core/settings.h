@@ -17,11 +17,11 @@
 /// (io/yaml/settings_yaml.h):
 ///
 ///   struct LidarSettings {
-///     double range_noise_m = 0.03;   ///< standard deviation
+///     double range_noise_std_m = 0.03;   ///< standard deviation
 ///     std::string preset = "rplidar_s2";
 ///     template <typename Self, typename Visitor>
 ///     static void fields(Self& self, Visitor& visit) {
-///       visit("range_noise_m", self.range_noise_m, at_least(0.0));
+///       visit("range_noise_std_m", self.range_noise_std_m, at_least(0.0));
 ///       visit("preset", self.preset, one_of({"rplidar_s2", "utm30lx"}));
 ///     }
 ///   };

@@ -141,7 +141,7 @@ class Entry {
           .bind(result_.world, subject, made_ms_, run_, data["value"].get<double>())
           .run();
     }
-    if (kind == EventKind::kGoalMarked) {
+    if (kind == EventKind::kGoalSaved) {
       database_.prepared("UPDATE runs SET stations = json_insert(stations, '$[#]', "
                         "json_object('name', ?2, 'type', 'marked', 'position_m', json_array(?3, ?4))) WHERE number = ?1")
           .bind(run_, subject, p_map.x(), p_map.y())

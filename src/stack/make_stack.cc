@@ -20,29 +20,29 @@ std::unique_ptr<Mission> make_gas_mission(const StackSettings& settings, const R
   if (std::any_of(stations.begin(), stations.end(), [](const Station& station) { return station.type == StationType::kInspect; }))
     robot.T_body("tdlas");
   std::string order_text;
-  if (settings.mission.order == "best" && !route_in_map.stations.empty()) {
-    StationOrder order = order_stations(route_in_map, robot, settings.plan, settings.mission, seed);
+  if (settings.gas_mission.station_order == "optimized" && !route_in_map.stations.empty()) {
+    StationOrder order = order_stations(route_in_map, robot, settings.navigation, settings.gas_mission, seed);
     route_in_map.stations = std::move(order.stations);
     order_text = std::move(order.text);
   }
-  return std::make_unique<GasMission>(settings.mission, std::move(route_in_map), std::move(order_text));
+  return std::make_unique<GasMission>(settings.gas_mission, std::move(route_in_map), std::move(order_text));
 }
 
 void validate_goals(const std::vector<SavedGoal>& goals, const RobotDescription& robot, const Route& site_in_map) {
   if (std::none_of(goals.begin(), goals.end(), [](const SavedGoal& goal) { return goal.type == GoalType::kScan; })) return;
-  if (!site_in_map.lining) throw InputError("tour: a goal is of type D, but the site's survey has no lining");
+  if (!site_in_map.lining) throw InputError("tunnel_mission: goal of type D requires a lining in the site survey");
   robot.T_body("scanner");
 }
 
 std::unique_ptr<Mission> make_tunnel_mission(const StackSettings& settings, const RobotDescription& robot,
                                              const Route& site_in_map, const StackStart& start) {
-  auto mission = std::make_unique<TunnelMission>(settings.tour, start.goals, start.has_teleop, start.map.has_value());
+  auto mission = std::make_unique<TunnelMission>(settings.tunnel_mission, start.goals, start.has_teleop, start.map.has_value());
   validate_goals(start.goals, robot, site_in_map);
   if (!start.map && !start.has_teleop && settings.localizer == "automatic") {
-    throw InputError("tour: there is no map, and no remote control to make one");
+    throw InputError("tunnel_mission: requires a map or a teleoperated mapping drive");
   }
-  const bool needs_dock = settings.tour.docks || (settings.tour.starts_docked && !settings.tour.starts_at_survey);
-  if (needs_dock && !site_in_map.dock) throw InputError("tour: docks, but the site's survey has no dock");
+  const bool needs_dock = settings.tunnel_mission.dock_after_run || (settings.tunnel_mission.start_docked && !settings.tunnel_mission.start_at_survey);
+  if (needs_dock && !site_in_map.dock) throw InputError("tunnel_mission.dock_after_run: requires a dock in the site survey");
   return mission;
 }
 
@@ -59,14 +59,14 @@ InstrumentSet make_instruments(const StackSettings& settings, const RobotDescrip
   std::vector<std::unique_ptr<Instrument>> instruments;
   const auto has = [&](const char* frame) { return robot.T_body_sensor.contains(frame); };
   if (has("tdlas"))
-    instruments.push_back(std::make_unique<GasInstrument>(gas_rules(settings.mission), robot.T_body("tdlas")));
+    instruments.push_back(std::make_unique<GasInstrument>(gas_rules(settings.gas_mission), robot.T_body("tdlas")));
   if (has("scanner") && site_in_map.lining) {
     instruments.push_back(std::make_unique<LiningInstrument>(settings.inspection, *site_in_map.lining,
                                                              robot.T_body("scanner"), std::move(start.references)));
   }
   if (robot.antenna)
     instruments.push_back(std::make_unique<WaterInstrument>(settings.inspection.water, *robot.antenna, start.seed));
-  return InstrumentSet(std::move(instruments), settings.inspection.siren_s);
+  return InstrumentSet(std::move(instruments), settings.inspection.siren_duration_s);
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ Stack make_stack(const StackSettings& settings, const RobotDescription& robot, c
                 .motion = std::move(motion),
                 .mission = std::move(mission),
                 .instruments = std::move(instruments),
-                .sensor_watch = SensorMonitor(settings.sensor_watch),
+                .sensor_monitor = SensorMonitor(settings.sensor_monitor),
                 .dock = site_in_map.dock,
                 .map_period_s = start.map_period_s});
 }

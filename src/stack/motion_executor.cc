@@ -25,10 +25,10 @@ DockingFeedback feedback_of(plan::DockingStatus status) {
 
 MotionExecutor::MotionExecutor(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
                                std::uint64_t seed)
-    : navigator_(settings.plan, robot, site_in_map.keep_out_lines, seed),
-      docking_(settings.docking),
+    : navigator_(settings.navigation, robot, site_in_map.keep_out_lines, seed),
+      docking_(settings.docking.maneuver),
       dock_(site_in_map.dock) {
-  if (dock_) dock_detector_.emplace(settings.dock_detector, dock_->profile_m);
+  if (dock_) dock_detector_.emplace(settings.docking.detector, dock_->profile_m);
 }
 
 void MotionExecutor::add(const LevelScan& scan, const ScanPose& pose) {
@@ -39,8 +39,8 @@ void MotionExecutor::add(const LevelScan& scan, const ScanPose& pose) {
 void MotionExecutor::detect_dock(const LevelScan& scan, const ScanPose& pose) {
   const Pose2 T_level_expected =
       docking_.T_level_docked(pose.T_odom_body).value_or(pose.T_map_body.inverse() * dock_->T_route_docked);
-  const std::optional<DockDetection> sighting = dock_detector_->detect(scan, T_level_expected);
-  if (sighting) docking_.add(*sighting, pose.T_odom_body);
+  const std::optional<DockDetection> detection = dock_detector_->detect(scan, T_level_expected);
+  if (detection) docking_.add(*detection, pose.T_odom_body);
 }
 
 VelocityCommand MotionExecutor::step(Time now, const Task& task, const Pose2& T_map_body, const Pose2& T_odom_body,
@@ -65,7 +65,7 @@ VelocityCommand MotionExecutor::navigate(Time now, const std::optional<Navigatio
   plan::NavigationStep step = navigator_.step(now, T_map_body);
   if (step.replanned) output.publish(Path{now, step.path});
   if (step.is_detour)
-    output.publish_event(now, T_map_body, EventKind::kReplan, "Something stands on the path: a new one is planned.");
+    output.publish_event(now, T_map_body, EventKind::kReplan, "Path blocked: replanning.");
   if (!step.text.empty()) output.publish_event(now, T_map_body, EventKind::kNavigation, step.text);
   if (!step.recovery.empty()) output.publish_event(now, T_map_body, EventKind::kRecovery, step.recovery);
   navigation_ = step.status;

@@ -19,7 +19,7 @@ Stack::Stack(StackParts parts) : parts_(std::move(parts)), map_period_(from_seco
 }
 
 void Stack::handle(const SensorMessage& message) {
-  if (!parts_.sensor_watch.receive(message, now_)) return;
+  if (!parts_.sensor_monitor.receive(message, now_)) return;
   const auto station_pose_at = [this](Time stamp) { return parts_.pose.station_pose_at(stamp); };
   std::visit(Overloaded{
                  [&](const LaserScan& scan) { handle_scan(scan); },
@@ -73,7 +73,7 @@ void Stack::step(Time now) {
                       .odometry = *odometry,
                       .T_odom_body = T_odom_body,
                       .pose = parts_.pose.pose_at(odometry->stamp, T_odom_body)});
-  if (!parts_.sensor_watch.can_drive() && !parts_.motion.is_teleoperated()) command_ = {};
+  if (!parts_.sensor_monitor.can_drive() && !parts_.motion.is_teleoperated()) command_ = {};
   command_.stamp = now;
   output_.publish(command_);
 }
@@ -87,13 +87,13 @@ void Stack::publish_map(Time now) {
 
 void Stack::monitor_sensors(Time now, const Pose2& T_odom_body) {
   const Pose2 T_map_body = parts_.pose.pose_at(now, T_odom_body).T_map_body;
-  for (const SensorChange& change : parts_.sensor_watch.step(now, T_odom_body, command_)) {
+  for (const SensorChange& change : parts_.sensor_monitor.step(now, T_odom_body, command_)) {
     output_.publish_event(now, T_map_body, change.has_recovered ? EventKind::kSensorRecovered : EventKind::kSensorFault,
                           change.text, change.sensor);
   }
-  if (!parts_.sensor_watch.must_abort(now) || mission_is_over()) return;
+  if (!parts_.sensor_monitor.must_abort(now) || mission_is_over()) return;
   output_.publish(parts_.mission->abort(now, EventKind::kSensorFailed,
-                                        "A sensor that driving needs did not come back: the mission is over."));
+                                        "Required sensor did not recover: mission aborted."));
 }
 
 VelocityCommand Stack::control(const Period& period) {

@@ -22,7 +22,7 @@ struct StackParts {
   MotionExecutor motion;
   std::unique_ptr<Mission> mission;
   InstrumentSet instruments;
-  SensorMonitor sensor_watch;
+  SensorMonitor sensor_monitor;
   std::optional<Dock> dock;   ///< charging post of the site, in map
   double map_period_s = 5.0;  ///< interval between published maps while the map grows
 };

@@ -42,24 +42,30 @@ class BadInput(unittest.TestCase):
         self.refuse("run", scenario, "--out", self.out, *more, says=says)
 
     def test_unknown_key_names_file_line_and_nearest_spelling(self):
-        file = self.scenario("world: street\nsensors:\n  lidar: {range_nois_m: 0.03}\n")
-        self.refuse_run(file, says=["scenario.yaml:3", "sensors.lidar.range_nois_m", "range_noise_m"])
+        file = self.scenario("world: street\nsensors:\n  lidar: {range_noise_st_m: 0.03}\n")
+        self.refuse_run(file, says=["scenario.yaml:3", "sensors.lidar.range_noise_st_m", "did you mean range_noise_std_m?"])
+
+    def test_renamed_key_names_the_new_one(self):
+        file = self.scenario("world: tunnel\nremote: {drive: drive.json}\n")
+        self.refuse_run(file, says=["scenario.yaml:2", "remote: renamed to teleop"])
+        file = self.scenario("sensors:\n  uwb: {blocked_loss: 0.1}\n")
+        self.refuse_run(file, says=["scenario.yaml:2", "sensors.uwb.blocked_loss: renamed to sensors.uwb.nlos_loss_probability"])
 
     def test_wrong_unit_is_an_unknown_key_that_names_the_right_unit(self):
-        file = self.scenario("sensors:\n  lidar: {range_noise_cm: 3}\n")
-        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_cm", "range_noise_m"])
+        file = self.scenario("sensors:\n  lidar: {range_noise_std_cm: 3}\n")
+        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_std_cm", "range_noise_std_m"])
 
     def test_wrong_type(self):
         file = self.scenario("seed: many\n")
         self.refuse_run(file, says=["scenario.yaml:1", "seed", "many"])
 
     def test_nan(self):
-        file = self.scenario("sensors:\n  lidar: {range_noise_m: .nan}\n")
-        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_m"])
+        file = self.scenario("sensors:\n  lidar: {range_noise_std_m: .nan}\n")
+        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_std_m"])
 
     def test_out_of_range_names_the_rule(self):
-        file = self.scenario("sensors:\n  lidar: {range_noise_m: -1}\n")
-        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_m", "at least 0"])
+        file = self.scenario("sensors:\n  lidar: {range_noise_std_m: -1}\n")
+        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_std_m", "at least 0"])
 
     def test_a_second_document_or_text_after_the_first(self):
         file = self.scenario("world: street\n---\nworld: tunnel\n")
@@ -122,7 +128,7 @@ class BadInput(unittest.TestCase):
         self.assertLess(int(memory_mb), 300)
 
     def test_truncated_yaml(self):
-        file = self.scenario("sensors:\n  lidar: {range_noise_m: 0.03\n")
+        file = self.scenario("sensors:\n  lidar: {range_noise_std_m: 0.03\n")
         self.refuse_run(file, says=["scenario.yaml"])
 
     def test_missing_scenario(self):
@@ -167,7 +173,7 @@ class BadInput(unittest.TestCase):
         self.refuse_variants("error-budget", "--seeds", 1, says=["--seeds", "two"])
 
     def test_sweep_over_an_unknown_key(self):
-        self.refuse_variants("sweep", "--vary", "sensors.lidar.range_nois_m=0.1,0.2", says=["range_nois_m", "range_noise_m"])
+        self.refuse_variants("sweep", "--vary", "sensors.lidar.range_noise_st_m=0.1,0.2", says=["range_noise_st_m", "range_noise_std_m"])
 
     def test_places_that_are_no_distance_apart(self):
         self.refuse_variants("localizability", "--grid-step-m", 0, says=["--grid-step-m 0"])

@@ -119,7 +119,7 @@ class Page(Case):
         seen = datetime.datetime.now(datetime.timezone.utc)
         robot.wait(timeout=60)
         results = [json.loads(line) for line in (self.path / "run_street_spot-2/outbox.jsonl").read_text().splitlines()]
-        alarm = next(one for one in results if one["kind"] == "event" and one["data"]["kind"] == "alarm")
+        alarm = next(one for one in results if one["kind"] == "event" and one["data"]["kind"] == "gas_alarm")
         late_s = (seen - datetime.datetime.fromisoformat(alarm["made_utc"])).total_seconds()
         print(f"alarm on the page after {late_s:.2f} s")
         self.assertLess(late_s, 2.0)

@@ -22,13 +22,13 @@ std::string complaint_about(const std::string& text) {
 
 /// With one member changed; a discarded value takes it away.
 std::string complaint_with(const char* pointer, const Json& value) {
-  Json json = Json::parse(to_json(event_result(7, "alarm", "well_1", 640.0)));
+  Json json = Json::parse(to_json(event_result(7, "gas_alarm", "well_1", 640.0)));
   json[Json::json_pointer(pointer)] = value;
   return complaint_about(json.dump());
 }
 
 TEST(Result, ComesBackFromItsJson) {
-  const Result result = event_result(7, "alarm", "well_1", 640.0);
+  const Result result = event_result(7, "gas_alarm", "well_1", 640.0);
   const std::vector<Result> back = results_from_json(to_json(result));
   ASSERT_EQ(back.size(), 1U);
   EXPECT_EQ(back[0].id, "spot-1/run_1/7");
@@ -38,7 +38,7 @@ TEST(Result, ComesBackFromItsJson) {
 TEST(Result, AListIsABatch) { EXPECT_EQ(results_from_json("[" + to_json(pose_result(0)) + "," + to_json(pose_result(1)) + "]").size(), 2U); }
 
 TEST(Result, EachFieldIsHeldToItsRule) {
-  EXPECT_EQ(complaint_with("/schema", "patrol-result/2"), "result: schema must be patrol-result/1");
+  EXPECT_EQ(complaint_with("/schema", "patrol-result/1"), "result: schema must be patrol-result/2");
   EXPECT_EQ(complaint_with("/robot", ""), "result: robot must have 1 to 200 bytes");
   EXPECT_EQ(complaint_with("/id", std::string(201, 'x')), "result: id must have 1 to 200 bytes");
   EXPECT_EQ(complaint_with("/run", "a\nb"), "result: run must be a string");

@@ -87,7 +87,7 @@ TEST_F(RunningService, UnknownPathsAre404AndOtherMethods405) {
 }
 
 TEST_F(RunningService, AWrongBodyIs400AndNothingIsKept) {
-  for (const char* body : {"", "{}", "[{}]", "null", "[[[", "{\"schema\": \"patrol-result/1\"}"}) {
+  for (const char* body : {"", "{}", "[{}]", "null", "[[[", "{\"schema\": \"patrol-result/2\"}"}) {
     const HttpResponse answer = ask("POST", "/api/results", body);
     EXPECT_EQ(answer.status, 400) << body;
     EXPECT_EQ(Json::parse(answer.body)["error"].get<std::string>().find('\n'), std::string::npos);
@@ -96,7 +96,7 @@ TEST_F(RunningService, AWrongBodyIs400AndNothingIsKept) {
 }
 
 TEST_F(RunningService, AnAlarmIsAcknowledgedByNameAndNote) {
-  ask("POST", "/api/results", to_json(event_result(1, "alarm", "well_1")));
+  ask("POST", "/api/results", to_json(event_result(1, "gas_alarm", "well_1")));
   EXPECT_EQ(ask("POST", "/api/alarms/1/acknowledge", R"({"who": "", "note": ""})").status, 400);
   EXPECT_EQ(ask("POST", "/api/alarms/1/acknowledge", R"({"who": "Li"})").status, 400);
   EXPECT_EQ(ask("POST", "/api/alarms/1/acknowledge", R"({"who": "Li", "note": "seen"})").status, 200);

@@ -79,11 +79,11 @@ struct DriveRecord {
   double time_s = 0.0;
   double way_m = 0.0;
   double min_gap_m = std::numeric_limits<double>::infinity();
-  double max_side_speed_mps = 0.0;   ///< asked for
+  double max_lateral_speed_mps = 0.0;   ///< asked for
   int num_plans = 0;
   int num_detours = 0;
   double turned_rad = 0.0;           ///< to both sides
-  NavigationTrouble trouble = NavigationTrouble::kNone;  ///< at the end
+  NavigationFailure failure = NavigationFailure::kNone;  ///< at the end
   std::vector<std::string> texts, recoveries;
   Pose2 T_map_body;                  ///< at the end
   std::vector<Eigen::Vector2d> way;  ///< [tick], in map
@@ -117,14 +117,14 @@ inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_
     record.num_detours += step.is_detour;
     if (!step.recovery.empty()) record.recoveries.push_back(step.recovery);
     record.end = step.status;
-    record.trouble = step.trouble;
+    record.failure = step.failure;
     if (!step.text.empty()) record.texts.push_back(step.text);
     record.time_s = time_s;
     record.min_gap_m = std::min(record.min_gap_m, gap_m(world, robot, T_map_body));
     record.T_map_body = T_map_body;
     record.way.push_back(T_map_body.position());
     if (step.status == NavigationStatus::kArrived || step.status == NavigationStatus::kFailed) break;
-    record.max_side_speed_mps = std::max(record.max_side_speed_mps, std::abs(step.command.vy_mps));
+    record.max_lateral_speed_mps = std::max(record.max_lateral_speed_mps, std::abs(step.command.vy_mps));
     const Eigen::Vector3d asked(step.command.vx_mps, step.command.vy_mps,
                                 (1.0 - turn_slip) * step.command.yaw_rate_radps);
     velocity += (asked - velocity) * (lag_s > 0.0 ? 1.0 - std::exp(-kPeriod_s / lag_s) : 1.0);

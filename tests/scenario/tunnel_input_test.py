@@ -62,7 +62,7 @@ class BadInput(TunnelRun):
 
     def refuse_recorded(self, name, rows, *says):
         with self.subTest(name):
-            self.refuse(["remote.csv", *says], "mapping", f"remote={{recorded: {self.write('remote.csv', rows)}}}")
+            self.refuse(["teleop.csv", *says], "mapping", f"remote={{recorded: {self.write('teleop.csv', rows)}}}")
 
     def refuse_drive(self, name, content, *says):
         with self.subTest(name):
@@ -217,7 +217,7 @@ class BadInput(TunnelRun):
                 self.refuse(says, "inspection_round", f"references={self.folder}")
 
     def test_a_map_and_a_drive_that_makes_one(self):
-        self.refuse(["map", "remote control"], "mapping", "map=map/map.yaml")
+        self.refuse(["map", "teleop"], "mapping", "map=map/map.yaml")
 
 
 class NoRoute(TunnelRun):
@@ -248,16 +248,16 @@ class NoRoute(TunnelRun):
         self.assertEqual([(goal["arrivals"], goal["failed"]) for goal in metrics["goals"]], [(0, 1), (1, 0)])
         events = self.events()
         said = [event.text for event in events if event.kind == "navigation"]
-        self.assertEqual(said[:2], [reason, f"The goal is given up. {reason}"])
+        self.assertEqual(said[:2], [reason, f"Navigation aborted: {reason}"])
         told = [(event.kind, event.subject) for event in events if event.kind.startswith(("goal_", "mission_"))]
         self.assertEqual(told, [("goal_failed", "goal_1"), ("goal_reached", "goal_2"), ("mission_failed", "")])
 
     def test_a_goal_inside_the_wall(self):
-        self.assert_given_up(self.drive_to(-12.0, 2.87), "The goal lies in an obstacle or too near to one.")
+        self.assert_given_up(self.drive_to(-12.0, 2.87), "Goal pose is in collision.")
 
     def test_a_goal_outside_the_tunnel(self):
         """The map, complete as it is, knows nothing there; the portal is open, and outside is no way to it."""
-        self.assert_given_up(self.drive_to(-12.0, 3.3), "The goal lies in an obstacle or too near to one.")
+        self.assert_given_up(self.drive_to(-12.0, 3.3), "Goal pose is in collision.")
 
     def test_a_goal_behind_a_wall_that_the_map_shows(self):
         """From side to side of the tunnel, 20 m in. Round its outside, where the map knows nothing, there is no way either."""
@@ -270,7 +270,7 @@ class NoRoute(TunnelRun):
             first = len(image) - width * height + row * width + column
             pixels[first:first + 6] = bytes(6)
         self.write("map.pgm", bytes(pixels))
-        self.assert_given_up(self.drive_to(-30.0, -0.2, self.write("map.yaml", yaml)), "There is no route to the goal.")
+        self.assert_given_up(self.drive_to(-30.0, -0.2, self.write("map.yaml", yaml)), "No path to the goal exists.")
 
 
 if __name__ == "__main__":

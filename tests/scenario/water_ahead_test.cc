@@ -1,4 +1,4 @@
-// Water ahead of the face, instrument and inversion together: the twin's TEM (sim/sensors/tem.h), its gains, shift, steel and noise, on a mount whose
+// Water ahead of the face, instrument and inversion together: the simulator's TEM (sim/sensors/tem.h), its gains, shift, steel and noise, on a mount whose
 // angles are off, against the robot's inversion, which knows none of them. Without physics: the antenna is where it is put.
 //
 // Rock of 0.002 to 0.005 S/m, a body of 5 to 7 m in radius 12 to 20 m from the antenna, up to 20 degrees aside and 12 up or down, of a conductivity drawn
@@ -41,7 +41,7 @@ WaterResult sound_and_invert(const Truth& truth, bool has_water, std::uint64_t s
   // Half of the robot's own particles and moves, for the sake of the test's seconds.
   inspect::WaterSettings settings;
   settings.particles = 250;
-  settings.moves = 4;
+  settings.mcmc_steps = 4;
   const AntennaGeometry antenna = test::antenna_mount();
   std::vector<sim::WaterBodySettings> water;
   if (has_water) {

@@ -22,18 +22,18 @@ Route route_with_a_station() {
 
 StackSettings quick_gas_settings() {
   StackSettings settings;
-  settings.mission.start_wait_s = 2.0;
-  settings.mission.measure_s = 1.0;
+  settings.gas_mission.init_wait_s = 2.0;
+  settings.gas_mission.measurement_duration_s = 1.0;
   return settings;
 }
 
 StackSettings goal_settings() {
   StackSettings settings;
   settings.mission_type = "tunnel";
-  settings.tour.navigations = 1;
-  settings.tour.starts_docked = settings.tour.docks = false;
-  settings.tour.starts_at_survey = true;
-  settings.tour.start_wait_s = 3.0;
+  settings.tunnel_mission.num_runs = 1;
+  settings.tunnel_mission.start_docked = settings.tunnel_mission.dock_after_run = false;
+  settings.tunnel_mission.start_at_survey = true;
+  settings.tunnel_mission.init_wait_s = 3.0;
   return settings;
 }
 
@@ -97,13 +97,13 @@ TEST(MakeStack, RefusesPartsThatDoNotGoTogether) {
   settings = {};
   settings.localizer = "monte_carlo";
   EXPECT_THAT([&] { make_stack(settings, quadruped, route_with_a_station(), {}); },
-              ThrowsMessage<InputError>(HasSubstr("stack.localizer = monte_carlo: there is no map")));
+              ThrowsMessage<InputError>(HasSubstr("stack.localizer = monte_carlo: requires a map")));
   settings.localizer = "slam";
   EXPECT_THAT([&] { make_stack(settings, quadruped, route_with_a_station(), {.map = map_of_small_room()}); },
-              ThrowsMessage<InputError>(HasSubstr("stack.localizer = slam: a map is given")));
+              ThrowsMessage<InputError>(HasSubstr("stack.localizer = slam: would replace the given map")));
   settings.localizer = "slam_then_monte_carlo";
   EXPECT_THAT([&] { make_stack(settings, quadruped, route_with_a_station(), {}); },
-              ThrowsMessage<InputError>(HasSubstr("no drive by remote control")));
+              ThrowsMessage<InputError>(HasSubstr("requires a teleoperated mapping drive")));
 }
 
 TEST(MakeStack, RefusesAGasStationWithoutAMethaneMeterAndADockingWithoutADock) {
@@ -112,12 +112,12 @@ TEST(MakeStack, RefusesAGasStationWithoutAMethaneMeterAndADockingWithoutADock) {
   EXPECT_THAT([&] { make_stack({}, robot, route_with_a_station(), {}); },
               ThrowsMessage<InputError>(HasSubstr("tdlas")));
   StackSettings settings = goal_settings();
-  settings.tour.docks = true;
+  settings.tunnel_mission.dock_after_run = true;
   EXPECT_THAT(
       [&] {
         make_stack(settings, robot, {}, {.map = map_of_small_room(), .goals = {{.number = 1, .T_map_body = {}}}});
       },
-      ThrowsMessage<InputError>(HasSubstr("no dock")));
+      ThrowsMessage<InputError>(HasSubstr("requires a dock")));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ class RecordingMission final : public Mission {
     MissionOutput output;
     if (heard_.size() < 5) return output;
     output.task.motion = Motion::kNavigate;
-    output.task.goal = NavigationGoal{.T_map_body = {}, .position_tol_m = 0.5, .yaw_tol_rad = 3.2};
+    output.task.goal = NavigationGoal{.T_map_body = {}, .position_tolerance_m = 0.5, .yaw_tolerance_rad = 3.2};
     return output;
   }
   bool is_over() const override { return is_over_; }
@@ -40,7 +40,7 @@ Stack stack_of(const RobotDescription& robot, std::unique_ptr<Mission> mission, 
                 .motion = MotionExecutor(settings, robot, {}, 1),
                 .mission = std::move(mission),
                 .instruments = InstrumentSet({}, 1.0),
-                .sensor_watch = SensorMonitor(settings.sensor_watch),
+                .sensor_monitor = SensorMonitor(settings.sensor_monitor),
                 .dock = std::nullopt});
 }
 

@@ -98,16 +98,16 @@ ExitCode list_command() {
   print("odometry sources (stack.odometry_source)", allowed<stack::StackSettings>("odometry_source"));
   print("localizers (stack.localizer)", allowed<stack::StackSettings>("localizer"));
   print("missions (stack.mission_type)", allowed<stack::StackSettings>("mission_type"));
-  print_table("SLAM methods (stack.mapping; patrol slam --method)", slam::mapping_methods());
-  print_table("odometry of method rbpf (stack.slam.odometry)", slam::kRbpfOdometries);
-  print_table("particle optimizers (stack.slam.optimizer)", slam::optimizers());
+  print_table("SLAM methods (stack.slam.method; patrol slam --method)", slam::mapping_methods());
+  print_table("odometry of method rbpf (stack.slam.rbpf.odometry)", slam::kRbpfOdometries);
+  print_table("particle optimizers (stack.slam.rbpf.optimizer)", slam::optimizers());
   print_table("particle resamplers", slam::resamplers());
   print("localization methods", {"Monte Carlo localization with KLD sampling (stack.localization)"});
   print_table("sensor models of localization (stack.localization.sensor_model)", localize::sensor_models());
-  print_table("global planners (stack.plan.global; patrol plan --planner)", plan::route_planners());
-  print_table("local planners (stack.plan.local_planner)", plan::local_planners());
+  print_table("global planners (stack.navigation.global_planner.method; patrol plan --planner)", plan::route_planners());
+  print_table("local planners (stack.navigation.local_planner.method)", plan::local_planners());
   print_table("station types (mission)", kStationTypes);
-  print_table("goal types (goals; stack.tour.mark_types)", kGoalTypes);
+  print_table("goal types (goals; stack.tunnel_mission.goal_types)", kGoalTypes);
   print_table("event kinds", std::span(kEventKinds).subspan(1));  // without foreign kinds
   print("studies", study_names());
   return ExitCode::kDone;

@@ -106,7 +106,7 @@ ExitCode plan_one(const PlanOptions& options) {
   const bool is_found = route.status == plan::PlanStatus::kFound;
   if (options.out) {
     const OutputLock lock = begin_output(*options.out, kPlanOutput);
-    const std::vector<Eigen::Vector2d> points_m = plan::to_metres(grid, route.points);
+    const std::vector<Eigen::Vector2d> points_m = plan::to_meters(grid, route.points);
     if (is_found) io::save_csv(*options.out / "route.csv", route_table(ground.map, points_m));
     io::save_metrics(*options.out / "plan.json", to_json(report));
     io::save_settings(*options.out / "settings.yaml", ground.setup.settings);

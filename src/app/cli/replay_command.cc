@@ -75,7 +75,8 @@ ExitCode replay_command(const ReplayOptions& options) {
   const Pose2 T_world_map =
       files.map ? files.T_site_start : score::align_at_start(record.T_map_body, record.T_world_body);
   sim::AssembledModel model =
-      sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), start_in_world(scenario, files), static_obstacles_of(scenario));
+      sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), start_in_world(scenario, files),
+                          all_static_obstacles(scenario));
 
   if (options.still_s) {
     const Time at = from_seconds(*options.still_s);

@@ -30,7 +30,7 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kMapping = {.name = "mapping of a log",
-                             .marker_text = "The log has not been mapped to its end.",
+                             .marker_text = "The log is not completely mapped.",
                              .outputs = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o", "performance.csv", "metrics.json", "settings.yaml", "report.html"},
                              .required_file = "settings.yaml",
                              .preserved = {"*.part"}};
@@ -98,7 +98,7 @@ bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::st
     mapped.cost.add(mapped.stamps.size(), mapped.way_m);
   });
   if (!is_whole) return false;
-  bar.show(fmt::format("{}  {} scans, at the end once more over all of them", name, mapped.stamps.size()));
+  bar.show(fmt::format("{}  {} scans, final optimization", name, mapped.stamps.size()));
   mapper.finish();
   return !guard.is_interrupted();
 }
@@ -131,9 +131,9 @@ ExitCode slam_command(const SlamOptions& options) {
   if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
   io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
-  BoostedStumps neighbours;
-  if (needs_neighbor_model(settings.slam.method)) neighbours = neighbours_for(settings.slam.method, find_data_root(""));
-  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbours, settings.seed);
+  BoostedStumps neighbors;
+  if (needs_neighbor_model(settings.slam.method)) neighbors = load_neighbor_model(settings.slam.method, find_data_root(""));
+  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbors, settings.seed);
 
   const double wall_s = wall_seconds(), thread_s = thread_cpu_time_s();
   MappedLog mapped;

@@ -12,7 +12,7 @@ Grid<plan::Cost> costs_of_point(const OccupancyGrid& occupancy, const plan::Cost
   Grid<plan::Cost> costs(occupancy.geometry(), plan::kFreeCost);
   for (std::size_t i = 0; i < costs.values().size(); ++i) {
     const std::int8_t value = occupancy.values()[i];
-    if (value == kUnknown ? !settings.crosses_unknown : value >= settings.occupied_percent) costs.values()[i] = plan::kLethalCost;
+    if (value == kUnknown ? !settings.allow_unknown : value >= settings.occupied_percent) costs.values()[i] = plan::kLethalCost;
   }
   return costs;
 }
@@ -64,7 +64,7 @@ std::optional<Cell> nearest_free(const Grid<plan::Cost>& costs, const Eigen::Vec
 const char* blocked_reason(const OccupancyGrid& occupancy, const plan::CostmapSettings& settings, const Eigen::Vector2d& p_m) {
   const std::int8_t value = occupancy.at(occupancy.geometry().cell_at(p_m));
   if (value >= settings.occupied_percent) return "is occupied";
-  if (value == kUnknown && !settings.crosses_unknown) return "is unknown in the map";
+  if (value == kUnknown && !settings.allow_unknown) return "is unknown in the map";
   return "is too close to an obstacle";
 }
 

@@ -45,12 +45,12 @@ std::filesystem::path urdf_of(const std::string& robot, const std::filesystem::p
 void set_robot(const std::string& robot, const std::filesystem::path& data_root, PlanSetup& setup) {
   const std::filesystem::path urdf = urdf_of(robot, data_root / "models");
   setup.body = {.name = robot, .footprint = plan::Footprint(io::load_robot_description(urdf.string()).footprint_m)};
-  const plan::NavigatorSettings drives_with = default_scenario(robot, data_root).stack.plan;
+  const plan::NavigatorSettings drives_with = default_scenario(robot, data_root).stack.navigation;
   setup.settings.costmap = drives_with.costmap;
-  setup.settings.allow_unknown = drives_with.costmap.crosses_unknown;
-  setup.settings.routes = drives_with.routes.family;
-  setup.settings.min_clearance_m = drives_with.routes.kept_clearance_m;
-  setup.settings.speed_mps = drives_with.local.max_speed_mps;
+  setup.settings.allow_unknown = drives_with.costmap.allow_unknown;
+  setup.settings.routes = drives_with.global_planner.family;
+  setup.settings.min_clearance_m = drives_with.global_planner.min_clearance_m;
+  setup.settings.speed_mps = drives_with.local_planner.dwa.max_speed_mps;
 }
 
 void set_disc(double radius_m, PlanSetup& setup) {
@@ -78,9 +78,9 @@ PlanSetup load_plan_setup(const PlanOptions& options) {
   if (options.smooth) overrides.push_back("smooth=true");
   if (options.speed_mps) overrides.push_back(fmt::format("speed_mps={}", *options.speed_mps));
   io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
-  settings.costmap.crosses_unknown = settings.allow_unknown;
+  settings.costmap.allow_unknown = settings.allow_unknown;
   plan::make_route_planner(settings.planner, settings.routes, settings.seed);  // throws for an unknown planner
-  if (settings.smooth && settings.planner == "any_angle_optimum") {
+  if (settings.smooth && settings.planner == "visibility_graph") {
     throw InputError("--smooth: not applicable to the visibility graph, whose paths touch lethal cells");
   }
   return setup;

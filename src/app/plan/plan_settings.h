@@ -15,7 +15,7 @@ namespace patrol::app {
 
 /// Settings of `patrol plan --set`. The defaults are those of a point. For a disc, routes.cost_weight is that of the
 /// robots (plan/routes/global_planner.h). For a robot, costmap, allow_unknown, routes and speed_mps come from its profile
-/// (models/<robot>/<robot>.yaml: stack.plan).
+/// (models/<robot>/<robot>.yaml: stack.navigation).
 struct PlanSettings {
   std::string planner = "theta_star";  ///< plan/routes/planners.h
   std::uint64_t seed = 1;              ///< seed of stochastic planners and station orders

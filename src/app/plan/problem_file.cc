@@ -16,7 +16,7 @@
 namespace patrol::app {
 namespace {
 
-bool is_any_angle(const std::string& planner) { return planner == "theta_star" || planner == "any_angle_optimum"; }
+bool is_any_angle(const std::string& planner) { return planner == "theta_star" || planner == "visibility_graph"; }
 
 /// Cost grids of the maps that a file's problems name, for starts on land and in water.
 class Grids {
@@ -46,9 +46,9 @@ class Grids {
 
 std::optional<std::string> failure_of(const SolvedProblem& solved, const plan::Route& route, const Grid<plan::Cost>& costs, const std::string& planner) {
   const io::MovingAiProblem& problem = solved.problem;
-  if (solved.status == plan::PlanStatus::kNoneFound) return "no route found";
+  if (solved.status == plan::PlanStatus::kNotFound) return "no route found";
   if (!solved.is_found()) return "no route found, but the file states a length";
-  if (const auto fault = validate_route(costs, route, problem.start, problem.goal, planner == "any_angle_optimum")) return "the route " + *fault;
+  if (const auto fault = validate_route(costs, route, problem.start, problem.goal, planner == "visibility_graph")) return "the route " + *fault;
   if (must_agree(planner) && !solved.agrees()) return fmt::format("is {:.6f} cells long, published {:.6f}", solved.length, problem.optimal_length);
   if (is_any_angle(planner) && solved.length > problem.optimal_length + solved.published_tol()) {
     return fmt::format("is {:.6f} cells long, more than {:.6f} over eight neighbors", solved.length, problem.optimal_length);

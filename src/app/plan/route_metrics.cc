@@ -16,11 +16,11 @@ namespace {
 void smooth(const Grid<plan::Cost>& costs, const PlanSettings& settings, plan::Route& route) {
   const double cost_weight = settings.routes.cost_weight;
   route.points = plan::smooth_route(costs, cost_weight, settings.min_clearance_m / costs.geometry().resolution_m, route.points);
-  route.clearance = plan::clearance_of(costs, route.points);
+  route.clearance = plan::compute_clearance(costs, route.points);
   route.length = route.cost = 0.0;
   for (std::size_t i = 1; i < route.points.size(); ++i) {
     route.length += (route.points[i] - route.points[i - 1]).norm();
-    route.cost += plan::line_price(costs, plan::cost_factors(cost_weight), plan::cell_of(route.points[i - 1]), plan::cell_of(route.points[i])).value();
+    route.cost += plan::line_cost(costs, plan::cost_factors(cost_weight), plan::cell_of(route.points[i - 1]), plan::cell_of(route.points[i])).value();
   }
 }
 
@@ -60,9 +60,9 @@ RouteMetrics evaluate_route(const Grid<plan::Cost>& costs, Cell start, Cell goal
   metrics.octile_length = octile.length;
   const double cost_weight = settings.routes.cost_weight;
   if (cost_weight > 0.0) metrics.octile_cost = GridSearch(GridSearch::Method::kAstar, cost_weight).plan(costs, start, goal).cost;
-  if (settings.planner == "any_angle_optimum") metrics.any_angle_length = metrics.route.length;
+  if (settings.planner == "visibility_graph") metrics.any_angle_length = metrics.route.length;
   else if (is_too_large(costs, settings.max_any_angle_cells)) metrics.is_any_angle_skipped = true;
-  else metrics.any_angle_length = plan::AnyAngleOptimum().plan(costs, start, goal).length;
+  else metrics.any_angle_length = plan::VisibilityGraphPlanner().plan(costs, start, goal).length;
   return metrics;
 }
 

@@ -55,7 +55,7 @@ const char* status_name(plan::PlanStatus status) {
     case plan::PlanStatus::kStartBlocked: return "start blocked";
     case plan::PlanStatus::kGoalBlocked: return "goal blocked";
     case plan::PlanStatus::kNoRoute: return "no route";
-    case plan::PlanStatus::kNoneFound: return "none found";
+    case plan::PlanStatus::kNotFound: return "none found";
   }
   return "";
 }
@@ -83,14 +83,14 @@ std::string to_text(const RouteReport& report) {
   std::string text = fmt::format("{} from {} to {}\n{}\n", report.setup.settings.planner, report.map.text_of(report.p_from_m),
                                  report.map.text_of(report.p_to_m), grid_text(report.map_name, report.map, report.costs, report.setup.body));
   text += fmt::format("status             {}{}{}\n", status_name(route.status), is_found && report.setup.settings.smooth ? ", smoothed" : "",
-                      route.status == plan::PlanStatus::kNoneFound ? ": this planner is not complete" : "");
+                      route.status == plan::PlanStatus::kNotFound ? ": this planner is not complete" : "");
   if (is_found) {
     text += fmt::format("length             {:.3f} {}, {} points, {}\n", cell * route.length, unit, route.points.size(), turns_text(metrics.num_turns));
     if (weight > 0.0) text += fmt::format("cost               {:.3f} {}: a cell at the highest passable cost counts as {}\n", cell * route.cost, unit, 1.0 + weight);
     text += fmt::format("clearance          {}{:.3f} {} to lethal cells\n", route.clearance >= plan::kMaxClearance ? "at least " : "", cell * route.clearance, unit);
   }
   text += fmt::format("iterations         {}", route.num_iterations);
-  if (const int settled = plan::iterations_to_within(route.history, kSettled)) text += fmt::format(", within 1 % of the final value from {} on", settled);
+  if (const int settled = plan::iterations_to_convergence(route.history, kSettled)) text += fmt::format(", within 1 % of the final value from {} on", settled);
   text += fmt::format("\nexpanded           {} cells\nprocessor time     {:.2f} ms\n", route.num_expanded, 1e3 * metrics.processor_s);
   return text + references_text(report);
 }
@@ -131,7 +131,7 @@ io::Metrics to_json(const RouteReport& report) {
             {"turns", metrics.num_turns},
             {"points", route.points.size()},
             {"iterations", route.num_iterations},
-            {"iterations_to_1_percent", plan::iterations_to_within(route.history, kSettled)},
+            {"iterations_to_1_percent", plan::iterations_to_convergence(route.history, kSettled)},
             {"expanded_cells", route.num_expanded}}},
           {"references",
            {{key("octile_length"), best(metrics.octile_length)},

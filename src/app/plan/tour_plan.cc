@@ -37,9 +37,9 @@ class PairwisePaths {
     return path.status == plan::PlanStatus::kFound ? costs_.geometry().resolution_m * path.length : kInfinite;
   }
   /// Whether the existence or absence of a path is proven.
-  bool is_proven(std::size_t from, std::size_t to) const { return paths_.at(std::minmax(from, to)).status != plan::PlanStatus::kNoneFound; }
+  bool is_proven(std::size_t from, std::size_t to) const { return paths_.at(std::minmax(from, to)).status != plan::PlanStatus::kNotFound; }
   std::vector<Eigen::Vector2d> points_m(std::size_t from, std::size_t to) const {
-    std::vector<Eigen::Vector2d> points_m = plan::to_metres(costs_.geometry(), paths_.at(std::minmax(from, to)).points);
+    std::vector<Eigen::Vector2d> points_m = plan::to_meters(costs_.geometry(), paths_.at(std::minmax(from, to)).points);
     if (from > to) std::reverse(points_m.begin(), points_m.end());
     return points_m;
   }
@@ -129,7 +129,7 @@ std::optional<TourPlan> plan_tour(const Grid<plan::Cost>& costs, const Eigen::Ve
   tour.processor_s = process_seconds() - processor_s;
 
   bar.show("the order of the stations");
-  tour.order = plan::order_tour(problem_of(paths, nodes, stops, has_end, settings.speed_mps), settings.tour, settings.seed);
+  tour.order = plan::solve_station_order(problem_of(paths, nodes, stops, has_end, settings.speed_mps), settings.tour, settings.seed);
   if (!tour.order.is_found) return tour;
   std::vector<std::size_t> route;
   for (const std::size_t station : tour.order.stations) route.push_back(nodes[station]);

@@ -13,7 +13,7 @@ const OutputKind kRun = {
     .name = "run",
     .marker_text = "Incomplete run: these files are not a result.",
     .outputs = {"scenario.yaml", "log.mcap", "metrics.json", "junit.xml", "estimate.tum", "truth.tum", "odometry.tum", "map.yaml", "map.pgm",
-             "truth_map.yaml", "truth_map.pgm", "report.html", "replay.mp4", "nav.json", "teleop.csv", "remote.csv", "scans/scans.json", "scans/*.ply", "map_errors.pgm", "localizability.csv", "still_*.png", "outbox.jsonl", "outbox.sent",
+             "truth_map.yaml", "truth_map.pgm", "report.html", "replay.mp4", "nav.json", "teleop.csv", "scans/scans.json", "scans/*.ply", "map_errors.pgm", "localizability.csv", "still_*.png", "outbox.jsonl", "outbox.sent",
              "outbox.refused.jsonl", "*.part"},
     .required_file = "scenario.yaml",
     .preserved = {}};

@@ -60,7 +60,7 @@ std::vector<MapMark> marks_on_map(const RunContents& run) {
   marks.add("start", SeriesColor::kEvent, to_pose2(run.record.T_world_body.front().pose).position());
   for (const Event& event : run.record.events) {
     const EventKind kind = event.kind;
-    if (kind == EventKind::kStationReached || kind == EventKind::kGoalMarked || kind == EventKind::kGoalReached) marks.add(event.subject, SeriesColor::kEvent, truth_at(event.stamp));
+    if (kind == EventKind::kStationReached || kind == EventKind::kGoalSaved || kind == EventKind::kGoalReached) marks.add(event.subject, SeriesColor::kEvent, truth_at(event.stamp));
     if (kind == EventKind::kDocked) marks.add("dock", SeriesColor::kEvent, truth_at(event.stamp));
     if (class_of(kind) == EventClass::kHazard) marks.add(kind == EventKind::kGasAlarm ? "alarm" : event.subject, SeriesColor::kAlarm, run.T_world_map * event.p_map_target);
     if (class_of(kind) == EventClass::kTaskFailed) marks.add(event.subject + " failed", SeriesColor::kAlarm, truth_at(event.stamp));

@@ -43,16 +43,16 @@ sim::SimulatorSettings simulator_settings(const Scenario& scenario, const Scenar
           .sensors = scenario.sensors,
           .locomotion = scenario.locomotion,
           .track_drive = scenario.track_drive,
-          .props = static_obstacles_of(scenario),
+          .static_obstacles = all_static_obstacles(scenario),
           .lining = files.route.lining,  // site is world
-          .lining_deformations = scenario.lining,
+          .lining_deformations = scenario.lining_deformation,
           .actors = scenario.actors,
           .leaks = scenario.leaks,
           .wind = scenario.wind,
-          .subsurface = {.rock = scenario.rock, .water = scenario.water},
+          .subsurface = {.rock = scenario.rock, .water_bodies = scenario.water_bodies},
           .faults = scenario.faults,
-          .drive = files.drive,
-          .driver = scenario.remote.driver,
+          .teleop_route = files.teleop_route,
+          .teleop_operator = scenario.teleop.teleop_operator,
           .recorded = files.recorded};
 }
 
@@ -195,14 +195,14 @@ class ClosedLoop {
 
 Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files) {
   return files.T_site_start * Pose2{scenario.start.ahead_m, scenario.start.left_m,
-                                    to_rad(scenario.start.turn_deg)};
+                                    to_rad(scenario.start.yaw_deg)};
 }
 
-std::vector<sim::StaticObstacleSettings> static_obstacles_of(const Scenario& scenario) {
-  std::vector<sim::StaticObstacleSettings> props = scenario.props;
+std::vector<sim::StaticObstacleSettings> all_static_obstacles(const Scenario& scenario) {
+  std::vector<sim::StaticObstacleSettings> obstacles = scenario.static_obstacles;
   const std::vector<sim::StaticObstacleSettings> scattered = sim::scatter_low_obstacles(scenario.low_obstacles, scenario.seed);
-  props.insert(props.end(), scattered.begin(), scattered.end());
-  return props;
+  obstacles.insert(obstacles.end(), scattered.begin(), scattered.end());
+  return obstacles;
 }
 
 sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files) {

@@ -47,7 +47,7 @@ class NullObserver final : public RunObserver {
 Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files);
 
 /// Static obstacles of the scenario: the listed ones and the randomly scattered ones.
-std::vector<sim::StaticObstacleSettings> static_obstacles_of(const Scenario& scenario);
+std::vector<sim::StaticObstacleSettings> all_static_obstacles(const Scenario& scenario);
 
 /// Creates the simulator. Throws InputError if the settings of the scenario are inconsistent.
 sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files);

@@ -24,10 +24,10 @@ void save_drive(const RunDirectory& directory, const Scenario& scenario, const R
   io::save_teleop(directory.teleop(), record.teleop);
   std::vector<SavedGoal> goals;
   for (const Event& event : record.events) {
-    if (event.kind != EventKind::kGoalMarked) continue;
+    if (event.kind != EventKind::kGoalSaved) continue;
     goals.push_back({.number = static_cast<int>(goals.size()) + 1,
                      .T_map_body = event.T_map_body,
-                     .type = scenario.stack.tour.goal_type(goals.size())});
+                     .type = scenario.stack.tunnel_mission.goal_type(goals.size())});
   }
   if (!goals.empty()) io::save_nav(directory.nav(), goals);
 }

@@ -90,7 +90,7 @@ class Adjuster {
         const int cell = grid_.cell_at(point);
         if (cell < 0) continue;
         const auto before_m = reference_.inward_m(point, cell);
-        if (!before_m || std::abs(point.inward_m - *before_m) > settings_.band_m) continue;
+        if (!before_m || std::abs(point.inward_m - *before_m) > settings_.design_tolerance_m) continue;
         cells[static_cast<std::size_t>(cell)].add(point.inward_m - *before_m, derivative(point.gradient, arm), sample.count);
       } else {
         add_other(i, p, arm, T_map_scanner, others);
@@ -103,8 +103,8 @@ class Adjuster {
   Vector7 solve(const std::vector<Patch>& patches, Adjustment& state) const {
     const Vector7 from_guess = offset_from_guess(state);
     Vector7 prior;
-    prior.head<3>().setConstant(1.0 / (settings_.guess_std_m * settings_.guess_std_m));
-    const double guess_std_rad = to_rad(settings_.guess_std_deg);
+    prior.head<3>().setConstant(1.0 / (settings_.prior_std_m * settings_.prior_std_m));
+    const double guess_std_rad = to_rad(settings_.prior_std_deg);
     prior.segment<3>(3).setConstant(1.0 / (guess_std_rad * guess_std_rad));
     prior[6] = 1.0 / (settings_.range_offset_std_m * settings_.range_offset_std_m);
     Vector7 step = Vector7::Zero();

@@ -73,8 +73,8 @@ LiningGrid::LiningGrid(const LiningInMap& lining, const Eigen::Vector3d& p_map_s
       joint_margin_m(settings.joint_margin_m) {
   // Rings that are completely in range.
   const double here_m = lining.design.to_tunnel_coordinates(p_map_scanner).chainage_m - first_ring_m;
-  const int low = static_cast<int>(std::ceil((here_m - settings.reach_m) / ring_length_m - 1e-9)) + 1;
-  const int high = static_cast<int>(std::floor((here_m + settings.reach_m) / ring_length_m + 1e-9));
+  const int low = static_cast<int>(std::ceil((here_m - settings.comparison_range_m) / ring_length_m - 1e-9)) + 1;
+  const int high = static_cast<int>(std::floor((here_m + settings.comparison_range_m) / ring_length_m + 1e-9));
   first_ring = std::clamp(low, 1, lining.design.rings + 1);
   rings = std::max(0, std::min(high, lining.design.rings) - first_ring + 1);
 }
@@ -114,7 +114,7 @@ std::optional<LiningInMap> fit_design(const TunnelLining& design_in_map, const s
     for (const DownsampledPoint& sample : points_map) {
       const LiningPoint point = lining_point(lining, sample.p);
       const double ratio = point.inward_m / kernel_m;
-      if (std::abs(point.chainage_m - here_m) > settings.reach_m || std::abs(point.clock_deg) > max_deg || std::abs(ratio) >= 1.0) continue;
+      if (std::abs(point.chainage_m - here_m) > settings.comparison_range_m || std::abs(point.clock_deg) > max_deg || std::abs(ratio) >= 1.0) continue;
       const Eigen::Vector2d arm = sample.p.head<2>() - about;
       // Moving the design has the opposite effect of moving the point.
       const Eigen::Vector3d J(-point.gradient.head<2>().dot(left), -(point.gradient.y() * arm.x() - point.gradient.x() * arm.y()), -point.gradient.z());

@@ -30,7 +30,7 @@ bool is_same_position(const ScanView& source, const ScanView& target_map, const 
   const Pose3 T_source_map = fine.T_map_scanner.inverse();
   const AxialOverlap there = axial_overlap(source, target_map, fine.T_map_scanner, T_source_map.rotation * axis_map);
   const AxialOverlap back = axial_overlap(target_map, source, T_source_map, axis_map);
-  return std::max(there.ratio(), back.ratio()) >= settings.min_grip_share;
+  return std::max(there.ratio(), back.ratio()) >= settings.min_axial_overlap;
 }
 
 }  // namespace
@@ -46,14 +46,14 @@ LiningResult LiningInspection::inspect(Time stamp, const std::string& station, c
   result.stamp = stamp;
   result.station = station;
   result.T_map_body = to_pose2(T_map_scanner_guess) * T_scanner_body_;
-  const SurfaceCloud target(to_downsampled(reference)), source(downsample(scan.points, settings_.spacing_m, settings_.near_m));
+  const SurfaceCloud target(to_downsampled(reference)), source(downsample(scan.points, settings_.spacing_m, settings_.min_range_m));
   const auto lining = fit_design(design_, target.points(), reference.T_map_scanner.position, settings_);
   if (!lining) return result;
 
   const Registration coarse = register_cloud(target, source, T_map_scanner_guess, settings_.registration);
-  result.registration_share = coarse.inlier_ratio;
+  result.registration_inlier_ratio = coarse.inlier_ratio;
   result.registration_rms_m = coarse.rms_m;
-  if (!coarse.converged || coarse.inlier_ratio < settings_.min_share) return result;
+  if (!coarse.converged || coarse.inlier_ratio < settings_.min_inlier_ratio) return result;
 
   const LiningGrid grid(*lining, coarse.T_target_source.position, settings_);
   const ReferenceLining surface(*lining, grid, target.points(), settings_);

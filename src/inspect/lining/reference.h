@@ -15,7 +15,7 @@ struct LiningReference {
 
 struct ReferenceSettings {
   double spacing_m = 0.1;  ///< averaging distance of the points
-  double near_m = 1.5;     ///< points closer to the scanner are excluded as parts of the robot
+  double min_range_m = 1.5;     ///< points closer to the scanner are excluded as parts of the robot
   double max_range_m = 30.0;     ///< points farther away are excluded: too sparse for surfaces
 };
 

@@ -26,15 +26,15 @@ ReferenceLining::ReferenceLining(const LiningInMap& lining, const LiningGrid& gr
   for (const DownsampledPoint& sample : points_map) {
     const LiningPoint point = lining_point(lining, sample.p);
     const int cell = grid.cell_at(point);
-    if (cell < 0 || std::abs(point.inward_m) > settings.band_m) continue;
+    if (cell < 0 || std::abs(point.inward_m) > settings.design_tolerance_m) continue;
     cells_[static_cast<std::size_t>(cell)].points.push_back({point.chainage_m, point.clock_deg * arc_per_deg_m_, point.inward_m});
   }
   const double area_m2 = (grid.ring_length_m - 2.0 * grid.joint_margin_m) * grid.sector_deg * arc_per_deg_m_;
   for (Cell& cell : cells_) {
     std::vector<double> inward;
     for (const Point& point : cell.points) inward.push_back(point.inward_m);
-    const double middle = median_of(inward), band_m = std::max(kMinBand_m, 4.0 * mad_std(inward, middle));
-    std::erase_if(cell.points, [&](const Point& point) { return std::abs(point.inward_m - middle) > band_m; });
+    const double middle = median_of(inward), design_tolerance_m = std::max(kMinBand_m, 4.0 * mad_std(inward, middle));
+    std::erase_if(cell.points, [&](const Point& point) { return std::abs(point.inward_m - middle) > design_tolerance_m; });
     if (cell.points.empty()) continue;
     cell.radius_m = std::clamp(2.0 * std::sqrt(area_m2 / static_cast<double>(cell.points.size())), kMinRadius_m, kMaxRadius_m);
   }

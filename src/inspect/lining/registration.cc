@@ -80,7 +80,7 @@ Registration register_cloud(const SurfaceCloud& target, const SurfaceCloud& sour
                             const RegistrationSettings& settings) {
   Registration result{.T_target_source = T_target_source_start};
   const std::vector<std::size_t> sample = sample_of(source, settings.sample);
-  double distance_m = std::max(settings.first_distance_m, settings.last_distance_m);
+  double distance_m = std::max(settings.initial_pair_distance_m, settings.final_pair_distance_m);
   for (; result.iterations < settings.max_iterations && !result.converged; ++result.iterations) {
     Matrix6 H = Matrix6::Zero();
     Vector6 b = Vector6::Zero();
@@ -102,15 +102,15 @@ Registration register_cloud(const SurfaceCloud& target, const SurfaceCloud& sour
     result.T_target_source = apply_step(result.T_target_source, step);
     // Distant pairs need not converge completely before closer ones are used.
     const double length_m = step.head<3>().norm() + kRegistrationArm_m * step.tail<3>().norm();
-    const bool is_last = distance_m <= settings.last_distance_m;
-    if (is_last) result.converged = length_m < settings.step_tol_m;
-    else if (length_m < std::max(settings.step_tol_m, 0.02 * distance_m)) distance_m = std::max(settings.last_distance_m, 0.5 * distance_m);
+    const bool is_last = distance_m <= settings.final_pair_distance_m;
+    if (is_last) result.converged = length_m < settings.step_tolerance_m;
+    else if (length_m < std::max(settings.step_tolerance_m, 0.02 * distance_m)) distance_m = std::max(settings.final_pair_distance_m, 0.5 * distance_m);
   }
   double squares = 0.0;
   std::size_t kept = 0;
   for (const std::size_t i : sample) {
-    const auto pair = pair_of(target, source, i, result.T_target_source, settings.last_distance_m);
-    if (!pair || std::abs(pair->residual_m) > settings.last_distance_m) continue;
+    const auto pair = pair_of(target, source, i, result.T_target_source, settings.final_pair_distance_m);
+    if (!pair || std::abs(pair->residual_m) > settings.final_pair_distance_m) continue;
     squares += pair->residual_m * pair->residual_m;
     ++kept;
   }

@@ -59,20 +59,20 @@ Beam beam_of(const ScannerPoint& point, std::uint32_t index, double spacing_m) {
 void check(const ScannerPoint& point) {
   for (const float value : {point.x, point.y, point.z}) {
     if (!(std::abs(value) <= kMaxRange_m)) {
-      throw InputError(fmt::format("a scan's point is ({}, {}, {}): must be finite and within {} m", point.x, point.y, point.z, kMaxRange_m));
+      throw InputError(fmt::format("scan point ({}, {}, {}): must be finite and within {} m", point.x, point.y, point.z, kMaxRange_m));
     }
   }
 }
 
 }  // namespace
 
-std::vector<DownsampledPoint> downsample(const std::vector<ScannerPoint>& points, double spacing_m, double near_m) {
+std::vector<DownsampledPoint> downsample(const std::vector<ScannerPoint>& points, double spacing_m, double min_range_m) {
   std::vector<Beam> beams;
   beams.reserve(points.size());
   for (const ScannerPoint& point : points) {
     check(point);
     const Beam beam = beam_of(point, static_cast<std::uint32_t>(&point - points.data()), spacing_m);
-    if (static_cast<double>(beam.range_m) >= near_m) beams.push_back(beam);
+    if (static_cast<double>(beam.range_m) >= min_range_m) beams.push_back(beam);
   }
   std::ranges::sort(beams);
   std::vector<DownsampledPoint> downsampled;

@@ -21,9 +21,9 @@ struct DownsampledPoint {
 };
 
 /// Downsamples points, given in the scanner frame, to about the spacing, but never across a range step larger than the
-/// spacing. Points closer than `near_m` are excluded. Throws InputError for points that are not finite or farther than
+/// spacing. Points closer than `min_range_m` are excluded. Throws InputError for points that are not finite or farther than
 /// 10 km.
-std::vector<DownsampledPoint> downsample(const std::vector<ScannerPoint>& points, double spacing_m, double near_m = 0.0);
+std::vector<DownsampledPoint> downsample(const std::vector<ScannerPoint>& points, double spacing_m, double min_range_m = 0.0);
 
 /// Downsampled points with their local surfaces, in a k-d tree (nanoflann). Ties in distance are resolved
 /// deterministically.

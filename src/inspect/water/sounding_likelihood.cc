@@ -16,14 +16,14 @@ constexpr std::array kSteelDecay_s = {1e-5, 3e-5, 1e-4, 3e-4};
 constexpr double kSteelReferenceTime_s = 1e-5;
 
 TemGateLayout gate_layout(const SoundingErrorSettings& settings, const std::vector<OrientedSounding>& soundings) {
-  validate(settings, "stack.water.errors");
-  if (soundings.empty()) throw InputError("soundings of water: there are none");
+  validate(settings, "stack.inspection.water.errors");
+  if (soundings.empty()) throw InputError("water soundings: none given: must be at least one");
   const std::vector<double>& gate_s = soundings.front().sounding.gate_s;
   for (const OrientedSounding& oriented : soundings) {
     const TemSounding& sounding = oriented.sounding;
     if (sounding.gate_s != gate_s || sounding.rate_tps.size() != gate_s.size() || sounding.std_tps.size() != gate_s.size() ||
         gate_s.size() < 3 || !(sounding.moment_am2 > 0.0)) {
-      throw InputError(fmt::format("sounding of water at {:.3f} s: its gates differ from those of the others", to_seconds(sounding.stamp)));
+      throw InputError(fmt::format("water sounding at {:.3f} s: gates differ from those of the first sounding: must be equal", to_seconds(sounding.stamp)));
     }
   }
   return {.gate_s = gate_s, .ramp_s = settings.ramp_s, .gate_width = settings.gate_width};
@@ -81,7 +81,7 @@ SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings, co
       rate(gate, i) = oriented.sounding.rate_tps[g] / oriented.sounding.moment_am2;
       std(gate, i) = oriented.sounding.std_tps[g] / oriented.sounding.moment_am2;
       if (!std::isfinite(rate(gate, i)) || !(std(gate, i) > 0.0)) {
-        throw InputError(fmt::format("sounding of water at {:.3f} s: gate {} is not a number with an error", to_seconds(oriented.sounding.stamp), gate));
+        throw InputError(fmt::format("water sounding at {:.3f} s: gate {} is invalid: must be finite with a positive standard deviation", to_seconds(oriented.sounding.stamp), gate));
       }
     }
   }
@@ -107,7 +107,7 @@ SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings, co
       Eigen::Index column = 2;
       for (const double decay_s : kSteelDecay_s) {
         const double steel =
-            settings.steel_rate * std::exp((kSteelReferenceTime_s - gate_s[static_cast<std::size_t>(gate)]) / decay_s) * inverse_std_[row];
+            settings.steel_response * std::exp((kSteelReferenceTime_s - gate_s[static_cast<std::size_t>(gate)]) / decay_s) * inverse_std_[row];
         nuisances_(row, column++) = steel;
         nuisances_.block<1, 6>(row, column) = settings.steel_anisotropy * steel * products(axis).transpose();
         column += 6;

@@ -129,7 +129,7 @@ void move(std::vector<Particle>& particles, double temperature, const WaterSetti
   constexpr double kWidths[] = {1.6, 0.8, 0.3};
   const Eigen::Matrix<double, 6, 6> factor = covariance_factor(particles);
   for (Particle& particle : particles) {
-    for (int step = 0; step < settings.moves; ++step) {
+    for (int step = 0; step < settings.mcmc_steps; ++step) {
       Parameters normals;
       for (double& normal : normals) normal = random.normal();
       const double level = std::log(random.uniform());
@@ -241,20 +241,20 @@ void describe_body(const std::vector<Particle>& particles, const WaterSettings& 
 
 void check(const WaterPriorSettings& prior) {
   if (prior.min_rock_spm >= prior.max_rock_spm) {
-    throw InputError(fmt::format("stack.water.prior.min_rock_spm = {}: must be below max_rock_spm", prior.min_rock_spm));
+    throw InputError(fmt::format("stack.inspection.water.prior.min_rock_spm = {}: must be below max_rock_spm", prior.min_rock_spm));
   }
   if (prior.min_radius_m >= prior.max_radius_m) {
-    throw InputError(fmt::format("stack.water.prior.min_radius_m = {}: must be below max_radius_m", prior.min_radius_m));
+    throw InputError(fmt::format("stack.inspection.water.prior.min_radius_m = {}: must be below max_radius_m", prior.min_radius_m));
   }
   if (prior.max_distance_m <= prior.max_radius_m + prior.min_clearance_m) {
-    throw InputError(fmt::format("stack.water.prior.max_distance_m = {}: must leave room for a body of max_radius_m", prior.max_distance_m));
+    throw InputError(fmt::format("stack.inspection.water.prior.max_distance_m = {}: must exceed the distance that a body of max_radius_m requires", prior.max_distance_m));
   }
 }
 
 }  // namespace
 
 WaterInversion::WaterInversion(const WaterSettings& settings) : settings_(settings) {
-  validate(settings, "stack.water");
+  validate(settings, "stack.inspection.water");
   check(settings.prior);
 }
 

@@ -12,11 +12,11 @@ struct WaterSoundingSettings {
   double max_yaw_deg = 60.0;    ///< -60 to 60 in steps of 20
   int pitches = 5;
   double max_pitch_deg = 30.0;  ///< -30 to 30 in steps of 15
-  double settled_deg = 0.5;     ///< maximum angle error of a settled antenna, which must also have stopped
-  double settle_s = 0.4;        ///< minimum duration of the settled state
-  double turn_timeout_s = 8.0;  ///< the pose is skipped after this time
+  double settled_tolerance_deg = 0.5;     ///< maximum angle error of a settled antenna, which must also have stopped
+  double settling_time_s = 0.4;        ///< minimum duration of the settled state
+  double orientation_timeout_s = 8.0;  ///< the pose is skipped after this time
   double sounding_timeout_s = 5.0;
-  int give_up_after = 3;        ///< maximum number of consecutively skipped poses
+  int max_consecutive_failures = 3;        ///< maximum number of consecutively skipped poses
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -24,11 +24,11 @@ struct WaterSoundingSettings {
     visit("max_yaw_deg", self.max_yaw_deg, between(0.0, 90.0));
     visit("pitches", self.pitches, between(1, 50));
     visit("max_pitch_deg", self.max_pitch_deg, between(0.0, 80.0));
-    visit("settled_deg", self.settled_deg, between(0.05, 10.0));
-    visit("settle_s", self.settle_s, between(0.0, 10.0));
-    visit("turn_timeout_s", self.turn_timeout_s, between(0.1, 120.0));
+    visit("settled_tolerance_deg", self.settled_tolerance_deg, between(0.05, 10.0));
+    visit("settling_time_s", self.settling_time_s, between(0.0, 10.0));
+    visit("orientation_timeout_s", self.orientation_timeout_s, between(0.1, 120.0));
     visit("sounding_timeout_s", self.sounding_timeout_s, between(0.1, 600.0));
-    visit("give_up_after", self.give_up_after, between(1, 1000));
+    visit("max_consecutive_failures", self.max_consecutive_failures, between(1, 1000));
   }
 };
 
@@ -40,8 +40,8 @@ struct SoundingErrorSettings {
   double gain_std = 0.03;             ///< relative gain error common to all soundings
   double sounding_gain_std = 0.01;    ///< relative gain error of each sounding: current and coil angle
   double time_shift_std_s = 5e-8;     ///< time shift of the gates, common to all soundings
-  double steel_rate = 1e-8;           ///< response of nearby steel at 10 us, T/s per A m2
-  double steel_anisotropy = 0.3;      ///< anisotropic part of the steel response, relative to `steel_rate`
+  double steel_response = 1e-8;           ///< response of nearby steel at 10 us, T/s per A m2
+  double steel_anisotropy = 0.3;      ///< anisotropic part of the steel response, relative to `steel_response`
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -51,7 +51,7 @@ struct SoundingErrorSettings {
     visit("gain_std", self.gain_std, between(0.0, 1.0));
     visit("sounding_gain_std", self.sounding_gain_std, between(0.0, 1.0));
     visit("time_shift_std_s", self.time_shift_std_s, between(0.0, 1e-6));
-    visit("steel_rate", self.steel_rate, at_least(0.0));
+    visit("steel_response", self.steel_response, at_least(0.0));
     visit("steel_anisotropy", self.steel_anisotropy, between(0.0, 10.0));
   }
 };
@@ -89,7 +89,7 @@ struct WaterSettings {
   SoundingErrorSettings errors;
   WaterPriorSettings prior;
   int particles = 400;               ///< number of posterior particles
-  int moves = 6;                     ///< Metropolis steps per particle and temperature
+  int mcmc_steps = 6;                     ///< Metropolis steps per particle and temperature
   double min_evidence = 5.0;         ///< minimum logarithm of the Bayes factor for a detection: 150 to 1
   /// Standard deviation of the antenna axis on the robot, in addition to the encoder errors.
   double alignment_std_deg = 0.4;
@@ -103,7 +103,7 @@ struct WaterSettings {
     visit("errors", self.errors);
     visit("prior", self.prior);
     visit("particles", self.particles, between(50, 20000));
-    visit("moves", self.moves, between(1, 100));
+    visit("mcmc_steps", self.mcmc_steps, between(1, 100));
     visit("min_evidence", self.min_evidence, between(0.0, 1000.0));
     visit("alignment_std_deg", self.alignment_std_deg, between(0.0, 10.0));
     visit("warning_distance_m", self.warning_distance_m, at_least(0.0));

@@ -16,7 +16,7 @@ double uniform_step(int index, int count, double max) { return count == 1 ? 0.0 
 
 void check_joint_limit(const char* name, double angle_deg, const JointLimit& limit) {
   if (-angle_deg * kDegree >= limit.lower_rad && angle_deg * kDegree <= limit.upper_rad) return;
-  throw InputError(fmt::format("stack.water.sounding.{} = {}: the mount reaches {:.1f} ... {:.1f} deg", name, angle_deg,
+  throw InputError(fmt::format("stack.inspection.water.sounding.{} = {}: outside the range of the mount: must be in [{:.1f}, {:.1f}] deg", name, angle_deg,
                                limit.lower_rad / kDegree, limit.upper_rad / kDegree));
 }
 
@@ -34,7 +34,7 @@ AntennaPose pose_of(const AntennaState& state) { return {state.yaw_rad, state.pi
 }  // namespace
 
 std::vector<AntennaPose> antenna_poses(const WaterSoundingSettings& settings, const AntennaGeometry& antenna) {
-  validate(settings, "stack.water.sounding");
+  validate(settings, "stack.inspection.water.sounding");
   check_joint_limit("max_yaw_deg", settings.max_yaw_deg, antenna.yaw);
   check_joint_limit("max_pitch_deg", settings.max_pitch_deg, antenna.pitch);
   std::vector<AntennaPose> poses;
@@ -57,7 +57,7 @@ WaterSounding::WaterSounding(const WaterSoundingSettings& settings, const Antenn
 void WaterSounding::on_antenna_state(const AntennaState& state) {
   if (state_ && state.stamp <= state_->stamp) return;
   constexpr double kStill_rad = 0.15 * kDegree;  // two steps of the encoder
-  const bool is_there = angle_between(pose_of(state), commanded_) <= settings_.settled_deg * kDegree;
+  const bool is_there = angle_between(pose_of(state), commanded_) <= settings_.settled_tolerance_deg * kDegree;
   const bool is_still = state_ && angle_between(pose_of(state), pose_of(*state_)) <= kStill_rad;
   if (!is_there || !is_still) steady_since_.reset();
   else if (!steady_since_) steady_since_ = state_->stamp;
@@ -66,7 +66,7 @@ void WaterSounding::on_antenna_state(const AntennaState& state) {
 
 /// Returns whether the antenna is settled. Readings before the command are ignored.
 bool WaterSounding::is_settled(Time now) const {
-  return steady_since_ && state_->stamp > since_ && now - std::max(*steady_since_, since_) >= from_seconds(settings_.settle_s);
+  return steady_since_ && state_->stamp > since_ && now - std::max(*steady_since_, since_) >= from_seconds(settings_.settling_time_s);
 }
 
 InstrumentCommand WaterSounding::command_pose(const AntennaPose& pose, Phase phase, Time now) {
@@ -84,7 +84,7 @@ std::optional<InstrumentCommand> WaterSounding::next_command(Time now) {
 
 std::optional<InstrumentCommand> WaterSounding::skip_pose(Time now) {
   ++num_skipped_;
-  if (++num_skipped_in_a_row_ >= settings_.give_up_after) {
+  if (++num_skipped_in_a_row_ >= settings_.max_consecutive_failures) {
     num_skipped_ += static_cast<int>(poses_.size() - next_);
     next_ = poses_.size();
   }
@@ -101,7 +101,7 @@ std::optional<InstrumentCommand> WaterSounding::step(Time now, const std::option
   const double waited_s = to_seconds(now - since_);
   switch (phase_) {
     case Phase::kTurning:
-      if (!is_settled(now)) return waited_s > settings_.turn_timeout_s ? skip_pose(now) : std::nullopt;
+      if (!is_settled(now)) return waited_s > settings_.orientation_timeout_s ? skip_pose(now) : std::nullopt;
       phase_ = Phase::kSounding;
       since_ = now;
       return SoundingCommand{.stamp = now};
@@ -113,7 +113,7 @@ std::optional<InstrumentCommand> WaterSounding::step(Time now, const std::option
       return next_command(now);
     case Phase::kStowing:
       is_stowed_ = is_settled(now);
-      if (is_stowed_ || waited_s > settings_.turn_timeout_s) phase_ = Phase::kOver;
+      if (is_stowed_ || waited_s > settings_.orientation_timeout_s) phase_ = Phase::kOver;
       return std::nullopt;
     case Phase::kOver:
       return std::nullopt;

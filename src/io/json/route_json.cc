@@ -69,10 +69,10 @@ Dock read_dock(const std::string& place, const Json& json) {
 
 TunnelLining read_lining(const std::string& file, const Json& json) {
   const std::string place = file + ": lining";
-  const JsonObject reader(place, json, {"position", "orientation", "axis", "crown_radius", "crown_centre", "side_radius", "first_ring",
+  const JsonObject reader(place, json, {"position", "orientation", "axis", "crown_radius", "crown_center", "side_radius", "first_ring",
                                         "ring_length", "rings"});
   TunnelLining lining{.T_route_start = reader.pose(), .axis = {}, .crown_radius_m = reader.number("crown_radius"),
-                      .crown_center_m = reader.number("crown_centre"), .side_radius_m = reader.number("side_radius"),
+                      .crown_center_m = reader.number("crown_center"), .side_radius_m = reader.number("side_radius"),
                       .first_ring_m = reader.number("first_ring"), .ring_length_m = reader.number("ring_length"), .rings = reader.integer("rings")};
   const Json& axis = reader.list("axis");
   for (std::size_t i = 0; i < axis.size(); ++i) {

@@ -11,21 +11,21 @@ constexpr double kDockFacing_rad = 0.05;  // heading error to the line within wh
 
 }  // namespace
 
-Docking::Docking(const DockingSettings& settings) : settings_(settings), track_(settings.track) {
+Docking::Docking(const DockingSettings& settings) : settings_(settings), pose_filter_(settings.pose_filter) {
   validate(settings_, "docking");
 }
 
 NavigationGoal Docking::staging_goal(const Pose2& T_map_docked) const {
-  return {.T_map_body = T_map_docked * Pose2{-settings_.staging_m, 0.0, 0.0},
-          .position_tol_m = settings_.staging_tol_m,
-          .yaw_tol_rad = settings_.staging_tol_rad};
+  return {.T_map_body = T_map_docked * Pose2{-settings_.staging_distance_m, 0.0, 0.0},
+          .position_tolerance_m = settings_.staging_tolerance_m,
+          .yaw_tolerance_rad = settings_.staging_tolerance_rad};
 }
 
 void Docking::dock(Time now) {
-  track_.reset();
+  pose_filter_.reset();
   start_ = now;
-  tries_ = 1;
-  enter(Phase::kLook, "Looking for the charging post.");
+  num_attempts_ = 1;
+  enter(Phase::kDetect, "Searching for the charging post.");
 }
 
 void Docking::undock(Time now, const Pose2& T_odom_body) {
@@ -36,13 +36,13 @@ void Docking::undock(Time now, const Pose2& T_odom_body) {
 
 void Docking::stop() { enter(Phase::kIdle, ""); }
 
-void Docking::add(const DockDetection& sighting, const Pose2& T_odom_body) {
-  if (status() == DockingStatus::kDocking && sighting.stamp >= start_) track_.add(sighting, T_odom_body);
+void Docking::add(const DockDetection& detection, const Pose2& T_odom_body) {
+  if (status() == DockingStatus::kDocking && detection.stamp >= start_) pose_filter_.add(detection, T_odom_body);
 }
 
 std::optional<Pose2> Docking::T_level_docked(const Pose2& T_odom_body) const {
-  if (!track_.T_odom_docked()) return std::nullopt;
-  return T_odom_body.inverse() * *track_.T_odom_docked();
+  if (!pose_filter_.T_odom_docked()) return std::nullopt;
+  return T_odom_body.inverse() * *pose_filter_.T_odom_docked();
 }
 
 DockingStatus Docking::status() const {
@@ -64,20 +64,20 @@ DockingStatus Docking::status() const {
 
 DockingStep Docking::step(Time now, const Pose2& T_odom_body) {
   VelocityCommand command;
-  if (phase_ == Phase::kUndock) command = leave(T_odom_body);
+  if (phase_ == Phase::kUndock) command = drive_out(T_odom_body);
   if (status() == DockingStatus::kDocking || status() == DockingStatus::kUndocking) {
-    if (now - start_ > from_seconds(settings_.time_limit_s)) enter(Phase::kFailed, "Docking took too long.");
+    if (now - start_ > from_seconds(settings_.timeout_s)) enter(Phase::kFailed, "Docking failed: timeout.");
   }
   if (status() == DockingStatus::kDocking) {
-    const double blind_s = to_seconds(now - std::max(start_, track_.last_stamp()));
-    if (blind_s > settings_.give_up_blind_s) {
-      enter(Phase::kFailed, "The charging post is not to be seen.");
-    } else if (track_.num_sightings() >= settings_.min_sightings && blind_s <= settings_.max_blind_s) {
-      const Pose2 T_docked_body = track_.T_odom_docked()->inverse() * T_odom_body;
-      if (phase_ == Phase::kLook) enter(Phase::kTurn, "The charging post is found.");
+    const double detection_age_s = to_seconds(now - std::max(start_, pose_filter_.last_stamp()));
+    if (detection_age_s > settings_.detection_timeout_s) {
+      enter(Phase::kFailed, "Docking failed: charging post not detected.");
+    } else if (pose_filter_.num_detections() >= settings_.min_detections && detection_age_s <= settings_.max_detection_gap_s) {
+      const Pose2 T_docked_body = pose_filter_.T_odom_docked()->inverse() * T_odom_body;
+      if (phase_ == Phase::kDetect) enter(Phase::kTurn, "Charging post detected.");
       if (phase_ == Phase::kTurn) command = turn_to_line(T_docked_body);
       if (phase_ == Phase::kDriveIn) command = drive_in(now, T_docked_body);
-      if (phase_ == Phase::kSettle) settle(now, T_docked_body);
+      if (phase_ == Phase::kCheck) check_docked(now, T_docked_body);
       if (phase_ == Phase::kCorrect) command = correct(now, T_docked_body);
       if (phase_ == Phase::kBackUp) command = back_up(T_docked_body);
     }
@@ -94,61 +94,61 @@ VelocityCommand Docking::turn_to_line(const Pose2& T_docked_body) {
 }
 
 VelocityCommand Docking::drive_in(Time now, const Pose2& T_docked_body) {
-  const double left_m = -T_docked_body.x;
-  if (std::abs(T_docked_body.y) > settings_.funnel_m + settings_.funnel_m_per_m * std::max(0.0, left_m)) {
-    try_again();
+  const double remaining_m = -T_docked_body.x;
+  if (std::abs(T_docked_body.y) > settings_.corridor_half_width_m + settings_.corridor_slope * std::max(0.0, remaining_m)) {
+    retry();
     return {};
   }
-  if (left_m <= settings_.position_tol_m / 3.0) {
-    standing_since_ = now;
-    enter(Phase::kSettle, "");
+  if (remaining_m <= settings_.position_tolerance_m / 3.0) {
+    stationary_since_ = now;
+    enter(Phase::kCheck, "");
     return {};
   }
   LineFollowingSettings line = settings_.line;
-  if (left_m < settings_.square_up_m) line.side_gain_per_m *= left_m / settings_.square_up_m;
-  const double speed = std::clamp(settings_.speed_gain_per_s * left_m, settings_.min_speed_mps, settings_.max_speed_mps);
+  if (remaining_m < settings_.heading_blend_distance_m) line.lateral_gain_per_m *= remaining_m / settings_.heading_blend_distance_m;
+  const double speed = std::clamp(settings_.speed_gain_per_s * remaining_m, settings_.min_speed_mps, settings_.max_speed_mps);
   return follow_line(line, T_docked_body, speed);
 }
 
-/// Waits for `settle_s`, then reports the docked pose, corrects a small error, or retries.
-void Docking::settle(Time now, const Pose2& T_docked_body) {
-  if (now - standing_since_ < from_seconds(settings_.settle_s)) return;
-  if (std::abs(T_docked_body.y) > settings_.position_tol_m) return try_again();
-  const bool is_there = std::abs(T_docked_body.x) <= settings_.position_tol_m;
-  const bool is_square = std::abs(T_docked_body.yaw) <= settings_.yaw_tol_rad;
+/// Waits for `settling_time_s`, then reports the docked pose, corrects a small error, or retries.
+void Docking::check_docked(Time now, const Pose2& T_docked_body) {
+  if (now - stationary_since_ < from_seconds(settings_.settling_time_s)) return;
+  if (std::abs(T_docked_body.y) > settings_.position_tolerance_m) return retry();
+  const bool is_there = std::abs(T_docked_body.x) <= settings_.position_tolerance_m;
+  const bool is_square = std::abs(T_docked_body.yaw) <= settings_.yaw_tolerance_rad;
   if (is_there && is_square) return enter(Phase::kDocked, "Docked at the charging post.");
   enter(Phase::kCorrect, "");
 }
 
-/// Aims at half of the tolerances, so that the motion ends well within them, and returns to kSettle.
+/// Aims at half of the tolerances, so that the motion ends well within them, and returns to kCheck.
 VelocityCommand Docking::correct(Time now, const Pose2& T_docked_body) {
-  if (std::abs(T_docked_body.yaw) > settings_.yaw_tol_rad / 2.0) {
+  if (std::abs(T_docked_body.yaw) > settings_.yaw_tolerance_rad / 2.0) {
     return {.yaw_rate_radps = yaw_rate_radps(-T_docked_body.yaw)};
   }
-  if (std::abs(T_docked_body.x) > settings_.position_tol_m / 2.0) {
+  if (std::abs(T_docked_body.x) > settings_.position_tolerance_m / 2.0) {
     return {.vx_mps = std::copysign(settings_.min_speed_mps, -T_docked_body.x)};
   }
-  standing_since_ = now;
-  enter(Phase::kSettle, "");
+  stationary_since_ = now;
+  enter(Phase::kCheck, "");
   return {};
 }
 
 VelocityCommand Docking::back_up(const Pose2& T_docked_body) {
-  if (-T_docked_body.x < settings_.staging_m) return follow_line(settings_.line, T_docked_body, -settings_.max_speed_mps);
+  if (-T_docked_body.x < settings_.staging_distance_m) return follow_line(settings_.line, T_docked_body, -settings_.max_speed_mps);
   enter(Phase::kTurn, "");
   return {};
 }
 
-VelocityCommand Docking::leave(const Pose2& T_odom_body) {
+VelocityCommand Docking::drive_out(const Pose2& T_odom_body) {
   const Pose2 T_left_body = T_odom_left_.inverse() * T_odom_body;
-  if (-T_left_body.x < settings_.undock_m) return follow_line(settings_.line, T_left_body, -settings_.max_speed_mps);
-  enter(Phase::kFree, "Clear of the charging post.");
+  if (-T_left_body.x < settings_.undock_distance_m) return follow_line(settings_.line, T_left_body, -settings_.max_speed_mps);
+  enter(Phase::kFree, "Left the charging post.");
   return {};
 }
 
-void Docking::try_again() {
-  if (++tries_ > settings_.max_tries) return enter(Phase::kFailed, "The robot could not get in line with the charging post.");
-  enter(Phase::kBackUp, "Off the line to the charging post: backing up to try again.");
+void Docking::retry() {
+  if (++num_attempts_ > settings_.max_attempts) return enter(Phase::kFailed, "Docking failed: no alignment with the charging post.");
+  enter(Phase::kBackUp, "Docking: outside the approach corridor, backing up to retry.");
 }
 
 void Docking::enter(Phase phase, const char* text) {

@@ -13,51 +13,51 @@
 namespace patrol::plan {
 
 struct DockingSettings {
-  double staging_m = 1.35;         ///< distance of the staging pose, straight before the docked pose
-  double staging_tol_m = 0.1;      ///< tolerances of the navigator at the staging pose
-  double staging_tol_rad = 0.1;
+  double staging_distance_m = 1.35;         ///< distance of the staging pose, straight before the docked pose
+  double staging_tolerance_m = 0.1;      ///< tolerances of the navigator at the staging pose
+  double staging_tolerance_rad = 0.1;
   double max_speed_mps = 0.2;
   double min_speed_mps = 0.03;
   double speed_gain_per_s = 0.5;   ///< speed per meter of remaining distance
   double min_yaw_rate_radps = 0.06;
-  double funnel_m = 0.02;          ///< half-width of the approach corridor at the docked pose
-  double funnel_m_per_m = 0.3;     ///< widening per meter before it; outside, the robot backs up and retries
-  double square_up_m = 0.15;       ///< final distance over which the heading blends into the dock's heading
-  double position_tol_m = 0.012;   ///< position tolerance of the docked pose, by the robot's own estimate
-  double yaw_tol_rad = 0.008;
-  double settle_s = 1.0;           ///< stationary time before the docked pose is checked
-  int min_sightings = 5;           ///< minimum number of detections before the robot moves
-  double max_blind_s = 1.0;        ///< maximum age of the last detection; the robot stops beyond
-  double give_up_blind_s = 10.0;   ///< time without a detection after which docking fails
-  int max_tries = 4;
-  double time_limit_s = 120.0;
-  double undock_m = 1.2;           ///< distance driven straight back
+  double corridor_half_width_m = 0.02;          ///< half-width of the approach corridor at the docked pose
+  double corridor_slope = 0.3;     ///< widening per meter before it; outside, the robot backs up and retries
+  double heading_blend_distance_m = 0.15;       ///< final distance over which the heading blends into the dock's heading
+  double position_tolerance_m = 0.012;   ///< position tolerance of the docked pose, by the robot's own estimate
+  double yaw_tolerance_rad = 0.008;
+  double settling_time_s = 1.0;           ///< stationary time before the docked pose is checked
+  int min_detections = 5;           ///< minimum number of detections before the robot moves
+  double max_detection_gap_s = 1.0;        ///< maximum age of the last detection; the robot stops beyond
+  double detection_timeout_s = 10.0;   ///< time without a detection after which docking fails
+  int max_attempts = 4;
+  double timeout_s = 120.0;
+  double undock_distance_m = 1.2;           ///< distance driven straight back
   LineFollowingSettings line;
-  DockTrackSettings track;
+  DockPoseFilterSettings pose_filter;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("staging_m", self.staging_m, between(0.3, 5.0));
-    visit("staging_tol_m", self.staging_tol_m, between(0.01, 1.0));
-    visit("staging_tol_rad", self.staging_tol_rad, between(0.01, 1.0));
+    visit("staging_distance_m", self.staging_distance_m, between(0.3, 5.0));
+    visit("staging_tolerance_m", self.staging_tolerance_m, between(0.01, 1.0));
+    visit("staging_tolerance_rad", self.staging_tolerance_rad, between(0.01, 1.0));
     visit("max_speed_mps", self.max_speed_mps, between(0.02, 1.0));
     visit("min_speed_mps", self.min_speed_mps, between(0.005, 0.2));
     visit("speed_gain_per_s", self.speed_gain_per_s, between(0.05, 5.0));
     visit("min_yaw_rate_radps", self.min_yaw_rate_radps, between(0.005, 1.0));
-    visit("funnel_m", self.funnel_m, between(0.005, 0.5));
-    visit("funnel_m_per_m", self.funnel_m_per_m, between(0.0, 2.0));
-    visit("square_up_m", self.square_up_m, between(0.0, 1.0));
-    visit("position_tol_m", self.position_tol_m, between(0.002, 0.1));
-    visit("yaw_tol_rad", self.yaw_tol_rad, between(0.001, 0.1));
-    visit("settle_s", self.settle_s, between(0.1, 10.0));
-    visit("min_sightings", self.min_sightings, between(1, 100));
-    visit("max_blind_s", self.max_blind_s, between(0.1, 10.0));
-    visit("give_up_blind_s", self.give_up_blind_s, between(0.5, 600.0));
-    visit("max_tries", self.max_tries, between(1, 100));
-    visit("time_limit_s", self.time_limit_s, between(5.0, 3600.0));
-    visit("undock_m", self.undock_m, between(0.1, 5.0));
+    visit("corridor_half_width_m", self.corridor_half_width_m, between(0.005, 0.5));
+    visit("corridor_slope", self.corridor_slope, between(0.0, 2.0));
+    visit("heading_blend_distance_m", self.heading_blend_distance_m, between(0.0, 1.0));
+    visit("position_tolerance_m", self.position_tolerance_m, between(0.002, 0.1));
+    visit("yaw_tolerance_rad", self.yaw_tolerance_rad, between(0.001, 0.1));
+    visit("settling_time_s", self.settling_time_s, between(0.1, 10.0));
+    visit("min_detections", self.min_detections, between(1, 100));
+    visit("max_detection_gap_s", self.max_detection_gap_s, between(0.1, 10.0));
+    visit("detection_timeout_s", self.detection_timeout_s, between(0.5, 600.0));
+    visit("max_attempts", self.max_attempts, between(1, 100));
+    visit("timeout_s", self.timeout_s, between(5.0, 3600.0));
+    visit("undock_distance_m", self.undock_distance_m, between(0.1, 5.0));
     visit("line", self.line);
-    visit("track", self.track);
+    visit("pose_filter", self.pose_filter);
   }
 };
 
@@ -73,8 +73,8 @@ struct DockingStep {
 /// post, fused in `odom`: the pose in the map is not accurate enough.
 ///
 /// Sequence: detect the post, turn to the line, drive in with a lateral error that falls with the distance, align with
-/// the dock, stop and measure again. Outside of the corridor the robot backs up and retries, at most `max_tries` times.
-/// line near the post it backs up and tries again; it says when it cannot.
+/// the dock, stop and measure again. Outside of the corridor the robot backs up and retries, at most `max_attempts`
+/// times, then docking fails.
 class Docking {
  public:
   /// Throws InputError if a setting breaks its rule.
@@ -89,7 +89,7 @@ class Docking {
   void stop();
 
   /// Fuses a detection. `T_odom_body` is the pose at its stamp. Ignored unless docking.
-  void add(const DockDetection& sighting, const Pose2& T_odom_body);
+  void add(const DockDetection& detection, const Pose2& T_odom_body);
   /// Docked pose in the body's gravity-aligned frame, for the detector's next scan; none before the first detection.
   std::optional<Pose2> T_level_docked(const Pose2& T_odom_body) const;
 
@@ -99,26 +99,26 @@ class Docking {
   DockingStatus status() const;
 
  private:
-  enum class Phase { kIdle, kLook, kTurn, kDriveIn, kSettle, kCorrect, kBackUp, kDocked, kUndock, kFree, kFailed };
+  enum class Phase { kIdle, kDetect, kTurn, kDriveIn, kCheck, kCorrect, kBackUp, kDocked, kUndock, kFree, kFailed };
 
   VelocityCommand turn_to_line(const Pose2& T_docked_body);
   VelocityCommand drive_in(Time now, const Pose2& T_docked_body);
-  void settle(Time now, const Pose2& T_docked_body);
+  void check_docked(Time now, const Pose2& T_docked_body);
   VelocityCommand correct(Time now, const Pose2& T_docked_body);
   VelocityCommand back_up(const Pose2& T_docked_body);
-  VelocityCommand leave(const Pose2& T_odom_body);
-  void try_again();
+  VelocityCommand drive_out(const Pose2& T_odom_body);
+  void retry();
   void enter(Phase phase, const char* text);
   double yaw_rate_radps(double turn_rad) const;
 
   DockingSettings settings_;
-  DockTrack track_;
+  DockPoseFilter pose_filter_;
   Phase phase_ = Phase::kIdle;
   std::string text_;
   Time start_{};
-  Time standing_since_{};
+  Time stationary_since_{};
   Pose2 T_odom_left_;    ///< body pose at the start of undocking
-  int tries_ = 0;
+  int num_attempts_ = 0;
 };
 
 }  // namespace patrol::plan

@@ -7,7 +7,7 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kMinReach_mps = 0.2;  // minimum of the speed that determines the reachable distance
+constexpr double kMinReachableSpeed_mps = 0.2;  // minimum of the speed that determines the reachable distance
 
 /// Uniform samples from `low` to `high`, both included; contains zero if it lies between them.
 std::vector<double> samples(double low, double high, int count) {
@@ -25,7 +25,7 @@ DynamicWindow::DynamicWindow(const DwaSettings& settings)
 double DynamicWindow::cost(const Rollout& rollout, const RolloutScene& scene) const {
   return settings_.path_weight * path_distance_(rollout, scene) + settings_.progress_weight * progress_(rollout, scene) +
          settings_.heading_weight * heading_(rollout, scene) + settings_.clearance_weight * clearance_(rollout, scene) +
-         settings_.change_weight * change_(rollout, scene);
+         settings_.command_change_weight * change_(rollout, scene);
 }
 
 std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, const PlannedPath& path, double along_m,
@@ -34,8 +34,8 @@ std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, con
   const double top_speed = std::min(settings_.max_speed_mps, speed_limit_mps);
   const double speed = std::clamp(twist.linear.x(), -settings_.max_reverse_mps, settings_.max_speed_mps);
   const double yaw_rate = std::clamp(twist.angular.z(), -settings_.max_yaw_rate_radps, settings_.max_yaw_rate_radps);
-  const double speed_window = settings_.max_accel_mps2 * settings_.window_s;
-  const double yaw_window = settings_.max_yaw_accel_radps2 * settings_.window_s;
+  const double speed_window = settings_.max_acceleration_mps2 * settings_.window_s;
+  const double yaw_window = settings_.max_yaw_acceleration_radps2 * settings_.window_s;
   // Braking is always admissible, also from above a limit that has just fallen.
   const double fastest = std::max(std::min(top_speed, speed + speed_window), std::max(0.0, speed - speed_window));
   const double slowest = std::min(std::max(0.0, speed - speed_window), fastest);
@@ -44,7 +44,7 @@ std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, con
   // not look as useless as standing.
   const RolloutScene scene{.path = path,
                            .along_m = along_m,
-                           .reach_m = std::max(fastest, kMinReach_mps) * settings_.horizon_s,
+                           .reachable_distance_m = std::max(fastest, kMinReachableSpeed_mps) * settings_.horizon_s,
                            .twist = twist,
                            .max_speed_mps = settings_.max_speed_mps,
                            .max_yaw_rate_radps = settings_.max_yaw_rate_radps};

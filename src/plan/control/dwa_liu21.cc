@@ -7,19 +7,19 @@
 
 namespace patrol::plan {
 
-VelocityWindow speed_window(const PaperDwaSettings& settings) {
+VelocityWindow speed_window(const DwaLiu21Settings& settings) {
   return {.min_speed_mps = settings.min_speed_mps,
           .max_speed_mps = settings.max_speed_mps,
           .min_yaw_rate_radps = -settings.max_yaw_rate_radps,
           .max_yaw_rate_radps = settings.max_yaw_rate_radps};
 }
 
-VelocityWindow reachable_window(const PaperDwaSettings& settings, double speed_mps, double yaw_rate_radps) {
+VelocityWindow reachable_window(const DwaLiu21Settings& settings, double speed_mps, double yaw_rate_radps) {
   const double dt_s = settings.window_s;
-  return {.min_speed_mps = speed_mps - settings.max_decel_mps2 * dt_s,
-          .max_speed_mps = speed_mps + settings.max_accel_mps2 * dt_s,
-          .min_yaw_rate_radps = yaw_rate_radps - settings.max_yaw_decel_radps2 * dt_s,
-          .max_yaw_rate_radps = yaw_rate_radps + settings.max_yaw_accel_radps2 * dt_s};
+  return {.min_speed_mps = speed_mps - settings.max_deceleration_mps2 * dt_s,
+          .max_speed_mps = speed_mps + settings.max_acceleration_mps2 * dt_s,
+          .min_yaw_rate_radps = yaw_rate_radps - settings.max_yaw_deceleration_radps2 * dt_s,
+          .max_yaw_rate_radps = yaw_rate_radps + settings.max_yaw_acceleration_radps2 * dt_s};
 }
 
 VelocityWindow intersect(const VelocityWindow& limits, const VelocityWindow& window) {
@@ -33,15 +33,15 @@ VelocityWindow intersect(const VelocityWindow& limits, const VelocityWindow& win
           .max_yaw_rate_radps = within_rate(window.max_yaw_rate_radps)};
 }
 
-bool can_stop(const PaperDwaSettings& settings, double speed_mps, double yaw_rate_radps, double distance_m) {
+bool can_stop(const DwaLiu21Settings& settings, double speed_mps, double yaw_rate_radps, double distance_m) {
   const double free_m = std::max(0.0, distance_m);
-  return std::abs(speed_mps) <= std::sqrt(2.0 * free_m * settings.max_decel_mps2) &&
-         std::abs(yaw_rate_radps) <= std::sqrt(2.0 * free_m * settings.max_yaw_decel_radps2);
+  return std::abs(speed_mps) <= std::sqrt(2.0 * free_m * settings.max_deceleration_mps2) &&
+         std::abs(yaw_rate_radps) <= std::sqrt(2.0 * free_m * settings.max_yaw_deceleration_radps2);
 }
 
 double heading_term(double angle_rad) { return 1.0 - std::abs(wrap_angle(angle_rad)) / std::numbers::pi; }
 
-double velocity_term(const PaperDwaSettings& settings, double speed_mps) { return speed_mps / settings.max_speed_mps; }
+double velocity_term(const DwaLiu21Settings& settings, double speed_mps) { return speed_mps / settings.max_speed_mps; }
 
 void normalize(std::vector<double>& values) {
   const double sum = std::accumulate(values.begin(), values.end(), 0.0);
@@ -49,10 +49,10 @@ void normalize(std::vector<double>& values) {
   for (double& value : values) value /= sum;
 }
 
-PaperDwa::PaperDwa(const PaperDwaSettings& settings) : settings_(settings) { validate(settings_, "paper_dwa"); }
+DwaLiu21::DwaLiu21(const DwaLiu21Settings& settings) : settings_(settings) { validate(settings_, "dwa_liu21"); }
 
 /// Velocity pairs of V_s, each with its trajectory.
-std::vector<Rollout> PaperDwa::admissible(const Costmap& costmap, const Pose2& T_map_body, const VelocityWindow& window) const {
+std::vector<Rollout> DwaLiu21::admissible(const Costmap& costmap, const Pose2& T_map_body, const VelocityWindow& window) const {
   const auto sample = [](double low, double high, int i, int count) { return low + (high - low) * i / (count - 1); };
   std::vector<Rollout> rollouts;
   for (int i = 0; i < settings_.speed_samples; ++i) {
@@ -66,7 +66,7 @@ std::vector<Rollout> PaperDwa::admissible(const Costmap& costmap, const Pose2& T
   return rollouts;
 }
 
-std::optional<VelocityCommand> PaperDwa::choose(const Costmap& costmap, const PlannedPath& path, double along_m,
+std::optional<VelocityCommand> DwaLiu21::choose(const Costmap& costmap, const PlannedPath& path, double along_m,
                                                 const Pose2& T_map_body, const Twist3& twist, double speed_limit_mps) const {
   VelocityWindow limits = speed_window(settings_);
   limits.max_speed_mps = std::max(limits.min_speed_mps, std::min(limits.max_speed_mps, speed_limit_mps));
@@ -74,7 +74,7 @@ std::optional<VelocityCommand> PaperDwa::choose(const Costmap& costmap, const Pl
   const std::vector<Rollout> rollouts = admissible(costmap, T_map_body, window);
   if (rollouts.empty()) return std::nullopt;
 
-  const Eigen::Vector2d p_map_target = path.point_at(along_m + settings_.target_ahead_m);
+  const Eigen::Vector2d p_map_target = path.point_at(along_m + settings_.lookahead_m);
   std::vector<double> heading, distance, velocity;
   for (const Rollout& rollout : rollouts) {
     const Pose2& end = rollout.T_map_body.back();

@@ -9,14 +9,14 @@
 
 namespace patrol::plan {
 
-struct PaperDwaSettings {
+struct DwaLiu21Settings {
   double min_speed_mps = 0.0;            ///< v_min
   double max_speed_mps = 0.8;            ///< v_max
   double max_yaw_rate_radps = 0.6;       ///< omega_max = -omega_min
-  double max_decel_mps2 = 0.5;           ///< a_vmin
-  double max_accel_mps2 = 0.5;           ///< a_vmax
-  double max_yaw_decel_radps2 = 1.5;     ///< a_omegamin
-  double max_yaw_accel_radps2 = 1.5;     ///< a_omegamax
+  double max_deceleration_mps2 = 0.5;           ///< a_vmin
+  double max_acceleration_mps2 = 0.5;           ///< a_vmax
+  double max_yaw_deceleration_radps2 = 1.5;     ///< a_omegamin
+  double max_yaw_acceleration_radps2 = 1.5;     ///< a_omegamax
   double window_s = 0.3;                 ///< Delta t
   double horizon_s = 2.0;                ///< horizon of the simulated trajectory
   int steps = 8;
@@ -25,17 +25,17 @@ struct PaperDwaSettings {
   double heading_weight = 0.8;           ///< alpha
   double distance_weight = 0.2;          ///< beta
   double velocity_weight = 0.2;          ///< gamma
-  double target_ahead_m = 1.5;           ///< distance of the target point ahead along the path
+  double lookahead_m = 1.5;           ///< distance of the target point ahead along the path
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("min_speed_mps", self.min_speed_mps, between(-3.0, 0.0));
     visit("max_speed_mps", self.max_speed_mps, between(0.05, 3.0));
     visit("max_yaw_rate_radps", self.max_yaw_rate_radps, between(0.05, 5.0));
-    visit("max_decel_mps2", self.max_decel_mps2, between(0.05, 10.0));
-    visit("max_accel_mps2", self.max_accel_mps2, between(0.05, 10.0));
-    visit("max_yaw_decel_radps2", self.max_yaw_decel_radps2, between(0.05, 50.0));
-    visit("max_yaw_accel_radps2", self.max_yaw_accel_radps2, between(0.05, 50.0));
+    visit("max_deceleration_mps2", self.max_deceleration_mps2, between(0.05, 10.0));
+    visit("max_acceleration_mps2", self.max_acceleration_mps2, between(0.05, 10.0));
+    visit("max_yaw_deceleration_radps2", self.max_yaw_deceleration_radps2, between(0.05, 50.0));
+    visit("max_yaw_acceleration_radps2", self.max_yaw_acceleration_radps2, between(0.05, 50.0));
     visit("window_s", self.window_s, between(0.02, 2.0));
     visit("horizon_s", self.horizon_s, between(0.2, 10.0));
     visit("steps", self.steps, between(2, 100));
@@ -44,7 +44,7 @@ struct PaperDwaSettings {
     visit("heading_weight", self.heading_weight, at_least(0.0));
     visit("distance_weight", self.distance_weight, at_least(0.0));
     visit("velocity_weight", self.velocity_weight, at_least(0.0));
-    visit("target_ahead_m", self.target_ahead_m, between(0.1, 20.0));
+    visit("lookahead_m", self.lookahead_m, between(0.1, 20.0));
   }
 };
 
@@ -55,17 +55,17 @@ struct VelocityWindow {
 };
 
 /// Velocity limits of the robot V_m [Liu21, eq. 2].
-VelocityWindow speed_window(const PaperDwaSettings& settings);
+VelocityWindow speed_window(const DwaLiu21Settings& settings);
 /// Velocities V_d reachable within `window_s` from (v_c, omega_c) [Liu21, eq. 3].
-VelocityWindow reachable_window(const PaperDwaSettings& settings, double speed_mps, double yaw_rate_radps);
+VelocityWindow reachable_window(const DwaLiu21Settings& settings, double speed_mps, double yaw_rate_radps);
 /// Intersection of two windows; the nearest edge of the first one if it is empty.
 VelocityWindow intersect(const VelocityWindow& limits, const VelocityWindow& window);
 /// Whether the robot can stop within `distance_m` [Liu21, eq. 4].
-bool can_stop(const PaperDwaSettings& settings, double speed_mps, double yaw_rate_radps, double distance_m);
+bool can_stop(const DwaLiu21Settings& settings, double speed_mps, double yaw_rate_radps, double distance_m);
 /// Heading term [Liu21, eq. 6]; `angle_rad` is between the heading at the trajectory's end and the target point.
 double heading_term(double angle_rad);
 /// Velocity term [Liu21, eq. 7].
-double velocity_term(const PaperDwaSettings& settings, double speed_mps);
+double velocity_term(const DwaLiu21Settings& settings, double speed_mps);
 /// Divides by the sum, so that the values sum to 1; leaves all zeros unchanged.
 void normalize(std::vector<double>& values);
 
@@ -85,11 +85,11 @@ void normalize(std::vector<double>& values);
 ///           divided by its sum, the normalization that the text requires. "dist" of eq. 5 is "dis" of the text: the
 ///           minimum distance of the trajectory to obstacles, here from the robot's outline.
 ///   eq. 7   (v, omega) / (v_max, omega_max) is not a scalar; here v / v_max, as in [Fox97].
-///   target  the target point is not specified; here a point on the global path, `target_ahead_m` ahead.
-class PaperDwa final : public LocalPlanner {
+///   target  the target point is not specified; here a point on the global path, `lookahead_m` ahead.
+class DwaLiu21 final : public LocalPlanner {
  public:
   /// Throws InputError if a setting breaks its rule.
-  explicit PaperDwa(const PaperDwaSettings& settings);
+  explicit DwaLiu21(const DwaLiu21Settings& settings);
 
   std::optional<VelocityCommand> choose(const Costmap& costmap, const PlannedPath& path, double along_m,
                                         const Pose2& T_map_body, const Twist3& twist,
@@ -98,7 +98,7 @@ class PaperDwa final : public LocalPlanner {
  private:
   std::vector<Rollout> admissible(const Costmap& costmap, const Pose2& T_map_body, const VelocityWindow& window) const;
 
-  PaperDwaSettings settings_;
+  DwaLiu21Settings settings_;
 };
 
 }  // namespace patrol::plan

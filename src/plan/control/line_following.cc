@@ -5,8 +5,8 @@
 
 namespace patrol::plan {
 
-double line_heading_rad(const LineFollowingSettings& settings, double side_m, double speed_mps) {
-  const double angle = std::atan(settings.side_gain_per_m * side_m);
+double line_heading_rad(const LineFollowingSettings& settings, double lateral_m, double speed_mps) {
+  const double angle = std::atan(settings.lateral_gain_per_m * lateral_m);
   return -std::copysign(1.0, speed_mps) * std::clamp(angle, -settings.max_angle_rad, settings.max_angle_rad);
 }
 
@@ -19,13 +19,13 @@ VelocityCommand follow_line(const LineFollowingSettings& settings, const Pose2& 
           .yaw_rate_radps = std::clamp(yaw_rate, -settings.max_yaw_rate_radps, settings.max_yaw_rate_radps)};
 }
 
-double side_after_m(const LineFollowingSettings& settings, double side_m, double way_m) {
+double lateral_error_after_m(const LineFollowingSettings& settings, double lateral_m, double way_m) {
   const double slope = std::tan(settings.max_angle_rad);
-  const double knee_m = slope / settings.side_gain_per_m;  // lateral error below which the angle is not limited
-  const double straight_m = std::max(0.0, (std::abs(side_m) - knee_m) / slope);
-  if (way_m <= straight_m) return std::abs(side_m) - slope * way_m;
-  const double from_m = std::min(std::abs(side_m), knee_m);
-  return from_m * std::exp(-settings.side_gain_per_m * (way_m - straight_m));
+  const double knee_m = slope / settings.lateral_gain_per_m;  // lateral error below which the angle is not limited
+  const double straight_m = std::max(0.0, (std::abs(lateral_m) - knee_m) / slope);
+  if (way_m <= straight_m) return std::abs(lateral_m) - slope * way_m;
+  const double from_m = std::min(std::abs(lateral_m), knee_m);
+  return from_m * std::exp(-settings.lateral_gain_per_m * (way_m - straight_m));
 }
 
 }  // namespace patrol::plan

@@ -9,7 +9,7 @@ class BackUp : public RecoveryBehavior {
  public:
   BackUp(double duration_s, double speed_mps) : duration_s_(duration_s), speed_mps_(speed_mps) {}
 
-  const char* sentence() const override { return "Recovery: the robot backs up."; }
+  const char* sentence() const override { return "Recovery: backing up."; }
   void begin(Time now, const Pose2& T_map_body, Costmap& costmap) override;
   std::optional<VelocityCommand> step(Time now, const Pose2& T_map_body) override;
 

@@ -10,7 +10,7 @@ void clear_around(Costmap& costmap, const Pose2& T_map_body);
 /// Recovery that only clears the costmap around the robot.
 class ClearCostmap : public RecoveryBehavior {
  public:
-  const char* sentence() const override { return "Recovery: the robot forgets what it saw about it."; }
+  const char* sentence() const override { return "Recovery: clearing the local costmap."; }
   void begin(Time now, const Pose2& T_map_body, Costmap& costmap) override;
   std::optional<VelocityCommand> step(Time now, const Pose2& T_map_body) override;
 };

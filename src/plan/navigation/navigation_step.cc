@@ -2,40 +2,40 @@
 
 namespace patrol::plan {
 
-const char* sentence_of(NavigationTrouble trouble) {
-  switch (trouble) {
-    case NavigationTrouble::kNone:
+const char* describe(NavigationFailure failure) {
+  switch (failure) {
+    case NavigationFailure::kNone:
       return "";
-    case NavigationTrouble::kStartBlocked:
-      return "The robot stands too near to an obstacle to set off.";
-    case NavigationTrouble::kGoalBlocked:
-      return "The goal lies in an obstacle or too near to one.";
-    case NavigationTrouble::kNoRoute:
-      return "There is no route to the goal.";
-    case NavigationTrouble::kNoneFound:
-      return "The planner finds no route to the goal.";
-    case NavigationTrouble::kPathBlocked:
-      return "Something stands in the way.";
-    case NavigationTrouble::kStuck:
-      return "The robot moves and gets nowhere.";
+    case NavigationFailure::kStartBlocked:
+      return "Start pose is in collision.";
+    case NavigationFailure::kGoalBlocked:
+      return "Goal pose is in collision.";
+    case NavigationFailure::kNoRoute:
+      return "No path to the goal exists.";
+    case NavigationFailure::kNotFound:
+      return "Planner failed to find a path (planner is not complete).";
+    case NavigationFailure::kPathBlocked:
+      return "Path is blocked.";
+    case NavigationFailure::kNoProgress:
+      return "Robot is not making progress.";
   }
   return "";
 }
 
-NavigationTrouble trouble_of(PlanStatus status) {
+NavigationFailure to_failure(PlanStatus status) {
   switch (status) {
     case PlanStatus::kStartBlocked:
-      return NavigationTrouble::kStartBlocked;
+      return NavigationFailure::kStartBlocked;
     case PlanStatus::kGoalBlocked:
-      return NavigationTrouble::kGoalBlocked;
+      return NavigationFailure::kGoalBlocked;
     case PlanStatus::kNoRoute:
-      return NavigationTrouble::kNoRoute;
-    case PlanStatus::kNoneFound:
-      return NavigationTrouble::kNoneFound;
+      return NavigationFailure::kNoRoute;
+    case PlanStatus::kNotFound:
+      return NavigationFailure::kNotFound;
     case PlanStatus::kFound:
       break;
   }
-  return NavigationTrouble::kNone;
+  return NavigationFailure::kNone;
 }
 
 }  // namespace patrol::plan

@@ -14,19 +14,19 @@ namespace patrol::plan {
 enum class NavigationStatus { kIdle, kDriving, kArrived, kBlocked, kRecovering, kFailed };
 
 /// Reason for which the robot makes no progress.
-enum class NavigationTrouble { kNone, kStartBlocked, kGoalBlocked, kNoRoute, kNoneFound, kPathBlocked, kStuck };
+enum class NavigationFailure { kNone, kStartBlocked, kGoalBlocked, kNoRoute, kNotFound, kPathBlocked, kNoProgress };
 
 /// Description of a trouble as one sentence; empty for kNone.
-const char* sentence_of(NavigationTrouble trouble);
+const char* describe(NavigationFailure failure);
 
 /// Trouble that corresponds to the status of a route search; kNone if it has found a route.
-NavigationTrouble trouble_of(PlanStatus status);
+NavigationFailure to_failure(PlanStatus status);
 
 /// Output of the navigator in one control period.
 struct NavigationStep {
   VelocityCommand command;
   NavigationStatus status = NavigationStatus::kIdle;
-  NavigationTrouble trouble = NavigationTrouble::kNone;
+  NavigationFailure failure = NavigationFailure::kNone;
   std::string text;         ///< one sentence in the step in which the trouble begins or the goal is aborted; else empty
   std::string recovery;     ///< one sentence in the step in which a recovery begins; else empty
   bool replanned = false;

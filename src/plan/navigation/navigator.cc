@@ -12,12 +12,12 @@ constexpr double kLookAhead_s = 0.5;    // time for which a command of the appro
 /// Height of the body's origin above the ground; 0 for legged robots, which have no sensors that need it.
 double body_height_m(const RobotDescription& robot) { return robot.tracks ? robot.tracks->body_height_m : 0.0; }
 
-bool stands_still(const VelocityCommand& command) {
+bool is_stationary(const VelocityCommand& command) {
   return std::abs(command.vx_mps) < 0.03 && std::abs(command.vy_mps) < 0.03 && std::abs(command.yaw_rate_radps) < 0.05;
 }
 
 const NavigatorSettings& checked(const NavigatorSettings& settings) {
-  validate(settings, "plan");
+  validate(settings, "navigation");
   return settings;
 }
 
@@ -30,24 +30,24 @@ Navigator::Navigator(const NavigatorSettings& settings, const RobotDescription& 
       costmap_(settings.costmap, Footprint(robot.footprint_m, settings.footprint_rows), std::move(keep_out_lines_in_map)),
       search_(settings, seed),
       follower_(settings),
-      approach_(settings.differential_approach),
+      approach_(settings.goal_controller.differential),
       recoveries_(settings),
-      progress_(settings.stuck_s) {}
+      progress_(settings.no_progress_timeout_s) {}
 
 void Navigator::set_map(const OccupancyGrid& map) {
   costmap_.set_map(map);
-  search_.note_new_map();
+  search_.on_new_map();
 }
 
 void Navigator::add_depth(const DepthImage& image, const Pose3& T_level_body, const Pose2& T_map_body) {
   const Pose3 T_level_camera = T_level_body * robot_.T_body("depth_camera");
-  costmap_.add_image(find_depth_points(settings_.depth, image, T_level_camera, body_height_m(robot_)), image.stamp, T_map_body);
+  costmap_.add_image(segment_obstacles(settings_.depth_obstacles, image, T_level_camera, body_height_m(robot_)), image.stamp, T_map_body);
 }
 
 void Navigator::add_range(const UltrasonicRange& ping, const Pose3& T_level_body, const Pose2& T_map_body) {
   const Pose3 T_level_transducer = T_level_body * robot_.T_body("ultrasonic_" + std::to_string(ping.transducer));
   const SonarCone cone =
-      find_sonar_cone(settings_.sonar, ping, T_level_transducer, body_height_m(robot_), settings_.costmap.resolution_m);
+      inverse_sonar_model(settings_.sonar_obstacles, ping, T_level_transducer, body_height_m(robot_), settings_.costmap.resolution_m);
   costmap_.add_ping(cone, ping.stamp, T_map_body);
 }
 
@@ -60,8 +60,8 @@ void Navigator::set_goal(const std::optional<NavigationGoal>& goal) {
   recoveries_.reset();
   progress_.reset();
   blocked_since_.reset();
-  no_route_since_.reset();
-  trouble_ = NavigationTrouble::kNone;
+  no_path_since_.reset();
+  failure_ = NavigationFailure::kNone;
   text_.clear();
   recovery_text_.clear();
 }
@@ -72,7 +72,7 @@ NavigationStep Navigator::step(Time now, const Pose2& T_map_body) {
     check_end(now, T_map_body);
     step.status = act(now, T_map_body, step);
   }
-  step.trouble = trouble_;
+  step.failure = failure_;
   step.text = std::exchange(text_, {});
   step.recovery = std::exchange(recovery_text_, {});
   last_ = step.command;
@@ -101,10 +101,10 @@ void Navigator::check_end(Time now, const Pose2& T_map_body) {
   if (state_ == State::kArrived) return;
   if (is_at_goal(T_map_body)) {
     state_ = State::kArrived;
-    trouble_ = NavigationTrouble::kNone;
-  } else if (state_ != State::kFailed && is_hopeless(now)) {
+    failure_ = NavigationFailure::kNone;
+  } else if (state_ != State::kFailed && must_abort(now)) {
     state_ = State::kFailed;
-    text_ = std::string("The goal is given up. ") + sentence_of(trouble_);
+    text_ = std::string("Navigation aborted: ") + describe(failure_);
   }
 }
 
@@ -113,35 +113,35 @@ bool Navigator::is_at_goal(const Pose2& T_map_body) const {
   return state_ == State::kApproaching ? approach_.is_done() : is_reached(T_map_body, *goal_);
 }
 
-bool Navigator::is_hopeless(Time now) const {
-  return recoveries_.is_exhausted() || (no_route_since_ && now - *no_route_since_ > from_seconds(settings_.no_route_s));
+bool Navigator::must_abort(Time now) const {
+  return recoveries_.is_exhausted() || (no_path_since_ && now - *no_path_since_ > from_seconds(settings_.no_path_timeout_s));
 }
 
-void Navigator::report(NavigationTrouble trouble) {
-  if (trouble != trouble_) text_ = sentence_of(trouble);
-  trouble_ = trouble;
+void Navigator::report(NavigationFailure failure) {
+  if (failure != failure_) text_ = describe(failure);
+  failure_ = failure;
 }
 
 NavigationStatus Navigator::navigate(Time now, const Pose2& T_map_body, NavigationStep& step) {
   if (progress_.is_stuck(now, T_map_body)) {
-    report(NavigationTrouble::kStuck);
+    report(NavigationFailure::kNoProgress);
     return begin_recovery(now, T_map_body, step.command);
   }
   search_if_needed(now, T_map_body);
   take_route(now, T_map_body, step);
   if (follower_.has_path()) return drive(now, T_map_body, step.command);
   if (search_.is_running()) return wait_for_route(now);
-  return stand_blocked(now, T_map_body, step.command);
+  return wait_blocked(now, T_map_body, step.command);
 }
 
 /// Begins a route search if there is no path, or the path is outdated, blocked, or too far from the robot.
 void Navigator::search_if_needed(Time now, const Pose2& T_map_body) {
   bool is_blocked = false;
   if (follower_.has_path()) {
-    const double stray_m = follower_.advance(T_map_body);
+    const double path_deviation_m = follower_.advance(T_map_body);
     is_blocked = follower_.is_blocked(costmap_);
-    if (is_blocked && settings_.detour_after_s > 0.0 && follower_.is_blocked_by_newcomers_only(costmap_, now)) return;
-    if (!is_blocked && !search_.is_outdated(now) && stray_m <= settings_.stray_m) return;
+    if (is_blocked && settings_.new_obstacle_wait_s > 0.0 && follower_.is_blocked_by_new_obstacles_only(costmap_, now)) return;
+    if (!is_blocked && !search_.is_outdated(now) && path_deviation_m <= settings_.max_path_deviation_m) return;
   }
   if (!search_.may_begin(now)) return;
   search_.begin(now, costmap_, T_map_body.position(), goal_->T_map_body.position(), is_blocked);
@@ -154,12 +154,12 @@ void Navigator::take_route(Time now, const Pose2& T_map_body, NavigationStep& st
   if (result->route.status != PlanStatus::kFound) {
     if (result->is_detour) follower_.clear();
     if (follower_.has_path()) return;
-    if (!no_route_since_) no_route_since_ = now;
-    report(trouble_of(result->route.status));
+    if (!no_path_since_) no_path_since_ = now;
+    report(to_failure(result->route.status));
     return;
   }
-  no_route_since_.reset();
-  trouble_ = NavigationTrouble::kNone;
+  no_path_since_.reset();
+  failure_ = NavigationFailure::kNone;
   follower_.set_path(PlannedPath(result->route.points_m), T_map_body);
   step.replanned = true;
   step.is_detour = result->is_detour;
@@ -167,17 +167,17 @@ void Navigator::take_route(Time now, const Pose2& T_map_body, NavigationStep& st
 }
 
 NavigationStatus Navigator::drive(Time now, const Pose2& T_map_body, VelocityCommand& command) {
-  const bool is_differential = settings_.drive == "differential";
+  const bool is_differential = settings_.kinematics == "differential";
   const double goal_distance_m = (goal_->T_map_body.position() - T_map_body.position()).norm();
   if (is_differential) choose_approach(goal_distance_m);
   if (state_ == State::kApproaching) return approach(now, T_map_body, command);
 
-  const VelocityCommand straight = regulate_pose(settings_.approach, T_map_body, *goal_);
-  const bool is_near = !is_differential && goal_distance_m <= settings_.approach_m;
+  const VelocityCommand straight = regulate_pose(settings_.goal_controller.holonomic, T_map_body, *goal_);
+  const bool is_near = !is_differential && goal_distance_m <= settings_.goal_approach_distance_m;
   const bool is_straight = is_near && is_motion_safe(costmap_, T_map_body, straight, kLookAhead_s);
   command = is_straight ? straight : follower_.command(costmap_, T_map_body, last_);
-  note_progress(T_map_body);
-  if (stands_still(command) && !is_near) return stand_blocked(now, T_map_body, command);
+  update_progress(T_map_body);
+  if (is_stationary(command) && !is_near) return wait_blocked(now, T_map_body, command);
   blocked_since_.reset();
   return NavigationStatus::kDriving;
 }
@@ -187,18 +187,18 @@ void Navigator::choose_approach(double goal_distance_m) {
   const bool was_approaching = state_ == State::kApproaching;
   if (!was_approaching) approach_.reset();
   const bool is_approaching =
-      was_approaching ? goal_distance_m <= settings_.approach_m + settings_.differential_approach.max_back_off_m
-                      : goal_distance_m <= settings_.approach_m && follower_.left_m() <= settings_.approach_m;
+      was_approaching ? goal_distance_m <= settings_.goal_approach_distance_m + settings_.goal_controller.differential.max_back_off_m
+                      : goal_distance_m <= settings_.goal_approach_distance_m && follower_.remaining_m() <= settings_.goal_approach_distance_m;
   state_ = is_approaching ? State::kApproaching : State::kFollowing;
 }
 
 /// Drives the last meter of a differential robot. Without room, it tries the other way in, then begins a recovery.
 NavigationStatus Navigator::approach(Time now, const Pose2& T_map_body, VelocityCommand& command) {
-  note_progress(T_map_body);
+  update_progress(T_map_body);
   command = approach_.step(T_map_body, *goal_);
   if (!is_motion_safe(costmap_, T_map_body, command, kLookAhead_s)) {
     approach_.block();
-    return stand_blocked(now, T_map_body, command);
+    return wait_blocked(now, T_map_body, command);
   }
   blocked_since_.reset();
   return NavigationStatus::kDriving;
@@ -211,12 +211,12 @@ NavigationStatus Navigator::wait_for_route(Time now) {
   return NavigationStatus::kDriving;
 }
 
-/// Stops; begins a recovery after `patience_s`.
-NavigationStatus Navigator::stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command) {
+/// Stops; begins a recovery after `blocked_timeout_s`.
+NavigationStatus Navigator::wait_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command) {
   command = {};
   if (!blocked_since_) blocked_since_ = now;
-  if (now - *blocked_since_ < from_seconds(settings_.patience_s)) return NavigationStatus::kBlocked;
-  if (!no_route_since_) report(NavigationTrouble::kPathBlocked);
+  if (now - *blocked_since_ < from_seconds(settings_.blocked_timeout_s)) return NavigationStatus::kBlocked;
+  if (!no_path_since_) report(NavigationFailure::kPathBlocked);
   return begin_recovery(now, T_map_body, command);
 }
 
@@ -224,7 +224,7 @@ NavigationStatus Navigator::begin_recovery(Time now, const Pose2& T_map_body, Ve
   command = {};
   search_.cancel();
   blocked_since_.reset();
-  progress_.forget_place();
+  progress_.restart();
   recovery_text_ = recoveries_.begin_next(now, T_map_body, costmap_);
   state_ = State::kRecovering;
   return NavigationStatus::kRecovering;
@@ -241,9 +241,9 @@ NavigationStatus Navigator::continue_recovery(Time now, const Pose2& T_map_body,
   return NavigationStatus::kRecovering;
 }
 
-void Navigator::note_progress(const Pose2& T_map_body) {
+void Navigator::update_progress(const Pose2& T_map_body) {
   const double goal_distance_m = (goal_->T_map_body.position() - T_map_body.position()).norm();
-  if (progress_.has_come_nearer(goal_distance_m + follower_.path().length_m() - follower_.along_m())) recoveries_.reset();
+  if (progress_.has_progressed(goal_distance_m + follower_.path().length_m() - follower_.along_m())) recoveries_.reset();
 }
 
 }  // namespace patrol::plan

@@ -53,7 +53,7 @@ class Navigator {
   enum class State { kIdle, kFollowing, kApproaching, kRecovering, kArrived, kFailed };
 
   bool is_at_goal(const Pose2& T_map_body) const;
-  bool is_hopeless(Time now) const;
+  bool must_abort(Time now) const;
   void check_end(Time now, const Pose2& T_map_body);
   NavigationStatus act(Time now, const Pose2& T_map_body, NavigationStep& step);
 
@@ -65,21 +65,21 @@ class Navigator {
   void choose_approach(double goal_distance_m);
   NavigationStatus approach(Time now, const Pose2& T_map_body, VelocityCommand& command);
   NavigationStatus wait_for_route(Time now);
-  NavigationStatus stand_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command);
-  void note_progress(const Pose2& T_map_body);
+  NavigationStatus wait_blocked(Time now, const Pose2& T_map_body, VelocityCommand& command);
+  void update_progress(const Pose2& T_map_body);
 
   // Actions in kRecovering.
   NavigationStatus begin_recovery(Time now, const Pose2& T_map_body, VelocityCommand& command);
   NavigationStatus continue_recovery(Time now, const Pose2& T_map_body, VelocityCommand& command);
 
-  void report(NavigationTrouble trouble);
+  void report(NavigationFailure failure);
 
   NavigatorSettings settings_;
   RobotDescription robot_;
   Costmap costmap_;
   RouteSearch search_;
   PathFollower follower_;
-  DifferentialApproach approach_;
+  DifferentialPoseController approach_;
   RecoverySequence recoveries_;
   ProgressMonitor progress_;
 
@@ -87,8 +87,8 @@ class Navigator {
   std::optional<NavigationGoal> goal_;
   VelocityCommand last_;               ///< command of the previous control period
   std::optional<Time> blocked_since_;
-  std::optional<Time> no_route_since_;
-  NavigationTrouble trouble_ = NavigationTrouble::kNone;
+  std::optional<Time> no_path_since_;
+  NavigationFailure failure_ = NavigationFailure::kNone;
   std::string text_, recovery_text_;   ///< sentences for the next step
 };
 

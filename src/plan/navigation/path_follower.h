@@ -21,21 +21,21 @@ class PathFollower {
   const PlannedPath& path() const { return path_; }
   bool has_path() const { return !path_.is_empty(); }
   double along_m() const { return along_m_; }
-  double left_m() const { return path_.length_m() - along_m_; }
+  double remaining_m() const { return path_.length_m() - along_m_; }
 
   /// Advances along the path to the point nearest to the body; returns the distance from it.
   double advance(const Pose2& T_map_body);
-  /// Whether an obstacle lies on the path within `check_ahead_m`.
+  /// Whether an obstacle lies on the path within `path_check_distance_m`.
   bool is_blocked(const Costmap& costmap) const;
-  /// Whether all obstacles on that part of the path have been observed for less than `detour_after_s`.
-  bool is_blocked_by_newcomers_only(const Costmap& costmap, Time now) const;
+  /// Whether all obstacles on that part of the path have been observed for less than `new_obstacle_wait_s`.
+  bool is_blocked_by_new_obstacles_only(const Costmap& costmap, Time now) const;
 
   /// Command of a control period. `last` is the previous command; it replaces the noisy measured twist.
   VelocityCommand command(const Costmap& costmap, const Pose2& T_map_body, const VelocityCommand& last) const;
 
  private:
   double ahead_end_m() const;
-  bool is_newcomer_ahead(const Costmap& costmap, const Pose2& T_map_body) const;
+  bool is_unmapped_obstacle_ahead(const Costmap& costmap, const Pose2& T_map_body) const;
   std::optional<VelocityCommand> turn_in_place(const Costmap& costmap, const Pose2& T_map_body, const VelocityCommand& last) const;
 
   NavigatorSettings settings_;

@@ -8,22 +8,22 @@ constexpr double kProgress_m = 0.5;
 }  // namespace
 
 void ProgressMonitor::reset() {
-  place_.reset();
-  nearest_left_m_ = std::numeric_limits<double>::infinity();
+  anchor_.reset();
+  min_remaining_m_ = std::numeric_limits<double>::infinity();
 }
 
 void ProgressMonitor::restart_time(Time now) {
-  if (place_) place_->since = now;
+  if (anchor_) anchor_->since = now;
 }
 
 bool ProgressMonitor::is_stuck(Time now, const Pose2& T_map_body) {
-  if (!place_ || (T_map_body.position() - place_->p_map).norm() > kProgress_m) place_ = Place{T_map_body.position(), now};
-  return now - place_->since > from_seconds(stuck_s_);
+  if (!anchor_ || (T_map_body.position() - anchor_->p_map).norm() > kProgress_m) anchor_ = Anchor{T_map_body.position(), now};
+  return now - anchor_->since > from_seconds(no_progress_timeout_s_);
 }
 
-bool ProgressMonitor::has_come_nearer(double left_m) {
-  if (left_m > nearest_left_m_ - kProgress_m) return false;
-  nearest_left_m_ = left_m;
+bool ProgressMonitor::has_progressed(double remaining_m) {
+  if (remaining_m > min_remaining_m_ - kProgress_m) return false;
+  min_remaining_m_ = remaining_m;
   return true;
 }
 

@@ -10,16 +10,16 @@
 namespace patrol::plan {
 
 std::unique_ptr<RecoveryBehavior> make_recovery(const std::string& name, const NavigatorSettings& settings) {
-  if (name == "wait") return std::make_unique<Wait>(settings.patience_s);
-  if (name == "clear") return std::make_unique<ClearCostmap>();
-  if (name == "back_up") return std::make_unique<BackUp>(settings.back_up_s, settings.back_up_speed_mps);
-  if (name == "look_around") return std::make_unique<Spin>(settings.turn_rate_radps);
-  throw InputError("plan.recoveries = " + name + ": must be one of wait, clear, back_up, look_around");
+  if (name == "wait") return std::make_unique<Wait>(settings.blocked_timeout_s);
+  if (name == "clear_costmap") return std::make_unique<ClearCostmap>();
+  if (name == "back_up") return std::make_unique<BackUp>(settings.recovery.back_up_duration_s, settings.recovery.back_up_speed_mps);
+  if (name == "spin") return std::make_unique<Spin>(settings.turn_in_place_rate_radps);
+  throw InputError("navigation.recovery.behaviors = " + name + ": must be one of wait, clear_costmap, back_up, spin");
 }
 
-RecoverySequence::RecoverySequence(const NavigatorSettings& settings) : max_recoveries_(settings.max_recoveries) {
-  if (settings.recoveries.empty()) throw InputError("plan.recoveries: must name at least one recovery");
-  for (const std::string& name : settings.recoveries) behaviors_.push_back(make_recovery(name, settings));
+RecoverySequence::RecoverySequence(const NavigatorSettings& settings) : max_attempts_(settings.recovery.max_attempts) {
+  if (settings.recovery.behaviors.empty()) throw InputError("navigation.recovery.behaviors: must name at least one behavior");
+  for (const std::string& name : settings.recovery.behaviors) behaviors_.push_back(make_recovery(name, settings));
 }
 
 const char* RecoverySequence::begin_next(Time now, const Pose2& T_map_body, Costmap& costmap) {

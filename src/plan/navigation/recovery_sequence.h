@@ -9,7 +9,7 @@
 
 namespace patrol::plan {
 
-/// Creates a recovery behavior by its name in `plan.recoveries`.
+/// Creates a recovery behavior by its name in `navigation.recovery.behaviors`.
 std::unique_ptr<RecoveryBehavior> make_recovery(const std::string& name, const NavigatorSettings& settings);
 
 /// Sequence of recovery behaviors from the settings, with a limit to their number without progress.
@@ -21,7 +21,7 @@ class RecoverySequence {
   /// Resets the count of recoveries, for another goal or after progress.
   void reset() { num_begun_ = 0; }
   /// Whether more recoveries have begun than are allowed.
-  bool is_exhausted() const { return num_begun_ > max_recoveries_; }
+  bool is_exhausted() const { return num_begun_ > max_attempts_; }
   /// Begins the next recovery and returns its sentence.
   const char* begin_next(Time now, const Pose2& T_map_body, Costmap& costmap);
   /// Command of the recovery begun last; none when it is completed or blocked.
@@ -29,7 +29,7 @@ class RecoverySequence {
 
  private:
   std::vector<std::unique_ptr<RecoveryBehavior>> behaviors_;  ///< in order of the settings
-  int max_recoveries_;
+  int max_attempts_;
   int num_begun_ = 0;
   std::size_t active_ = 0;
 };

@@ -25,7 +25,7 @@ class RouteSearch {
   /// Cancels the running search.
   void cancel() { running_.reset(); }
   bool is_running() const { return running_.has_value(); }
-  void note_new_map() { map_is_new_ = true; }
+  void on_new_map() { has_new_map_ = true; }
   /// Whether the map has changed and the last search began `replan_period_s` ago.
   bool is_outdated(Time now) const;
   /// Whether no search is running and the minimum period since the last one has passed.
@@ -42,10 +42,10 @@ class RouteSearch {
   };
 
   GlobalPlanner planner_;
-  double steps_per_s_, replan_period_s_;
+  double planner_cells_per_s_, replan_period_s_;
   std::optional<Running> running_;
   Time begun_at_ = Time::min();  ///< start of the last search
-  bool map_is_new_ = false;
+  bool has_new_map_ = false;
 };
 
 }  // namespace patrol::plan

@@ -10,7 +10,7 @@ class Spin : public RecoveryBehavior {
  public:
   explicit Spin(double rate_radps) : rate_radps_(rate_radps) {}
 
-  const char* sentence() const override { return "Recovery: the robot looks around."; }
+  const char* sentence() const override { return "Recovery: spinning in place."; }
   void begin(Time now, const Pose2& T_map_body, Costmap& costmap) override;
   std::optional<VelocityCommand> step(Time now, const Pose2& T_map_body) override;
 

@@ -9,7 +9,7 @@ class Wait : public RecoveryBehavior {
  public:
   explicit Wait(double duration_s) : duration_s_(duration_s) {}
 
-  const char* sentence() const override { return "Recovery: the robot waits."; }
+  const char* sentence() const override { return "Recovery: waiting."; }
   void begin(Time now, const Pose2& T_map_body, Costmap& costmap) override;
   std::optional<VelocityCommand> step(Time now, const Pose2& T_map_body) override;
 

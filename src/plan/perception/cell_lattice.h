@@ -25,9 +25,9 @@ struct CellLattice {
 
 /// Whether a predicate holds for any cell at most `reach` columns and rows away.
 template <typename Predicate>
-bool any_cell_near(Cell center, int reach, const Predicate& predicate) {
-  for (int row = center.row - reach; row <= center.row + reach; ++row) {
-    for (int col = center.col - reach; col <= center.col + reach; ++col) {
+bool any_cell_near(Cell center, int radius_cells, const Predicate& predicate) {
+  for (int row = center.row - radius_cells; row <= center.row + radius_cells; ++row) {
+    for (int col = center.col - radius_cells; col <= center.col + radius_cells; ++col) {
       if (predicate(Cell{col, row})) return true;
     }
   }

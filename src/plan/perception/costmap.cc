@@ -90,7 +90,7 @@ void Costmap::add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_bod
   refresh(low_.add_ping(cone, stamp, T_map_body, scan_, static_map_));
 }
 
-void Costmap::forget_live(const Eigen::Vector2d& p_map, double radius_m) {
+void Costmap::clear_obstacles(const Eigen::Vector2d& p_map, double radius_m) {
   CellBox changed = low_.clear_sonar(p_map, radius_m);
   changed.merge(scan_.clear(p_map, radius_m));
   refresh(changed);

@@ -41,7 +41,7 @@ class Costmap {
   /// Adds the cone of a ping, in level at its stamp.
   void add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body);
   /// Clears the obstacles of the scan layer within a radius, and the evidence of sonar; later messages mark them again.
-  void forget_live(const Eigen::Vector2d& p_map, double radius_m);
+  void clear_obstacles(const Eigen::Vector2d& p_map, double radius_m);
   /// Grows the grid, if needed, so that the square of half-width `margin_m` around the point lies inside.
   void include(const Eigen::Vector2d& p_map, double margin_m);
 
@@ -51,10 +51,10 @@ class Costmap {
   const Grid<Cost>& cost() const { return cost_; }
   /// Cost at a point; outside the grid, the cost of unknown cells.
   Cost cost_at(const Eigen::Vector2d& p_map) const;
-  bool is_live_obstacle(Cell cell) const { return scan_.contains_obstacle(cell); }
+  bool is_scan_obstacle(Cell cell) const { return scan_.contains_obstacle(cell); }
   /// Time of the first observation of the oldest scan obstacle within a radius; none without obstacles.
-  std::optional<Time> live_since(const Eigen::Vector2d& p_map, double radius_m) const { return scan_.first_seen(p_map, radius_m); }
-  std::size_t num_live_obstacles() const { return scan_.num_obstacles(); }
+  std::optional<Time> obstacle_first_seen(const Eigen::Vector2d& p_map, double radius_m) const { return scan_.first_seen(p_map, radius_m); }
+  std::size_t num_scan_obstacles() const { return scan_.num_obstacles(); }
   bool is_low_obstacle(Cell cell) const { return low_.contains_obstacle(cell); }
   std::size_t num_low_obstacles() const { return low_.num_obstacles(); }
 

@@ -80,7 +80,7 @@ class PointImage {
 
 }  // namespace
 
-DepthPoints find_depth_points(const DepthPointsSettings& settings, const DepthImage& image, const Pose3& T_level_camera,
+DepthPoints segment_obstacles(const DepthObstaclesSettings& settings, const DepthImage& image, const Pose3& T_level_camera,
                               double body_height_m) {
   const PointImage points(image, T_level_camera, settings.max_range_m);
   std::vector<Point> ground(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
@@ -95,7 +95,7 @@ DepthPoints find_depth_points(const DepthPointsSettings& settings, const DepthIm
   const Eigen::Vector2d p_level_camera = T_level_camera.position.head<2>();
   DepthPoints result;
   for (int row = 0; row < image.height; ++row) {
-    const int last = std::min(image.height - 1, row + settings.rows_below);
+    const int last = std::min(image.height - 1, row + settings.ground_search_rows);
     for (int col = 0; col < image.width; ++col) {
       const Point& p = points.at(row, col);
       if (!p.is_valid()) continue;
@@ -108,7 +108,7 @@ DepthPoints find_depth_points(const DepthPointsSettings& settings, const DepthIm
       const double range_m = (place - p_level_camera).norm();
       const double height_limit_m = settings.max_height_m + settings.max_slope * range_m - body_height_m;
       if (rises && p.z < height_limit_m) result.obstacles_m.push_back(place);
-      if (!rises && row < last && range_m <= settings.clear_range_m) result.ground_m.push_back(place);
+      if (!rises && row < last && range_m <= settings.clearing_range_m) result.ground_m.push_back(place);
     }
   }
   return result;

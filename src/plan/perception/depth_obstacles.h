@@ -10,29 +10,29 @@
 
 namespace patrol::plan {
 
-struct DepthPointsSettings {
+struct DepthObstaclesSettings {
   double max_range_m = 1.6;       ///< maximum range of obstacles: beyond, an image row covers too much ground
-  double clear_range_m = 1.3;     ///< maximum range at which observed ground clears a cell
+  double clearing_range_m = 1.3;     ///< maximum range at which observed ground clears a cell
   double min_rise_m = 0.04;       ///< minimum height step of an obstacle; rubble is lower
   double max_slope = 0.32;        ///< maximum drivable slope, rise over run (0.32: 17.7 degrees)
   double max_height_m = 0.8;      ///< maximum height above the ground plane; the lidar sees higher objects
-  int rows_below = 8;             ///< rows below a pixel in which its reference ground is searched
+  int ground_search_rows = 8;             ///< rows below a pixel in which its reference ground is searched
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("max_range_m", self.max_range_m, between(0.3, 10.0));
-    visit("clear_range_m", self.clear_range_m, between(0.0, 10.0));
+    visit("clearing_range_m", self.clearing_range_m, between(0.0, 10.0));
     visit("min_rise_m", self.min_rise_m, between(0.01, 0.5));
     visit("max_slope", self.max_slope, between(0.0, 2.0));
     visit("max_height_m", self.max_height_m, between(0.05, 5.0));
-    visit("rows_below", self.rows_below, between(1, 100));
+    visit("ground_search_rows", self.ground_search_rows, between(1, 100));
   }
 };
 
 /// Obstacles and ground in a depth image, in level.
 struct DepthPoints {
   std::vector<Eigen::Vector2d> obstacles_m;  ///< points on obstacles
-  std::vector<Eigen::Vector2d> ground_m;     ///< ground points within `clear_range_m`: no obstacle there
+  std::vector<Eigen::Vector2d> ground_m;     ///< ground points within `clearing_range_m`: no obstacle there
 };
 
 /// Segments obstacles from ground by slope [Vosselman00]: a point belongs to an obstacle if it rises above some nearby
@@ -48,7 +48,7 @@ struct DepthPoints {
 ///
 /// `T_level_camera`: camera pose with x along the optical axis, tilt included. `body_height_m`: height of level's
 /// origin above the ground.
-DepthPoints find_depth_points(const DepthPointsSettings& settings, const DepthImage& image, const Pose3& T_level_camera,
+DepthPoints segment_obstacles(const DepthObstaclesSettings& settings, const DepthImage& image, const Pose3& T_level_camera,
                               double body_height_m);
 
 }  // namespace patrol::plan

@@ -45,7 +45,7 @@ std::vector<Disc> cover(const Eigen::AlignedBox2d& box, int rows, double max_exc
 Footprint::Footprint(std::vector<Eigen::Vector2d> polygon_m, int rows, double max_excess_m)
     : polygon_m_(std::move(polygon_m)) {
   if (polygon_m_.size() < 3) {
-    throw InputError(fmt::format("the robot's footprint has {} corners: it must have at least 3", polygon_m_.size()));
+    throw InputError(fmt::format("footprint: has {} corners: must have at least 3", polygon_m_.size()));
   }
   inscribed_radius_m_ = std::numeric_limits<double>::infinity();
   Eigen::AlignedBox2d box;
@@ -57,7 +57,7 @@ Footprint::Footprint(std::vector<Eigen::Vector2d> polygon_m, int rows, double ma
         std::min(inscribed_radius_m_, distance_inside(corner, polygon_m_[(i + 1) % polygon_m_.size()]));
   }
   if (!(inscribed_radius_m_ > 0.0)) {
-    throw InputError("the robot's footprint must be convex, counter-clockwise and hold the body's origin");
+    throw InputError("footprint: must be convex, counter-clockwise and contain the body's origin");
   }
   discs_ = cover(box, rows, max_excess_m);
 }

@@ -12,11 +12,11 @@ namespace patrol::plan {
 KeepOutLayer::KeepOutLayer(const CostmapSettings& settings, std::vector<Polyline> lines_in_map, double max_distance_m)
     : margin_m_(settings.keep_out_margin_m),
       inflation_m_(settings.keep_out_inflation_m),
-      reach_m_(settings.keep_out_margin_m + std::max(settings.keep_out_inflation_m, max_distance_m)),
+      cutoff_m_(settings.keep_out_margin_m + std::max(settings.keep_out_inflation_m, max_distance_m)),
       lines_(std::move(lines_in_map)) {}
 
 void KeepOutLayer::resize(const CellLattice& lattice) {
-  distance_m_ = Grid<float>(lattice.geometry, static_cast<float>(reach_m_));
+  distance_m_ = Grid<float>(lattice.geometry, static_cast<float>(cutoff_m_));
   for (const Polyline& line : lines_) {
     for (std::size_t i = 0; i + 1 < line.size(); ++i) rasterize(line[i], line[i + 1]);
   }
@@ -25,8 +25,8 @@ void KeepOutLayer::resize(const CellLattice& lattice) {
 void KeepOutLayer::rasterize(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const GridGeometry& geometry = distance_m_.geometry();
   CellBox box;
-  box.extend(geometry.cell_at(a.cwiseMin(b).array() - reach_m_));
-  box.extend(geometry.cell_at(a.cwiseMax(b).array() + reach_m_));
+  box.extend(geometry.cell_at(a.cwiseMin(b).array() - cutoff_m_));
+  box.extend(geometry.cell_at(a.cwiseMax(b).array() + cutoff_m_));
   box = box.grown(0, geometry);
   for (int row = box.min.row; row <= box.max.row; ++row) {
     for (int col = box.min.col; col <= box.max.col; ++col) {

@@ -27,7 +27,7 @@ class KeepOutLayer {
  private:
   void rasterize(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
 
-  double margin_m_, inflation_m_, reach_m_;
+  double margin_m_, inflation_m_, cutoff_m_;
   std::vector<Polyline> lines_;
   Grid<float> distance_m_;
 };

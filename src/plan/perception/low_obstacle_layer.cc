@@ -8,7 +8,7 @@ namespace patrol::plan {
 namespace {
 
 constexpr int kMoving_cells = 3;     ///< a low obstacle this near to one of the scan may be a pedestrian's foot
-constexpr int kExplained_cells = 2;  ///< an echo this near to an obstacle of the scan or the map comes from it
+constexpr int kExplainedDistance_cells = 2;  ///< an echo this near to an obstacle of the scan or the map comes from it
 
 }  // namespace
 
@@ -45,7 +45,7 @@ CellBox LowObstacleLayer::add_image(const DepthPoints& points, Time stamp, const
     if (std::find(doubtful.begin(), doubtful.end(), cell) == doubtful.end()) ground.push_back(cell);
   }
   low_.add_image(obstacles, ground, may_move, stamp);
-  low_.forget_old(stamp);
+  low_.clear_expired(stamp);
   return apply_changes();
 }
 
@@ -54,7 +54,7 @@ CellBox LowObstacleLayer::add_ping(const SonarCone& cone, Time stamp, const Pose
   std::vector<Cell> arc = lattice_cells(cone.arc_m, T_map_body, 1);
   const auto is_explained = [&](Cell lattice) {
     const Cell cell = lattice_.to_grid(lattice);
-    return scan.has_obstacle_near(cell, kExplained_cells) || map.has_obstacle_near(cell, kExplained_cells);
+    return scan.has_obstacle_near(cell, kExplainedDistance_cells) || map.has_obstacle_near(cell, kExplainedDistance_cells);
   };
   if (std::any_of(arc.begin(), arc.end(), is_explained)) arc.clear();
   low_.add_ping(arc, lattice_cells(cone.free_m, T_map_body, 1), stamp);
@@ -62,7 +62,7 @@ CellBox LowObstacleLayer::add_ping(const SonarCone& cone, Time stamp, const Pose
 }
 
 CellBox LowObstacleLayer::clear_sonar(const Eigen::Vector2d& p_map, double radius_m) {
-  low_.forget_sonar([&](Cell lattice) {
+  low_.clear_sonar_evidence([&](Cell lattice) {
     return (lattice_.geometry.center_of(lattice_.to_grid(lattice)) - p_map).norm() <= radius_m;
   });
   return apply_changes();

@@ -17,16 +17,16 @@ void LowObstacles::add_image(const std::vector<Cell>& obstacles, const std::vect
     const Key key = to_key(obstacles[i]);
     Evidence& evidence = cells_[key];
     evidence.camera = raised(evidence.camera, settings_.confirmations);
-    evidence.camera_until = now + from_seconds(may_move[i] ? settings_.moving_memory_s : settings_.memory_s);
-    judge(key, evidence);
+    evidence.camera_until = now + from_seconds(may_move[i] ? settings_.dynamic_persistence_s : settings_.persistence_s);
+    update_obstacle(key, evidence);
   }
   for (const Cell cell : ground) {
     const Key key = to_key(cell);
     Evidence& evidence = cells_[key];
     evidence.camera = lowered(evidence.camera);
     evidence.sonar = 0;
-    evidence.ground_seen = now;
-    judge(key, evidence);
+    evidence.ground_observed = now;
+    update_obstacle(key, evidence);
   }
 }
 
@@ -34,35 +34,35 @@ void LowObstacles::add_ping(const std::vector<Cell>& arc, const std::vector<Cell
   for (const Cell cell : arc) {
     const Key key = to_key(cell);
     Evidence& evidence = cells_[key];
-    if (!is_vetoed(evidence, now)) evidence.sonar = raised(evidence.sonar, settings_.confirmations);
-    evidence.sonar_until = now + from_seconds(settings_.sonar_memory_s);
-    judge(key, evidence);
+    if (!is_cleared_by_camera(evidence, now)) evidence.sonar = raised(evidence.sonar, settings_.confirmations);
+    evidence.sonar_until = now + from_seconds(settings_.sonar_persistence_s);
+    update_obstacle(key, evidence);
   }
   for (const Cell cell : free) {
     const auto found = cells_.find(to_key(cell));
     if (found == cells_.end()) continue;
     found->second.sonar = lowered(found->second.sonar);
-    judge(found->first, found->second);
+    update_obstacle(found->first, found->second);
   }
 }
 
-void LowObstacles::forget_old(Time now) {
+void LowObstacles::clear_expired(Time now) {
   for (auto it = cells_.begin(); it != cells_.end();) {
     Evidence& evidence = it->second;
     if (now > evidence.camera_until) evidence.camera = 0;
     if (now > evidence.sonar_until) evidence.sonar = 0;
-    judge(it->first, evidence);
-    const bool is_uninformative = evidence.camera == 0 && evidence.sonar == 0 && !is_vetoed(evidence, now);
+    update_obstacle(it->first, evidence);
+    const bool is_uninformative = evidence.camera == 0 && evidence.sonar == 0 && !is_cleared_by_camera(evidence, now);
     it = is_uninformative ? cells_.erase(it) : std::next(it);
   }
 }
 
-bool LowObstacles::is_vetoed(const Evidence& evidence, Time now) const {
-  if (evidence.ground_seen == Time::min()) return false;
-  return now - evidence.ground_seen <= from_seconds(settings_.camera_veto_s);
+bool LowObstacles::is_cleared_by_camera(const Evidence& evidence, Time now) const {
+  if (evidence.ground_observed == Time::min()) return false;
+  return now - evidence.ground_observed <= from_seconds(settings_.camera_clearing_s);
 }
 
-void LowObstacles::judge(const Key& key, Evidence& evidence) {
+void LowObstacles::update_obstacle(const Key& key, Evidence& evidence) {
   const int sure = settings_.confirmations;
   // Hysteresis: an obstacle of the camera stays until its count is zero.
   const bool by_camera = evidence.camera >= sure || (evidence.is_obstacle && evidence.camera > 0);

@@ -11,19 +11,19 @@
 namespace patrol::plan {
 
 struct LowObstaclesSettings {
-  double memory_s = 60.0;        ///< persistence of an obstacle out of view: under the bow, next to a track
-  double moving_memory_s = 3.0;  ///< persistence next to a lidar obstacle, which may be a pedestrian's legs
-  double sonar_memory_s = 15.0;  ///< persistence of an obstacle detected by sonar only
-  double camera_veto_s = 2.0;    ///< age up to which ground in an image overrules sonar echoes
+  double persistence_s = 60.0;        ///< persistence of an obstacle out of view: under the bow, next to a track
+  double dynamic_persistence_s = 3.0;  ///< persistence next to a lidar obstacle, which may be a pedestrian's legs
+  double sonar_persistence_s = 15.0;  ///< persistence of an obstacle detected by sonar only
+  double camera_clearing_s = 2.0;    ///< age up to which ground in an image overrules sonar echoes
   int min_camera_points = 2;     ///< points of one image in one cell
   int confirmations = 2;         ///< images or pings that make an obstacle
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("memory_s", self.memory_s, between(0.1, 3600.0));
-    visit("moving_memory_s", self.moving_memory_s, between(0.1, 3600.0));
-    visit("sonar_memory_s", self.sonar_memory_s, between(0.1, 3600.0));
-    visit("camera_veto_s", self.camera_veto_s, between(0.0, 60.0));
+    visit("persistence_s", self.persistence_s, between(0.1, 3600.0));
+    visit("dynamic_persistence_s", self.dynamic_persistence_s, between(0.1, 3600.0));
+    visit("sonar_persistence_s", self.sonar_persistence_s, between(0.1, 3600.0));
+    visit("camera_clearing_s", self.camera_clearing_s, between(0.0, 60.0));
     visit("min_camera_points", self.min_camera_points, between(1, 100));
     visit("confirmations", self.confirmations, between(1, 20));
   }
@@ -46,15 +46,15 @@ class LowObstacles {
   void add_ping(const std::vector<Cell>& arc, const std::vector<Cell>& free, Time now);
   /// Clears the sonar evidence of the cells for which the predicate is true.
   template <typename Predicate>
-  void forget_sonar(const Predicate& is_there) {
+  void clear_sonar_evidence(const Predicate& is_there) {
     for (auto& [key, evidence] : cells_) {
       if (!is_there(to_cell(key))) continue;
       evidence.sonar = 0;
-      judge(key, evidence);
+      update_obstacle(key, evidence);
     }
   }
   /// Clears evidence whose persistence has ended.
-  void forget_old(Time now);
+  void clear_expired(Time now);
 
   bool is_obstacle(Cell cell) const;
   std::size_t num_obstacles() const { return num_obstacles_; }
@@ -70,14 +70,14 @@ class LowObstacles {
     int sonar = 0;
     Time camera_until{};  ///< end of the persistence of the camera's evidence
     Time sonar_until{};
-    Time ground_seen = Time::min();
+    Time ground_observed = Time::min();
     bool is_obstacle = false;
   };
 
   static Cell to_cell(const Key& key) { return {key.second, key.first}; }
   static Key to_key(Cell cell) { return {cell.row, cell.col}; }
-  bool is_vetoed(const Evidence& evidence, Time now) const;
-  void judge(const Key& key, Evidence& evidence);
+  bool is_cleared_by_camera(const Evidence& evidence, Time now) const;
+  void update_obstacle(const Key& key, Evidence& evidence);
 
   LowObstaclesSettings settings_;
   std::map<Key, Evidence> cells_;

@@ -9,9 +9,9 @@ namespace patrol::plan {
 namespace {
 
 /// Observed range of a scan by direction around the lidar: the minimum range of the beams in each sector.
-class SeenRange {
+class ObservedRange {
  public:
-  explicit SeenRange(const LevelScan& scan)
+  explicit ObservedRange(const LevelScan& scan)
       : sectors_(std::clamp<std::size_t>(scan.beams.size() / 2, 1, 720), 0.0f),
         sectors_per_rad_(static_cast<double>(sectors_.size()) / (2.0 * std::numbers::pi)) {
     for (const LevelScan::Beam& beam : scan.beams) {
@@ -50,16 +50,16 @@ CellBox ScanLayer::add_scan(const LevelScan& scan, const Pose2& T_map_body, cons
 }
 
 void ScanLayer::clear_passed(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map, CellBox& changed) {
-  const SeenRange seen(scan);
+  const ObservedRange seen(scan);
   const Pose2 T_body_map = T_map_body.inverse();
-  const Time memory = from_seconds(settings_.obstacle_memory_s);
+  const Time memory = from_seconds(settings_.obstacle_persistence_s);
   const double slack_m = 0.75 * settings_.resolution_m;
   for (std::size_t i = 0; i < obstacles_.size();) {
     const Cell cell = to_cell(obstacles_[i]);
     const Eigen::Vector2d from_lidar = T_body_map * lattice_.geometry.center_of(cell) - scan.origin_m;
     const bool is_passed = seen.along(from_lidar) > from_lidar.norm() + slack_m;
     const bool is_old = scan.stamp - obstacles_[i].seen > memory;
-    if (!is_passed && !is_old && !map.has_obstacle_near(cell, settings_.map_slack_cells)) {
+    if (!is_passed && !is_old && !map.has_obstacle_near(cell, settings_.map_match_tolerance_cells)) {
       ++i;
       continue;
     }
@@ -76,7 +76,7 @@ void ScanLayer::mark_hits(const LevelScan& scan, const Pose2& T_map_body, const 
     const Eigen::Vector2d end_m = beam.end_m.cast<double>();
     if (!beam.is_hit || (end_m - scan.origin_m).norm() > settings_.obstacle_range_m) continue;
     const Cell cell = lattice_.geometry.cell_at(T_map_body * end_m);
-    if (!index_.contains(cell) || map.has_obstacle_near(cell, settings_.map_slack_cells)) continue;
+    if (!index_.contains(cell) || map.has_obstacle_near(cell, settings_.map_match_tolerance_cells)) continue;
     if (index_.at(cell) != 0) {
       obstacles_[index_.at(cell) - 1].seen = scan.stamp;
       continue;
@@ -104,16 +104,16 @@ CellBox ScanLayer::clear(const Eigen::Vector2d& p_map, double radius_m) {
   return changed;
 }
 
-bool ScanLayer::has_obstacle_near(Cell cell, int reach) const {
-  return any_cell_near(cell, reach, [this](Cell near) { return contains_obstacle(near); });
+bool ScanLayer::has_obstacle_near(Cell cell, int radius_cells) const {
+  return any_cell_near(cell, radius_cells, [this](Cell near) { return contains_obstacle(near); });
 }
 
 std::optional<Time> ScanLayer::first_seen(const Eigen::Vector2d& p_map, double radius_m) const {
-  const int reach = static_cast<int>(std::ceil(radius_m / settings_.resolution_m));
+  const int radius_cells = static_cast<int>(std::ceil(radius_m / settings_.resolution_m));
   const Cell center = lattice_.geometry.cell_at(p_map);
   std::optional<Time> first;
-  for (int row = center.row - reach; row <= center.row + reach; ++row) {
-    for (int col = center.col - reach; col <= center.col + reach; ++col) {
+  for (int row = center.row - radius_cells; row <= center.row + radius_cells; ++row) {
+    for (int col = center.col - radius_cells; col <= center.col + radius_cells; ++col) {
       const Cell cell{col, row};
       if (!contains_obstacle(cell) || (lattice_.geometry.center_of(cell) - p_map).norm() > radius_m) continue;
       const Time seen = obstacles_[index_.at(cell) - 1].first_seen;

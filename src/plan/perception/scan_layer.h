@@ -13,7 +13,7 @@
 namespace patrol::plan {
 
 /// Costmap layer of lidar hits that the static map does not have (yet). A hit is cleared when a later beam passes
-/// beyond it, when the map has it, or when it has not been observed for `obstacle_memory_s`.
+/// beyond it, when the map has it, or when it has not been observed for `obstacle_persistence_s`.
 class ScanLayer {
  public:
   explicit ScanLayer(const CostmapSettings& settings) : settings_(settings) {}
@@ -28,7 +28,7 @@ class ScanLayer {
   bool is_obstacle(Cell cell) const { return index_.at(cell) != 0; }
   bool contains_obstacle(Cell cell) const { return index_.contains(cell) && is_obstacle(cell); }
   /// Whether an obstacle lies at most `reach` columns and rows from a cell, which may be outside the grid.
-  bool has_obstacle_near(Cell cell, int reach) const;
+  bool has_obstacle_near(Cell cell, int radius_cells) const;
   /// Time of the first observation of the oldest obstacle within a radius; none without obstacles.
   std::optional<Time> first_seen(const Eigen::Vector2d& p_map, double radius_m) const;
   std::size_t num_obstacles() const { return obstacles_.size(); }

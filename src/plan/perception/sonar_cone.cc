@@ -25,7 +25,7 @@ void add_arc(const Eigen::Vector2d& center, double azimuth_rad, double half_rad,
 
 }  // namespace
 
-SonarCone find_sonar_cone(const SonarConeSettings& settings, const UltrasonicRange& ping, const Pose3& T_level_transducer,
+SonarCone inverse_sonar_model(const SonarConeSettings& settings, const UltrasonicRange& ping, const Pose3& T_level_transducer,
                           double body_height_m, double spacing_m) {
   SonarCone cone;
   const auto measured = static_cast<double>(ping.range_m);
@@ -37,13 +37,13 @@ SonarCone find_sonar_cone(const SonarConeSettings& settings, const UltrasonicRan
   const double range_m = std::max(measured, ping.range_min_m);
   const double ground_m = ground_range_m(body_height_m + T_level_transducer.position.z(), elevation, half_fov);
 
-  const bool may_be_ground = range_m > settings.ground_share * ground_m;
+  const bool may_be_ground = range_m > settings.ground_range_fraction * ground_m;
   if (range_m <= settings.max_range_m && !may_be_ground) {
-    add_arc(center, azimuth, settings.fov_share * half_fov, range_m, spacing_m, cone.arc_m);
+    add_arc(center, azimuth, settings.fov_fraction * half_fov, range_m, spacing_m, cone.arc_m);
   }
   const double free_to_m = std::min(range_m, settings.max_range_m) - spacing_m;
   for (double r = spacing_m / 2.0; r < free_to_m; r += spacing_m / 2.0) {
-    add_arc(center, azimuth, settings.fov_share * half_fov, r, spacing_m, cone.free_m);
+    add_arc(center, azimuth, settings.fov_fraction * half_fov, r, spacing_m, cone.free_m);
   }
   return cone;
 }

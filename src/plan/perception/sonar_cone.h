@@ -12,14 +12,14 @@ namespace patrol::plan {
 
 struct SonarConeSettings {
   double max_range_m = 1.2;     ///< maximum range of an echo: beyond, the arc is too wide to be useful
-  double fov_share = 0.7;       ///< fraction of the cone's width in which the echo is assumed to lie
-  double ground_share = 0.85;   ///< fraction of the range to level ground from which an echo may be ground
+  double fov_fraction = 0.7;       ///< fraction of the cone's width in which the echo is assumed to lie
+  double ground_range_fraction = 0.85;   ///< fraction of the range to level ground from which an echo may be ground
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("max_range_m", self.max_range_m, between(0.2, 5.0));
-    visit("fov_share", self.fov_share, between(0.1, 1.0));
-    visit("ground_share", self.ground_share, between(0.1, 10.0));
+    visit("fov_fraction", self.fov_fraction, between(0.1, 1.0));
+    visit("ground_range_fraction", self.ground_range_fraction, between(0.1, 10.0));
   }
 };
 
@@ -34,7 +34,7 @@ struct SonarCone {
 /// arc, nothing lies nearer. A reading without echo clears the cone up to `max_range_m`. A reading below the minimum
 /// range puts the arc at the minimum range; NaN yields no points. `body_height_m`: height of level's origin above the
 /// ground.
-SonarCone find_sonar_cone(const SonarConeSettings& settings, const UltrasonicRange& ping, const Pose3& T_level_transducer,
+SonarCone inverse_sonar_model(const SonarConeSettings& settings, const UltrasonicRange& ping, const Pose3& T_level_transducer,
                           double body_height_m, double spacing_m);
 
 }  // namespace patrol::plan

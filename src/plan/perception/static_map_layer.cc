@@ -9,7 +9,7 @@ namespace patrol::plan {
 
 StaticMapLayer::StaticMapLayer(const CostmapSettings& settings)
     : occupied_percent_(settings.occupied_percent),
-      unknown_cost_(settings.crosses_unknown ? static_cast<Cost>(std::lround(settings.unknown_cost * kMaxPassableCost)) : kLethalCost) {}
+      unknown_cost_(settings.allow_unknown ? static_cast<Cost>(std::lround(settings.unknown_cost * kMaxPassableCost)) : kLethalCost) {}
 
 void StaticMapLayer::resize(const CellLattice& lattice) {
   OccupancyGrid map(lattice.geometry, kUnknown);
@@ -55,8 +55,8 @@ CellBox StaticMapLayer::set_map(const OccupancyGrid& map) {
   return changed;
 }
 
-bool StaticMapLayer::has_obstacle_near(Cell cell, int reach) const {
-  return any_cell_near(cell, reach, [this](Cell near) { return map_.contains(near) && is_obstacle(near); });
+bool StaticMapLayer::has_obstacle_near(Cell cell, int radius_cells) const {
+  return any_cell_near(cell, radius_cells, [this](Cell near) { return map_.contains(near) && is_obstacle(near); });
 }
 
 void StaticMapLayer::raise_costs(Cell first, int count, Cost* cost) const {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kReach = 1.5 * std::numbers::sqrt2;  // eq. 8: L tan(gamma / 2), cells
 constexpr double kToEdge = (kReach - 1.0) / kReach, kToDiagonal = (kReach - std::numbers::sqrt2) / kReach;  // 0.53, 0.33 (eqs. 8, 9)
-constexpr double kLeastWeight = 1e-200;  ///< positive, because the only open step must remain possible
+constexpr double kMinWeight = 1e-200;  ///< positive, because the only open step must remain possible
 
 double octile(Cell a, Cell b) {
   const int dx = std::abs(a.col - b.col), dy = std::abs(a.row - b.row);
@@ -26,27 +26,27 @@ double power(double base, double exponent) { return exponent == 1.0 ? base : std
 
 /// tau'' of each step as a fraction of the pheromone of its cell (eqs. 7-9), [cell * 8 + direction]. Empty without
 /// diffusion.
-std::vector<double> diffusion_shares(const std::optional<ImprovedColonySettings>& settings, const Grid<Cost>& costs, Cell goal) {
-  std::vector<double> shares;
-  if (!settings) return shares;
+std::vector<double> diffusion_fractions(const std::optional<ImprovedColonySettings>& settings, const Grid<Cost>& costs, Cell goal) {
+  std::vector<double> fractions;
+  if (!settings) return fractions;
   const Grid<Eigen::Vector2d> forces = potential_forces(settings->field, costs, goal);
-  const double least_cosine = std::cos(to_rad(settings->half_angle_deg));
+  const double min_cosine = std::cos(to_rad(settings->half_angle_deg));
   for (const Eigen::Vector2d& force : forces.values()) {
     const double size = force.norm();
     for (std::size_t direction = 0; direction < 8; ++direction) {
       const Eigen::Vector2d step(kGridSteps[direction].col, kGridSteps[direction].row);
-      const bool is_along = size > 0.0 && step.dot(force) >= (least_cosine - 1e-9) * step.norm() * size;
-      shares.push_back(is_along ? settings->coefficient * std::min(1.0, size) * (direction < kFirstDiagonal ? kToEdge : kToDiagonal) : 0.0);
+      const bool is_along = size > 0.0 && step.dot(force) >= (min_cosine - 1e-9) * step.norm() * size;
+      fractions.push_back(is_along ? settings->coefficient * std::min(1.0, size) * (direction < kFirstDiagonal ? kToEdge : kToDiagonal) : 0.0);
     }
   }
-  return shares;
+  return fractions;
 }
 
 /// Pheromone and the constant factors of the step weights.
 class Trails {
  public:
   Trails(const AntColonySettings& settings, const std::optional<ImprovedColonySettings>& improved, const Grid<Cost>& costs, const StepGraph& graph, Cell goal)
-      : settings_(settings), graph_(graph), shares_(diffusion_shares(improved, costs, goal)), pheromone_(8 * graph.steps.size(), 1.0),
+      : settings_(settings), graph_(graph), fractions_(diffusion_fractions(improved, costs, goal)), pheromone_(8 * graph.steps.size(), 1.0),
         weights_(pheromone_.size(), 0.0), eta_(graph.steps.size()) {
     for (std::uint32_t cell = 0; cell < eta_.size(); ++cell) {
       const Cell at = graph.cell_of(cell);
@@ -55,18 +55,18 @@ class Trails {
   }
 
   /// Updates the weights of eq. 10, without its denominator, [cell * 8 + direction].
-  const std::vector<double>& weigh() {
+  const std::vector<double>& update_weights() {
     for (std::uint32_t cell = 0; cell < eta_.size(); ++cell) {
       const std::size_t first = 8 * std::size_t{cell};
       double in_cell = std::numeric_limits<double>::infinity();  // q(i)
-      for (std::size_t direction = 0; direction < 8 && !shares_.empty(); ++direction) {
+      for (std::size_t direction = 0; direction < 8 && !fractions_.empty(); ++direction) {
         if (graph_.has_step(cell, direction)) in_cell = std::min(in_cell, pheromone_[first + direction]);
       }
       for (std::size_t direction = 0; direction < 8; ++direction) {
         if (!graph_.has_step(cell, direction)) continue;
-        const double spread = shares_.empty() ? 0.0 : shares_[first + direction] * in_cell;
+        const double spread = fractions_.empty() ? 0.0 : fractions_[first + direction] * in_cell;
         const double tau = pheromone_[first + direction] + spread;
-        weights_[first + direction] = std::max(kLeastWeight, power(tau, settings_.alpha) * eta_[graph_.next(cell, direction)]);
+        weights_[first + direction] = std::max(kMinWeight, power(tau, settings_.alpha) * eta_[graph_.next(cell, direction)]);
       }
     }
     return weights_;
@@ -76,29 +76,29 @@ class Trails {
     for (double& tau : pheromone_) tau *= 1.0 - settings_.evaporation;  // eq. 11
   }
 
-  /// Deposits pheromone on the steps of a walk (eqs. 12, 13).
-  void lay(const Walk& walk, double amount) {
-    for (std::size_t i = 0; i < walk.cells.size(); ++i) pheromone_[8 * std::size_t{walk.cells[i]} + walk.directions[i]] += amount;
+  /// Deposits pheromone on the steps of a path (eqs. 12, 13).
+  void deposit(const GridPath& path, double amount) {
+    for (std::size_t i = 0; i < path.cells.size(); ++i) pheromone_[8 * std::size_t{path.cells[i]} + path.directions[i]] += amount;
   }
 
  private:
   const AntColonySettings& settings_;
   const StepGraph& graph_;
-  std::vector<double> shares_, pheromone_, weights_;  ///< [cell * 8 + direction]
+  std::vector<double> fractions_, pheromone_, weights_;  ///< [cell * 8 + direction]
   std::vector<double> eta_;                           ///< [cell], to the power of beta
 };
 
 /// Samples one of the open steps with probability proportional to its weight (eq. 10).
-std::size_t draw_step(const std::vector<double>& weights, std::uint32_t cell, unsigned open, RandomSequence& random) {
+std::size_t sample_step(const std::vector<double>& weights, std::uint32_t cell, unsigned open, RandomSequence& random) {
   const double* const of_cell = weights.data() + 8 * std::size_t{cell};
   double total = 0.0;
   for (std::size_t direction = 0; direction < 8; ++direction) total += (open >> direction & 1u) != 0 ? of_cell[direction] : 0.0;
   double left = total * random.uniform();
-  std::size_t drawn = 0;
+  std::size_t sampled = 0;
   for (std::size_t direction = 0; direction < 8 && left >= 0.0; ++direction) {
-    if ((open >> direction & 1u) != 0) left -= of_cell[direction], drawn = direction;
+    if ((open >> direction & 1u) != 0) left -= of_cell[direction], sampled = direction;
   }
-  return drawn;
+  return sampled;
 }
 
 /// Calls `work(begin, end, worker)` in parallel for `num_workers` parts of 0 ... count - 1.
@@ -124,40 +124,40 @@ void AntColony::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
   Trails trails(settings_, improved_, costs, graph, goal);
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int num_workers = std::min(settings_.ants, settings_.threads > 0 ? settings_.threads : cores);
-  std::vector<Walker> walkers(static_cast<std::size_t>(num_workers), Walker(graph));
-  std::vector<Walk> walks(static_cast<std::size_t>(settings_.ants));
+  std::vector<GridPathBuilder> path_builders(static_cast<std::size_t>(num_workers), GridPathBuilder(graph));
+  std::vector<GridPath> paths(static_cast<std::size_t>(settings_.ants));
   const std::uint32_t from = graph.index_of(start), to = graph.index_of(goal);
   const double Q = settings_.deposit * octile(start, goal);
-  Walk best;
+  GridPath best;
   best.cost = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; iteration < settings_.iterations && !is_spent(route); ++iteration) {
-    const std::vector<double>& weights = trails.weigh();
+  for (int iteration = 0; iteration < settings_.iterations && !is_step_limit_reached(route); ++iteration) {
+    const std::vector<double>& weights = trails.update_weights();
     in_parallel(settings_.ants, num_workers, [&](int begin, int end, int worker) {
-      Walker& walker = walkers[static_cast<std::size_t>(worker)];
+      GridPathBuilder& path_builder = path_builders[static_cast<std::size_t>(worker)];
       for (int ant = begin; ant < end; ++ant) {
         RandomSequence random(stream_, static_cast<std::uint64_t>(iteration) * static_cast<std::uint64_t>(settings_.ants) + static_cast<std::uint64_t>(ant));
-        Walk& walk = walks[static_cast<std::size_t>(ant)];
-        walk = walker.walk(from, to, [&](std::uint32_t cell, unsigned open) { return draw_step(weights, cell, open, random); });
-        if (settings_.splices) walker.splice(walk, to);
-        if (improved_ && improved_->tightens) {
-          walker.tighten(walk, to);
-          walker.splice(walk, to);
+        GridPath& path = paths[static_cast<std::size_t>(ant)];
+        path = path_builder.build(from, to, [&](std::uint32_t cell, unsigned open) { return sample_step(weights, cell, open, random); });
+        if (settings_.remove_loops) path_builder.remove_loops(path, to);
+        if (improved_ && improved_->shorten_paths) {
+          path_builder.shorten(path, to);
+          path_builder.remove_loops(path, to);
         }
-        walk.cost = cost_of(graph, walk);
+        path.cost = path_cost(graph, path);
       }
     });
     trails.evaporate();
-    for (const Walk& walk : walks) {
-      route.num_expanded += walk.num_steps;
-      if (walk.cells.empty()) return;  // exhaustive: no route exists
-      trails.lay(walk, Q / walk.cost);
-      if (walk.cost < best.cost) best = walk;
+    for (const GridPath& path : paths) {
+      route.num_expanded += path.num_steps;
+      if (path.cells.empty()) return;  // exhaustive: no route exists
+      trails.deposit(path, Q / path.cost);
+      if (path.cost < best.cost) best = path;
     }
-    trails.lay(best, settings_.elite * Q / best.cost);
+    trails.deposit(best, settings_.elite * Q / best.cost);
     route.history.push_back(best.cost);
     ++route.num_iterations;
   }
-  route.points = points_of(graph, best, goal);
+  route.points = to_points(graph, best, goal);
 }
 
 }  // namespace patrol::plan

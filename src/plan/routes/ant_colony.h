@@ -19,7 +19,7 @@ struct AntColonySettings {
   double evaporation = 0.1;   ///< fraction of the pheromone lost in an iteration, rho of eq. 11
   double deposit = 1.0;       ///< Q of eq. 13, relative to the straight-line cost; pheromone starts at 1
   double elite = 20.0;        ///< pheromone of the best route so far, in ants per iteration; extension
-  bool splices = true;        ///< whether steps between neighboring cells of a route replace detours; extension
+  bool remove_loops = true;        ///< whether steps between neighboring cells of a route replace detours; extension
   int threads = 0;            ///< 0: one per core; has no influence on the result
 
   template <typename Self, typename Visitor>
@@ -31,7 +31,7 @@ struct AntColonySettings {
     visit("evaporation", self.evaporation, between(0.0, 1.0));
     visit("deposit", self.deposit, between(0.0, 1e6));
     visit("elite", self.elite, between(0.0, 1e6));
-    visit("splices", self.splices);
+    visit("remove_loops", self.remove_loops);
     visit("threads", self.threads, between(0, 256));
   }
 };
@@ -41,14 +41,14 @@ struct ImprovedColonySettings {
   double coefficient = 4.0;      ///< delta of [Li22, eqs. 7-9]
   double half_angle_deg = 70.0;  ///< half-angle about the force's direction in which neighbors receive pheromone
   PotentialFieldSettings field = {};
-  bool tightens = true;          ///< whether every ant's route is shortened (grid_walk.h) before evaluation; extension
+  bool shorten_paths = true;          ///< whether every ant's route is shortened (grid_walk.h) before evaluation; extension
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("coefficient", self.coefficient, between(0.0, 100.0));
     visit("half_angle_deg", self.half_angle_deg, between(0.0, 180.0));
     visit("field", self.field);
-    visit("tightens", self.tightens);
+    visit("shorten_paths", self.shorten_paths);
   }
 };
 

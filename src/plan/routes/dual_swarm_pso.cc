@@ -63,28 +63,28 @@ std::vector<std::uint32_t> nearest_reachable(const StepGraph& graph, const GridG
 
 class Flight {
  public:
-  Flight(const TwoSwarmsSettings& settings, const Grid<Cost>& costs, const std::array<double, 256>& factors, Cell start, Cell goal)
-      : settings_(settings), geometry_(costs.geometry()), start_(start), goal_(goal), graph_(costs, factors), walker_(graph_),
+  Flight(const DualSwarmPsoSettings& settings, const Grid<Cost>& costs, const std::array<double, 256>& factors, Cell start, Cell goal)
+      : settings_(settings), geometry_(costs.geometry()), start_(start), goal_(goal), graph_(costs, factors), path_builder_(graph_),
         nearest_(nearest_reachable(graph_, geometry_, graph_.index_of(start))) {}
 
   const StepGraph& graph() const { return graph_; }
-  bool has_way() const { return nearest_[graph_.index_of(goal_)] == graph_.index_of(goal_); }
+  bool has_path() const { return nearest_[graph_.index_of(goal_)] == graph_.index_of(goal_); }
 
   /// Route of a particle at these coordinates.
-  Walk decode(const Coordinates& via) {
-    Walk route;
+  GridPath decode(const Coordinates& via) {
+    GridPath route;
     std::uint32_t here = graph_.index_of(start_);
     for (std::size_t i = 0; i <= via.size(); i += 2) {
       const Cell at = i < via.size() ? Cell{static_cast<int>(via[i]), static_cast<int>(via[i + 1])} : goal_;
       const std::uint32_t target = nearest_[graph_.index_of(at)];
-      const Walk leg = walker_.walk(here, target, [&](std::uint32_t cell, unsigned open) { return step_towards(target, cell, open); });
+      const GridPath leg = path_builder_.build(here, target, [&](std::uint32_t cell, unsigned open) { return step_toward(target, cell, open); });
       route.cells.insert(route.cells.end(), leg.cells.begin(), leg.cells.end());
       route.directions.insert(route.directions.end(), leg.directions.begin(), leg.directions.end());
       route.num_steps += leg.num_steps;
       here = target;
     }
-    walker_.splice(route, here);
-    route.cost = cost_of(graph_, route);
+    path_builder_.remove_loops(route, here);
+    route.cost = path_cost(graph_, route);
     return route;
   }
 
@@ -103,25 +103,25 @@ class Flight {
   }
 
   void fly(Particle& particle, double inertia, const Coordinates& swarm_best, RandomSequence& random) const {
-    const double fastest = settings_.max_speed * longer_side();
+    const double max_speed = settings_.max_speed * longer_side();
     for (std::size_t i = 0; i < particle.at.size(); ++i) {
-      const double own = settings_.own_pull * random.uniform() * (particle.best_at[i] - particle.at[i]);
-      const double others = settings_.swarm_pull * random.uniform() * (swarm_best[i] - particle.at[i]);
-      particle.velocity[i] = std::clamp(inertia * particle.velocity[i] + own + others, -fastest, fastest);
+      const double own = settings_.cognitive_weight * random.uniform() * (particle.best_at[i] - particle.at[i]);
+      const double others = settings_.social_weight * random.uniform() * (swarm_best[i] - particle.at[i]);
+      particle.velocity[i] = std::clamp(inertia * particle.velocity[i] + own + others, -max_speed, max_speed);
       particle.at[i] = i % 2 == 0 ? keep_x(particle.at[i] + particle.velocity[i]) : keep_y(particle.at[i] + particle.velocity[i]);
     }
   }
 
  private:
-  std::size_t step_towards(std::uint32_t target, std::uint32_t cell, unsigned open) const {
+  std::size_t step_toward(std::uint32_t target, std::uint32_t cell, unsigned open) const {
     const Cell to = graph_.cell_of(target);
     std::size_t nearest = 0;
-    int least = std::numeric_limits<int>::max();  // squared distance, cells
+    int min_squared = std::numeric_limits<int>::max();  // squared distance, cells
     for (std::size_t direction = 0; direction < 8; ++direction) {
       if ((open >> direction & 1u) == 0) continue;
       const Cell next = graph_.cell_of(graph_.next(cell, direction));
       const int squared = (to.col - next.col) * (to.col - next.col) + (to.row - next.row) * (to.row - next.row);
-      if (squared < least) least = squared, nearest = direction;
+      if (squared < min_squared) min_squared = squared, nearest = direction;
     }
     return nearest;
   }
@@ -130,11 +130,11 @@ class Flight {
   double keep_x(double x) const { return std::clamp(x, 0.0, geometry_.width - 0.5); }
   double keep_y(double y) const { return std::clamp(y, 0.0, geometry_.height - 0.5); }
 
-  const TwoSwarmsSettings& settings_;
+  const DualSwarmPsoSettings& settings_;
   GridGeometry geometry_;
   Cell start_, goal_;
   StepGraph graph_;
-  Walker walker_;
+  GridPathBuilder path_builder_;
   std::vector<std::uint32_t> nearest_;  ///< [cell]
 };
 
@@ -146,21 +146,21 @@ void exchange(Swarm& from, Swarm& to) {
 
 }  // namespace
 
-TwoSwarms::TwoSwarms(const TwoSwarmsSettings& settings, double cost_weight, std::uint64_t seed)
+DualSwarmPso::DualSwarmPso(const DualSwarmPsoSettings& settings, double cost_weight, std::uint64_t seed)
     : RoutePlanner(cost_weight), settings_(settings), stream_(seed, "plan/routes/swarms") {
-  validate(settings_, "two_swarms");
+  validate(settings_, "dual_swarm_pso");
 }
 
-void TwoSwarms::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) {
+void DualSwarmPso::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) {
   Flight flight(settings_, costs, factors(), start, goal);
-  if (!flight.has_way()) return;
-  Walk best;
+  if (!flight.has_path()) return;
+  GridPath best;
   best.cost = kNoCost;
-  const auto judge = [&](Particle& particle) {
-    Walk walk = flight.decode(particle.at);
-    route.num_expanded += walk.num_steps;
-    if (walk.cost < particle.best_cost) particle.best_cost = walk.cost, particle.best_at = particle.at;
-    if (walk.cost < best.cost) best = std::move(walk);
+  const auto evaluate = [&](Particle& particle) {
+    GridPath path = flight.decode(particle.at);
+    route.num_expanded += path.num_steps;
+    if (path.cost < particle.best_cost) particle.best_cost = path.cost, particle.best_at = particle.at;
+    if (path.cost < best.cost) best = std::move(path);
   };
 
   constexpr double kExploringSpread = 1.0, kRefiningSpread = 0.3;
@@ -169,26 +169,26 @@ void TwoSwarms::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
   for (Swarm& swarm : swarms) {
     for (int i = 0; i < settings_.particles; ++i) {
       swarm.particles.push_back(flight.make_particle(first, &swarm == &swarms[0] ? kExploringSpread : kRefiningSpread));
-      judge(swarm.particles.back());
+      evaluate(swarm.particles.back());
     }
   }
-  for (int iteration = 1; iteration <= settings_.iterations && !is_spent(route); ++iteration) {
+  for (int iteration = 1; iteration <= settings_.iterations && !is_step_limit_reached(route); ++iteration) {
     RandomSequence random(stream_, static_cast<std::uint64_t>(iteration));
     for (Swarm& swarm : swarms) {
       const Coordinates swarm_best = swarm.particles[swarm.best()].best_at;
       for (Particle& particle : swarm.particles) {
         flight.fly(particle, swarm.inertia, swarm_best, random);
-        judge(particle);
+        evaluate(particle);
       }
     }
-    if (iteration % settings_.exchange_iterations == 0) {
+    if (iteration % settings_.exchange_period == 0) {
       exchange(swarms[0], swarms[1]);
       exchange(swarms[1], swarms[0]);
     }
     route.history.push_back(best.cost);
     ++route.num_iterations;
   }
-  route.points = points_of(flight.graph(), best, goal);
+  route.points = to_points(flight.graph(), best, goal);
 }
 
 }  // namespace patrol::plan

@@ -9,16 +9,16 @@
 
 namespace patrol::plan {
 
-struct TwoSwarmsSettings {
+struct DualSwarmPsoSettings {
   int particles = 40;              ///< particles per swarm
   int iterations = 200;
   int via_points = 5;              ///< number of via points of a particle's route, in order
   double exploring_inertia = 0.9;
   double refining_inertia = 0.5;
-  double own_pull = 1.5;           ///< cognitive weight c_1: toward the particle's own best
-  double swarm_pull = 1.5;         ///< social weight c_2: toward the swarm's best
+  double cognitive_weight = 1.5;           ///< cognitive weight c_1: toward the particle's own best
+  double social_weight = 1.5;         ///< social weight c_2: toward the swarm's best
   double max_speed = 0.1;          ///< maximum change of a coordinate, as a fraction of the grid's longer side
-  int exchange_iterations = 10;    ///< iterations between exchanges: each swarm's best replaces the other's worst
+  int exchange_period = 10;    ///< iterations between exchanges: each swarm's best replaces the other's worst
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -27,10 +27,10 @@ struct TwoSwarmsSettings {
     visit("via_points", self.via_points, between(1, 200));
     visit("exploring_inertia", self.exploring_inertia, between(0.0, 1.0));
     visit("refining_inertia", self.refining_inertia, between(0.0, 1.0));
-    visit("own_pull", self.own_pull, between(0.0, 4.0));
-    visit("swarm_pull", self.swarm_pull, between(0.0, 4.0));
+    visit("cognitive_weight", self.cognitive_weight, between(0.0, 4.0));
+    visit("social_weight", self.social_weight, between(0.0, 4.0));
     visit("max_speed", self.max_speed, between(0.001, 1.0));
-    visit("exchange_iterations", self.exchange_iterations, between(1, 100000));
+    visit("exchange_period", self.exchange_period, between(1, 100000));
   }
 };
 
@@ -43,16 +43,16 @@ struct TwoSwarmsSettings {
 /// backtracks out of dead ends; loops are removed as for ants. So every particle has a route if one exists. With
 /// straight legs and a penalty on obstacles instead, fewer than one swarm in ten found a route on generated grids of 50
 /// x 50.
-class TwoSwarms : public RoutePlanner {
+class DualSwarmPso : public RoutePlanner {
  public:
-  TwoSwarms(const TwoSwarmsSettings& settings, double cost_weight, std::uint64_t seed);
+  DualSwarmPso(const DualSwarmPsoSettings& settings, double cost_weight, std::uint64_t seed);
 
   bool is_complete() const override { return true; }
 
  private:
   void search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) override;
 
-  TwoSwarmsSettings settings_;
+  DualSwarmPsoSettings settings_;
   RandomStream stream_;
 };
 

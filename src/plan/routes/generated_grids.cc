@@ -12,9 +12,9 @@
 namespace patrol::plan {
 namespace {
 
-constexpr std::uint64_t kMaxDraws = 100;
+constexpr std::uint64_t kMaxSamples = 100;
 
-bool has_way(const Grid<Cost>& costs, Cell start, Cell goal) {
+bool are_connected(const Grid<Cost>& costs, Cell start, Cell goal) {
   const std::vector<Cell> reached = reachable_cells(costs, start);
   return std::find(reached.begin(), reached.end(), goal) != reached.end();
 }
@@ -25,14 +25,14 @@ void fill(Grid<Cost>& costs, Cell first, int width, int height, Cost cost) {
   }
 }
 
-void draw_random(const GeneratedGridSettings& settings, RandomSequence random, GeneratedGrid& grid) {
-  for (Cost& cost : grid.costs.values()) cost = random.uniform() < settings.lethal_share ? kLethalCost : kFreeCost;
+void generate_random(const GeneratedGridSettings& settings, RandomSequence random, GeneratedGrid& grid) {
+  for (Cost& cost : grid.costs.values()) cost = random.uniform() < settings.lethal_fraction ? kLethalCost : kFreeCost;
   grid.costs.at(grid.start) = grid.costs.at(grid.goal) = kFreeCost;
 }
 
 /// Walls one cell thick every `room_cells`. Three in four walls between two rooms have a door, at a random position.
-void draw_rooms(const GeneratedGridSettings& settings, RandomSequence random, GeneratedGrid& grid) {
-  constexpr double kOpenShare = 0.75;
+void generate_rooms(const GeneratedGridSettings& settings, RandomSequence random, GeneratedGrid& grid) {
+  constexpr double kDoorProbability = 0.75;
   const int size = settings.size_cells, room = settings.room_cells;
   for (int wall = room - 1; wall < size; wall += room) {
     fill(grid.costs, {wall, 0}, 1, size, kLethalCost);
@@ -44,7 +44,7 @@ void draw_rooms(const GeneratedGridSettings& settings, RandomSequence random, Ge
       const int length = std::min(room - 1, size - first), width = std::min(door_width(first), length);
       for (const bool is_vertical : {true, false}) {
         const int place = first + static_cast<int>(random.index(static_cast<std::size_t>(length - width + 1)));
-        if (random.uniform() >= kOpenShare) continue;
+        if (random.uniform() >= kDoorProbability) continue;
         if (is_vertical) fill(grid.costs, {wall, place}, 1, width, kFreeCost);
         else fill(grid.costs, {place, wall}, width, 1, kFreeCost);
       }
@@ -53,7 +53,7 @@ void draw_rooms(const GeneratedGridSettings& settings, RandomSequence random, Ge
 }
 
 /// Depth-first carving: from the last corridor cell with an uncarved neighbor, to a random one of these.
-void draw_maze(const GeneratedGridSettings& settings, RandomSequence random, GeneratedGrid& grid) {
+void generate_maze(const GeneratedGridSettings& settings, RandomSequence random, GeneratedGrid& grid) {
   const int corridor = settings.corridor_cells, pitch = corridor + 1, count = std::max(1, (settings.size_cells + 1) / pitch);
   fill(grid.costs, {0, 0}, settings.size_cells, settings.size_cells, kLethalCost);
   Grid<std::uint8_t> is_carved({.resolution_m = 1.0, .width = count, .height = count}, 0);
@@ -90,15 +90,15 @@ GeneratedGrid generate_grid(const GeneratedGridSettings& settings, std::uint64_t
   const GridGeometry geometry{.resolution_m = 1.0, .width = size, .height = size};
   // The last row and column are walls if the size is a multiple of the room size.
   const int far = settings.kind == "rooms" && size % settings.room_cells == 0 ? size - 2 : size - 1;
-  for (std::uint64_t draw = 0; draw < kMaxDraws; ++draw) {
+  for (std::uint64_t sample = 0; sample < kMaxSamples; ++sample) {
     GeneratedGrid grid{.costs = Grid<Cost>(geometry, kFreeCost), .start = {0, 0}, .goal = {far, far}};
-    const RandomSequence random(stream, draw);
-    if (settings.kind == "random") draw_random(settings, random, grid);
-    else if (settings.kind == "rooms") draw_rooms(settings, random, grid);
-    else draw_maze(settings, random, grid);
-    if (has_way(grid.costs, grid.start, grid.goal)) return grid;
+    const RandomSequence random(stream, sample);
+    if (settings.kind == "random") generate_random(settings, random, grid);
+    else if (settings.kind == "rooms") generate_rooms(settings, random, grid);
+    else generate_maze(settings, random, grid);
+    if (are_connected(grid.costs, grid.start, grid.goal)) return grid;
   }
-  throw InputError(fmt::format("grid: no way between the corners in {} draws of {} x {} cells, {}", kMaxDraws, size, size, settings.kind));
+  throw InputError(fmt::format("grid: corners not connected in {} samples of {} x {} cells, {}", kMaxSamples, size, size, settings.kind));
 }
 
 }  // namespace patrol::plan

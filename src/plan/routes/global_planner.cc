@@ -11,11 +11,11 @@ std::optional<Cell> nearest_passable(const Grid<Cost>& costs, const Eigen::Vecto
   const GridGeometry& grid = costs.geometry();
   const Cell center = grid.cell_at(p);
   if (costs.contains(center) && costs.at(center) != kLethalCost) return center;
-  const int reach = static_cast<int>(std::ceil(radius_m / grid.resolution_m));
+  const int radius_cells = static_cast<int>(std::ceil(radius_m / grid.resolution_m));
   std::optional<Cell> nearest;
   double nearest_m = radius_m;
-  for (int row = center.row - reach; row <= center.row + reach; ++row) {
-    for (int col = center.col - reach; col <= center.col + reach; ++col) {
+  for (int row = center.row - radius_cells; row <= center.row + radius_cells; ++row) {
+    for (int col = center.col - radius_cells; col <= center.col + radius_cells; ++col) {
       const Cell cell{col, row};
       if (!costs.contains(cell) || costs.at(cell) == kLethalCost) continue;
       const double distance_m = (grid.center_of(cell) - p).norm();
@@ -27,10 +27,12 @@ std::optional<Cell> nearest_passable(const Grid<Cost>& costs, const Eigen::Vecto
   return nearest;
 }
 
-GlobalPlanner::GlobalPlanner(const std::string& planner, const GlobalPlannerSettings& settings, std::uint64_t seed) : settings_(settings) {
-  validate(settings_, "routes");
-  if (planner == "any_angle_optimum") throw InputError("the any-angle optimum is no planner to drive by: it touches what is lethal");
-  planner_ = make_route_planner(planner, settings_.family, seed);
+GlobalPlanner::GlobalPlanner(const GlobalPlannerSettings& settings, std::uint64_t seed) : settings_(settings) {
+  if (settings_.method == "visibility_graph") {
+    throw InputError("global_planner.method = visibility_graph: not drivable: its paths touch lethal cells");
+  }
+  validate(settings_, "global_planner");
+  planner_ = make_route_planner(settings_.method, settings_.family, seed);
 }
 
 PlanResult GlobalPlanner::plan(const Grid<Cost>& costs, const Eigen::Vector2d& p_map_start, const Eigen::Vector2d& p_map_goal) {
@@ -53,7 +55,7 @@ PlanResult GlobalPlanner::plan(const Grid<Cost>& costs, const Eigen::Vector2d& p
   if (route.status != PlanStatus::kFound) return result;
 
   result.cost_m = grid.resolution_m * route.cost;
-  result.points_m = to_metres(grid, smooth_route(costs, settings_.family.cost_weight, settings_.kept_clearance_m / grid.resolution_m, route.points));
+  result.points_m = to_meters(grid, smooth_route(costs, settings_.family.cost_weight, settings_.min_clearance_m / grid.resolution_m, route.points));
   result.points_m.insert(result.points_m.begin(), p_map_start);
   if (!result.is_goal_moved) result.points_m.push_back(p_map_goal);
   for (std::size_t i = 1; i < result.points_m.size(); ++i) result.length_m += (result.points_m[i] - result.points_m[i - 1]).norm();

@@ -16,17 +16,19 @@
 namespace patrol::plan {
 
 struct GlobalPlannerSettings {
+  std::string method = "theta_star";  ///< name in plan/routes/planners.h
   RoutePlannerSettings family = {.max_steps_millions = 100, .cost_weight = 4.0};
   double goal_tolerance_m = 0.3;   ///< search radius for a free cell if the goal is blocked
   double start_tolerance_m = 0.6;  ///< search radius for a free cell if the start is blocked
-  double kept_clearance_m = 0.3;   ///< smoothing keeps this clearance, or the route's if it is smaller
+  double min_clearance_m = 0.3;   ///< smoothing keeps this clearance, or the route's if it is smaller
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("method", self.method, one_of(drivable_route_planners()));
     RoutePlannerSettings::fields(self.family, visit);
     visit("goal_tolerance_m", self.goal_tolerance_m, between(0.0, 5.0));
     visit("start_tolerance_m", self.start_tolerance_m, between(0.0, 5.0));
-    visit("kept_clearance_m", self.kept_clearance_m, between(0.0, 5.0));
+    visit("min_clearance_m", self.min_clearance_m, between(0.0, 5.0));
   }
 };
 
@@ -43,8 +45,8 @@ struct PlanResult {
 /// path connects the exact positions through the centers of their cells.
 class GlobalPlanner {
  public:
-  /// Throws InputError like make_route_planner, and for the any-angle optimum, whose paths touch lethal cells.
-  GlobalPlanner(const std::string& planner, const GlobalPlannerSettings& settings, std::uint64_t seed);
+  /// Throws InputError like make_route_planner, and for `visibility_graph`, whose paths touch lethal cells.
+  GlobalPlanner(const GlobalPlannerSettings& settings, std::uint64_t seed);
 
   PlanResult plan(const Grid<Cost>& costs, const Eigen::Vector2d& p_map_start, const Eigen::Vector2d& p_map_goal);
 

@@ -19,7 +19,7 @@ struct StepGraph {
   }
   bool has_step(std::uint32_t cell, std::size_t direction) const { return (steps[cell] >> direction & 1u) != 0; }
   /// Cost of a step, cells.
-  double price(std::uint32_t cell, std::size_t direction) const;
+  double step_cost(std::uint32_t cell, std::size_t direction) const;
 
   int width;
   std::array<int, 8> offsets;        ///< [direction] of kGridSteps, index offset
@@ -28,67 +28,67 @@ struct StepGraph {
 };
 
 /// Path through the graph. Step i leaves `cells[i]` in `directions[i]`; the goal is not among the cells.
-struct Walk {
+struct GridPath {
   std::vector<std::uint32_t> cells;
   std::vector<std::uint8_t> directions;
   double cost = 0.0;           ///< cells
   std::int64_t num_steps = 0;  ///< number of steps taken, including backtracking
 };
 
-/// Converts a walk to the centers of its cells, in cells, goal included.
-std::vector<Eigen::Vector2d> points_of(const StepGraph& graph, const Walk& walk, Cell goal);
+/// Converts a path to the centers of its cells, in cells, goal included.
+std::vector<Eigen::Vector2d> to_points(const StepGraph& graph, const GridPath& path, Cell goal);
 
-/// Builds walks that enter no cell twice and backtrack out of dead ends; keeps its work space.
-class Walker {
+/// Builds paths that enter no cell twice and backtrack out of dead ends; keeps its work space.
+class GridPathBuilder {
  public:
-  explicit Walker(const StepGraph& graph);
+  explicit GridPathBuilder(const StepGraph& graph);
 
-  /// Walks from `start` to `goal`. `choose(cell, open)` picks one of the directions whose bits are set in `open`: those
-  /// into cells not yet visited. Without one, the walk backtracks. Returns no cells if it backtracks from the start: no
+  /// Builds a path from `start` to `goal`. `choose(cell, open)` picks one of the directions whose bits are set in `open`: those
+  /// into cells not yet visited. Without one, the path backtracks. Returns no cells if it backtracks from the start: no
   /// route exists. The cost is left at 0.
   template <typename Choose>
-  Walk walk(std::uint32_t start, std::uint32_t goal, Choose choose) {
-    ++num_walks_;
-    visit_[start] = num_walks_;
-    Walk walk;
-    for (std::uint32_t here = start; here != goal; ++walk.num_steps) {
+  GridPath build(std::uint32_t start, std::uint32_t goal, Choose choose) {
+    ++num_paths_;
+    visit_[start] = num_paths_;
+    GridPath path;
+    for (std::uint32_t here = start; here != goal; ++path.num_steps) {
       unsigned open = graph_.steps[here];
       for (std::size_t direction = 0; direction < 8; ++direction) {
-        if ((open >> direction & 1u) != 0 && visit_[graph_.next(here, direction)] == num_walks_) open &= ~(1u << direction);
+        if ((open >> direction & 1u) != 0 && visit_[graph_.next(here, direction)] == num_paths_) open &= ~(1u << direction);
       }
       if (open == 0) {
-        if (walk.cells.empty()) return walk;
-        here = walk.cells.back();
-        walk.cells.pop_back();
-        walk.directions.pop_back();
+        if (path.cells.empty()) return path;
+        here = path.cells.back();
+        path.cells.pop_back();
+        path.directions.pop_back();
         continue;
       }
       const std::size_t direction = choose(here, open);
-      walk.cells.push_back(here);
-      walk.directions.push_back(static_cast<std::uint8_t>(direction));
+      path.cells.push_back(here);
+      path.directions.push_back(static_cast<std::uint8_t>(direction));
       here = graph_.next(here, direction);
-      visit_[here] = num_walks_;
+      visit_[here] = num_paths_;
     }
-    return walk;
+    return path;
   }
 
-  /// Removes loops: from each cell on, the step to the latest neighboring cell of the walk replaces the cells between.
-  /// The walk may cross itself before, not after.
-  void splice(Walk& walk, std::uint32_t goal);
+  /// Removes loops: from each cell on, the step to the latest neighboring cell of the path replaces the cells between.
+  /// The path may cross itself before, not after.
+  void remove_loops(GridPath& path, std::uint32_t goal);
 
-  /// Shortens a walk that enters no cell twice. Segments that cost at least as much as an unobstructed shortest path
+  /// Shortens a path that enters no cell twice. Segments that cost at least as much as an unobstructed shortest path
   /// between their ends are replaced by that path. Its diagonal and straight steps are evenly mixed, or one kind
-  /// precedes the other. The result depends on the side on which the walk passes obstacles.
-  void tighten(Walk& walk, std::uint32_t goal);
+  /// precedes the other. The result depends on the side on which the path passes obstacles.
+  void shorten(GridPath& path, std::uint32_t goal);
 
  private:
   const StepGraph& graph_;
-  std::vector<std::uint32_t> visit_;     ///< [cell], number of the last walk that visited it
-  std::vector<std::uint32_t> position_;  ///< [cell], last index in the walk
-  std::uint32_t num_walks_ = 0;
+  std::vector<std::uint32_t> visit_;     ///< [cell], number of the last path that visited it
+  std::vector<std::uint32_t> position_;  ///< [cell], last index in the path
+  std::uint32_t num_paths_ = 0;
 };
 
 /// Sum of the costs of the steps.
-double cost_of(const StepGraph& graph, const Walk& walk);
+double path_cost(const StepGraph& graph, const GridPath& path);
 
 }  // namespace patrol::plan

@@ -20,15 +20,15 @@ class GridSearch : public RoutePlanner {
   bool is_complete() const override { return true; }
 
  private:
-  using Price = std::uint64_t;
+  using PathCost = std::uint64_t;
   struct Node {
-    Price price;              ///< cost from the start
+    PathCost path_cost;              ///< cost from the start
     std::uint32_t search;     ///< number of the search that last updated this node
     std::uint8_t came_by;     ///< index of the step to this node from its parent
     bool is_closed;
   };
   struct Open {
-    Price estimate;           ///< estimated cost of the whole route
+    PathCost estimate;           ///< estimated cost of the whole route
     std::uint32_t remaining;  ///< estimated cost to the goal, in 2^-8 cells; breaks ties
     std::uint32_t index;
     /// Order for a heap with the best node on top.
@@ -39,12 +39,12 @@ class GridSearch : public RoutePlanner {
 
   void search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) override;
   void expand(const Grid<Cost>& costs, std::uint32_t index, Cell goal);
-  void push(Price price, Cell cell, Cell goal, std::uint32_t index);
+  void push(PathCost path_cost, Cell cell, Cell goal, std::uint32_t index);
   std::vector<Eigen::Vector2d> trace_back(std::uint32_t width, Cell start, Cell goal) const;
 
   Method method_;
-  std::array<Price, 256> half_straight_;  ///< [cost] cost of half a step through such a cell
-  std::array<Price, 256> half_diagonal_;
+  std::array<PathCost, 256> half_straight_;  ///< [cost] cost of half a step through such a cell
+  std::array<PathCost, 256> half_diagonal_;
   std::vector<Node> nodes_;
   std::uint32_t num_searches_ = 0;
   std::vector<Open> open_;  ///< binary heap

@@ -18,18 +18,18 @@ using Matrix = std::vector<std::vector<double>>;
 
 /// Symmetric distances of a closed tour whose length is the problem's travel. Node 0 is the start of a closed tour;
 /// otherwise a virtual node with distance 0 to every possible first and last station.
-Matrix closed_tour(const TourProblem& problem) {
+Matrix to_closed_tour(const TourProblem& problem) {
   const std::size_t count = problem.travel.size();
-  const bool is_round = problem.start && problem.start == problem.end;
-  const std::size_t first = is_round ? 0 : 1;  // node of station 0
+  const bool is_closed_tour = problem.start && problem.start == problem.end;
+  const std::size_t first = is_closed_tour ? 0 : 1;  // node of station 0
   Matrix cost(count + first, std::vector<double>(count + first, kNoBound));
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < count; ++j) cost[i + first][j + first] = std::min(problem.travel[i][j], problem.travel[j][i]);
-    if (is_round) continue;
+    if (is_closed_tour) continue;
     const bool may_begin = !problem.start || problem.start == i, may_end = !problem.end || problem.end == i;
     if (may_begin || may_end) cost[0][i + 1] = cost[i + 1][0] = 0.0;
   }
-  if (is_round) {
+  if (is_closed_tour) {
     std::swap(cost[0], cost[*problem.start]);
     for (std::vector<double>& row : cost) std::swap(row[0], row[*problem.start]);
   }
@@ -37,7 +37,7 @@ Matrix closed_tour(const TourProblem& problem) {
 }
 
 /// Minimum 1-tree (Prim's algorithm); every edge is lengthened by the weights of its nodes.
-OneTree least_one_tree(const Matrix& cost, const std::vector<double>& weights) {
+OneTree min_one_tree(const Matrix& cost, const std::vector<double>& weights) {
   const std::size_t count = cost.size();
   const auto edge = [&](std::size_t i, std::size_t j) { return cost[i][j] + weights[i] + weights[j]; };
   OneTree tree{.cost = 0.0, .degrees = std::vector<int>(count, 0)};
@@ -70,24 +70,24 @@ OneTree least_one_tree(const Matrix& cost, const std::vector<double>& weights) {
 }
 
 double travel_bound(const TourProblem& problem, double upper_bound, int iterations) {
-  constexpr int kPatience = 10;
-  const Matrix cost = closed_tour(problem);
+  constexpr int kStallIterations = 10;
+  const Matrix cost = to_closed_tour(problem);
   if (cost.size() < 3) {  // no 1-tree: direct travel, for a closed tour both directions
     double travel = 0.0;
-    const bool is_round = problem.start && problem.start == problem.end;
-    if (is_round && problem.travel.size() == 2) travel = problem.travel[0][1] + problem.travel[1][0];
+    const bool is_closed_tour = problem.start && problem.start == problem.end;
+    if (is_closed_tour && problem.travel.size() == 2) travel = problem.travel[0][1] + problem.travel[1][0];
     return travel;
   }
   std::vector<double> weights(cost.size(), 0.0);
   double best = 0.0, pace = 2.0;
   for (int iteration = 0, stale = 0; iteration < iterations; ++iteration) {
-    const OneTree tree = least_one_tree(cost, weights);
+    const OneTree tree = min_one_tree(cost, weights);
     double bound = tree.cost;
     for (const double weight : weights) bound -= 2.0 * weight;
     if (!std::isfinite(bound)) return kNoBound;
     stale = bound > best + 1e-9 ? 0 : stale + 1;
     best = std::max(best, bound);
-    if (stale >= kPatience) pace *= 0.5, stale = 0;
+    if (stale >= kStallIterations) pace *= 0.5, stale = 0;
     double excess = 0.0;
     for (const int degree : tree.degrees) excess += (degree - 2) * (degree - 2);
     if (excess == 0.0) return best;  // the tree is a tour
@@ -99,7 +99,7 @@ double travel_bound(const TourProblem& problem, double upper_bound, int iteratio
 
 }  // namespace
 
-double tour_lower_bound(const TourProblem& problem, double upper_bound, int iterations) {
+double held_karp_bound(const TourProblem& problem, double upper_bound, int iterations) {
   double service = 0.0, last = 0.0;
   for (const TourProblem::Station& station : problem.stations) {
     service += station.service;

@@ -8,6 +8,6 @@ namespace patrol::plan {
 /// [HeldKarp70] on the smaller cost of both directions, plus all service times. The subgradient step follows Polyak,
 /// from `upper_bound`. The earliest end of each station is a second bound. Infinite if the stations are not connected.
 /// Typically within 2 % of the optimum for closed tours, within 8 % for free ends.
-double tour_lower_bound(const TourProblem& problem, double upper_bound, int iterations);
+double held_karp_bound(const TourProblem& problem, double upper_bound, int iterations);
 
 }  // namespace patrol::plan

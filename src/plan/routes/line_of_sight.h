@@ -13,7 +13,7 @@ namespace patrol::plan {
 /// it meets, in order. `share` is the fraction of the line inside; 0 for cells that it only touches at a corner. Exact
 /// in integers. Stops, and returns false, as soon as `visit` does.
 template <typename Visit>
-bool walk_line(Cell from, Cell to, Visit&& visit) {
+bool visit_line_cells(Cell from, Cell to, Visit&& visit) {
   const int step_col = to.col > from.col ? 1 : -1, step_row = to.row > from.row ? 1 : -1;
   const long dx = std::abs(to.col - from.col), dy = std::abs(to.row - from.row);
   Cell cell = from;
@@ -37,10 +37,10 @@ bool walk_line(Cell from, Cell to, Visit&& visit) {
 }
 
 /// Whether the straight line between two cell centers meets no lethal cell, not even a corner of one; for neighbors
-/// this is may_step's rule. Both cells are in the grid.
+/// this is is_valid_step's rule. Both cells are in the grid.
 bool has_line_of_sight(const Grid<Cost>& costs, Cell from, Cell to);
 
 /// Cost of the straight line, cells: its length, each part weighted by its cell's factor. None without line of sight.
-std::optional<double> line_price(const Grid<Cost>& costs, const std::array<double, 256>& factors, Cell from, Cell to);
+std::optional<double> line_cost(const Grid<Cost>& costs, const std::array<double, 256>& factors, Cell from, Cell to);
 
 }  // namespace patrol::plan

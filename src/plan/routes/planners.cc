@@ -4,6 +4,8 @@
 #include <array>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "core/error.h"
 #include "core/named_table.h"
 #include "plan/routes/visibility_graph.h"
@@ -16,9 +18,9 @@ namespace {
 using Settings = RoutePlannerSettings;
 using Planner = std::unique_ptr<RoutePlanner>;
 
-Planner make_any_angle_optimum(const Settings& settings, std::uint64_t) {
-  if (settings.cost_weight != 0.0) throw InputError("routes.cost_weight: the any-angle optimum knows no costs; it must be 0");
-  return std::make_unique<AnyAngleOptimum>();
+Planner make_visibility_graph(const Settings& settings, std::uint64_t) {
+  if (settings.cost_weight != 0.0) throw InputError(fmt::format("routes.cost_weight = {}: must be 0 for visibility_graph", settings.cost_weight));
+  return std::make_unique<VisibilityGraphPlanner>();
 }
 
 /// Drivable planners come first.
@@ -29,15 +31,15 @@ constexpr std::array kPlanners = std::to_array<RoutePlannerRow>({
      [](const Settings& s, std::uint64_t) -> Planner { return std::make_unique<GridSearch>(GridSearch::Method::kDijkstra, s.cost_weight); }},
     {"theta_star", "Theta*: any-angle search with lines of sight",
      [](const Settings& s, std::uint64_t) -> Planner { return std::make_unique<ThetaStar>(s.cost_weight); }},
-    {"plain_ant_colony", "Ant system without the improvements of [Li22]",
+    {"ant_system", "Ant system without the improvements of [Li22]",
      [](const Settings& s, std::uint64_t seed) -> Planner { return std::make_unique<AntColony>(s.ant_colony, std::nullopt, s.cost_weight, seed); }},
-    {"ant_colony", "Improved ant colony of [Li22]",
+    {"ant_colony_li22", "Improved ant colony of [Li22]",
      [](const Settings& s, std::uint64_t seed) -> Planner { return std::make_unique<AntColony>(s.ant_colony, s.improved_colony, s.cost_weight, seed); }},
-    {"two_swarms", "Particle swarm optimization with two swarms",
-     [](const Settings& s, std::uint64_t seed) -> Planner { return std::make_unique<TwoSwarms>(s.two_swarms, s.cost_weight, seed); }},
+    {"dual_swarm_pso", "Particle swarm optimization with two swarms",
+     [](const Settings& s, std::uint64_t seed) -> Planner { return std::make_unique<DualSwarmPso>(s.dual_swarm_pso, s.cost_weight, seed); }},
     {"q_learning", "Q-learning with a potential field as its initial value",
      [](const Settings& s, std::uint64_t seed) -> Planner { return std::make_unique<QLearning>(s.q_learning, s.cost_weight, seed); }},
-    {"any_angle_optimum", "Shortest any-angle path by a visibility graph; touches obstacles, no costs", make_any_angle_optimum, false},
+    {"visibility_graph", "Shortest any-angle path by a visibility graph; touches obstacles, no costs", make_visibility_graph, false},
 });
 
 }  // namespace

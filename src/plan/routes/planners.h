@@ -20,7 +20,7 @@ struct RoutePlannerSettings {
   double cost_weight = 0.0;              ///< a cell at the highest passable cost counts as 1 + this number of cells
   AntColonySettings ant_colony = {};     ///< ant system, plain and improved
   ImprovedColonySettings improved_colony = {};  ///< improved colony only [Li22]
-  TwoSwarmsSettings two_swarms = {};
+  DualSwarmPsoSettings dual_swarm_pso = {};
   QLearningSettings q_learning = {};
 
   template <typename Self, typename Visitor>
@@ -29,7 +29,7 @@ struct RoutePlannerSettings {
     visit("cost_weight", self.cost_weight, between(0.0, 50.0));
     visit("ant_colony", self.ant_colony);
     visit("improved_colony", self.improved_colony);
-    visit("two_swarms", self.two_swarms);
+    visit("dual_swarm_pso", self.dual_swarm_pso);
     visit("q_learning", self.q_learning);
   }
 };

@@ -36,20 +36,20 @@ class QTable {
   /// Value of a cell; zero at the goal.
   double value(std::uint32_t cell) const { return cell == goal_ ? 0.0 : values_[8 * std::size_t{cell} + best_step(cell)]; }
 
-  /// Walk along the best steps; none if they form a loop.
-  std::optional<Walk> follow(std::uint32_t start) const {
+  /// Path along the best steps; none if they form a loop.
+  std::optional<GridPath> follow(std::uint32_t start) const {
     std::vector<std::uint8_t> is_visited(graph_.steps.size(), 0);
-    Walk walk;
+    GridPath path;
     for (std::uint32_t here = start; here != goal_;) {
       if (is_visited[here] != 0) return std::nullopt;
       is_visited[here] = 1;
       const std::size_t direction = best_step(here);
-      walk.cells.push_back(here);
-      walk.directions.push_back(static_cast<std::uint8_t>(direction));
-      walk.cost += graph_.price(here, direction);
+      path.cells.push_back(here);
+      path.directions.push_back(static_cast<std::uint8_t>(direction));
+      path.cost += graph_.step_cost(here, direction);
       here = graph_.next(here, direction);
     }
-    return walk;
+    return path;
   }
 
  private:
@@ -78,10 +78,10 @@ void QLearning::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
   const std::uint32_t from = graph.index_of(start), to = graph.index_of(goal);
   if (graph.steps[from] == 0) return;  // no step out of the start
   QTable table(graph, to);
-  const auto max_steps = static_cast<std::int64_t>(settings_.max_steps_share * static_cast<double>(graph.steps.size()));
-  Walk best;
+  const auto max_steps = static_cast<std::int64_t>(settings_.max_steps_per_cell * static_cast<double>(graph.steps.size()));
+  GridPath best;
   best.cost = std::numeric_limits<double>::infinity();
-  for (int episode = 0; episode < settings_.episodes && !is_spent(route); ++episode) {
+  for (int episode = 0; episode < settings_.episodes && !is_step_limit_reached(route); ++episode) {
     const double epsilon = settings_.exploration * (1.0 - static_cast<double>(episode) / settings_.episodes);
     RandomSequence random(stream_, static_cast<std::uint64_t>(episode));
     std::uint32_t here = from;
@@ -89,14 +89,14 @@ void QLearning::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
       const std::size_t direction = random.uniform() < epsilon ? any_step(graph, here, random) : table.best_step(here);
       const std::uint32_t next = graph.next(here, direction);
       double& value = table.at(here, direction);
-      value += settings_.learning_rate * (settings_.discount * table.value(next) - graph.price(here, direction) - value);
+      value += settings_.learning_rate * (settings_.discount * table.value(next) - graph.step_cost(here, direction) - value);
       here = next;
     }
-    if (std::optional<Walk> walk = table.follow(from); walk && walk->cost < best.cost) best = std::move(*walk);
+    if (std::optional<GridPath> path = table.follow(from); path && path->cost < best.cost) best = std::move(*path);
     route.history.push_back(best.cost);
     ++route.num_iterations;
   }
-  if (!best.cells.empty()) route.points = points_of(graph, best, goal);
+  if (!best.cells.empty()) route.points = to_points(graph, best, goal);
 }
 
 }  // namespace patrol::plan

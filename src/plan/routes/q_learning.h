@@ -13,7 +13,7 @@ struct QLearningSettings {
   double learning_rate = 1.0;     ///< alpha
   double discount = 1.0;          ///< gamma
   double exploration = 0.1;       ///< epsilon, probability of a random step; falls from this value to 0
-  double max_steps_share = 4.0;   ///< steps after which an episode ends, as a multiple of the number of cells
+  double max_steps_per_cell = 4.0;   ///< steps after which an episode ends, as a multiple of the number of cells
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -21,7 +21,7 @@ struct QLearningSettings {
     visit("learning_rate", self.learning_rate, between(0.01, 1.0));
     visit("discount", self.discount, between(0.5, 1.0));
     visit("exploration", self.exploration, between(0.0, 1.0));
-    visit("max_steps_share", self.max_steps_share, between(0.1, 1000.0));
+    visit("max_steps_per_cell", self.max_steps_per_cell, between(0.1, 1000.0));
   }
 };
 

@@ -17,7 +17,7 @@ enum class PlanStatus {
   kStartBlocked,
   kGoalBlocked,
   kNoRoute,    ///< no route exists
-  kNoneFound,  ///< no route found; one may exist, because the planner is incomplete or was stopped
+  kNotFound,  ///< no route found; one may exist, because the planner is incomplete or was stopped
 };
 
 /// Route over a grid with statistics of its search. Lengths are in cells, so that grids of any resolution are
@@ -35,19 +35,19 @@ struct Route {
 
 inline constexpr double kMaxClearance = 16.0;  ///< cells
 
-/// Iteration, counted from 1, from which the best cost is within the fraction `share` of its final value; 0 without a
+/// Iteration, counted from 1, from which the best cost is within the fraction `tolerance` of its final value; 0 without a
 /// route.
-int iterations_to_within(const std::vector<double>& history, double share);
+int iterations_to_convergence(const std::vector<double>& history, double tolerance);
 
 /// Cell that contains a point of a route; for a corner, the cell above and to the right.
 Cell cell_of(const Eigen::Vector2d& point);
 
 /// Converts points from cells to the grid's frame, m.
-std::vector<Eigen::Vector2d> to_metres(const GridGeometry& geometry, const std::vector<Eigen::Vector2d>& points);
+std::vector<Eigen::Vector2d> to_meters(const GridGeometry& geometry, const std::vector<Eigen::Vector2d>& points);
 
 /// Distance from the polyline to the nearest lethal cell's square, cells, at most `at_most`. The grid's border is no
 /// obstacle.
-double clearance_of(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>& points, double at_most = kMaxClearance);
+double compute_clearance(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>& points, double at_most = kMaxClearance);
 
 /// Cost factors by cell cost: 1 + cost weight * cost / kMaxPassableCost. Throws InputError unless the weight is in [0,
 /// 50].
@@ -62,7 +62,7 @@ inline constexpr std::size_t kFirstDiagonal = 4;
 
 /// Whether a step stays on the grid and outside of lethal cells. A diagonal step needs both adjacent cells free, as in
 /// the MovingAI benchmarks [Sturtevant12].
-bool may_step(const Grid<Cost>& costs, Cell from, GridStep step);
+bool is_valid_step(const Grid<Cost>& costs, Cell from, GridStep step);
 
 /// Cells reachable from a passable one by breadth-first search, `start` first.
 std::vector<Cell> reachable_cells(const Grid<Cost>& costs, Cell start);
@@ -93,7 +93,7 @@ class RoutePlanner {
 
   /// Cost factors by cell cost (`cost_factors`).
   const std::array<double, 256>& factors() const { return factors_; }
-  bool is_spent(const Route& route) const { return route.num_expanded >= max_steps_; }
+  bool is_step_limit_reached(const Route& route) const { return route.num_expanded >= max_steps_; }
   bool is_weighted() const { return factors_[kMaxPassableCost] > 1.0; }
 
  private:

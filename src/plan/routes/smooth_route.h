@@ -11,7 +11,7 @@ namespace patrol::plan {
 
 /// Replaces segments of a route between cell centers by straight lines. A line must touch no lethal cell, not even at a
 /// corner, and must not cost more than its segment. Its clearance must reach the segment's clearance or
-/// `kept_clearance`, cells, whichever is smaller. Points are in cells, as in Route.
-std::vector<Eigen::Vector2d> smooth_route(const Grid<Cost>& costs, double cost_weight, double kept_clearance, const std::vector<Eigen::Vector2d>& points);
+/// `min_clearance`, cells, whichever is smaller. Points are in cells, as in Route.
+std::vector<Eigen::Vector2d> smooth_route(const Grid<Cost>& costs, double cost_weight, double min_clearance, const std::vector<Eigen::Vector2d>& points);
 
 }  // namespace patrol::plan

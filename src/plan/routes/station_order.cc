@@ -20,22 +20,22 @@ constexpr double kRounding = 1e-9;
 void check(const TourProblem& problem) {
   const std::size_t count = problem.travel.size();
   const auto refuse = [](const std::string& what) { throw InputError("tour: " + what); };
-  if (count == 0) refuse("there are no stations");
+  if (count == 0) refuse("no stations: must be at least 1");
   for (std::size_t i = 0; i < count; ++i) {
-    if (problem.travel[i].size() != count) refuse(fmt::format("row {} of travel has {} figures: must be {}", i, problem.travel[i].size(), count));
+    if (problem.travel[i].size() != count) refuse(fmt::format("row {} of travel has {} values: must be {}", i, problem.travel[i].size(), count));
     for (std::size_t j = 0; j < count; ++j) {
       if (!(problem.travel[i][j] >= 0.0)) refuse(fmt::format("travel from {} to {} is {}: must be at least 0", i, j, problem.travel[i][j]));
     }
   }
-  if (!problem.stations.empty() && problem.stations.size() != count) refuse(fmt::format("{} stations are described: must be {}", problem.stations.size(), count));
+  if (!problem.stations.empty() && problem.stations.size() != count) refuse(fmt::format("{} station descriptions: must be {}", problem.stations.size(), count));
   for (std::size_t i = 0; i < problem.stations.size(); ++i) {
     const TourProblem::Station& station = problem.stations[i];
     if (!(station.service >= 0.0) || !(station.earliest >= 0.0) || !std::isfinite(station.service + station.earliest) || !(station.latest >= station.earliest)) {
-      refuse(fmt::format("station {} has service {} and window {} ... {}: must be at least 0, and in order", i, station.service, station.earliest, station.latest));
+      refuse(fmt::format("station {} has service {} and window [{}, {}]: must be at least 0 and in order", i, station.service, station.earliest, station.latest));
     }
   }
   for (const auto& end : {problem.start, problem.end}) {
-    if (end && *end >= count) refuse(fmt::format("there is no station {}", *end));
+    if (end && *end >= count) refuse(fmt::format("unknown station {}: must be in [0, {}]", *end, count - 1));
   }
 }
 
@@ -45,21 +45,21 @@ class Tour {
   explicit Tour(const TourProblem& problem) : problem_(problem), stations_(problem.stations) { stations_.resize(problem.travel.size()); }
 
   std::size_t size() const { return stations_.size(); }
-  bool is_round() const { return problem_.start && problem_.start == problem_.end; }
+  bool is_closed_tour() const { return problem_.start && problem_.start == problem_.end; }
   bool is_start(std::size_t i) const { return problem_.start == i; }
-  bool is_end(std::size_t i) const { return problem_.end == i && !is_round(); }
+  bool is_end(std::size_t i) const { return problem_.end == i && !is_closed_tour(); }
   bool is_fixed(std::size_t i) const { return is_start(i) || is_end(i); }
   double travel(std::size_t from, std::size_t to) const { return problem_.travel[from][to]; }
   int priority(std::size_t i) const { return stations_[i].priority; }
   /// Departure time from a station that is reached at `reached`.
-  double leaves(std::size_t i, double reached) const { return std::max(reached, stations_[i].earliest) + stations_[i].service; }
+  double departure(std::size_t i, double reached) const { return std::max(reached, stations_[i].earliest) + stations_[i].service; }
   double lateness(std::size_t i, double reached) const { return std::max(0.0, reached - stations_[i].latest - kRounding); }
 
   /// Impossible legs, priority inversions, lateness, completion, compared in this order; lower is better.
   using Score = std::tuple<int, int, double, double>;
   Score score(const std::vector<std::size_t>& order) const {
     int impossible = 0, inverted = 0;
-    double now = leaves(order[0], 0.0), late = lateness(order[0], 0.0);
+    double now = departure(order[0], 0.0), late = lateness(order[0], 0.0);
     const auto go = [&](std::size_t from, std::size_t to) {
       if (std::isinf(travel(from, to))) ++impossible;
       else now += travel(from, to);
@@ -69,13 +69,13 @@ class Tour {
       if (k > 0) {
         go(order[k - 1], order[k]);
         late += lateness(order[k], now);
-        now = leaves(order[k], now);
+        now = departure(order[k], now);
       }
       if (is_fixed(order[k])) continue;
       inverted += priority(order[k]) < last;
       last = std::max(last, priority(order[k]));
     }
-    if (is_round() && order.size() > 1) go(order.back(), order.front());
+    if (is_closed_tour() && order.size() > 1) go(order.back(), order.front());
     return {impossible, inverted, late, now};
   }
 
@@ -96,7 +96,7 @@ std::vector<std::size_t> exact_order(const Tour& tour) {
       const bool by_priority = !tour.is_fixed(i) && !tour.is_fixed(j) && tour.priority(j) < tour.priority(i);
       if (i != j && (by_priority || tour.is_end(i) || tour.is_start(j))) must_precede[i] |= std::size_t{1} << j;
     }
-    if (must_precede[i] == 0 && tour.lateness(i, 0.0) == 0.0) best[(std::size_t{1} << i) * size + i] = tour.leaves(i, 0.0);
+    if (must_precede[i] == 0 && tour.lateness(i, 0.0) == 0.0) best[(std::size_t{1} << i) * size + i] = tour.departure(i, 0.0);
   }
   for (std::size_t set = 1; set < all; ++set) {
     for (std::size_t last = 0; last < size; ++last) {
@@ -107,7 +107,7 @@ std::vector<std::size_t> exact_order(const Tour& tour) {
         const double reached = left + tour.travel(last, next);
         if (std::isinf(reached) || tour.lateness(next, reached) > 0.0) continue;
         const std::size_t there = (set | std::size_t{1} << next) * size + next;
-        if (tour.leaves(next, reached) < best[there]) best[there] = tour.leaves(next, reached), before[there] = static_cast<std::uint8_t>(last);
+        if (tour.departure(next, reached) < best[there]) best[there] = tour.departure(next, reached), before[there] = static_cast<std::uint8_t>(last);
       }
     }
   }
@@ -117,7 +117,7 @@ std::vector<std::size_t> exact_order(const Tour& tour) {
     // A closed tour begins at the only station that no station may precede.
     double done = best[all * size + i];
     for (std::size_t start = 0; start < size && size > 1; ++start) {
-      if (tour.is_round() && tour.is_start(start)) done += tour.travel(i, start);
+      if (tour.is_closed_tour() && tour.is_start(start)) done += tour.travel(i, start);
     }
     if (done < soonest) soonest = done, last = i;
   }
@@ -213,8 +213,8 @@ std::vector<std::size_t> searched_order(const Tour& tour, int restarts, std::uin
   const RandomStream stream(seed, "plan/routes/tour");
   std::optional<LocalSearch> best;
   for (int restart = 0; restart < restarts; ++restart) {
-    const std::vector<std::size_t> drawn = random_order(tour, RandomSequence(stream, static_cast<std::uint64_t>(restart)));
-    LocalSearch search(tour, restart % 2 == 0 ? nearest_order(tour, drawn) : drawn);
+    const std::vector<std::size_t> sampled = random_order(tour, RandomSequence(stream, static_cast<std::uint64_t>(restart)));
+    LocalSearch search(tour, restart % 2 == 0 ? nearest_order(tour, sampled) : sampled);
     search.run();
     if (!best || search.score() < best->score()) best.emplace(search);
   }
@@ -223,7 +223,7 @@ std::vector<std::size_t> searched_order(const Tour& tour, int restarts, std::uin
 
 }  // namespace
 
-TourOrder order_tour(const TourProblem& problem, const TourOrderSettings& settings, std::uint64_t seed) {
+TourOrder solve_station_order(const TourProblem& problem, const TourOrderSettings& settings, std::uint64_t seed) {
   validate(settings, "tour");
   check(problem);
   const Tour tour(problem);
@@ -237,8 +237,8 @@ TourOrder order_tour(const TourProblem& problem, const TourOrderSettings& settin
   result.lateness = late;
   result.completion = completion;
   for (std::size_t k = 1; k < result.stations.size(); ++k) result.travel += tour.travel(result.stations[k - 1], result.stations[k]);
-  if (tour.is_round() && tour.size() > 1) result.travel += tour.travel(result.stations.back(), result.stations.front());
-  result.lower_bound = result.is_exact ? completion : tour_lower_bound(problem, completion, settings.bound_iterations);
+  if (tour.is_closed_tour() && tour.size() > 1) result.travel += tour.travel(result.stations.back(), result.stations.front());
+  result.lower_bound = result.is_exact ? completion : held_karp_bound(problem, completion, settings.bound_iterations);
   return result;
 }
 

@@ -55,6 +55,6 @@ struct TourOrder {
 /// whose windows can be met, exact by dynamic programming on sets [HeldKarp62], [Bellman62]. Otherwise by local search
 /// (Or-opt and 2-opt from nearest-neighbor and random orders) with the 1-tree bound [HeldKarp70]. Equal problems and
 /// seeds give equal orders. Throws InputError if the problem is invalid.
-TourOrder order_tour(const TourProblem& problem, const TourOrderSettings& settings, std::uint64_t seed);
+TourOrder solve_station_order(const TourProblem& problem, const TourOrderSettings& settings, std::uint64_t seed);
 
 }  // namespace patrol::plan

@@ -20,8 +20,8 @@ void ThetaStar::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
     num_searches_ = 0;
   }
   ++num_searches_;
-  open_ = {{.estimate = distance(start, goal), .price = 0.0, .cell = start}};
-  nodes_.at(start) = {.price = 0.0, .parent = start, .search = num_searches_, .is_closed = false};
+  open_ = {{.estimate = distance(start, goal), .cost = 0.0, .cell = start}};
+  nodes_.at(start) = {.cost = 0.0, .parent = start, .search = num_searches_, .is_closed = false};
   route.num_iterations = 1;
   while (!open_.empty()) {
     std::pop_heap(open_.begin(), open_.end());
@@ -31,7 +31,7 @@ void ThetaStar::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
     nodes_.at(cell).is_closed = true;
     ++route.num_expanded;
     if (cell == goal) {
-      route.history = {nodes_.at(cell).price};
+      route.history = {nodes_.at(cell).cost};
       for (Cell corner = goal;; corner = nodes_.at(corner).parent) {
         route.points.emplace_back(corner.col + 0.5, corner.row + 0.5);
         if (corner == start) break;
@@ -46,23 +46,23 @@ void ThetaStar::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
 void ThetaStar::expand(const Grid<Cost>& costs, Cell cell, Cell goal) {
   const Node here = nodes_.at(cell);
   for (const GridStep step : kGridSteps) {
-    if (!may_step(costs, cell, step)) continue;
+    if (!is_valid_step(costs, cell, step)) continue;
     const Cell next{cell.col + step.col, cell.row + step.row};
     Node& node = nodes_.at(next);
     const bool is_new = node.search != num_searches_;
     if (!is_new && node.is_closed) continue;
 
-    Node reached{.price = here.price + *line_price(costs, factors(), cell, next), .parent = cell, .search = num_searches_, .is_closed = false};
+    Node reached{.cost = here.cost + *line_cost(costs, factors(), cell, next), .parent = cell, .search = num_searches_, .is_closed = false};
     // With cost weights the line may cost more than the path through the neighbors; without weights it never does.
-    const double at_least = nodes_.at(here.parent).price + distance(here.parent, next);
-    if (here.parent != cell && (is_new || at_least < node.price)) {
-      const std::optional<double> line = line_price(costs, factors(), here.parent, next);
-      const double price = line ? nodes_.at(here.parent).price + *line : reached.price;
-      if (line && price <= reached.price + 1e-12 * reached.price) reached.price = price, reached.parent = here.parent;
+    const double at_least = nodes_.at(here.parent).cost + distance(here.parent, next);
+    if (here.parent != cell && (is_new || at_least < node.cost)) {
+      const std::optional<double> line = line_cost(costs, factors(), here.parent, next);
+      const double cost = line ? nodes_.at(here.parent).cost + *line : reached.cost;
+      if (line && cost <= reached.cost + 1e-12 * reached.cost) reached.cost = cost, reached.parent = here.parent;
     }
-    if (!is_new && node.price <= reached.price) continue;
+    if (!is_new && node.cost <= reached.cost) continue;
     node = reached;
-    open_.push_back({.estimate = reached.price + distance(next, goal), .price = reached.price, .cell = next});
+    open_.push_back({.estimate = reached.cost + distance(next, goal), .cost = reached.cost, .cell = next});
     std::push_heap(open_.begin(), open_.end());
   }
 }

@@ -40,7 +40,7 @@ class Quadrant {
 /// Visibility along a column or a row, from `first` to `end`, half cells. `is_free(along, side)` tests the cells on
 /// both sides of the line, or on it.
 template <typename IsFree>
-bool sees_straight(int first, int end, IsFree is_free) {
+bool is_visible_along_axis(int first, int end, IsFree is_free) {
   for (int along = first; 2 * along < end; ++along) {
     const bool here[2] = {is_free(along, 0), is_free(along, -1)};
     if (!here[0] && !here[1]) return false;
@@ -51,7 +51,7 @@ bool sees_straight(int first, int end, IsFree is_free) {
   return true;
 }
 
-bool sees_up_right(const Quadrant& quadrant, HalfCellPoint to) {
+bool is_visible_up_right(const Quadrant& quadrant, HalfCellPoint to) {
   const HalfCellPoint from = quadrant.origin();
   const long dx = to.x - from.x, dy = to.y - from.y;
   int col = quadrant.first_col(), row = quadrant.first_row();
@@ -98,7 +98,7 @@ class VisibilitySearch {
   struct Node {
     double length = kNotReached;  ///< from the start, half cells
     HalfCellPoint parent{};
-    HalfCellPoint seen_from{.x = -1, .y = -1};  ///< last corner from which visibility was checked
+    HalfCellPoint checked_from{.x = -1, .y = -1};  ///< last corner from which visibility was checked
     bool is_closed = false;
   };
   struct Open {
@@ -148,10 +148,10 @@ class VisibilitySearch {
     open_.push({.estimate = length + distance(point, goal_), .point = point});
   }
 
-  void look_at(HalfCellPoint from, HalfCellPoint to) {
+  void try_connect(HalfCellPoint from, HalfCellPoint to) {
     Node& target = node(to);
-    if (to == from || target.seen_from == from || target.is_closed) return;
-    target.seen_from = from;
+    if (to == from || target.checked_from == from || target.is_closed) return;
+    target.checked_from = from;
     const double length = node(from).length + distance(from, to);
     if (length >= target.length) return;
     if (to != goal_) {
@@ -160,7 +160,7 @@ class VisibilitySearch {
       const std::optional<HalfCellPoint> side = lethal_side(to);
       if (!side || ((to.x - from.x) * side->x > 0 && (to.y - from.y) * side->y > 0)) return;
     }
-    if (can_see(costs_, from, to)) reach(to, length, from);
+    if (is_visible(costs_, from, to)) reach(to, length, from);
   }
 
   /// Spreads the cones row by row over the cells of a quadrant; each cell receives cones from below and from the left.
@@ -191,19 +191,19 @@ class VisibilitySearch {
           continue;
         }
         is_dark = false;
-        look_at_cell(from, quadrant, col, row);
+        connect_corners(from, quadrant, col, row);
       }
       while (!below.empty() && below.back().is_empty()) below.pop_back();
       if (is_dark) return;
     }
   }
 
-  void look_at_cell(HalfCellPoint from, const Quadrant& quadrant, int col, int row) {
+  void connect_corners(HalfCellPoint from, const Quadrant& quadrant, int col, int row) {
     for (const int dx : {0, 2}) {
-      for (const int dy : {0, 2}) look_at(from, quadrant.to_grid({.x = 2 * col + dx, .y = 2 * row + dy}));
+      for (const int dy : {0, 2}) try_connect(from, quadrant.to_grid({.x = 2 * col + dx, .y = 2 * row + dy}));
     }
     const HalfCellPoint middle = quadrant.to_grid({.x = 2 * col + 1, .y = 2 * row + 1});
-    if (middle == goal_) look_at(from, goal_);
+    if (middle == goal_) try_connect(from, goal_);
   }
 
   void trace_back(Route& route) {
@@ -225,7 +225,7 @@ class VisibilitySearch {
 
 }  // namespace
 
-bool can_see(const Grid<Cost>& costs, HalfCellPoint from, HalfCellPoint to) {
+bool is_visible(const Grid<Cost>& costs, HalfCellPoint from, HalfCellPoint to) {
   const int dx = to.x - from.x, dy = to.y - from.y;
   if (dx == 0 && dy == 0) return true;
   const Quadrant quadrant(costs, from, dx < 0 ? -1 : 1, dy < 0 ? -1 : 1);
@@ -233,15 +233,15 @@ bool can_see(const Grid<Cost>& costs, HalfCellPoint from, HalfCellPoint to) {
   const int col = quadrant.first_col(), row = quadrant.first_row();
   if (dy == 0) {
     const int between = origin.y % 2 == 0;  // else the line runs through cells, which are on both sides
-    return sees_straight(col, end.x, [&](int along, int side) { return quadrant.is_free(along, row + between * side); });
+    return is_visible_along_axis(col, end.x, [&](int along, int side) { return quadrant.is_free(along, row + between * side); });
   }
   if (dx == 0) {
     const int between = origin.x % 2 == 0;
-    return sees_straight(row, end.y, [&](int along, int side) { return quadrant.is_free(col + between * side, along); });
+    return is_visible_along_axis(row, end.y, [&](int along, int side) { return quadrant.is_free(col + between * side, along); });
   }
-  return sees_up_right(quadrant, end);
+  return is_visible_up_right(quadrant, end);
 }
 
-void AnyAngleOptimum::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) { VisibilitySearch(costs, start, goal).run(route); }
+void VisibilityGraphPlanner::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) { VisibilitySearch(costs, start, goal).run(route); }
 
 }  // namespace patrol::plan

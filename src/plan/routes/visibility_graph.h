@@ -17,9 +17,9 @@ namespace patrol::plan {
 ///
 /// For reference only: on open ground the time grows with the number of corners times the number of cells visible from
 /// each. Supports no costs but lethal.
-class AnyAngleOptimum : public RoutePlanner {
+class VisibilityGraphPlanner : public RoutePlanner {
  public:
-  AnyAngleOptimum() : RoutePlanner(0.0) {}
+  VisibilityGraphPlanner() : RoutePlanner(0.0) {}
 
   bool is_complete() const override { return true; }
 
@@ -35,6 +35,6 @@ struct HalfCellPoint {
 
 /// Whether the straight line between two corners or centers passes neither through the inside of a lethal cell nor
 /// between two that meet at a corner or a side. It may touch lethal cells. Both points are in the grid.
-bool can_see(const Grid<Cost>& costs, HalfCellPoint from, HalfCellPoint to);
+bool is_visible(const Grid<Cost>& costs, HalfCellPoint from, HalfCellPoint to);
 
 }  // namespace patrol::plan

@@ -16,15 +16,15 @@ void GasInstrument::begin(const InspectionOrder& order, Time) {
 }
 
 InspectionProgress GasInstrument::step(const InspectionContext& context) {
-  const Time from = order_.not_before + from_seconds(rules_.settle_s);
+  const Time from = order_.not_before + from_seconds(rules_.settling_time_s);
   if (newest_ && newest_->stamp >= from) measurement_.add(*newest_);
-  if (context.now >= from + from_seconds(rules_.measure_s) && measurement_.count() >= rules_.min_readings) {
+  if (context.now >= from + from_seconds(rules_.measurement_duration_s) && measurement_.count() >= rules_.min_readings) {
     report(context);
     return {.feedback = InspectionFeedback::kDone};
   }
-  if (context.now < from + from_seconds(std::max(rules_.measure_s, rules_.max_measure_s))) return {};
+  if (context.now < from + from_seconds(std::max(rules_.measurement_duration_s, rules_.measurement_timeout_s))) return {};
   return {.feedback = InspectionFeedback::kFailed,
-          .failure = fmt::format("The methane meter gave {} readings at {}, {} are needed.", measurement_.count(),
+          .failure = fmt::format("Too few methane readings: {} at {}, at least {} required.", measurement_.count(),
                                  order_.station, rules_.min_readings)};
 }
 

@@ -8,9 +8,9 @@ namespace patrol::stack {
 
 /// Parameters of a methane measurement at a station (settings: gas_mission_settings.h).
 struct GasRules {
-  double settle_s = 0.5;
-  double measure_s = 3.0;
-  double max_measure_s = 8.0;
+  double settling_time_s = 0.5;
+  double measurement_duration_s = 3.0;
+  double measurement_timeout_s = 8.0;
   int min_readings = 10;
   double alarm_column_ppm_m = 200.0;
 };
@@ -18,7 +18,7 @@ struct GasRules {
 /// Open-path methane meter: averages the column readings while the robot stands, and raises the alarm if the mean
 /// exceeds the threshold by two standard errors.
 ///
-/// Events: gas_measured (value: column, ppm m), alarm (value: column; target: the point of the beam nearest to the
+/// Events: gas_measured (value: column, ppm m), gas_alarm (value: column; target: the point of the beam nearest to the
 /// inspected object).
 class GasInstrument final : public Instrument {
  public:

@@ -5,8 +5,8 @@
 
 namespace patrol::stack {
 
-InstrumentSet::InstrumentSet(std::vector<std::unique_ptr<Instrument>> instruments, double siren_s)
-    : instruments_(std::move(instruments)), light_(siren_s) {}
+InstrumentSet::InstrumentSet(std::vector<std::unique_ptr<Instrument>> instruments, double siren_duration_s)
+    : instruments_(std::move(instruments)), light_(siren_duration_s) {}
 
 void InstrumentSet::add(const SensorMessage& message, const StationPoseLookup& station_pose_at) {
   for (const auto& instrument : instruments_) instrument->add(message, station_pose_at);

@@ -11,7 +11,7 @@ namespace patrol::stack {
 /// Instruments of the robot. Passes each order to the instrument of its kind.
 class InstrumentSet {
  public:
-  InstrumentSet(std::vector<std::unique_ptr<Instrument>> instruments, double siren_s);
+  InstrumentSet(std::vector<std::unique_ptr<Instrument>> instruments, double siren_duration_s);
 
   void add(const SensorMessage& message, const StationPoseLookup& station_pose_at);
   /// Executes `order` for a control period. A new order starts at once; nullopt ends the previous one. An order for an

@@ -39,11 +39,11 @@ void LiningInstrument::begin(const InspectionOrder& order, Time now) {
 
 InspectionProgress LiningInstrument::step(const InspectionContext& context) {
   const Time now = context.now;
-  if (!has_requested_scan_ && now - order_start_ >= from_seconds(settings_.scan_settle_s)) {
+  if (!has_requested_scan_ && now - order_start_ >= from_seconds(settings_.scan_settling_time_s)) {
     has_requested_scan_ = true;
     context.output.publish(ScanCommand{now});
   }
-  if (now - order_start_ > from_seconds(settings_.scan_patience_s)) return {.feedback = InspectionFeedback::kFailed};
+  if (now - order_start_ > from_seconds(settings_.scan_timeout_s)) return {.feedback = InspectionFeedback::kFailed};
   if (!new_scan_) return {};
   const auto [scan, place] = *std::exchange(new_scan_, std::nullopt);
   return {.feedback = evaluate(context, scan, place)};
@@ -59,7 +59,7 @@ InspectionFeedback LiningInstrument::evaluate(const InspectionContext& context, 
   if (reference == references_.end()) {
     references_.emplace(station_, inspect::make_reference(scan, place.T_map_scanner(T_body_scanner_)));
     context.publish_event(EventKind::kReferenceTaken, station_,
-                          "The first scan of this place: later ones are compared with it.", 0.0, p_map);
+                          "First scan of the station: reference for later scans.", 0.0, p_map);
     return InspectionFeedback::kDone;
   }
   LiningResult result =
@@ -74,7 +74,7 @@ void LiningInstrument::report(const InspectionContext& context, const LiningResu
   if (!result.is_registered) return;
   for (const RingFinding& finding : result.findings) {
     context.publish_event(lining_event(finding.level), fmt::format("ring_{}", finding.ring),
-                          fmt::format("Ring {} has moved inwards by {:.1f} ± {:.1f} mm at {} o'clock.", finding.ring,
+                          fmt::format("Ring {} has moved inward by {:.1f} ± {:.1f} mm at {} o'clock.", finding.ring,
                                       1e3 * finding.inward_m, 1e3 * finding.std_m, clock_text(finding.clock_deg)),
                           finding.inward_m, finding.p_map.head<2>());
     context.light.warn(context.now, finding.level, context.output);

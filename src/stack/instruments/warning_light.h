@@ -6,10 +6,10 @@
 
 namespace patrol::stack {
 
-/// Warning light and siren. The light stays on from the first warning; the siren sounds for `siren_s` at every alarm.
+/// Warning light and siren. The light stays on from the first warning; the siren sounds for `siren_duration_s` at every alarm.
 class WarningLight {
  public:
-  explicit WarningLight(double siren_s) : siren_s_(siren_s) {}
+  explicit WarningLight(double siren_duration_s) : siren_s_(siren_duration_s) {}
 
   void warn(Time now, WarningLevel level, StackOutput& output);
   /// Switches the siren off after its duration. Call once per control period.

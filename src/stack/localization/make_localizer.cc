@@ -43,13 +43,13 @@ std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const R
     return std::make_unique<KnownMapLocalizer>(settings, std::move(map), anchors, T_body_uwb.value_or(Pose3{}), seed);
   };
   if (method == "monte_carlo") {
-    if (!start.map) refuse("there is no map: give one by the key map, or choose slam or slam_then_monte_carlo");
+    if (!start.map) refuse("requires a map: set the key map, or select slam or slam_then_monte_carlo");
     return make_on_map(*start.map);
   }
-  if (start.map) refuse("a map is given, and another would be made: leave the key map empty, or choose monte_carlo");
-  auto slam = std::make_unique<SlamLocalizer>(make_mapper(settings, start.neighbor_model, seed), site_in_map.anchors, T_body_uwb);
+  if (start.map) refuse("would replace the given map: remove the key map, or select monte_carlo");
+  auto slam = std::make_unique<SlamLocalizer>(slam::make_mapper(settings.slam, start.neighbor_model, seed), site_in_map.anchors, T_body_uwb);
   if (method == "slam") return slam;
-  if (!start.has_mapping_drive) refuse("there is no drive by remote control that makes the map: choose slam");
+  if (!start.has_mapping_drive) refuse("requires a teleoperated mapping drive: select slam");
   return std::make_unique<MapThenLocalize>(std::move(slam), make_on_map);
 }
 

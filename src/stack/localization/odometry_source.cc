@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "localize/body_estimator.h"
 #include "localize/map_pose_tracker.h"
+#include "localize/track_odometry.h"
 
 namespace patrol::stack {
 namespace {
@@ -13,7 +15,7 @@ namespace {
 /// Odometry from IMU, joint encoders and foot forces.
 class LeggedOdometry final : public OdometrySource {
  public:
-  LeggedOdometry(const RobotDescription& robot, const StackSettings& settings) : estimator_(robot, settings.odometry) {}
+  LeggedOdometry(const RobotDescription& robot, const StackSettings& settings) : estimator_(robot, settings.odometry.legged) {}
 
   void add(const SensorMessage& message) override {
     if (const auto* imu = std::get_if<Imu>(&message)) estimator_.add(*imu);
@@ -42,7 +44,7 @@ class LeggedOdometry final : public OdometrySource {
 class TrackedOdometry final : public OdometrySource {
  public:
   TrackedOdometry(const RobotDescription& robot, const StackSettings& settings)
-      : odometry_(robot, settings.track_odometry) {}
+      : odometry_(robot, settings.odometry.tracked) {}
 
   void add(const SensorMessage& message) override {
     if (const auto* imu = std::get_if<Imu>(&message)) odometry_.add(*imu);
@@ -63,7 +65,7 @@ std::unique_ptr<OdometrySource> make_odometry_source(const StackSettings& settin
   if (settings.odometry_source == "tracked") return std::make_unique<TrackedOdometry>(robot, settings);
   if (robot.legs.empty()) {
     throw InputError(
-        fmt::format("stack.odometry_source = {}: the robot {} has no legs", settings.odometry_source, robot.name));
+        fmt::format("stack.odometry_source = {}: robot {} has no legs", settings.odometry_source, robot.name));
   }
   return std::make_unique<LeggedOdometry>(robot, settings);
 }

@@ -19,13 +19,13 @@ Eigen::Matrix3d PosePipeline::surveyed_covariance() {
 
 PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
                            LocalizerStart start, std::uint64_t seed)
-    : settle_(from_seconds(settings.settle_s)),
+    : settle_(from_seconds(settings.odometry_settling_time_s)),
       odometry_(make_odometry_source(settings, robot)),
-      leveler_(robot.T_body("lidar"), settings.leveling) {
+      leveler_(robot.T_body("lidar"), settings.scan_leveling) {
   start.height_above_ground_m = odometry_->height_above_ground_m();
   localizer_ = make_localizer(settings, robot, site_in_map, start, seed);
   if (robot.T_body_sensor.contains("uwb"))
-    range_pose_.emplace(settings.range_filter, site_in_map.anchors, robot.T_body("uwb"));
+    range_pose_.emplace(settings.uwb_filter, site_in_map.anchors, robot.T_body("uwb"));
 }
 
 void PosePipeline::add(const SensorMessage& message, StackOutput& output) {

@@ -8,17 +8,17 @@
 namespace patrol::stack {
 
 GasRules gas_rules(const GasMissionSettings& settings) {
-  return {.settle_s = settings.settle_s,
-          .measure_s = settings.measure_s,
-          .max_measure_s = settings.max_measure_s,
+  return {.settling_time_s = settings.settling_time_s,
+          .measurement_duration_s = settings.measurement_duration_s,
+          .measurement_timeout_s = settings.measurement_timeout_s,
           .min_readings = settings.min_readings,
           .alarm_column_ppm_m = settings.alarm_column_ppm_m};
 }
 
 GasMission::GasMission(const GasMissionSettings& settings, Route route_in_map, std::string order_text)
     : settings_(settings), route_(std::move(route_in_map)), order_text_(std::move(order_text)) {
-  validate(settings, "mission");
-  if (route_.stations.empty()) throw InputError("the route has no station");
+  validate(settings, "gas_mission");
+  if (route_.stations.empty()) throw InputError("route: has no stations: must have at least one");
 }
 
 MissionOutput GasMission::step(Time now, const MissionInput& input) {
@@ -65,10 +65,10 @@ Event GasMission::abort(Time now, EventKind kind, const std::string& text) {
 }
 
 void GasMission::wait(MissionOutput& output) {
-  if (now_ < from_seconds(settings_.start_wait_s)) return;
+  if (now_ < from_seconds(settings_.init_wait_s)) return;
   std::vector<std::string> names;
   for (const Station& station : route_.stations) names.push_back(station.name);
-  const std::string stations = fmt::format("The mission starts: {} stations, {}.", names.size(), fmt::join(names, ", "));
+  const std::string stations = fmt::format("Mission started: {} stations, {}.", names.size(), fmt::join(names, ", "));
   output.events.push_back(event(EventKind::kMissionStarted, "", order_text_.empty() ? stations : stations + " " + order_text_));
   phase_ = Phase::kDriving;
   phase_start_ = now_;
@@ -78,7 +78,7 @@ void GasMission::drive(NavigationFeedback feedback, MissionOutput& output) {
   if (now_ == phase_start_) return;  // the feedback is for the previous goal
   if (feedback == NavigationFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event(EventKind::kStationFailed, station().name, fmt::format("No way to {}.", station().name)));
+    output.events.push_back(event(EventKind::kStationFailed, station().name, fmt::format("{} is unreachable.", station().name)));
     return next_station(output);
   }
   if (feedback != NavigationFeedback::kArrived) return;
@@ -111,17 +111,17 @@ void GasMission::next_station(MissionOutput& output) {
   if (num_failed_ == 0) {
     output.events.push_back(event(EventKind::kMissionCompleted, "", "Every station was inspected."));
   } else {
-    output.events.push_back(event(EventKind::kMissionFailed, "", fmt::format("{} of {} stations were left out.", num_failed_, route_.stations.size())));
+    output.events.push_back(event(EventKind::kMissionFailed, "", fmt::format("{} of {} stations were skipped.", num_failed_, route_.stations.size())));
   }
 }
 
 NavigationGoal GasMission::goal_at(const Station& station) const {
   NavigationGoal goal{.T_map_body = station.T_route_body,
-                      .position_tol_m = std::min(settings_.position_tol_m, station.accuracy_m),
-                      .yaw_tol_rad = settings_.yaw_tol_rad};
+                      .position_tolerance_m = std::min(settings_.position_tolerance_m, station.accuracy_m),
+                      .yaw_tolerance_rad = settings_.yaw_tolerance_rad};
   if (station.type == StationType::kPass) {
-    goal.position_tol_m = station.accuracy_m;
-    goal.yaw_tol_rad = std::numbers::pi;
+    goal.position_tolerance_m = station.accuracy_m;
+    goal.yaw_tolerance_rad = std::numbers::pi;
   }
   return goal;
 }

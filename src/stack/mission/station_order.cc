@@ -32,13 +32,13 @@ std::vector<std::vector<double>> lengths_between(const std::vector<Eigen::Vector
 }
 
 plan::TourProblem problem_of(const std::vector<Station>& stations, std::vector<std::vector<double>> lengths_m, const GasMissionSettings& mission) {
-  plan::TourProblem problem{.travel = std::move(lengths_m), .stations = {{.service = mission.start_wait_s}}, .start = 0, .end = {}};
+  plan::TourProblem problem{.travel = std::move(lengths_m), .stations = {{.service = mission.init_wait_s}}, .start = 0, .end = {}};
   for (std::vector<double>& row : problem.travel) {
     for (double& travel : row) travel /= mission.expected_speed_mps;
   }
   for (const Station& station : stations) {
     if (station.type == StationType::kHome) problem.end = problem.stations.size();
-    problem.stations.push_back({.service = station.type == StationType::kInspect ? mission.settle_s + mission.measure_s : 0.0,
+    problem.stations.push_back({.service = station.type == StationType::kInspect ? mission.settling_time_s + mission.measurement_duration_s : 0.0,
                                 .earliest = station.earliest_s,
                                 .latest = station.latest_s,
                                 .priority = station.priority});
@@ -54,17 +54,17 @@ StationOrder order_stations(const Route& route_in_map, const RobotDescription& r
   costmap.set_map(OccupancyGrid({.resolution_m = navigation.costmap.resolution_m, .width = 1, .height = 1}, kUnknown));
   const std::vector<Eigen::Vector2d> positions = to_positions(route_in_map.stations);
   for (const Eigen::Vector2d& place : positions) costmap.include(place, kMapMargin_m);
-  plan::GlobalPlanner planner(navigation.global, navigation.routes, seed);
-  const plan::TourOrder order = plan::order_tour(problem_of(route_in_map.stations, lengths_between(positions, costmap, planner), mission), {}, seed);
-  if (!order.is_found) return {.stations = route_in_map.stations, .text = "No order reaches all stations: the given one is kept."};
+  plan::GlobalPlanner planner(navigation.global_planner, seed);
+  const plan::TourOrder order = plan::solve_station_order(problem_of(route_in_map.stations, lengths_between(positions, costmap, planner), mission), {}, seed);
+  if (!order.is_found) return {.stations = route_in_map.stations, .text = "No order reaches all stations: given order kept."};
 
   StationOrder ordered;
   for (const std::size_t place : order.stations) {
     if (place > 0) ordered.stations.push_back(route_in_map.stations[place - 1]);
   }
-  ordered.text = fmt::format("In this order they should take {:.0f} s{}; {}.", order.completion,
-                             order.lateness > 0.0 ? fmt::format(", with {:.0f} s of lateness that cannot be helped", order.lateness) : "",
-                             order.is_exact ? "none is sooner" : fmt::format("the soonest may be up to {:.1f} % sooner", 100.0 * order.gap()));
+  ordered.text = fmt::format("Expected duration in this order: {:.0f} s{}; {}.", order.completion,
+                             order.lateness > 0.0 ? fmt::format(", with an unavoidable delay of {:.0f} s", order.lateness) : "",
+                             order.is_exact ? "optimal" : fmt::format("the optimum is at most {:.1f} % faster", 100.0 * order.gap()));
   return ordered;
 }
 

@@ -9,16 +9,16 @@
 namespace patrol::stack {
 
 GoalType TunnelMissionSettings::goal_type(std::size_t index) const {
-  if (index >= mark_types.size()) return GoalType::kStop;
-  if (const auto* row = find_named(kGoalTypes, std::string_view(mark_types).substr(index, 1))) return row->value;
-  throw InputError(fmt::format("tour.mark_types = {}: must be made of the letters {}", mark_types, fmt::join(names_of(kGoalTypes), ", ")));
+  if (index >= goal_types.size()) return GoalType::kStop;
+  if (const auto* row = find_named(kGoalTypes, std::string_view(goal_types).substr(index, 1))) return row->value;
+  throw InputError(fmt::format("tunnel_mission.goal_types = {}: must consist of the letters {}", goal_types, fmt::join(names_of(kGoalTypes), ", ")));
 }
 
 TunnelMission::TunnelMission(const TunnelMissionSettings& settings, std::vector<SavedGoal> goals, bool has_teleop, bool has_map)
-    : settings_(settings), goals_(std::move(goals)), has_teleop_(has_teleop), has_map_(has_map), is_docked_(settings.starts_docked && !settings.starts_at_survey) {
-  validate(settings, "tour");
-  for (std::size_t i = 0; i < settings.mark_types.size(); ++i) settings.goal_type(i);
-  if (goals_.empty() && !has_teleop) throw InputError("tour: there is no goal, and no remote control to mark one");
+    : settings_(settings), goals_(std::move(goals)), has_teleop_(has_teleop), has_map_(has_map), is_docked_(settings.start_docked && !settings.start_at_survey) {
+  validate(settings, "tunnel_mission");
+  for (std::size_t i = 0; i < settings.goal_types.size(); ++i) settings.goal_type(i);
+  if (goals_.empty() && !has_teleop) throw InputError("tunnel_mission: requires goals or teleoperation to save them");
 }
 
 MissionOutput TunnelMission::step(Time now, const MissionInput& input) {
@@ -74,8 +74,8 @@ Task TunnelMission::task() const {
   const bool stops = goal.type != GoalType::kVia;
   task.motion = Motion::kNavigate;
   task.goal = {.T_map_body = goal.T_map_body,
-               .position_tol_m = stops ? std::min(settings_.position_tol_m, goal.accuracy_m) : goal.accuracy_m,
-               .yaw_tol_rad = stops ? settings_.yaw_tol_rad : std::numbers::pi};
+               .position_tolerance_m = stops ? std::min(settings_.position_tolerance_m, goal.accuracy_m) : goal.accuracy_m,
+               .yaw_tolerance_rad = stops ? settings_.yaw_tolerance_rad : std::numbers::pi};
   return task;
 }
 
@@ -83,16 +83,16 @@ Task TunnelMission::task() const {
 bool TunnelMission::monitor_localization(const MissionInput& input, MissionOutput& output) {
   const bool needs_pose = phase_ == Phase::kDriving || phase_ == Phase::kStanding || phase_ == Phase::kDocking;
   if (!input.is_lost || !needs_pose) {
-    if (lost_since_) output.events.push_back(event(EventKind::kRelocalized, "", "The robot knows where it is again.", to_seconds(now_ - *lost_since_)));
+    if (lost_since_) output.events.push_back(event(EventKind::kRelocalized, "", "Relocalized.", to_seconds(now_ - *lost_since_)));
     lost_since_.reset();
     return false;
   }
   if (!lost_since_) {
     lost_since_ = now_;
-    output.events.push_back(event(EventKind::kLocalizationLost, "", "The robot does not know where it is: it stands and looks."));
-  } else if (now_ - *lost_since_ > from_seconds(settings_.lost_patience_s)) {
-    output.events.push_back(event(EventKind::kLocalizationFailed, "", fmt::format("The robot cannot tell where it is after {:.0f} s of looking.",
-                                                                     settings_.lost_patience_s)));
+    output.events.push_back(event(EventKind::kLocalizationLost, "", "Localization lost: robot stopped, relocalizing."));
+  } else if (now_ - *lost_since_ > from_seconds(settings_.relocalization_timeout_s)) {
+    output.events.push_back(event(EventKind::kLocalizationFailed, "", fmt::format("Relocalization failed after {:.0f} s.",
+                                                                     settings_.relocalization_timeout_s)));
     ++num_failed_;
     finish(output);
   }
@@ -100,7 +100,7 @@ bool TunnelMission::monitor_localization(const MissionInput& input, MissionOutpu
 }
 
 void TunnelMission::wait(MissionOutput& output) {
-  if (now_ < from_seconds(settings_.start_wait_s) || now_ < *first_step_ + from_seconds(settings_.start_look_s)) return;
+  if (now_ < from_seconds(settings_.init_wait_s) || now_ < *first_step_ + from_seconds(settings_.first_scan_wait_s)) return;
   if (!has_teleop_ || has_map_) return start_run(output);
   last_teleop_ = now_;
   enter(Phase::kTeleop);
@@ -112,12 +112,12 @@ void TunnelMission::teleoperate(const MissionInput& input, MissionOutput& output
   if (input.teleop && input.teleop->save_goal) {
     goals_.push_back({.number = static_cast<int>(goals_.size()) + 1, .T_map_body = T_map_body_, .type = settings_.goal_type(goals_.size())});
     goal_ = goals_.size() - 1;
-    output.events.push_back(event(EventKind::kGoalMarked, goal_name(), fmt::format("Marked {}.", goal_name())));
+    output.events.push_back(event(EventKind::kGoalSaved, goal_name(), fmt::format("Saved {}.", goal_name())));
   }
-  const bool is_off = now_ - last_teleop_ > from_seconds(settings_.remote_silence_s);
+  const bool is_off = now_ - last_teleop_ > from_seconds(settings_.teleop_timeout_s);
   if (!is_off && !(input.teleop && input.teleop->hand_over)) return;
   output.is_map_complete = true;
-  output.events.push_back(event(EventKind::kMappingCompleted, "", fmt::format("The map is made; {} goals are marked.", goals_.size())));
+  output.events.push_back(event(EventKind::kMappingCompleted, "", fmt::format("Mapping completed: {} goals saved.", goals_.size())));
   end_run(output);
 }
 
@@ -131,7 +131,7 @@ void TunnelMission::drive(const MissionInput& input, MissionOutput& output) {
   if (now_ == phase_start_) return;  // the feedback is for the previous goal
   if (input.navigation == NavigationFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event(EventKind::kGoalFailed, goal_name(), fmt::format("No way to {}.", goal_name()), run_));
+    output.events.push_back(event(EventKind::kGoalFailed, goal_name(), fmt::format("{} is unreachable.", goal_name()), run_));
     return next_goal(output);
   }
   if (input.navigation != NavigationFeedback::kArrived) return;
@@ -140,11 +140,11 @@ void TunnelMission::drive(const MissionInput& input, MissionOutput& output) {
 }
 
 void TunnelMission::stand(MissionOutput& output) {
-  if (now_ - phase_start_ < from_seconds(settings_.stand_s)) return;
+  if (now_ - phase_start_ < from_seconds(settings_.dwell_s)) return;
   output.events.push_back(event(EventKind::kGoalReached, goal_name(), fmt::format("At {}.", goal_name()), run_));
   if (goals_[goal_].type == GoalType::kScan) return enter(Phase::kScanning);
   if (goals_[goal_].type != GoalType::kOperator || !has_teleop_ || !has_map_) return next_goal(output);
-  output.events.push_back(event(EventKind::kTeleopRequested, goal_name(), "From here a person drives."));
+  output.events.push_back(event(EventKind::kTeleopRequested, goal_name(), "Waiting for teleoperation."));
   last_teleop_ = now_;
   enter(Phase::kTeleopAtGoal);
 }
@@ -153,7 +153,7 @@ void TunnelMission::scan(const MissionInput& input, MissionOutput& output) {
   if (now_ == phase_start_ || input.inspection.feedback == InspectionFeedback::kUnderWay) return;
   if (input.inspection.feedback == InspectionFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event(EventKind::kInspectionFailed, goal_name(), fmt::format("The lining at {} could not be measured.", goal_name()), run_));
+    output.events.push_back(event(EventKind::kInspectionFailed, goal_name(), fmt::format("Lining measurement failed at {}.", goal_name()), run_));
   }
   next_goal(output);
 }
@@ -165,9 +165,9 @@ void TunnelMission::await_teleop(const MissionInput& input, MissionOutput& outpu
     return enter(Phase::kSounding);
   }
   const bool is_over = input.teleop && input.teleop->hand_over;
-  if (!is_over && now_ - last_teleop_ <= from_seconds(settings_.driver_patience_s)) return;
+  if (!is_over && now_ - last_teleop_ <= from_seconds(settings_.operator_timeout_s)) return;
   if (!is_over) ++num_failed_;
-  output.events.push_back(event(EventKind::kTeleopEnded, goal_name(), is_over ? "The robot goes on by itself." : "Nobody drives: the robot goes on by itself."));
+  output.events.push_back(event(EventKind::kTeleopEnded, goal_name(), is_over ? "Teleoperation ended: resuming autonomous mode." : "Teleoperation timeout: resuming autonomous mode."));
   next_goal(output);
 }
 
@@ -176,7 +176,7 @@ void TunnelMission::sound(const MissionInput& input, MissionOutput& output) {
   if (now_ == phase_start_ || input.inspection.feedback == InspectionFeedback::kUnderWay) return;
   if (input.inspection.feedback == InspectionFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event(EventKind::kInspectionFailed, sounding_name(), "The antenna could not sound for water.", run_));
+    output.events.push_back(event(EventKind::kInspectionFailed, sounding_name(), "TEM sounding failed.", run_));
   }
   enter(Phase::kTeleopAtGoal);
 }
@@ -188,25 +188,25 @@ void TunnelMission::dock(const MissionInput& input, MissionOutput& output) {
     output.events.push_back(event(EventKind::kDocked, "", "Docked at the charging post.", run_));
   } else {
     ++num_failed_;
-    output.events.push_back(event(EventKind::kDockFailed, "", "The robot could not dock.", run_));
+    output.events.push_back(event(EventKind::kDockFailed, "", "Docking failed.", run_));
   }
   start_run(output);
 }
 
 void TunnelMission::start_run(MissionOutput& output) {
-  if (run_ >= settings_.navigations || goals_.empty()) return finish(output);
+  if (run_ >= settings_.num_runs || goals_.empty()) return finish(output);
   ++run_;
   goal_ = 0;
   output.relocalization = relocalization();
   output.events.push_back(event(EventKind::kNavigationStarted, fmt::format("navigation_{}", run_),
-                                fmt::format("Navigation {} of {}: {} goals.", run_, settings_.navigations, goals_.size()),
+                                fmt::format("Run {} of {}: {} goals.", run_, settings_.num_runs, goals_.size()),
                                 run_));
   enter(is_docked_ ? Phase::kUndocking : Phase::kDriving);
 }
 
 Relocalization TunnelMission::relocalization() const {
-  if (settings_.starts_at_survey) return Relocalization::kNone;
-  return settings_.starts_docked ? Relocalization::kAtDock : Relocalization::kAnywhere;
+  if (settings_.start_at_survey) return Relocalization::kNone;
+  return settings_.start_docked ? Relocalization::kAtDock : Relocalization::kAnywhere;
 }
 
 void TunnelMission::next_goal(MissionOutput& output) {
@@ -216,7 +216,7 @@ void TunnelMission::next_goal(MissionOutput& output) {
 }
 
 void TunnelMission::end_run(MissionOutput& output) {
-  if (settings_.docks) return enter(Phase::kDocking);
+  if (settings_.dock_after_run) return enter(Phase::kDocking);
   start_run(output);
 }
 
@@ -226,8 +226,7 @@ void TunnelMission::finish(MissionOutput& output) {
     output.events.push_back(event(EventKind::kMissionCompleted, "", "Every goal was reached."));
     return;
   }
-  const std::string count = num_failed_ == 1 ? "One thing" : fmt::format("{} things", num_failed_);
-  output.events.push_back(event(EventKind::kMissionFailed, "", count + " went wrong on the way."));
+  output.events.push_back(event(EventKind::kMissionFailed, "", fmt::format("Tasks failed: {}.", num_failed_)));
 }
 
 Event TunnelMission::abort(Time now, EventKind kind, const std::string& text) {

@@ -14,42 +14,42 @@
 namespace patrol::stack {
 
 struct TunnelMissionSettings {
-  int navigations = 10;           ///< number of runs to all goals, each after a restart of the localization
-  bool starts_docked = true;      ///< false: the initial pose is unknown, and the robot localizes globally
-  bool starts_at_survey = false;  ///< true: a robot without a post starts at the surveyed start, localizes from there,
+  int num_runs = 10;           ///< number of runs to all goals, each after a restart of the localization
+  bool start_docked = true;      ///< false: the initial pose is unknown, and the robot localizes globally
+  bool start_at_survey = false;   ///< true: a robot without a post starts at the surveyed start, localizes from there,
                                   ///< and continues between runs without a restart
-  bool docks = true;              ///< true: dock after the mapping drive and after each run
-  double start_wait_s = 4.0;      ///< initial standing time, for sensors to settle and biases to be estimated
-  double start_look_s = 1.5;      ///< minimum of the initial standing time after the first step; the map's first scan
+  bool dock_after_run = true;              ///< true: dock after the mapping drive and after each run
+  double init_wait_s = 4.0;      ///< initial standing time, for sensors to settle and biases to be estimated
+  double first_scan_wait_s = 1.5;      ///< minimum of the initial standing time after the first step; the map's first scan
                                   ///< is taken at rest
-  double stand_s = 1.0;           ///< standing time at a goal before it is reported
-  double position_tol_m = 0.03;   ///< tolerance at a goal; the goal's own accuracy applies if tighter
-  double yaw_tol_rad = 0.017;
-  double remote_silence_s = 2.0;  ///< timeout after which the teleoperation counts as switched off
-  double lost_patience_s = 30.0;  ///< relocalization timeout; the robot stands still meanwhile
-  std::string mark_types = "";    ///< types of the goals saved on the mapping drive, in order (core/route.h); N for the
+  double dwell_s = 1.0;           ///< standing time at a goal before it is reported
+  double position_tolerance_m = 0.03;   ///< tolerance at a goal; the goal's own accuracy applies if tighter
+  double yaw_tolerance_rad = 0.017;
+  double teleop_timeout_s = 2.0;  ///< timeout after which the teleoperation counts as switched off
+  double relocalization_timeout_s = 30.0;  ///< relocalization timeout; the robot stands still meanwhile
+  std::string goal_types = "";    ///< types of the goals saved on the mapping drive, in order (core/route.h); N for the
                                   ///< rest
-  double driver_patience_s = 120.0;  ///< timeout for teleoperation commands at a goal of type R; the robot then
+  double operator_timeout_s = 120.0;  ///< timeout for teleoperation commands at a goal of type R; the robot then
                                      ///< continues autonomously
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("navigations", self.navigations, between(0, 1000));
-    visit("starts_docked", self.starts_docked);
-    visit("starts_at_survey", self.starts_at_survey);
-    visit("docks", self.docks);
-    visit("start_wait_s", self.start_wait_s, between(0.0, 600.0));
-    visit("start_look_s", self.start_look_s, between(0.0, 600.0));
-    visit("stand_s", self.stand_s, between(0.0, 60.0));
-    visit("position_tol_m", self.position_tol_m, between(0.005, 5.0));
-    visit("yaw_tol_rad", self.yaw_tol_rad, between(0.002, 3.2));
-    visit("remote_silence_s", self.remote_silence_s, between(0.2, 60.0));
-    visit("lost_patience_s", self.lost_patience_s, between(1.0, 600.0));
-    visit("mark_types", self.mark_types);
-    visit("driver_patience_s", self.driver_patience_s, between(1.0, 3600.0));
+    visit("num_runs", self.num_runs, between(0, 1000));
+    visit("start_docked", self.start_docked);
+    visit("start_at_survey", self.start_at_survey);
+    visit("dock_after_run", self.dock_after_run);
+    visit("init_wait_s", self.init_wait_s, between(0.0, 600.0));
+    visit("first_scan_wait_s", self.first_scan_wait_s, between(0.0, 600.0));
+    visit("dwell_s", self.dwell_s, between(0.0, 60.0));
+    visit("position_tolerance_m", self.position_tolerance_m, between(0.005, 5.0));
+    visit("yaw_tolerance_rad", self.yaw_tolerance_rad, between(0.002, 3.2));
+    visit("teleop_timeout_s", self.teleop_timeout_s, between(0.2, 60.0));
+    visit("relocalization_timeout_s", self.relocalization_timeout_s, between(1.0, 600.0));
+    visit("goal_types", self.goal_types);
+    visit("operator_timeout_s", self.operator_timeout_s, between(1.0, 3600.0));
   }
 
-  /// Returns the type of the goal with this index, from 0. Throws InputError when `mark_types` contains a letter that
+  /// Returns the type of the goal with this index, from 0. Throws InputError when `goal_types` contains a letter that
   /// is not in `kGoalTypes`.
   GoalType goal_type(std::size_t index) const;
 };
@@ -63,8 +63,8 @@ struct TunnelMissionSettings {
 /// the trestle bridge), requests soundings, drives it back and hands over control. If the mission makes its own map,
 /// the operator was present at the mapping drive, and R is treated as N.
 ///
-/// Events: goal_marked, mapping_done, navigation_started, goal_reached, goal_failed, inspection_failed,
-/// remote_requested, remote_ended, docked, dock_failed, lost, relocalized, cannot_localize. At the end
+/// Events: goal_saved, mapping_completed, navigation_started, goal_reached, goal_failed, inspection_failed,
+/// teleop_requested, teleop_ended, docked, dock_failed, localization_lost, relocalized, localization_failed. At the end
 /// mission_completed (every goal of every run reached, every inspection and docking done) or mission_failed. Subjects
 /// are "goal_2", "navigation_7", "sounding_1"; the value of a goal event is the number of its run.
 class TunnelMission final : public Mission {
@@ -78,7 +78,7 @@ class TunnelMission final : public Mission {
   bool is_over() const override { return phase_ == Phase::kOver; }
   Event abort(Time now, EventKind kind, const std::string& text) override;
   TaskTiming timing() const override { return TaskTiming::kNow; }
-  bool starts_at_survey() const override { return settings_.starts_at_survey; }
+  bool starts_at_survey() const override { return settings_.start_at_survey; }
   const std::vector<SavedGoal>& goals() const { return goals_; }
 
  private:

@@ -21,7 +21,7 @@ bool SensorMonitor::receive(const SensorMessage& message, Time now) {
   const std::size_t kind = message.index();
   Sensor& sensor = sensors_[kind];
   sensor.stamp = stamp_of(message);
-  sensor.has_future_stamp = sensor.stamp > now + from_seconds(settings_.future_s);
+  sensor.has_future_stamp = sensor.stamp > now + from_seconds(settings_.max_clock_lead_s);
   if (kSensorInfos[kind].freeze_check == FreezeCheck::kNone || sensor.has_future_stamp) return !sensor.has_future_stamp;
   const bool has_reading = sensor.reading.index() == kind;  // initially a laser scan without returns, which no scan
                                                             // repeats
@@ -54,13 +54,13 @@ std::vector<SensorChange> SensorMonitor::step(Time now, const Pose2& T_odom_body
     if (info.is_required_to_drive && state != State::kFine) can_drive = false;
     if (std::exchange(sensor.state, state) == state) continue;
     const auto add = [&](const char* what) {
-      changes.push_back({.sensor = info.name, .has_recovered = state == State::kFine, .text = fmt::format("The {} {}.", info.name, what)});
+      changes.push_back({.sensor = info.name, .has_recovered = state == State::kFine, .text = fmt::format("Sensor {} {}.", info.name, what)});
     };
     switch (state) {
-      case State::kFine: add("is back"); break;
-      case State::kTimedOut: add("is silent or late"); break;
-      case State::kWrongClock: add("has a wrong clock"); break;
-      case State::kFrozen: add("repeats itself"); break;
+      case State::kFine: add("has recovered"); break;
+      case State::kTimedOut: add("timed out"); break;
+      case State::kWrongClock: add("has timestamps in the future"); break;
+      case State::kFrozen: add("is frozen (repeated readings)"); break;
     }
   }
   if (can_drive) halted_since_.reset();
@@ -70,7 +70,7 @@ std::vector<SensorChange> SensorMonitor::step(Time now, const Pose2& T_odom_body
 
 SensorMonitor::State SensorMonitor::state_of(std::size_t kind, const Sensor& sensor, Time now, const Pose2& T_odom_body) const {
   if (sensor.has_future_stamp) return State::kWrongClock;
-  if (now - sensor.stamp > from_seconds(age_limit_s(kind))) return State::kTimedOut;
+  if (now - sensor.stamp > from_seconds(timeout_s(kind))) return State::kTimedOut;
   return is_frozen(kind, sensor, T_odom_body) ? State::kFrozen : State::kFine;
 }
 
@@ -84,11 +84,11 @@ bool SensorMonitor::is_frozen(std::size_t kind, const Sensor& sensor, const Pose
   return path_m > settings_.frozen_path_m || turn_rad > settings_.frozen_turn_rad;
 }
 
-double SensorMonitor::age_limit_s(std::size_t kind) const {
+double SensorMonitor::timeout_s(std::size_t kind) const {
   switch (kSensorInfos[kind].timeout) {
-    case SensorTimeout::kLidar: return settings_.lidar_age_s;
-    case SensorTimeout::kMotion: return settings_.motion_age_s;
-    default: return settings_.instrument_age_s;
+    case SensorTimeout::kLidar: return settings_.lidar_timeout_s;
+    case SensorTimeout::kMotion: return settings_.proprioception_timeout_s;
+    default: return settings_.instrument_timeout_s;
   }
 }
 

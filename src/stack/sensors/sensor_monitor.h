@@ -14,25 +14,25 @@ namespace patrol::stack {
 
 /// Settings of the sensor monitor. The age of a reading is counted from its stamp, so late readings count as missing.
 struct SensorMonitorSettings {
-  double lidar_age_s = 0.6;       ///< age limit of sensors with SensorTimeout::kLidar (core/sensors/registry.h)
-  double motion_age_s = 0.15;     ///< age limit of sensors with SensorTimeout::kMotion
-  double instrument_age_s = 5.0;  ///< age limit of sensors with SensorTimeout::kInstrument
-  double future_s = 0.05;         ///< a stamp further ahead of now indicates a wrong clock
+  double lidar_timeout_s = 0.6;       ///< age limit of sensors with SensorTimeout::kLidar (core/sensors/registry.h)
+  double proprioception_timeout_s = 0.15;     ///< age limit of sensors with SensorTimeout::kMotion
+  double instrument_timeout_s = 5.0;  ///< age limit of sensors with SensorTimeout::kInstrument
+  double max_clock_lead_s = 0.05;         ///< a stamp further ahead of now indicates a wrong clock
   double frozen_path_m = 0.1;     ///< travel or rotation of the robot during which the readings are bitwise identical
   double frozen_turn_rad = 0.1;
   int frozen_repeats = 3;      ///< minimum number of repeated readings
-  double give_up_s = 60.0;        ///< time unable to drive after which the mission is aborted
+  double abort_timeout_s = 60.0;        ///< time unable to drive after which the mission is aborted
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("lidar_age_s", self.lidar_age_s, at_least(0.05));
-    visit("motion_age_s", self.motion_age_s, at_least(0.01));
-    visit("instrument_age_s", self.instrument_age_s, at_least(0.05));
-    visit("future_s", self.future_s, at_least(0.0));
+    visit("lidar_timeout_s", self.lidar_timeout_s, at_least(0.05));
+    visit("proprioception_timeout_s", self.proprioception_timeout_s, at_least(0.01));
+    visit("instrument_timeout_s", self.instrument_timeout_s, at_least(0.05));
+    visit("max_clock_lead_s", self.max_clock_lead_s, at_least(0.0));
     visit("frozen_path_m", self.frozen_path_m, at_least(0.01));
     visit("frozen_turn_rad", self.frozen_turn_rad, at_least(0.01));
     visit("frozen_repeats", self.frozen_repeats, between(1, 1000));
-    visit("give_up_s", self.give_up_s, at_least(1.0));
+    visit("abort_timeout_s", self.abort_timeout_s, at_least(1.0));
   }
 };
 
@@ -46,7 +46,7 @@ struct SensorChange {
 /// Sensor monitor.
 ///
 /// Checks for each sensor that has ever published: messages arrive in time, stamps agree with the clock, readings
-/// change as the robot moves. Plausible errors (a drift, a spike) are not detected.
+/// change as the robot moves. Plausible errors (drift, outliers) are not detected.
 ///
 /// The robot must not drive without its lidar, the only sensor of obstacles ahead. It must not drive without its
 /// encoders either, since the IMU alone loses the pose within seconds. It can drive without all others, including IMU
@@ -63,8 +63,8 @@ class SensorMonitor {
   std::vector<SensorChange> step(Time now, const Pose2& T_odom_body, const VelocityCommand& command);
 
   bool can_drive() const { return !halted_since_; }
-  /// Returns whether the robot has been unable to drive for longer than `give_up_s`.
-  bool must_abort(Time now) const { return halted_since_ && now - *halted_since_ > from_seconds(settings_.give_up_s); }
+  /// Returns whether the robot has been unable to drive for longer than `abort_timeout_s`.
+  bool must_abort(Time now) const { return halted_since_ && now - *halted_since_ > from_seconds(settings_.abort_timeout_s); }
 
  private:
   enum class State { kFine, kTimedOut, kWrongClock, kFrozen };
@@ -84,7 +84,7 @@ class SensorMonitor {
 
   State state_of(std::size_t kind, const Sensor& sensor, Time now, const Pose2& T_odom_body) const;
   bool is_frozen(std::size_t kind, const Sensor& sensor, const Pose2& T_odom_body) const;
-  double age_limit_s(std::size_t kind) const;
+  double timeout_s(std::size_t kind) const;
 
   SensorMonitorSettings settings_;
   std::array<Sensor, std::variant_size_v<SensorMessage>> sensors_;

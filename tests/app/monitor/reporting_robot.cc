@@ -43,7 +43,7 @@ LiningResult lining_at(Time stamp, const std::string& station, int first_ring, d
   result.station = station;
   result.is_registered = true;
   result.registration_rms_m = 0.0021;
-  result.registration_share = 0.93;
+  result.registration_inlier_ratio = 0.93;
   result.correction_m = 0.034;
   for (int ring = first_ring; ring < first_ring + 12; ++ring) {
     for (int i = 0; i < 36; ++i) {

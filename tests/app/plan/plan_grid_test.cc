@@ -86,7 +86,7 @@ TEST(PlanGrid, SaysWhyNothingCanStandThere) {
   OccupancyGrid map({.resolution_m = 1.0, .width = 3, .height = 1}, kFree);
   map.at({1, 0}) = kUnknown;
   map.at({2, 0}) = kOccupied;
-  const plan::CostmapSettings careful{.crosses_unknown = false}, bold{.crosses_unknown = true};
+  const plan::CostmapSettings careful{.allow_unknown = false}, bold{.allow_unknown = true};
   EXPECT_STREQ(blocked_reason(map, careful, {0.5, 0.5}), "is too close to an obstacle");
   EXPECT_STREQ(blocked_reason(map, careful, {1.5, 0.5}), "is unknown in the map");
   EXPECT_STREQ(blocked_reason(map, bold, {1.5, 0.5}), "is too close to an obstacle");

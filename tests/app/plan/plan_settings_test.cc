@@ -26,7 +26,7 @@ TEST(PlanSettings, APointWeighsNoCostsAndCrossesNothingUnknown) {
   const PlanSetup setup = load_plan_setup({.map = "m.yaml"});
   EXPECT_FALSE(setup.body.footprint);
   EXPECT_EQ(setup.settings.routes.cost_weight, 0.0);
-  EXPECT_FALSE(setup.settings.costmap.crosses_unknown);
+  EXPECT_FALSE(setup.settings.costmap.allow_unknown);
 }
 
 TEST(PlanSettings, ADiscsOutlineHoldsTheDiscAndNoMoreThanHalfAPercentBeyond) {
@@ -37,15 +37,15 @@ TEST(PlanSettings, ADiscsOutlineHoldsTheDiscAndNoMoreThanHalfAPercentBeyond) {
 }
 
 TEST(PlanSettings, ARobotsAreThoseThatItDrivesWithUnderWhatIsSet) {
-  const plan::NavigatorSettings drives_with = default_scenario("tracked", find_data_root("")).stack.plan;
+  const plan::NavigatorSettings drives_with = default_scenario("tracked", find_data_root("")).stack.navigation;
   const PlanSetup setup = load_plan_setup({.map = "m.yaml", .robot = "tracked", .overrides = {"costmap.safety_margin_m=0.2"}});
   EXPECT_EQ(setup.settings.costmap.route_margin_m, drives_with.costmap.route_margin_m);
   EXPECT_EQ(setup.settings.costmap.inflation_radius_m, drives_with.costmap.inflation_radius_m);
   EXPECT_EQ(setup.settings.costmap.safety_margin_m, 0.2);
-  EXPECT_EQ(setup.settings.costmap.crosses_unknown, drives_with.costmap.crosses_unknown);
-  EXPECT_EQ(setup.settings.routes.cost_weight, drives_with.routes.family.cost_weight);
-  EXPECT_EQ(setup.settings.speed_mps, drives_with.local.max_speed_mps);
-  EXPECT_TRUE(load_plan_setup({.map = "m.yaml", .robot = "tracked", .overrides = {"allow_unknown=true"}}).settings.costmap.crosses_unknown);
+  EXPECT_EQ(setup.settings.costmap.allow_unknown, drives_with.costmap.allow_unknown);
+  EXPECT_EQ(setup.settings.routes.cost_weight, drives_with.global_planner.family.cost_weight);
+  EXPECT_EQ(setup.settings.speed_mps, drives_with.local_planner.dwa.max_speed_mps);
+  EXPECT_TRUE(load_plan_setup({.map = "m.yaml", .robot = "tracked", .overrides = {"allow_unknown=true"}}).settings.costmap.allow_unknown);
 }
 
 TEST(PlanSettings, OptionsWinOverSet) {
@@ -63,8 +63,8 @@ TEST(PlanSettings, WhatIsWrongIsNamed) {
   EXPECT_EQ(complaint({.map = "m.yaml", .robot = "tracked", .radius_m = 0.3}), "--robot and --radius-m are mutually exclusive");
   EXPECT_EQ(complaint({.map = "m.yaml", .radius_m = 0.0}), "--radius-m: 0: must be in [0.01, 10]");
   EXPECT_EQ(complaint({.map = "m.yaml", .radius_m = std::nan("")}), "--radius-m: nan: must be in [0.01, 10]");
-  EXPECT_EQ(complaint({.map = "m.yaml", .planner = "any_angle_optimum", .smooth = true}).substr(0, 9), "--smooth:");
-  EXPECT_NE(complaint({.map = "m.yaml", .planner = "any_angle_optimum", .robot = "tracked"}).find("routes.cost_weight"), std::string::npos);
+  EXPECT_EQ(complaint({.map = "m.yaml", .planner = "visibility_graph", .smooth = true}).substr(0, 9), "--smooth:");
+  EXPECT_NE(complaint({.map = "m.yaml", .planner = "visibility_graph", .robot = "tracked"}).find("routes.cost_weight"), std::string::npos);
   EXPECT_NE(complaint(options_of({"allow_unknown=maybe"})).find("allow_unknown: must be true or false"), std::string::npos) << complaint(options_of({"allow_unknown=maybe"}));
   EXPECT_EQ(complaint(options_of({"costmap.crosses_unknown=true"})), "--set: costmap.allow_unknown: not supported: use allow_unknown=true or allow_unknown=false");
   EXPECT_NE(complaint(options_of({"routes.ant_colony.antz=3"})).find("routes.ant_colony.antz"), std::string::npos);

@@ -17,7 +17,7 @@ import unittest
 
 PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 TUNNEL = SOURCE / "worlds/tunnel/map/map.yaml"
-PLANNERS = ["astar", "dijkstra", "theta_star", "any_angle_optimum", "plain_ant_colony", "ant_colony", "two_swarms", "q_learning"]
+PLANNERS = ["astar", "dijkstra", "theta_star", "visibility_graph", "ant_system", "ant_colony_li22", "dual_swarm_pso", "q_learning"]
 
 
 def octile_lengths(rows, start):
@@ -109,7 +109,7 @@ class Plan(unittest.TestCase):
             self.assertEqual(self.plan(file, "--planner", planner)["num_failed"], 0, planner)
             lengths[planner] = [float(row["length_cells"]) for row in self.rows("problems.csv")]
         for planner, values in lengths.items():
-            for value, best, octile in zip(values, lengths["any_angle_optimum"], lengths["astar"]):
+            for value, best, octile in zip(values, lengths["visibility_graph"], lengths["astar"]):
                 self.assertGreaterEqual(value, best - 1e-6, planner)
                 if planner == "theta_star":
                     self.assertLessEqual(value, octile + 1e-6)
@@ -159,7 +159,7 @@ class Plan(unittest.TestCase):
         _, file = self.drawn_problems()
         kept = []
         for seed in (4, 4, 5):
-            plan = self.plan(file, "--planner", "plain_ant_colony", "--seed", seed)
+            plan = self.plan(file, "--planner", "ant_system", "--seed", seed)
             del plan["performance"]
             kept.append((plan, (self.out / "problems.csv").read_bytes()))
         self.assertEqual(kept[0], kept[1])

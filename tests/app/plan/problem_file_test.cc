@@ -68,8 +68,8 @@ TEST_F(ProblemFile, ALengthAgreesWithinTheRoundingOfItsPublishedDigits) {
   for (const std::string length : {"129.113", "129.372", "129.242", "129.244", "129.24300000", "129", "129.2"}) {
     EXPECT_TRUE(fails(length, "astar")) << length;
   }
-  EXPECT_FALSE(fails("129.243", "any_angle_optimum"));
-  EXPECT_TRUE(fails("127", "any_angle_optimum"));
+  EXPECT_FALSE(fails("129.243", "visibility_graph"));
+  EXPECT_TRUE(fails("127", "visibility_graph"));
 }
 
 TEST_F(ProblemFile, AnAnyAngleRouteMayBeShorterButNotLonger) {

@@ -91,7 +91,7 @@ TEST(RouteCheck, PassesEveryRouteOfThetaStarAndOfTheOptimumOnThreeHundredGrids) 
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     const Grid<plan::Cost> costs = random_grid(seed, 24, 0.4);
     const auto [start, goal] = random_ends(costs, seed);
-    const plan::Route theta = plan::ThetaStar().plan(costs, start, goal), optimum = plan::AnyAngleOptimum().plan(costs, start, goal);
+    const plan::Route theta = plan::ThetaStar().plan(costs, start, goal), optimum = plan::VisibilityGraphPlanner().plan(costs, start, goal);
     if (theta.status == plan::PlanStatus::kFound) {
       EXPECT_EQ(validate_route(costs, theta, start, goal, false), std::nullopt) << "seed " << seed;
     }

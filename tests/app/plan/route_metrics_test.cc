@@ -37,14 +37,14 @@ TEST(RouteMetrics, NoRouteHasNoReferences) {
   EXPECT_FALSE(metrics.octile_length || metrics.any_angle_length || metrics.is_any_angle_skipped);
 }
 
-TEST(RouteMetrics, TheAnyAngleOptimumIsLeftOutOfLargeGrids) {
+TEST(RouteMetrics, TheVisibilityGraphPlannerIsLeftOutOfLargeGrids) {
   PlanSettings settings;
   settings.max_any_angle_cells = 15;
   const auto metrics_on = [&](const std::vector<std::string>& drawing) { return evaluate_route(draw(drawing), {0, 0}, {4, 0}, settings); };
   EXPECT_FALSE(metrics_on({".....", ".....", "....."}).is_any_angle_skipped);
   EXPECT_TRUE(metrics_on({"......", "......", "......"}).is_any_angle_skipped);
   EXPECT_TRUE(metrics_on({"....." + std::string(200, '#')}).is_any_angle_skipped);  // few passable, but more than 8 * 15 in all
-  settings.planner = "any_angle_optimum";
+  settings.planner = "visibility_graph";
   EXPECT_NEAR(metrics_on({"......", "......", "......"}).any_angle_length.value(), 4.0, kExactTol);  // it is there anyway
 }
 

@@ -124,7 +124,7 @@ TEST(Occasions, HaveALaneForEachKindAndMarkTroublesOnTheCurves) {
   run.record.collisions = {{.stamp = from_seconds(5.0), .first = "trunk", .second = "wall"}};
   std::vector<std::string> names;
   for (const auto& lane : make_lanes(run)) names.push_back(lane.name);
-  EXPECT_THAT(names, ElementsAre("station_reached", "alarm", "recovery", "collision"));
+  EXPECT_THAT(names, ElementsAre("station_reached", "gas_alarm", "recovery", "collision"));
   EXPECT_EQ(marks_of(run).size(), 3u);
   EXPECT_EQ(make_lanes(run).back().marks[0].text, "trunk touched wall.");
 }

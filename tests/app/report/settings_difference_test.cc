@@ -18,23 +18,23 @@ TEST(SettingsDifferences, AreNoneBetweenTheSame) { EXPECT_TRUE(settings_differen
 TEST(SettingsDifferences, NamePathDefaultAndValue) {
   Scenario scenario;
   scenario.seed = 7;
-  scenario.stack.slam.filter.particles += 5;
+  scenario.stack.slam.rbpf.filter.particles += 5;
   scenario.sensors.imu.enabled = false;
   scenario.map = "map/map.yaml";
-  const std::string particles = std::to_string(Scenario{}.stack.slam.filter.particles);
+  const std::string particles = std::to_string(Scenario{}.stack.slam.rbpf.filter.particles);
   EXPECT_EQ(settings_differences(Scenario{}, scenario),
             (Differences{{"seed", "1", "7"}, {"map", "–", "map/map.yaml"}, {"sensors.imu.enabled", "true", "false"},
-                         {"stack.slam.particles", particles, std::to_string(scenario.stack.slam.filter.particles)}}));
+                         {"stack.slam.rbpf.particles", particles, std::to_string(scenario.stack.slam.rbpf.filter.particles)}}));
 }
 
 TEST(SettingsDifferences, AnotherPresetIsOneDifferenceAndItsOverridesAreMore) {
   Scenario scenario;
   scenario.sensors.lidar = LidarSettings::of_preset("utm30lx");
   EXPECT_EQ(settings_differences(Scenario{}, scenario), (Differences{{"sensors.lidar.preset", "rplidar_s2", "utm30lx"}}));
-  scenario.sensors.lidar.range_noise_m = 0.5;
+  scenario.sensors.lidar.range_noise_std_m = 0.5;
   const Differences differences = settings_differences(Scenario{}, scenario);
   ASSERT_EQ(differences.size(), 2u);
-  EXPECT_EQ(differences[1].path, "sensors.lidar.range_noise_m");
+  EXPECT_EQ(differences[1].path, "sensors.lidar.range_noise_std_m");
   EXPECT_EQ(differences[1].value, "0.5");
 }
 

@@ -98,9 +98,9 @@ TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
 
 TEST(SweepPage, VariantsAreNamedByTheLastPartOfTheirKeysUnlessTwoAreAlike) {
   SweepManifest manifest;
-  manifest.paths = {"sensors.lidar.range_noise_m", "stack.slam.particles"};
-  manifest.variants = {{.name = "long", .overrides = {"sensors.lidar.range_noise_m=0.01", "stack.slam.particles=20"}}};
-  EXPECT_EQ(short_names(manifest).front(), "range_noise_m=0.01, particles=20");
+  manifest.paths = {"sensors.lidar.range_noise_std_m", "stack.slam.particles"};
+  manifest.variants = {{.name = "long", .overrides = {"sensors.lidar.range_noise_std_m=0.01", "stack.slam.particles=20"}}};
+  EXPECT_EQ(short_names(manifest).front(), "range_noise_std_m=0.01, particles=20");
   manifest.paths = {"sensors.lidar.rate_hz", "sensors.imu.rate_hz"};
   manifest.variants = {{.name = "long", .overrides = {"sensors.lidar.rate_hz=5", "sensors.imu.rate_hz=100"}}};
   EXPECT_EQ(short_names(manifest).front(), "long");

@@ -62,12 +62,12 @@ TEST(Verdict, OfARunThatWasCutOffIsIncompleteAndJudgesNothing) {
 
 TEST(Verdict, SaysOfEachFaultWhatTheJunitSays) {
   RunContents run = small_run();
-  run.scenario.faults = {{.sensor = "imu", .kind = "freeze", .start_s = 2.0}, {.sensor = "uwb", .kind = "silence", .start_s = 3.0}, {.sensor = "gnss", .kind = "drift", .start_s = 4.0}};
+  run.scenario.faults = {{.sensor = "imu", .kind = "freeze", .start_s = 2.0}, {.sensor = "uwb", .kind = "dropout", .start_s = 3.0}, {.sensor = "gnss", .kind = "drift", .start_s = 4.0}};
   run.cases.push_back({.class_name = "small", .name = "fault imu freeze at 2 s", .message = "", .details = ""});
-  run.cases.push_back({.class_name = "small", .name = "fault uwb silence at 3 s", .result = io::JunitResult::kSkipped, .message = "not triggered: no message was touched", .details = ""});
+  run.cases.push_back({.class_name = "small", .name = "fault uwb dropout at 3 s", .result = io::JunitResult::kSkipped, .message = "not triggered: no message was touched", .details = ""});
   const report::VerdictBlock verdict = verdict_of(run);
   EXPECT_EQ(row_of(verdict, "fault imu freeze at 2 s").back(), "triggered");
-  EXPECT_EQ(row_of(verdict, "fault uwb silence at 3 s").back(), "not triggered");
+  EXPECT_EQ(row_of(verdict, "fault uwb dropout at 3 s").back(), "not triggered");
   EXPECT_EQ(row_of(verdict, "fault gnss drift at 4 s").back(), "unknown");
   EXPECT_EQ(verdict.word, "Passed");
   EXPECT_THAT(verdict.reason, HasSubstr("One fault or kidnap was declared, but not triggered."));

@@ -13,7 +13,7 @@ TEST(StudyTable, AnUnknownOneIsRefusedWithTheKnownNames) {
     make_study("golf");
     FAIL();
   } catch (const std::exception& error) {
-    EXPECT_THAT(error.what(), HasSubstr("there is no study 'golf' (known: ungm, landmarks-circle, "));
+    EXPECT_THAT(error.what(), HasSubstr("unknown study 'golf' (known: ungm, landmarks-circle, "));
   }
 }
 

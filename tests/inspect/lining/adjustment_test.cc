@@ -18,7 +18,7 @@ std::vector<DownsampledPoint> points_of(const LiningReference& reference) {
 
 /// From 3 mm and 0.3 mrad off, as the registration leaves it.
 Adjustment adjusted(const test::LiningStation& station, const LiningSettings& settings = {}) {
-  const SurfaceCloud target(points_of(station.reference)), source(downsample(station.scan.points, settings.spacing_m, settings.near_m));
+  const SurfaceCloud target(points_of(station.reference)), source(downsample(station.scan.points, settings.spacing_m, settings.min_range_m));
   const auto lining = fit_design(station.design_in_map, target.points(), station.reference.T_map_scanner.position, settings);
   const LiningGrid grid(*lining, station.T_map_scanner.position, settings);
   const Pose3 start{station.T_map_scanner.position + Eigen::Vector3d(0.003, -0.002, 0.001), quaternion_from_yaw(3e-4) * station.T_map_scanner.rotation};

@@ -78,7 +78,7 @@ TEST(SoundingLikelihood, RefusesNoSoundingsAndGatesThatDiffer) {
     SoundingLikelihood({}, odd);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("sounding of water at 4.000 s: its gates differ"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("water sounding at 4.000 s: gates differ"));
   }
   odd = soundings(kNone);
   odd[3].sounding.rate_tps[2] = std::nan("");

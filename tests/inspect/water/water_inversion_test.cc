@@ -18,7 +18,7 @@ const Eigen::Vector3d kTowards = Eigen::Vector3d(1.0, 0.2, -0.1).normalized();
 WaterSettings quick() {
   WaterSettings settings;
   settings.particles = 250;
-  settings.moves = 5;
+  settings.mcmc_steps = 5;
   return settings;
 }
 
@@ -96,13 +96,13 @@ TEST(WaterInversion, RefusesPriorsThatLeaveNothingByName) {
   using ::testing::HasSubstr;
   WaterSettings settings;
   settings.prior.min_radius_m = 12.0;
-  EXPECT_THAT(complaint(settings), HasSubstr("stack.water.prior.min_radius_m = 12: must be below max_radius_m"));
+  EXPECT_THAT(complaint(settings), HasSubstr("stack.inspection.water.prior.min_radius_m = 12: must be below max_radius_m"));
   settings = {};
   settings.prior.max_rock_spm = 1e-4;
-  EXPECT_THAT(complaint(settings), HasSubstr("stack.water.prior.min_rock_spm"));
+  EXPECT_THAT(complaint(settings), HasSubstr("stack.inspection.water.prior.min_rock_spm"));
   settings = {};
   settings.prior.max_distance_m = 10.5;
-  EXPECT_THAT(complaint(settings), HasSubstr("stack.water.prior.max_distance_m = 10.5"));
+  EXPECT_THAT(complaint(settings), HasSubstr("stack.inspection.water.prior.max_distance_m = 10.5"));
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ TEST(AntennaPoses, WhatTheMountDoesNotReachIsRefusedByName) {
     antenna_poses(settings, mount());
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("stack.water.sounding.max_yaw_deg = 70: the mount reaches -68.8 ... 68.8 deg"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("stack.inspection.water.sounding.max_yaw_deg = 70: outside the range of the mount: must be in [-68.8, 68.8] deg"));
   }
 }
 

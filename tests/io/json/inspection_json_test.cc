@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::json;
 
 LiningResult small_lining() {
-  return {.stamp = Time{1'500'000'001}, .station = "station_2", .T_map_body = {1.0, -2.0, 0.5}, .is_registered = true, .registration_rms_m = 0.002, .registration_share = 0.9,
+  return {.stamp = Time{1'500'000'001}, .station = "station_2", .T_map_body = {1.0, -2.0, 0.5}, .is_registered = true, .registration_rms_m = 0.002, .registration_inlier_ratio = 0.9,
           .correction_m = 0.03, .cells = {{.ring = 7, .clock_deg = 355.0, .inward_m = -0.0004, .std_m = 0.0003, .points = 12}},
           .lines = {{.ring = 7, .name = "9-3", .change_m = -0.006, .std_m = 0.0005}},
           .findings = {{.ring = 7, .clock_deg = 60.0, .inward_m = 0.012, .std_m = 0.0004, .level = WarningLevel::kAlarm, .p_map = {10.0, -4.0, 3.0}}}};

@@ -24,12 +24,12 @@ struct ApproachRecord {
 };
 
 /// Until the approach is done; then for a second more, while the commands under way take effect.
-ApproachRecord approach(TrackedPlant plant, const NavigationGoal& goal, double time_limit_s, double pose_std_m = 0.0) {
-  DifferentialApproach regulator({});
+ApproachRecord approach(TrackedPlant plant, const NavigationGoal& goal, double timeout_s, double pose_std_m = 0.0) {
+  DifferentialPoseController regulator({});
   const RandomStream noise(3, "test/pose");
   ApproachRecord record;
   int ticks_after = 0;
-  const auto ticks = static_cast<std::uint64_t>(time_limit_s / kPeriod_s);
+  const auto ticks = static_cast<std::uint64_t>(timeout_s / kPeriod_s);
   for (std::uint64_t tick = 0; tick < ticks && ticks_after < 20; ++tick) {
     const Pose2 error{pose_std_m * noise.normal(tick, 0), pose_std_m * noise.normal(tick, 1), pose_std_m * noise.normal(tick, 2)};
     const VelocityCommand command = regulator.step(plant.T_map_body * error, goal);
@@ -47,7 +47,7 @@ ApproachRecord approach(TrackedPlant plant, const NavigationGoal& goal, double t
 
 /// 2 cm and 1 degree.
 NavigationGoal make_goal(const Pose2& T_map_body) {
-  return {.T_map_body = T_map_body, .position_tol_m = 0.02, .yaw_tol_rad = kDegree};
+  return {.T_map_body = T_map_body, .position_tolerance_m = 0.02, .yaw_tolerance_rad = kDegree};
 }
 
 /// A tolerance and what a command under way adds to it: 0.04 m/s and 0.08 rad/s for 0.05 s.
@@ -55,7 +55,7 @@ constexpr double kPositionTol_m = 0.02 + 0.002;
 constexpr double kYawTol_rad = 1.0 * kDegree + 0.004;
 
 // Anywhere within 0.8 m, any heading; slip 10-40 % in turning, turning about up to 5 cm from the body's origin, 50 ms late.
-TEST(DifferentialApproach, ReachesTwoHundredGoalsToTwoCentimetresAndOneDegreeInSpiteOfSlip) {
+TEST(DifferentialPoseController, ReachesTwoHundredGoalsToTwoCentimetresAndOneDegreeInSpiteOfSlip) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const RandomStream stream(seed, "test/goal");
     const double distance_m = 0.8 * stream.uniform(0), direction = 2.0 * pi * stream.uniform(1);
@@ -76,14 +76,14 @@ TEST(DifferentialApproach, ReachesTwoHundredGoalsToTwoCentimetresAndOneDegreeInS
 }
 
 // 0.5 m straight on at 0.3 m/s and then slower: no turn, no detour.
-TEST(DifferentialApproach, AGoalStraightAheadIsDrivenToStraight) {
+TEST(DifferentialPoseController, AGoalStraightAheadIsDrivenToStraight) {
   const ApproachRecord record = approach({}, make_goal({0.5, 0.0, 0.0}), 30.0);
   EXPECT_TRUE(record.is_done);
   EXPECT_NEAR(record.way_m, 0.5, 0.011);
   EXPECT_LT(record.time_s, 8.0);
 }
 
-TEST(DifferentialApproach, AGoalStraightBehindIsDrivenToBackwards) {
+TEST(DifferentialPoseController, AGoalStraightBehindIsDrivenToBackwards) {
   const ApproachRecord record = approach({}, make_goal({-0.5, 0.0, 0.0}), 30.0);
   EXPECT_TRUE(record.is_done);
   EXPECT_NEAR(record.way_m, 0.5, 0.011);
@@ -92,7 +92,7 @@ TEST(DifferentialApproach, AGoalStraightBehindIsDrivenToBackwards) {
 
 // 5 cm aside with the right heading: back along the axis and in again. ln(5 / 0.5) / 3 = 0.77 m each way is what the law needs
 // to leave half a centimetre.
-TEST(DifferentialApproach, AFewCentimetresAsideAreTakenOffByBackingUp) {
+TEST(DifferentialPoseController, AFewCentimetresAsideAreTakenOffByBackingUp) {
   const ApproachRecord record = approach({}, make_goal({0.0, 0.05, 0.0}), 60.0);
   EXPECT_TRUE(record.is_done);
   EXPECT_LE(record.T_goal_body.position().norm(), kPositionTol_m);
@@ -101,23 +101,23 @@ TEST(DifferentialApproach, AFewCentimetresAsideAreTakenOffByBackingUp) {
 }
 
 // The room behind is blocked: the way back and forth begins ahead instead.
-TEST(DifferentialApproach, WithNoRoomBehindShufflesAhead) {
-  DifferentialApproach regulator({});
+TEST(DifferentialPoseController, WithNoRoomBehindShufflesAhead) {
+  DifferentialPoseController regulator({});
   const NavigationGoal goal = make_goal({0.0, 0.05, 0.0});
   EXPECT_LT(regulator.step({}, goal).vx_mps, 0.0);
   regulator.block();
   EXPECT_GT(regulator.step({}, goal).vx_mps, 0.0);
 }
 
-TEST(DifferentialApproach, WhereAnyHeadingWillDoItDoesNotTurnAtTheEnd) {
-  const NavigationGoal goal{.T_map_body = {0.5, 0.0, 2.0}, .position_tol_m = 0.1, .yaw_tol_rad = pi};
+TEST(DifferentialPoseController, WhereAnyHeadingWillDoItDoesNotTurnAtTheEnd) {
+  const NavigationGoal goal{.T_map_body = {0.5, 0.0, 2.0}, .position_tolerance_m = 0.1, .yaw_tolerance_rad = pi};
   const ApproachRecord record = approach({}, goal, 30.0);
   EXPECT_TRUE(record.is_done);
   EXPECT_NEAR(record.T_goal_body.yaw, -2.0, 1e-3);
 }
 
-TEST(DifferentialApproach, OnceDoneStandsUntilReset) {
-  DifferentialApproach regulator({});
+TEST(DifferentialPoseController, OnceDoneStandsUntilReset) {
+  DifferentialPoseController regulator({});
   const NavigationGoal goal = make_goal({1.0, 1.0, 1.0});
   regulator.step({1.0, 1.0, 1.0}, goal);
   ASSERT_TRUE(regulator.is_done());
@@ -129,7 +129,7 @@ TEST(DifferentialApproach, OnceDoneStandsUntilReset) {
 }
 
 // Localisation that jitters by 1 cm and 0.6 degrees from step to step.
-TEST(DifferentialApproach, AJitteringPoseDoesNotKeepItFromEnding) {
+TEST(DifferentialPoseController, AJitteringPoseDoesNotKeepItFromEnding) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const RandomStream stream(seed, "test/goal");
     const NavigationGoal goal =

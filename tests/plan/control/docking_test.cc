@@ -55,7 +55,7 @@ struct DockCase {
 };
 
 /// Closed loop at 20 Hz with scans at 10 Hz through the real detector. The dock is the world's origin.
-DockRun run_docking(DockCase c, const DockingSettings& settings = {}, double time_limit_s = 150.0) {
+DockRun run_docking(DockCase c, const DockingSettings& settings = {}, double timeout_s = 150.0) {
   const RoomWorld post = test::make_dock_world({}, test::make_dock_profile());
   RoomWorld hidden = post;
   hidden.add_wall(0.4, -0.6, 0.4, 0.6);
@@ -65,7 +65,7 @@ DockRun run_docking(DockCase c, const DockingSettings& settings = {}, double tim
   docking.dock(Time{});
   c.plant.T_map_body = c.T_docked_body;
   DockRun run;
-  const int ticks = static_cast<int>(time_limit_s * kTicksPerSecond);
+  const int ticks = static_cast<int>(timeout_s * kTicksPerSecond);
   for (int tick = 0; tick < ticks; ++tick) {
     const double time_s = tick * kPeriod_s;
     const Time now = from_seconds(time_s);
@@ -76,7 +76,7 @@ DockRun run_docking(DockCase c, const DockingSettings& settings = {}, double tim
       // Before the first look the map says where the post is, 10 cm and 3 degrees off.
       const Pose2 by_map = Pose2{0.1, -0.1, 0.05} * c.T_docked_body.inverse();
       const Pose2 expected = docking.T_level_docked(c.odometry.T_odom_body).value_or(by_map);
-      if (const auto sighting = detector.detect(scan, expected)) docking.add(*sighting, c.odometry.T_odom_body);
+      if (const auto detection = detector.detect(scan, expected)) docking.add(*detection, c.odometry.T_odom_body);
     }
     const DockingStep step = docking.step(now, c.odometry.T_odom_body);
     if (!step.text.empty()) run.texts.push_back(step.text);
@@ -133,7 +133,7 @@ TEST(Docking, AGyroBiasOfAThousandthOfARadianPerSecondDoesNotMakeItMiss) {
     const DockRun run = run_docking(c);
     EXPECT_EQ(run.status, DockingStatus::kDocked) << "seed " << seed;
     EXPECT_LE(run.T_docked_body.position().norm(), 0.02) << "seed " << seed;
-    EXPECT_THAT(run.texts, ::testing::Not(::testing::Contains(::testing::HasSubstr("try again")))) << "seed " << seed;
+    EXPECT_THAT(run.texts, ::testing::Not(::testing::Contains(::testing::HasSubstr("to retry")))) << "seed " << seed;
   }
 }
 
@@ -151,7 +151,7 @@ TEST(Docking, OffTheLineNearThePostBacksUpAndTriesAgain) {
   const DockRun run = run_docking(c);
   EXPECT_EQ(run.status, DockingStatus::kDocked);
   EXPECT_LE(run.T_docked_body.position().norm(), 0.02);
-  EXPECT_THAT(run.texts, ::testing::Contains(::testing::HasSubstr("backing up to try again")));
+  EXPECT_THAT(run.texts, ::testing::Contains(::testing::HasSubstr("backing up to retry")));
 }
 
 TEST(Docking, StandsWhileThePostIsHiddenAndGoesOn) {
@@ -168,8 +168,8 @@ TEST(Docking, SaysThatThePostIsNotToBeSeen) {
   c.hidden_from_s = 0.0;
   const DockRun run = run_docking(c);
   EXPECT_EQ(run.status, DockingStatus::kFailed);
-  EXPECT_NEAR(run.time_s, DockingSettings{}.give_up_blind_s, 0.2);
-  EXPECT_EQ(run.texts.back(), "The charging post is not to be seen.");
+  EXPECT_NEAR(run.time_s, DockingSettings{}.detection_timeout_s, 0.2);
+  EXPECT_EQ(run.texts.back(), "Docking failed: charging post not detected.");
   EXPECT_EQ(run.T_docked_body.x, -1.3);  // it has not moved blindly
 }
 
@@ -190,7 +190,7 @@ TEST(Docking, UndockingIsStraightBackByTwelveDecimetres) {
 
 TEST(Docking, TheStagingPoseLiesStraightBeforeTheDock) {
   DockingSettings settings;
-  settings.staging_m = 1.5;
+  settings.staging_distance_m = 1.5;
   const NavigationGoal goal = Docking(settings).staging_goal({2.0, 3.0, std::numbers::pi / 2.0});
   EXPECT_THAT(goal.T_map_body, test::Pose2Near(Pose2{2.0, 1.5, std::numbers::pi / 2.0}, 1e-12, 1e-12));
 }
@@ -206,9 +206,9 @@ TEST(Docking, IdleItStandsAndHeedsNoSighting) {
 
 TEST(Docking, RefusesSettingsThatBreakTheirRule) {
   DockingSettings settings;
-  settings.max_tries = 0;
+  settings.max_attempts = 0;
   EXPECT_THAT([&] { Docking{settings}; },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("docking.max_tries = 0")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("docking.max_attempts = 0")));
 }
 
 }  // namespace

@@ -113,7 +113,7 @@ TEST(DynamicWindow, OnAStraightFreePathDrivesStraightAtFullSpeed) {
 // From rest within window_s = 0.3 s at 0.8 m/s^2 and 2.5 rad/s^2.
 TEST(DynamicWindow, AsksOnlyForWhatIsInReach) {
   const Costmap costmap = Ground().costmap();
-  const DwaSettings settings{.max_accel_mps2 = 0.8, .max_yaw_accel_radps2 = 2.0, .window_s = 0.3};
+  const DwaSettings settings{.max_acceleration_mps2 = 0.8, .max_yaw_acceleration_radps2 = 2.0, .window_s = 0.3};
   const DynamicWindow window(settings);
   const auto ahead = window.choose(costmap, make_path({{0.0, 0.0}, {5.0, 0.0}}), 0.0, {}, {}, 10.0);
   ASSERT_TRUE(ahead);
@@ -125,7 +125,7 @@ TEST(DynamicWindow, AsksOnlyForWhatIsInReach) {
 
 TEST(DynamicWindow, KeepsTheSpeedLimitOrBrakesTowardsIt) {
   const Costmap costmap = Ground().costmap();
-  const DynamicWindow window({.max_accel_mps2 = 0.8, .window_s = 0.3});
+  const DynamicWindow window({.max_acceleration_mps2 = 0.8, .window_s = 0.3});
   const PlannedPath path = make_path({{0.0, 0.0}, {5.0, 0.0}});
   EXPECT_NEAR(window.choose(costmap, path, 0.0, {}, moving(0.3), 0.35)->vx_mps, 0.35, kExactTol);
   EXPECT_LE(window.choose(costmap, path, 0.0, {}, moving(0.8), 0.1)->vx_mps, 0.8 - 0.24 + kExactTol);

@@ -21,7 +21,7 @@ TEST(LineFollowing, OnTheLineDrivesStraight) {
 
 // 0.1 m to the left, gain 3 per metre: the heading aimed at is -atan(0.3), two per second of that is commanded.
 TEST(LineFollowing, AimsAtMinusTheArcTangentOfGainTimesSide) {
-  const LineFollowingSettings settings{.side_gain_per_m = 3.0, .yaw_gain_per_s = 0.5};
+  const LineFollowingSettings settings{.lateral_gain_per_m = 3.0, .yaw_gain_per_s = 0.5};
   EXPECT_NEAR(follow_line(settings, {-1.0, 0.1, 0.0}, 0.2).yaw_rate_radps, -0.5 * std::atan(0.3), kExactTol);
   EXPECT_NEAR(follow_line(settings, {-1.0, 0.1, 0.0}, -0.2).yaw_rate_radps, 0.5 * std::atan(0.3), kExactTol);
 }
@@ -40,7 +40,7 @@ TEST(LineFollowing, TurnedAwayByARightAngleTurnsBeforeItDrives) {
 
 // With a heading loop much faster than the drive, 0.1 m aside becomes 0.1 exp(-3 x 0.6) m after 0.6 m, whatever the speed.
 TEST(LineFollowing, TheSideErrorFallsWithTheWayDriven) {
-  const LineFollowingSettings settings{.side_gain_per_m = 3.0, .yaw_gain_per_s = 10.0, .max_yaw_rate_radps = 3.0};
+  const LineFollowingSettings settings{.lateral_gain_per_m = 3.0, .yaw_gain_per_s = 10.0, .max_yaw_rate_radps = 3.0};
   for (const double speed : {0.05, 0.1, -0.05}) {
     Pose2 pose{0.0, 0.1, line_heading_rad(settings, 0.1, speed)};
     while (std::abs(pose.x) < 0.6) {
@@ -56,10 +56,10 @@ TEST(LineFollowing, TheSideErrorFallsWithTheWayDriven) {
 TEST(LineFollowing, ForeseesTheSideErrorThatIsLeft) {
   const LineFollowingSettings settings;
   const double knee = std::tan(0.5) / 3.0;
-  EXPECT_NEAR(side_after_m(settings, 0.1, 0.5), 0.1 * std::exp(-1.5), kExactTol);
-  EXPECT_NEAR(side_after_m(settings, -0.1, 0.0), 0.1, kExactTol);
-  EXPECT_NEAR(side_after_m(settings, 0.5, 0.2), 0.5 - 0.2 * std::tan(0.5), kExactTol);
-  EXPECT_NEAR(side_after_m(settings, 0.5, 1.0), knee * std::exp(-3.0 * (1.0 - (0.5 - knee) / std::tan(0.5))), kExactTol);
+  EXPECT_NEAR(lateral_error_after_m(settings, 0.1, 0.5), 0.1 * std::exp(-1.5), kExactTol);
+  EXPECT_NEAR(lateral_error_after_m(settings, -0.1, 0.0), 0.1, kExactTol);
+  EXPECT_NEAR(lateral_error_after_m(settings, 0.5, 0.2), 0.5 - 0.2 * std::tan(0.5), kExactTol);
+  EXPECT_NEAR(lateral_error_after_m(settings, 0.5, 1.0), knee * std::exp(-3.0 * (1.0 - (0.5 - knee) / std::tan(0.5))), kExactTol);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ TEST(PoseRegulator, CommandsGainTimesErrorInTheBodyFrame) {
 
 TEST(PoseRegulator, KeepsItsLimitsInEveryDirection) {
   const PoseRegulatorSettings settings{
-      .max_speed_mps = 0.25, .max_side_speed_mps = 0.15, .max_yaw_rate_radps = 0.6};
+      .max_speed_mps = 0.25, .max_lateral_speed_mps = 0.15, .max_yaw_rate_radps = 0.6};
   const VelocityCommand plus = regulate_pose(settings, {}, {.T_map_body = {9.0, 9.0, 3.0}});
   EXPECT_EQ(plus.vx_mps, 0.25);
   EXPECT_EQ(plus.vy_mps, 0.15);
@@ -43,7 +43,7 @@ TEST(PoseRegulator, TurnsTheShortWayAcrossPi) {
 }
 
 TEST(PoseRegulator, DoesNotTurnWhereAnyHeadingWillDo) {
-  const NavigationGoal goal{.T_map_body = {1.0, 0.0, 2.0}, .yaw_tol_rad = std::numbers::pi};
+  const NavigationGoal goal{.T_map_body = {1.0, 0.0, 2.0}, .yaw_tolerance_rad = std::numbers::pi};
   EXPECT_EQ(regulate_pose({}, {}, goal).yaw_rate_radps, 0.0);
 }
 
@@ -61,8 +61,8 @@ TEST(PoseRegulator, ReachesAHundredRandomGoalsToACentimetre) {
     const RandomStream stream(i, "test/goal");
     const NavigationGoal goal{
         .T_map_body = {stream.uniform(0) - 0.5, stream.uniform(1) - 0.5, 6.28 * stream.uniform(2)},
-        .position_tol_m = 0.01,
-        .yaw_tol_rad = 0.01};
+        .position_tolerance_m = 0.01,
+        .yaw_tolerance_rad = 0.01};
     Pose2 T_map_body;
     for (int step = 0; step < 200 && !is_reached(T_map_body, goal); ++step) {
       const VelocityCommand command = regulate_pose({}, T_map_body, goal);
@@ -74,7 +74,7 @@ TEST(PoseRegulator, ReachesAHundredRandomGoalsToACentimetre) {
 }
 
 TEST(PoseRegulator, ReachedMeansBothPositionAndHeading) {
-  const NavigationGoal goal{.T_map_body = {1.0, 1.0, 3.1}, .position_tol_m = 0.05, .yaw_tol_rad = 0.1};
+  const NavigationGoal goal{.T_map_body = {1.0, 1.0, 3.1}, .position_tolerance_m = 0.05, .yaw_tolerance_rad = 0.1};
   EXPECT_TRUE(is_reached({1.02, 0.96, 3.1}, goal));   // 4.5 cm off
   EXPECT_FALSE(is_reached({1.04, 0.96, 3.1}, goal));  // 5.7 cm
   EXPECT_TRUE(is_reached({1.0, 1.0, -3.1}, goal));    // 0.083 rad across pi

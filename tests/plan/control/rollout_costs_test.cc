@@ -23,7 +23,7 @@ PlannedPath make_path() { return PlannedPath({{0.0, 0.0}, {10.0, 0.0}}); }
 RolloutScene make_scene(const PlannedPath& path) {
   return {.path = path,
           .along_m = 2.0,
-          .reach_m = 1.0,
+          .reachable_distance_m = 1.0,
           .twist = {.linear = {0.4, 0.0, 0.0}, .angular = {0.0, 0.0, 0.2}},
           .max_speed_mps = 0.8,
           .max_yaw_rate_radps = 1.0};

@@ -37,11 +37,11 @@ OccupancyGrid map_of_room(const RoomWorld& room) {
 }
 OccupancyGrid map_of_corridor(const RoomWorld& corridor) { return draw_map(corridor, -2.5, -1.5, 14.5, 1.5); }
 
-NavigatorSettings with_patience(double patience_s, double back_up_s, int max_recoveries) {
+NavigatorSettings with_patience(double blocked_timeout_s, double back_up_s, int max_recoveries) {
   NavigatorSettings settings;
-  settings.patience_s = patience_s;
-  settings.back_up_s = back_up_s;
-  settings.max_recoveries = max_recoveries;
+  settings.blocked_timeout_s = blocked_timeout_s;
+  settings.recovery.back_up_duration_s = back_up_s;
+  settings.recovery.max_attempts = max_recoveries;
   return settings;
 }
 
@@ -53,7 +53,7 @@ Navigator make_navigator(const OccupancyGrid& map, const NavigatorSettings& sett
 }
 
 NavigationGoal make_goal(const Pose2& T_map_body) {
-  return {.T_map_body = T_map_body, .position_tol_m = 0.05, .yaw_tol_rad = 0.05};
+  return {.T_map_body = T_map_body, .position_tolerance_m = 0.05, .yaw_tolerance_rad = 0.05};
 }
 
 // 8 m at up to 0.8 m/s: 10 s, and a few to turn, to slow down and to aim.
@@ -146,8 +146,8 @@ TEST(Navigator, SlowsDownNearWhatTheMapDoesNotKnow) {
   const auto speed_with_box_at = [](double x_m) {
     RoomWorld corridor = make_corridor();
     NavigatorSettings settings;
-    settings.newcomer_distance_m = 3.0;
-    settings.newcomer_speed_mps = 0.4;
+    settings.unmapped_obstacle_slowdown_distance_m = 3.0;
+    settings.unmapped_obstacle_max_speed_mps = 0.4;
     Navigator navigator = make_navigator(map_of_corridor(corridor), settings);
     navigator.set_goal(make_goal({12.0, 0.0, 0.0}));
     corridor.add_box(x_m, -0.9, x_m + 0.4, -0.5);
@@ -206,26 +206,26 @@ TEST(Navigator, WalledInSaysThatItFailed) {
 
 TEST(Navigator, TellsAGoalInAWallFromOneWithoutARoute) {
   NavigatorSettings settings;
-  settings.no_route_s = 5.0;
+  settings.no_path_timeout_s = 5.0;
   RoomWorld room = make_room();
   room.add_box(-0.1, -kRoom_m, 0.1, kRoom_m).add_box(-5.0, -1.0, -3.0, 1.0);
   Navigator navigator = make_navigator(map_of_room(room), settings);
   const DriveRecord in_wall = drive(navigator, room, {-2.0, 0.0, 0.0}, make_goal({0.0, 2.0, 0.0}), 30.0);
   EXPECT_EQ(in_wall.end, NavigationStatus::kFailed);
-  EXPECT_EQ(in_wall.trouble, NavigationTrouble::kGoalBlocked);
+  EXPECT_EQ(in_wall.failure, NavigationFailure::kGoalBlocked);
   EXPECT_THAT(in_wall.texts,
-              ::testing::ElementsAre("The goal lies in an obstacle or too near to one.",
-                                     "The goal is given up. The goal lies in an obstacle or too near to one."));
+              ::testing::ElementsAre("Goal pose is in collision.",
+                                     "Navigation aborted: Goal pose is in collision."));
   EXPECT_NEAR(in_wall.time_s, 5.0, 1.0);
   const DriveRecord behind = drive(navigator, room, {-2.0, 0.0, 0.0}, make_goal({3.0, 0.0, 0.0}), 30.0);
   EXPECT_EQ(behind.end, NavigationStatus::kFailed);
-  EXPECT_EQ(behind.trouble, NavigationTrouble::kNoRoute);
-  EXPECT_EQ(behind.texts.back(), "The goal is given up. There is no route to the goal.");
+  EXPECT_EQ(behind.failure, NavigationFailure::kNoRoute);
+  EXPECT_EQ(behind.texts.back(), "Navigation aborted: No path to the goal exists.");
   const DriveRecord walled_in = drive(navigator, room, {-4.0, 0.0, 0.0}, make_goal({-1.0, 3.0, 0.0}), 30.0);
-  EXPECT_EQ(walled_in.trouble, NavigationTrouble::kNoRoute);
+  EXPECT_EQ(walled_in.failure, NavigationFailure::kNoRoute);
   const DriveRecord free = drive(navigator, room, {-2.0, 0.0, 0.0}, make_goal({-1.0, 2.9, 0.0}), 30.0);
   EXPECT_EQ(free.end, NavigationStatus::kArrived);
-  EXPECT_EQ(free.trouble, NavigationTrouble::kNone);
+  EXPECT_EQ(free.failure, NavigationFailure::kNone);
 }
 
 // The corridor is blocked for 12 s. Six seconds of patience, then it turns round once, then it is free.
@@ -233,22 +233,22 @@ TEST(Navigator, LooksAroundAsARecovery) {
   RoomWorld empty = make_corridor(), blocked = make_corridor();
   blocked.add_box(3.0, -0.99, 3.3, 0.99);
   NavigatorSettings settings;
-  settings.recoveries = {"look_around"};
+  settings.recovery.behaviors = {"spin"};
   Navigator navigator = make_navigator(map_of_corridor(empty), settings);
   const DriveRecord record = drive(
       navigator, [&](double time_s) { return time_s < 16.0 ? blocked : empty; }, {0.0, 0.0, 0.0},
       make_goal({12.0, 0.0, 0.0}), 90.0);
   EXPECT_EQ(record.end, NavigationStatus::kArrived);
   EXPECT_GE(record.recoveries.size(), 1u);
-  EXPECT_THAT(record.recoveries, ::testing::Each("Recovery: the robot looks around."));
+  EXPECT_THAT(record.recoveries, ::testing::Each("Recovery: spinning in place."));
   EXPECT_GT(record.turned_rad, 2.0 * pi);
 }
 
 TEST(Navigator, RefusesAnEmptyListOfRecoveries) {
   NavigatorSettings settings;
-  settings.recoveries = {};
+  settings.recovery.behaviors = {};
   EXPECT_THAT([&] { Navigator(settings, make_robot(), {}); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("plan.recoveries")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("navigation.recovery.behaviors")));
 }
 
 // Nose on, 25 cm from the wall and less: nearer than discs and margins allow. It may not circle before such a
@@ -257,7 +257,7 @@ TEST(Navigator, AGoalThatItsOutlineDoesNotFitFailsInsteadOfCircling) {
   const RoomWorld room = make_room();
   for (const double x : {5.4, 5.5, 5.6, 6.5}) {
     NavigatorSettings settings = with_patience(1.0, 0.5, 2);
-    settings.stuck_s = 10.0;
+    settings.no_progress_timeout_s = 10.0;
     Navigator navigator = make_navigator(map_of_room(room), settings);
     const DriveRecord record = drive(navigator, room, {3.0, 0.0, 0.0}, make_goal({x, 0.0, 0.0}), 120.0);
     EXPECT_EQ(record.end, NavigationStatus::kFailed) << x;
@@ -323,11 +323,11 @@ TEST(Navigator, PublishesThePathItPlans) {
 TEST(Navigator, HasARouteOnlyWhenItsComputerWouldHaveFoundIt) {
   const RoomWorld room = make_room();
   NavigatorSettings settings;
-  settings.steps_per_s = 1000.0;
+  settings.planner_cells_per_s = 1000.0;
   Navigator navigator = make_navigator(map_of_room(room), settings);
   navigator.set_goal(make_goal({4.0, 0.0, 0.0}));
   const Pose2 start{-4.0, 0.0, 0.0};
-  const std::int64_t num_expanded = GlobalPlanner(settings.global, settings.routes, 0).plan(navigator.costmap().cost(), start.position(), {4.0, 0.0}).num_expanded;
+  const std::int64_t num_expanded = GlobalPlanner(settings.global_planner, 0).plan(navigator.costmap().cost(), start.position(), {4.0, 0.0}).num_expanded;
   const double expected_s = static_cast<double>(num_expanded) / 1000.0;
   ASSERT_GT(expected_s, 0.05);
   double found_s = 0.0;
@@ -343,14 +343,14 @@ TEST(Navigator, HasARouteOnlyWhenItsComputerWouldHaveFoundIt) {
 TEST(Navigator, SaysThatItsPlannerFoundNothingWhereThatProvesNothing) {
   const RoomWorld room = make_room();
   NavigatorSettings settings;
-  settings.global = "q_learning";
-  settings.routes.family.q_learning.episodes = 1;
-  settings.routes.family.q_learning.max_steps_share = 0.1;
+  settings.global_planner.method = "q_learning";
+  settings.global_planner.family.q_learning.episodes = 1;
+  settings.global_planner.family.q_learning.max_steps_per_cell = 0.1;
   Navigator navigator = make_navigator(map_of_room(room), settings);
   navigator.set_goal(make_goal({4.0, 0.0, 0.0}));
   const NavigationStep step = navigator.step(Time{}, {-4.0, 0.0, 0.0});
-  EXPECT_EQ(step.trouble, NavigationTrouble::kNoneFound);
-  EXPECT_EQ(step.text, "The planner finds no route to the goal.");
+  EXPECT_EQ(step.failure, NavigationFailure::kNotFound);
+  EXPECT_EQ(step.text, "Planner failed to find a path (planner is not complete).");
 }
 
 TEST(Navigator, GivesTheSameCommandsAgain) {
@@ -369,9 +369,9 @@ TEST(Navigator, GivesTheSameCommandsAgain) {
 TEST(Navigator, RefusesARobotWithoutAnOutlineAndSettingsThatBreakTheirRule) {
   EXPECT_THROW(Navigator({}, RobotDescription{}, {}), InputError);
   NavigatorSettings settings;
-  settings.approach_m = -1.0;
+  settings.goal_approach_distance_m = -1.0;
   EXPECT_THAT([&] { Navigator(settings, make_robot(), {}); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("plan.approach_m = -1")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("navigation.goal_approach_distance_m = -1")));
 }
 
 }  // namespace

@@ -22,18 +22,18 @@ TEST(ProgressMonitor, WaitingForARouteRestartsTheTimeButKeepsThePlace) {
   monitor.restart_time(14s);
   EXPECT_FALSE(monitor.is_stuck(20s, {}));
   EXPECT_TRUE(monitor.is_stuck(30s, {}));
-  monitor.forget_place();
+  monitor.restart();
   EXPECT_FALSE(monitor.is_stuck(31s, {}));
 }
 
 TEST(ProgressMonitor, HalfAMeterNearerIsProgress) {
   ProgressMonitor monitor(15.0);
-  EXPECT_TRUE(monitor.has_come_nearer(8.0));
-  EXPECT_FALSE(monitor.has_come_nearer(7.6));
-  EXPECT_FALSE(monitor.has_come_nearer(9.0));
-  EXPECT_TRUE(monitor.has_come_nearer(7.4));
+  EXPECT_TRUE(monitor.has_progressed(8.0));
+  EXPECT_FALSE(monitor.has_progressed(7.6));
+  EXPECT_FALSE(monitor.has_progressed(9.0));
+  EXPECT_TRUE(monitor.has_progressed(7.4));
   monitor.reset();
-  EXPECT_TRUE(monitor.has_come_nearer(20.0));
+  EXPECT_TRUE(monitor.has_progressed(20.0));
 }
 
 }  // namespace

@@ -27,21 +27,21 @@ Costmap make_costmap_with_obstacle() {
 
 NavigatorSettings make_settings(const std::vector<std::string>& recoveries) {
   NavigatorSettings settings;
-  settings.recoveries = recoveries;
-  settings.patience_s = 3.0;
-  settings.back_up_s = 2.0;
-  settings.back_up_speed_mps = 0.1;
-  settings.turn_rate_radps = 0.5;
-  settings.max_recoveries = 4;
+  settings.recovery.behaviors = recoveries;
+  settings.blocked_timeout_s = 3.0;
+  settings.recovery.back_up_duration_s = 2.0;
+  settings.recovery.back_up_speed_mps = 0.1;
+  settings.turn_in_place_rate_radps = 0.5;
+  settings.recovery.max_attempts = 4;
   return settings;
 }
 
 TEST(Recoveries, WaitStandsForItsTimeAndKeepsTheCostmap) {
   Costmap costmap = make_costmap_with_obstacle();
-  const std::size_t num_obstacles = costmap.num_live_obstacles();
+  const std::size_t num_obstacles = costmap.num_scan_obstacles();
   const auto wait = make_recovery("wait", make_settings({}));
   wait->begin(10s, {}, costmap);
-  EXPECT_EQ(costmap.num_live_obstacles(), num_obstacles);
+  EXPECT_EQ(costmap.num_scan_obstacles(), num_obstacles);
   ASSERT_TRUE(wait->step(12990ms, {}));
   EXPECT_EQ(wait->step(12990ms, {})->vx_mps, 0.0);
   EXPECT_FALSE(wait->step(13s, {}));
@@ -49,10 +49,10 @@ TEST(Recoveries, WaitStandsForItsTimeAndKeepsTheCostmap) {
 
 TEST(Recoveries, ClearCostmapClearsAndIsCompletedAtOnce) {
   Costmap costmap = make_costmap_with_obstacle();
-  ASSERT_GT(costmap.num_live_obstacles(), 0U);
-  const auto clear = make_recovery("clear", make_settings({}));
+  ASSERT_GT(costmap.num_scan_obstacles(), 0U);
+  const auto clear = make_recovery("clear_costmap", make_settings({}));
   clear->begin(10s, {}, costmap);
-  EXPECT_EQ(costmap.num_live_obstacles(), 0U);
+  EXPECT_EQ(costmap.num_scan_obstacles(), 0U);
   EXPECT_FALSE(clear->step(10s, {}));
 }
 
@@ -60,7 +60,7 @@ TEST(Recoveries, BackUpDrivesBackwardsForItsTime) {
   Costmap costmap = make_costmap_with_obstacle();
   const auto back_up = make_recovery("back_up", make_settings({}));
   back_up->begin(10s, {}, costmap);
-  EXPECT_EQ(costmap.num_live_obstacles(), 0U);
+  EXPECT_EQ(costmap.num_scan_obstacles(), 0U);
   ASSERT_TRUE(back_up->step(11900ms, {}));
   EXPECT_EQ(back_up->step(11900ms, {})->vx_mps, -0.1);
   EXPECT_FALSE(back_up->step(12s, {}));
@@ -68,7 +68,7 @@ TEST(Recoveries, BackUpDrivesBackwardsForItsTime) {
 
 TEST(Recoveries, SpinEndsAfterOneTurnOrItsTimeout) {
   Costmap costmap = make_empty_costmap();
-  const auto spin = make_recovery("look_around", make_settings({}));
+  const auto spin = make_recovery("spin", make_settings({}));
   for (const double rate_radps : {0.5, 0.1}) {  // a robot that turns as commanded, and one that slips
     spin->begin(10s, {}, costmap);
     double time_s = 10.0;
@@ -86,14 +86,14 @@ TEST(RecoverySequence, TakesTheBehaviorsInTurnUpToItsLimit) {
   RecoverySequence sequence(make_settings({"wait", "back_up"}));
   std::vector<std::string> sentences;
   for (int i = 0; i < 4; ++i) sentences.push_back(sequence.begin_next(10s, {}, costmap));
-  EXPECT_THAT(sentences, ::testing::ElementsAre("Recovery: the robot waits.", "Recovery: the robot backs up.",
-                                                "Recovery: the robot waits.", "Recovery: the robot backs up."));
+  EXPECT_THAT(sentences, ::testing::ElementsAre("Recovery: waiting.", "Recovery: backing up.",
+                                                "Recovery: waiting.", "Recovery: backing up."));
   EXPECT_FALSE(sequence.is_exhausted());
   sequence.begin_next(10s, {}, costmap);
   EXPECT_TRUE(sequence.is_exhausted());
   sequence.reset();
   EXPECT_FALSE(sequence.is_exhausted());
-  EXPECT_STREQ(sequence.begin_next(10s, {}, costmap), "Recovery: the robot waits.");
+  EXPECT_STREQ(sequence.begin_next(10s, {}, costmap), "Recovery: waiting.");
 }
 
 TEST(RecoverySequence, EndsARecoveryThatHasNoRoom) {
@@ -107,7 +107,7 @@ TEST(RecoverySequence, EndsARecoveryThatHasNoRoom) {
 
 TEST(Recoveries, UnknownNamesAreRefusedWithThoseAllowed) {
   EXPECT_THAT([] { make_recovery("jump", make_settings({})); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("must be one of wait, clear, back_up, look_around")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("must be one of wait, clear_costmap, back_up, spin")));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ Costmap make_costmap() { return Costmap({}, Footprint(make_robot().footprint_m, 
 TEST(RouteSearch, GivesItsResultWhenTheRobotsComputerHasIt) {
   Costmap costmap = make_costmap();
   NavigatorSettings settings;
-  settings.steps_per_s = 100.0;
+  settings.planner_cells_per_s = 100.0;
   RouteSearch search(settings, 0);
   EXPECT_TRUE(search.may_begin(0s));
   search.begin(0s, costmap, {0.0, 0.0}, {3.0, 0.0}, true);
@@ -40,7 +40,7 @@ TEST(RouteSearch, BeginsAtMostTwiceASecondAndIsOutdatedByAMap) {
   EXPECT_FALSE(search.may_begin(10490ms));
   EXPECT_TRUE(search.may_begin(10500ms));
   EXPECT_FALSE(search.is_outdated(20s)) << "no other map";
-  search.note_new_map();
+  search.on_new_map();
   EXPECT_FALSE(search.is_outdated(13s));
   EXPECT_TRUE(search.is_outdated(14s));
   search.reset();

@@ -39,8 +39,8 @@ TEST(TrackedNavigation, TwentyGoalsAmongPostsAreReachedToThreeCentimetresAndOneD
     RoomWorld hall = make_hall();
     const Pose2 start{-6.0, 10.0 * stream.uniform(0) - 5.0, 6.28 * stream.uniform(1)};
     const NavigationGoal goal{.T_map_body = {6.0, 10.0 * stream.uniform(2) - 5.0, 6.28 * stream.uniform(3)},
-                              .position_tol_m = 0.03,
-                              .yaw_tol_rad = kDegree};
+                              .position_tolerance_m = 0.03,
+                              .yaw_tolerance_rad = kDegree};
     for (std::uint64_t post = 0; post < 6; ++post) {
       hall.add_post(7.0 * stream.uniform(4, post) - 3.5, 14.0 * stream.uniform(5, post) - 7.0, 0.2);
     }
@@ -50,7 +50,7 @@ TEST(TrackedNavigation, TwentyGoalsAmongPostsAreReachedToThreeCentimetresAndOneD
         << "seed " << seed << " at " << record.T_map_body.vector().transpose();
     EXPECT_THAT(record.T_map_body, test::Pose2Near(goal.T_map_body, 0.03, kDegree)) << "seed " << seed;
     EXPECT_GT(record.min_gap_m, 0.0) << "seed " << seed;
-    EXPECT_EQ(record.max_side_speed_mps, 0.0) << "seed " << seed;
+    EXPECT_EQ(record.max_lateral_speed_mps, 0.0) << "seed " << seed;
     EXPECT_TRUE(record.recoveries.empty()) << "seed " << seed;
   }
 }
@@ -60,7 +60,7 @@ TEST(TrackedNavigation, ShufflesAheadWhereThereIsNoRoomBehind) {
   RoomWorld hall = make_hall();
   hall.add_box(-3.0, -2.0, -0.9, 2.0);
   Navigator navigator = make_navigator(hall);
-  const NavigationGoal goal{.T_map_body = {0.0, 0.05, 0.0}, .position_tol_m = 0.02, .yaw_tol_rad = kDegree};
+  const NavigationGoal goal{.T_map_body = {0.0, 0.05, 0.0}, .position_tolerance_m = 0.02, .yaw_tolerance_rad = kDegree};
   const DriveRecord record = drive_tracked(navigator, hall, {}, goal);
   EXPECT_EQ(record.end, NavigationStatus::kArrived);
   EXPECT_GT(record.min_gap_m, 0.0);
@@ -71,7 +71,7 @@ TEST(TrackedNavigation, TurnsInPlaceToLeaveADeadEnd) {
   RoomWorld hall = make_hall();
   hall.add_box(0.75, -2.0, 2.0, 2.0);
   Navigator navigator = make_navigator(hall);
-  const NavigationGoal goal{.T_map_body = {-5.0, 0.0, 0.0}, .position_tol_m = 0.1, .yaw_tol_rad = 0.1};
+  const NavigationGoal goal{.T_map_body = {-5.0, 0.0, 0.0}, .position_tolerance_m = 0.1, .yaw_tolerance_rad = 0.1};
   const DriveRecord record = drive_tracked(navigator, hall, {}, goal);
   EXPECT_EQ(record.end, NavigationStatus::kArrived);
   EXPECT_GT(record.min_gap_m, 0.0);
@@ -88,7 +88,7 @@ RoomWorld make_gap(double width_m) {
 // What A* plans through, the dynamic window passes: of every width of gap the robot either passes it without touching and without
 // a recovery, or there is no route: 0.7 m wide, margins of 5 and 8 cm on each side, and cells of 10 cm.
 TEST(TrackedNavigation, PassesEveryGapThatItPlansThrough) {
-  const NavigationGoal goal{.T_map_body = {4.0, 0.3, 0.0}, .position_tol_m = 0.1, .yaw_tol_rad = 0.1};
+  const NavigationGoal goal{.T_map_body = {4.0, 0.3, 0.0}, .position_tolerance_m = 0.1, .yaw_tolerance_rad = 0.1};
   for (double width_m = 0.70; width_m < 1.31; width_m += 0.05) {
     const RoomWorld hall = make_gap(width_m);
     Navigator navigator = make_navigator(hall);
@@ -96,7 +96,7 @@ TEST(TrackedNavigation, PassesEveryGapThatItPlansThrough) {
     EXPECT_GT(record.min_gap_m, 0.0) << width_m;
     if (record.num_plans == 0) {
       EXPECT_EQ(record.end, NavigationStatus::kFailed) << width_m;
-      EXPECT_EQ(record.trouble, NavigationTrouble::kNoRoute) << width_m;
+      EXPECT_EQ(record.failure, NavigationFailure::kNoRoute) << width_m;
       EXPECT_LT(width_m, 1.16);
     } else {
       EXPECT_EQ(record.end, NavigationStatus::kArrived) << width_m;
@@ -110,7 +110,7 @@ TEST(TrackedNavigation, PassesEveryGapThatItPlansThrough) {
 TEST(TrackedNavigation, LetsAPersonWalkByWithoutANewPath) {
   const RoomWorld hall = make_hall();
   Navigator navigator = make_navigator(hall);
-  const NavigationGoal goal{.T_map_body = {6.0, 0.0, 0.0}, .position_tol_m = 0.1, .yaw_tol_rad = 0.1};
+  const NavigationGoal goal{.T_map_body = {6.0, 0.0, 0.0}, .position_tolerance_m = 0.1, .yaw_tolerance_rad = 0.1};
   const auto world_at = [&](double time_s) {
     RoomWorld world = hall;
     return world.add_post(1.0, -5.0 + time_s, 0.25);
@@ -126,7 +126,7 @@ TEST(TrackedNavigation, GoesRoundWhatStays) {
   RoomWorld hall = make_hall();
   Navigator navigator = make_navigator(hall);
   hall.add_post(1.0, 0.1, 0.3);
-  const NavigationGoal goal{.T_map_body = {6.0, 0.0, 0.0}, .position_tol_m = 0.1, .yaw_tol_rad = 0.1};
+  const NavigationGoal goal{.T_map_body = {6.0, 0.0, 0.0}, .position_tolerance_m = 0.1, .yaw_tolerance_rad = 0.1};
   const DriveRecord record = drive_tracked(navigator, hall, {-5.0, 0.0, 0.0}, goal);
   EXPECT_EQ(record.end, NavigationStatus::kArrived);
   EXPECT_GT(record.min_gap_m, 0.0);
@@ -137,9 +137,9 @@ TEST(TrackedNavigation, PapersDwaDrivesItAcrossTheHallToo) {
   RoomWorld hall = make_hall();
   hall.add_post(0.0, 0.2, 0.3);
   NavigatorSettings settings = make_tracked_settings();
-  settings.local_planner = "paper_dwa";
+  settings.local_planner.method = "dwa_liu21";
   Navigator navigator = make_navigator(hall, settings);
-  const NavigationGoal goal{.T_map_body = {5.0, 1.0, 0.5}, .position_tol_m = 0.05, .yaw_tol_rad = 0.05};
+  const NavigationGoal goal{.T_map_body = {5.0, 1.0, 0.5}, .position_tolerance_m = 0.05, .yaw_tolerance_rad = 0.05};
   const DriveRecord record = drive_tracked(navigator, hall, {-5.0, 0.0, 0.0}, goal);
   EXPECT_EQ(record.end, NavigationStatus::kArrived);
   EXPECT_GT(record.min_gap_m, 0.0);

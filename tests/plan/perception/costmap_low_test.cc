@@ -33,7 +33,7 @@ class Looker {
     const DepthImage exact = scene_.look(to_pose3(T_map_body, z) * T_level_camera);
     for (int i = 0; i < images; ++i) {
       const DepthImage image = test::with_noise(exact, kStdPerM, noise_, tick_++);
-      const DepthPoints points = find_depth_points({}, image, T_level_camera, kBodyHeight_m);
+      const DepthPoints points = segment_obstacles({}, image, T_level_camera, kBodyHeight_m);
       most_ = std::max(most_, points.obstacles_m.size());
       costmap_.add_image(points, from_seconds(0.2 * static_cast<double>(tick_)), T_map_body);
     }
@@ -108,7 +108,7 @@ TEST(CostmapLow, ATakenAwayBarIsForgottenWhenTheGroundIsSeen) {
   Costmap costmap = looker.costmap();
   const DepthImage empty = DepthScene().look(to_pose3({}, kBodyHeight_m) * body_camera());
   for (int i = 0; i < 6; ++i) {
-    costmap.add_image(find_depth_points({}, empty, body_camera(), kBodyHeight_m), from_seconds(2.0 + 0.2 * i), {});
+    costmap.add_image(segment_obstacles({}, empty, body_camera(), kBodyHeight_m), from_seconds(2.0 + 0.2 * i), {});
   }
   EXPECT_EQ(costmap.num_low_obstacles(), 0u);
 }
@@ -125,7 +125,7 @@ TEST(CostmapLow, TheLayerSurvivesTheCostmapsGrowth) {
 SonarCone cone_to(double range_m) {
   const UltrasonicRange ping{.stamp = {}, .transducer = 0, .field_of_view_rad = 0.6, .range_min_m = 0.2,
                              .range_max_m = 4.0, .range_m = static_cast<float>(range_m)};
-  return find_sonar_cone({}, ping, {{0.45, 0.0, 0.1}, Eigen::Quaterniond::Identity()}, kBodyHeight_m, 0.1);
+  return inverse_sonar_model({}, ping, {{0.45, 0.0, 0.1}, Eigen::Quaterniond::Identity()}, kBodyHeight_m, 0.1);
 }
 
 TEST(CostmapLow, TwoPingsMarkAnArcAndTwoLongerOnesFreeIt) {

@@ -89,7 +89,7 @@ TEST(Costmap, UnknownGroundCostsItsShare) {
 TEST(Costmap, UnknownGroundIsNoWayForARobotThatKeepsToItsMap) {
   OccupancyGrid map = make_free_map();
   map.at(map.geometry().cell_at({2.05, 0.05})) = kUnknown;
-  const Costmap costmap = make_costmap(map, {.crosses_unknown = false});
+  const Costmap costmap = make_costmap(map, {.allow_unknown = false});
   EXPECT_EQ(costmap.cost_at({2.05, 0.05}), kLethalCost);
   EXPECT_EQ(costmap.cost_at({2.15, 0.05}), kFreeCost) << "it is no obstacle: nothing is kept from it";
   EXPECT_EQ(costmap.cost_at({900.0, 1.0}), kLethalCost) << "outside";
@@ -127,13 +127,13 @@ TEST(Costmap, ALiveHitIsLethalAndGoesWhenABeamPasses) {
   Costmap costmap = make_costmap(make_free_map());
   const Pose2 T_map_body{0.5, -0.5, 0.7};
   costmap.add_scan(one_beam(T_map_body, {2.05, 0.55}, 0.0), T_map_body);
-  EXPECT_EQ(costmap.num_live_obstacles(), 1u);
+  EXPECT_EQ(costmap.num_scan_obstacles(), 1u);
   EXPECT_EQ(costmap.cost_at({2.05, 0.55}), kLethalCost);
   // A beam through that place to one a metre beyond.
   const Eigen::Vector2d along = Eigen::Vector2d(2.05, 0.55) - T_map_body.position();
   const Eigen::Vector2d beyond = T_map_body.position() + (1.0 + 1.0 / along.norm()) * along;
   costmap.add_scan(one_beam(T_map_body, beyond, 0.1, false), T_map_body);
-  EXPECT_EQ(costmap.num_live_obstacles(), 0u);
+  EXPECT_EQ(costmap.num_scan_obstacles(), 0u);
   for (const Cost cost : costmap.cost().values()) ASSERT_NE(cost, kLethalCost);
 }
 
@@ -142,7 +142,7 @@ TEST(Costmap, ABeamThatStopsShortLeavesWhatIsBehindIt) {
   costmap.add_scan(one_beam({}, {3.05, 0.05}, 0.0), {});
   costmap.add_scan(one_beam({}, {1.55, 0.026}, 0.1), {});
   EXPECT_EQ(costmap.cost_at({3.05, 0.05}), kLethalCost);
-  EXPECT_EQ(costmap.num_live_obstacles(), 2u);
+  EXPECT_EQ(costmap.num_scan_obstacles(), 2u);
 }
 
 TEST(Costmap, ABeamElsewhereLeavesALiveObstacle) {
@@ -152,10 +152,10 @@ TEST(Costmap, ABeamElsewhereLeavesALiveObstacle) {
   room.add_post(2.0, 0.0, 0.15);
   const RoomWorld::ScanOptions options{.beams = 720};
   costmap.add_scan(room.scan({}, options), {});
-  const std::size_t seen = costmap.num_live_obstacles();
+  const std::size_t seen = costmap.num_scan_obstacles();
   EXPECT_GT(seen, 2u);
   costmap.add_scan(room.scan({}, options), {});  // again: nothing changes
-  EXPECT_EQ(costmap.num_live_obstacles(), seen);
+  EXPECT_EQ(costmap.num_scan_obstacles(), seen);
 }
 
 TEST(Costmap, APersonWalkingAcrossLeavesNothingBehind) {
@@ -169,11 +169,11 @@ TEST(Costmap, APersonWalkingAcrossLeavesNothingBehind) {
   }
   RoomWorld nobody;
   costmap.add_scan(nobody.scan({}, {.beams = 1440}), {});
-  EXPECT_EQ(costmap.num_live_obstacles(), 0u);
+  EXPECT_EQ(costmap.num_scan_obstacles(), 0u);
 }
 
 TEST(Costmap, WhatIsNotSeenAgainIsForgottenAfterItsMemory) {
-  Costmap costmap = make_costmap(make_free_map(), {.obstacle_memory_s = 5.0});
+  Costmap costmap = make_costmap(make_free_map(), {.obstacle_persistence_s = 5.0});
   costmap.add_scan(one_beam({}, {2.05, 0.05}, 1.0), {});
   costmap.add_scan(one_beam({}, {-3.05, 0.05}, 5.9), {});  // looks elsewhere, 4.9 s later
   EXPECT_EQ(costmap.cost_at({2.05, 0.05}), kLethalCost);
@@ -184,12 +184,12 @@ TEST(Costmap, WhatIsNotSeenAgainIsForgottenAfterItsMemory) {
 
 // Of three, the first goes; the last, seen again at 4 s, must be believed until 9 s.
 TEST(Costmap, AfterOneIsForgottenTheOthersAreStillThemselves) {
-  Costmap costmap = make_costmap(make_free_map(), {.obstacle_memory_s = 5.0});
+  Costmap costmap = make_costmap(make_free_map(), {.obstacle_persistence_s = 5.0});
   costmap.add_scan(one_beam({}, {2.05, 0.05}, 0.0), {});
   costmap.add_scan(one_beam({}, {0.05, 2.05}, 0.1), {});
   costmap.add_scan(one_beam({}, {-2.05, 0.05}, 0.2), {});
   costmap.add_scan(one_beam({}, {3.05, 0.0746}, 0.3, false), {});  // passes the first
-  EXPECT_EQ(costmap.num_live_obstacles(), 2u);
+  EXPECT_EQ(costmap.num_scan_obstacles(), 2u);
   costmap.add_scan(one_beam({}, {-2.05, 0.05}, 4.0), {});
   costmap.add_scan(one_beam({}, {0.05, -3.05}, 8.9), {});
   EXPECT_EQ(costmap.cost_at({2.05, 0.05}), kFreeCost);
@@ -200,22 +200,22 @@ TEST(Costmap, AfterOneIsForgottenTheOthersAreStillThemselves) {
 TEST(Costmap, HitsBeyondTheObstacleRangeAreLeftToTheMap) {
   Costmap costmap = make_costmap(make_free_map(), {.obstacle_range_m = 3.0});
   costmap.add_scan(one_beam({}, {3.2, 0.05}, 0.0), {});
-  EXPECT_EQ(costmap.num_live_obstacles(), 0u);
+  EXPECT_EQ(costmap.num_scan_obstacles(), 0u);
   costmap.add_scan(one_beam({}, {2.8, 0.05}, 0.1), {});
-  EXPECT_EQ(costmap.num_live_obstacles(), 1u);
+  EXPECT_EQ(costmap.num_scan_obstacles(), 1u);
 }
 
 // The map's wall is at x = 2; noise puts hits one cell before it.
 TEST(Costmap, WithSlackAHitBesideTheMapsObstacleIsThatObstacle) {
   OccupancyGrid map = make_free_map();
   occupy(map, {2.05, 0.05});
-  Costmap strict = make_costmap(map), slack = make_costmap(map, {.map_slack_cells = 1});
+  Costmap strict = make_costmap(map), slack = make_costmap(map, {.map_match_tolerance_cells = 1});
   for (Costmap* costmap : {&strict, &slack}) {
     costmap->add_scan(one_beam({}, {1.95, 0.05}, 0.0), {});
     costmap->add_scan(one_beam({}, {0.05, 1.85}, 0.1), {});
   }
-  EXPECT_EQ(strict.num_live_obstacles(), 2u);
-  EXPECT_EQ(slack.num_live_obstacles(), 1u);
+  EXPECT_EQ(strict.num_scan_obstacles(), 2u);
+  EXPECT_EQ(slack.num_scan_obstacles(), 1u);
 }
 
 TEST(Costmap, KnowsSinceWhenALiveObstacleStands) {
@@ -223,9 +223,9 @@ TEST(Costmap, KnowsSinceWhenALiveObstacleStands) {
   costmap.add_scan(one_beam({}, {2.05, 0.05}, 1.0), {});
   costmap.add_scan(one_beam({}, {2.05, 0.05}, 3.0), {});
   costmap.add_scan(one_beam({}, {0.05, 2.05}, 4.0), {});
-  EXPECT_EQ(costmap.live_since({2.2, 0.1}, 0.3), from_seconds(1.0));
-  EXPECT_EQ(costmap.live_since({0.05, 2.05}, 0.3), from_seconds(4.0));
-  EXPECT_FALSE(costmap.live_since({-2.0, 0.0}, 0.3));
+  EXPECT_EQ(costmap.obstacle_first_seen({2.2, 0.1}, 0.3), from_seconds(1.0));
+  EXPECT_EQ(costmap.obstacle_first_seen({0.05, 2.05}, 0.3), from_seconds(4.0));
+  EXPECT_FALSE(costmap.obstacle_first_seen({-2.0, 0.0}, 0.3));
 }
 
 TEST(Costmap, RoutesKeepTheirMarginBeyondTheOutlines) {
@@ -243,7 +243,7 @@ TEST(Costmap, WhatTheMapHasIsNoLiveObstacle) {
   occupy(map, {2.05, 0.05});
   Costmap costmap = make_costmap(map);
   costmap.add_scan(one_beam({}, {2.05, 0.05}, 0.0), {});
-  EXPECT_EQ(costmap.num_live_obstacles(), 0u);
+  EXPECT_EQ(costmap.num_scan_obstacles(), 0u);
   EXPECT_EQ(costmap.cost_at({2.05, 0.05}), kLethalCost);
 }
 
@@ -254,7 +254,7 @@ TEST(Costmap, ALiveObstacleThatTheMapLearnsIsTheMapsFromThenOn) {
   occupy(map, {2.05, 0.05});
   costmap.set_map(map);
   costmap.add_scan(one_beam({}, {-3.05, 0.05}, 0.1), {});
-  EXPECT_FALSE(costmap.is_live_obstacle(costmap.geometry().cell_at({2.05, 0.05})));
+  EXPECT_FALSE(costmap.is_scan_obstacle(costmap.geometry().cell_at({2.05, 0.05})));
   EXPECT_EQ(costmap.cost_at({2.05, 0.05}), kLethalCost);
   costmap.set_map(make_free_map());  // and leaves with it
   EXPECT_EQ(costmap.cost_at({2.05, 0.05}), kFreeCost);
@@ -264,8 +264,8 @@ TEST(Costmap, ForgettingLeavesLiveObstaclesOutsideTheCircle) {
   Costmap costmap = make_costmap(make_free_map());
   costmap.add_scan(one_beam({}, {1.55, 0.05}, 0.0), {});
   costmap.add_scan(one_beam({}, {0.05, 3.05}, 0.1), {});
-  costmap.forget_live({0.0, 0.0}, 2.0);
-  EXPECT_EQ(costmap.num_live_obstacles(), 1u);
+  costmap.clear_obstacles({0.0, 0.0}, 2.0);
+  EXPECT_EQ(costmap.num_scan_obstacles(), 1u);
   EXPECT_EQ(costmap.cost_at({1.55, 0.05}), kFreeCost);
   EXPECT_EQ(costmap.cost_at({0.05, 3.05}), kLethalCost);
 }
@@ -285,10 +285,10 @@ TEST(Costmap, RefreshedPieceByPieceEqualsAFreshOne) {
   for (int row = 0; row < both.geometry().height; ++row) {
     for (int col = 0; col < both.geometry().width; ++col) {
       const Eigen::Vector2d p = both.geometry().center_of({col, row});
-      if (piecewise.is_live_obstacle(piecewise.geometry().cell_at(p))) both.at({col, row}) = kOccupied;
+      if (piecewise.is_scan_obstacle(piecewise.geometry().cell_at(p))) both.at({col, row}) = kOccupied;
     }
   }
-  EXPECT_GT(piecewise.num_live_obstacles(), 5u);
+  EXPECT_GT(piecewise.num_scan_obstacles(), 5u);
   const Costmap fresh = make_costmap(both);
   for (double x = -4.95; x < 5.0; x += 0.1) {
     for (double y = -4.95; y < 5.0; y += 0.1)
@@ -341,8 +341,8 @@ TEST(Costmap, GrowingKeepsMapLiveObstaclesAndLines) {
     for (double y = -4.95; y < 5.0; y += 0.1)
       ASSERT_EQ(costmap.cost_at({x, y}), before.cost_at({x, y})) << x << ' ' << y;
   }
-  EXPECT_EQ(costmap.num_live_obstacles(), 1u);
-  EXPECT_TRUE(costmap.is_live_obstacle(costmap.geometry().cell_at({2.05, 0.05})));
+  EXPECT_EQ(costmap.num_scan_obstacles(), 1u);
+  EXPECT_TRUE(costmap.is_scan_obstacle(costmap.geometry().cell_at({2.05, 0.05})));
   EXPECT_EQ(costmap.cost_at({25.0, -40.0}), 38);  // unknown: 0.15 x 252
 }
 

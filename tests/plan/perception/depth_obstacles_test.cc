@@ -23,7 +23,7 @@ DepthPoints look(const DepthScene& scene, std::uint64_t tick = 0, double std_per
   const Pose3 T_world_level{{0.0, 0.0, kBodyHeight_m}, Eigen::Quaterniond::Identity()};
   const RandomStream noise(11, "test/depth");
   const DepthImage image = test::with_noise(scene.look(T_world_level * body_camera()), std_per_m, noise, tick);
-  return find_depth_points({}, image, body_camera(), kBodyHeight_m);
+  return segment_obstacles({}, image, body_camera(), kBodyHeight_m);
 }
 
 TEST(DepthPoints, AWallOfTwentyCentimetresIsAnObstacleWhereItStands) {
@@ -60,7 +60,7 @@ TEST(DepthPoints, ARampOfFifteenDegreesIsGroundFromItsFootOn) {
   const Pose3 T_level_body{Eigen::Vector3d::Zero(), quaternion_from_rpy(0.0, -15.0 * kDegree, 0.0)};
   const Pose3 T_world_level{{0.0, 0.0, kBodyHeight_m / std::cos(15.0 * kDegree)}, Eigen::Quaterniond::Identity()};
   const DepthImage image = ramp.look(T_world_level * T_level_body * body_camera());
-  EXPECT_TRUE(find_depth_points({}, image, T_level_body * body_camera(), kBodyHeight_m).obstacles_m.empty());
+  EXPECT_TRUE(segment_obstacles({}, image, T_level_body * body_camera(), kBodyHeight_m).obstacles_m.empty());
 }
 
 TEST(DepthPoints, TheCrestOfARampIsGround) {
@@ -78,7 +78,7 @@ TEST(DepthPoints, WhatHangsHighIsLeftToTheLidar) {
 TEST(DepthPoints, AnImageWithoutDepthsSaysNothing) {
   DepthImage image = DepthScene().look({{0.0, 0.0, 0.4}, quaternion_from_rpy(0.0, 0.5, 0.0)});
   std::fill(image.depth_mm.begin(), image.depth_mm.end(), std::uint16_t{0});
-  const DepthPoints points = find_depth_points({}, image, body_camera(), kBodyHeight_m);
+  const DepthPoints points = segment_obstacles({}, image, body_camera(), kBodyHeight_m);
   EXPECT_TRUE(points.obstacles_m.empty());
   EXPECT_TRUE(points.ground_m.empty());
 }
@@ -87,7 +87,7 @@ TEST(DepthPoints, AnImageWithoutDepthsSaysNothing) {
 TEST(DepthPoints, ASinglePixelIsFilteredAway) {
   DepthImage image = DepthScene().look(Pose3{{0.0, 0.0, kBodyHeight_m}, Eigen::Quaterniond::Identity()} * body_camera());
   image.depth_mm[40 * 80 + 40] = 400;
-  EXPECT_TRUE(find_depth_points({}, image, body_camera(), kBodyHeight_m).obstacles_m.empty());
+  EXPECT_TRUE(segment_obstacles({}, image, body_camera(), kBodyHeight_m).obstacles_m.empty());
 }
 
 }  // namespace

@@ -35,16 +35,16 @@ TEST(LowObstacles, GroundThatIsSeenTakesItAwayImageByImage) {
 }
 
 TEST(LowObstacles, OutOfSightItIsRememberedForItsTime) {
-  LowObstacles low({.memory_s = 60.0, .moving_memory_s = 3.0});
+  LowObstacles low({.persistence_s = 60.0, .dynamic_persistence_s = 3.0});
   const Cell person{7, 7};
   for (int i = 0; i < 2; ++i) low.add_image({kHere, person}, kNothing, {false, true}, at(1.0));
-  low.forget_old(at(3.9));
+  low.clear_expired(at(3.9));
   EXPECT_TRUE(low.is_obstacle(person));
-  low.forget_old(at(4.1));
+  low.clear_expired(at(4.1));
   EXPECT_FALSE(low.is_obstacle(person));
-  low.forget_old(at(60.9));
+  low.clear_expired(at(60.9));
   EXPECT_TRUE(low.is_obstacle(kHere));
-  low.forget_old(at(61.1));
+  low.clear_expired(at(61.1));
   EXPECT_FALSE(low.is_obstacle(kHere));
 }
 
@@ -66,7 +66,7 @@ TEST(LowObstacles, SonarDoesNotUndoWhatTheCameraSaw) {
 }
 
 TEST(LowObstacles, GroundThatTheCameraSeesUndoesWhatSonarHeardAndVetoesItForAWhile) {
-  LowObstacles low({.camera_veto_s = 2.0});
+  LowObstacles low({.camera_clearing_s = 2.0});
   for (int i = 0; i < 3; ++i) low.add_ping({kHere}, kNothing, at(0.1 * i));
   low.add_image(kNothing, {kHere}, {}, at(1.0));
   EXPECT_FALSE(low.is_obstacle(kHere));
@@ -83,7 +83,7 @@ TEST(LowObstacles, WhatOnlySonarHasHeardCanBeForgotten) {
     low.add_ping({kHere, seen}, kNothing, at(0.1 * i));
     low.add_image({seen}, kNothing, {false}, at(0.1 * i));
   }
-  low.forget_sonar([](Cell) { return true; });
+  low.clear_sonar_evidence([](Cell) { return true; });
   EXPECT_FALSE(low.is_obstacle(kHere));
   EXPECT_TRUE(low.is_obstacle(seen));
 }

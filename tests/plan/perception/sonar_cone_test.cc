@@ -21,7 +21,7 @@ UltrasonicRange ping(float range_m) {
 Pose3 transducer() { return {{0.5, 0.2, 5.0}, quaternion_from_yaw(std::numbers::pi / 2.0)}; }
 
 TEST(SonarCone, AnEchoLiesOnAnArcAtItsRangeWithinTheBelievedPartOfTheCone) {
-  const SonarCone cone = find_sonar_cone({.fov_share = 0.7}, ping(0.8F), transducer(), 0.15, kSpacing_m);
+  const SonarCone cone = inverse_sonar_model({.fov_fraction = 0.7}, ping(0.8F), transducer(), 0.15, kSpacing_m);
   ASSERT_GT(cone.arc_m.size(), 5u);
   for (const Eigen::Vector2d& p : cone.arc_m) {
     const Eigen::Vector2d from = p - Eigen::Vector2d(0.5, 0.2);
@@ -34,7 +34,7 @@ TEST(SonarCone, AnEchoLiesOnAnArcAtItsRangeWithinTheBelievedPartOfTheCone) {
 }
 
 TEST(SonarCone, GroundNearerThanTheEchoIsFreeUpToASpacingBeforeIt) {
-  const SonarCone cone = find_sonar_cone({}, ping(0.8F), transducer(), 0.15, kSpacing_m);
+  const SonarCone cone = inverse_sonar_model({}, ping(0.8F), transducer(), 0.15, kSpacing_m);
   double farthest_m = 0.0;
   for (const Eigen::Vector2d& p : cone.free_m) farthest_m = std::max(farthest_m, (p - Eigen::Vector2d(0.5, 0.2)).norm());
   EXPECT_LT(farthest_m, 0.7 + 1e-6);  // the range is a float
@@ -43,7 +43,7 @@ TEST(SonarCone, GroundNearerThanTheEchoIsFreeUpToASpacingBeforeIt) {
 
 TEST(SonarCone, WithoutEchoOrWithOneFromFarAwayOnlyFrees) {
   for (const float range : {2.5F, std::numeric_limits<float>::infinity()}) {
-    const SonarCone cone = find_sonar_cone({.max_range_m = 1.2}, ping(range), transducer(), 0.15, kSpacing_m);
+    const SonarCone cone = inverse_sonar_model({.max_range_m = 1.2}, ping(range), transducer(), 0.15, kSpacing_m);
     EXPECT_TRUE(cone.arc_m.empty());
     EXPECT_FALSE(cone.free_m.empty());
   }
@@ -51,13 +51,13 @@ TEST(SonarCone, WithoutEchoOrWithOneFromFarAwayOnlyFrees) {
 
 TEST(SonarCone, SomethingTooNearToMeasureIsPutAtTheLeastRange) {
   const SonarCone cone =
-      find_sonar_cone({}, ping(-std::numeric_limits<float>::infinity()), transducer(), 0.15, kSpacing_m);
+      inverse_sonar_model({}, ping(-std::numeric_limits<float>::infinity()), transducer(), 0.15, kSpacing_m);
   ASSERT_FALSE(cone.arc_m.empty());
   EXPECT_NEAR((cone.arc_m.front() - Eigen::Vector2d(0.5, 0.2)).norm(), 0.2, 1e-9);
 }
 
 TEST(SonarCone, AnInvalidReadingSaysNothing) {
-  const SonarCone cone = find_sonar_cone({}, ping(std::numeric_limits<float>::quiet_NaN()), transducer(), 0.15, kSpacing_m);
+  const SonarCone cone = inverse_sonar_model({}, ping(std::numeric_limits<float>::quiet_NaN()), transducer(), 0.15, kSpacing_m);
   EXPECT_TRUE(cone.arc_m.empty());
   EXPECT_TRUE(cone.free_m.empty());
 }
@@ -66,11 +66,11 @@ TEST(SonarCone, AnInvalidReadingSaysNothing) {
 // that is 0.719 m. Looking down by 0.2 rad it is 0.25 / sin(0.5) = 0.521 m, and 0.443 m.
 TEST(SonarCone, AnEchoThatMayBeTheGroundMarksNothing) {
   const Pose3 level{{0.4, 0.0, 0.10}, Eigen::Quaterniond::Identity()};
-  EXPECT_FALSE(find_sonar_cone({}, ping(0.71F), level, 0.15, kSpacing_m).arc_m.empty());
-  EXPECT_TRUE(find_sonar_cone({}, ping(0.73F), level, 0.15, kSpacing_m).arc_m.empty());
+  EXPECT_FALSE(inverse_sonar_model({}, ping(0.71F), level, 0.15, kSpacing_m).arc_m.empty());
+  EXPECT_TRUE(inverse_sonar_model({}, ping(0.73F), level, 0.15, kSpacing_m).arc_m.empty());
   const Pose3 down{{0.4, 0.0, 0.10}, quaternion_from_rpy(0.0, 0.2, 0.0)};
-  EXPECT_FALSE(find_sonar_cone({}, ping(0.43F), down, 0.15, kSpacing_m).arc_m.empty());
-  EXPECT_TRUE(find_sonar_cone({}, ping(0.45F), down, 0.15, kSpacing_m).arc_m.empty());
+  EXPECT_FALSE(inverse_sonar_model({}, ping(0.43F), down, 0.15, kSpacing_m).arc_m.empty());
+  EXPECT_TRUE(inverse_sonar_model({}, ping(0.45F), down, 0.15, kSpacing_m).arc_m.empty());
 }
 
 }  // namespace

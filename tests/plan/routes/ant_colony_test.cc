@@ -37,7 +37,7 @@ TEST(AntColony, OfPaper003IsWithinThreePercentOfTheOptimumOnSixtyCellsAtRandom) 
   constexpr int kGrids = 4;
   for (std::uint64_t seed = 1; seed <= kGrids; ++seed) {
     const GeneratedGrid grid = generate_grid({.size_cells = 60}, seed);
-    mean += gap_to_optimum(AntColony({}, ImprovedColonySettings{.tightens = false}, 0.0, seed).plan(grid.costs, grid.start, grid.goal), grid) / kGrids;
+    mean += gap_to_optimum(AntColony({}, ImprovedColonySettings{.shorten_paths = false}, 0.0, seed).plan(grid.costs, grid.start, grid.goal), grid) / kGrids;
   }
   EXPECT_LT(mean, 0.03);
 }
@@ -68,7 +68,7 @@ TEST(AntColony, TheForceHalvesTheExcessOfTheFirstIteration) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const GeneratedGrid grid = generate_grid({.size_cells = 60}, seed);
     plain += gap_to_optimum(AntColony({.iterations = 1}, std::nullopt, 0.0, seed).plan(grid.costs, grid.start, grid.goal), grid);
-    guided += gap_to_optimum(AntColony({.iterations = 1}, ImprovedColonySettings{.tightens = false}, 0.0, seed).plan(grid.costs, grid.start, grid.goal), grid);
+    guided += gap_to_optimum(AntColony({.iterations = 1}, ImprovedColonySettings{.shorten_paths = false}, 0.0, seed).plan(grid.costs, grid.start, grid.goal), grid);
   }
   EXPECT_LT(guided, 0.5 * plain);
 }
@@ -77,8 +77,8 @@ TEST(AntColony, WithoutTheCoefficientTheForceChangesNothing) {
   const GeneratedGrid grid = generate_grid({.size_cells = 30}, 5);
   const AntColonySettings settings{.ants = 10, .iterations = 5};
   const Route plain = AntColony(settings, std::nullopt, 0.0, 1).plan(grid.costs, grid.start, grid.goal);
-  EXPECT_EQ(AntColony(settings, ImprovedColonySettings{.coefficient = 0.0, .tightens = false}, 0.0, 1).plan(grid.costs, grid.start, grid.goal).points, plain.points);
-  EXPECT_NE(AntColony(settings, ImprovedColonySettings{.tightens = false}, 0.0, 1).plan(grid.costs, grid.start, grid.goal).points, plain.points);
+  EXPECT_EQ(AntColony(settings, ImprovedColonySettings{.coefficient = 0.0, .shorten_paths = false}, 0.0, 1).plan(grid.costs, grid.start, grid.goal).points, plain.points);
+  EXPECT_NE(AntColony(settings, ImprovedColonySettings{.shorten_paths = false}, 0.0, 1).plan(grid.costs, grid.start, grid.goal).points, plain.points);
 }
 
 TEST(AntColony, SevenThreadsGiveTheRouteOfOne) {

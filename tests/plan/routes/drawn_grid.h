@@ -34,10 +34,10 @@ inline Grid<Cost> random_grid(std::uint64_t seed, int max_size = 24, double max_
   const RandomStream stream(seed, "test/grid");
   const auto side = [&](std::uint64_t tick) { return 2 + static_cast<int>((max_size - 2) * stream.uniform(tick)); };
   Grid<Cost> costs({.resolution_m = 1.0, .width = side(0), .height = side(1)});
-  const double lethal_share = max_lethal * stream.uniform(2);
+  const double lethal_fraction = max_lethal * stream.uniform(2);
   for (std::size_t i = 0; i < costs.values().size(); ++i) {
     const auto priced = static_cast<Cost>(is_priced && stream.uniform(4, i) < 0.5 ? kMaxPassableCost * stream.uniform(5, i) : 0.0);
-    costs.values()[i] = stream.uniform(3, i) < lethal_share ? kLethalCost : priced;
+    costs.values()[i] = stream.uniform(3, i) < lethal_fraction ? kLethalCost : priced;
   }
   return costs;
 }
@@ -80,7 +80,7 @@ inline Grid<double> lengths_from(const Grid<Cost>& costs, Cell start) {
 }
 
 /// Whether a segment between corners or centres of cells meets a box of them, by separating axes in whole numbers of half cells; independent of
-/// walk_line. With `is_open` only the box's inside counts.
+/// visit_line_cells. With `is_open` only the box's inside counts.
 inline bool meets_box(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Cell first, Cell last, bool is_open = false) {
   const long ax = std::lround(2.0 * from.x()), ay = std::lround(2.0 * from.y()), bx = std::lround(2.0 * to.x()), by = std::lround(2.0 * to.y());
   const long low_x = 2 * first.col, low_y = 2 * first.row, high_x = 2 * last.col + 2, high_y = 2 * last.row + 2;

@@ -35,7 +35,7 @@ TEST(GeneratedGrids, OfOneSeedAreTheSameOfAnotherNot) {
 
 // Standard error of the share over 10^4 cells: sqrt(0.3 x 0.7 / 10^4) = 0.0046.
 TEST(GeneratedGrids, AThirdOfRandomsCellsIsLethalWithinFourStandardErrors) {
-  const double share = static_cast<double>(count_lethal(generate_grid({.size_cells = 100, .lethal_share = 0.3}, 1).costs)) / 1e4;
+  const double share = static_cast<double>(count_lethal(generate_grid({.size_cells = 100, .lethal_fraction = 0.3}, 1).costs)) / 1e4;
   EXPECT_NEAR(share, 0.3, 4.0 * 0.0046);
 }
 

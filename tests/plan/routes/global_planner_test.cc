@@ -21,7 +21,10 @@ using ::patrol::test::VectorNear;
 constexpr double kExactTol = 1e-9;
 
 /// Cells of 1 m with their lower-left corner at the origin: a cell's centre lies at half metres.
-GlobalPlanner astar(const GlobalPlannerSettings& settings = {}) { return GlobalPlanner("astar", settings, 1); }
+GlobalPlanner astar(GlobalPlannerSettings settings = {}) {
+  settings.method = "astar";
+  return GlobalPlanner(settings, 1);
+}
 
 /// By far the closest that a point of the polyline, looked at every hundredth of a cell, comes to a lethal cell's square; -1 inside of one.
 double sampled_clearance(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>& points, double at_most) {
@@ -100,35 +103,35 @@ TEST(GlobalPlanner, GoesRoundWhatCostsMoreThanTheDetour) {
 }
 
 class DrivenBy : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(GlobalPlanner, DrivenBy, ::testing::Values("astar", "dijkstra", "theta_star", "plain_ant_colony", "ant_colony", "two_swarms", "q_learning"),
+INSTANTIATE_TEST_SUITE_P(GlobalPlanner, DrivenBy, ::testing::Values("astar", "dijkstra", "theta_star", "ant_system", "ant_colony_li22", "dual_swarm_pso", "q_learning"),
                          [](const auto& parameter) { return parameter.param; });
 
 TEST_P(DrivenBy, NeverTouchesALethalCellAndKeepsTheClearanceOfTheSearchOnFortyRandomGrids) {
-  GlobalPlannerSettings settings{.goal_tolerance_m = 0.0, .start_tolerance_m = 0.0, .kept_clearance_m = 1.0};
+  GlobalPlannerSettings settings{.method = GetParam(), .goal_tolerance_m = 0.0, .start_tolerance_m = 0.0, .min_clearance_m = 1.0};
   settings.family.ant_colony.ants = 8, settings.family.ant_colony.iterations = 8;
-  settings.family.two_swarms.particles = 6, settings.family.two_swarms.iterations = 8;
+  settings.family.dual_swarm_pso.particles = 6, settings.family.dual_swarm_pso.iterations = 8;
   settings.family.q_learning.episodes = 300;
   int num_found = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const Grid<Cost> costs = random_grid(seed, 20, 0.3, true);
     const auto [start, goal] = random_ends(costs, seed);
     const GridGeometry& grid = costs.geometry();
-    const PlanResult plan = GlobalPlanner(GetParam(), settings, seed).plan(costs, grid.center_of(start), grid.center_of(goal));
+    const PlanResult plan = GlobalPlanner(settings, seed).plan(costs, grid.center_of(start), grid.center_of(goal));
     if (plan.status != PlanStatus::kFound) continue;
     ++num_found;
     const Route route = make_route_planner(GetParam(), settings.family, seed)->plan(costs, start, goal);
     EXPECT_GE(sampled_clearance(costs, plan.points_m, 1.0), std::min(1.0, route.clearance) - 1e-6) << "seed " << seed;
     EXPECT_GT(sampled_clearance(costs, plan.points_m, 1.0), 0.0) << "seed " << seed;
     EXPECT_LE(plan.length_m, route.length + kExactTol) << "seed " << seed;
-    EXPECT_EQ(plan.points_m, GlobalPlanner(GetParam(), settings, seed).plan(costs, grid.center_of(start), grid.center_of(goal)).points_m);
+    EXPECT_EQ(plan.points_m, GlobalPlanner(settings, seed).plan(costs, grid.center_of(start), grid.center_of(goal)).points_m);
   }
   EXPECT_GT(num_found, 20);
 }
 
 TEST(GlobalPlanner, RefusesANegativeWeightAndTheOptimumThatTouches) {
   using ::testing::HasSubstr, ::testing::ThrowsMessage;
-  EXPECT_THAT([] { astar({.family = {.cost_weight = -1.0}}); }, ThrowsMessage<InputError>(HasSubstr("routes.cost_weight = -1")));
-  EXPECT_THAT([] { GlobalPlanner("any_angle_optimum", {}, 0); }, ThrowsMessage<InputError>(HasSubstr("touches what is lethal")));
+  EXPECT_THAT([] { astar({.family = {.cost_weight = -1.0}}); }, ThrowsMessage<InputError>(HasSubstr("global_planner.cost_weight = -1")));
+  EXPECT_THAT([] { GlobalPlanner({.method = "visibility_graph"}, 0); }, ThrowsMessage<InputError>(HasSubstr("touch lethal cells")));
 }
 
 TEST(NearestPassable, EqualsBruteForceWithinItsRadius) {

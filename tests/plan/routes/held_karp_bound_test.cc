@@ -30,7 +30,7 @@ TEST(TourBound, NeverExceedsTheExactOrderOfTwoHundredProblemsAndIsWithinTwoPerce
     }
     if (seed % 2 == 0) problem.start = problem.end = 3;
     if (seed % 4 == 1) problem.start = 2, problem.end = 6;
-    const double exact = order_tour(problem, {}, 1).completion, bound = tour_lower_bound(problem, exact, 300);
+    const double exact = solve_station_order(problem, {}, 1).completion, bound = held_karp_bound(problem, exact, 300);
     ASSERT_LE(bound, exact + kExactTol) << "seed " << seed;
     if (seed % 2 == 0) round_gap += (exact / bound - 1.0) / 100.0;
   }
@@ -40,8 +40,8 @@ TEST(TourBound, NeverExceedsTheExactOrderOfTwoHundredProblemsAndIsWithinTwoPerce
 TEST(TourBound, OfOneWayMatricesIsBelowTheExactOrderToo) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const TourProblem problem = random_problem(seed, 8);
-    const double exact = order_tour(problem, {}, 1).completion;
-    ASSERT_LE(tour_lower_bound(problem, exact, 300), exact + kExactTol) << "seed " << seed;
+    const double exact = solve_station_order(problem, {}, 1).completion;
+    ASSERT_LE(held_karp_bound(problem, exact, 300), exact + kExactTol) << "seed " << seed;
   }
 }
 
@@ -49,14 +49,14 @@ TEST(TourBound, OfOneWayMatricesIsBelowTheExactOrderToo) {
 TEST(TourBound, CountsServiceAndTheLatestOpening) {
   TourProblem problem{.travel = {{0.0, 10.0, 20.0}, {10.0, 0.0, 10.0}, {20.0, 10.0, 0.0}},
                       .stations = std::vector<TourProblem::Station>(3, {.service = 4.0}), .start = {}, .end = {}};
-  EXPECT_NEAR(tour_lower_bound(problem, 32.0, 300), 20.0 + 12.0, 1e-6);
+  EXPECT_NEAR(held_karp_bound(problem, 32.0, 300), 20.0 + 12.0, 1e-6);
   problem.stations[1].earliest = 100.0;
-  EXPECT_NEAR(tour_lower_bound(problem, 150.0, 300), 104.0, 1e-6);
+  EXPECT_NEAR(held_karp_bound(problem, 150.0, 300), 104.0, 1e-6);
 }
 
 TEST(TourBound, IsInfiniteIfTheStationsDoNotHangTogether) {
   const double none = std::numeric_limits<double>::infinity();
-  EXPECT_TRUE(std::isinf(tour_lower_bound({.travel = {{0.0, none, none}, {none, 0.0, 1.0}, {none, 1.0, 0.0}}}, 10.0, 50)));
+  EXPECT_TRUE(std::isinf(held_karp_bound({.travel = {{0.0, none, none}, {none, 0.0, 1.0}, {none, 1.0, 0.0}}}, 10.0, 50)));
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ TEST(LineOfSight, OnNeighboursIsTheRuleForSteps) {
         for (const GridStep step : kGridSteps) {
           const Cell next{col + step.col, row + step.row};
           if (costs.contains(next)) {
-            ASSERT_EQ(may_step(costs, {col, row}, step), has_line_of_sight(costs, {col, row}, next)) << "seed " << seed;
+            ASSERT_EQ(is_valid_step(costs, {col, row}, step), has_line_of_sight(costs, {col, row}, next)) << "seed " << seed;
           }
         }
       }
@@ -57,15 +57,15 @@ TEST(LineOfSight, OnNeighboursIsTheRuleForSteps) {
 
 // Three cells along: half of the first, the second, half of the third. The second costs 5 ninths of the weight 9: 0.5 + (1 + 5) + 0.5 = 7.
 TEST(LinePrice, IsTheIntegralOfTheFactorsAlongTheLine) {
-  EXPECT_NEAR(*line_price(draw({".5."}), cost_factors(9.0), {0, 0}, {2, 0}), 7.0, kExactTol);
+  EXPECT_NEAR(*line_cost(draw({".5."}), cost_factors(9.0), {0, 0}, {2, 0}), 7.0, kExactTol);
 }
 
 TEST(LinePrice, OnFreeGroundIsTheLength) {
-  EXPECT_NEAR(*line_price(draw(std::vector<std::string>(9, "..........")), cost_factors(4.0), {1, 2}, {7, 5}), std::hypot(6.0, 3.0), kExactTol);
-  EXPECT_NEAR(*line_price(draw({"."}), cost_factors(4.0), {0, 0}, {0, 0}), 0.0, kExactTol);
+  EXPECT_NEAR(*line_cost(draw(std::vector<std::string>(9, "..........")), cost_factors(4.0), {1, 2}, {7, 5}), std::hypot(6.0, 3.0), kExactTol);
+  EXPECT_NEAR(*line_cost(draw({"."}), cost_factors(4.0), {0, 0}, {0, 0}), 0.0, kExactTol);
 }
 
-TEST(LinePrice, IsNoneAcrossALethalCell) { EXPECT_FALSE(line_price(draw({".#."}), cost_factors(0.0), {0, 0}, {2, 0})); }
+TEST(LinePrice, IsNoneAcrossALethalCell) { EXPECT_FALSE(line_cost(draw({".#."}), cost_factors(0.0), {0, 0}, {2, 0})); }
 
 }  // namespace
 }  // namespace patrol::plan::line_of_sight_test

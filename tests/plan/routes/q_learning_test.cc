@@ -22,7 +22,7 @@ TEST(QLearning, HasNoRouteUntilTheTableHasLearntOne) {
   const GeneratedGrid grid = generate_grid({.size_cells = 30}, 4);
   const Route route = QLearning({}, 0.0, 1).plan(grid.costs, grid.start, grid.goal);
   EXPECT_TRUE(std::isinf(route.history.front()));
-  EXPECT_EQ(QLearning({.episodes = 5}, 0.0, 1).plan(grid.costs, grid.start, grid.goal).status, PlanStatus::kNoneFound);
+  EXPECT_EQ(QLearning({.episodes = 5}, 0.0, 1).plan(grid.costs, grid.start, grid.goal).status, PlanStatus::kNotFound);
 }
 
 TEST(QLearning, RefusesALearningRateOfZero) {

@@ -24,7 +24,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 std::unique_ptr<RoutePlanner> make(const std::string& name, double cost_weight = 0.0, int threads = 1) {
   RoutePlannerSettings settings{.cost_weight = cost_weight};
   settings.ant_colony.ants = 10, settings.ant_colony.iterations = 10, settings.ant_colony.threads = threads;
-  settings.two_swarms.particles = 8, settings.two_swarms.iterations = 10;
+  settings.dual_swarm_pso.particles = 8, settings.dual_swarm_pso.iterations = 10;
   settings.q_learning.episodes = 300;
   return make_route_planner(name, settings, 1);
 }
@@ -32,7 +32,7 @@ std::unique_ptr<RoutePlanner> make(const std::string& name, double cost_weight =
 class EveryPlanner : public ::testing::TestWithParam<std::string> {
  protected:
   /// What it says where there is no way.
-  PlanStatus none() const { return planner->is_complete() ? PlanStatus::kNoRoute : PlanStatus::kNoneFound; }
+  PlanStatus none() const { return planner->is_complete() ? PlanStatus::kNoRoute : PlanStatus::kNotFound; }
 
   std::unique_ptr<RoutePlanner> planner = make(GetParam());
 };
@@ -44,7 +44,7 @@ TEST_P(EveryPlanner, FromACellToItselfHasNoLength) {
   EXPECT_EQ(route.length, 0.0);
   ASSERT_EQ(route.points.size(), 1u);
   EXPECT_EQ(route.points[0], Eigen::Vector2d(2.5, 1.5));
-  EXPECT_EQ(iterations_to_within(route.history, 0.01), 1);
+  EXPECT_EQ(iterations_to_convergence(route.history, 0.01), 1);
 }
 
 TEST_P(EveryPlanner, OnAMapOfOneCellStaysThere) {
@@ -96,7 +96,7 @@ TEST_P(EveryPlanner, AgreesWithBreadthFirstSearchOnMazesAndRandomGridsIfItIsComp
 }
 
 TEST_P(EveryPlanner, StartsAtTheStartEndsAtTheGoalAndIsNoShorterThanTheOptimum) {
-  const auto optimum = make("any_angle_optimum");
+  const auto optimum = make("visibility_graph");
   int num_found = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const Grid<Cost> costs = random_grid(seed, 18, 0.3);
@@ -111,7 +111,7 @@ TEST_P(EveryPlanner, StartsAtTheStartEndsAtTheGoalAndIsNoShorterThanTheOptimum) 
     ASSERT_GE(route.length, optimum->plan(costs, start, goal).length - kExactTol) << "seed " << seed;
     ASSERT_EQ(static_cast<int>(route.history.size()), route.num_iterations);
     ASSERT_NEAR(route.history.back(), route.cost, 1e-6);
-    if (GetParam() != "any_angle_optimum") {
+    if (GetParam() != "visibility_graph") {
       ASSERT_TRUE(test::keeps_clear(costs, route.points)) << "seed " << seed;
     }
   }
@@ -138,7 +138,7 @@ TEST_P(EveryPlanner, GivesTheSameRouteAgainWithTwoThreadsAndWhateverItPlannedBef
 
 // The corridor's middle third costs 1 + 4 in each cell: 3 + 3 x 5 for cells 3, 4, 5 of 0 ... 8, whose ends count half: 8 + 3 x 4 = 20.
 TEST_P(EveryPlanner, PricesARouteByTheCostsItCrosses) {
-  if (GetParam() == "any_angle_optimum") return;  // it knows no costs, and refuses a weight (below)
+  if (GetParam() == "visibility_graph") return;  // it must be 0 for visibility_graph, and refuses a weight (below)
   const Route route = make(GetParam(), 4.0)->plan(draw({"...999..."}), {0, 0}, {8, 0});
   ASSERT_EQ(route.status, PlanStatus::kFound);
   EXPECT_NEAR(route.length, 8.0, kExactTol);
@@ -149,41 +149,41 @@ TEST_P(EveryPlanner, PricesARouteByTheCostsItCrosses) {
 TEST(RoutePlanners, AreEightOfWhichARobotDrivesBySeven) {
   EXPECT_EQ(route_planners().size(), 8u);
   EXPECT_EQ(drivable_route_planners().size(), 7u);
-  for (const RoutePlannerRow& row : drivable_route_planners()) EXPECT_NE(row.name, "any_angle_optimum");
+  for (const RoutePlannerRow& row : drivable_route_planners()) EXPECT_NE(row.name, "visibility_graph");
 }
 
 TEST(RoutePlanners, RefuseAWrongNameAndACostWeightForTheOptimum) {
   using ::testing::HasSubstr, ::testing::ThrowsMessage;
   EXPECT_THAT([] { make_route_planner("ants", {}, 0); }, ThrowsMessage<InputError>(HasSubstr("planner = ants: must be one of astar, dijkstra")));
-  EXPECT_THAT([] { make_route_planner("any_angle_optimum", {.cost_weight = 1.0}, 0); }, ThrowsMessage<InputError>(HasSubstr("knows no costs")));
+  EXPECT_THAT([] { make_route_planner("visibility_graph", {.cost_weight = 1.0}, 0); }, ThrowsMessage<InputError>(HasSubstr("must be 0 for visibility_graph")));
   EXPECT_THAT([] { cost_factors(-1.0); }, ThrowsMessage<InputError>(HasSubstr("cost_weight = -1")));
 }
 
 TEST(IterationsToWithin, CountsFromOneToTheFirstNearEnoughToTheLast) {
-  EXPECT_EQ(iterations_to_within({kInfinite, 120.0, 101.5, 100.9, 100.0}, 0.01), 4);
-  EXPECT_EQ(iterations_to_within({100.0}, 0.01), 1);
-  EXPECT_EQ(iterations_to_within({kInfinite, kInfinite}, 0.01), 0);
-  EXPECT_EQ(iterations_to_within({}, 0.01), 0);
+  EXPECT_EQ(iterations_to_convergence({kInfinite, 120.0, 101.5, 100.9, 100.0}, 0.01), 4);
+  EXPECT_EQ(iterations_to_convergence({100.0}, 0.01), 1);
+  EXPECT_EQ(iterations_to_convergence({kInfinite, kInfinite}, 0.01), 0);
+  EXPECT_EQ(iterations_to_convergence({}, 0.01), 0);
 }
 
 // The lethal cell is the square from (3, 3) to (4, 4).
 TEST(Clearance, IsMeasuredToTheSquareFromAnyPartOfALeg) {
   const Grid<Cost> costs = draw({".......", ".......", ".......", "...#...", ".......", ".......", "......."});
-  EXPECT_NEAR(clearance_of(costs, {{0.5, 0.5}, {6.5, 0.5}}), 2.5, kExactTol);
-  EXPECT_NEAR(clearance_of(costs, {{0.5, 0.5}}), 2.5 * std::numbers::sqrt2, kExactTol);
+  EXPECT_NEAR(compute_clearance(costs, {{0.5, 0.5}, {6.5, 0.5}}), 2.5, kExactTol);
+  EXPECT_NEAR(compute_clearance(costs, {{0.5, 0.5}}), 2.5 * std::numbers::sqrt2, kExactTol);
   // From the corner (3, 4) to the lines y = x + 4 and y = x + 2: |3 - 4 + 4| / sqrt 2 and |3 - 4 + 2| / sqrt 2.
-  EXPECT_NEAR(clearance_of(costs, {{0.5, 4.5}, {2.5, 6.5}}), 3.0 / std::numbers::sqrt2, kExactTol);
-  EXPECT_NEAR(clearance_of(costs, {{1.5, 3.5}, {3.5, 5.5}}), 1.0 / std::numbers::sqrt2, kExactTol);
-  EXPECT_NEAR(clearance_of(costs, {{0.5, 0.5}, {6.5, 0.5}}, 1.0), 1.0, kExactTol);
+  EXPECT_NEAR(compute_clearance(costs, {{0.5, 4.5}, {2.5, 6.5}}), 3.0 / std::numbers::sqrt2, kExactTol);
+  EXPECT_NEAR(compute_clearance(costs, {{1.5, 3.5}, {3.5, 5.5}}), 1.0 / std::numbers::sqrt2, kExactTol);
+  EXPECT_NEAR(compute_clearance(costs, {{0.5, 0.5}, {6.5, 0.5}}, 1.0), 1.0, kExactTol);
 }
 
 TEST(Clearance, OfFreeGroundIsTheMostThatIsLookedFor) {
-  EXPECT_EQ(clearance_of(Grid<Cost>({.resolution_m = 1.0, .width = 60, .height = 60}), {{0.5, 0.5}, {50.5, 50.5}}), kMaxClearance);
+  EXPECT_EQ(compute_clearance(Grid<Cost>({.resolution_m = 1.0, .width = 60, .height = 60}), {{0.5, 0.5}, {50.5, 50.5}}), kMaxClearance);
 }
 
 TEST(ToMetres, PutsACellsCentreWhereTheGridHasIt) {
   const GridGeometry geometry{.resolution_m = 0.1, .width = 9, .height = 9, .origin_m = {-1.0, 2.0}};
-  EXPECT_THAT(to_metres(geometry, {{3.5, 4.5}}).at(0), ::patrol::test::VectorNear(geometry.center_of({3, 4}), kExactTol));
+  EXPECT_THAT(to_meters(geometry, {{3.5, 4.5}}).at(0), ::patrol::test::VectorNear(geometry.center_of({3, 4}), kExactTol));
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ TEST(TourOrder, ExactIsTheBestOfAllOrdersOfSevenStations) {
   int num_found = 0;
   for (std::uint64_t seed = 0; seed < 80; ++seed) {
     const TourProblem problem = constrained_problem(seed);
-    const TourOrder order = order_tour(problem, {}, 1);
+    const TourOrder order = solve_station_order(problem, {}, 1);
     const double expected = soonest_slowly(problem);
     ASSERT_EQ(order.is_exact, std::isfinite(expected)) << "seed " << seed;
     if (!order.is_exact) {
@@ -106,7 +106,7 @@ TEST(TourOrder, LocalSearchFindsTheExactOrderOfTenStationsInNineteenOfTwenty) {
   int num_equal = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const TourProblem problem = random_problem(seed, 10, seed % 2 == 0);
-    const TourOrder exact = order_tour(problem, {}, 1), searched = order_tour(problem, {.exact_stations = 0}, 1);
+    const TourOrder exact = solve_station_order(problem, {}, 1), searched = solve_station_order(problem, {.exact_stations = 0}, 1);
     ASSERT_TRUE(exact.is_exact);
     ASSERT_FALSE(searched.is_exact);
     ASSERT_GE(searched.completion, exact.completion - kExactTol);
@@ -120,7 +120,7 @@ TEST(TourOrder, LocalSearchFindsTheExactOrderOfTenStationsInNineteenOfTwenty) {
 TEST(TourOrder, RoundACircleOfThirtyIsThePolygonAndTheBoundSaysSo) {
   TourProblem problem = circle(30);
   problem.start = problem.end = 7;
-  const TourOrder order = order_tour(problem, {}, 1);
+  const TourOrder order = solve_station_order(problem, {}, 1);
   const double polygon = 30.0 * 200.0 * std::sin(std::numbers::pi / 30.0);
   EXPECT_NEAR(order.completion, polygon, 1e-6);
   EXPECT_EQ(order.stations.front(), 7u);
@@ -129,7 +129,7 @@ TEST(TourOrder, RoundACircleOfThirtyIsThePolygonAndTheBoundSaysSo) {
 
 // Without an end, all but one of its sides.
 TEST(TourOrder, AlongACircleLeavesOutOneSide) {
-  const TourOrder order = order_tour(circle(30), {}, 1);
+  const TourOrder order = solve_station_order(circle(30), {}, 1);
   EXPECT_NEAR(order.completion, 29.0 * 200.0 * std::sin(std::numbers::pi / 30.0), 1e-6);
   EXPECT_LT(order.gap(), 0.01);
 }
@@ -138,7 +138,7 @@ TEST(TourOrder, RoundFortyRandomStationsIsWithinFivePercentOfItsBound) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     TourProblem problem = random_problem(seed, 40);
     problem.start = problem.end = 0;
-    const TourOrder order = order_tour(problem, {}, 1);
+    const TourOrder order = solve_station_order(problem, {}, 1);
     EXPECT_TRUE(order.is_found);
     EXPECT_FALSE(order.is_exact);
     EXPECT_LE(order.gap(), 0.05) << "seed " << seed;
@@ -153,7 +153,7 @@ TEST(TourOrder, LocalSearchKeepsWindowsPrioritiesAndEndsOfTwentyStations) {
   for (std::size_t i = 0; i < 20; ++i) problem.stations[i].priority = i % 2 == 0 ? 1 : 2;
   problem.stations[6].earliest = 150.0;
   problem.stations[8].latest = 200.0;
-  const TourOrder order = order_tour(problem, {}, 1);
+  const TourOrder order = solve_station_order(problem, {}, 1);
   ASSERT_TRUE(order.is_found);
   EXPECT_EQ(order.lateness, 0.0);
   EXPECT_EQ(order.stations.front(), 4u);
@@ -163,33 +163,33 @@ TEST(TourOrder, LocalSearchKeepsWindowsPrioritiesAndEndsOfTwentyStations) {
 
 // There and back between two stations that lie one-way 3 and 5 apart.
 TEST(TourOrder, OfOneAndTwoStationsIsPlain) {
-  EXPECT_EQ(order_tour({.travel = {{0.0}}}, {}, 1).completion, 0.0);
-  const TourOrder round = order_tour({.travel = {{0.0, 3.0}, {5.0, 0.0}}, .start = 1, .end = 1}, {}, 1);
+  EXPECT_EQ(solve_station_order({.travel = {{0.0}}}, {}, 1).completion, 0.0);
+  const TourOrder round = solve_station_order({.travel = {{0.0, 3.0}, {5.0, 0.0}}, .start = 1, .end = 1}, {}, 1);
   EXPECT_EQ(round.completion, 8.0);
   EXPECT_EQ(round.stations, (std::vector<std::size_t>{1, 0}));
-  EXPECT_EQ(order_tour({.travel = {{0.0, 3.0}, {5.0, 0.0}}}, {}, 1).completion, 3.0);
+  EXPECT_EQ(solve_station_order({.travel = {{0.0, 3.0}, {5.0, 0.0}}}, {}, 1).completion, 3.0);
 }
 
 TEST(TourOrder, SaysThatAStationCannotBeReached) {
-  const TourOrder order = order_tour({.travel = {{0.0, 1.0, kInfinite}, {1.0, 0.0, kInfinite}, {kInfinite, kInfinite, 0.0}}}, {}, 1);
+  const TourOrder order = solve_station_order({.travel = {{0.0, 1.0, kInfinite}, {1.0, 0.0, kInfinite}, {kInfinite, kInfinite, 0.0}}}, {}, 1);
   EXPECT_FALSE(order.is_found);
   EXPECT_EQ(order.stations.size(), 3u);
 }
 
 TEST(TourOrder, IsTheSameForTheSameSeed) {
   const TourProblem problem = random_problem(5, 18);
-  EXPECT_EQ(order_tour(problem, {.restarts = 3}, 4).stations, order_tour(problem, {.restarts = 3}, 4).stations);
+  EXPECT_EQ(solve_station_order(problem, {.restarts = 3}, 4).stations, solve_station_order(problem, {.restarts = 3}, 4).stations);
 }
 
 TEST(TourOrder, RefusesWhatIsNoProblem) {
   using ::testing::HasSubstr, ::testing::ThrowsMessage;
-  const auto error_response = [](const TourProblem& problem) { return [problem] { order_tour(problem, {}, 1); }; };
-  EXPECT_THAT(error_response({}), ThrowsMessage<InputError>(HasSubstr("there are no stations")));
-  EXPECT_THAT(error_response({.travel = {{0.0, 1.0}, {1.0}}}), ThrowsMessage<InputError>(HasSubstr("row 1 of travel has 1 figures")));
+  const auto error_response = [](const TourProblem& problem) { return [problem] { solve_station_order(problem, {}, 1); }; };
+  EXPECT_THAT(error_response({}), ThrowsMessage<InputError>(HasSubstr("no stations")));
+  EXPECT_THAT(error_response({.travel = {{0.0, 1.0}, {1.0}}}), ThrowsMessage<InputError>(HasSubstr("row 1 of travel has 1 values")));
   EXPECT_THAT(error_response({.travel = {{0.0, -1.0}, {1.0, 0.0}}}), ThrowsMessage<InputError>(HasSubstr("travel from 0 to 1 is -1")));
-  EXPECT_THAT(error_response({.travel = {{0.0}}, .stations = {{}, {}}}), ThrowsMessage<InputError>(HasSubstr("2 stations are described: must be 1")));
-  EXPECT_THAT(error_response({.travel = {{0.0}}, .stations = {{.earliest = 5.0, .latest = 4.0}}}), ThrowsMessage<InputError>(HasSubstr("station 0 has service 0 and window 5 ... 4")));
-  EXPECT_THAT(error_response({.travel = {{0.0}}, .start = 1}), ThrowsMessage<InputError>(HasSubstr("there is no station 1")));
+  EXPECT_THAT(error_response({.travel = {{0.0}}, .stations = {{}, {}}}), ThrowsMessage<InputError>(HasSubstr("2 station descriptions: must be 1")));
+  EXPECT_THAT(error_response({.travel = {{0.0}}, .stations = {{.earliest = 5.0, .latest = 4.0}}}), ThrowsMessage<InputError>(HasSubstr("station 0 has service 0 and window [5, 4]")));
+  EXPECT_THAT(error_response({.travel = {{0.0}}, .start = 1}), ThrowsMessage<InputError>(HasSubstr("unknown station 1: must be in [0, 0]")));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ TEST(ThetaStar, IsNeverLongerThanAstarNorShorterThanTheOptimumOnThreeHundredRand
     const Grid<Cost> costs = random_grid(seed, 40, 0.4);
     const auto [start, goal] = random_ends(costs, seed);
     if (costs.at(start) == kLethalCost) continue;
-    const Route grid = astar.plan(costs, start, goal), any = theta.plan(costs, start, goal), best = AnyAngleOptimum().plan(costs, start, goal);
+    const Route grid = astar.plan(costs, start, goal), any = theta.plan(costs, start, goal), best = VisibilityGraphPlanner().plan(costs, start, goal);
     ASSERT_EQ(any.status, grid.status) << "seed " << seed;
     ASSERT_EQ(best.status, grid.status) << "seed " << seed;
     ASSERT_LE(any.length, grid.length + kExactTol) << "seed " << seed;

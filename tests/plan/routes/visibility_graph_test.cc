@@ -7,7 +7,7 @@
 
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::plan::any_angle_optimum_test {
+namespace patrol::plan::visibility_graph_test {
 namespace {
 
 using test::draw, test::random_ends, test::random_grid;
@@ -16,7 +16,7 @@ constexpr double kExactTol = 1e-9;
 
 bool is_lethal(const Grid<Cost>& costs, int col, int row) { return !costs.contains({col, row}) || costs.at({col, row}) == kLethalCost; }
 
-/// The slow, obvious version of can_see, by separating axes: no inside of a lethal cell, nor of two side by side, and through no point where two meet
+/// The slow, obvious version of is_visible, by separating axes: no inside of a lethal cell, nor of two side by side, and through no point where two meet
 /// corner to corner. Beyond the border all is lethal.
 bool can_see_slowly(const Grid<Cost>& costs, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   for (int row = -1; row <= costs.geometry().height; ++row) {
@@ -60,13 +60,13 @@ double shortest_slowly(const Grid<Cost>& costs, Cell start, Cell goal) {
   return length[1];
 }
 
-TEST(AnyAngleOptimum, IsTheShortestOverAllPairsOfCornersOnFiveHundredRandomGrids) {
+TEST(VisibilityGraphPlanner, IsTheShortestOverAllPairsOfCornersOnFiveHundredRandomGrids) {
   int num_bent = 0;
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     const Grid<Cost> costs = random_grid(seed, 11, 0.45);
     const auto [start, goal] = random_ends(costs, seed);
     if (costs.at(start) == kLethalCost || start == goal) continue;
-    const Route route = AnyAngleOptimum().plan(costs, start, goal);
+    const Route route = VisibilityGraphPlanner().plan(costs, start, goal);
     const double expected = shortest_slowly(costs, start, goal);
     ASSERT_EQ(route.status == PlanStatus::kFound, std::isfinite(expected)) << "seed " << seed;
     if (!std::isfinite(expected)) continue;
@@ -76,7 +76,7 @@ TEST(AnyAngleOptimum, IsTheShortestOverAllPairsOfCornersOnFiveHundredRandomGrids
   EXPECT_GT(num_bent, 50);
 }
 
-TEST(AnyAngleOptimum, SeesWhatSeparatingAxesSeeOnRandomGrids) {
+TEST(VisibilityGraphPlanner, SeesWhatSeparatingAxesSeeOnRandomGrids) {
   int num_seen = 0, num_hidden = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const Grid<Cost> costs = random_grid(seed, 8, 0.4);
@@ -90,7 +90,7 @@ TEST(AnyAngleOptimum, SeesWhatSeparatingAxesSeeOnRandomGrids) {
       const HalfCellPoint from = point(), to = point();
       if (from == to) continue;
       const bool expected = can_see_slowly(costs, {0.5 * from.x, 0.5 * from.y}, {0.5 * to.x, 0.5 * to.y});
-      ASSERT_EQ(can_see(costs, from, to), expected) << "seed " << seed << ": " << from.x << " " << from.y << " to " << to.x << " " << to.y;
+      ASSERT_EQ(is_visible(costs, from, to), expected) << "seed " << seed << ": " << from.x << " " << from.y << " to " << to.x << " " << to.y;
       (expected ? num_seen : num_hidden) += 1;
     }
   }
@@ -99,15 +99,15 @@ TEST(AnyAngleOptimum, SeesWhatSeparatingAxesSeeOnRandomGrids) {
 }
 
 // From (0.5, 0.5) to the wall's upper corners at (3, 3) and (4, 3), and down again.
-TEST(AnyAngleOptimum, TouchesTheCornersThatItGoesRound) {
-  const Route route = AnyAngleOptimum().plan(draw({".......", "...#...", "...#...", "...#..."}), {0, 0}, {6, 0});
+TEST(VisibilityGraphPlanner, TouchesTheCornersThatItGoesRound) {
+  const Route route = VisibilityGraphPlanner().plan(draw({".......", "...#...", "...#...", "...#..."}), {0, 0}, {6, 0});
   EXPECT_NEAR(route.length, 2.0 * std::hypot(2.5, 2.5) + 1.0, kExactTol);
   EXPECT_EQ(route.clearance, 0.0);
 }
 
-TEST(AnyAngleOptimum, DoesNotSqueezeBetweenTwoCorners) {
-  EXPECT_EQ(AnyAngleOptimum().plan(draw({"..#.", "..#.", "##..", "...."}), {0, 3}, {3, 0}).status, PlanStatus::kNoRoute);
+TEST(VisibilityGraphPlanner, DoesNotSqueezeBetweenTwoCorners) {
+  EXPECT_EQ(VisibilityGraphPlanner().plan(draw({"..#.", "..#.", "##..", "...."}), {0, 3}, {3, 0}).status, PlanStatus::kNoRoute);
 }
 
 }  // namespace
-}  // namespace patrol::plan::any_angle_optimum_test
+}  // namespace patrol::plan::visibility_graph_test

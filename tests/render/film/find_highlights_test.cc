@@ -47,10 +47,10 @@ TEST(FindMoments, TheLargestErrorIsOne) {
 
 TEST(FindMoments, ALiningAlarmIsOneAndLooksAtTheRing) {
   RunHistory history = quiet_minute();
-  history.events.push_back({.stamp = 20s, .kind = EventKind::kLiningAlarm, .subject = "ring_31", .text = "Ring 31 has moved inwards by 12.0 mm.", .T_map_body = {}, .p_map_target = {3.0, 4.0}});
+  history.events.push_back({.stamp = 20s, .kind = EventKind::kLiningAlarm, .subject = "ring_31", .text = "Ring 31 has moved inward by 12.0 mm.", .T_map_body = {}, .p_map_target = {3.0, 4.0}});
   const std::vector<Highlight> highlights = moments_of(history);
   ASSERT_THAT(instants(highlights, HighlightKind::kAlarm), ElementsAre(20s));
-  EXPECT_EQ(highlights[0].title, "Ring 31 has moved inwards by 12.0 mm");
+  EXPECT_EQ(highlights[0].title, "Ring 31 has moved inward by 12.0 mm");
   EXPECT_EQ(highlights[0].p_world_subject, Eigen::Vector2d(3.0, 4.0));
 }
 
@@ -119,7 +119,7 @@ TEST(FindMoments, WhatIsAnnouncedTakesItsPlaceInTime) {
   RunHistory history = quiet_minute();
   history.collisions.push_back({10s, "trunk", "wall"});
   const std::vector<Highlight> highlights =
-      moments_of(history, {{20s, HighlightKind::kFault, "Fault: silence of lidar"}, {5s, HighlightKind::kFault, "early"}, {99s, HighlightKind::kFault, "after the end"}});
+      moments_of(history, {{20s, HighlightKind::kFault, "Fault: dropout of lidar"}, {5s, HighlightKind::kFault, "early"}, {99s, HighlightKind::kFault, "after the end"}});
   ASSERT_EQ(highlights.size(), 3u);
   EXPECT_EQ(highlights[0].title, "early");
   EXPECT_EQ(highlights[1].kind, HighlightKind::kCollision);

@@ -45,10 +45,10 @@ Route make_route() {
 /// A second of waiting, half of settling, one of readings at 10 Hz.
 GasMissionSettings make_settings() {
   GasMissionSettings settings;
-  settings.start_wait_s = 1.0;
-  settings.settle_s = 0.5;
-  settings.measure_s = 1.0;
-  settings.max_measure_s = 3.0;
+  settings.init_wait_s = 1.0;
+  settings.settling_time_s = 0.5;
+  settings.measurement_duration_s = 1.0;
+  settings.measurement_timeout_s = 3.0;
   settings.min_readings = 5;
   settings.alarm_column_ppm_m = 200.0;
   return settings;
@@ -158,7 +158,7 @@ TEST(GasMission, WalksMeasuresAndCompletesInOrder) {
 
 TEST(GasMission, NamesItsStationsWhenItStarts) {
   GasRound mission(make_settings(), make_route(), {}, "They should take 9 s.");
-  EXPECT_EQ(run(mission, clean_air).find(EventKind::kMissionStarted).text, "The mission starts: 3 stations, first, second, home. They should take 9 s.");
+  EXPECT_EQ(run(mission, clean_air).find(EventKind::kMissionStarted).text, "Mission started: 3 stations, first, second, home. They should take 9 s.");
 }
 
 // It arrives after three seconds and measures one and a half; the second station opens at the tenth.
@@ -337,8 +337,8 @@ TEST(GasMission, AskedPrecisionIsTheFinerOfSettingAndSurvey) {
   route.stations[0].accuracy_m = 0.02;
   route.stations[1].accuracy_m = 0.5;
   GasMissionSettings settings = make_settings();
-  settings.position_tol_m = 0.08;
-  settings.yaw_tol_rad = 0.06;
+  settings.position_tolerance_m = 0.08;
+  settings.yaw_tolerance_rad = 0.06;
   std::vector<NavigationGoal> goals;
   GasRound mission(settings, route, {});
   run(mission, clean_air, [&](const NavigationGoal& goal) {
@@ -346,9 +346,9 @@ TEST(GasMission, AskedPrecisionIsTheFinerOfSettingAndSurvey) {
     return true;
   });
   ASSERT_EQ(goals.size(), 3u);
-  EXPECT_EQ(goals[0].position_tol_m, 0.02);
-  EXPECT_EQ(goals[1].position_tol_m, 0.08);
-  EXPECT_EQ(goals[1].yaw_tol_rad, 0.06);
+  EXPECT_EQ(goals[0].position_tolerance_m, 0.02);
+  EXPECT_EQ(goals[1].position_tolerance_m, 0.08);
+  EXPECT_EQ(goals[1].yaw_tolerance_rad, 0.06);
 }
 
 TEST(GasMission, APlaceToPassAsksForNoHeading) {
@@ -359,8 +359,8 @@ TEST(GasMission, APlaceToPassAsksForNoHeading) {
   const MissionOutput output =
       mission.step(from_seconds(1.0), {}, NavigationFeedback::kDriving, std::nullopt);
   ASSERT_TRUE(output.task.goal);
-  EXPECT_EQ(output.task.goal->position_tol_m, 0.6);
-  EXPECT_EQ(output.task.goal->yaw_tol_rad, pi);
+  EXPECT_EQ(output.task.goal->position_tolerance_m, 0.6);
+  EXPECT_EQ(output.task.goal->yaw_tolerance_rad, pi);
 }
 
 // In the step in which the goal changes, navigation still speaks of the one before.
@@ -398,7 +398,7 @@ TEST(GasMission, RefusesAnEmptyRouteAndSettingsThatBreakTheirRule) {
   GasMissionSettings settings = make_settings();
   settings.min_readings = 0;
   EXPECT_THAT([&] { GasRound(settings, make_route(), {}); },
-              ::testing::ThrowsMessage<InputError>(HasSubstr("mission.min_readings = 0")));
+              ::testing::ThrowsMessage<InputError>(HasSubstr("gas_mission.min_readings = 0")));
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ TEST(TunnelMission, TenNavigationsOfTwoGoalsReachTwentyAndDockTenTimes) {
 }
 
 TEST(TunnelMission, MarksGoalsByRemoteControlThenDrivesToThemByItself) {
-  Robot robot(TunnelMission({.navigations = 1}, {}, true));
+  Robot robot(TunnelMission({.num_runs = 1}, {}, true));
   robot.run(5.0);
   EXPECT_EQ(robot.output.task.motion, Motion::kTeleop);
   robot.run(1.0, TeleopCommand{.vx_mps = 0.5});
@@ -74,14 +74,14 @@ TEST(TunnelMission, MarksGoalsByRemoteControlThenDrivesToThemByItself) {
   robot.run(1.0, TeleopCommand{.hand_over = true});
   EXPECT_EQ(robot.maps, 1);
   robot.run(100.0);
-  EXPECT_EQ(robot.count(EventKind::kGoalMarked), 2);
+  EXPECT_EQ(robot.count(EventKind::kGoalSaved), 2);
   EXPECT_EQ(robot.count(EventKind::kGoalReached), 2);
   EXPECT_EQ(robot.count(EventKind::kDocked), 2);
   EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
 }
 
 TEST(TunnelMission, ARemoteControlThatFallsSilentForTwoSecondsIsOff) {
-  Robot robot(TunnelMission({.navigations = 0, .docks = false}, {}, true));
+  Robot robot(TunnelMission({.num_runs = 0, .dock_after_run = false}, {}, true));
   robot.run(4.1);
   robot.run(1.0, TeleopCommand{.vx_mps = 0.5});
   robot.run(1.9);
@@ -92,17 +92,17 @@ TEST(TunnelMission, ARemoteControlThatFallsSilentForTwoSecondsIsOff) {
 }
 
 TEST(TunnelMission, AGoalWithoutAWayIsReportedAndLeftOut) {
-  Robot robot(TunnelMission({.navigations = 1}, two_goals(), false));
+  Robot robot(TunnelMission({.num_runs = 1}, two_goals(), false));
   robot.navigation = NavigationFeedback::kFailed;
   robot.run(100.0);
   EXPECT_EQ(robot.count(EventKind::kGoalFailed), 2);
-  EXPECT_EQ(robot.events.back().text, "2 things went wrong on the way.");
+  EXPECT_EQ(robot.events.back().text, "Tasks failed: 2.");
   EXPECT_EQ(robot.count(EventKind::kMissionFailed), 1);
   EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 0);
 }
 
 TEST(TunnelMission, ADockingThatFailsFailsTheMission) {
-  Robot robot(TunnelMission({.navigations = 1, .starts_docked = false}, two_goals(), false));
+  Robot robot(TunnelMission({.num_runs = 1, .start_docked = false}, two_goals(), false));
   robot.docking = DockingFeedback::kFailed;
   robot.run(100.0);
   EXPECT_EQ(robot.count(EventKind::kDockFailed), 1);
@@ -110,7 +110,7 @@ TEST(TunnelMission, ADockingThatFailsFailsTheMission) {
 }
 
 TEST(TunnelMission, LostItStandsAndGoesOnOnceItKnows) {
-  Robot robot(TunnelMission({.navigations = 1, .starts_docked = false, .docks = false}, two_goals(), false));
+  Robot robot(TunnelMission({.num_runs = 1, .start_docked = false, .dock_after_run = false}, two_goals(), false));
   robot.navigation = NavigationFeedback::kDriving;
   robot.run(6.0);
   EXPECT_EQ(robot.output.task.motion, Motion::kNavigate);
@@ -126,7 +126,7 @@ TEST(TunnelMission, LostItStandsAndGoesOnOnceItKnows) {
 }
 
 TEST(TunnelMission, LostForThirtySecondsItSaysThatItCannotTell) {
-  Robot robot(TunnelMission({.navigations = 1, .starts_docked = false}, two_goals(), false));
+  Robot robot(TunnelMission({.num_runs = 1, .start_docked = false}, two_goals(), false));
   robot.is_lost = true;
   robot.run(4.0 + 29.0);
   EXPECT_EQ(robot.count(EventKind::kLocalizationFailed), 0);
@@ -144,7 +144,7 @@ std::vector<SavedGoal> inspection_goals() {
 }
 
 TEST(TunnelMission, StandsAtAGoalOfTypeDUntilTheLiningIsScanned) {
-  Robot robot(TunnelMission({.navigations = 1}, inspection_goals(), false));
+  Robot robot(TunnelMission({.num_runs = 1}, inspection_goals(), false));
   robot.inspection = InspectionFeedback::kUnderWay;
   robot.run(60.0);
   EXPECT_EQ(robot.output.task.inspection.value().instrument, InstrumentKind::kLining);
@@ -155,7 +155,7 @@ TEST(TunnelMission, StandsAtAGoalOfTypeDUntilTheLiningIsScanned) {
 }
 
 TEST(TunnelMission, ARobotThatIsLateToKnowHowItMovesStandsForOneAndAHalfSecondsFromThenOn) {
-  TunnelMission tour({.navigations = 1, .starts_docked = false}, two_goals(), false);
+  TunnelMission tour({.num_runs = 1, .start_docked = false}, two_goals(), false);
   Time started{};
   for (Time now = std::chrono::seconds(7); started == Time{}; now += kStep) {
     if (tour.step(now, {}).task.motion == Motion::kNavigate) started = now;
@@ -164,7 +164,7 @@ TEST(TunnelMission, ARobotThatIsLateToKnowHowItMovesStandsForOneAndAHalfSecondsF
 }
 
 TEST(TunnelMission, AScanThatFailsIsReportedAndTheRoundGoesOn) {
-  Robot robot(TunnelMission({.navigations = 1}, inspection_goals(), false));
+  Robot robot(TunnelMission({.num_runs = 1}, inspection_goals(), false));
   robot.inspection = InspectionFeedback::kFailed;
   robot.run(60.0);
   EXPECT_EQ(robot.count(EventKind::kInspectionFailed), 1);
@@ -174,7 +174,7 @@ TEST(TunnelMission, AScanThatFailsIsReportedAndTheRoundGoesOn) {
 }
 
 TEST(TunnelMission, AtAGoalOfTypeRAPersonDrivesMarksAndHandsOverAgain) {
-  Robot robot(TunnelMission({.navigations = 1}, inspection_goals(), true, true));
+  Robot robot(TunnelMission({.num_runs = 1}, inspection_goals(), true, true));
   robot.run(30.0);
   EXPECT_EQ(robot.count(EventKind::kTeleopRequested), 1);
   EXPECT_EQ(robot.output.task.motion, Motion::kTeleop);
@@ -187,13 +187,13 @@ TEST(TunnelMission, AtAGoalOfTypeRAPersonDrivesMarksAndHandsOverAgain) {
   robot.run(10.0, TeleopCommand{.vx_mps = 0.5});
   EXPECT_EQ(robot.output.task.motion, Motion::kTeleop);
   robot.run(60.0, TeleopCommand{.hand_over = true});
-  EXPECT_EQ(robot.count(EventKind::kGoalMarked), 0);
+  EXPECT_EQ(robot.count(EventKind::kGoalSaved), 0);
   EXPECT_EQ(robot.count(EventKind::kDocked), 1);
   EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
 }
 
 TEST(TunnelMission, NobodyComesFor120SecondsAndItGoesHomeByItselfWithoutCallingItDone) {
-  Robot robot(TunnelMission({.navigations = 1}, inspection_goals(), true, true));
+  Robot robot(TunnelMission({.num_runs = 1}, inspection_goals(), true, true));
   robot.run(5.0 + 119.0);
   EXPECT_EQ(robot.output.task.motion, Motion::kTeleop);
   robot.run(30.0);
@@ -202,14 +202,14 @@ TEST(TunnelMission, NobodyComesFor120SecondsAndItGoesHomeByItselfWithoutCallingI
 }
 
 TEST(TunnelMission, MarksTakeTheTypesThatTheSettingsName) {
-  Robot robot(TunnelMission({.navigations = 0, .docks = false, .mark_types = "DR"}, {}, true));
+  Robot robot(TunnelMission({.num_runs = 0, .dock_after_run = false, .goal_types = "DR"}, {}, true));
   robot.run(5.0);
   for (int i = 0; i < 3; ++i) robot.run(0.5, TeleopCommand{.save_goal = true});
   ASSERT_EQ(robot.tour().goals().size(), 3u);
   EXPECT_EQ(robot.tour().goals()[0].type, GoalType::kScan);
   EXPECT_EQ(robot.tour().goals()[1].type, GoalType::kOperator);
   EXPECT_EQ(robot.tour().goals()[2].type, GoalType::kStop);
-  EXPECT_THROW(TunnelMission({.mark_types = "DX"}, {}, true), InputError);
+  EXPECT_THROW(TunnelMission({.goal_types = "DX"}, {}, true), InputError);
 }
 
 TEST(TunnelMission, NeitherGoalsNorRemoteControlIsRefused) { EXPECT_THROW(TunnelMission({}, {}, false), InputError); }

@@ -59,7 +59,7 @@ TEST(SensorMonitor, HaltsSixTenthsOfASecondAfterTheLastScanAndGoesOnWithTheNext)
   EXPECT_FALSE(walk.watch.can_drive());
   walk.go_on(0.1, fresh);
   EXPECT_TRUE(walk.watch.can_drive());
-  EXPECT_THAT(walk.said, ElementsAre("The lidar is silent or late.", "The lidar is back."));
+  EXPECT_THAT(walk.said, ElementsAre("Sensor lidar timed out.", "Sensor lidar has recovered."));
 }
 
 TEST(SensorMonitor, AScanThatComesASecondLateIsAsBadAsNone) {
@@ -74,7 +74,7 @@ TEST(SensorMonitor, AStampOfTheFutureIsAWrongClock) {
   walk.go_on(1.0, fresh);
   walk.go_on(1.0, [](Time now) { return fresh(now + from_seconds(0.2)); });
   EXPECT_FALSE(walk.watch.can_drive());
-  EXPECT_THAT(walk.said, ElementsAre("The lidar has a wrong clock."));
+  EXPECT_THAT(walk.said, ElementsAre("Sensor lidar has timestamps in the future."));
 }
 
 TEST(SensorMonitor, TheSameScanAgainAndAgainIsFrozenOnceTheRobotHasMoved) {
@@ -82,7 +82,7 @@ TEST(SensorMonitor, TheSameScanAgainAndAgainIsFrozenOnceTheRobotHasMoved) {
   walk.go_on(1.0, fresh);
   walk.go_on(0.5, [](Time now) { return scan_at(now, 3.0F); });
   EXPECT_FALSE(walk.watch.can_drive());
-  EXPECT_THAT(walk.said, ElementsAre("The lidar repeats itself."));
+  EXPECT_THAT(walk.said, ElementsAre("Sensor lidar is frozen (repeated readings)."));
 }
 
 TEST(SensorMonitor, AlikeScansOfARobotAtRestAreNoFault) {
@@ -105,7 +105,7 @@ TEST(SensorMonitor, ASilentImuIsSaidAndDoesNotHalt) {
   imu.stamp = walk.now;
   walk.watch.receive(imu, walk.now);
   walk.go_on(1.0, fresh);
-  EXPECT_THAT(walk.said, ElementsAre("The imu is silent or late."));
+  EXPECT_THAT(walk.said, ElementsAre("Sensor imu timed out."));
   EXPECT_TRUE(walk.watch.can_drive());
 }
 
@@ -117,7 +117,7 @@ TEST(SensorMonitor, WhatComesFromTheFutureIsNotToBeUsed) {
   EXPECT_TRUE(watch.receive(imu, now));
   imu.stamp = now + from_seconds(0.2);
   EXPECT_FALSE(watch.receive(imu, now));
-  EXPECT_EQ(watch.step(now + from_seconds(0.3), {}, {}).front().text, "The imu has a wrong clock.");  // and stays so until the next message
+  EXPECT_EQ(watch.step(now + from_seconds(0.3), {}, {}).front().text, "Sensor imu has timestamps in the future.");  // and stays so until the next message
   EXPECT_TRUE(watch.can_drive());
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "slam/methods/mapper.h"
 #include "tests/support/room_world.h"
 
 namespace patrol::stack::stack_settings_test {
@@ -15,7 +16,7 @@ namespace {
 std::unique_ptr<slam::Mapper> map_room(const StackSettings& settings) {
   test::RoomWorld room;
   room.add_box(-3.0, -2.0, 6.0, 4.0);
-  std::unique_ptr<slam::Mapper> mapper = make_mapper(settings, {}, 1);
+  std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, {}, 1);
   for (int i = 0; i <= 30; ++i) {
     const Pose2 pose{0.1 * i, 0.0, 0.0};
     const slam::SlamUpdate update = mapper->update(room.scan(pose, {}), pose);
@@ -46,17 +47,17 @@ TEST(Algorithms, HaveUniqueNamesAndADocumentationLine) {
 
 TEST(MakeMapper, TheFilterHasAsManyParticlesAsAskedForAndTheGraphNone) {
   StackSettings settings;
-  settings.mapping = "rbpf";
-  settings.slam.filter.particles = 12;
+  settings.slam.method = "rbpf";
+  settings.slam.rbpf.filter.particles = 12;
   EXPECT_EQ(map_room(settings)->particles().T_map_body.size(), 12U);
-  settings.mapping = "graph";
+  settings.slam.method = "graph";
   EXPECT_TRUE(map_room(settings)->particles().T_map_body.empty());
 }
 
 TEST(MakeMapper, BothMethodsMapTheSameRoom) {
   for (const char* method : {"graph", "rbpf"}) {
     StackSettings settings;
-    settings.mapping = method;
+    settings.slam.method = method;
     const OccupancyGrid map = map_room(settings)->map();
     EXPECT_EQ(map.at(map.geometry().cell_at({1.0, 1.0})), kFree) << method;
     EXPECT_NEAR(map.geometry().width * map.geometry().resolution_m, 9.0, 0.2) << method;
@@ -66,7 +67,7 @@ TEST(MakeMapper, BothMethodsMapTheSameRoom) {
 TEST(MakeMapper, ARunHasEveryMethodOfRecordedLogs) {
   StackSettings settings;
   for (const std::string& method : names_of(slam::mapping_methods())) {
-    settings.mapping = method;
+    settings.slam.method = method;
     validate(settings, "stack");
     EXPECT_EQ(map_room(settings)->path().size(), 31U) << method;
   }
@@ -74,18 +75,18 @@ TEST(MakeMapper, ARunHasEveryMethodOfRecordedLogs) {
 
 // A robot's own odometry is used as it is, that of a log is corrected first: the same method with other settings.
 TEST(StackSettings, TheFilterOfARunAndOfALogDifferInSettingsOnly) {
-  EXPECT_EQ(StackSettings{}.slam.odometry, "given");
+  EXPECT_EQ(StackSettings{}.slam.rbpf.odometry, "given");
   EXPECT_EQ(slam::MapperSettings{}.rbpf.odometry, "scan_matched");
 }
 
 TEST(StackSettings, AMappingMethodThatIsNotThereIsRefusedByName) {
   StackSettings settings;
-  settings.mapping = "grpah";
+  settings.slam.method = "grpah";
   try {
     validate(settings, "stack");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("stack.mapping"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("stack.slam.method"), std::string::npos) << error.what();
   }
 }
 

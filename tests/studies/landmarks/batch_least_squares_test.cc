@@ -39,7 +39,7 @@ void expect_truth(const CircleWorld& world, const Drive& measured, const BatchSo
 }
 
 // The guess is what odometry would tell that is 2 degrees per second, or 2 degrees of steering, off all the way.
-TEST(SolveBatch, RecoversTheTruthFromNoiselessDataAndAGuessMetresOff) {
+TEST(SolveBatch, RecoversTheTruthFromNoiselessDataAndAGuessMetersOff) {
   for (const Steering steering : {Steering::kYawRate, Steering::kAckermann}) {
     const CircleWorld world = world_of(steering);
     const Drive measured = drive(world, 1, 0.0);

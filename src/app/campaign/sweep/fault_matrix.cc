@@ -41,13 +41,13 @@ std::vector<sim::FaultSettings> fault_matrix(const Scenario& scenario, const Sce
   Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
     if (!is_in_matrix<Message>(scenario, files)) return;
     constexpr SensorInfo kInfo = SensorTraits<Message>::kInfo;
-    const std::array<std::pair<const char*, double>, 7> kinds = {{{"silence", 1.0},
+    const std::array<std::pair<const char*, double>, 7> kinds = {{{"dropout", 1.0},
                                                                    {"freeze", 1.0},
                                                                    {"delay", kDelay_s},
                                                                    {"jitter", kJitter_s},
                                                                    {"clock_offset", kClockOffset_s},
                                                                    {"drift", kInfo.fault.drift_per_s},
-                                                                   {"spikes", kInfo.fault.spike}}};
+                                                                   {"outliers", kInfo.fault.outlier}}};
     for (const auto& [kind, magnitude] : kinds) {
       faults.push_back({.sensor = kInfo.name, .kind = kind, .start_s = start_s, .duration_s = duration_s, .magnitude = magnitude});
     }

@@ -11,7 +11,7 @@ struct PathDistanceCost {
   double full_m = 0.5;
 
   double operator()(const Rollout& rollout, const RolloutScene& scene) const {
-    const double to_m = scene.along_m + 1.5 * scene.reach_m + full_m;
+    const double to_m = scene.along_m + 1.5 * scene.reachable_distance_m + full_m;
     const auto distance_m = [&](std::size_t i) {
       return scene.path.project(rollout.T_map_body[i].position(), scene.along_m, to_m).distance_m;
     };

@@ -21,7 +21,7 @@ struct Rollout {
 struct RolloutScene {
   const PlannedPath& path;
   double along_m = 0.0;        ///< position of the robot along the path
-  double reach_m = 0.0;        ///< maximum distance that the robot can drive within the horizon
+  double reachable_distance_m = 0.0;        ///< maximum distance that the robot can drive within the horizon
   Twist3 twist;                ///< current twist, in body
   double max_speed_mps = 0.0;
   double max_yaw_rate_radps = 0.0;

@@ -47,12 +47,12 @@ TEST(FaultMatrix, OnARobotWithEverythingItHasEverySensorOfTheRegistryThatGivesNo
   for (const SensorInfo& info : kSensorInfos) EXPECT_EQ(in_matrix.contains(info.name), *info.fault_matrix_exclusion_reason == '\0') << info.name;
 }
 
-TEST(FaultMatrix, WithoutStationsAndRemoteControlScannerAndRemoteAreNotInIt) {
+TEST(FaultMatrix, WithoutStationsAndTeleoperationScannerAndTeleopAreNotInIt) {
   Scenario scenario;
   enable_sensors(scenario.sensors);
   for (const sim::FaultSettings& fault : fault_matrix(scenario, {}, 12.0, 8.0)) {
     EXPECT_NE(fault.sensor, "scanner");
-    EXPECT_NE(fault.sensor, "remote");
+    EXPECT_NE(fault.sensor, "teleop");
     EXPECT_NE(fault.sensor, "hall") << "the robot has no tracks";
   }
 }

@@ -88,7 +88,7 @@ TEST(PlanBudget, AQuadrupedHasNoBeltsAndNoUwbToLoseAnythingBy) {
 
 TEST(PlanBudget, ATrackedRobotHasNoLegs) {
   const std::vector<std::string> variants = variants_of(plan_error_budget(budget_of("tunnel/scenarios/docking.yaml")));
-  EXPECT_THAT(variants, Contains("UWB: blocked paths"));
+  EXPECT_THAT(variants, Contains("UWB: non-line-of-sight paths"));
   EXPECT_THAT(variants, Contains("tracks: slip (friction 2)"));
   EXPECT_THAT(variants, Not(Contains("foot contact: noise")));
 }

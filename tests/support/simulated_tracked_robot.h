@@ -34,7 +34,7 @@ struct DriveReport {
   bool has_fallen = false;
 };
 
-/// The tracked robot with noisy sensors and its drive in a world of its own: what the twin does, without the rest.
+/// The tracked robot with noisy sensors and its drive in a world of its own: what the simulator does, without the rest.
 class TrackedRobot {
  public:
   /// `world` is MJCF. The robot has settled when this returns.

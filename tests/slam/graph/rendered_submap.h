@@ -8,7 +8,7 @@
 
 namespace patrol::test {
 
-/// A submap drawn from scans every half metre along a way, at their true poses; its frame is the first of them.
+/// A submap drawn from scans every half meter along a way, at their true poses; its frame is the first of them.
 inline slam::RenderedSubmap drive_past(const RoomWorld& world, const std::vector<Eigen::Vector2d>& way, std::uint64_t seed) {
   std::vector<slam::Keyframe> keyframes;
   std::vector<Pose2> poses;

@@ -1,4 +1,4 @@
-#include "tests/support/tracked_twin.h"
+#include "tests/support/simulated_tracked_robot.h"
 
 #include <algorithm>
 #include <cmath>

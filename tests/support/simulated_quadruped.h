@@ -44,7 +44,7 @@ struct WalkReport {
   bool has_fallen = false;
 };
 
-/// The quadruped with noisy sensors and its controller, in a world of its own: what the twin does, without
+/// The quadruped with noisy sensors and its controller, in a world of its own: what the simulator does, without
 /// the rest.
 class WalkingRobot {
  public:

@@ -1,4 +1,4 @@
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_quadruped.h"
 
 #include <algorithm>
 #include <cmath>
@@ -135,9 +135,9 @@ double WalkingRobot::loaded_slip_mps(int leg) const {
     if (contact.geom[0] != geom && contact.geom[1] != geom) continue;
     mjtNum velocity[6];
     mj_objectVelocity(model_.physics.get(), data_.get(), mjOBJ_GEOM, geom, velocity, 0);
-    const Eigen::Vector3d omega(velocity), centre(velocity + 3), normal(contact.frame);
+    const Eigen::Vector3d omega(velocity), center(velocity + 3), normal(contact.frame);
     const Eigen::Vector3d arm = Eigen::Vector3d(contact.pos) - Eigen::Vector3d(data_->geom_xpos + 3 * geom);
-    const Eigen::Vector3d sole = centre + omega.cross(arm);
+    const Eigen::Vector3d sole = center + omega.cross(arm);
     return (sole - normal.dot(sole) * normal).norm();
   }
   return 0.0;

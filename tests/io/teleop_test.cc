@@ -7,7 +7,7 @@
 #include "io/files/teleop_csv.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::io::remote_drive_test {
+namespace patrol::io::teleop_test {
 namespace {
 
 using test::TemporaryFile;
@@ -33,7 +33,7 @@ std::string remote_complaint(const std::string& lines) {
   return complaint("r.csv", "time_s,vx_mps,yaw_rate_radps,mark,hand_over\n" + lines, load_teleop);
 }
 
-TEST(LoadDrive, ReadsReversesAndMarks) {
+TEST(LoadTeleopRoute, ReadsReversesAndMarks) {
   const TemporaryFile file("d.json", R"({"version": 1, "frame": "site", "waypoints": [
     {"position": [1, 2], "reverse": true}, {"position": [3, 4], "mark_heading_deg": 90}]})");
   const TeleopRoute drive = load_teleop_route(file.path());
@@ -45,7 +45,7 @@ TEST(LoadDrive, ReadsReversesAndMarks) {
   EXPECT_DOUBLE_EQ(drive[1].heading_rad, std::numbers::pi / 2.0);
 }
 
-TEST(LoadDrive, NamesTheWaypointAndTheKey) {
+TEST(LoadTeleopRoute, NamesTheWaypointAndTheKey) {
   EXPECT_EQ(drive_complaint(R"([{"position": [1, 2]}])"), "d.json: waypoints must be at least two");
   EXPECT_EQ(drive_complaint(R"([{"position": [1, 2]}, {"position": [1]}])"),
             "d.json: waypoints[1]: position must be a list of 2 numbers");
@@ -58,7 +58,7 @@ TEST(LoadDrive, NamesTheWaypointAndTheKey) {
             "d.json: waypoints[1]: position is more than 1000 m from the one before");
 }
 
-TEST(LoadRemote, WhatWasSavedIsReadBack) {
+TEST(LoadTeleop, WhatWasSavedIsReadBack) {
   const TemporaryFile file("r.csv", "");
   save_teleop(file.path(), {{.stamp = 100ms, .vx_mps = 0.5, .yaw_rate_radps = -0.25},
                             {.stamp = 200ms, .save_goal = true},
@@ -72,7 +72,7 @@ TEST(LoadRemote, WhatWasSavedIsReadBack) {
   EXPECT_TRUE(commands[2].hand_over);
 }
 
-TEST(LoadRemote, NamesTheLine) {
+TEST(LoadTeleop, NamesTheLine) {
   EXPECT_EQ(complaint("r.csv", "t,v\n", load_teleop),
             "r.csv:1: the first line must be time_s,vx_mps,yaw_rate_radps,mark,hand_over");
   EXPECT_EQ(remote_complaint(""), "r.csv: contains no commands");
@@ -87,7 +87,7 @@ TEST(LoadRemote, NamesTheLine) {
   EXPECT_EQ(remote_complaint("0,1,0,0,0\n0,1,0,0,0\n"), "r.csv:3: time_s = 0: must be later than in the line before");
 }
 
-TEST(LoadRemote, NumbersBeyondAnyDriveAreRefused) {
+TEST(LoadTeleop, NumbersBeyondAnyDriveAreRefused) {
   EXPECT_EQ(remote_complaint("-1,0,0,0,0\n"), "r.csv:2: time_s = -1: must be in [0, 86400]");
   EXPECT_EQ(remote_complaint("1e300,0,0,0,0\n"), "r.csv:2: time_s = 1e+300: must be in [0, 86400]") << "no integer of nanoseconds";
   EXPECT_EQ(remote_complaint("0,1e300,0,0,0\n"), "r.csv:2: vx_mps = 1e+300: must be in [-100, 100]");
@@ -95,4 +95,4 @@ TEST(LoadRemote, NumbersBeyondAnyDriveAreRefused) {
 }
 
 }  // namespace
-}  // namespace patrol::io::remote_drive_test
+}  // namespace patrol::io::teleop_test
