@@ -29,7 +29,7 @@ constexpr int kMaxMapSide_px = 8192;  // per side of a map
 
 std::string text_of(const JsonObject& object, const char* key, std::size_t min_bytes, std::size_t max_bytes) {
   const std::string text = object.string(key);
-  if (text.size() < min_bytes || text.size() > max_bytes) object.fail(fmt::format("{} must have {} ... {} bytes", key, min_bytes, max_bytes));
+  if (text.size() < min_bytes || text.size() > max_bytes) object.fail(fmt::format("{} must have {} to {} bytes", key, min_bytes, max_bytes));
   return text;
 }
 

@@ -180,7 +180,7 @@ HttpResponse Service::acknowledge(const HttpRequest& request) {
   const Json json = Json::parse(request.body);
   const io::JsonObject object("body", json, {"who", "note"});
   const std::string who = object.string("who"), note = object.string("note");
-  if (who.empty() || who.size() > kMaxWhoBytes) object.fail(fmt::format("who must have 1 ... {} bytes", kMaxWhoBytes));
+  if (who.empty() || who.size() > kMaxWhoBytes) object.fail(fmt::format("who must have 1 to {} bytes", kMaxWhoBytes));
   if (note.size() > kMaxNoteBytes) object.fail(fmt::format("note must have at most {} bytes", kMaxNoteBytes));
   const std::int64_t number = *number_between(request.path, kAlarms, kAcknowledge);
   switch (store_.acknowledge(number, who, note, now_ms())) {

@@ -23,7 +23,7 @@ std::string clock_text(Time time) {
   return fmt::format("{:d}:{:04.1f}", minutes, seconds - 60.0 * minutes);
 }
 
-std::string figures_text(const RunSnapshot& snapshot) {
+std::string values_text(const RunSnapshot& snapshot) {
   return fmt::format("{}    position error {:.3f} m    heading error {:.2f}°    {} {:.1f} m",
                                  clock_text(snapshot.state.stamp), snapshot.T_true_estimate.position().norm(),
                                  to_deg(std::abs(snapshot.T_true_estimate.yaw)),
@@ -42,7 +42,7 @@ std::string status_text(const RunSnapshot& snapshot, const std::optional<FilmNot
 
 Overlay::Overlay(int frame_height, GasCloud gas)
     : scale_(frame_height / 720.0),
-      figures_(std::max(12, frame_height / 30), true),
+      values_(std::max(12, frame_height / 30), true),
       texts_(std::max(11, frame_height / 40)),
       title_(std::max(12, frame_height / 24), true),
       gas_(std::move(gas)) {}
@@ -65,12 +65,12 @@ void Overlay::draw(Frame& frame, const std::vector<float>& depth, const View& vi
 }
 
 void Overlay::draw_figures(Frame& frame, const RunSnapshot& snapshot, const std::optional<FilmNote>& note) {
-  const int margin = figures_.height_px() / 2;
+  const int margin = values_.height_px() / 2;
   const int line = texts_.height_px() + margin;
-  fill_rectangle(frame, 0, 0, frame.width(), figures_.height_px() + 2 * margin + line, {kPanelColor, 0.6});
-  const int baseline = margin + figures_.height_px();
+  fill_rectangle(frame, 0, 0, frame.width(), values_.height_px() + 2 * margin + line, {kPanelColor, 0.6});
+  const int baseline = margin + values_.height_px();
   const int width = frame.width() - 4 * margin;
-  figures_.draw(frame, 2 * margin, baseline, figures_.fitted(figures_text(snapshot), width), {kTextColor, 1.0});
+  values_.draw(frame, 2 * margin, baseline, values_.fitted(values_text(snapshot), width), {kTextColor, 1.0});
   const std::string status = status_text(snapshot, note);
   const int status_width = texts_.width_px(status);
   texts_.draw(frame, frame.width() - 2 * margin - status_width, baseline + line, status, {kTextColor, 1.0});

@@ -31,7 +31,7 @@ class Overlay {
   void draw_timeline(Frame& frame, const FilmNote& note);
 
   double scale_;  ///< line width scale: 1 for a frame of 720 pixels height
-  Font figures_;
+  Font values_;
   Font texts_;
   Font title_;
   MapInset inset_;

@@ -124,8 +124,8 @@ std::vector<StudyVariant> growth_variants(const std::vector<GrowthTrial>& trials
   return variants;
 }
 
-report::Curve curve_of(const std::string& name, SeriesColor ink, const std::vector<double>& values) {
-  report::Curve curve{.name = name, .ink = ink, .is_dashed = false, .points = {}};
+report::Curve curve_of(const std::string& name, SeriesColor color, const std::vector<double>& values) {
+  report::Curve curve{.name = name, .color = color, .is_dashed = false, .points = {}};
   for (std::size_t t = 0; t < values.size(); ++t) curve.points.emplace_back(static_cast<double>(t + 1), values[t]);
   return curve;
 }
@@ -133,7 +133,7 @@ report::Curve curve_of(const std::string& name, SeriesColor ink, const std::vect
 /// Figures 1 to 4: states and errors over time, and the particles at step 25; N = 100.
 std::vector<report::Section> illustrate_growth(const GrowthTrial& trial, std::uint64_t seed) {
   constexpr int kParticles = 100, kShownStep = 25;
-  constexpr std::array kInks = {SeriesColor::kOdometry, SeriesColor::kRanges, SeriesColor::kTrust, SeriesColor::kAlarm, SeriesColor::kEvent, SeriesColor::kEstimate};
+  constexpr std::array kColors = {SeriesColor::kOdometry, SeriesColor::kRanges, SeriesColor::kConfidence, SeriesColor::kAlarm, SeriesColor::kEvent, SeriesColor::kEstimate};
   const GrowthRun run = trial.model.simulate(seed);
   const report::PlotAxis axis = {.label = "step", .max = static_cast<double>(run.states.size())};
   report::LinePlot states{.title = fmt::format("State, seed {}, N = {}", seed, kParticles), .unit = "", .axis = axis, .max = {}, .curves = {}, .marks = {}, .spans = {}};
@@ -152,9 +152,9 @@ std::vector<report::Section> illustrate_growth(const GrowthTrial& trial, std::ui
       if (const auto* growth = dynamic_cast<const GrowthFilter*>(filter.get())) particles = growth->states();
       if (const auto* quasi = dynamic_cast<const QuasiFilter*>(filter.get())) particles = quasi->states();
     }
-    const SeriesColor ink = method.particles == 0 ? SeriesColor::kBound : kInks[num_shown++ % kInks.size()];
-    states.curves.push_back(curve_of(method.name, ink, means));
-    errors.curves.push_back(curve_of(method.name, ink, sizes));
+    const SeriesColor color = method.particles == 0 ? SeriesColor::kBound : kColors[num_shown++ % kColors.size()];
+    states.curves.push_back(curve_of(method.name, color, means));
+    errors.curves.push_back(curve_of(method.name, color, sizes));
     if (!particles.empty()) spread.boxes.push_back(report::box_of(method.name, particles, {}));
   }
   return {{"States and errors over time", {states, errors}}, {"Spread of the particles", {spread}}};

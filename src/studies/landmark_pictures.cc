@@ -20,8 +20,8 @@ std::vector<Eigen::Vector2d> positions(const std::vector<Pose2>& poses) {
   return positions;
 }
 
-report::Curve error_curve(const LandmarkMethod& method, const LandmarkTrack& track, const LandmarkRun& run, double step_s, SeriesColor ink) {
-  report::Curve curve{.name = label_of(method), .ink = ink, .is_dashed = false, .points = {}};
+report::Curve error_curve(const LandmarkMethod& method, const LandmarkTrack& track, const LandmarkRun& run, double step_s, SeriesColor color) {
+  report::Curve curve{.name = label_of(method), .color = color, .is_dashed = false, .points = {}};
   for (std::size_t k = 0; k < run.truth.size(); ++k) {
     const double error_m = (track.estimates[k].T_map_body.position() - run.truth[k].position()).norm();
     curve.points.emplace_back(step_s * static_cast<double>(k + 1), error_m);
@@ -34,11 +34,11 @@ report::MapBlock map_of(const LandmarkWorld& world, const LandmarkRun& run, cons
   std::vector<report::MapMark> marks;
   Eigen::AlignedBox2d shown;
   for (const Eigen::Vector2d& p_m : world.landmarks_m) {
-    marks.push_back({.label = "", .ink = SeriesColor::kTruth, .p_m = p_m});
+    marks.push_back({.label = "", .color = SeriesColor::kTruth, .p_m = p_m});
     shown.extend(p_m);
   }
   for (const auto& p_m : track.landmarks) {
-    if (p_m) marks.push_back({.label = "", .ink = SeriesColor::kEstimate, .p_m = *p_m});
+    if (p_m) marks.push_back({.label = "", .color = SeriesColor::kEstimate, .p_m = *p_m});
   }
   for (const report::MapPath& path : paths) {
     for (const Eigen::Vector2d& p_m : path.pieces_m.front()) shown.extend(p_m);
@@ -49,7 +49,7 @@ report::MapBlock map_of(const LandmarkWorld& world, const LandmarkRun& run, cons
 }  // namespace
 
 std::vector<report::Section> landmark_sections(const LandmarkWorld& world, const std::vector<LandmarkMethod>& methods, std::uint64_t seed) {
-  constexpr std::array kInks = {SeriesColor::kOdometry, SeriesColor::kRanges, SeriesColor::kTrust, SeriesColor::kEvent, SeriesColor::kAlarm, SeriesColor::kBound};
+  constexpr std::array kColors = {SeriesColor::kOdometry, SeriesColor::kRanges, SeriesColor::kConfidence, SeriesColor::kEvent, SeriesColor::kAlarm, SeriesColor::kBound};
   constexpr std::size_t kMaps = 4;
   const LandmarkRun run = simulate(world, seed);
   const double end_s = world.motion.step_s * static_cast<double>(run.truth.size());
@@ -61,8 +61,8 @@ std::vector<report::Section> landmark_sections(const LandmarkWorld& world, const
     const bool is_last = i + 1 == methods.size();
     if (methods[i].particles != particles && !is_last) continue;
     const LandmarkTrack track = follow(methods[i], world, run, seed);
-    if (errors.curves.size() < kInks.size() || is_last) {
-      errors.curves.push_back(error_curve(methods[i], track, run, world.motion.step_s, is_last ? SeriesColor::kEstimate : kInks[errors.curves.size()]));
+    if (errors.curves.size() < kColors.size() || is_last) {
+      errors.curves.push_back(error_curve(methods[i], track, run, world.motion.step_s, is_last ? SeriesColor::kEstimate : kColors[errors.curves.size()]));
     }
     if (i < kMaps || is_last) maps.push_back({label_of(methods[i]), {map_of(world, run, track)}});
   }

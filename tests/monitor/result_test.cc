@@ -39,8 +39,8 @@ TEST(Result, AListIsABatch) { EXPECT_EQ(results_from_json("[" + to_json(pose_res
 
 TEST(Result, EachFieldIsHeldToItsRule) {
   EXPECT_EQ(complaint_with("/schema", "patrol-result/1"), "result: schema must be patrol-result/2");
-  EXPECT_EQ(complaint_with("/robot", ""), "result: robot must have 1 ... 200 bytes");
-  EXPECT_EQ(complaint_with("/id", std::string(201, 'x')), "result: id must have 1 ... 200 bytes");
+  EXPECT_EQ(complaint_with("/robot", ""), "result: robot must have 1 to 200 bytes");
+  EXPECT_EQ(complaint_with("/id", std::string(201, 'x')), "result: id must have 1 to 200 bytes");
   EXPECT_EQ(complaint_with("/run", "a\nb"), "result: run must be a string");
   EXPECT_EQ(complaint_with("/robot", "a\xc2\x9b" "31m"), "result: robot must be a string");  // C1: starts a sequence as ESC [ does
   EXPECT_EQ(complaint_with("/robot", "a\x7f"), "result: robot must be a string");

@@ -142,7 +142,7 @@ ExitCode monitor_command(const MonitorOptions& options);
 
 struct UploadOptions {
   std::filesystem::path run;
-  std::string to;
+  std::string monitor_url;
   std::optional<std::filesystem::path> token_file;
   double timeout_s = 30.0;  ///< timeout without progress
 };

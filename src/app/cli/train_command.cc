@@ -46,7 +46,7 @@ std::optional<slam::LabeledFeatures> examples_of(const std::vector<std::filesyst
     const std::size_t before = examples.labels.size();
     slam::add_neighbor_examples(track->slam, track->T_world_submap, settings.submap_rbpf.surfaces, settings.examples, settings.seed + before, examples);
     const auto joinable = std::count(examples.labels.begin() + static_cast<std::ptrdiff_t>(before), examples.labels.end(), 1);
-    bar.say(fmt::format("{}: {} submaps, {} examples, {} of them neighbors", run.string(), track->T_world_submap.size(), examples.labels.size() - before, joinable));
+    bar.print_line(fmt::format("{}: {} submaps, {} examples, {} of them neighbors", run.string(), track->T_world_submap.size(), examples.labels.size() - before, joinable));
   }
   return examples;
 }
@@ -81,7 +81,7 @@ ExitCode train_command(const TrainOptions& options) {
   const auto settings = io::parse_settings<TrainingSettings>(options.overrides);
   const InterruptGuard guard;
   const std::optional<slam::LabeledFeatures> training = examples_of(options.runs, settings, guard);
-  const std::optional<slam::LabeledFeatures> held_out = training ? examples_of(options.held_out, settings, guard) : std::nullopt;
+  const std::optional<slam::LabeledFeatures> held_out = training ? examples_of(options.validation, settings, guard) : std::nullopt;
   if (!training || !held_out) {
     fmt::print(stderr, "patrol: interrupted; nothing written\n");
     return ExitCode::kProgramFailed;

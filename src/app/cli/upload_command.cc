@@ -14,8 +14,8 @@ namespace patrol::app {
 ExitCode upload_command(const UploadOptions& options) {
   if (!std::filesystem::exists(options.run / "outbox.jsonl")) throw InputError(fmt::format("{}: no results to upload: outbox.jsonl not found", options.run.string()));
   Outbox outbox(options.run);
-  Sender sender(outbox, make_monitor_server(options.monitor_url, options.monitor_urlken_file));
-  const std::size_t num_rejected = outbox.num_rejected(), num_before = outbox.num_pending();
+  Sender sender(outbox, make_monitor_server(options.monitor_url, options.token_file));
+  const std::size_t num_rejected_before = outbox.num_rejected(), num_before = outbox.num_pending();
   const InterruptGuard interrupt;
   ProgressBar bar;
 
@@ -34,7 +34,7 @@ ExitCode upload_command(const UploadOptions& options) {
     if (interrupt.is_interrupted()) break;
   }
 
-  const std::size_t num_pending = outbox.num_pending(), num_rejected = outbox.num_rejected() - num_rejected;
+  const std::size_t num_pending = outbox.num_pending(), num_rejected = outbox.num_rejected() - num_rejected_before;
   if (num_rejected > 0) fmt::print(stderr, "patrol: {} rejected {} results, kept in {}\n", options.monitor_url, num_rejected, (options.run / "outbox.refused.jsonl").string());
   if (num_pending > 0) {
     fmt::print(stderr, "patrol: {} results pending in {}: {}\n", num_pending, outbox.file().string(), sender.last_error());

@@ -28,7 +28,7 @@ report::LinePlot plot_of(const MappingContents& contents, const std::string& col
     return static_cast<std::size_t>(std::ranges::find(contents.cost.columns, name) - contents.cost.columns.begin());
   };
   const std::size_t scans = index_of("scans"), value = index_of(column);
-  report::Curve curve{.name = title, .ink = report::SeriesColor::kEstimate, .is_dashed = false, .points = {}};
+  report::Curve curve{.name = title, .color = report::SeriesColor::kEstimate, .is_dashed = false, .points = {}};
   for (const auto& row : contents.cost.rows) curve.points.emplace_back(std::get<double>(row[scans]), std::get<double>(row[value]));
   const double last = curve.points.empty() ? 1.0 : curve.points.back().x();
   return {.title = title, .unit = unit, .axis = {.label = "scans", .max = last}, .max = {}, .curves = {std::move(curve)}, .marks = {}, .spans = {}};

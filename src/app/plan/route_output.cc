@@ -145,8 +145,8 @@ io::Metrics to_json(const RouteReport& report) {
 
 io::Table route_table(const PlanMap& map, const std::vector<Eigen::Vector2d>& points_m) {
   io::Table table{.name = "route", .columns = {fmt::format("x_{}", map.unit()), fmt::format("y_{}", map.unit())}, .rows = {}};
-  const auto micrometres = [](double x) { return std::round(1e6 * x) / 1e6; };
-  for (const Eigen::Vector2d& p_m : points_m) table.rows.push_back({micrometres(map.to_user(p_m).x()), micrometres(map.to_user(p_m).y())});
+  const auto round_to_micrometers = [](double x) { return std::round(1e6 * x) / 1e6; };
+  for (const Eigen::Vector2d& p_m : points_m) table.rows.push_back({round_to_micrometers(map.to_user(p_m).x()), round_to_micrometers(map.to_user(p_m).y())});
   return table;
 }
 

@@ -22,7 +22,7 @@ struct RunOutcome {
   double cpu_s = 0.0;
   std::map<std::string, double> seconds_by_stage;     ///< wall time by stage
   std::vector<sim::FaultStatus> faults;
-  std::size_t num_kidnaps = 0;                       ///< number of declared kidnaps, in order, that were executed
+  std::size_t num_kidnaps = 0;                       ///< number of declared kidnaps, in order, that were triggered
 };
 
 /// Observer of a running simulation. Must not influence the run; may stop it by returning false from `keep_running`.

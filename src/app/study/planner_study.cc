@@ -42,7 +42,7 @@ struct PlannerMethod {
   const char* title;
   const char* name;  ///< name of the planner
   bool iterates;
-  SeriesColor ink;
+  SeriesColor color;
   bool tightens = true;  ///< improved colony only: extension
 };
 
@@ -54,7 +54,7 @@ constexpr std::array<PlannerMethod, 9> kPlannerMethods = {{{"improved ant colony
                                                     {"dual swarm", "dual_swarm_pso", true, SeriesColor::kRanges},
                                                     {"Q-learning", "q_learning", true, SeriesColor::kAlarm},
                                                     {"Theta*", "theta_star", false, SeriesColor::kEvent},
-                                                    {"Dijkstra", "dijkstra", false, SeriesColor::kTrust},
+                                                    {"Dijkstra", "dijkstra", false, SeriesColor::kConfidence},
                                                     {"A*", "astar", false, SeriesColor::kTruth},
                                                     {"any-angle optimum", "visibility_graph", false, SeriesColor::kBound}}};
 constexpr std::size_t kAstar = 7, kOptimum = 8;
@@ -131,7 +131,7 @@ report::LinePlot convergence(const std::array<Planned, kPlannerMethods.size()>& 
   report::LinePlot plot{.title = fmt::format("Excess length over A*, best so far: {}", world), .unit = "%", .axis = {.label = "iteration", .max = kShown}, .max = kMost, .curves = {}, .marks = {}, .spans = {}};
   for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) {
     if (!kPlannerMethods[m].iterates) continue;
-    report::Curve curve{.name = kPlannerMethods[m].title, .ink = kPlannerMethods[m].ink, .is_dashed = false, .points = {}};
+    report::Curve curve{.name = kPlannerMethods[m].title, .color = kPlannerMethods[m].color, .is_dashed = false, .points = {}};
     for (std::size_t i = 0; i < kShown; ++i) {
       const std::vector<double>& history = all[m].route.history;
       const double excess = i < history.size() ? 100.0 * (history[i] / all[kAstar].route.length - 1.0) : kNoPlannerMetric;
@@ -154,10 +154,10 @@ report::MapBlock routes_on(const PlannerProblem& problem, const std::array<Plann
   block.picture = report::map_picture({.built = map, .T_world_map = {}, .truth = {}, .error_m = {}}, shown);
   for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) {
     if (m != kOptimum && !kPlannerMethods[m].iterates) continue;
-    block.paths.push_back({kPlannerMethods[m].title, kPlannerMethods[m].ink, {plan::to_meters(grid, all[m].route.points)}});
+    block.paths.push_back({kPlannerMethods[m].title, kPlannerMethods[m].color, {plan::to_meters(grid, all[m].route.points)}});
   }
   for (const auto& [label, cell] : {std::pair("start", problem.start), std::pair("goal", problem.goal)}) {
-    block.marks.push_back({.label = label, .ink = SeriesColor::kTruth, .p_m = grid.center_of(cell)});
+    block.marks.push_back({.label = label, .color = SeriesColor::kTruth, .p_m = grid.center_of(cell)});
   }
   return block;
 }

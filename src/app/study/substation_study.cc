@@ -22,15 +22,15 @@ struct LogMethod {
   std::string name;
   std::string method;  ///< slam.method
   std::vector<std::optional<double>> published{};
-  report::SeriesColor ink = report::SeriesColor::kEstimate;
+  report::SeriesColor color = report::SeriesColor::kEstimate;
 };
 
 constexpr double kMinute_s = 60.0, kGigabyte_mb = 1000.0;
 
 const std::vector<LogMethod> kSubstationMethods = {
-    {.name = "improved RBPF (submap_rbpf)", .method = "submap_rbpf", .published = {0.1522, std::log10(0.1522), 0.0707, {}, {}, {}, {}, {}, 43.93 * kMinute_s, 0.9 * kGigabyte_mb}, .ink = report::SeriesColor::kEstimate},
-    {.name = "pose graph (graph)", .method = "graph", .published = {0.3491, std::log10(0.3491), {}, {}, {}, {}, {}, {}, 51.35 * kMinute_s, 1.3 * kGigabyte_mb}, .ink = report::SeriesColor::kRanges},
-    {.name = "plain RBPF (rbpf)", .method = "rbpf", .published = {2.7605, std::log10(2.7605), {}, {}, {}, {}, {}, {}, 21.01 * kMinute_s, 1.4 * kGigabyte_mb}, .ink = report::SeriesColor::kOdometry}};
+    {.name = "improved RBPF (submap_rbpf)", .method = "submap_rbpf", .published = {0.1522, std::log10(0.1522), 0.0707, {}, {}, {}, {}, {}, 43.93 * kMinute_s, 0.9 * kGigabyte_mb}, .color = report::SeriesColor::kEstimate},
+    {.name = "pose graph (graph)", .method = "graph", .published = {0.3491, std::log10(0.3491), {}, {}, {}, {}, {}, {}, 51.35 * kMinute_s, 1.3 * kGigabyte_mb}, .color = report::SeriesColor::kRanges},
+    {.name = "plain RBPF (rbpf)", .method = "rbpf", .published = {2.7605, std::log10(2.7605), {}, {}, {}, {}, {}, {}, 21.01 * kMinute_s, 1.4 * kGigabyte_mb}, .color = report::SeriesColor::kOdometry}};
 
 const std::vector<studies::StudyMetric> kSubstationMetrics = {{.name = "map to nearest surface", .unit = "m", .is_compared = true},
                                            {.name = "its logarithm to base 10", .unit = "", .is_compared = true},
@@ -102,7 +102,7 @@ std::vector<report::Section> illustrate_patrol(std::uint64_t seed) {
   for (const LogMethod& method : kSubstationMethods) {
     const MappedRun mapped = map_log_of(run, method.method);
     const std::vector<double> errors = quantiles(sorted_errors_m(mapped, run), kPoints);
-    report::Curve curve{.name = method.name, .ink = method.ink, .is_dashed = false, .points = {}};
+    report::Curve curve{.name = method.name, .color = method.color, .is_dashed = false, .points = {}};
     for (std::size_t i = 0; i < errors.size(); ++i) curve.points.emplace_back(100.0 * static_cast<double>(i) / (kPoints - 1), errors[i]);
     curves.curves.push_back(std::move(curve));
     boxes.boxes.push_back(report::box_of(method.name, errors, {.factor = 1.0, .name = "m"}));

@@ -8,7 +8,7 @@
 namespace patrol::app {
 namespace {
 
-/// Whether the single declared fault of a run was executed; none without a fault.
+/// Whether the single declared fault of a run was triggered; none without a fault.
 std::optional<bool> was_triggered(const RunVerdict& verdict) {
   if (verdict.events.empty()) return std::nullopt;
   return verdict.events.front().was_triggered;
@@ -56,14 +56,14 @@ std::string trigger_text(const FaultRow& row) {
 
 std::string faults_summary(const std::vector<FaultRow>& rows) {
   std::map<FaultOutcome, int> counts;
-  int num_not_executed = 0;
+  int num_not_triggered = 0;
   for (const FaultRow& row : rows) {
     ++counts[row.outcome];
-    num_not_executed += row.is_not_triggered();
+    num_not_triggered += row.is_not_triggered();
   }
   std::vector<std::string> parts;
   for (const auto& [outcome, count] : counts) parts.push_back(fmt::format("{} {}", count, text_of(outcome)));
-  return fmt::format("{} runs: {}; {} faults not triggered.", rows.size(), fmt::join(parts, ", "), num_not_executed);
+  return fmt::format("{} runs: {}; {} faults not triggered.", rows.size(), fmt::join(parts, ", "), num_not_triggered);
 }
 
 std::string fault_legend() {

@@ -12,7 +12,7 @@ namespace patrol::app {
 struct TestOptions {
   std::filesystem::path scenarios;     ///< a folder, or one scenario file
   std::vector<std::string> overrides;  ///< "path=value", for every scenario
-  BatchOptions batch{.keep = "failed"};
+  BatchOptions batch{.keep_runs = "failed"};
   std::filesystem::path out = "out/test";
 };
 
