@@ -46,7 +46,7 @@ TEST(StudyResults, ZeroWithinTheIntervalIsNoDifferenceAndTheReferenceIsNotCompar
   EXPECT_EQ(verdict_of(results[0][0]), "");
 }
 
-TEST(StudyResults, TheClockStandsInATableOfItsOwnAndWhatIsNotMeasuredHasNoRow) {
+TEST(StudyResults, ProcessorTimeHasItsOwnTableAndUnmeasuredMetricsHaveNoRow) {
   const Study study = two_methods();
   const StudyResults results = summarize(study, samples());
   const std::string csv = io::to_csv(results_table(study, results));
@@ -74,7 +74,7 @@ TEST(Study, AnUnknownOneIsRefusedWithTheKnownNames) {
   }
 }
 
-TEST(Study, EveryVariantsReferenceLiesInItsOwnWorld) {
+TEST(Study, EveryVariantsReferenceIsInItsOwnWorld) {
   for (const std::string& name : study_names()) {
     const Study study = make_study(name);
     for (const StudyVariant& variant : study.variants) EXPECT_EQ(study.variants[variant.reference].world, variant.world) << name << ": " << variant.method;
