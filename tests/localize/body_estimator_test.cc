@@ -49,7 +49,7 @@ Eigen::Vector2d position_error(const BodyEstimator& estimator, const WalkingRobo
   return (estimator.estimate()->T_odom_body.position - robot.T_world_body().position).head<2>();
 }
 
-TEST(BodyEstimator, KnowsNothingBeforeItHasHeardImuAndLegs) {
+TEST(BodyEstimator, HasNoEstimateBeforeImuAndLegReadings) {
   WalkingRobot robot(make_quadruped(), stand_then_walk(10.0, {}), {}, 1);
   BodyEstimator estimator(make_quadruped(), {});
   EXPECT_FALSE(estimator.estimate());
@@ -112,7 +112,7 @@ TEST(BodyEstimator, CurvedWalkEndsWhereItShould) {
   EXPECT_LT(std::abs(yaw_error(estimator, robot)), 2.0 * 0.002 * 1.0 + 0.0005 * 18.0);
 }
 
-TEST(BodyEstimator, StandingFourSecondsFindsTheGyrosBias) {
+TEST(BodyEstimator, FourSecondsAtRestEstimateTheGyroBias) {
   const WalkingRobotSettings settings;
   WalkingRobot robot(make_quadruped(), stand_then_walk(10.0, {}), settings, 5);
   BodyEstimator estimator(make_quadruped(), {});
@@ -153,7 +153,7 @@ TEST(BodyEstimator, HalfASecondWithoutImuIsSurvivedAndReported) {
   EXPECT_LT(std::abs(yaw_error(estimator, robot)), 2.0 * kDegree);
 }
 
-TEST(BodyEstimator, TenSecondsWithoutJointsDoNotRunAway) {
+TEST(BodyEstimator, TenSecondsWithoutJointReadingsDoNotDiverge) {
   WalkingRobot robot(make_quadruped(), stand_then_walk(3.0, {.vx_mps = 0.5}), {}, 8);
   BodyEstimator estimator(make_quadruped(), {});
   run(robot, estimator, 8.0);
@@ -163,7 +163,7 @@ TEST(BodyEstimator, TenSecondsWithoutJointsDoNotRunAway) {
   EXPECT_GT(std::sqrt(estimator.estimate()->planar_covariance(0, 0)), 0.2);
 }
 
-TEST(BodyEstimator, WithoutFootSensorsTheLowestFeetAreTakenToStand) {
+TEST(BodyEstimator, WithoutFootSensorsTheLowestFeetAreInStance) {
   WalkingRobot robot(make_quadruped(), stand_then_walk(3.0, {.vx_mps = 0.8}), {}, 9);
   BodyEstimator estimator(make_quadruped(), {});
   run(robot, estimator, 5.0);
@@ -284,7 +284,7 @@ TEST(BodyEstimator, TiltedImuMountIsUndone) {
   EXPECT_LT(tilt_error(estimator, robot), 0.1 * kDegree);
 }
 
-TEST(BodyEstimator, ErrorsAreAsLargeAsTheCovarianceSays) {
+TEST(BodyEstimator, ErrorsAreConsistentWithTheCovariance) {
   // NEES of x, y, yaw after half a minute over 12 walks: chi-square of 36 degrees of freedom, divided by 12.
   // 95 % band of the mean: 21.3 / 12 ... 54.4 / 12. The lower end is not asked for: `position_random_walk_m_per_sqrt_m`
   // stands for slip and terrain, which this robot does not have, so the filter is too modest here.

@@ -34,7 +34,7 @@ std::optional<DockDetection> look(const RoomWorld& world, const Pose2& T_world_b
   return DockDetector({}, profile_m).detect(scan, T_level_expected);
 }
 
-TEST(DockDetector, WithoutNoiseFindsThePostToThreeMillimetersFromThirtyCentimetersBeside) {
+TEST(DockDetector, WithoutNoiseFindsThePostToThreeMillimetersFromThirtyCentimetersOff) {
   const Pose2 T_world_body{-1.3, 0.05, 0.06};
   const Pose2 T_level_docked = T_world_body.inverse();
   for (const Pose2& off : {Pose2{0.0, 0.0, 0.0}, Pose2{0.25, -0.2, 0.15}, Pose2{-0.25, 0.25, -0.15}}) {
@@ -49,7 +49,7 @@ TEST(DockDetector, WithoutNoiseFindsThePostToThreeMillimetersFromThirtyCentimete
 // 300 looks from between 1.4 m before the docked pose and there. Ratio of squared error to covariance: 3 on average if the
 // covariance were exact (chi squared of three degrees of freedom, standard error of the mean sqrt(6 / 300) = 0.14); beams quantise the
 // edges, so half and double are allowed.
-TEST(DockDetector, ItsErrorsAreAsLargeAsItsCovarianceSays) {
+TEST(DockDetector, ErrorsAreConsistentWithTheCovariance) {
   double squares = 0.0, worst_m = 0.0, worst_rad = 0.0;
   constexpr int kLooks = 300;
   for (std::uint64_t i = 0; i < kLooks; ++i) {
@@ -126,7 +126,7 @@ TEST(DockDetector, RefusesAPostHalfHiddenByAPerson) {
 }
 
 // The same noise, with and without it: the post's own beams are the same, so must be the pose.
-TEST(DockDetector, ACartBesideThePostDoesNotDrawItAside) {
+TEST(DockDetector, ACartNextToThePostDoesNotBiasThePose) {
   RoomWorld with_cart = make_portal({});
   with_cart.add_box(0.6, 0.45, 1.2, 1.0);
   const Pose2 expected{1.23, 0.04, 0.03};
@@ -136,7 +136,7 @@ TEST(DockDetector, ACartBesideThePostDoesNotDrawItAside) {
   EXPECT_THAT(with->T_level_docked, Pose2Near(without->T_level_docked, 0.001, 0.002));
 }
 
-TEST(DockDetector, SaysNothingFromTooFarAndOfAnEmptyScan) {
+TEST(DockDetector, NoDetectionFromTooFarAndInAnEmptyScan) {
   EXPECT_FALSE(look(make_portal({}), {-6.0, 0.0, 0.0}, {6.0, 0.0, 0.0}));
   EXPECT_FALSE(DockDetector({}, make_dock_profile()).detect({}, {1.0, 0.0, 0.0}));
 }

@@ -52,7 +52,7 @@ TEST(ImuFrontEnd, RejectsImplausibleOldAndFrozenReadings) {
   EXPECT_TRUE(imu.accept(resting(2s), false)) << "at rest it may repeat";
 }
 
-TEST(ImuFrontEnd, WaitsForAReadingThatTellsTheTilt) {
+TEST(ImuFrontEnd, WaitsForAReadingThatGivesTheTilt) {
   FrontEnd imu = make_front_end();
   Imu shaken = resting(1s);
   shaken.linear_acceleration_mps2.z() += 1.1;

@@ -26,7 +26,7 @@ TEST(ImuMount, WhenTheSpinGrowsTheTangentialForceIsTakenOffToo) {
   EXPECT_LT((sample.force_mps2 - Eigen::Vector3d(0, 0, 9.81)).norm(), 1e-9);
 }
 
-TEST(ImuMount, ATurnedUnitIsTurnedBack) {
+TEST(ImuMount, ARotatedUnitIsRotatedBack) {
   ImuMount mount({{0, 0, 0}, quaternion_from_yaw(std::numbers::pi / 2)});
   const InertialSample sample =
       mount.to_body({.stamp = Time{0}, .angular_velocity_radps = {1, 0, 0}, .linear_acceleration_mps2 = {0, 2, 0}});

@@ -25,7 +25,7 @@ InertialFilter::Settings quiet() {
           .yaw_random_walk_rad_per_sqrt_rad = 0.0};
 }
 
-TEST(InertialFilter, StartsTiltedAsGravitySays) {
+TEST(InertialFilter, StartsWithTheTiltOfGravity) {
   const Eigen::Quaterniond tilt = quaternion_from_rpy(0.1, -0.2, 0.0);
   const InertialFilter filter(quiet(), {.force_mps2 = tilt.conjugate() * kAtRest});
   EXPECT_LT(filter.motion().T_odom_body.rotation.angularDistance(tilt), 1e-9);
@@ -82,7 +82,7 @@ TEST(InertialFilter, BiasReadingMovesBiasByTheRatioOfVariances) {
 }
 
 // A bias found late explains half a meter of the way so far; odom is dead reckoning and stays where it is (REP 105).
-TEST(InertialFilter, BiasReadingMovesNeitherPlaceNorHeading) {
+TEST(InertialFilter, BiasReadingMovesNeitherPositionNorHeading) {
   InertialFilter filter(quiet(), {.rate_radps = {0, 0, 0.01}, .force_mps2 = kAtRest});
   for (int i = 0; i < 5000; ++i) {  // 20 s at 1 m/s
     filter.predict(kDt, {.rate_radps = {0, 0, 0.01}, .force_mps2 = kAtRest});
@@ -97,7 +97,7 @@ TEST(InertialFilter, BiasReadingMovesNeitherPlaceNorHeading) {
   EXPECT_NEAR(filter.planar_covariance()(2, 2), covariance(2, 2), 1e-3 * covariance(2, 2)) << "nor does it grow surer of them";
 }
 
-TEST(InertialFilter, VelocityCorrectionsTellNothingAboutYaw) {
+TEST(InertialFilter, VelocityCorrectionsDoNotConstrainYaw) {
   InertialFilter filter(quiet(), {.force_mps2 = kAtRest});
   for (int i = 0; i < 500; ++i) {
     const double turn = i < 250 ? 0.3 : -0.5, tilt = 0.2 * std::sin(0.1 * i);

@@ -32,7 +32,7 @@ TEST(ContactDetector, CountsAFootOnceItsTouchDownIsOverAndUntilItIsReleased) {
   EXPECT_EQ(at(30, 10.0), 0.0);  // released: touch counts again
 }
 
-TEST(StanceFoot, ShankTurningOverItsBallMovesTheContactByRadiusTimesRate) {
+TEST(StanceFoot, ShankRotationMovesTheContactByRadiusTimesRate) {
   // The knee alone turns at 1 rad/s: the foot's center moves with the shank, 0.213 m below the knee; the
   // contact is 0.02 m farther from the knee along the vertical.
   const RobotDescription robot = test::make_quadruped();
@@ -55,7 +55,7 @@ TEST(FuseFeet, FourFeetMovingBackwardsMeanATrunkMovingForwards) {
   EXPECT_EQ(fused->num_slipping, 0);
 }
 
-TEST(FuseFeet, TurningTrunkOverRestingFeetIsNotMoving) {
+TEST(FuseFeet, ARotatingTrunkOverFeetAtRestIsNotTranslating) {
   // omega = 1 rad/s about z; seen from the trunk a foot at (x, y) moves with -omega x p.
   const Eigen::Vector3d omega(0, 0, 1.0);
   StanceFeet feet;

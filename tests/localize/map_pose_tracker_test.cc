@@ -28,7 +28,7 @@ TEST(MapPoseTracker, CarriesACorrectionOnByOdometry) {
   EXPECT_NEAR(pose.yaw, kQuarter, kExactTol);
 }
 
-TEST(MapPoseTracker, HeadingErrorSwingsTheWayRound) {
+TEST(MapPoseTracker, HeadingErrorRotatesTheDistanceTraveled) {
   MapPoseTracker tracker({.position_std_m_per_m = 0.0, .yaw_std_rad_per_m = 0.0, .yaw_std_rad_per_rad = 0.0});
   tracker.correct(Time{0}, {}, {}, kCovariance);
   // 10 m along x with 1 mrad of heading: 1 cm across, (1e-3 * 10)^2 = 1e-4 more than before.
@@ -37,7 +37,7 @@ TEST(MapPoseTracker, HeadingErrorSwingsTheWayRound) {
   EXPECT_NEAR(covariance(1, 1), 2e-4, kExactTol);
 }
 
-TEST(MapPoseTracker, UncertaintyGrowsWithWayAndTurn) {
+TEST(MapPoseTracker, UncertaintyGrowsWithDistanceAndRotation) {
   MapPoseTracker tracker;
   tracker.correct(Time{0}, {}, {}, Eigen::Matrix3d::Zero());
   const Eigen::Matrix3d covariance = tracker.at(from_seconds(1.0), {1.0, 0.0, 1.0}).covariance;

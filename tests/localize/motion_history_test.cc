@@ -14,13 +14,13 @@ TrunkMotion at_x(double x_m) {
   return motion;
 }
 
-TEST(MotionHistory, EmptyKnowsNothing) {
+TEST(MotionHistory, EmptyHasNoMotion) {
   const MotionHistory history(4);
   EXPECT_FALSE(history.pose_at(Time{0}));
   EXPECT_FALSE(history.motion_at(Time{0}));
 }
 
-TEST(MotionHistory, QuarterOfTheWayIsAQuarterOfTheDistance) {
+TEST(MotionHistory, AQuarterOfTheTimeIsAQuarterOfTheDistance) {
   MotionHistory history(4);
   history.push(milliseconds(0), at_x(1.0));
   history.push(milliseconds(4), at_x(2.0));
@@ -30,7 +30,7 @@ TEST(MotionHistory, QuarterOfTheWayIsAQuarterOfTheDistance) {
   EXPECT_FALSE(history.pose_at(milliseconds(5)));
 }
 
-TEST(MotionHistory, RingOfFourForgetsTheFirstOfFive) {
+TEST(MotionHistory, RingOfFourDropsTheFirstOfFive) {
   MotionHistory history(4);
   for (int i = 0; i < 5; ++i) history.push(milliseconds(10 * i), at_x(i));
   EXPECT_EQ(history.oldest(), milliseconds(10));

@@ -143,7 +143,7 @@ TEST(RangeFilter, WithBlockedRangesTheNeesStaysWithinItsBounds) {
   EXPECT_LT(end_nees / 20.0, kHighNees);
 }
 
-TEST(RangeFilter, AStartTwoMetersOffIsDoubtedAndFoundAgain) {
+TEST(RangeFilter, AStartTwoMetersOffIsResetAndRecovered) {
   const TunnelRun run = drive_tunnel(1, {.nlos_probability = 0.3, .until_s = 43.0, .start_error_m = 2.0});
   EXPECT_GT(run.max_error_m, 1.9);
   EXPECT_GE(run.num_resets, 1U);
@@ -172,7 +172,7 @@ struct Standing {
   }
 };
 
-TEST(RangeFilter, OneRangeIsWeighedAsKalmanSays) {
+TEST(RangeFilter, OneRangeIsTheKalmanUpdate) {
   Standing standing(0.1);
   const RangeOutcome outcome = standing.read(9.95);
   ASSERT_TRUE(outcome.is_accepted());

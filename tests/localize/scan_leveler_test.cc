@@ -96,7 +96,7 @@ TEST(ScanLeveler, WithoutTheMotionTheSameWallsAreHalfAMeterOff) {
   EXPECT_GT(worst_wall_error(*frozen), 0.3);
 }
 
-TEST(ScanLeveler, ScansOfAStabilizedLidarAreExactOnceItIsKnown) {
+TEST(ScanLeveler, ScansOfAStabilizedLidarAreExactWithTheSetting) {
   // What a lidar on a gimbal sees: from where the wobbling body carries it, but level.
   const auto level_lidar = [](Time stamp) { return std::optional(remove_tilt(wobbling(stamp) * kLidar) * kLidar.inverse()); };
   const LaserScan scan = scan_room(level_lidar, Time{0}, 3200, -10.0);
@@ -158,7 +158,7 @@ TEST(ScanLeveler, BeamThatClimbsAboveTheBandIsFreeUpToThere) {
   EXPECT_NEAR(level->beams.at(0).end_m.x(), lidar.x() + (1.5 - 0.3 - lidar.z()) / std::tan(0.2), 1e-4);
 }
 
-TEST(ScanLeveler, SaysThatTheLidarIsTiltedBy12DegreesWhicheverWay) {
+TEST(ScanLeveler, ReportsATiltOf12DegreesInAnyDirection) {
   const LaserScan scan{.time_increment_s = 1e-4, .ranges_m = {1.0F, 2.0F}, .intensities = {}};
   for (const double heading : {0.0, 2.0}) {
     const PoseLookup on_a_ramp = [=](Time) { return Pose3{{1.0, 2.0, 0.5}, quaternion_from_rpy(0.12, -0.173, heading)}; };

@@ -30,12 +30,12 @@ struct Drive {
   }
 };
 
-TEST(SlipDetector, BeltsThatTakeTheBodyAlongAreNoEvidence) {
+TEST(SlipDetector, TracksThatMoveTheBodyAreNoEvidence) {
   EXPECT_FALSE(Drive().speed_up(1.0, 1.0, 1.5));
   EXPECT_FALSE(Drive().speed_up(1.0, 0.9, 1.5)) << "a tenth is ordinary slip";
 }
 
-TEST(SlipDetector, BeltsAloneAtOneMeterPerSecondSquaredAreNoticedAtTwentyCentimetersPerSecond) {
+TEST(SlipDetector, TracksAloneAtOneMeterPerSecondSquaredAreDetectedAtTwentyCentimetersPerSecond) {
   const auto evidence = Drive().speed_up(1.0, 0.0, 1.0);
   ASSERT_TRUE(evidence);
   EXPECT_NEAR(evidence->disagreement_mps, 0.2, 0.021);  // a reading each 20 ms

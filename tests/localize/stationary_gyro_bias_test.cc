@@ -58,7 +58,7 @@ TEST(StationaryGyroBiasEstimator, FootThatSlipsFiveMillimetersSpoilsTheWindow) {
       stand([](double) { return 0.0; }, Eigen::Vector3d::Zero(), [](double t) { return 0.005 * t; }));
 }
 
-TEST(StationaryGyroBiasEstimator, TurningRobotIsNotStanding) {
+TEST(StationaryGyroBiasEstimator, ARotatingRobotIsNotAtRest) {
   EXPECT_FALSE(stand([](double t) { return 0.1 * t; }, Eigen::Vector3d::Zero()));
 }
 

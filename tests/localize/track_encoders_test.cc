@@ -22,7 +22,7 @@ TEST(TrackEncoders, TenTicksOfAMillimeterInTwentyMillisecondsAreHalfAMeterASecon
   EXPECT_EQ(interval->middle(), milliseconds(10));
 }
 
-TEST(TrackEncoders, StandAfterThreeHundredMillisecondsWithoutATick) {
+TEST(TrackEncoders, AreStationaryAfterThreeHundredMillisecondsWithoutATick) {
   TrackEncoders counters = make_counters();
   for (int i = 0; i <= 14; ++i) counters.add({milliseconds(20 * i), 5, 5});
   EXPECT_FALSE(counters.is_stationary());
@@ -43,7 +43,7 @@ TEST(TrackEncoders, AJumpIsDisbelievedAndASpeedThatLastsIsNot) {
   EXPECT_EQ(refused, 14) << "for 0.3 s a leap to 5 m/s";
 }
 
-TEST(TrackEncoders, NothingIsSaidAcrossAGapOfASecond) {
+TEST(TrackEncoders, NoIntervalIsReturnedAcrossAGapOfASecond) {
   TrackEncoders counters = make_counters();
   counters.add({milliseconds(0), 0, 0});
   EXPECT_FALSE(counters.add({milliseconds(1000), 500, 500}));

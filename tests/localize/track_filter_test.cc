@@ -38,7 +38,7 @@ void drive(TrackFilter& filter, double track_mps, double duration_s, double slip
   }
 }
 
-TEST(TrackFilter, AScaleOfTwoPercentLeavesTwoPercentOfTheWay) {
+TEST(TrackFilter, AScaleOfTwoPercentLeavesTwoPercentOfTheDistance) {
   TrackFilter filter(quiet(), kAtRest);
   filter.set_origin();
   drive(filter, 0.5, 20.0, 0.0);
@@ -46,7 +46,7 @@ TEST(TrackFilter, AScaleOfTwoPercentLeavesTwoPercentOfTheWay) {
   EXPECT_NEAR(std, 0.02 * filter.motion().T_odom_body.position.x(), 0.15 * std);
 }
 
-TEST(TrackFilter, SlipThatForgetsGrowsWithTheRootOfTheWay) {
+TEST(TrackFilter, DecorrelatingSlipGrowsWithTheRootOfTheDistance) {
   TrackFilter::Settings settings = quiet();
   settings.scale_std = 0.0;
   TrackFilter filter(settings, kAtRest);
@@ -57,7 +57,7 @@ TEST(TrackFilter, SlipThatForgetsGrowsWithTheRootOfTheWay) {
   EXPECT_NEAR(std::sqrt(filter.covariance()(0, 0)), 0.03 * std::sqrt(2.0 * 2.0 * (way - 2.0)), 0.03);
 }
 
-TEST(TrackFilter, AStandstillsBiasMovesNeitherPlaceNorHeading) {
+TEST(TrackFilter, AStandstillsBiasMovesNeitherPositionNorHeading) {
   TrackFilter filter(quiet(), kAtRest);
   drive(filter, 0.5, 2.0, 0.02);
   const Pose3 before = filter.motion().T_odom_body;
@@ -69,7 +69,7 @@ TEST(TrackFilter, AStandstillsBiasMovesNeitherPlaceNorHeading) {
 }
 
 // After 500 m each reading of the belts still tells a little of scale and slip. A hundred-thousandth of the way would be 5 mm.
-TEST(TrackFilter, NoReadingOfTheBeltsMovesThePlaceHoweverFarItHasGone) {
+TEST(TrackFilter, NoTrackReadingMovesThePositionAtAnyDistance) {
   TrackFilter filter(quiet(), kAtRest);
   filter.set_origin();
   drive(filter, 1.0, 500.0, 0.03);
@@ -81,7 +81,7 @@ TEST(TrackFilter, NoReadingOfTheBeltsMovesThePlaceHoweverFarItHasGone) {
 }
 
 // By the IMU alone it has gone 0.2 m/s for a second, and slid 0.3 m/s in truth: the belts that hold again put the 10 cm right.
-TEST(TrackFilter, WhatTheImuDriftedWithoutGripIsTakenBack) {
+TEST(TrackFilter, TheImuDriftDuringSlipIsCorrected) {
   TrackFilter filter(quiet(), kAtRest);
   filter.set_origin();
   drive(filter, 0.2, 20.0, 0.02);
@@ -93,7 +93,7 @@ TEST(TrackFilter, WhatTheImuDriftedWithoutGripIsTakenBack) {
   EXPECT_NEAR(filter.motion().T_odom_body.position.x() - lost_m, 0.3 + 0.3, 0.03);
 }
 
-TEST(TrackFilter, CovarianceStaysPositiveThroughDriveAndLossOfGrip) {
+TEST(TrackFilter, CovarianceStaysPositiveThroughDriveAndLossOfTraction) {
   TrackFilter filter(quiet(), kAtRest);
   drive(filter, 0.5, 5.0, 0.02);
   filter.start_slip(0.2, 0.1);
@@ -104,7 +104,7 @@ TEST(TrackFilter, CovarianceStaysPositiveThroughDriveAndLossOfGrip) {
   EXPECT_GT(solver.eigenvalues().minCoeff(), -1e-12);
 }
 
-TEST(TrackFilter, TheTurnsCenterFiveCentimetersBehindDragsTheBodySideways) {
+TEST(TrackFilter, AnIcrFiveCentimetersBehindMovesTheBodyLaterally) {
   TrackFilter filter(quiet(), kAtRest);
   const InertialSample turning{.rate_radps = {0, 0, 0.5}, .force_mps2 = {0, 0, 9.81}};
   for (int step = 1; step <= 250; ++step) {

@@ -61,7 +61,7 @@ Pose2 by_counters_alone(const Pose2& before, const TrackTicks& last, const Track
 /// over 20).
 constexpr double kLowNees = 40.48 / 20.0, kHighNees = 83.30 / 20.0;
 
-TEST(TrackOdometry, NeesOverTwentySeedsLiesWithinItsBoundsAfter30And60And120Seconds) {
+TEST(TrackOdometry, NeesOverTwentySeedsIsWithinItsBoundsAfter30And60And120Seconds) {
   std::array<double, 3> sum{};
   const std::array<double, 3> times{30.0, 60.0, 120.0};
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -101,7 +101,7 @@ TEST(TrackOdometry, DriftsLessThanOnePercentAndAFifthOfCountersAlone) {
   EXPECT_LT(by_filter, 0.2 * by_counters);
 }
 
-TEST(TrackOdometry, WithoutNoiseATourOfThirtySevenMetersIsExactToOneCentimeter) {
+TEST(TrackOdometry, WithoutNoiseADriveOfThirtySevenMetersIsExactToOneCentimeter) {
   const TrackedDriveSettings quiet = TrackedDriveSettings::without_noise();
   TrackedDrive drive(make_tracked_robot(), make_tour(), quiet, 1);
   TrackOdometry odometry(make_tracked_robot(), {.ticks_per_sprocket_turn = quiet.ticks_per_sprocket_turn});
@@ -121,7 +121,7 @@ TEST(TrackOdometry, StepsOfTheCountersDoNotMoveTheScale) {
   EXPECT_LT(std::abs(odometry.filter()->scale()), 0.003);
 }
 
-TEST(TrackOdometry, SaysNothingBeforeItHasStoodAndStartsAtTheOrigin) {
+TEST(TrackOdometry, HasNoEstimateBeforeRestAndStartsAtTheOrigin) {
   TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 3);
   TrackOdometry odometry(make_tracked_robot(), {});
   EXPECT_FALSE(odometry.estimate());
@@ -135,7 +135,7 @@ TEST(TrackOdometry, SaysNothingBeforeItHasStoodAndStartsAtTheOrigin) {
   EXPECT_NEAR(odometry.filter()->gyro_bias_radps().z(), drive.gyro_z_bias_radps(), 4.0 * 3.5e-4 / std::sqrt(1.6));
 }
 
-TEST(TrackOdometry, ARobotThatNeverStandsGetsAnEstimateAfterSixSeconds) {
+TEST(TrackOdometry, WithoutRestAnEstimateIsGivenAfterSixSeconds) {
   TrackedDrive drive(make_tracked_robot(), [](double, const Pose3&) { return test::Belts{0.3, 0.3}; }, {}, 4);
   TrackOdometry odometry(make_tracked_robot(), {});
   run(drive, odometry, 5.9);
@@ -145,7 +145,7 @@ TEST(TrackOdometry, ARobotThatNeverStandsGetsAnEstimateAfterSixSeconds) {
   EXPECT_GT(odometry.health().gyro_z_bias_std_radps, 0.004) << "nothing has shown the bias";
 }
 
-TEST(TrackOdometry, OnIceTheBodyStaysWithinThreeSigmaOfWhereItStands) {
+TEST(TrackOdometry, OnIceTheBodyStaysWithinThreeSigmaOfItsPosition) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     TrackedDriveSettings settings;
     settings.friction = [](double time_s) { return time_s > 2.5 && time_s < 9.0 ? 0.0 : 0.8; };
@@ -203,7 +203,7 @@ TEST(TrackOdometry, SilentCountersAreReportedAndTheCovarianceGrows) {
   EXPECT_FALSE(odometry.health().encoders_timed_out);
 }
 
-TEST(TrackOdometry, TwoSecondsWithoutImuTurnWithTheBeltsAndSaySo) {
+TEST(TrackOdometry, TwoSecondsWithoutImuRotateWithTheTracksAndAreReported) {
   TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 6);
   TrackOdometry odometry(make_tracked_robot(), {});
   run(drive, odometry, 16.0);
@@ -273,7 +273,7 @@ TEST(TrackOdometry, RepeatedOldAndBrokenMessagesAreRejectedAndChangeNothing) {
   EXPECT_EQ(pestered.health().num_rejected_messages, 2U * 2000U + 400U);
 }
 
-TEST(TrackOdometry, CountersThatStartAnewAtZeroCostNoMeters) {
+TEST(TrackOdometry, EncodersThatRestartAtZeroCostNoMeters) {
   TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 10);
   TrackOdometry odometry(make_tracked_robot(), {});
   run(drive, odometry, 8.0);
@@ -289,7 +289,7 @@ TEST(TrackOdometry, CountersThatStartAnewAtZeroCostNoMeters) {
   EXPECT_EQ(odometry.health().num_slip_events, 0U);
 }
 
-TEST(TrackOdometry, PosesOfAtLeastTwoSecondsAreRememberedWithTheirTilt) {
+TEST(TrackOdometry, PosesOfAtLeastTwoSecondsAreBufferedWithTheirTilt) {
   TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 11);
   TrackOdometry odometry(make_tracked_robot(), {});
   run(drive, odometry, 10.0);

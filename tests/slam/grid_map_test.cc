@@ -89,7 +89,7 @@ TEST(GridMap, FivePassesThroughTheMeanTakeASingleHitBack) {
   EXPECT_FALSE(map.is_surface({5, 0}));
 }
 
-TEST(GridMap, ABeamThatSkimsAFifthOfACellBesideTheMeanDeniesNothing) {
+TEST(GridMap, ABeamThatPassesAFifthOfACellFromTheMeanDoesNotClearIt) {
   GridMap map = make_map();
   map.add_hit(map.center_of({5, 0}) + Eigen::Vector2d(0.0, 0.021));
   add_row_ray(map, 0, 9, 100);
@@ -100,7 +100,7 @@ TEST(GridMap, ABeamThatSkimsAFifthOfACellBesideTheMeanDeniesNothing) {
   EXPECT_EQ(cell_of(map, {5, 0}).passes, 100);
 }
 
-TEST(GridMap, ABeamWithoutEchoIsBelievedUpToTheFirstSurface) {
+TEST(GridMap, ABeamWithoutReturnClearsUpToTheFirstSurface) {
   GridMap map = make_map();
   map.add_hit(map.center_of({5, 0}));
   add_row_ray(map, 0, 9, 1, true);
@@ -115,7 +115,7 @@ TEST(GridMap, CountsStopAt65535) {
   EXPECT_EQ(cell_of(map, {0, 0}).passes, 65535);
 }
 
-TEST(GridMap, ABeamOfNoLengthSaysNothing) {
+TEST(GridMap, ABeamOfZeroLengthHasNoEffect) {
   GridMap map = make_map();
   add_row_ray(map, 2, 2);
   EXPECT_EQ(map.num_tiles(), 0U);

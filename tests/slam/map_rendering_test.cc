@@ -16,7 +16,7 @@ int count_of(const OccupancyGrid& grid, std::int8_t value) {
   return static_cast<int>(std::count(grid.values().begin(), grid.values().end(), value));
 }
 
-TEST(RenderMap, IsCutToTheKnownCellsAndKeepsTheFrame) {
+TEST(RenderMap, IsCroppedToTheObservedCellsAndKeepsTheFrame) {
   GridMap map(0.5, 100.0);
   for (int i = 0; i < 2; ++i) map.add_hit({-2.2, 1.3}), map.add_hit({3.1, 4.9});
   const OccupancyGrid grid = render_map(map, 2);
@@ -30,7 +30,7 @@ TEST(RenderMap, IsCutToTheKnownCellsAndKeepsTheFrame) {
   EXPECT_EQ(count_of(grid, kUnknown), 94);
 }
 
-TEST(RenderMap, ShowsFreeWhereBeamsPassedAndUnknownBeside) {
+TEST(RenderMap, IsFreeWhereBeamsPassedAndUnknownElsewhere) {
   GridMap map(0.5, 100.0);
   map.add_free_ray({0.25, 0.25}, {2.25, 0.25}, 1, false);
   map.add_free_ray({0.25, 0.25}, {0.25, 1.25}, 1, false);
@@ -40,7 +40,7 @@ TEST(RenderMap, ShowsFreeWhereBeamsPassedAndUnknownBeside) {
   EXPECT_EQ(grid.at({4, 0}), kFree);
 }
 
-TEST(RenderMap, ACellWithFewerHitsThanAskedForIsStray) {
+TEST(RenderMap, ACellWithFewerHitsThanTheMinimumIsAnOutlier) {
   GridMap map(0.5, 100.0);
   map.add_hit({0.25, 0.25});
   EXPECT_EQ(count_of(render_map(map, 2), kOccupied), 0);
@@ -60,7 +60,7 @@ TEST(RenderMap, ACellThatMoreBeamsPassedThanHitHasMovedOn) {
 }
 
 // Two centimeters of noise strew the hits of a wall at y = 0.48 over three rows of 5 cm; one row is drawn.
-TEST(RenderMap, ANoisyWallIsOneCellThickAndLiesInItsCell) {
+TEST(RenderMap, ANoisyWallIsOneCellThickInItsCell) {
   GridMap map(0.05, 100.0);
   const RandomStream noise(1, "test/wall");
   for (std::uint64_t i = 0; i < 40'000; ++i)

@@ -46,12 +46,12 @@ TEST(PredictMotion, SidewaysStepsSpreadAlongTheStep) {
   EXPECT_NEAR(P(0, 0), 0.1 * 0.1 + 1e-4, kExactTol);
 }
 
-TEST(PredictMotion, HeadingSpreadsByTurnWayAndTimeAsASumOfSquares) {
+TEST(PredictMotion, HeadingSpreadsByRotationDistanceAndTimeAsASumOfSquares) {
   const double var = predict_motion({}, {0.3, 0.4, -1.5}, 2.0, kSettings).covariance(2, 2);
   EXPECT_NEAR(var, 0.3 * 0.3 + 0.2 * 0.2 + 1.0 * 1.0 + 4e-4, kExactTol);  // 0.2 x 1.5; 0.4 x 0.5 m; 0.5 x 2 s
 }
 
-TEST(PredictMotion, StandingStillKeepsTheLeastSpread) {
+TEST(PredictMotion, AtRestTheSpreadIsTheMinimum) {
   const Eigen::Matrix3d P = predict_motion({5.0, 6.0, 1.0}, {}, 0.0, kSettings).covariance;
   EXPECT_TRUE(P.isApprox(Eigen::Vector3d(1e-4, 1e-4, 4e-4).asDiagonal().toDenseMatrix(), kExactTol)) << P;
 }

@@ -69,7 +69,7 @@ TEST(MakeComponents, EachOfFiveNamesIsItsResampler) {
   EXPECT_NE(same("stepwise", [](const auto& w, RandomSequence& random) { return resample_stepwise(w, random); }).back().mutation, 0.0);
 }
 
-TEST(MakeComponents, RefusesWhatIsNoNameOrOutOfItsRange) {
+TEST(MakeComponents, RefusesUnknownNamesAndValuesOutOfRange) {
   const auto complaint = [](const ParticleFilterSettings& settings) -> std::string {
     try {
       make_components(settings);

@@ -36,7 +36,7 @@ TEST(PlanarScan, EndsOfBeamsLieInTheBodysFrame) {
 }
 
 // The body goes 0.4 m ahead and turns by 0.2 rad: half of it until the second beam of three.
-TEST(PlanarScan, BeamsAreSeenFromWhereTheFirstOneWasFired) {
+TEST(PlanarScan, BeamsAreInTheFrameOfTheFirstOne) {
   RecordedScan recorded = make_scan({1.0F, 2.0F, 3.0F});
   recorded.T_begin_end = {0.4, 0.0, 0.2};
   const LevelScan scan = planar_scan(recorded, {});
@@ -46,7 +46,7 @@ TEST(PlanarScan, BeamsAreSeenFromWhereTheFirstOneWasFired) {
   EXPECT_THAT(scan.beams[2].end_m, test::VectorNear(Eigen::Vector2f(third.cast<float>()), 1e-6));
 }
 
-TEST(PlanarScan, WhatIsTooFarIsFreeSoFarAndWhatIsInvalidOrTooNearIsNothing) {
+TEST(PlanarScan, FarReturnsClearUpToTheLimitAndInvalidOrNearOnesAreDropped) {
   const LevelScan scan = planar_scan(make_scan({50.0F, std::numeric_limits<float>::quiet_NaN(), 0.01F}), {.max_range_m = 10.0});
   ASSERT_EQ(scan.beams.size(), 1U);
   EXPECT_FALSE(scan.beams[0].is_hit);

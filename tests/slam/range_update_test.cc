@@ -51,7 +51,7 @@ TEST(RangeUpdate, ARangeShrinksTheBeliefTowardsItsAnchorAndLeavesItAcross) {
 }
 
 // Ranges that are normally distributed about the truth: the squared innovations over their variances average to 1.
-TEST(RangeUpdate, InnovationsOf500RangesAreAsLargeAsTheirVariancesSay) {
+TEST(RangeUpdate, InnovationsOf500RangesAreConsistent) {
   const RandomStream stream(3, "test/ranges");
   double sum = 0.0;
   constexpr int kCount = 500;
@@ -66,7 +66,7 @@ TEST(RangeUpdate, InnovationsOf500RangesAreAsLargeAsTheirVariancesSay) {
   EXPECT_NEAR(sum / kCount, 1.0, 2.58 * std::sqrt(2.0 / kCount));  // 99 % of chi-square's mean
 }
 
-TEST(RangeUpdate, ALongRangeIsDoubtedSoonerThanAShortOne) {
+TEST(RangeUpdate, ALongRangeIsRejectedSoonerThanAShortOne) {
   const RangeUpdateSettings settings{.range_std_m = 0.1};
   const auto verdict = [&](double deviations) {
     return passes_gate({.innovation_m = 0.1 * deviations, .variance_m2 = 0.01}, settings);

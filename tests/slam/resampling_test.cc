@@ -53,14 +53,14 @@ double chi_squared(const Resampler& resample) {
 
 std::vector<Offspring> stepwise(const std::vector<double>& weights, RandomSequence& random) { return resample_stepwise(weights, random); }
 
-TEST(ResampleMultinomial, MeanOfTwentyThousandDrawsIsNW) {
+TEST(ResampleMultinomial, MeanOfTwentyThousandSamplesIsNW) {
   EXPECT_LT(chi_squared(resample_multinomial), kChiSquared7);
   EXPECT_GT(chi_squared(resample_multinomial), 0.60);  // 0.1 %: it is drawn, not dealt out
 }
 
-TEST(ResampleSystematic, MeanOfTwentyThousandDrawsIsNW) { EXPECT_LT(chi_squared(resample_systematic), kChiSquared7); }
+TEST(ResampleSystematic, MeanOfTwentyThousandSamplesIsNW) { EXPECT_LT(chi_squared(resample_systematic), kChiSquared7); }
 
-TEST(ResampleResidual, MeanOfTwentyThousandDrawsIsNW) { EXPECT_LT(chi_squared(resample_residual), kChiSquared7); }
+TEST(ResampleResidual, MeanOfTwentyThousandSamplesIsNW) { EXPECT_LT(chi_squared(resample_residual), kChiSquared7); }
 
 // Each unbiased one to four standard errors, parent by parent. Evenly, a parent's number is floor or ceil of N w: variance f (1 - f) with f = N w's
 // fraction. By residuals, R = 4 are drawn with probability f / R each: variance f (1 - f / R).
@@ -122,7 +122,7 @@ TEST(Resamplers, GiveASingleParticleItself) {
 }
 
 // Sum of w^2 = 0.197, N_eff = 5.08, so M = 5: weights 0.32, 0.2, 0.16, 0.12, 0.1, which are the particles 1, 3, 5, 7, 2.
-TEST(OptimizeLowWeights, KeepsTheFiveHeaviestAndDrawsTheRestTowardsThem) {
+TEST(OptimizeLowWeights, KeepsTheFiveHeaviestAndMovesTheRestTowardThem) {
   const std::set<std::size_t> heaviest = {1, 3, 5, 7, 2};
   std::set<std::size_t> towards;
   for (std::uint64_t tick = 0; tick < 100; ++tick) {

@@ -19,7 +19,7 @@ int passes_of(const GridMap& map, int col) {
   return cell ? cell->passes : 0;
 }
 
-TEST(IntegrateScan, AHitInCellTenFreesItsWayLessTheMargin) {
+TEST(IntegrateScan, AHitInCellTenClearsItsRayLessTheMargin) {
   const GridMap map = map_after(0.98, true, {.free_ray_stride = 1, .free_margin_m = 0.15});
   EXPECT_TRUE(map.is_surface({10, 0}));
   EXPECT_EQ(passes_of(map, 0), 1);
@@ -28,7 +28,7 @@ TEST(IntegrateScan, AHitInCellTenFreesItsWayLessTheMargin) {
   EXPECT_EQ(passes_of(map, 10), 0);
 }
 
-TEST(IntegrateScan, ABeamWithoutEchoFreesItsWholeWayAndHitsNothing) {
+TEST(IntegrateScan, ABeamWithoutReturnClearsItsWholeRayAndHitsNothing) {
   const GridMap map = map_after(1.0, false, {.free_ray_stride = 1, .free_margin_m = 0.15});
   EXPECT_FALSE(map.has_surface());
   EXPECT_EQ(passes_of(map, 10), 1);
@@ -50,7 +50,7 @@ TEST(IntegrateScan, EverySixthBeamCountsSixfoldAndEveryHitOnce) {
   EXPECT_EQ(map.find({20, 0})->hits, 12);
 }
 
-TEST(IntegrateScan, BeamsLeaveFromTheLidarTurnedWithTheBody) {
+TEST(IntegrateScan, BeamsStartAtTheLidarRotatedWithTheBody) {
   GridMap map(0.1, 100.0);
   LevelScan scan;
   scan.origin_m = {0.5, 0.0};

@@ -66,7 +66,7 @@ TEST(MatchScan, RecoversTenCentimetersAndThreeDegreesToFiveMillimetersAndATenthO
 
 // Single beams with the noise that the settings state; the map's own roughness makes the match say a little
 // less.
-TEST(MatchScan, SaysHowSureItIsToAFactorOfTwo) {
+TEST(MatchScan, CovarianceIsConsistentToAFactorOfTwo) {
   const RoomWorld room = make_room();
   const GridMap map = make_map(room);
   const ScanMatcherSettings settings{
@@ -85,7 +85,7 @@ TEST(MatchScan, SaysHowSureItIsToAFactorOfTwo) {
   EXPECT_GT(squared, 3.0 / 4.0);
 }
 
-TEST(MatchScan, ACorridorTellsAcrossAndHeadingButNotAlong) {
+TEST(MatchScan, ACorridorConstrainsLateralPositionAndHeadingOnly) {
   const RoomWorld corridor = make_corridor();
   const GridMap map = make_map(corridor);
   const Pose2 truth{0.4, 0.2, 0.0};

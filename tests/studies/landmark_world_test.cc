@@ -44,7 +44,7 @@ TEST(GardenWorld, OdometryErrsByTheStatedNoiseAndByABiasOf2DegreesPerSecond) {
   EXPECT_NEAR(turn.std(), 5.0 * kDegree, 4.0 * 5.0 * kDegree / std::sqrt(2.0 * count));
 }
 
-TEST(GardenWorld, EverySightIsOfALandmarkWithin10MetersAndErrsByHalfAMeterAnd5Degrees) {
+TEST(GardenWorld, EveryObservationIsOfALandmarkWithin10MetersAndErrsByHalfAMeterAnd5Degrees) {
   const LandmarkWorld world = garden_world("M", true);
   const LandmarkRun run = simulate(world, 3);
   test::Moments range, bearing;
@@ -75,7 +75,7 @@ TEST(CampusWorld, TheCarSteersAtMost30DegreesAnd20DegreesPerSecondAndDrives600Me
   EXPECT_NEAR(distance_m(run), 600.0, 2.0);  // chords of 0.6 m, the first step left out
 }
 
-TEST(CampusWorld, TheWayStaysWithin100By80MetersAndGoesClockwise) {
+TEST(CampusWorld, ThePathStaysWithin100By80MetersAndIsClockwise) {
   const LandmarkWorld world = campus_world(false, 3.0, 8000);
   const LandmarkRun run = simulate(world, 1);
   Eigen::AlignedBox2d extent;
@@ -88,7 +88,7 @@ TEST(CampusWorld, TheWayStaysWithin100By80MetersAndGoesClockwise) {
   EXPECT_LT(turned_rad, -2.0 * std::numbers::pi);
 }
 
-TEST(LandmarkWorld, TheSameSeedGivesTheSameRunAndSwitchingTheBiasOffMovesNoOtherDraw) {
+TEST(LandmarkWorld, TheSameSeedGivesTheSameRunAndSwitchingTheBiasOffChangesNoOtherSample) {
   const LandmarkRun with = simulate(campus_world(true, 3.0, 800), 7), without = simulate(campus_world(false, 3.0, 800), 7);
   for (std::size_t k = 0; k < with.odometry.size(); ++k) {
     EXPECT_NEAR(with.odometry[k].x() - without.odometry[k].x(), 0.3, 1e-12);

@@ -46,7 +46,7 @@ TEST(StudyResults, ZeroWithinTheIntervalIsNoDifferenceAndTheReferenceIsNotCompar
   EXPECT_EQ(verdict_of(results[0][0]), "");
 }
 
-TEST(StudyResults, TheClockStandsInATableOfItsOwnAndWhatIsNotMeasuredHasNoRow) {
+TEST(StudyResults, ProcessorTimeHasItsOwnTableAndUnmeasuredMetricsHaveNoRow) {
   const Study study = two_methods();
   const StudyResults results = summarize(study, samples());
   const std::string csv = io::to_csv(results_table(study, results));

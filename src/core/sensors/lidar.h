@@ -45,7 +45,7 @@ struct LidarSettings {
   double false_return_rate_per_m = 0.0;      ///< rate of returns from raindrops or dust grains, per meter of beam
   double latency_s = 0.005;    ///< delay from the last beam to the message
   bool motion_distortion = true;  ///< false: all beams are fired from the pose at the end of the revolution
-  bool stabilized = false;        ///< true: ideal gimbal that keeps the lidar level; requires stack.leveling.stabilized
+  bool stabilized = false;        ///< true: ideal gimbal that keeps the lidar level; requires stack.scan_leveling.gimbal_stabilized
 
   /// Returns the settings of a preset, from public data sheets. "rplidar_s2": Slamtec RPLIDAR S2 (10 Hz, 32,000
   /// samples/s, 0.05-30 m, 10 m on 10 %, +-30 mm, 13 mm steps). "utm30lx": Hokuyo UTM-30LX (40 Hz, 0.25 deg over 270

@@ -18,7 +18,7 @@ PoseGraphEdge edge(const std::vector<Pose2>& nodes, int from, int to, double err
   return {.from = from, .to = to, .T_from_to = Pose2{T_from_to.x + error_m, T_from_to.y, T_from_to.yaw}, .information = Eigen::Matrix3d::Identity(), .kind = kind};
 }
 
-TEST(JudgeLoops, OfThreeClosuresOneFalseTheOthersAreTwoThirds) {
+TEST(EvaluateLoopClosures, OfThreeClosuresOneFalseTheOthersAreTwoThirds) {
   const std::vector<Pose2> nodes = out_and_back();
   const LoopClosureAccuracy truth = evaluate_loop_closures({.T_map_node = nodes, .edges = {edge(nodes, 1, 7), edge(nodes, 8, 0, 0.2), edge(nodes, 2, 6, 10.0)}}, nodes);
   EXPECT_EQ(truth.right, 2U);
@@ -27,7 +27,7 @@ TEST(JudgeLoops, OfThreeClosuresOneFalseTheOthersAreTwoThirds) {
 }
 
 // 6 came back 40 m after 2, 7 60 m after 1, 8 80 m after 0; 5 only 20 m after 3.
-TEST(JudgeLoops, RecallIsOfThoseWhoCameBackAfterAWhile) {
+TEST(EvaluateLoopClosures, RecallIsOfTheNodesThatReturned) {
   const std::vector<Pose2> nodes = out_and_back();
   const LoopClosureAccuracy truth = evaluate_loop_closures({.T_map_node = nodes, .edges = {edge(nodes, 1, 7), edge(nodes, 3, 5), edge(nodes, 2, 6, 10.0)}}, nodes);
   EXPECT_EQ(truth.returns, 3U);
@@ -35,14 +35,14 @@ TEST(JudgeLoops, RecallIsOfThoseWhoCameBackAfterAWhile) {
   EXPECT_DOUBLE_EQ(truth.recall(), 1.0 / 3.0);
 }
 
-TEST(JudgeLoops, TheWayFromNodeToNodeIsNoClosure) {
+TEST(EvaluateLoopClosures, AnOdometryEdgeIsNoClosure) {
   const std::vector<Pose2> nodes = out_and_back();
   const LoopClosureAccuracy truth = evaluate_loop_closures({.T_map_node = nodes, .edges = {edge(nodes, 3, 4, 5.0), edge(nodes, 0, 8, 5.0, PoseGraphEdge::Kind::kMatch)}}, nodes);
   EXPECT_EQ(truth.right + truth.wrong, 0U);
   EXPECT_EQ(truth.precision(), 1.0);
 }
 
-TEST(JudgeLoops, ATurnedClosureIsWrong) {
+TEST(EvaluateLoopClosures, ARotatedClosureIsWrong) {
   const std::vector<Pose2> nodes = out_and_back();
   PoseGraphEdge turned = edge(nodes, 1, 7);
   turned.T_from_to.yaw = wrap_angle(turned.T_from_to.yaw + 0.06);

@@ -12,7 +12,7 @@ namespace {
 
 using plan::GridSearch;
 
-TEST(PlannerProblem, OfEveryWorldHasAWayBetweenItsEndsWhichLieFarApart) {
+TEST(PlannerProblem, OfEveryWorldHasAPathBetweenDistantEnds) {
   for (const char* const world : {"street", "tunnel", "substation"}) {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       const PlannerProblem problem = world_problem(world, seed);
@@ -24,7 +24,7 @@ TEST(PlannerProblem, OfEveryWorldHasAWayBetweenItsEndsWhichLieFarApart) {
   }
 }
 
-TEST(PlannerProblem, IsDrawnBySeed) {
+TEST(PlannerProblem, IsGeneratedFromTheSeed) {
   const PlannerProblem a = world_problem("tunnel", 7), b = world_problem("tunnel", 7), c = world_problem("tunnel", 8);
   EXPECT_EQ(a.start, b.start);
   EXPECT_EQ(a.goal, b.goal);

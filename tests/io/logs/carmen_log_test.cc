@@ -160,14 +160,14 @@ TEST(CarmenLog, RangesFromTheSensorsMaximumOnAreNoReturns) {
   EXPECT_EQ(read_one("ROBOTLASER1 0 -1 2 1 0 0 0 3 8.09 8.1 50 0 0 0 0 0 0 0 0 0 0 0 0 1 host 1\n").scan.range_max_m, 80.0) << "a maximum of 0 says nothing";
 }
 
-TEST(CarmenLog, TheLidarsPlaceIsItsPoseSeenFromTheRobots) {
+TEST(CarmenLog, TheLidarPoseIsRelativeToTheRobotPose) {
   // The robot at (1, 2) looks along y; the lidar 0.3 m before it.
   const RecordedScan scan = read_one(flaser("1", "1 2.3 1.570796", "1 2 1.570796"));
   EXPECT_THAT(scan.T_odom_body, Pose2Near(Pose2{1.0, 2.0, 1.570796}, kExactTol, kExactTol)) << "the second pose is the robot's";
   EXPECT_THAT(scan.T_body_lidar, Pose2Near(Pose2{0.3, 0.0, 0.0}, 1e-6, kExactTol));
 }
 
-TEST(CarmenLog, WhereBothPosesAreEqualTheParameterSaysTheLidarsPlace) {
+TEST(CarmenLog, WithEqualPosesTheParameterGivesTheLidarPose) {
   const std::string parameters =
       "PARAM robot_frontlaser_offset 0.08 0 host 0\nPARAM robot_frontlaser_side_offset -0.02\nPARAM robot_frontlaser_angular_offset 0.01\n";
   EXPECT_THAT(read_one(parameters + flaser("1")).T_body_lidar, Pose2Near(Pose2{0.08, -0.02, 0.01}, kExactTol, kExactTol));
@@ -199,7 +199,7 @@ TEST(CarmenLog, RawlaserTakesTheNewestOdomBeforeIt) {
   EXPECT_THAT(result.summary.skipped, ElementsAre(Pair("scans before the first ODOM", 1U)));
 }
 
-TEST(CarmenLog, OfSeveralLidarsTheOneThatSaysMostIsTakenOrTheOneAskedFor) {
+TEST(CarmenLog, OfSeveralLidarsTheMostInformativeOrTheSelectedOneIsUsed) {
   std::string rear = flaser("3");
   rear.front() = 'R';
   const std::string text = "ODOM 9 9 0 0 0 0 0 host 0\nRAWLASER1 0 -1 2 1 80 0 0 3 1 2 3 0 5 host 1\n" + rear + flaser("1") + robotlaser("0 -1 2 1 80 0 0", 3);
@@ -243,7 +243,7 @@ TEST(CarmenLog, AScanTooLateToPutInOrderIsRefusedOrSkipped) {
   EXPECT_THAT(result.summary.skipped, ElementsAre(Pair("scans out of order", 1U)));
 }
 
-TEST(CarmenLog, WhatCannotBeReadIsNamedWithItsLine) {
+TEST(CarmenLog, UnreadableLinesAreNamed) {
   const std::string good = flaser("1");
   const auto complaint = [&](const std::string& bad) { return complaint_about(good + bad); };
   EXPECT_EQ(complaint("FLASER 4 1 2 3\n"), "a.log:2: FLASER: 3 words after the number of readings: must be 13");
@@ -266,7 +266,7 @@ TEST(CarmenLog, WhatCannotBeReadIsNamedWithItsLine) {
   EXPECT_EQ(complaint("FLASER " + std::string(2'000'000, '1') + "\n"), "a.log:2: line longer than 1048576 bytes");
 }
 
-TEST(CarmenLog, WhatCannotBeReadOfTheNewMessagesIsNamedToo) {
+TEST(CarmenLog, UnreadableNewMessagesAreNamed) {
   const std::string laser = "ROBOTLASER1 0 -1 2 1 80 0 0 ";
   EXPECT_EQ(complaint_about(laser + "3 1 2 3 0 0 0 0 0 0 0 0 0 0 0 0 1 host\n"),
             "a.log:1: ROBOTLASER1: 13 words after the remissions: must be 14");
@@ -277,7 +277,7 @@ TEST(CarmenLog, WhatCannotBeReadOfTheNewMessagesIsNamedToo) {
   EXPECT_EQ(complaint_about("RAWLASER1 0 -1 2 1 80 0 0 1 1 0 1 h\n"), "a.log:1: RAWLASER1: 2 words after the remissions: must be 3");
 }
 
-TEST(CarmenLog, WithSkippingWhatCanBeReadIsUsedAndTheRestCounted) {
+TEST(CarmenLog, WithSkipInvalidReadableLinesAreUsedAndOthersCounted) {
   const std::string zeros(3'000'000, '\0');
   const std::string text = flaser("1") + "FLASER 4 1 2\n" + flaser("2", "1 2 nan", "1 2 0") + zeros + "\n" + flaser("3") + "FLASER 4 1 2 3 4 1";
   const Read result = read(text, kSkip);
@@ -301,7 +301,7 @@ TEST(CarmenLog, ACutOffGzipIsRefusedOrReadUpToTheCut) {
   EXPECT_EQ(result.summary.skipped.at("unexpected end of file"), 1U);
 }
 
-TEST(CarmenLog, AFileWithoutScansSaysWhatItHolds) {
+TEST(CarmenLog, AFileWithoutScansIsReportedWithItsContents) {
   EXPECT_EQ(complaint_about(""), "a.log: contains no scan (0 read): must contain FLASER, ROBOTLASER1 or RAWLASER1");
   EXPECT_EQ(complaint_about("SYNC a 1 h 1\nODOM 1 2 0 0 0 0 1 h 1\n"), "a.log: contains no scan (2 read, 1 ODOM, 1 SYNC): must contain FLASER, ROBOTLASER1 or RAWLASER1");
   EXPECT_EQ(complaint_about("FLASER 4 1\n", kSkip), "a.log: contains no scan (1 read, 1 unreadable lines): must contain FLASER, ROBOTLASER1 or RAWLASER1");
@@ -329,7 +329,7 @@ TEST(CarmenLog, TenGigabytesOfZeroBytesAfterALogAreGivenUpAfterSixtyFourMegabyte
   EXPECT_THAT(log->summary().skipped, ElementsAre(Pair("unexpected end of file", 1U), Pair("unreadable lines", 1U)));
 }
 
-TEST(CarmenLog, NoMoreThanFiftyNamesAreToldApart) {
+TEST(CarmenLog, AtMostFiftyNamesAreCountedSeparately) {
   std::string text = flaser("1");
   for (int i = 0; i < 100; ++i) text += fmt::format("NAME{} 1\n", i);
   const Read result = read(text);

@@ -42,7 +42,7 @@ Driven drive(const Drive& how) {
 }
 
 // The chord of a step of 0.1 m that odometry turns by 0.12 rad instead of 0.1 is 0.1 * (0.12^2 - 0.1^2) / 24 = 0.018 mm too short: 5 mm in 275 steps.
-TEST(GyroOdometry, TurnsByTheGyroWithoutTheBiasThatItShowedStanding) {
+TEST(GyroOdometry, RotatesByTheGyroWithoutTheBiasMeasuredAtRest) {
   const Driven driven = drive({.slope = 1.2});
   EXPECT_GT((driven.T_odom.position() - driven.T_true.position()).norm(), 0.5);
   EXPECT_THAT(driven.T_fused, test::Pose2Near(driven.T_true, 0.005, 1e-3));
@@ -52,14 +52,14 @@ TEST(GyroOdometry, TurnsByTheGyroWithoutTheBiasThatItShowedStanding) {
   EXPECT_EQ(driven.gyro.motion_without_bias_s(), 0.0);
 }
 
-TEST(GyroOdometry, NeverSeenStandingItsBiasIsTakenAsNoneAndTheTimeSaid) {
+TEST(GyroOdometry, WithoutRestZeroBiasIsAssumedAndReported) {
   const Driven driven = drive({.slope = 1.2, .stationary_s = 0.0});
   EXPECT_FALSE(driven.gyro.bias_radps());
   EXPECT_NEAR(wrap_angle(driven.T_fused.yaw - driven.T_true.yaw - 60.0 * kBias), 0.0, 0.01);
   EXPECT_NEAR(driven.gyro.motion_without_bias_s(), 60.0, 0.5);
 }
 
-TEST(GyroOdometry, AnEarlierBiasCountsUntilTheRobotStands) {
+TEST(GyroOdometry, AnEarlierBiasIsUsedUntilTheRobotIsAtRest) {
   GyroOdometry gyro(0.3);
   for (int tick = 0; tick <= 100; ++tick) gyro.add(tick * 100ms, tick < 40 ? 0.5 : 0.02);
   gyro.fuse(0s, {});
@@ -70,13 +70,13 @@ TEST(GyroOdometry, AnEarlierBiasCountsUntilTheRobotStands) {
   EXPECT_EQ(gyro.motion_without_bias_s(), 0.0);
 }
 
-TEST(GyroOdometry, WhereTheGyroIsSilentOdometryTurns) {
+TEST(GyroOdometry, WithoutGyroReadingsOdometryRotates) {
   const Driven driven = drive({.slope = 1.0, .has_gap = true});
   EXPECT_THAT(driven.T_fused, test::Pose2Near(driven.T_true, 0.003, 1e-3));
   EXPECT_NEAR(driven.gyro.uncovered_s(), 2.0, 0.41);
 }
 
-TEST(GyroOdometry, TellsAgreementFromContradictionFromNothingInCommon) {
+TEST(GyroOdometry, DistinguishesAgreementContradictionAndNoCorrelation) {
   EXPECT_EQ(GyroOdometry().consistency(), GyroConsistency::kUnknown);
   EXPECT_EQ(drive({.slope = 1.005}).gyro.consistency(), GyroConsistency::kAgrees) << "the bias does not matter";
   EXPECT_EQ(drive({.slope = 1.1}).gyro.consistency(), GyroConsistency::kContradicts);
@@ -85,7 +85,7 @@ TEST(GyroOdometry, TellsAgreementFromContradictionFromNothingInCommon) {
   EXPECT_EQ(drive({.gyro_factor = 0.0}).gyro.consistency(), GyroConsistency::kUnknown) << "another axis";
 }
 
-TEST(GyroOdometry, TurnsWithinAScanToo) {
+TEST(GyroOdometry, RotatesWithinAScanToo) {
   GyroOdometry gyro(0.1);
   for (int tick = 0; tick <= 10; ++tick) gyro.add(tick * 10ms, 1.1);
   const Pose2 replace_rotation = gyro.replace_rotation({0.05, 0.0, 0.0}, 20ms, 70ms);

@@ -94,7 +94,7 @@ TEST_F(McapScans, WithoutAnOdometryTopicTfIsTakenOverItsFramesBetween) {
   EXPECT_THAT(read().scans.at(0).T_odom_body, Pose2Near(Pose2{1.5, 0.0, 0.5}, kExactTol, kExactTol));
 }
 
-TEST_F(McapScans, WhatWasTakenFirstStaysTheSource) {
+TEST_F(McapScans, TheFirstSourceIsKept) {
   writer.write("/tf", 0s, TransformSet{{placed("odom", "base_link", {}, 0s)}});
   writer.write("/scan", 500ms, scan_at(500ms));
   writer.write("/tf", 1s, TransformSet{{placed("odom", "base_link", {}, 1s)}});
@@ -111,7 +111,7 @@ TEST_F(McapScans, WhatWasTakenFirstStaysTheSource) {
   for (const RecordedScan& scan : result.scans) EXPECT_EQ(scan.T_odom_body.x, 0.0) << "tf's, not the topic's";
 }
 
-TEST_F(McapScans, TheLidarsPlaceIsThePlanarPartOfTfStatic) {
+TEST_F(McapScans, TheLidarPoseIsThePlanarPartOfTfStatic) {
   writer.write("/tf_static", 0s, TransformSet{{placed("base_link", "plate", {{0.1, 0.0, 0.5}, quaternion_from_yaw(std::numbers::pi / 2.0)}),
                                                placed("plate", "lidar", {{0.2, 0.0, 0.0}, Eigen::Quaterniond::Identity()})}});
   writer.write("/odom", 0s, odometry_at(0s));
@@ -123,7 +123,7 @@ TEST_F(McapScans, TheLidarsPlaceIsThePlanarPartOfTfStatic) {
   EXPECT_TRUE(result.summary.assumed.empty());
 }
 
-TEST_F(McapScans, ALidarUpsideDownTurnsTheOtherWay) {
+TEST_F(McapScans, ALidarUpsideDownRotatesTheOppositeWay) {
   writer.write("/tf_static", 0s, TransformSet{{placed("base_link", "lidar", {{0.1, 0.0, 0.5}, quaternion_from_rpy(std::numbers::pi, 0.0, 0.25)})}});
   writer.write("/odom", 0s, odometry_at(0s));
   writer.write("/scan", 1s, scan_at(500ms));
@@ -243,7 +243,7 @@ ScanLogOptions with_imu(const std::string& imu) {
   return options;
 }
 
-TEST_F(McapScans, OdometryWhoseTurnsTheGyroContradictsTurnsByTheGyroWithoutItsBias) {
+TEST_F(McapScans, OdometryThatContradictsTheGyroUsesTheGyroYawWithoutItsBias) {
   turn_with_gyro(writer, 1.2);
   const Read result = read(with_imu("auto"));
   EXPECT_NEAR(wrap_angle(result.scans.back().T_odom_body.yaw - kLastScanTurnRad), 0.0, 0.003);
@@ -253,7 +253,7 @@ TEST_F(McapScans, OdometryWhoseTurnsTheGyroContradictsTurnsByTheGyroWithoutItsBi
   EXPECT_THAT(wheels.summary.ignored, ElementsAre(Pair("/imu/data", 1501U)));
 }
 
-TEST_F(McapScans, OdometryThatTurnsAsTheGyroDoesIsKeptUnlessAskedFor) {
+TEST_F(McapScans, OdometryThatAgreesWithTheGyroIsKeptUnlessRequested) {
   turn_with_gyro(writer, 1.0);
   const Read kept = read(with_imu("auto"));
   EXPECT_NEAR(wrap_angle(kept.scans.back().T_odom_body.yaw - kLastScanTurnRad), 0.0, 1e-6);
@@ -261,7 +261,7 @@ TEST_F(McapScans, OdometryThatTurnsAsTheGyroDoesIsKeptUnlessAskedFor) {
   EXPECT_THAT(read(with_imu("on")).summary.found, ElementsAre(HasSubstr("yaw replaced by the gyro of /imu/data")));
 }
 
-TEST_F(McapScans, AGyroThatTurnsTheOtherWayIsNotUsed) {
+TEST_F(McapScans, AGyroWithOppositeSignIsNotUsed) {
   turn_with_gyro(writer, 1.2, false);  // nothing says that it hangs upside down
   const Read result = read(with_imu("auto"));
   EXPECT_NEAR(wrap_angle(result.scans.back().T_odom_body.yaw - 1.2 * kLastScanTurnRad), 0.0, 1e-6);
@@ -389,7 +389,7 @@ TEST_F(McapScans, DamageThatHidesTheNextRecordEndsTheFile) {
   EXPECT_LT(result.scans.size(), 300U);
 }
 
-TEST_F(McapScans, AFileWithoutScansOrOdometrySaysSo) {
+TEST_F(McapScans, AFileWithoutScansOrOdometryIsReported) {
   writer.write("/odom", 0s, odometry_at(0s));
   writer.close();
   EXPECT_EQ(complaint(), "log.mcap: contains no scan: must contain sensor_msgs/msg/LaserScan (1 read)");

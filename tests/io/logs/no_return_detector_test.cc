@@ -33,7 +33,7 @@ std::vector<float> corridor_cm(double x_m, float no_return_m) {
   return ranges_m;
 }
 
-TEST(NoReturn, EightMetersThatComeBackFromFortyPlacesAreNone) {
+TEST(NoReturn, EightMetersReturnedAtFortyPositionsAreNone) {
   NoReturnDetector finder;
   for (int place = 0; place < 40; ++place) finder.add(scan_at(0.3 * place, corridor_cm(0.3 * place, 8.0F)));
   const auto found = finder.find();
@@ -50,14 +50,14 @@ TEST(NoReturn, OfSeveralCodesTheLowestIsFound) {
   EXPECT_FLOAT_EQ(static_cast<float>(finder.find()->range_m), 8.183F);
 }
 
-TEST(NoReturn, ALidarThatSaysNothingWhereNothingComesBackHasNone) {
+TEST(NoReturn, ALidarWithoutANoReturnValueHasNone) {
   NoReturnDetector finder;
   for (int place = 0; place < 90; ++place) finder.add(scan_at(0.3 * place, corridor_cm(0.3 * place, kInfinity)));
   EXPECT_FALSE(finder.find());
 }
 
 // Without noise the end of the corridor is the same to the bit in every scan.
-TEST(NoReturn, StandingBeforeAWallProvesNothing) {
+TEST(NoReturn, RestInFrontOfAWallIsNotConclusive) {
   NoReturnDetector finder;
   for (int scan = 0; scan < 1000; ++scan) finder.add(scan_at(0.0, std::vector<float>(20, 5.0F)));
   EXPECT_FALSE(finder.find());
@@ -65,7 +65,7 @@ TEST(NoReturn, StandingBeforeAWallProvesNothing) {
   EXPECT_TRUE(finder.find()) << "ten places";
 }
 
-TEST(NoReturn, AWallAlongTheWayIsNoneAsItsNeighborsAreReadAsOften) {
+TEST(NoReturn, AWallAlongThePathIsNoneAsNeighboringValuesAreAsFrequent) {
   NoReturnDetector finder;
   for (int place = 0; place < 100; ++place) {
     std::vector<float> ranges_m;
@@ -75,7 +75,7 @@ TEST(NoReturn, AWallAlongTheWayIsNoneAsItsNeighborsAreReadAsOften) {
   EXPECT_FALSE(finder.find());
 }
 
-TEST(NoReturn, ALogThatSaysEightMetersForNoReturnIsReadAsSuchUnlessAskedNotTo) {
+TEST(NoReturn, ALogWithEightMetersForNoReturnIsReadAsSuchUnlessDisabled) {
   std::string text;
   for (int place = 0; place < 40; ++place) {
     text += "FLASER 180";

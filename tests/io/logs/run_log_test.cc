@@ -97,7 +97,7 @@ TEST_F(RunLog, ReadsFromOneTimeToAnother) {
   EXPECT_EQ(calls, 11);
 }
 
-TEST_F(RunLog, WithoutHandlersItOnlySaysWhetherTheLogIsComplete) {
+TEST_F(RunLog, WithoutHandlersItOnlyReportsWhetherTheLogIsComplete) {
   {
     RunLogWriter writer(file, make_robot());
     writer.write(1s, test::sample_imu());
@@ -117,7 +117,7 @@ TEST_F(RunLog, JointsCarryTheRobotsNames) {
             {.topics = {"/joint_states"}});
 }
 
-TEST_F(RunLog, MountsStandInTfStatic) {
+TEST_F(RunLog, MountsAreInTfStatic) {
   RunLogWriter(file, make_robot()).close();
   const auto mounts = transforms_of(file, "/tf_static");
   ASSERT_EQ(mounts.size(), 1U);

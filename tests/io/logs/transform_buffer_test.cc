@@ -17,7 +17,7 @@ FrameTransform placed(const std::string& parent, const std::string& child, doubl
   return test::placed(parent, child, {{x, 0.0, 0.0}, quaternion_from_yaw(yaw)}, stamp);
 }
 
-TEST(TransformBuffer, AFrameIsSeenFromItselfWithoutBeingKnown) { EXPECT_THAT(*TransformBuffer().find("a", "a", 5s), Pose3Near(Pose3{}, 0.0, 0.0)); }
+TEST(TransformBuffer, AnUnknownFrameRelativeToItselfIsTheIdentity) { EXPECT_THAT(*TransformBuffer().find("a", "a", 5s), Pose3Near(Pose3{}, 0.0, 0.0)); }
 
 TEST(TransformBuffer, ChainsUpwardsAndBack) {
   TransformBuffer tree;
@@ -34,7 +34,7 @@ TEST(TransformBuffer, JoinsBranchesAtTheirCommonFrame) {
   EXPECT_THAT(*tree.find("imu", "lidar", 0s), Pose3Near((Pose3{{3.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}), kExactTol, kExactTol));
 }
 
-TEST(TransformBuffer, WhatMovesIsInterpolatedAndNotKnownOutsideItsTime) {
+TEST(TransformBuffer, MovingFramesAreInterpolatedWithinTheirTimeOnly) {
   TransformBuffer tree;
   tree.add(placed("odom", "base_link", 1.0, 1s, 0.0));
   tree.add(placed("odom", "base_link", 3.0, 2s, 0.4));
@@ -43,7 +43,7 @@ TEST(TransformBuffer, WhatMovesIsInterpolatedAndNotKnownOutsideItsTime) {
   EXPECT_FALSE(tree.find("odom", "base_link", 2001ms));
 }
 
-TEST(TransformBuffer, WhatLiesAboveTheCommonFrameNeedNotBeKnownAtTheInstant) {
+TEST(TransformBuffer, FramesAboveTheCommonFrameAreNotRequired) {
   TransformBuffer tree;
   tree.add(placed("map", "odom", 7.0, 0s));
   tree.add(placed("odom", "base_link", 1.0, 1s));
@@ -76,7 +76,7 @@ TEST(TransformBuffer, RemembersTenSeconds) {
   EXPECT_FALSE(tree.find("odom", "base_link", 89s));
 }
 
-TEST(TransformBuffer, RemembersTwoThousandPosesAtMost) {
+TEST(TransformBuffer, BuffersAtMostTwoThousandPoses) {
   TransformBuffer tree;
   for (int i = 0; i < 3000; ++i) tree.add(placed("odom", "base_link", i, i * 1ms));
   EXPECT_TRUE(tree.find("odom", "base_link", 1000ms));

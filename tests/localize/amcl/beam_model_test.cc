@@ -38,7 +38,7 @@ TEST(BeamModel, AtTheExpectedRangeIsTableSixPointOne) {
   EXPECT_NEAR(beam_log_likelihood(4.0, 4.0, {}), std::log(hit + in_front + 0.05 / 30.0), 1e-9);
 }
 
-TEST(BeamModel, SomebodyInTheWayIsLikelierThanAWallThatIsTooFar) {
+TEST(BeamModel, AShortRangeIsLikelierThanALongOne) {
   EXPECT_GT(beam_log_likelihood(2.0, 4.0, {}), beam_log_likelihood(6.0, 4.0, {}) + 1.0);
 }
 

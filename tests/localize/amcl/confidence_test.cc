@@ -38,7 +38,7 @@ TEST(AssessConfidence, NamesTheWeakestDirectionAndItsDeviation) {
   }
 }
 
-TEST(AssessConfidence, FallsWithEveryDoubt) {
+TEST(AssessConfidence, FallsWithEachIndicator) {
   LocalizationEvidence two_places = evidence(0.03), bad_scan = evidence(0.03), bad_ranges = evidence(0.03);
   two_places.cluster_weight = 0.5, bad_scan.scan_fit = 0.3, bad_ranges.range_fit = 0.0;
   for (const LocalizationEvidence& doubtful : {two_places, bad_scan, bad_ranges}) {
@@ -47,7 +47,7 @@ TEST(AssessConfidence, FallsWithEveryDoubt) {
   }
 }
 
-TEST(AssessConfidence, WhoWasLostIsFoundOnlyWhenOnePlaceIsLeft) {
+TEST(AssessConfidence, RecoversFromLostOnlyWithOneClusterLeft) {
   LocalizationEvidence nearly = evidence(0.03);
   nearly.cluster_weight = 0.9;
   EXPECT_TRUE(assess_confidence({}, nearly, true, {}).is_lost);

@@ -36,7 +36,7 @@ double weight_near(const GlobalSearch::Candidates& candidates, const Pose2& pose
   return weight;
 }
 
-TEST(GlobalSearch, KnowsThePortalAndTheRockFromOneScan) {
+TEST(GlobalSearch, FindsPortalAndRockFromOneScan) {
   EXPECT_GT(weight_near(find({6.0, 0.4, 0.1}), {6.0, 0.4, 0.1}), 0.9);
   EXPECT_GT(weight_near(find({124.0, -1.0, 2.0}), {124.0, -1.0, 2.0}), 0.9);
 }
@@ -67,7 +67,7 @@ TEST(GlobalSearch, RangesDecideWhereTheScanCannot) {
   EXPECT_GT(weight_near(candidates, truth) + weight_near(candidates, {truth.x, truth.y, std::numbers::pi}), 0.9);
 }
 
-TEST(GlobalSearch, DrawsAsManyPosesAsAskedNearTheCandidates) {
+TEST(GlobalSearch, SamplesTheRequestedNumberOfPosesNearTheCandidates) {
   const GlobalSearch::Candidates candidates = find({6.0, 0.4, 0.1});
   const std::vector<Pose2> poses = sample_poses(candidates, 200, RandomStream(1, "test/draw"), 0);
   ASSERT_EQ(poses.size(), 200U);
@@ -76,7 +76,7 @@ TEST(GlobalSearch, DrawsAsManyPosesAsAskedNearTheCandidates) {
   EXPECT_TRUE(sample_poses({}, 200, RandomStream(1, "test/draw"), 0).empty());
 }
 
-TEST(GlobalSearch, AMapSmallerThanItsStepsHasAPlaceAllTheSame) {
+TEST(GlobalSearch, AMapSmallerThanTheGridStepHasACandidate) {
   OccupancyGrid map({.resolution_m = 0.05, .width = 3, .height = 3}, kOccupied);
   map.at({1, 1}) = kFree;
   const LineField lines(map, 6);

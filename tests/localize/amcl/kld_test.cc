@@ -31,7 +31,7 @@ TEST(KldParticles, GrowWithTheBinsAndFallWithTheError) {
   EXPECT_LT(kld_particles(50, {.max_kl_divergence = 0.1, .min_particles = 1}), kld_particles(50, kFree));
 }
 
-TEST(PoseBins, ArePlacesAndHeadings) {
+TEST(PoseBins, AreOfPositionAndHeading) {
   PoseBins bins({.bin_m = 0.5, .bin_rad = 0.2});
   EXPECT_EQ(bins.add({0.1, 0.1, 0.0}), 0U);
   EXPECT_EQ(bins.add({0.4, 0.4, 0.0}), 0U);
@@ -40,7 +40,7 @@ TEST(PoseBins, ArePlacesAndHeadings) {
   EXPECT_EQ(bins.size(), 3U);
 }
 
-TEST(PoseBins, ClumpTogetherWhereTheyTouchAlsoRoundTheCircle) {
+TEST(PoseBins, ClusterWhenAdjacentAlsoAcrossTheAngleWrap) {
   PoseBins bins({.bin_m = 0.5, .bin_rad = 0.1745});
   bins.add({0.1, 0.1, std::numbers::pi - 0.01});
   bins.add({0.6, 0.6, -std::numbers::pi + 0.01});
@@ -49,7 +49,7 @@ TEST(PoseBins, ClumpTogetherWhereTheyTouchAlsoRoundTheCircle) {
   EXPECT_EQ(bins.clusters(), (std::vector<std::size_t>{0, 0, 2, 0}));
 }
 
-TEST(ParticleCloud, TheHeaviestClumpIsDescribedAndNotTheOthers) {
+TEST(ParticleCloud, TheDominantClusterIsDescribedAndNotTheOthers) {
   const std::vector<Pose2> poses = {{0.0, 0.0, 3.1}, {0.2, 0.0, -3.1}, {20.0, 0.0, 0.0}};
   const std::vector<double> weights = {0.3, 0.3, 0.4};
   const std::vector<std::size_t> clusters = cluster_particles(poses, {});

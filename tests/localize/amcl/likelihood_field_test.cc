@@ -86,7 +86,7 @@ TEST(LikelihoodField, TheFastSumIsTheMeanOverTheEndsOneByOne) {
 
 // A third of the beams on a truck that the map does not know, half a meter or two meters in front of the wall: the pose that
 // fits the wall loses the same.
-TEST(LikelihoodField, AnUnknownTruckCostsTheSameWhereverItStands) {
+TEST(LikelihoodField, AnUnmappedTruckCostsTheSameEverywhere) {
   const LikelihoodField field = make_field(make_map());
   const auto with_truck_at = [&](float x) {
     return field.mean_log({{1.05F, 1.05F, x}, {0.1F, 0.3F, 0.5F}}, {});
@@ -96,7 +96,7 @@ TEST(LikelihoodField, AnUnknownTruckCostsTheSameWhereverItStands) {
 }
 
 // Every second row of the wall is moved by one cell: as noise of 2 cm leaves a wall that lies between two columns.
-TEST(LikelihoodField, ARaggedWallIsAsGoodInOnePlaceAsInAnother) {
+TEST(LikelihoodField, ARoughWallIsEquallyLikelyEverywhere) {
   OccupancyGrid map({.resolution_m = 0.05, .width = 60, .height = 100}, kFree);
   for (int row = 0; row < 100; ++row) map.at({30 + (row * row / 3) % 2, row}) = kOccupied;
   const LikelihoodField field = make_field(map);
@@ -108,7 +108,7 @@ TEST(LikelihoodField, ARaggedWallIsAsGoodInOnePlaceAsInAnother) {
   EXPECT_LT(most - least, 0.06);
 }
 
-TEST(LikelihoodField, LooksAtSoManyHitsEvenlySpreadAndAtNothingThatIsNotFinite) {
+TEST(LikelihoodField, UsesAtMostNHitsUniformlySpreadAndFiniteOnly) {
   LevelScan scan = scan_of({{1.0F, 0.0F}, {2.0F, 0.0F}, {3.0F, 0.0F}, {4.0F, 0.0F}});
   scan.beams.push_back({{5.0F, 0.0F}, false});
   scan.beams.push_back({{std::numeric_limits<float>::quiet_NaN(), 0.0F}, true});

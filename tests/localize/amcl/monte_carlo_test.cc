@@ -91,7 +91,7 @@ LinedStudy drive_through_lined_stretch(bool with_ranges) {
 
 // 50 m without a feature in sight, scale errors of 2 % (one sigma), 20 seeds. NEES: chi-square of 20 degrees of freedom, 95 %:
 // 9.591 ... 34.170, over 20.
-TEST(DegenerateTunnel, TrustFallsBelowHalfBeforeTheErrorPassesHalfAMeterAndTheCovarianceIsHonest) {
+TEST(DegenerateTunnel, ConfidenceFallsBelowHalfBeforeTheErrorExceedsHalfAMeterWithConsistentCovariance) {
   const LinedStudy seen = drive_through_lined_stretch(false);
   EXPECT_GT(seen.drifted, 3) << "the tunnel is not degenerate: nothing was shown";
   EXPECT_EQ(seen.trust_fell_late, 0);
@@ -100,7 +100,7 @@ TEST(DegenerateTunnel, TrustFallsBelowHalfBeforeTheErrorPassesHalfAMeterAndTheCo
   EXPECT_LT(seen.nees, 1.71);
 }
 
-TEST(DegenerateTunnel, WithRangesTheErrorStaysBelowFifteenCentimetersAndTrustStays) {
+TEST(DegenerateTunnel, WithRangesTheErrorStaysBelowFifteenCentimetersAndConfidenceStays) {
   const LinedStudy seen = drive_through_lined_stretch(true);
   std::printf("largest error with UWB, 20 seeds: %.3f m\n", seen.max_error_m);
   EXPECT_LT(seen.max_error_m, 0.15);
@@ -110,7 +110,7 @@ TEST(DegenerateTunnel, WithRangesTheErrorStaysBelowFifteenCentimetersAndTrustSta
 // Chi-square of 60 degrees of freedom, 95 %: 40.482 ... 83.298, over 20. The upper bound holds; the lower one does not: among
 // features of a flat world the filter is better than it says, because its covariance has room for the map's error and for
 // what this world has not (tilt, rubble). Printed, not asserted.
-TEST(MonteCarlo, AmongFeaturesItStandsToThreeCentimetersAndHalfADegreeAndIsNotSurerThanItMayBe) {
+TEST(MonteCarlo, AmongFeaturesItErrsLessThanThreeCentimetersAndHalfADegreeWithConsistentCovariance) {
   double nees = 0.0, worst_m = 0.0, worst_rad = 0.0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     Tour tour = nearly_started(seed);
@@ -163,7 +163,7 @@ TEST(Kidnap, OfTwentyMetersIsNoticedAndMendedWithinThirtySecondsByRanges) {
 }
 
 // Carried 20 m along a tunnel that looks alike: the scan cannot tell where to.
-TEST(Kidnap, WithoutRangesItSaysThatItIsLostUntilAFeatureComesIntoSight) {
+TEST(Kidnap, WithoutRangesItReportsLostUntilAFeatureIsInRange) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Tour tour(seed, {35.0, 0.0, 0.0});
     tour.localizer.set_initial_pose({35.0, 0.0, 0.0}, kNearly);
@@ -248,7 +248,7 @@ TEST(MonteCarlo, TheBeamModelHoldsThePoseToo) {
   }
 }
 
-TEST(MonteCarlo, StandingStillMakesItNoSurer) {
+TEST(MonteCarlo, AtRestTheCovarianceDoesNotShrink) {
   Tour tour(1, {62.0, 0.0, 0.0});
   tour.localizer.set_initial_pose({62.0, 0.0, 0.0}, kNearly);
   const LocalizationUpdate first = tour.look(true);

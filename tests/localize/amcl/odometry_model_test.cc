@@ -37,7 +37,7 @@ OdometryModelSettings only_scale() {
 
 // Gauss-Markov scale s of deviation S and memory L: var of the way D is 2 S^2 L (D - L (1 - exp(-D / L))). For S = 2 %, L = 50 m
 // that is 0.375 m after 20 m and 0.707 m after 40 m: nearly twice as much for twice the way.
-TEST(OdometryModel, ALastingScaleSpreadsTheBeliefWithTheWayAndNotWithItsRoot) {
+TEST(OdometryModel, ASystematicScaleErrorSpreadsTheParticlesWithTheDistanceAndNotWithItsRoot) {
   const auto expected = [](double way_m) {
     return 0.02 * std::sqrt(2.0 * 50.0 * (way_m - 50.0 * (1.0 - std::exp(-way_m / 50.0))));
   };
@@ -67,7 +67,7 @@ TEST(OdometryModel, AGaussianIsMovedAsTheParticlesAre) {
   EXPECT_NEAR(std::sqrt(now.covariance(1, 1)), 0.2, 1e-6);
 }
 
-TEST(OdometryModel, TheSameTickDrawsTheSameAndAnotherAnother) {
+TEST(OdometryModel, TheSameTickGivesTheSameSamplesAndAnotherDifferentOnes) {
   const RandomStream noise(1, "test/motion");
   const auto draw = [&](std::uint64_t tick) {
     ParticleCloud cloud;

@@ -87,7 +87,7 @@ TEST(RefinePose, OfAnEmptyScanIsThePrior) {
 }
 
 // Information along y only, 100 / m^2; a spread of 0.1 m has as much: half the way in y, none in x.
-TEST(ScanProposal, GoesTheWayThatTheScanKnows) {
+TEST(ScanProposal, MovesAlongTheConstrainedDirection) {
   RefinedPose refined;
   refined.posterior.mean = {5.0, 1.0, 0.0};
   refined.information(1, 1) = 100.0;

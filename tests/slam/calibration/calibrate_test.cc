@@ -43,7 +43,7 @@ TEST(Calibrate, WithoutNoiseAllSixAreFoundExactly) {
 }
 
 // 20 seeds of 6 errors, each of variance 1: the mean square of 120 has a standard deviation of sqrt(2/120) = 0.13 where they are independent.
-TEST(Calibrate, ErrorsAreAsLargeAsTheStandardDeviationsSayOverTwentySeeds) {
+TEST(Calibrate, ErrorsAreConsistentWithTheStandardDeviationsOverTwentySeeds) {
   double sum = 0.0, sum_of_means = 0.0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const CalibrationResult result = calibrate(record(wandering(2400), 6, kWorn, kNoise, seed), {}, {});
@@ -69,7 +69,7 @@ TEST(Calibrate, NoiseOfOdometryShrinksNoScale) {
   EXPECT_LT(std::abs(normalized_errors(result, kWorn)[kTurn]), 3.0);
 }
 
-TEST(Calibrate, OneStretchInFiveThatSaysForwardsForBackwardsIsRejected) {
+TEST(Calibrate, OneReversedSegmentInFiveIsRejected) {
   std::vector<MotionSegment> pairs = record(wandering(2400), 6, kWorn, kNoise, 1);
   for (std::size_t k = 0; k < pairs.size(); k += 5) pairs[k].odometry.x *= -1.0;
   const CalibrationResult result = calibrate(pairs, {}, {});
@@ -78,7 +78,7 @@ TEST(Calibrate, OneStretchInFiveThatSaysForwardsForBackwardsIsRejected) {
   EXPECT_LE(result.num_rejected, 80 + 8) << "and of the others not more than one in forty";
 }
 
-TEST(Calibrate, AWayWithoutTurnsTellsNeitherLeverArmNorScaleOfTurns) {
+TEST(Calibrate, StraightMotionDoesNotConstrainLeverArmAndRotationScale) {
   const Calibration truth{.override_lidar_pose = true, .lidar_x_m = 0.25, .lidar_yaw_rad = 0.03, .distance_scale = 1.03, .steering_bias_rad_per_m = 0.0};
   const CalibrationResult result = calibrate(record(repeated({0.1, 0.0, 0.0}, 1200), 5, truth, kNoise, 1), {0.1, 0.05, 0.0}, {});
   EXPECT_THAT(not_observable(result), ::testing::UnorderedElementsAre("lidar_x_m", "lidar_y_m", "turn_scale"));
@@ -90,7 +90,7 @@ TEST(Calibrate, AWayWithoutTurnsTellsNeitherLeverArmNorScaleOfTurns) {
 }
 
 // Seen from a lidar on a circle, its direction and its heading turn together.
-TEST(Calibrate, TurnsOnTheSpotTellTheScaleOfTurnsAndTheLengthOfTheLeverArmAlone) {
+TEST(Calibrate, RotationInPlaceConstrainsRotationScaleAndLeverArmLengthOnly) {
   const Calibration truth{.override_lidar_pose = true, .lidar_x_m = 0.25, .lidar_yaw_rad = 0.03, .rotation_scale = 0.9};
   const CalibrationResult result = calibrate(record(repeated({0.0, 0.0, 0.06}, 1200), 6, truth, kNoise, 1), {}, {});
   EXPECT_THAT(not_observable(result), ::testing::UnorderedElementsAre("lidar_yaw_rad", "distance_scale", "steering_rad_per_m"));
@@ -98,7 +98,7 @@ TEST(Calibrate, TurnsOnTheSpotTellTheScaleOfTurnsAndTheLengthOfTheLeverArmAlone)
   EXPECT_LT(std::abs(normalized_errors(result, truth)[kTurn]), 4.0);
 }
 
-TEST(Calibrate, ACircleDoesNotTellSteeringFromTheScaleOfTurns) {
+TEST(Calibrate, OnACircleSteeringAndRotationScaleAreNotSeparable) {
   const CalibrationResult result = calibrate(record(repeated({0.1, 0.0, 0.1}, 1200), 5, kWorn, kNoise, 1), {}, {});
   EXPECT_THAT(not_observable(result), ::testing::AnyOf(::testing::Contains("steering_rad_per_m"), ::testing::Contains("turn_scale")));
 }

@@ -12,7 +12,7 @@ using test::Pose2Near;
 
 constexpr double kExactTol = 1e-12;
 
-TEST(CorrectedStep, AMeterOfSteeringByATenthBendsTheWayToAnArcOfTenMeters) {
+TEST(CorrectedStep, AMeterWithSteeringBiasOfATenthIsAnArcOfTenMeters) {
   const Pose2 arc{std::cos(0.05), std::sin(0.05), 0.1};  // a chord of 1 m
   EXPECT_THAT(corrected_step({1.0, 0.0, 0.0}, {.steering_bias_rad_per_m = 0.1}), Pose2Near(arc, kExactTol, kExactTol));
   const Pose2 back{-std::cos(0.05), std::sin(0.05), -0.1};
@@ -24,7 +24,7 @@ TEST(CorrectedStep, AnArcOfTwiceTheTurnKeepsItsChordAndTurnsItByHalf) {
   EXPECT_THAT(corrected_step(step, {.distance_scale = 1.5, .rotation_scale = 2.0}), Pose2Near(wanted, kExactTol, kExactTol));
 }
 
-TEST(CorrectedStep, IsTheInverseOfWhatWornWheelsReport) {
+TEST(CorrectedStep, InvertsTheModelOfWornWheels) {
   for (const Pose2& step : {Pose2{0.1, 0.02, 0.3}, Pose2{-0.2, 0.0, -0.1}, Pose2{0.0, 0.0, 0.5}}) {
     EXPECT_THAT(corrected_step(test::reported(step, test::kWorn), test::kWorn), Pose2Near(step, kExactTol, kExactTol));
   }
@@ -42,7 +42,7 @@ TEST(CalibratedScans, TheDefaultsChangeNothingToTheBit) {
   }
 }
 
-TEST(CalibratedScans, GoOnFromTheFirstScanAndPutTheLidarInItsPlace) {
+TEST(CalibratedScans, StartAtTheFirstScanAndOverrideTheLidarPose) {
   CalibratedScans scans({.override_lidar_pose = true, .lidar_x_m = 0.3, .distance_scale = 2.0});
   RecordedScan first = at({5.0, 1.0, 0.0}), second = at({6.0, 1.0, 0.0}), third = at({6.0, 2.0, 0.0});
   scans.correct(first);
@@ -54,7 +54,7 @@ TEST(CalibratedScans, GoOnFromTheFirstScanAndPutTheLidarInItsPlace) {
   EXPECT_EQ(third.T_body_lidar.x, 0.3);
 }
 
-TEST(CalibratedScans, TheWayWithinAScanIsPutRightToo) {
+TEST(CalibratedScans, TheMotionDuringAScanIsCorrectedToo) {
   CalibratedScans scans({.distance_scale = 2.0, .rotation_scale = 0.5});
   RecordedScan scan = at({});
   scan.T_begin_end = {0.02, 0.0, 0.0};

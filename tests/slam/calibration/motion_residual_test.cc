@@ -13,7 +13,7 @@ const CalibrationVector kTruth{test::kWorn.lidar_x_m, test::kWorn.lidar_y_m, tes
 
 MotionSegment stretch() { return test::record(test::wandering(8), 8, test::kWorn, {}, 1).front(); }
 
-TEST(MotionResidual, IsNoneUnderTheTruth) { EXPECT_LT(motion_residual(stretch(), kTruth, {}).error.norm(), 1e-12); }
+TEST(MotionResidual, IsZeroForTheGroundTruth) { EXPECT_LT(motion_residual(stretch(), kTruth, {}).error.norm(), 1e-12); }
 
 TEST(MotionResidual, ItsDerivativesAreThoseOfDifferences) {
   const MotionSegment pair = stretch();
@@ -28,7 +28,7 @@ TEST(MotionResidual, ItsDerivativesAreThoseOfDifferences) {
 }
 
 // A lidar that looks to the left has its own x along the body's y.
-TEST(MotionResidual, TheLidarsCovarianceIsTurnedIntoTheBody) {
+TEST(MotionResidual, TheLidarCovarianceIsRotatedIntoTheBody) {
   MotionSegment pair = stretch();
   pair.lidar_covariance = Eigen::Vector3d(4.0, 1.0, 0.25).asDiagonal();
   CalibrationVector left = kTruth;

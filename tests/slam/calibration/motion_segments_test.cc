@@ -61,7 +61,7 @@ TEST(MotionSegmenter, StretchesAreHalfAMeterOrAThirdOfARadianAndTheLidarsOwn) {
 }
 
 // The lidar's own motion from its first beam to its last is not the body's: a quarter of a meter ahead it moves sideways while the body turns on the spot.
-TEST(MotionSegmenter, BeamsThatWereFiredLaterAreSeenFromWhereTheLidarWas) {
+TEST(MotionSegmenter, LaterBeamsStartAtTheLaterLidarPose) {
   const test::RoomWorld office = test::make_office();
   Calibration worn;
   worn.override_lidar_pose = true;
@@ -87,7 +87,7 @@ TEST(MotionSegmenter, BeamsThatWereFiredLaterAreSeenFromWhereTheLidarWas) {
 }
 
 // The tracker takes odometry's word along the corridor, and the covariance says that the lidar knows nothing of it.
-TEST(MotionSegmenter, AlongABareCorridorTheLidarsMotionIsSaidToBeUnknown) {
+TEST(MotionSegmenter, AlongABareCorridorTheLidarMotionIsUncertain) {
   test::RoomWorld corridor;
   corridor.add_wall(-100.0, -1.0, 200.0, -1.0).add_wall(-100.0, 1.0, 200.0, 1.0);
   const std::vector<MotionSegment> pairs = pairs_of(drive(corridor, {{0.0, 0.0}, {12.0, 0.0}}, {.distance_scale = 1.03}, 1), {});

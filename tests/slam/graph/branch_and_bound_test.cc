@@ -63,7 +63,7 @@ TEST(SearchWindow, NoShiftOfAllFourHundredAndFortyOneScoresHigher) {
   EXPECT_DOUBLE_EQ(found->score, best);
 }
 
-TEST(SearchWindow, WhatIsExcludedIsNotFoundAgainAndTheNextBestScoresLess) {
+TEST(SearchWindow, ExcludedPosesAreNotFoundAgainAndTheSecondBestScoresLess) {
   const SearchWindow window{.T_map_center = kSeen, .half_width_m = 3.0, .half_angle_rad = 0.3};
   const auto best = search_window(office_pyramid(), points_seen(), window, 0.0);
   ASSERT_TRUE(best);

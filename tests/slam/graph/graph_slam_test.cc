@@ -32,7 +32,7 @@ double rms_error_m(const MappedDrive& mapped) {
 }
 
 // 125 m and a bit of corridor; odometry alone turns by a radian and ends tens of meters off.
-TEST(GraphSlam, ARoundOfTheOfficeClosesToThreeCentimeters) {
+TEST(GraphSlam, ALapOfTheOfficeClosesToThreeCentimeters) {
   const MappedDrive mapped = map_rounds(test::make_office(), test::office_rounds(1), {});
   EXPECT_LT(rms_error_m(mapped), 0.03);
   EXPECT_GE(mapped.slam.loop_closure_statistics().closed, 1);
@@ -97,7 +97,7 @@ std::vector<SlamUpdate> follow_corridor(const GraphSlamSettings& settings, Graph
 }
 
 // Odometry alone is 1.2 m off at the end.
-TEST(GraphSlam, AlongASmoothCorridorRangesHoldItToTenCentimetersAndWithoutThemOdometryIsBelieved) {
+TEST(GraphSlam, AlongASmoothCorridorRangesConstrainItToTenCentimetersAndWithoutThemOdometryIsUsed) {
   for (const bool has_ranges : {true, false}) {
     GraphSlamSettings settings;
     settings.ranges.enabled = has_ranges;
@@ -131,7 +131,7 @@ TEST(GraphSlam, TheCovarianceGrowsAlongASmoothCorridorAndRangesKeepItSmall) {
 }
 
 // As on a ramp between walls that lean: what is seen there is turned by 3 degrees, and odometry is right.
-TEST(GraphSlam, WhatALidarTiltedBy11DegreesSeesIsNeitherMatchedNorWritten) {
+TEST(GraphSlam, ScansTiltedBy11DegreesAreNeitherMatchedNorIntegrated) {
   test::RoomWorld room;
   room.add_box(-3.0, -2.0, 5.0, 4.0);
   for (const double tilt_rad : {0.2, 0.0}) {
@@ -152,7 +152,7 @@ TEST(GraphSlam, WhatALidarTiltedBy11DegreesSeesIsNeitherMatchedNorWritten) {
   }
 }
 
-TEST(GraphSlam, BeforeAnyScanItHasNoPathAndAfterOneItStandsAtTheOrigin) {
+TEST(GraphSlam, BeforeAnyScanItHasNoPathAndAfterOneItIsAtTheOrigin) {
   GraphSlam slam({});
   EXPECT_TRUE(slam.path().empty());
   slam.finish();

@@ -53,7 +53,7 @@ TEST(IncrementalMap, WritesEveryKeyframeOnce) {
 }
 
 // The second scan moves by 0.5 m: its end wall, at 6 m, is then seen at 6.5 m.
-TEST(IncrementalMap, IsDrawnAnewWhenAKeyframeHasMovedFartherThanIsBorne) {
+TEST(IncrementalMap, IsRenderedAgainWhenAKeyframeHasMovedByMoreThanTheThreshold) {
   Drive drive;
   drive.go_to(0.0), drive.go_to(0.5);
   IncrementalMap live({});
@@ -66,7 +66,7 @@ TEST(IncrementalMap, IsDrawnAnewWhenAKeyframeHasMovedFartherThanIsBorne) {
 }
 
 // A hundredth of a radian swings what is ten meters away by 0.1 m.
-TEST(IncrementalMap, ATurnCountsByWhatItMovesTenMetersAway) {
+TEST(IncrementalMap, ARotationCountsByItsDisplacementAtTenMeters) {
   Drive drive;
   drive.go_to(0.0), drive.go_to(0.5);
   IncrementalMap live({});

@@ -63,7 +63,7 @@ TEST(LikelihoodPyramid, HoldsHitsOnTheLowEdgesOfTiles) {
 }
 
 // The cells of the pyramid need not be a multiple of the map's.
-TEST(LikelihoodPyramid, HoldsHitsOnAllEdgesOfTilesWhateverTheResolution) {
+TEST(LikelihoodPyramid, ContainsHitsOnAllTileEdgesAtEveryResolution) {
   for (const double resolution_m : {0.03, 0.05, 0.07, 0.1, 0.13}) {
     for (int edge = -64; edge <= 64; edge += 32) {
       GridMap map(0.05, 4000.0);

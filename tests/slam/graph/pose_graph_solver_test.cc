@@ -153,7 +153,7 @@ TEST(SolvePoseGraph, ARangeMovesItsNodeOnlyInTheDirectionThatItIsAskedAbout) {
 }
 
 // One of six went round a corner and is 8 m too long.
-TEST(SolvePoseGraph, ARangeThatIsFarTooLongIsDoubted) {
+TEST(SolvePoseGraph, ARangeThatIsFarTooLongIsDownweighted) {
   PoseGraph graph = make_line(7, 1.0);
   RangeFactors ranges({.range_std_m = 0.1});
   for (int i = 1; i < 7; ++i) {
@@ -166,7 +166,7 @@ TEST(SolvePoseGraph, ARangeThatIsFarTooLongIsDoubted) {
 }
 
 // Odometry says 1.1 m; nodes 0 to 4 stay at 0 ... 4 m, those from 5 on follow.
-TEST(SolvePoseGraph, NodesBeforeTheFirstFreeOneStayAndTheOthersAreSolvedBesideThem) {
+TEST(SolvePoseGraph, NodesBeforeTheFirstFreeOneAreFixedAndTheOthersAreSolved) {
   PoseGraph graph = make_line(8, 1.1);
   solve(graph, {}, {}, 5);
   for (int i = 0; i < 5; ++i) EXPECT_EQ(graph.T_map_node[static_cast<std::size_t>(i)].x, i);

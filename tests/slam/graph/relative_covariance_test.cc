@@ -23,7 +23,7 @@ std::vector<Pose2> make_line(int count) {
 }
 
 // From the origin, looking along y, with a tenth of a radian of doubt: 2 m ahead that is 0.2 m to the left, along -x; the way's own 0.3 m is ahead, along y.
-TEST(ComposeCovariance, AHeadingsDoubtSwingsTheWayAndTheWaysOwnIsTurnedWithIt) {
+TEST(ComposeCovariance, AHeadingErrorRotatesTheEdgeAndItsCovariance) {
   const PoseGaussian here{.mean = {0.0, 0.0, 0.5 * std::numbers::pi}, .covariance = diagonal(0.0, 0.0, 0.01)};
   const Eigen::Matrix3d there = compose_covariance(here, {0.0, 2.0, 0.5 * std::numbers::pi}, diagonal(0.09, 0.0, 0.0));
   EXPECT_NEAR(there(0, 0), 0.04, kExactTol);
@@ -44,7 +44,7 @@ TEST(ShortestPathDistributions, AHeadingThatWandersOverTenMetersSpreadsTheEndAsT
   EXPECT_NEAR(end.covariance(1, 2), 0.001 * 45.0, kExactTol);
 }
 
-TEST(ShortestPathDistributions, ALoopsShortCutIsTakenAndWhatNoWayLeadsToIsInfinitelyUncertain) {
+TEST(ShortestPathDistributions, ALoopClosureShortensThePathAndUnreachableNodesHaveInfiniteCovariance) {
   std::vector<CovarianceEdge> covariance_edges;
   for (int i = 0; i < 9; ++i) covariance_edges.push_back({i, i + 1, diagonal(0.01, 0.01, 0.0)});
   covariance_edges.push_back({9, 1, diagonal(1e-4, 1e-4, 0.0)});
@@ -56,7 +56,7 @@ TEST(ShortestPathDistributions, ALoopsShortCutIsTakenAndWhatNoWayLeadsToIsInfini
 }
 
 // A thousand draws of T_b_a, each turned round.
-TEST(Invert, IsTheCovarianceOfPosesThatAreTurnedRound) {
+TEST(Invert, IsTheCovarianceOfInvertedPoses) {
   const PoseGaussian pose{.mean = {3.0, -2.0, 2.5}, .covariance = diagonal(4e-4, 1e-4, 2.5e-5)};
   const PoseGaussian inverse = invert(pose);
   const RandomStream draws(1, "test/inverse");
@@ -73,7 +73,7 @@ TEST(Invert, IsTheCovarianceOfPosesThatAreTurnedRound) {
   EXPECT_LT((invert(inverse).covariance - pose.covariance).norm(), kExactTol);
 }
 
-TEST(RotateCovariance, AQuarterTurnSwapsTheVariancesOfXAndY) {
+TEST(RotateCovariance, AQuarterRotationSwapsTheVariancesOfXAndY) {
   EXPECT_LT((rotate_covariance(diagonal(1.0, 4.0, 9.0), 0.5 * std::numbers::pi) - diagonal(4.0, 1.0, 9.0)).norm(), kExactTol);
 }
 

@@ -46,7 +46,7 @@ TEST(ScanTracker, FollowsTwelveMetersToTwoCentimetersWithOdometryThatIsTenPercen
 }
 
 // Twelve centimeters a scan: wheels that report forwards for backwards, that stand still, that spin.
-TEST(ScanTracker, OdometryThatLiesForTwoMetersCostsNoMoreThanThreeCentimeters) {
+TEST(ScanTracker, WrongOdometryForTwoMetersCostsNoMoreThanThreeCentimeters) {
   const auto lies = [](std::size_t k) { return k >= 40 && k < 57; };
   for (const double factor : {-1.0, 0.0, 3.0}) {
     const auto tracked = track(corridor_drive(), [&](std::size_t k, const Pose2& motion) { return lies(k) ? Pose2{factor * motion.x, 0.0, motion.yaw} : motion; });
@@ -55,7 +55,7 @@ TEST(ScanTracker, OdometryThatLiesForTwoMetersCostsNoMoreThanThreeCentimeters) {
 }
 
 // Between smooth walls the scan says nothing of the way: odometry's word stands, and the covariance says how little it is.
-TEST(ScanTracker, AlongASmoothCorridorOdometryIsBelievedAndTheCovarianceSaysSo) {
+TEST(ScanTracker, AlongASmoothCorridorOdometryIsUsedAndTheCovarianceIsLarge) {
   test::RoomWorld corridor;
   corridor.add_wall(-100.0, -1.0, 200.0, -1.0).add_wall(-100.0, 1.0, 200.0, 1.0);
   ScanTracker tracker({});

@@ -19,7 +19,7 @@ const Pose2 kThere{8.0, 4.2, 0.0};                          ///< where the first
 const Pose2 kBack{17.0, 4.3, std::numbers::pi};             ///< the second comes back
 const Pose2 kTruth = kThere.inverse() * kBack;
 
-TEST(MatchSubmaps, JoinsAWayAndItsReturnToTwoCentimetersFromAMeterAndElevenDegreesOff) {
+TEST(MatchSubmaps, MatchesAPathAndItsReturnToTwoCentimetersFromAMeterAndElevenDegreesOff) {
   const test::RoomWorld office = test::make_office();
   const RenderedSubmap target = drive_past(office, {{8.0, 4.2}, {16.0, 4.2}}, 1), source = drive_past(office, {{17.0, 4.3}, {9.0, 4.1}}, 2);
   const Pose2 off{kTruth.x + 0.8, kTruth.y - 0.6, kTruth.yaw + 0.2 - 0.025};  // the second way bears 0.025 rad to the left
@@ -30,7 +30,7 @@ TEST(MatchSubmaps, JoinsAWayAndItsReturnToTwoCentimetersFromAMeterAndElevenDegre
   EXPECT_GT(result.match->inlier_ratio, 0.85);
 }
 
-TEST(MatchSubmaps, PlacesOnOppositeSidesOfTheBuildingAreNotJoinedWhereverTheyAreThoughtToLie) {
+TEST(MatchSubmaps, OppositeSidesOfTheBuildingAreNotMatchedForAnyPrediction) {
   const test::RoomWorld office = test::make_office();
   const RenderedSubmap target = drive_past(office, {{8.0, 4.2}, {16.0, 4.2}}, 1), source = drive_past(office, {{32.0, 25.8}, {24.0, 25.8}}, 2);
   for (const double yaw : {0.0, 1.5, 3.0, -1.5}) {

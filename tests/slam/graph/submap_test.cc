@@ -12,7 +12,7 @@ namespace patrol::slam::submap_test {
 namespace {
 
 // From (2, 1) in the world, looking along y: what lies in the world at (x, y) lies in the submap at (y - 1, 2 - x).
-TEST(RenderedSubmap, LiesInTheFrameOfItsFirstKeyframeToHalfACell) {
+TEST(RenderedSubmap, IsInTheFrameOfItsFirstKeyframeToHalfACell) {
   test::RoomWorld room;
   room.add_box(-1.0, -2.0, 5.0, 6.0);
   const Pose2 T_world_first{2.0, 1.0, std::numbers::pi / 2};
@@ -45,7 +45,7 @@ TEST(RenderedSubmap, KeepsNothingBeyondItsExtent) {
   for (const MatchPoint& point : submap.surface_points()) EXPECT_LT(std::abs(point.p_body.x()), 4.0 + tile_m);
 }
 
-TEST(SubmapCache, DrawsOnceAndForgetsWhatWasUsedLongestAgo) {
+TEST(SubmapCache, RendersOnceAndDropsTheLeastRecentlyUsed) {
   const RenderedSubmap rendered = test::drive_past(test::make_office(), {{8.0, 4.2}, {9.0, 4.2}}, 1);
   SubmapCache cache(2);
   int draws = 0;

@@ -94,7 +94,7 @@ TEST(GridSlam, WalksTheStreetAndBackToWithinSixCentimetersRms) {
 }
 
 // 36 m. FastSLAM as the papers start from: the particles' own spread is the map's error.
-TEST(GridSlam, DrawnFromOdometryItMapsTheStreetToTwentyCentimetersWithAndWithoutASwarm) {
+TEST(GridSlam, SampledFromOdometryItMapsTheStreetToTwentyCentimetersWithAndWithoutASwarm) {
   for (const char* optimizer : {"none", "iscso"}) {
     GridSlamSettings settings = with_particles(15);
     settings.proposal = "motion";
@@ -144,7 +144,7 @@ LevelScan empty_scan(double t_s) {
   return scan;
 }
 
-TEST(GridSlam, WithoutEchoesTheOdometryIsBelieved) {
+TEST(GridSlam, WithoutReturnsTheOdometryIsUsed) {
   const Pose2 T_map_start{3.0, -2.0, 1.0}, T_odom_start{10.0, 10.0, -0.5}, move{1.0, 0.2, 0.3};
   GridSlam slam({}, 1, T_map_start);
   EXPECT_THAT(slam.update(empty_scan(0.0), T_odom_start).T_map_body, Pose2Near(T_map_start, 0.02, 0.01));
@@ -155,7 +155,7 @@ TEST(GridSlam, WithoutEchoesTheOdometryIsBelieved) {
 }
 
 // Walls that lean, as a tunnel's do, look turned by degrees to a lidar on a ramp.
-TEST(GridSlam, WhatALidarTiltedBy11DegreesSeesIsNeitherMatchedNorWritten) {
+TEST(GridSlam, ScansTiltedBy11DegreesAreNeitherMatchedNorIntegrated) {
   test::RoomWorld room;
   room.add_box(-3.0, -2.0, 5.0, 4.0);
   for (const double tilt_rad : {0.2, 0.0}) {
@@ -176,7 +176,7 @@ TEST(GridSlam, WhatALidarTiltedBy11DegreesSeesIsNeitherMatchedNorWritten) {
   }
 }
 
-TEST(GridSlam, TheFirstScanIsTakenWhereTheStartIsSaidToBe) {
+TEST(GridSlam, TheFirstScanIsAtTheGivenStart) {
   test::RoomWorld room;
   room.add_box(-3.0, -2.0, 5.0, 4.0);
   const Pose2 T_world_body{0.5, 0.5, 0.2};

@@ -51,7 +51,7 @@ double mean_error_m(const std::string& optimizer, const Start& start) {
   return error_m;
 }
 
-TEST(RbpfParticleProblem, AnIncrementOfZeroIsWhereOdometrySaysAndOneOfOneADeviationBeyond) {
+TEST(RbpfParticleProblem, AnIncrementOfZeroIsTheOdometryAndOneOfOneADeviationBeyond) {
   const Start start = start_of_the_street();
   std::vector<Particle> particles(1, {.T_map_body = {}, .map = start.map});
   RbpfParticleProblem step(particles, {wrong_prediction()}, start.points, 0.2, start.matching);
@@ -64,14 +64,14 @@ TEST(RbpfParticleProblem, AnIncrementOfZeroIsWhereOdometrySaysAndOneOfOneADeviat
 }
 
 // Deviations of 10 cm about a prediction that is 10 cm off: E |(0.1 + 0.1 x, 0.1 y)| is about 0.155 m for normal x, y.
-TEST(RbpfParticleProblem, SwarmsBringParticlesNearerToTheTruthThanOdometrysDrawsAtLeastByAThird) {
+TEST(RbpfParticleProblem, SwarmsReduceTheErrorOfOdometrySamplesByAThird) {
   const Start start = start_of_the_street();
   const double drawn_m = mean_error_m("none", start);
   EXPECT_NEAR(drawn_m, 0.155, 0.05);
   for (const char* optimizer : {"woa", "ba", "fa", "ifa", "scso", "iscso"}) EXPECT_LT(mean_error_m(optimizer, start), 0.67 * drawn_m) << optimizer;
 }
 
-TEST(RbpfParticleProblem, AParticleThatIsDrawnTowardsAnotherTakesItsMapAndAShareOfItsIncrement) {
+TEST(RbpfParticleProblem, AParticleThatIsAttractedByAnotherTakesItsMapAndAFractionOfItsIncrement) {
   const Start start = start_of_the_street();
   std::vector<Particle> particles = {{.T_map_body = {}, .map = GridMap(0.05, 400.0)}, {.T_map_body = {}, .map = start.map}};
   RbpfParticleProblem step(particles, {wrong_prediction(), wrong_prediction()}, start.points, 0.2, start.matching);
@@ -84,7 +84,7 @@ TEST(RbpfParticleProblem, AParticleThatIsDrawnTowardsAnotherTakesItsMapAndAShare
   EXPECT_NEAR(particles[1].T_map_body.y, 0.2, 1e-12);
 }
 
-TEST(ScanLogLikelihood, IsGreatestNearTheTruthAndLeavingTheMapDoesNotPay) {
+TEST(ScanLogLikelihood, IsMaximalNearTheGroundTruthAndLowOutsideTheMap) {
   const Start start = start_of_the_street();
   const auto at = [&](const Pose2& pose) { return scan_log_likelihood(start.map, start.points, pose, start.matching); };
   for (const Pose2& off : {Pose2{0.1, 0.0, 0.0}, Pose2{0.0, -0.1, 0.0}, Pose2{0.0, 0.0, 0.02}, Pose2{5.0, 3.0, 0.5}, Pose2{1000.0, 0.0, 0.0}}) {

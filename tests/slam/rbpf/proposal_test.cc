@@ -39,7 +39,7 @@ Proposal propose(const PoseGaussian& prediction, double gain) {
   return laplace_proposal(make_map(), look(), prediction.mean, prediction, gain, {});
 }
 
-TEST(LaplaceProposal, GoesToTheMatchAndIsSurerThanOdometry) {
+TEST(LaplaceProposal, MovesToTheMatchAndHasASmallerCovarianceThanOdometry) {
   const PoseGaussian prediction = around({kTruth.x + 0.05, kTruth.y - 0.03, kTruth.yaw + 0.02});
   const Proposal proposal = propose(prediction, 0.02);
   EXPECT_THAT(proposal.posterior.mean, Pose2Near(kTruth, 0.005, 0.002));
@@ -49,7 +49,7 @@ TEST(LaplaceProposal, GoesToTheMatchAndIsSurerThanOdometry) {
 }
 
 // Sigma^-1 = P^-1 + g H for two gains: the difference over the gains' is H, and at g = 0 only P is left.
-TEST(LaplaceProposal, InformationGrowsInProportionToTheGain) {
+TEST(LaplaceProposal, InformationIsProportionalToTheTempering) {
   const PoseGaussian prediction = around(kTruth);
   const Eigen::Matrix3d P_inverse = prediction.covariance.inverse();
   const Eigen::Matrix3d once = propose(prediction, 0.01).posterior.covariance.inverse() - P_inverse;

@@ -74,7 +74,7 @@ TEST(MakeMapper, AMethodThatIsNotThereIsRefused) {
 }
 
 // As from an old parent: released in a loop, not by a hundred thousand calls within each other.
-TEST(TrajectoryNode, AWayOfAMillionStepsIsLetGo) {
+TEST(TrajectoryNode, ATrajectoryOfAMillionNodesIsReleased) {
   std::shared_ptr<TrajectoryNode> path;
   for (int i = 0; i < 1'000'000; ++i) path = std::make_shared<TrajectoryNode>(Pose2{}, path);
   const std::shared_ptr<TrajectoryNode> shared = path->before->before;

@@ -118,7 +118,7 @@ TEST(AdaBoost, NoStumpIsTakenTwiceInARow) {
   }
 }
 
-TEST(AdaBoost, WhatWasNotSeenIsToldAsWell) {
+TEST(AdaBoost, UnseenExamplesAreClassifiedAsWell) {
   const LabeledFeatures all = make_square(3000, in_box, 0.05);
   LabeledFeatures training{.names = all.names, .examples = {}, .labels = {}}, test = training;
   for (std::size_t i = 0; i < all.examples.size(); ++i) {
@@ -130,7 +130,7 @@ TEST(AdaBoost, WhatWasNotSeenIsToldAsWell) {
   EXPECT_LT(num_wrong(result.model, test) / 2000.0, 0.05 + 0.03) << "5 % of the labels are wrong";
 }
 
-TEST(AdaBoost, BalancedClassesHearTheRareOne) {
+TEST(AdaBoost, BalancedClassesDetectTheRareOne) {
   LabeledFeatures training{.names = {"x"}, .examples = {}, .labels = {}};
   for (int i = 0; i < 100; ++i) {  // one in ten beyond 0.5 is positive
     training.examples.push_back({0.01 * i});
@@ -151,7 +151,7 @@ TEST(AdaBoost, TheSameExamplesGiveTheSameModelAndOtherScalesTheSameVotes) {
   for (std::size_t i = 0; i < training.examples.size(); ++i) EXPECT_EQ(first.model.margin(training.examples[i]), second.model.margin(scaled.examples[i]));
 }
 
-TEST(BoostedStumps, TheMarginIsTheShareOfVotes) {
+TEST(BoostedStumps, TheMarginIsTheFractionOfVotes) {
   const BoostedStumps model{.features = {"x", "y"},
                             .stumps = {{.feature = 0, .threshold = 1.0, .sign_above = 1, .weight = 3.0},
                                        {.feature = 1, .threshold = 0.0, .sign_above = -1, .weight = 1.0}}};

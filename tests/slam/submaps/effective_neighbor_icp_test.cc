@@ -45,7 +45,7 @@ Errors errors_of(const Points& target, const Points& source, const IcpSettings& 
 }
 
 // 10 pairs: six of 0.1 ... 0.6, four of 3, 5, 7, 9.1. Chord 0.1 + (k - 1); it is 5.1 at the sixth: 4.5 above it; 6.1 at the seventh: 3.1 above.
-TEST(EffectiveThreshold, IsTheDistanceThatLiesFarthestBelowTheChord) {
+TEST(EffectiveThreshold, IsTheDistanceFarthestBelowTheChord) {
   EXPECT_EQ(effective_threshold({0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 3.0, 5.0, 7.0, 9.1}), 0.6);
 }
 
@@ -138,13 +138,13 @@ INSTANTIATE_TEST_SUITE_P(By, PartlyOverlapping,
                          ::testing::Values(PartOverlap{0.52, 6.0}, PartOverlap{0.45, 5.0}, PartOverlap{0.35, 4.0}, PartOverlap{0.30, 3.0}),
                          [](const auto& run) { return std::to_string(std::lround(100.0 * run.param.share)) + "Percent"; });
 
-TEST(AlignIcp, WithoutALeastThresholdWholeOverlapIsMatchedOnItsBestPairsOnly) {
+TEST(AlignIcp, WithoutMinThresholdOnlyTheBestPairsAreUsed) {
   const Points target = test::yard_target_left_of(100.0), source = test::yard_source_right_of(-100.0);
   EXPECT_GT(errors_of(target, source, kPaper).largest_m, 0.1);
   EXPECT_LT(errors_of(target, source, kFromAfar).largest_m, 0.005);
 }
 
-TEST(AlignIcp, SaysHowManyPairsAndHowFarApart) {
+TEST(AlignIcp, ReportsNumberAndDistanceOfPairs) {
   const Points target = test::yard_target_left_of(4.0), source = test::yard_source_right_of(-3.0);
   const IcpSettings settings;
   const auto result = align_icp(IcpPoints(target, settings), IcpPoints(source, settings), kTruth, settings);
@@ -155,7 +155,7 @@ TEST(AlignIcp, SaysHowManyPairsAndHowFarApart) {
   EXPECT_LT(result->rms_m, 0.06);
 }
 
-TEST(AlignIcp, ACorridorTellsAcrossAndHeadingButNotAlong) {
+TEST(AlignIcp, ACorridorConstrainsLateralPositionAndHeadingOnly) {
   RoomWorld corridor;
   corridor.add_wall(-40.0, -1.0, 40.0, -1.0).add_wall(-40.0, 1.0, 40.0, 1.0);
   const Points target = sample_walls(corridor, {}, {.std_m = 0.01, .seed = 1});
@@ -171,7 +171,7 @@ TEST(AlignIcp, ACorridorTellsAcrossAndHeadingButNotAlong) {
 }
 
 // One face of a wall is 0.25 m behind the other; a cross wall with a face to the east holds the pair along.
-TEST(AlignIcp, FacesOfAWallSeenFromOppositeSidesAreNotLaidOnEachOther) {
+TEST(AlignIcp, OppositeFacesOfAWallAreNotAligned) {
   const auto face = [](double y, double x0, double x1) {
     Points points;
     for (double x = x0; x < x1; x += 0.1) points.emplace_back(x, y);

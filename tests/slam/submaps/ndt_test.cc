@@ -59,7 +59,7 @@ TEST(NdtGrid, FourPointsAboutANodeAreANormalOfTheirMeanAndCovariance) {
   EXPECT_NEAR(grid.score({{x, 0.0}}, {}).value, 0.5 * here, kExactTol);
 }
 
-TEST(NdtGrid, APointAloneIsFeltAsFarAsTheFloorSays) {
+TEST(NdtGrid, ASinglePointHasTheWidthOfTheMinimumStd) {
   const NdtGrid grid({{0.0, 0.0}}, 2.0, 0.3);
   EXPECT_EQ(grid.num_cells(), 1U);
   // Bilinear weight 1 - 0.3 / 1 along x; one sigma away.
@@ -67,7 +67,7 @@ TEST(NdtGrid, APointAloneIsFeltAsFarAsTheFloorSays) {
   EXPECT_EQ(grid.score({{1e300, -1e300}, {std::nan(""), 0.0}}, {}).value, 0.0) << "beyond the lattice nothing is felt";
 }
 
-TEST(NdtGrid, TheGradientIsWhatFiniteDifferencesSay) {
+TEST(NdtGrid, TheGradientEqualsFiniteDifferences) {
   const Points source = test::yard_source_right_of(-100.0);
   const NdtSettings settings;
   for (const NdtGrid& grid : make_ndt(test::yard_target_left_of(100.0), settings)) {
@@ -135,7 +135,7 @@ TEST(AlignNdt, TheBasinIsOneMeterAndTenDegreesWhereAThirdOverlapsAndMostlyTwoMet
   EXPECT_GE(num_found(target, source, 2.0, 15.0 * kDegree), 15);
 }
 
-TEST(AlignNdt, SaysHowWellItFits) {
+TEST(AlignNdt, ReportsTheFit) {
   const NdtSettings settings;
   const Points target = test::yard_target_left_of(100.0), source = test::yard_source_right_of(-100.0);
   const auto ndt = make_ndt(target, settings);
@@ -154,7 +154,7 @@ TEST(AlignNdt, SaysHowWellItFits) {
   EXPECT_NEAR(half->score, 0.5 * align_ndt(ndt, source, kTruth, all)->score, 1e-6) << "points without a partner count nothing";
 }
 
-TEST(AlignNdt, ACorridorTellsNothingOfAlong) {
+TEST(AlignNdt, ACorridorDoesNotConstrainTheLongitudinalPosition) {
   RoomWorld corridor;
   corridor.add_wall(-40.0, -1.0, 40.0, -1.0).add_wall(-40.0, 1.0, 40.0, 1.0);
   const auto middle = [](const Eigen::Vector2d& p) { return std::abs(p.x()) < 8.0; };
@@ -167,7 +167,7 @@ TEST(AlignNdt, ACorridorTellsNothingOfAlong) {
   EXPECT_LT(result->information(0, 0), 0.01 * result->information(1, 1));
 }
 
-TEST(AlignNdt, WithoutPointsOrOutOfSightThereIsNoResult) {
+TEST(AlignNdt, WithoutPointsOrOverlapThereIsNoResult) {
   const NdtSettings settings;
   const auto ndt = make_ndt(test::yard_target_left_of(100.0), settings);
   EXPECT_FALSE(align_ndt(ndt, {}, {}, settings));

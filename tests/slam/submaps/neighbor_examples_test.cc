@@ -32,7 +32,7 @@ TEST(NeighborExamples, AreOfBothKindsAndFinite) {
   }
 }
 
-TEST(NeighborExamples, WhatIsLearnedOfOneRoundRecognizesNeighborsOnTheNextWithAPrecisionOf95Percent) {
+TEST(NeighborExamples, AModelTrainedOnOneLapRecognizesNeighborsOnTheNextWithAPrecisionOf95Percent) {
   const BoostedStumps model = train_adaboost(examples_of(office_drive(), {}), {}).model;
   const test::SubmapDrive other = test::map_by_submaps(test::make_office(), test::office_rounds(1), {.speed_mps = 0.8, .odometry_scale = -0.02}, {}, {}, 2);
   const LabeledFeatures trial = examples_of(other, {.predictions = 2});

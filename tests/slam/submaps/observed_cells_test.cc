@@ -31,7 +31,7 @@ TEST(ObservedCells, ASurfaceIsNearInTheEightCellsAround) {
   EXPECT_FALSE(observed.is_surface_near({0.7, 0.1}));
 }
 
-TEST(ObservedCells, VisitsWhatIsKnownAndNothingOfAnEmptyMap) {
+TEST(ObservedCells, VisitsObservedCellsAndNoneOfAnEmptyMap) {
   GridMap map(0.05, 100.0);
   map.add_hit({-3.0, 2.0});
   map.add_hit({4.0, -1.0});

@@ -59,7 +59,7 @@ TEST(PairFeatures, HaveFourteenNamesNoneTwice) {
 }
 
 // Two squares of side 2, one 1 m to the side: radius of the outline sqrt(1 + 1/3).
-TEST(PairFeatures, OfTwoSquaresAreWhatGeometrySays) {
+TEST(PairFeatures, OfTwoSquaresEqualTheirGeometry) {
   const SubmapDescriptor square = describe_submap(square_outline(), GridMap(0.05, 100.0), {});
   const double radius = std::sqrt(4.0 / 3.0);
   ASSERT_NEAR(square.radius_m, radius, 0.01) << "of 80 points";
@@ -88,7 +88,7 @@ TEST(PairFeatures, TheCenterIsAsUncertainAsItsArmIsLong) {
   EXPECT_NEAR(value(features, "center_std"), (away.center.norm() * 0.1) / (near.radius_m + away.radius_m), kExactTol);
 }
 
-TEST(PairFeatures, OfNeighborsSayThatTheyAre) {
+TEST(PairFeatures, OfNeighborsIndicateNeighbors) {
   const SubmapDescriptor target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
   const auto features = pair_features(target, source, prediction_of({kTruth.x + 0.8, kTruth.y - 0.6, kTruth.yaw + 5.0 * kDegree}, 0.7, 4.0 * kDegree), {});
   EXPECT_GT(value(features, "hull_overlap"), 0.8);
@@ -100,7 +100,7 @@ TEST(PairFeatures, OfNeighborsSayThatTheyAre) {
 }
 
 // The same prediction of another place: a hall with pillars.
-TEST(PairFeatures, OfStrangersSayThatTheyAreNot) {
+TEST(PairFeatures, OfNonNeighborsIndicateNonNeighbors) {
   RoomWorld hall;
   hall.add_box(-14.0, -9.0, 5.0, 3.0);
   for (int i = -3; i <= 0; ++i) hall.add_post(4.0 * i + 1.0, -2.0, 0.4).add_post(4.0 * i + 1.0, -7.5, 0.4);
@@ -136,7 +136,7 @@ TEST(PairFeatures, FourNeedNoPose) {
 }
 
 // The source's frame lies elsewhere in it: 7 m away, turned by 35 degrees. What is computed from points is the same; maps are drawn anew on other cells.
-TEST(PairFeatures, DoNotDependOnWhereASubmapsFrameLies) {
+TEST(PairFeatures, DoNotDependOnTheFrameOfASubmap) {
   const Pose2 T_source_other{5.0, -5.0, 35.0 * kDegree};
   const SubmapDescriptor target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
   const SubmapDescriptor other = describe(see_submap(make_yard(), kSource * T_source_other, short_walk(kSource), 2));
@@ -208,7 +208,7 @@ LabeledFeatures make_pairs(std::uint64_t seed, int num_pairs) {
   return pairs;
 }
 
-TEST(PairFeatures, AdaBoostTellsNeighborsFromStrangersOnASiteItHasNotSeen) {
+TEST(PairFeatures, AdaBoostSeparatesNeighborsFromNonNeighborsOnANewSite) {
   const LabeledFeatures training = make_pairs(1, 80), test = make_pairs(2, 80);
   const BoostingResult result = train_adaboost(training, {.rounds = 20});
   int missed = 0, mistaken = 0;

@@ -57,7 +57,7 @@ TEST(PointTree, APointThatIsNoNumberIsRefused) {
   }
 }
 
-TEST(SurfaceNormals, OfAWallStandsAcrossItAndOfACrossIsWorthNothing) {
+TEST(SurfaceNormals, OfAWallIsPerpendicularAndOfACrossHasNoWeight) {
   Points points;
   for (int i = -10; i <= 10; ++i) points.emplace_back(0.1 * i * std::cos(0.5), 0.1 * i * std::sin(0.5));
   const auto wall = surface_normals(PointTree(points), 0.35);

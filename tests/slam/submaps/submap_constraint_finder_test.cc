@@ -26,7 +26,7 @@ PoseGaussian prediction_of(const Pose2& mean, double std_m, double std_rad) {
 }
 
 // Four meters apart, predicted 0.3 m and 1 degree off.
-TEST(FindConstraint, NeighborsInTheOfficeAreJoinedToTwoCentimeters) {
+TEST(FindConstraint, NeighborsInTheOfficeAreConstrainedToTwoCentimeters) {
   const SubmapSurfaces target = seen_from(test::make_office(), 10.0, 4.2, 1), source = seen_from(test::make_office(), 14.0, 4.2, 2);
   const ConstraintResult result = find_constraint(target, source, prediction_of({4.25, 0.15, 0.017}, 0.3, 0.02), test::agreeing_neighbors(), {}, {});
   ASSERT_TRUE(result.constraint);
@@ -34,13 +34,13 @@ TEST(FindConstraint, NeighborsInTheOfficeAreJoinedToTwoCentimeters) {
   EXPECT_THAT(result.constraint->T_target_source, test::Pose2Near(Pose2{4.0, 0.0, 0.0}, 0.02, 0.003));
 }
 
-TEST(FindConstraint, WithoutAModelTheyAreStrangers) {
+TEST(FindConstraint, WithoutAModelTheyAreNotNeighbors) {
   const SubmapSurfaces submap = seen_from(test::make_office(), 10.0, 4.2, 1);
   EXPECT_EQ(find_constraint(submap, submap, prediction_of({}, 0.1, 0.01), {}, {}, {}).failure, ConstraintRejection::kNotNeighbors);
 }
 
 // Doors every three meters: known to 0.3 m there is one place, known to 2 m there are others.
-TEST(FindConstraint, AmongIdenticalDoorsAnotherPlaceThatFitsAsWellMakesTheMatchWorthless) {
+TEST(FindConstraint, AmongIdenticalDoorsAnAmbiguousMatchIsRejected) {
   const test::RoomWorld doors = test::make_corridor_of_doors();
   const SubmapSurfaces target = seen_from(doors, 36.0, 0.0, 1), source = seen_from(doors, 39.0, 0.0, 2);
   SubmapConstraintSettings any;
@@ -52,7 +52,7 @@ TEST(FindConstraint, AmongIdenticalDoorsAnotherPlaceThatFitsAsWellMakesTheMatchW
   EXPECT_EQ(find_constraint(target, source, prediction_of({3.0, 0.0, 0.0}, 2.0, 0.01), all, {}, any).failure, ConstraintRejection::kAmbiguous);
 }
 
-TEST(FindConstraint, AMatchThatLeavesTheRecognizedPlaceIsNone) {
+TEST(FindConstraint, AMatchThatLeavesTheRecognizedPoseIsRejected) {
   const SubmapSurfaces target = seen_from(test::make_office(), 10.0, 4.2, 1), source = seen_from(test::make_office(), 14.0, 4.2, 2);
   SubmapConstraintSettings narrow;
   narrow.max_fine_shift_m = 0.0;

@@ -26,7 +26,7 @@ Points moved(const Points& points, const Pose2& T) {
 }
 
 // Four corners of a square of side 2: distances 2 (four) and 2.828 (two), between the bins 2 and 3.
-TEST(SubmapDescriptor, OfASquaresCornersIsWhatGeometrySays) {
+TEST(SubmapDescriptor, OfTheCornersOfASquareEqualsItsGeometry) {
   const SubmapDescriptor descriptor = describe_submap({{0, 0}, {2, 0}, {2, 2}, {0, 2}}, kNoMap, {});
   EXPECT_EQ(descriptor.num_points, 4U);
   EXPECT_EQ(descriptor.center, Eigen::Vector2d(1, 1));
@@ -38,7 +38,7 @@ TEST(SubmapDescriptor, OfASquaresCornersIsWhatGeometrySays) {
   EXPECT_NEAR(std::accumulate(descriptor.distances.begin(), descriptor.distances.end(), 0.0), 1.0, kExactTol);
 }
 
-TEST(SubmapDescriptor, WhatDoesNotDependOnTheFrameStaysWhenItMoves) {
+TEST(SubmapDescriptor, FrameIndependentPartsStayWhenTheFrameMoves) {
   const Points points = sample_walls(make_yard(), {});
   const SubmapDescriptor here = describe_submap(points, kNoMap, {}), there = describe_submap(moved(points, {30.0, -20.0, 2.2}), kNoMap, {});
   EXPECT_NEAR(here.radius_m, there.radius_m, 1e-10);
@@ -46,7 +46,7 @@ TEST(SubmapDescriptor, WhatDoesNotDependOnTheFrameStaysWhenItMoves) {
   EXPECT_LT(histogram_difference(here.distances, there.distances), 1e-9);
 }
 
-TEST(SubmapDescriptor, DirectionsTurnWithTheFrame) {
+TEST(SubmapDescriptor, DirectionsRotateWithTheFrame) {
   const Points points = sample_walls(make_yard(), {}, {.spacing_m = 0.11});  // none just so far apart as a neighborhood reaches
   const SubmapDescriptor here = describe_submap(points, kNoMap, {});
   // 25 degrees are five bins of 5.
@@ -76,13 +76,13 @@ TEST(SubmapDescriptor, OfTwoPointsIsRefused) {
   }
 }
 
-TEST(HistogramDifference, IsNoneOfTheSameAndOneOfWhatHasNothingInCommon) {
+TEST(HistogramDifference, IsZeroForEqualAndOneForDisjointHistograms) {
   EXPECT_EQ(histogram_difference({0.5, 0.5, 0.0}, {0.5, 0.5, 0.0}), 0.0);
   EXPECT_EQ(histogram_difference({1.0, 0.0, 0.0}, {0.0, 0.5, 0.5}), 1.0);
   EXPECT_EQ(histogram_difference({0.5, 0.5}, {1.0, 0.0}), 0.5);
 }
 
-TEST(CircularCorrelation, FindsATurnAndSaysNothingOfEvenHistograms) {
+TEST(CircularCorrelation, FindsARotationAndNothingInUniformHistograms) {
   const std::vector<double> a = {0.5, 0.3, 0.1, 0.1}, b = {0.3, 0.1, 0.1, 0.5};  // a is b one bin on
   EXPECT_NEAR(circular_correlation(a, b, 1), 1.0, kExactTol);
   EXPECT_NEAR(circular_correlation(a, b, -3), 1.0, kExactTol);

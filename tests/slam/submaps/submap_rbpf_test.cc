@@ -17,7 +17,7 @@ int num_constraints(const SubmapRbpf& slam, int min_apart) {
 }
 
 // 125 m and a bit of corridor; odometry alone turns by a radian and ends tens of meters off.
-TEST(SubmapRbpf, ARoundOfTheOfficeClosesToFiveCentimeters) {
+TEST(SubmapRbpf, ALapOfTheOfficeClosesToFiveCentimeters) {
   const SubmapDrive mapped = map_by_submaps(test::make_office(), test::office_rounds(1), {}, {}, agreeing_neighbors());
   EXPECT_LT(mapped.rms_error_m(), 0.05);
   EXPECT_GE(num_constraints(mapped.slam, 8), 1);
@@ -25,7 +25,7 @@ TEST(SubmapRbpf, ARoundOfTheOfficeClosesToFiveCentimeters) {
   EXPECT_GT(mapped.slam.map().geometry().size(), 100'000U);
 }
 
-TEST(SubmapRbpf, EveryJointOfTwoRoundsIsTrueToADecimeter) {
+TEST(SubmapRbpf, EveryConstraintOfTwoLapsIsCorrectToADecimeter) {
   const SubmapDrive mapped = map_by_submaps(test::make_office(), test::office_rounds(2), {}, {}, agreeing_neighbors());
   const std::vector<Pose2> T_world_submap = mapped.T_world_submap();
   for (const SubmapRbpf::Comparison& comparison : mapped.slam.comparisons()) {
@@ -37,7 +37,7 @@ TEST(SubmapRbpf, EveryJointOfTwoRoundsIsTrueToADecimeter) {
 }
 
 // Ten drives up and down among doors three meters apart: a false joint would shift by a door.
-TEST(SubmapRbpf, AmongIdenticalDoorsNoFalseJointIsMadeInTenDrives) {
+TEST(SubmapRbpf, AmongIdenticalDoorsNoFalseConstraintIsMadeInTenDrives) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const SubmapDrive mapped = map_by_submaps(test::make_corridor_of_doors(), {{20.0, 0.0}, {40.0, 0.0}, {16.0, 0.0}, {20.0, 0.0}}, {.speed_mps = 1.0, .odometry_scale = 0.01}, {},
                                               agreeing_neighbors(), seed);
@@ -51,13 +51,13 @@ TEST(SubmapRbpf, AmongIdenticalDoorsNoFalseJointIsMadeInTenDrives) {
   }
 }
 
-TEST(SubmapRbpf, WithoutAModelNobodyIsANeighbor) {
+TEST(SubmapRbpf, WithoutAModelThereAreNoNeighbors) {
   const SubmapDrive mapped = map_by_submaps(test::make_office(), {{8.0, 4.2}, {30.0, 4.2}, {10.0, 4.2}}, {}, {}, {});
   EXPECT_GT(mapped.slam.comparisons().size(), 1U);
   EXPECT_EQ(num_constraints(mapped.slam, 0), 0);
 }
 
-TEST(SubmapRbpf, ASubmapIsClosedWhenTheWayIsFullAndTheNextBeginsThere) {
+TEST(SubmapRbpf, ASubmapEndsAtItsMaximumDistanceAndTheNextBeginsThere) {
   SubmapRbpfSettings settings;
   settings.submaps.max_distance_m = 5.0;
   const SubmapDrive mapped = map_by_submaps(test::make_office(), {{8.0, 4.2}, {30.0, 4.2}}, {.odometry_scale = 0.0, .odometry_drift_rad_per_m = 0.0}, settings, {});
@@ -77,7 +77,7 @@ TEST(SubmapRbpf, TheSameScansGiveTheSamePathToTheBit) {
   for (std::size_t k = 0; k < first.size(); ++k) EXPECT_EQ(first[k].vector(), second[k].vector()) << k;
 }
 
-TEST(SubmapRbpf, BeforeAnyScanItHasNoPathAndAfterOneItStandsAtTheOrigin) {
+TEST(SubmapRbpf, BeforeAnyScanItHasNoPathAndAfterOneItIsAtTheOrigin) {
   SubmapRbpf slam({}, {}, 1);
   EXPECT_TRUE(slam.path().empty());
   slam.finish();

@@ -36,11 +36,11 @@ TEST(BatOptimizer, LoudnessThatIsLostAtOnceAllowsOneStepEach) {
   EXPECT_GT(once.distance(), often.distance());
 }
 
-TEST(BatOptimizer, LeavesNobodyWorse) { test::expect_nobody_worse(kBats); }
+TEST(BatOptimizer, NoMemberGetsWorse) { test::expect_nobody_worse(kBats); }
 
-TEST(BatOptimizer, AFlatFitnessMovesNobody) { test::expect_flat_fitness_moves_nobody(kBats); }
+TEST(BatOptimizer, AConstantFitnessMovesNoMember) { test::expect_flat_fitness_moves_nobody(kBats); }
 
-TEST(BatOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_fitness(kBats); }
+TEST(BatOptimizer, MembersAreEvaluatedByTheirOwnFitness) { test::expect_own_fitness(kBats); }
 
 TEST(BatOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kBats); }
 

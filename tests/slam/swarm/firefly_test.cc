@@ -40,11 +40,11 @@ TEST(FireflyOptimizer, AFlightOfTwoIsTheFormulas) {
   EXPECT_EQ(swarm.positions[1], Position(Eigen::Vector2d(2.0, 1.0)));
 }
 
-TEST(FireflyOptimizer, LeavesNobodyWorse) { test::expect_nobody_worse(kFireflies); }
+TEST(FireflyOptimizer, NoMemberGetsWorse) { test::expect_nobody_worse(kFireflies); }
 
-TEST(FireflyOptimizer, AFlatFitnessMovesNobody) { test::expect_flat_fitness_moves_nobody(kFireflies); }
+TEST(FireflyOptimizer, AConstantFitnessMovesNoMember) { test::expect_flat_fitness_moves_nobody(kFireflies); }
 
-TEST(FireflyOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_fitness(kFireflies); }
+TEST(FireflyOptimizer, MembersAreEvaluatedByTheirOwnFitness) { test::expect_own_fitness(kFireflies); }
 
 TEST(FireflyOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kFireflies); }
 
@@ -70,11 +70,11 @@ TEST(ImprovedFireflyOptimizer, TheDimmersStepIsExpMinusRTimesTheRatioOfBrightnes
   for (Eigen::Index k = 0; k < 2; ++k) EXPECT_NEAR(swarm.positions[1](k), 2.0 + std::exp(-2.0 / 5.0) * (draws.uniform() - 0.5), 1e-12) << k;
 }
 
-TEST(ImprovedFireflyOptimizer, LeavesNobodyWorse) { test::expect_nobody_worse(kImproved); }
+TEST(ImprovedFireflyOptimizer, NoMemberGetsWorse) { test::expect_nobody_worse(kImproved); }
 
-TEST(ImprovedFireflyOptimizer, AFlatFitnessMovesNobody) { test::expect_flat_fitness_moves_nobody(kImproved); }
+TEST(ImprovedFireflyOptimizer, AConstantFitnessMovesNoMember) { test::expect_flat_fitness_moves_nobody(kImproved); }
 
-TEST(ImprovedFireflyOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_fitness(kImproved); }
+TEST(ImprovedFireflyOptimizer, MembersAreEvaluatedByTheirOwnFitness) { test::expect_own_fitness(kImproved); }
 
 TEST(ImprovedFireflyOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kImproved); }
 

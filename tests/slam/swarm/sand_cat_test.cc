@@ -17,11 +17,11 @@ TEST(SandCatOptimizer, FindsAShiftedSphereToFiveCentimetersIn1020Evaluations) {
 
 TEST(SandCatOptimizer, FindsAckleysFunnelToATenthInTenOfTenSeeds) { EXPECT_EQ(successes(kCats, ackley, 0.1), 10); }
 
-TEST(SandCatOptimizer, LeavesNobodyWorse) { test::expect_nobody_worse(kCats); }
+TEST(SandCatOptimizer, NoMemberGetsWorse) { test::expect_nobody_worse(kCats); }
 
-TEST(SandCatOptimizer, AFlatFitnessMovesNobody) { test::expect_flat_fitness_moves_nobody(kCats); }
+TEST(SandCatOptimizer, AConstantFitnessMovesNoMember) { test::expect_flat_fitness_moves_nobody(kCats); }
 
-TEST(SandCatOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_fitness(kCats); }
+TEST(SandCatOptimizer, MembersAreEvaluatedByTheirOwnFitness) { test::expect_own_fitness(kCats); }
 
 TEST(SandCatOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kCats); }
 
@@ -39,18 +39,18 @@ TEST(ImprovedSandCatOptimizer, FindsAckleysFunnelToAFifthInTenOfTenSeeds) { EXPE
 
 // After T of T generations S = N - 1: all but one end at least as good as the second worst place of the generation before was for them, so that with
 // one judge for all and one generation they end as good as the best 19 of 20 began.
-TEST(ImprovedSandCatOptimizer, InTheLastGenerationTheWorstTakeThePlacesOfTheBest) {
+TEST(ImprovedSandCatOptimizer, InTheLastGenerationTheWorstMoveToTheBest) {
   const test::Trial trial = run_trial(SandCatOptimizer(1, true), for_all(sphere), 20, 1);
   const std::vector<std::size_t> before = trial.start.ranking(), after = trial.end.ranking();
   EXPECT_GE(trial.end.fitness[after.back()], trial.start.fitness[before[18]]);
   EXPECT_GE(trial.end.fitness[after[10]], trial.start.fitness[before[10]]);
 }
 
-TEST(ImprovedSandCatOptimizer, LeavesNobodyWorse) { test::expect_nobody_worse(kImproved); }
+TEST(ImprovedSandCatOptimizer, NoMemberGetsWorse) { test::expect_nobody_worse(kImproved); }
 
-TEST(ImprovedSandCatOptimizer, AFlatFitnessMovesNobody) { test::expect_flat_fitness_moves_nobody(kImproved); }
+TEST(ImprovedSandCatOptimizer, AConstantFitnessMovesNoMember) { test::expect_flat_fitness_moves_nobody(kImproved); }
 
-TEST(ImprovedSandCatOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_fitness(kImproved); }
+TEST(ImprovedSandCatOptimizer, MembersAreEvaluatedByTheirOwnFitness) { test::expect_own_fitness(kImproved); }
 
 TEST(ImprovedSandCatOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kImproved); }
 

@@ -17,7 +17,7 @@ TEST(Swarm, RanksMembersFromTheBestAndEqualsInOrder) {
   EXPECT_EQ(four_members().ranking(), (std::vector<std::size_t>{1, 3, 0, 2}));
 }
 
-TEST(Swarm, AcceptsOnlyWhatTheMembersOwnJudgeFindsBetter) {
+TEST(Swarm, AcceptsOnlyImprovementsOfTheMembersOwnFitness) {
   Swarm swarm = four_members();
   const Fitness fitness_of = [](std::size_t member, const Position&) { return member == 2 ? -4.0 : -9.0; };
   EXPECT_TRUE(swarm.accept(2, at(7, 7), fitness_of));
@@ -35,14 +35,14 @@ TEST(Swarm, AcceptsNeitherAnEqualNorNotANumber) {
   EXPECT_EQ(swarm.positions[0], at(0, 0));
 }
 
-TEST(MakeSwarm, JudgesEachMemberOnceByItsOwnJudge) {
+TEST(MakeSwarm, EvaluatesEachMemberOnceByItsOwnFitness) {
   const Fitness fitness_of = [](std::size_t member, const Position& position) { return 10.0 * static_cast<double>(member) + position.x(); };
   const Swarm swarm = make_swarm({at(1, 0), at(2, 0), at(3, 0)}, fitness_of);
   EXPECT_EQ(swarm.fitness, (std::vector<double>{1.0, 12.0, 23.0}));
 }
 
 // The trial's own functions: the optimum is where it is said to be, and worth nothing.
-TEST(TestFunctions, AreZeroAtTheOptimumAndLessATenthOfAMeterBeside) {
+TEST(TestFunctions, AreZeroAtTheOptimumAndLessATenthOfAMeterOff) {
   for (const auto& function : {test::sphere, test::rosenbrock, test::ackley}) {
     EXPECT_NEAR(function(test::kOptimum), 0.0, 1e-12);
     for (const Eigen::Vector2d& aside : {Eigen::Vector2d(0.1, 0.0), Eigen::Vector2d(-0.1, 0.0), Eigen::Vector2d(0.0, 0.1), Eigen::Vector2d(0.0, -0.1)}) {

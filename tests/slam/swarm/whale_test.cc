@@ -48,16 +48,16 @@ TEST(WhaleOptimizer, OneGenerationIsTheFormulasInAHundredSeeds) {
   EXPECT_GT(num_searching, 50);
 }
 
-TEST(WhaleOptimizer, WithoutGenerationsNobodyMoves) {
+TEST(WhaleOptimizer, WithoutGenerationsNoMemberMoves) {
   const test::Trial trial = run_trial(WhaleOptimizer(0), for_all(sphere), 20, 1);
   EXPECT_EQ(trial.end.positions, trial.start.positions);
 }
 
-TEST(WhaleOptimizer, LeavesNobodyWorse) { test::expect_nobody_worse(kWhales); }
+TEST(WhaleOptimizer, NoMemberGetsWorse) { test::expect_nobody_worse(kWhales); }
 
-TEST(WhaleOptimizer, AFlatFitnessMovesNobody) { test::expect_flat_fitness_moves_nobody(kWhales); }
+TEST(WhaleOptimizer, AConstantFitnessMovesNoMember) { test::expect_flat_fitness_moves_nobody(kWhales); }
 
-TEST(WhaleOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_fitness(kWhales); }
+TEST(WhaleOptimizer, MembersAreEvaluatedByTheirOwnFitness) { test::expect_own_fitness(kWhales); }
 
 TEST(WhaleOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kWhales); }
 

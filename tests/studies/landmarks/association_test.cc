@@ -25,7 +25,7 @@ std::vector<int> match(const std::vector<RangeBearing>& observations, const Asso
   return associate(three_landmarks(), {}, observations, kNoise, settings);
 }
 
-TEST(Associate, KnownPassesTheNumbersThrough) {
+TEST(Associate, KnownAssociationKeepsTheNumbers) {
   EXPECT_EQ(match({observation(1.0, 2.0, 7), observation(99.0, 0.0, 0), observation(10.0, 0.0, 7)}, {.is_known = true}), (std::vector<int>{7, 0, 7}));
 }
 
@@ -35,7 +35,7 @@ TEST(Associate, UnknownTakesTheNearestWithinTheGate) {
 }
 
 // 1.5 m off is 9, within 99 % of chi^2 (9.21); 1.6 m is 10.24, 2.4 m is 23.04: too far for the landmark, too near for a new one; 2.6 m is 27.04.
-TEST(Associate, BetweenNineAndTwentyFiveASightIsOfNothing) {
+TEST(Associate, BetweenNineAndTwentyFiveAnObservationIsDiscarded) {
   EXPECT_EQ(match({observation(11.5, 0.0)}), std::vector<int>{0});
   EXPECT_EQ(match({observation(11.6, 0.0)}), std::vector<int>{kUnmatched});
   EXPECT_EQ(match({observation(12.4, 0.0)}), std::vector<int>{kUnmatched});
@@ -60,7 +60,7 @@ TEST(Associate, PrefersTheMoreProbableToTheNearer) {
   EXPECT_EQ(associate(map, {}, {observation(10.7, 0.0)}, kNoise, kUnknown), std::vector<int>{0});
 }
 
-TEST(Associate, OnAnEmptyMapEverythingIsNewAndNothingSeenIsNothing) {
+TEST(Associate, OnAnEmptyMapAllObservationsAreNewLandmarks) {
   EXPECT_EQ(associate({}, {}, {observation(10.0, 0.0), observation(10.0, 0.0)}, kNoise, kUnknown), (std::vector<int>{0, 1}));
   EXPECT_TRUE(match({}).empty());
 }

@@ -39,7 +39,7 @@ void expect_truth(const CircleWorld& world, const Drive& measured, const BatchSo
 }
 
 // The guess is what odometry would tell that is 2 degrees per second, or 2 degrees of steering, off all the way.
-TEST(SolveBatch, RecoversTheTruthFromNoiselessDataAndAGuessMetersOff) {
+TEST(SolveBatch, RecoversTheGroundTruthFromNoiselessDataAndAGuessMetersOff) {
   for (const Steering steering : {Steering::kYawRate, Steering::kAckermann}) {
     const CircleWorld world = world_of(steering);
     const Drive measured = drive(world, 1, 0.0);
@@ -67,7 +67,7 @@ Drive noiseless(const CircleWorld& world, const Control& control) {
   return drive;
 }
 
-TEST(SolveBatch, StandingStillAndGoingBackwardsAreRecoveredToo) {
+TEST(SolveBatch, RestAndBackwardMotionAreRecoveredToo) {
   for (const Steering steering : {Steering::kYawRate, Steering::kAckermann}) {
     for (const double speed_mps : {0.0, -1.0}) {
       const CircleWorld world = world_of(steering);
@@ -111,7 +111,7 @@ TEST(SolveBatch, OfTwoRangesAndOneStepIsTheWeightedMean) {
   EXPECT_NEAR(solution.T_map_body[1].x, 0.4 + 0.1 * 0.04 / (0.04 + 0.5), kSolverTol);
 }
 
-TEST(SolveBatch, ALandmarkThatIsNotInTheGuessStaysWithoutAPlace) {
+TEST(SolveBatch, ALandmarkThatIsNotInTheGuessHasNoPosition) {
   const ControlMotion motion;
   const BatchSolution solution = solve_batch(motion, {}, {{1.0, 0.0}}, {{}}, {.T_map_body = {{0.1, 0.0, 0.0}}, .landmarks = {std::nullopt}});
   EXPECT_TRUE(solution.has_converged);

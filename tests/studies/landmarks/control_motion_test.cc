@@ -93,7 +93,7 @@ TEST(ControlMotion, YawIsWrappedAtPi) {
   EXPECT_NEAR(kYawRateMotion.move({0.0, 0.0, 3.1}, {0.0, 1.0}).yaw, 3.2 - 2.0 * std::numbers::pi, kExactTol);
 }
 
-TEST(ControlMotion, StandingStillMovesNothing) {
+TEST(ControlMotion, AtRestNothingMoves) {
   for (const ControlMotion& motion : {kYawRateMotion, kCar}) EXPECT_THAT(motion.move({1.0, 2.0, 3.0}, {0.0, 0.0}), Pose2Near((Pose2{1.0, 2.0, 3.0}), 0.0, 0.0));
 }
 

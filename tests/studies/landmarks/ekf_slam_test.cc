@@ -116,7 +116,7 @@ TEST(EkfSlam, StraightAtOneLandmarkIsTheClosedFormPlainAndInvariant) {
   }
 }
 
-TEST(EkfSlam, WithoutNoiseIsTheTruth) {
+TEST(EkfSlam, WithoutNoiseIsTheGroundTruth) {
   for (const EkfSlamSettings& settings : {kPlain, kInvariant}) {
     for (const Steering steering : {Steering::kYawRate, Steering::kAckermann}) {
       CircleWorld world;
@@ -145,7 +145,7 @@ std::vector<double> position_nees(const EkfSlamSettings& settings, const CircleW
 }
 
 // Twenty times it is chi^2 with 40 degrees of freedom: 99.9 % of runs are between 0.8 and 3.9 at a step.
-TEST(EkfSlam, InvariantsPositionErrorIsWhatItsCovarianceSaysInTwentySeeds) {
+TEST(EkfSlam, InvariantsPositionErrorIsConsistentInTwentySeeds) {
   const std::vector<double> nees = position_nees(kInvariant, {});
   for (const std::size_t k : {99U, 199U, 314U}) {
     EXPECT_GT(nees[k], 0.8) << k;
@@ -182,9 +182,9 @@ LeastVariance least_heading_variance(const EkfSlamSettings& settings) {
 }
 
 // Landmarks that were never seen before say nothing of where north is. The invariant filter knows; the plain one learns it from its own linearization.
-TEST(EkfSlam, InvariantNeverLearnsAHeadingThatCannotBeSeen) { EXPECT_GE(least_heading_variance(kInvariant).worst, 1.0 - 1e-9); }
+TEST(EkfSlam, InvariantGainsNoInformationOnTheUnobservableHeading) { EXPECT_GE(least_heading_variance(kInvariant).worst, 1.0 - 1e-9); }
 
-TEST(EkfSlam, PlainBelievesHalfTheVarianceOfAHeadingThatCannotBeSeen) { EXPECT_LT(least_heading_variance(kPlain).best, 0.6); }
+TEST(EkfSlam, PlainUnderestimatesTheVarianceOfTheUnobservableHeading) { EXPECT_LT(least_heading_variance(kPlain).best, 0.6); }
 
 CircleWorld biased_world() {
   CircleWorld world;
@@ -224,7 +224,7 @@ TEST(EkfSlam, WithItsBiasEstimatedHalvesTheMeanErrorOfTenSeeds) {
 }
 
 // Nothing is seen: the bias and the noise add up, (P_b + 1) for the first step, (4 P_b + 2) for both.
-TEST(EkfSlam, BlindABiasOfTwoDeviationsMakesTheSecondStepsYawVarianceEighteenNoises) {
+TEST(EkfSlam, WithoutObservationsABiasOfTwoDeviationsMakesTheSecondStepsYawVarianceEighteenNoises) {
   for (const bool is_invariant : {false, true}) {
     const ControlMotion motion{.step_s = 0.1, .std = {0.1, 0.05}};
     EkfSlam slam({.bias = {.std = 2.0}, .is_invariant = is_invariant}, motion, {});
@@ -238,7 +238,7 @@ TEST(EkfSlam, NoiseScaledByTwoIsFourTimesTheVariance) {
   EXPECT_NEAR(slam.step({1.0, 0.0}, {}).covariance(2, 2), 4.0 * 0.005 * 0.005, kExactTol);
 }
 
-TEST(EkfSlam, ALandmarkThatWasNotSeenHasNoPlace) {
+TEST(EkfSlam, AnUnobservedLandmarkHasNoPosition) {
   EkfSlam slam({}, {}, {});
   EXPECT_TRUE(slam.landmarks().empty());
   slam.step({0.0, 0.0}, {{.landmark = 2, .range_m = 3.0, .bearing_rad = 0.5 * std::numbers::pi}});

@@ -81,7 +81,7 @@ TEST(FastSlam, SameSeedSameEstimate) {
 
 // Nothing is seen: weights stay, and after a step straight ahead the spread is odometry's, (0.1 m/s x 0.1 s)^2 along and (0.05 rad/s x 0.1 s)^2 in yaw. Bounds: four
 // standard errors of a variance, 4 sqrt(2 / N).
-TEST(FastSlam, FiveThousandBlindParticlesSpreadAsOdometrySays) {
+TEST(FastSlam, FiveThousandParticlesWithoutObservationsSpreadAsOdometry) {
   for (const bool use_optimal_proposal : {false, true}) {
     FastSlam slam({.particles = 5000, .use_optimal_proposal = use_optimal_proposal}, {.step_s = 0.1, .std = {0.1, 0.05}}, {}, slam::make_components({}), 1);
     const LandmarkSlamEstimate estimate = slam.step({1.0, 0.0}, {});
@@ -129,7 +129,7 @@ TEST(FastSlam, TwoPointZeroKeepsTwiceTheEffectiveSampleSizeUnderASharpSensor) {
   EXPECT_GT(effective_share(true), 2.0 * effective_share(false));
 }
 
-TEST(FastSlam, FindsEightOfEightLandmarksWithoutBeingToldWhichIsWhich) {
+TEST(FastSlam, FindsEightOfEightLandmarksWithUnknownAssociation) {
   CircleWorld world;
   world.range_m = 20.0;  // all in sight, 5.4 m apart
   world.motion.std = {0.05, 0.02};
@@ -182,7 +182,7 @@ std::vector<double> second_positions(const slam::Offspring& child, std::vector<d
 }
 
 // Against copies of particle 2, which have the same second step: a quarter of the way from 2 to 1, and 2's own increment x - 0.1 made half as long again.
-TEST(FastSlam, OffspringStandAQuarterOfTheWayOrHalfAnIncrementFarther) {
+TEST(FastSlam, OffspringMoveAQuarterOfTheDistanceOrHalfAnIncrementFarther) {
   std::vector<double> first;
   const std::vector<double> copies = second_positions({.parent = 2}, first);
   const std::vector<double> drawn = second_positions({.parent = 2, .attractor = 1, .attraction = 0.25}, first);
@@ -199,7 +199,7 @@ TEST(FastSlam, AnyResamplerKeepsTheWorldsScale) {
   for (const char* resampler : {"multinomial", "systematic", "residual", "low_weight", "stepwise"}) EXPECT_LT(mean_rmse({.particles = 20}, world, {.resampler = resampler}), 1.0) << resampler;
 }
 
-TEST(FastSlam, ALandmarkThatWasNotSeenHasNoPlace) {
+TEST(FastSlam, AnUnobservedLandmarkHasNoPosition) {
   FastSlam slam({.particles = 3}, {}, {}, slam::make_components({}), 1);
   slam.step({0.0, 0.0}, {{.landmark = 2, .range_m = 3.0, .bearing_rad = 0.0}});
   ASSERT_EQ(slam.landmarks().size(), 3U);

@@ -20,7 +20,7 @@ const RangeBearingNoise kNoise{.range_std_m = 0.5, .bearing_std_rad = 0.1};
 Eigen::Matrix2d diagonal(double x, double y) { return Eigen::Vector2d(x, y).asDiagonal(); }
 
 // 4 m away: 0.5 m along the line of sight, 4 x 0.1 = 0.4 m across.
-TEST(LandmarkMap, FirstSightHasTheSensorsVarianceAlongAndAcross) {
+TEST(LandmarkMap, FirstObservationHasTheSensorVarianceAlongAndAcross) {
   LandmarkMap map;
   map.update(0, {}, {.range_m = 4.0, .bearing_rad = 0.0}, kNoise);
   EXPECT_THAT(map.at(0).mean_m, VectorNear(Eigen::Vector2d(4.0, 0.0), kExactTol));
@@ -58,7 +58,7 @@ TEST(LandmarkMap, ANumberBeyondAllLeavesTheOnesBetweenUnseen) {
 }
 
 // A landmark that is known for certain, 5 m ahead, seen 1 m too far and 0.2 rad to the left: (1 / 0.5)^2 + (0.2 / 0.1)^2 = 8, and S = R.
-TEST(FitSight, OfACertainLandmarkTwoDeviationsOffInBothIsEight) {
+TEST(LandmarkInnovation, OfACertainLandmarkTwoDeviationsOffInBothIsEight) {
   const Landmark landmark{.mean_m = {5.0, 0.0}, .covariance = Eigen::Matrix2d::Zero(), .is_observed = true};
   const LandmarkInnovation fit = landmark_innovation({}, landmark, {.range_m = 6.0, .bearing_rad = 0.2}, kNoise);
   EXPECT_NEAR(fit.squared_distance, 8.0, kExactTol);
@@ -66,14 +66,14 @@ TEST(FitSight, OfACertainLandmarkTwoDeviationsOffInBothIsEight) {
 }
 
 // An uncertain one: S = 0.75 + 0.25 = 1 along, and (0.48 + 0.16) / 16 = 0.04 across, at 4 m.
-TEST(FitSight, AddsTheLandmarksVarianceToTheSensors) {
+TEST(LandmarkInnovation, AddsTheLandmarksVarianceToTheSensors) {
   const Landmark landmark{.mean_m = {4.0, 0.0}, .covariance = diagonal(0.75, 0.48), .is_observed = true};
   const LandmarkInnovation fit = landmark_innovation({}, landmark, {.range_m = 6.0, .bearing_rad = 0.2}, kNoise);
   EXPECT_NEAR(fit.squared_distance, 4.0 + 1.0, kExactTol);
   EXPECT_NEAR(fit.log_density(), -2.5 - 0.5 * std::log(0.04), kExactTol);
 }
 
-TEST(LandmarkMap, UpdateGivesTheSightsLogDensityAndZeroForANewLandmark) {
+TEST(LandmarkMap, UpdateReturnsTheLogDensityOfTheObservationAndZeroForANewLandmark) {
   LandmarkMap map;
   EXPECT_EQ(map.update(0, {}, {.range_m = 4.0, .bearing_rad = 0.0}, kNoise), 0.0);
   const RangeBearing again{.range_m = 4.6, .bearing_rad = -0.1};
@@ -110,7 +110,7 @@ TEST(LandmarkMap, ClosedFormIsTheMatrixForm) {
 }
 
 // Sharp enough that the product of 1,000 determinants, 1e-6 each or less, is under what a double can be.
-TEST(ObservationLikelihood, OfAThousandSightsIsTheSumOfTheFits) {
+TEST(ObservationLikelihood, OfAThousandObservationsIsTheSumOfTheInnovations) {
   const RandomStream stream(1, "test/sights");
   const RangeBearingNoise noise{.range_std_m = 0.02, .bearing_std_rad = 0.01};
   const Pose2 pose{0.5, -0.3, 3.0};

@@ -52,7 +52,7 @@ TEST(OdometryBias, RootTimesItsTransposeIsTheIncrementsCovariance) {
 }
 
 // A bias that wanders: P = P / (P + 1) + q^2 stands still at P = (q^2 + q sqrt(q^2 + 4)) / 2; here q = 0.1: 0.105125.
-TEST(OdometryBias, ThatWandersATenthEachStepIsKnownToTheSteadyStatesVariance) {
+TEST(OdometryBias, ThatWandersATenthEachStepHasTheSteadyStateVariance) {
   const OdometryBiasSettings settings{.std = 2.0, .walk_std = 0.1};
   OdometryBias bias(settings);
   for (int n = 0; n < 200; ++n) bias.add_increment({1.0, -1.0}, settings);

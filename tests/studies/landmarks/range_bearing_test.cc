@@ -16,13 +16,13 @@ constexpr double kStep = 1e-6;           // of the central differences: their er
 constexpr double kDifferenceTol = 1e-9;
 
 // A 3-4-5 triangle, seen by a body that faces +y.
-TEST(PredictSight, ThreeAheadAndFourToTheRightIsFiveMetersAway) {
+TEST(PredictObservation, ThreeAheadAndFourToTheRightIsFiveMetersAway) {
   const Eigen::Vector2d observation = predict_observation({1.0, 2.0, 0.5 * std::numbers::pi}, {5.0, 5.0}).observation;
   EXPECT_NEAR(observation.x(), 5.0, kExactTol);
   EXPECT_NEAR(observation.y(), -std::atan2(4.0, 3.0), kExactTol);
 }
 
-TEST(PredictSight, DerivativesAreTheCentralDifferences) {
+TEST(PredictObservation, DerivativesAreTheCentralDifferences) {
   const Pose2 pose{0.4, -1.0, 2.5};
   for (const Eigen::Vector2d& p : {Eigen::Vector2d(3.0, 2.0), Eigen::Vector2d(-2.0, -0.5), Eigen::Vector2d(0.4, 1.0)}) {
     const PredictedObservation predicted = predict_observation(pose, p);
@@ -49,14 +49,14 @@ TEST(InnovationOf, OfTwoDegreesAcrossTheWrapIsTwoDegrees) {
   EXPECT_NEAR(innovation.y(), 2.0 * kDegree, kExactTol);
 }
 
-TEST(LandmarkOf, IsTheInverseOfPredictSight) {
+TEST(InvertObservation, IsTheInverseOfThePrediction) {
   const Pose2 pose{1.0, -2.0, 2.9};
   const Eigen::Vector2d p(-3.0, 4.0), observation = predict_observation(pose, p).observation;
   EXPECT_THAT(invert_observation(pose, {.landmark = 0, .range_m = observation.x(), .bearing_rad = observation.y()}), test::VectorNear(p, kExactTol));
 }
 
 // Range 0 has no bearing: finite all the same.
-TEST(PredictSight, OfALandmarkAtTheBodyIsFinite) {
+TEST(PredictObservation, OfALandmarkAtTheBodyIsFinite) {
   const PredictedObservation predicted = predict_observation({1.0, 2.0, 0.3}, {1.0, 2.0});
   EXPECT_TRUE(predicted.observation.allFinite() && predicted.H_landmark.allFinite() && predicted.H_pose.allFinite());
   EXPECT_NEAR(predicted.observation.x(), 0.0, 1e-5);

@@ -36,7 +36,7 @@ std::vector<double> quasi_errors(int particles) {
 /// The whole 95 % interval of the paired difference lies below zero.
 bool is_below_bound(const std::vector<double>& errors, const std::vector<double>& bound) { return paired_difference(errors, bound).high < 0.0; }
 
-TEST(GrowthBound, NoFilterLiesSignificantlyBelowIt) {
+TEST(GrowthBound, NoFilterIsSignificantlyBelowIt) {
   const std::vector<double> bound = exact_errors();
   for (const int particles : {50, 150}) {
     EXPECT_FALSE(is_below_bound(swarm_errors(particles, {.resample_threshold = 1.0}), bound)) << "PF " << particles;
@@ -65,7 +65,7 @@ class LeakingOptimizer : public SwarmOptimizer {
   mutable std::size_t step_ = 0;
 };
 
-TEST(GrowthBound, CatchesAFilterThatIsToldATwentiethOfTheTrueState) {
+TEST(GrowthBound, CatchesAFilterThatUsesATwentiethOfTheTrueState) {
   const auto leaking = [](std::uint64_t seed, const GrowthRun& run) {
     ParticleFilterComponents parts = slam::make_components({.resample_threshold = 1.0});
     parts.optimizer = std::make_shared<LeakingOptimizer>(run.states, 0.05);

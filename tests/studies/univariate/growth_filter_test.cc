@@ -52,7 +52,7 @@ TEST(GrowthFilter, ShowsParticlesAndWeightsOfItsEstimate) {
   }
 }
 
-TEST(GrowthFilter, ChildHalfWayToAnotherAndATenthFartherStartsThere) {
+TEST(GrowthFilter, ChildHalfwayToAnotherAndATenthFartherStartsThere) {
   const slam::Resampler halfway = [](const std::vector<double>& weights, RandomSequence&) {
     return std::vector<slam::Offspring>(weights.size(), {.parent = 0, .attractor = 1, .attraction = 0.5, .mutation = 0.1});
   };

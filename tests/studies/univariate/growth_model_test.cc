@@ -40,7 +40,7 @@ TEST(GrowthModel, StaysWithinThirtyAndExplodesPastTenThousandAsPrinted) {
   EXPECT_GT(greatest_magnitude(GrowthModel({.denominator_sign = -1}), 100), 10'000.0);
 }
 
-TEST(GrowthModel, DoesNotTellTenFromMinusTenByTheFiveItObserves) {
+TEST(GrowthModel, DoesNotDistinguishTenFromMinusTenByTheFiveItObserves) {
   const GrowthModel model;
   EXPECT_NEAR(model.mean_observation(10.0), 5.0, kExactTol);
   EXPECT_NEAR(model.log_likelihood(5.0, 10.0), -0.5 * std::log(2.0 * std::numbers::pi), kExactTol);

@@ -39,7 +39,7 @@ TEST(QuasiFilter, ComesWithinFiveThousandthsOfTheExactMeansWithTwentyThousandPar
   EXPECT_LT(distance_from_exact(quasi_filters({.particles = 20'000, .use_auxiliary = false}), 1), 0.005);
 }
 
-TEST(QuasiFilter, WithAHundredAndFiftyParticlesIsFourTimesNearerToTheExactMeansThanRandomDraws) {
+TEST(QuasiFilter, WithAHundredAndFiftyParticlesIsFourTimesNearerToTheExactMeansThanRandomSamples) {
   const FilterMaker bootstrap = [](std::uint64_t seed, const GrowthRun&) {
     return std::make_unique<GrowthFilter>(150, GrowthModel(), slam::make_components({.resample_threshold = 1.0}), seed);
   };
@@ -58,7 +58,7 @@ TEST(QuasiFilter, LooksAheadToNearlyEqualWeights) {
 }
 
 // Over the shifts every point is even in the square, so that a single particle's first state is N(8, 1).
-TEST(QuasiFilter, DrawsASingleParticleFromNormalEightOne) {
+TEST(QuasiFilter, SamplesASingleParticleFromNormalEightOne) {
   double sum = 0.0, squares = 0.0;
   constexpr int kSeeds = 20'000;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
