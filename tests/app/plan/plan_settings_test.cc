@@ -66,7 +66,7 @@ TEST(PlanSettings, WhatIsWrongIsNamed) {
   EXPECT_EQ(complaint({.map = "m.yaml", .planner = "visibility_graph", .smooth = true}).substr(0, 9), "--smooth:");
   EXPECT_NE(complaint({.map = "m.yaml", .planner = "visibility_graph", .robot = "tracked"}).find("routes.cost_weight"), std::string::npos);
   EXPECT_NE(complaint(options_of({"unknown=maybe"})).find("unknown: maybe"), std::string::npos) << complaint(options_of({"unknown=maybe"}));
-  EXPECT_EQ(complaint(options_of({"costmap.crosses_unknown=true"})), "--set: costmap.crosses_unknown: say it by unknown=lethal or unknown=free");
+  EXPECT_EQ(complaint(options_of({"costmap.allow_unknown=true"})), "--set: costmap.allow_unknown: say it by unknown=lethal or unknown=free");
   EXPECT_NE(complaint(options_of({"routes.ant_colony.antz=3"})).find("routes.ant_colony.antz"), std::string::npos);
   EXPECT_NE(complaint(options_of({"speed_mps=0"})).find("speed_mps"), std::string::npos);
 }
